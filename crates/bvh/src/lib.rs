@@ -1,0 +1,1 @@
+//! Oriented bounding box trees over uncertain points: build, refit, coverage, certified pair traversal.

@@ -1,0 +1,82 @@
+//! A point cloud as read from a sensor or a file.
+
+use crate::{Covariance, Point3};
+
+/// Points in one frame, in file order, NaN rows included.
+///
+/// What the points mean (which sensor, how noisy) is not known here.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PointCloud {
+    /// Positions, m. A row without a return is NaN in an organised cloud.
+    pub points: Vec<Point3>,
+    /// One covariance per point, when the file has them.
+    pub covariances: Option<Vec<Covariance>>,
+    /// Where the sensor was, in the frame of the points, m.
+    pub sensor_origin: Point3,
+    /// Width and height when the cloud is an image, row by row.
+    pub image_size: Option<(usize, usize)>,
+}
+
+impl PointCloud {
+    /// A cloud of points seen from the origin.
+    pub fn from_points(points: Vec<Point3>) -> Self {
+        Self { points, ..Self::default() }
+    }
+
+    /// How many rows there are, NaN ones included.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// The rows named by `indices`, in that order; the image layout is lost.
+    ///
+    /// # Panics
+    /// When an index is out of range.
+    pub fn select(&self, indices: &[usize]) -> Self {
+        Self {
+            points: indices.iter().map(|&i| self.points[i]).collect(),
+            covariances: self
+                .covariances
+                .as_ref()
+                .map(|all| indices.iter().map(|&i| all[i]).collect()),
+            sensor_origin: self.sensor_origin,
+            image_size: None,
+        }
+    }
+
+    /// Lowest and highest corner of the finite points; `None` when there is none.
+    pub fn bounding_box(&self) -> Option<(Point3, Point3)> {
+        bounding_box(self.points.iter().filter(|p| p.iter().all(|v| v.is_finite())))
+    }
+}
+
+/// Lowest and highest corner of some points; `None` when there is none.
+pub(crate) fn bounding_box<'a>(
+    points: impl IntoIterator<Item = &'a Point3>,
+) -> Option<(Point3, Point3)> {
+    let mut points = points.into_iter();
+    let first = *points.next()?;
+    Some(points.fold((first, first), |(low, high), p| (low.inf(p), high.sup(p))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounding_box_passes_over_missing_returns() {
+        let cloud = PointCloud::from_points(vec![
+            Point3::new(f64::NAN, 0.0, 0.0),
+            Point3::new(1.0, 2.0, 3.0),
+            Point3::new(-1.0, 5.0, 0.0),
+        ]);
+        let (low, high) = cloud.bounding_box().unwrap();
+        assert_eq!((low, high), (Point3::new(-1.0, 2.0, 0.0), Point3::new(1.0, 5.0, 3.0)));
+        assert!(PointCloud::default().bounding_box().is_none());
+    }
+}

@@ -1,0 +1,340 @@
+//! Symmetric positive semidefinite 3×3 matrices: zero and singular ones are ordinary values.
+
+use nalgebra::SymmetricEigen;
+
+use crate::{Matrix3, Vector3};
+
+/// A covariance in square metres; symmetric and positive semidefinite by construction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Covariance {
+    xx: f64,
+    xy: f64,
+    xz: f64,
+    yy: f64,
+    yz: f64,
+    zz: f64,
+}
+
+/// Why a matrix is not a covariance.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CovarianceError {
+    /// An entry is NaN or infinite.
+    #[error("covariance entry ({row}, {column}) is {value}: every entry must be finite")]
+    NotFinite {
+        /// Row of the entry, from 0.
+        row: usize,
+        /// Column of the entry, from 0.
+        column: usize,
+        /// What was found.
+        value: f64,
+    },
+    /// The matrix differs from its transpose by more than rounding.
+    #[error(
+        "covariance is not symmetric: entry ({row}, {column}) differs from its mirror by {difference}"
+    )]
+    NotSymmetric {
+        /// Row of the worst entry.
+        row: usize,
+        /// Column of the worst entry.
+        column: usize,
+        /// Difference from the mirrored entry.
+        difference: f64,
+    },
+    /// The matrix has a negative eigenvalue beyond rounding.
+    #[error("covariance has the negative eigenvalue {eigenvalue}: variances cannot be negative")]
+    Negative {
+        /// The smallest eigenvalue.
+        eigenvalue: f64,
+    },
+}
+
+/// Relative size of what counts as rounding when a matrix is checked.
+const ROUNDING: f64 = 1e-9;
+
+impl Covariance {
+    /// No uncertainty at all.
+    pub const fn zero() -> Self {
+        Self { xx: 0.0, xy: 0.0, xz: 0.0, yy: 0.0, yz: 0.0, zz: 0.0 }
+    }
+
+    /// The same variance (m²) in every direction; a negative one counts as zero.
+    pub fn isotropic(variance: f64) -> Self {
+        Self::diagonal([variance; 3])
+    }
+
+    /// Independent variances (m²) along x, y and z; negative ones count as zero.
+    pub fn diagonal(variances: [f64; 3]) -> Self {
+        let [xx, yy, zz] = variances.map(|v| v.max(0.0));
+        Self { xx, yy, zz, ..Self::zero() }
+    }
+
+    /// `along`² in the direction `axis` (unit length) and `across`² in the plane across it.
+    ///
+    /// Both are standard deviations in metres.
+    pub fn from_axis(axis: &Vector3, along: f64, across: f64) -> Self {
+        let extra = along * along - across * across;
+        Self::from_symmetric(
+            &(Matrix3::identity() * (across * across) + axis * axis.transpose() * extra),
+        )
+    }
+
+    /// Checks a matrix and takes it; a negative eigenvalue within rounding becomes zero.
+    ///
+    /// # Errors
+    /// When an entry is not finite, or the matrix is not symmetric, or it has a negative
+    /// eigenvalue; rounding is 1e-9 of its largest entry.
+    pub fn try_from_matrix(matrix: &Matrix3) -> Result<Self, CovarianceError> {
+        for row in 0..3 {
+            for column in 0..3 {
+                let value = matrix[(row, column)];
+                if !value.is_finite() {
+                    return Err(CovarianceError::NotFinite { row, column, value });
+                }
+            }
+        }
+        let scale = matrix.amax();
+        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+            let difference = matrix[(row, column)] - matrix[(column, row)];
+            if difference.abs() > ROUNDING * scale {
+                return Err(CovarianceError::NotSymmetric { row, column, difference });
+            }
+        }
+        let symmetric = Self::symmetrized(matrix);
+        let (eigenvalues, axes) = symmetric.raw_eigen();
+        let eigenvalue = eigenvalues.min();
+        if eigenvalue < -ROUNDING * scale {
+            return Err(CovarianceError::Negative { eigenvalue });
+        }
+        if eigenvalue < 0.0 {
+            return Ok(Self::from_eigen(&eigenvalues, &axes));
+        }
+        Ok(symmetric)
+    }
+
+    /// Takes a matrix known to be positive semidefinite up to rounding, such as a sum or a
+    /// congruence of covariances; averages it with its transpose.
+    ///
+    /// Not checked: use [`Self::try_from_matrix`] for anything a user supplied.
+    pub fn from_symmetric(matrix: &Matrix3) -> Self {
+        let mut symmetric = Self::symmetrized(matrix);
+        for variance in [&mut symmetric.xx, &mut symmetric.yy, &mut symmetric.zz] {
+            *variance = variance.max(0.0);
+        }
+        symmetric
+    }
+
+    fn symmetrized(m: &Matrix3) -> Self {
+        Self {
+            xx: m[(0, 0)],
+            xy: 0.5 * (m[(0, 1)] + m[(1, 0)]),
+            xz: 0.5 * (m[(0, 2)] + m[(2, 0)]),
+            yy: m[(1, 1)],
+            yz: 0.5 * (m[(1, 2)] + m[(2, 1)]),
+            zz: m[(2, 2)],
+        }
+    }
+
+    /// Rebuilds from variances along orthonormal axes (columns); negative variances become zero.
+    pub fn from_eigen(eigenvalues: &Vector3, axes: &Matrix3) -> Self {
+        let clamped = eigenvalues.map(|v| v.max(0.0));
+        Self::from_symmetric(&(axes * Matrix3::from_diagonal(&clamped) * axes.transpose()))
+    }
+
+    /// The full matrix, m².
+    pub fn matrix(&self) -> Matrix3 {
+        Matrix3::new(
+            self.xx, self.xy, self.xz, self.xy, self.yy, self.yz, self.xz, self.yz, self.zz,
+        )
+    }
+
+    /// The six distinct entries xx, xy, xz, yy, yz, zz.
+    pub fn upper_triangle(&self) -> [f64; 6] {
+        [self.xx, self.xy, self.xz, self.yy, self.yz, self.zz]
+    }
+
+    /// Variances in descending order and the unit axes (columns, right-handed or not) they
+    /// belong to.
+    pub fn eigen(&self) -> (Vector3, Matrix3) {
+        let (values, axes) = self.raw_eigen();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| values[j].total_cmp(&values[i]));
+        (
+            Vector3::from_fn(|k, _| values[order[k]].max(0.0)),
+            Matrix3::from_fn(|row, k| axes[(row, order[k])]),
+        )
+    }
+
+    fn raw_eigen(&self) -> (Vector3, Matrix3) {
+        let scale = self.matrix().amax();
+        if scale == 0.0 || !scale.is_finite() {
+            return (Vector3::repeat(scale), Matrix3::identity());
+        }
+        // Scaled to unit size: the iteration squares entries, and 1e-160² underflows.
+        let eigen = SymmetricEigen::new(self.matrix() / scale);
+        (eigen.eigenvalues * scale, eigen.eigenvectors)
+    }
+
+    /// The symmetric root S with S S = Σ, in metres.
+    pub fn sqrt(&self) -> Matrix3 {
+        let (values, axes) = self.eigen();
+        axes * Matrix3::from_diagonal(&values.map(f64::sqrt)) * axes.transpose()
+    }
+
+    /// Variance (m²) of the component along `direction`, which need not have unit length.
+    pub fn variance_along(&self, direction: &Vector3) -> f64 {
+        direction.dot(&(self.matrix() * direction)).max(0.0)
+    }
+
+    /// Standard deviation (m) of the component along `direction`.
+    pub fn std_along(&self, direction: &Vector3) -> f64 {
+        self.variance_along(direction).sqrt()
+    }
+
+    /// An upper bound on the standard deviation in any direction: √trace ≥ √λ₁.
+    ///
+    /// At most √3 too large, and much cheaper than the eigenvalue; see [`Self::max_std`].
+    pub fn std_bound(&self) -> f64 {
+        (self.xx + self.yy + self.zz).sqrt()
+    }
+
+    /// The largest standard deviation in any direction, m.
+    pub fn max_std(&self) -> f64 {
+        self.eigen().0[0].sqrt()
+    }
+
+    /// Whether there is no uncertainty at all.
+    pub fn is_zero(&self) -> bool {
+        *self == Self::zero()
+    }
+
+    /// Whether every entry is finite.
+    pub fn is_finite(&self) -> bool {
+        self.upper_triangle().iter().all(|v| v.is_finite())
+    }
+
+    /// R Σ Rᵀ.
+    pub fn rotated(&self, rotation: &nalgebra::UnitQuaternion<f64>) -> Self {
+        if self.is_zero() {
+            return *self;
+        }
+        let r = rotation.to_rotation_matrix();
+        Self::from_symmetric(&(r.matrix() * self.matrix() * r.matrix().transpose()))
+    }
+
+    /// The covariance of `factor`·x.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let f = factor * factor;
+        let [xx, xy, xz, yy, yz, zz] = self.upper_triangle().map(|v| v * f);
+        Self { xx, xy, xz, yy, yz, zz }
+    }
+
+    /// Σ + Ψ: the covariance of a sum of independent errors.
+    pub fn sum(&self, other: &Self) -> Self {
+        Self::from_symmetric(&(self.matrix() + other.matrix()))
+    }
+
+    /// The parallel sum Σ(Σ+Ψ)⁺Ψ, which is (Σ⁻¹+Ψ⁻¹)⁻¹ where both have an inverse.
+    ///
+    /// Defined for singular and zero matrices: a direction without variance in one of them has
+    /// none in the result.
+    pub fn parallel_sum(&self, other: &Self) -> Self {
+        let (values, axes) = self.sum(other).eigen();
+        // Directions in which neither varies: the pseudo-inverse leaves them out.
+        let floor = values[0] * 1e-14;
+        let inverse = values.map(|v| if v > floor { 1.0 / v } else { 0.0 });
+        let pseudo_inverse = axes * Matrix3::from_diagonal(&inverse) * axes.transpose();
+        let product = self.matrix() * pseudo_inverse * other.matrix();
+        let symmetric = Self::from_symmetric(&product);
+        // Cancellation can leave a tiny negative eigenvalue; a covariance must not have one.
+        let (values, axes) = symmetric.raw_eigen();
+        if values.min() < 0.0 { Self::from_eigen(&values, &axes) } else { symmetric }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn any_covariance() -> impl Strategy<Value = Covariance> {
+        (prop::array::uniform9(-1.0..1.0_f64), -6..3_i32).prop_map(|(entries, exponent)| {
+            let root = Matrix3::from_row_slice(&entries) * 10_f64.powi(exponent);
+            Covariance::from_symmetric(&(root * root.transpose()))
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn parallel_sum_inverts_the_sum_of_precisions(a in any_covariance(), b in any_covariance()) {
+            let condition = |c: &Covariance| { let e = c.eigen().0; e[0] / e[2] };
+            prop_assume!(condition(&a) < 1e6 && condition(&b) < 1e6);
+            prop_assume!((a.max_std() / b.max_std()).log10().abs() < 2.0);
+            let expected = (a.matrix().try_inverse().unwrap() + b.matrix().try_inverse().unwrap())
+                .try_inverse()
+                .unwrap();
+            let got = a.parallel_sum(&b).matrix();
+            prop_assert!((got - expected).amax() <= 1e-6 * expected.amax());
+        }
+
+        #[test]
+        fn root_squares_back(a in any_covariance()) {
+            let root = a.sqrt();
+            prop_assert!((root * root - a.matrix()).amax() <= 1e-12 * a.matrix().amax());
+        }
+
+        #[test]
+        fn bounds_are_in_order(a in any_covariance(), d in prop::array::uniform3(-1.0..1.0_f64)) {
+            let direction = Vector3::from(d);
+            prop_assume!(direction.norm() > 1e-3);
+            let along = a.std_along(&direction.normalize());
+            prop_assert!(along <= a.max_std() * (1.0 + 1e-9));
+            prop_assert!(a.max_std() <= a.std_bound() * (1.0 + 1e-9));
+        }
+    }
+
+    #[test]
+    fn singular_parallel_sums_lose_only_the_missing_directions() {
+        let flat = Covariance::diagonal([4.0, 4.0, 0.0]);
+        let round = Covariance::isotropic(4.0);
+        let sum = flat.parallel_sum(&round);
+        assert!(
+            (sum.matrix() - Matrix3::from_diagonal(&Vector3::new(2.0, 2.0, 0.0))).amax() < 1e-12
+        );
+        assert!(Covariance::zero().parallel_sum(&round).is_zero());
+        assert!(Covariance::zero().parallel_sum(&Covariance::zero()).is_zero());
+    }
+
+    #[test]
+    fn checks_name_what_is_wrong() {
+        let mut m = Matrix3::identity();
+        m[(0, 2)] = 0.5;
+        assert!(matches!(
+            Covariance::try_from_matrix(&m),
+            Err(CovarianceError::NotSymmetric { row: 0, column: 2, .. })
+        ));
+        m = Matrix3::identity();
+        m[(1, 1)] = -1.0;
+        assert!(matches!(
+            Covariance::try_from_matrix(&m),
+            Err(CovarianceError::Negative { eigenvalue }) if eigenvalue < 0.0
+        ));
+        m[(1, 1)] = f64::NAN;
+        assert!(matches!(
+            Covariance::try_from_matrix(&m),
+            Err(CovarianceError::NotFinite { row: 1, column: 1, .. })
+        ));
+    }
+
+    #[test]
+    fn tiny_and_huge_scales_keep_their_eigenvalues() {
+        for scale in [1e-200, 1e-12, 1.0, 1e150] {
+            let c = Covariance::diagonal([3.0 * scale, scale, 2.0 * scale]);
+            let (values, _) = c.eigen();
+            for (value, expected) in values.iter().zip([3.0, 2.0, 1.0]) {
+                assert!((value / (expected * scale) - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! A triangle mesh as read from a file.
+
+use std::collections::HashMap;
+
+use crate::{Point3, cloud::bounding_box};
+
+/// Triangles over shared vertices, m. May be open, degenerate or a soup.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TriangleMesh {
+    vertices: Vec<Point3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// Why vertices and triangles are not a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// A vertex has a coordinate that is NaN or infinite.
+    #[error("vertex {vertex} has the coordinate {value}: every coordinate must be finite")]
+    NotFinite {
+        /// Which vertex, from 0.
+        vertex: usize,
+        /// What was found.
+        value: f64,
+    },
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} names vertex {index}, but there are only {vertices}")]
+    MissingVertex {
+        /// Which triangle, from 0.
+        triangle: usize,
+        /// The index it names, from 0.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// There are no triangles.
+    #[error("the mesh has no triangles")]
+    Empty,
+}
+
+impl TriangleMesh {
+    /// Checks vertices and triangles and takes them.
+    ///
+    /// # Errors
+    /// When there are no triangles, a coordinate is not finite, or an index is out of range.
+    pub fn try_new(vertices: Vec<Point3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        if triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        for (vertex, p) in vertices.iter().enumerate() {
+            if let Some(&value) = p.iter().find(|v| !v.is_finite()) {
+                return Err(MeshError::NotFinite { vertex, value });
+            }
+        }
+        for (triangle, indices) in triangles.iter().enumerate() {
+            if let Some(&index) = indices.iter().find(|&&i| i as usize >= vertices.len()) {
+                let vertices = vertices.len();
+                return Err(MeshError::MissingVertex { triangle, index, vertices });
+            }
+        }
+        Ok(Self { vertices, triangles })
+    }
+
+    /// The vertices, m.
+    pub fn vertices(&self) -> &[Point3] {
+        &self.vertices
+    }
+
+    /// Three vertex indices per triangle, anticlockwise seen from outside where that is known.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The corners of one triangle.
+    ///
+    /// # Panics
+    /// When the index is out of range.
+    pub fn corners(&self, triangle: usize) -> [Point3; 3] {
+        self.triangles[triangle].map(|i| self.vertices[i as usize])
+    }
+
+    /// The same mesh with coordinates multiplied by `factor` (0.001 for millimetres).
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.vertices.iter_mut().for_each(|p| p.coords *= factor);
+        self
+    }
+
+    /// Lowest and highest corner.
+    pub fn bounding_box(&self) -> Option<(Point3, Point3)> {
+        bounding_box(&self.vertices)
+    }
+
+    /// Merges vertices with identical coordinates and drops triangles that thereby collapse.
+    ///
+    /// STL files repeat every vertex in every triangle; only after merging can one tell whether
+    /// the mesh is closed.
+    #[must_use]
+    pub fn merged(&self) -> Self {
+        let mut index_of = HashMap::new();
+        let mut vertices = Vec::new();
+        let merged: Vec<u32> = self
+            .vertices
+            .iter()
+            .map(|p| {
+                // Adding zero makes −0 and 0 one key.
+                let key = [p.x + 0.0, p.y + 0.0, p.z + 0.0].map(f64::to_bits);
+                *index_of.entry(key).or_insert_with(|| {
+                    vertices.push(*p);
+                    (vertices.len() - 1) as u32
+                })
+            })
+            .collect();
+        let triangles = self
+            .triangles
+            .iter()
+            .map(|t| t.map(|i| merged[i as usize]))
+            .filter(|[a, b, c]| a != b && b != c && c != a)
+            .collect();
+        Self { vertices, triangles }
+    }
+
+    /// How many edges do not join exactly two triangles that run along it in opposite directions.
+    ///
+    /// Zero means watertight and consistently oriented: inside and outside are defined. Call it on
+    /// a [`merged`](Self::merged) mesh.
+    pub fn open_edges(&self) -> usize {
+        let mut balance: HashMap<(u32, u32), (i32, u32)> = HashMap::new();
+        for &[a, b, c] in &self.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let entry = balance.entry((from.min(to), from.max(to))).or_default();
+                entry.0 += if from < to { 1 } else { -1 };
+                entry.1 += 1;
+            }
+        }
+        balance.values().filter(|&&(sum, count)| sum != 0 || count % 2 != 0).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tetrahedron_soup() -> TriangleMesh {
+        let corners = [
+            Point3::new(0.0, 0.0, 0.0),
+            Point3::new(1.0, 0.0, 0.0),
+            Point3::new(0.0, 1.0, 0.0),
+            Point3::new(0.0, 0.0, 1.0),
+        ];
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let vertices = faces.iter().flatten().map(|&i: &usize| corners[i]).collect();
+        let triangles = (0..4).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        TriangleMesh::try_new(vertices, triangles).unwrap()
+    }
+
+    #[test]
+    fn merging_closes_a_soup() {
+        let soup = tetrahedron_soup();
+        assert_eq!(soup.open_edges(), 12);
+        let merged = soup.merged();
+        assert_eq!((merged.vertices().len(), merged.open_edges()), (4, 0));
+    }
+
+    #[test]
+    fn bad_meshes_are_refused_with_their_place() {
+        let p = Point3::origin();
+        assert_eq!(TriangleMesh::try_new(vec![p], vec![]), Err(MeshError::Empty));
+        assert_eq!(
+            TriangleMesh::try_new(vec![p], vec![[0, 0, 7]]),
+            Err(MeshError::MissingVertex { triangle: 0, index: 7, vertices: 1 })
+        );
+        let bad = Point3::new(0.0, f64::INFINITY, 0.0);
+        assert!(matches!(
+            TriangleMesh::try_new(vec![p, bad], vec![[0, 0, 1]]),
+            Err(MeshError::NotFinite { vertex: 1, .. })
+        ));
+    }
+}

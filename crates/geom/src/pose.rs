@@ -1,0 +1,181 @@
+//! Rigid motions, checked when they come from outside.
+
+use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
+
+use crate::{Matrix3, Point3, Vector3};
+
+/// A rigid motion that maps points of one frame into another: p ↦ R p + t.
+///
+/// Named for what it does, as in `scene_from_object`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose(Isometry3<f64>);
+
+/// Why a matrix is not a rigid motion.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PoseError {
+    /// An entry is NaN or infinite.
+    #[error("pose entry ({row}, {column}) is {value}: every entry must be finite")]
+    NotFinite {
+        /// Row of the entry, from 0.
+        row: usize,
+        /// Column of the entry, from 0.
+        column: usize,
+        /// What was found.
+        value: f64,
+    },
+    /// The last row is not 0 0 0 1.
+    #[error("the last row of the pose is {found:?}, not [0, 0, 0, 1]: is the matrix row-major?")]
+    LastRow {
+        /// What was found.
+        found: [f64; 4],
+    },
+    /// The 3×3 part stretches or shears.
+    #[error(
+        "the 3x3 part of the pose is not a rotation: R·Rᵀ differs from the identity by {error:.3e} \
+         (at most {ROUNDING:e} is taken as rounding); remove scale and shear"
+    )]
+    NotOrthonormal {
+        /// Largest entry of |R Rᵀ − I|.
+        error: f64,
+    },
+    /// The 3×3 part mirrors.
+    #[error("the 3x3 part of the pose mirrors (determinant {determinant:.3}): swap two axes back")]
+    Mirrored {
+        /// The determinant, about −1.
+        determinant: f64,
+    },
+}
+
+/// What counts as rounding in R Rᵀ = I: files often hold six to nine digits.
+const ROUNDING: f64 = 1e-4;
+
+impl Pose {
+    /// The pose that changes nothing.
+    pub fn identity() -> Self {
+        Self(Isometry3::identity())
+    }
+
+    /// Moves by `offset` metres without turning.
+    pub fn from_translation(offset: Vector3) -> Self {
+        Self(Isometry3::from_parts(Translation3::from(offset), UnitQuaternion::identity()))
+    }
+
+    /// Turns by roll, pitch and yaw (radians about x, then y, then z of the fixed frame), then
+    /// moves by `offset` metres.
+    pub fn from_translation_rpy(offset: Vector3, [roll, pitch, yaw]: [f64; 3]) -> Self {
+        Self(Isometry3::from_parts(
+            Translation3::from(offset),
+            UnitQuaternion::from_euler_angles(roll, pitch, yaw),
+        ))
+    }
+
+    /// Wraps an isometry of nalgebra, whose type already says that it is rigid.
+    pub fn from_isometry(isometry: Isometry3<f64>) -> Self {
+        Self(isometry)
+    }
+
+    /// Checks a homogeneous matrix and takes the nearest rigid motion.
+    ///
+    /// # Errors
+    /// When an entry is not finite, the last row is not 0 0 0 1, or the rotation part scales,
+    /// shears or mirrors by more than the rounding of a text file (1e-4).
+    pub fn try_from_matrix(m: &Matrix4<f64>) -> Result<Self, PoseError> {
+        for row in 0..4 {
+            for column in 0..4 {
+                let value = m[(row, column)];
+                if !value.is_finite() {
+                    return Err(PoseError::NotFinite { row, column, value });
+                }
+            }
+        }
+        let found = [m[(3, 0)], m[(3, 1)], m[(3, 2)], m[(3, 3)]];
+        if found.iter().zip([0.0, 0.0, 0.0, 1.0]).any(|(f, e)| (f - e).abs() > 1e-9) {
+            return Err(PoseError::LastRow { found });
+        }
+        let linear: Matrix3 = m.fixed_view::<3, 3>(0, 0).into();
+        let error = (linear * linear.transpose() - Matrix3::identity()).amax();
+        if error > ROUNDING {
+            return Err(PoseError::NotOrthonormal { error });
+        }
+        let determinant = linear.determinant();
+        if determinant < 0.0 {
+            return Err(PoseError::Mirrored { determinant });
+        }
+        let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&linear));
+        let translation = Translation3::new(m[(0, 3)], m[(1, 3)], m[(2, 3)]);
+        Ok(Self(Isometry3::from_parts(translation, rotation)))
+    }
+
+    /// The rotation.
+    pub fn rotation(&self) -> &UnitQuaternion<f64> {
+        &self.0.rotation
+    }
+
+    /// The translation, m.
+    pub fn translation(&self) -> Vector3 {
+        self.0.translation.vector
+    }
+
+    /// The underlying isometry.
+    pub fn isometry(&self) -> &Isometry3<f64> {
+        &self.0
+    }
+
+    /// R p + t.
+    pub fn transform_point(&self, point: &Point3) -> Point3 {
+        self.0.transform_point(point)
+    }
+
+    /// R v.
+    pub fn transform_vector(&self, vector: &Vector3) -> Vector3 {
+        self.0.transform_vector(vector)
+    }
+
+    /// The motion back.
+    pub fn inverse(&self) -> Self {
+        Self(self.0.inverse())
+    }
+
+    /// `self` after `first`: with `a_from_b` and `b_from_c`, `a_from_b.after(&b_from_c)` is
+    /// `a_from_c`.
+    pub fn after(&self, first: &Self) -> Self {
+        Self(self.0 * first.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn takes_a_rounded_matrix_and_refuses_bad_ones() {
+        let pose = Pose::from_translation_rpy(Vector3::new(1.0, 2.0, 3.0), [0.1, -0.4, 2.0]);
+        let mut m = pose.isometry().to_homogeneous();
+        m.apply(|v| *v = (*v * 1e6).round() / 1e6);
+        let back = Pose::try_from_matrix(&m).unwrap();
+        let p = Point3::new(0.3, -0.2, 0.9);
+        assert!((back.transform_point(&p) - pose.transform_point(&p)).norm() < 1e-5);
+
+        let scaled = m.map_with_location(|r, c, v| if r < 3 && c < 3 { 2.0 * v } else { v });
+        assert!(matches!(Pose::try_from_matrix(&scaled), Err(PoseError::NotOrthonormal { .. })));
+        let mirrored = m.map_with_location(|r, c, v| if r < 3 && c == 0 { -v } else { v });
+        assert!(matches!(Pose::try_from_matrix(&mirrored), Err(PoseError::Mirrored { .. })));
+        assert!(matches!(Pose::try_from_matrix(&m.transpose()), Err(PoseError::LastRow { .. })));
+        m[(0, 3)] = f64::NAN;
+        assert!(matches!(
+            Pose::try_from_matrix(&m),
+            Err(PoseError::NotFinite { row: 0, column: 3, .. })
+        ));
+    }
+
+    #[test]
+    fn after_chains_frames() {
+        let a_from_b = Pose::from_translation_rpy(Vector3::x(), [0.0, 0.0, 1.0]);
+        let b_from_c = Pose::from_translation(Vector3::y());
+        let p = Point3::new(0.5, 0.0, 0.25);
+        let direct = a_from_b.after(&b_from_c).transform_point(&p);
+        let stepwise = a_from_b.transform_point(&b_from_c.transform_point(&p));
+        assert!((direct - stepwise).norm() < 1e-15);
+    }
+}

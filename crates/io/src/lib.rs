@@ -1,0 +1,1 @@
+//! Point clouds and meshes in (PCD, PLY, XYZ, STL, OBJ), coloured PLY out.

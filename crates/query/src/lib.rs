@@ -1,0 +1,1 @@
+//! Probabilistic collision detection between noisy point clouds by robust classification.

@@ -1,0 +1,1 @@
+//! Robust kernel classification of uncertain points: SMO on faer, a linear certificate, Clarabel as fallback.

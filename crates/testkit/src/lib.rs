@@ -1,0 +1,1 @@
+//! Scenes, exact references and brute force for tests; not published.
