@@ -1,2 +1,42 @@
-//! Project tasks.
-fn main() {}
+//! Project tasks: `cargo xtask TASK`, one file per task.
+
+mod ci;
+mod fixtures;
+mod tidy;
+
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+
+/// Project tasks.
+#[derive(Parser)]
+enum Task {
+    /// Everything that must hold before a merge; stops at the first failure.
+    Ci,
+    /// Rules on manifests, layers and text that no compiler checks.
+    Tidy,
+    /// Makes the files of fixtures/ anew.
+    Fixtures {
+        /// Compares with the stored files and writes nothing.
+        #[arg(long)]
+        check: bool,
+    },
+}
+
+fn main() -> anyhow::Result<()> {
+    let root = project_root();
+    match Task::parse() {
+        Task::Ci => ci::run(&root),
+        Task::Tidy => tidy::run(&root),
+        Task::Fixtures { check: true } => fixtures::check(&root),
+        Task::Fixtures { check: false } => fixtures::write(&root),
+    }
+}
+
+/// The folder of the workspace.
+fn project_root() -> PathBuf {
+    // Asked when run: two clones that share a target folder share this binary.
+    let xtask = std::env::var_os("CARGO_MANIFEST_DIR")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
+    xtask.parent().map_or(xtask.clone(), Path::to_path_buf)
+}

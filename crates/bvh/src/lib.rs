@@ -1,1 +1,34 @@
-//! Oriented bounding box trees over uncertain points: build, refit, coverage, certified pair traversal.
+#![doc = include_str!("../README.md")]
+
+mod bounds;
+mod build;
+mod coverage;
+mod error;
+mod examine;
+mod fit;
+mod gap;
+mod insert;
+mod leakage;
+mod moments;
+mod node;
+mod obb;
+mod primitive;
+mod refit;
+mod remove;
+mod settings;
+mod traverse;
+mod tree;
+mod validate;
+mod visit;
+
+pub use bounds::LeafBounds;
+pub use error::TreeError;
+pub use gap::{Gap, signed_gap};
+pub use moments::Moments;
+pub use node::{Node, NodeId};
+pub use obb::Obb;
+pub use primitive::Primitive;
+pub use settings::{Traversal, TraversalSettings, TreeSettings};
+pub use traverse::{Flow, LeafPair, Outcome, traverse};
+pub use tree::Tree;
+pub use visit::Visit;

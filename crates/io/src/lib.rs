@@ -1,1 +1,22 @@
-//! Point clouds and meshes in (PCD, PLY, XYZ, STL, OBJ), coloured PLY out.
+#![doc = include_str!("../README.md")]
+
+mod atomic;
+mod builder;
+mod error;
+pub mod obj;
+pub mod pcd;
+pub mod ply;
+mod read;
+mod scalar;
+pub mod stl;
+mod text;
+mod unit;
+pub mod xyz;
+
+pub use atomic::write_atomically;
+pub use error::{Fault, FormatError, Place, ReadError, WriteError};
+pub use obj::write_mesh_obj;
+pub use pcd::write_cloud_pcd;
+pub use ply::{write_cloud_ply, write_colored_ply};
+pub use read::{Geometry, read_cloud, read_geometry, read_mesh};
+pub use unit::{LengthUnit, UnknownUnit};

@@ -1,1 +1,33 @@
-//! Probabilistic collision detection between noisy point clouds by robust classification.
+#![doc = include_str!("../README.md")]
+
+mod batch;
+mod body;
+mod cloud;
+mod error;
+mod filter;
+mod mesh;
+mod query;
+mod report;
+
+pub use body::{Body, BodyRef};
+pub use cloud::{Cloud, CloudSettings};
+pub use error::{PrepareError, QueryError, SettingsError};
+pub use filter::{
+    FilterError, FilterSettings, Filtered, OutlierSettings, SelfMesh, StageReport, VeilSettings,
+    filter,
+};
+pub use mesh::Mesh;
+pub use query::{Mode, Pooling, Query, QuerySettings};
+pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Verdict};
+
+/// The crates below, for users who need their types: a query takes a [`geom::Pose`], a cloud a
+/// [`noise::SensorModel`].
+pub use cloudtouch_bvh as bvh;
+pub use cloudtouch_geom as geom;
+pub use cloudtouch_noise as noise;
+
+/// Points with a smaller probability are not listed one by one.
+pub const POINT_FLOOR: f64 = 1e-6;
+
+/// Contacts with a smaller probability are not reported.
+pub const CONTACT_FLOOR: f64 = 0.01;

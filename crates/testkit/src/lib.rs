@@ -1,1 +1,11 @@
-//! Scenes, exact references and brute force for tests; not published.
+#![doc = include_str!("../README.md")]
+
+pub mod brute;
+pub mod camera;
+pub mod exact;
+pub mod hard_cases;
+pub mod noise;
+pub mod poses;
+mod random;
+pub mod scene;
+pub mod surface;

@@ -1,0 +1,96 @@
+//! What can be wrong with the primitives, the settings or the pose.
+
+/// Why a tree could not be built, changed or traversed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TreeError {
+    /// A coordinate is NaN, infinite, or so large that its square leaves the range of `f64`.
+    #[error(
+        "primitive {index} has the coordinate {value}: coordinates must be finite and below 1e100 \
+         in magnitude; drop missing returns before building"
+    )]
+    Coordinate {
+        /// Index of the primitive.
+        index: usize,
+        /// What was found, m.
+        value: f64,
+    },
+    /// A covariance has an entry that is not finite or too large.
+    #[error(
+        "the covariance of primitive {index} has the entry {value}: entries must be finite and \
+         below 1e200 in magnitude"
+    )]
+    Covariance {
+        /// Index of the primitive.
+        index: usize,
+        /// What was found, m².
+        value: f64,
+    },
+    /// A weight is negative or not finite.
+    #[error("primitive {index} has the weight {value}: weights must be finite and not negative")]
+    Weight {
+        /// Index of the primitive.
+        index: usize,
+        /// What was found.
+        value: f64,
+    },
+    /// A setting is out of range.
+    #[error("the setting `{name}` is {value}: it must be {expected}")]
+    Setting {
+        /// Name of the field.
+        name: &'static str,
+        /// What was found.
+        value: f64,
+        /// What is allowed.
+        expected: &'static str,
+    },
+    /// More primitives than a 32-bit index can name.
+    #[error("{count} primitives are too many: a tree holds fewer than 4294967295, so thin them")]
+    TooMany {
+        /// How many were given.
+        count: usize,
+    },
+    /// A refit was given another number of primitives than the tree has indices.
+    #[error("refit got {found} primitives for {expected} indices: pass one for each, or rebuild")]
+    Count {
+        /// How many indices the tree has, removed ones included.
+        expected: usize,
+        /// How many primitives were given.
+        found: usize,
+    },
+    /// No primitive has this index, or it was removed.
+    #[error("the tree has no primitive {index}: it was never inserted, or already removed")]
+    NoSuchPrimitive {
+        /// The index asked for.
+        index: usize,
+    },
+    /// A leaf bound is negative or NaN, or a shift infinite.
+    #[error(
+        "the bounds of leaf {leaf} are std {std} and shift {shift}: both must be zero or more, \
+         and the shift finite"
+    )]
+    LeafBounds {
+        /// Index of the leaf's node.
+        leaf: usize,
+        /// The standard deviation given, m.
+        std: f64,
+        /// The shift given, m.
+        shift: f64,
+    },
+    /// The pose has an entry that is not finite.
+    #[error(
+        "the pose has the entry {value}: it must be finite; check it with Pose::try_from_matrix"
+    )]
+    Pose {
+        /// What was found.
+        value: f64,
+    },
+    /// The tree breaks one of its own rules: a defect of this crate, found by `Tree::validate`.
+    #[error("node {node} is malformed: {reason}")]
+    Malformed {
+        /// Index of the node.
+        node: usize,
+        /// The rule that is broken.
+        reason: &'static str,
+    },
+}

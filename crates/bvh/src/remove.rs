@@ -1,0 +1,80 @@
+//! Removal; a leaf that becomes empty gives its parent's place to its sibling.
+
+use crate::{Primitive, Tree, TreeError};
+
+impl Tree {
+    /// Takes a primitive out and returns it. Its index is never given out again.
+    ///
+    /// The boxes of the nodes that held it are not tightened; see [`Self::tighten`]. Costs the
+    /// depth of the tree, and one pass over the index arrays.
+    ///
+    /// # Errors
+    /// [`TreeError::NoSuchPrimitive`] when the index was never given out or is already removed.
+    pub fn remove(&mut self, index: usize) -> Result<Primitive, TreeError> {
+        let leaf = self
+            .leaf_of
+            .get(index)
+            .copied()
+            .flatten()
+            .ok_or(TreeError::NoSuchPrimitive { index })?;
+        let primitive = self.primitives[index];
+        self.leaf_of[index] = None;
+        self.refined[index] = None;
+        self.close_gap(leaf, index as u32);
+        if self.nodes[leaf as usize].count > 0 {
+            self.update_up(leaf);
+        } else {
+            self.unlink(leaf);
+        }
+        Ok(primitive)
+    }
+
+    /// Takes an index out of the range of its leaf, and moves the ranges behind it.
+    fn close_gap(&mut self, leaf: u32, index: u32) {
+        let start = self.nodes[leaf as usize].start;
+        let within = self.indices_of(leaf).iter().take_while(|&&other| other != index).count();
+        let position = start + within as u32;
+        self.order.remove(position as usize);
+        for node in &mut self.nodes {
+            if node.start > position {
+                node.start -= 1;
+            }
+        }
+        // The leaf and its ancestors begin at or before `position`: only their length changes.
+        for id in self.path_up(leaf) {
+            self.nodes[id as usize].count -= 1;
+        }
+    }
+
+    /// Removes an empty leaf and its parent; the sibling moves up and keeps its name.
+    fn unlink(&mut self, leaf: u32) {
+        let parent = self.nodes[leaf as usize].parent;
+        self.release(leaf);
+        let Some(parent) = parent else {
+            self.root = None;
+            return;
+        };
+        let grandparent = self.nodes[parent as usize].parent;
+        let siblings = self.nodes[parent as usize].children.unwrap_or([leaf; 2]);
+        let sibling = if siblings[0] == leaf { siblings[1] } else { siblings[0] };
+        self.release(parent);
+        self.nodes[sibling as usize].parent = grandparent;
+        match grandparent {
+            None => self.root = Some(sibling),
+            Some(above) => {
+                if let Some(children) = &mut self.nodes[above as usize].children {
+                    for child in children.iter_mut().filter(|child| **child == parent) {
+                        *child = sibling;
+                    }
+                }
+                self.update_up(above);
+            }
+        }
+    }
+
+    fn release(&mut self, id: u32) {
+        let node = &mut self.nodes[id as usize];
+        (node.in_use, node.children, node.parent) = (false, None, None);
+        self.free.push(id);
+    }
+}

@@ -1,0 +1,118 @@
+//! The tree itself: flat arrays and the accessors over them.
+
+use crate::coverage::fraction_outside;
+use crate::node::NodeData;
+use crate::{LeafBounds, Node, NodeId, Primitive, TreeSettings};
+
+/// An oriented bounding box tree over uncertain points and exact triangles, in one frame.
+///
+/// Every primitive lies in exactly one leaf. Its index, the position in the list the tree was
+/// built from or what [`Tree::insert`] returned, never changes and is never given out again.
+#[derive(Debug, Clone)]
+pub struct Tree {
+    pub(crate) settings: TreeSettings,
+    /// By index; removed ones keep their slot.
+    pub(crate) primitives: Vec<Primitive>,
+    /// By index: the bounds set for the refinement of a primitive.
+    pub(crate) refined: Vec<Option<LeafBounds>>,
+    /// By index: the leaf that holds a primitive, `None` once removed.
+    pub(crate) leaf_of: Vec<Option<u32>>,
+    /// A permutation of the present indices; every node owns a contiguous range of it.
+    pub(crate) order: Vec<u32>,
+    pub(crate) nodes: Vec<NodeData>,
+    /// Slots of `nodes` that are not in use.
+    pub(crate) free: Vec<u32>,
+    pub(crate) root: Option<u32>,
+    /// [`Tree::spread`] when last built.
+    pub(crate) spread_when_built: f64,
+}
+
+impl Tree {
+    /// The settings it was built with.
+    pub fn settings(&self) -> &TreeSettings {
+        &self.settings
+    }
+
+    /// How many primitives it holds.
+    pub fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Whether it holds no primitive.
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// How many indices were ever given out: one more than the largest index.
+    pub fn index_count(&self) -> usize {
+        self.primitives.len()
+    }
+
+    /// The primitive with this index; `None` when there is none or it was removed.
+    pub fn primitive(&self, index: usize) -> Option<&Primitive> {
+        self.leaf_of.get(index).copied().flatten().map(|_| &self.primitives[index])
+    }
+
+    /// The leaf that holds this primitive; `None` when there is none or it was removed.
+    pub fn leaf_of(&self, index: usize) -> Option<NodeId> {
+        self.leaf_of.get(index).copied().flatten().map(NodeId)
+    }
+
+    /// The node over everything; `None` in an empty tree.
+    pub fn root(&self) -> Option<Node<'_>> {
+        self.root.map(|id| Node { tree: self, id })
+    }
+
+    /// A node by name; `None` when it is not, or no longer, in the tree.
+    pub fn node(&self, id: NodeId) -> Option<Node<'_>> {
+        self.nodes.get(id.index()).filter(|node| node.in_use).map(|_| Node { tree: self, id: id.0 })
+    }
+
+    /// A leaf by name; `None` when the name is not, or no longer, that of a leaf.
+    pub fn leaf(&self, id: NodeId) -> Option<Node<'_>> {
+        self.node(id).filter(Node::is_leaf)
+    }
+
+    /// All leaves, in the order of their names.
+    pub fn leaves(&self) -> impl Iterator<Item = Node<'_>> {
+        (0..self.nodes.len() as u32).filter_map(|id| self.leaf(NodeId(id)))
+    }
+
+    /// A number larger than [`NodeId::index`] of every node.
+    pub fn node_slots(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The indices in the range of a node.
+    pub(crate) fn indices_of(&self, id: u32) -> &[u32] {
+        let node = &self.nodes[id as usize];
+        &self.order[node.start as usize..][..node.count as usize]
+    }
+
+    /// 1 − P_cov of a node.
+    pub(crate) fn fraction_outside(&self, id: u32) -> f64 {
+        let node = &self.nodes[id as usize];
+        *node.outside.get_or_init(|| {
+            let below = self.indices_of(id).iter().map(|&i| &self.primitives[i as usize]);
+            fraction_outside(below, &node.obb)
+        })
+    }
+
+    /// The nodes from `from` down, parents before children, left before right.
+    pub(crate) fn preorder(&self, from: Option<u32>) -> Vec<u32> {
+        let mut visited = Vec::new();
+        let mut stack: Vec<u32> = from.into_iter().collect();
+        while let Some(id) = stack.pop() {
+            visited.push(id);
+            if let Some([left, right]) = self.nodes[id as usize].children {
+                stack.extend([right, left]);
+            }
+        }
+        visited
+    }
+
+    /// A node and its ancestors, bottom up.
+    pub(crate) fn path_up(&self, from: u32) -> Vec<u32> {
+        std::iter::successors(Some(from), |&id| self.nodes[id as usize].parent).collect()
+    }
+}

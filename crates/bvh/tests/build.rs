@@ -1,0 +1,207 @@
+//! Every cloud gives a well-formed tree whose leaves keep the promises of the settings.
+
+mod common;
+
+use cloudtouch_bvh::{Primitive, Tree, TreeError, TreeSettings, Visit};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3};
+use common::{bumpy_sheet, degenerate_clouds, noisy};
+use proptest::prelude::*;
+
+#[test]
+fn degenerate_clouds_build_well_formed_trees() {
+    for (name, cloud) in degenerate_clouds() {
+        for (max_leaf_points, min_leaf_points) in [(1, 1), (2, 1), (40, 10)] {
+            let settings =
+                TreeSettings { max_leaf_points, min_leaf_points, ..TreeSettings::default() };
+            let tree = Tree::build(cloud.clone(), &settings).unwrap();
+            tree.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert_eq!(tree.len(), cloud.len(), "{name}");
+            let in_leaves: usize = tree.leaves().map(|leaf| leaf.primitive_indices().len()).sum();
+            assert_eq!(in_leaves, cloud.len(), "{name}");
+            assert!(tree.leaves().all(|leaf| leaf.primitive_indices().len() <= max_leaf_points));
+        }
+    }
+}
+
+#[test]
+fn an_empty_tree_has_no_root() {
+    let tree = Tree::build(vec![], &TreeSettings::default()).unwrap();
+    assert!(tree.is_empty() && tree.root().is_none() && tree.leaves().next().is_none());
+    assert_eq!(tree.quality(), 1.0);
+}
+
+#[test]
+fn leaves_are_flat_unless_too_small_to_split() {
+    let settings = TreeSettings { max_leaf_points: 200, ..TreeSettings::default() };
+    // A ball full of points: no large part of it is flat.
+    let ball = (0..1000)
+        .map(|i| Vector3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64))
+        .map(|p| noisy(Point3::from(p), 0.01))
+        .collect();
+    let tree = Tree::build(ball, &settings).unwrap();
+    for leaf in tree.leaves() {
+        let count = leaf.primitive_indices().len();
+        assert!(leaf.moments().variation() <= settings.max_variation || count < 20);
+        assert!(count >= settings.min_leaf_points);
+    }
+    // A plane stays in large leaves.
+    let plane = (0..1000).map(|i| noisy(Point3::new((i % 40) as f64, (i / 40) as f64, 0.0), 0.01));
+    let tree = Tree::build(plane.collect(), &settings).unwrap();
+    assert!(tree.leaves().all(|leaf| leaf.primitive_indices().len() > 100));
+}
+
+#[test]
+fn siblings_overlap_by_a_part_of_their_parent() {
+    for sibling_overlap in [0.0, 0.01, 0.05] {
+        let settings = TreeSettings { sibling_overlap, ..TreeSettings::default() };
+        let tree = Tree::build(bumpy_sheet(3, 2000, Vector3::zeros()), &settings).unwrap();
+        let mut checked = 0;
+        tree.visit_nodes(|node| {
+            if let Some(children) = node.children() {
+                let [left, right] = children.map(|id| tree.node(id).unwrap());
+                let axis = node.obb().axes.column(0).into_owned();
+                let apart = axis.dot(&(right.obb().centre - left.obb().centre)).abs();
+                let reach =
+                    left.obb().half_width_along(&axis) + right.obb().half_width_along(&axis);
+                let wanted = sibling_overlap * 2.0 * node.obb().half_extents[0];
+                assert!(reach - apart >= wanted - 1e-12, "{} < {wanted}", reach - apart);
+                checked += 1;
+            }
+            Visit::Descend
+        });
+        assert!(checked > 40);
+    }
+}
+
+#[test]
+fn pruning_leaves_out_what_is_below() {
+    let tree = common::small_leaves(bumpy_sheet(3, 600, Vector3::zeros()));
+    let mut all = 0;
+    tree.visit_nodes(|_| {
+        all += 1;
+        Visit::Descend
+    });
+    assert_eq!(all, 2 * tree.leaves().count() - 1);
+    let mut visited = Vec::new();
+    tree.visit_nodes(|node| {
+        visited.push(node.id());
+        if node.parent().is_some() { Visit::Prune } else { Visit::Descend }
+    });
+    let root = tree.root().unwrap();
+    let [left, right] = root.children().unwrap();
+    assert_eq!(visited, [root.id(), left, right]);
+}
+
+#[test]
+fn coverage_falls_with_the_noise_and_is_one_without() {
+    let with = |std| {
+        let cloud = (0..900)
+            .map(|i| noisy(Point3::new((i % 30) as f64 * 0.1, (i / 30) as f64 * 0.1, 0.0), std));
+        let tree = Tree::build(cloud.collect(), &TreeSettings::default()).unwrap();
+        let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
+        mean(tree.leaves().map(|leaf| leaf.coverage()).collect())
+    };
+    assert_eq!(with(0.0), 1.0);
+    // A plane has no thickness but rounding: any noise along the normal leaves the box.
+    assert!(with(0.001) < 1e-9);
+    // A full block has: only points near a face leak.
+    let block = |std: f64| {
+        let cloud = (0..8000)
+            .map(|i| Point3::new((i % 20) as f64, (i / 20 % 20) as f64, (i / 400) as f64))
+            .map(|p| noisy(p, std));
+        let settings =
+            TreeSettings { max_leaf_points: 8000, max_variation: 1.0 / 3.0, ..Default::default() };
+        Tree::build(cloud.collect(), &settings).unwrap().root().unwrap().coverage()
+    };
+    assert!(block(0.01) > block(1.0) && block(1.0) > block(5.0));
+    assert!(block(0.01) > 0.8 && block(5.0) > 0.0);
+}
+
+#[test]
+fn bounds_cover_every_point_in_every_direction() {
+    let needle = Covariance::from_axis(&Vector3::new(0.6, 0.0, 0.8), 0.05, 0.001);
+    let cloud: Vec<_> = (0..300)
+        .map(|i| {
+            let mean = Point3::new((i % 20) as f64 * 0.1, (i / 20) as f64 * 0.1, 0.0);
+            Primitive::point(UncertainPoint { mean, covariance: needle })
+        })
+        .collect();
+    let tree = Tree::build(cloud, &TreeSettings::default()).unwrap();
+    tree.visit_nodes(|node| {
+        assert!((node.max_std() - 0.05).abs() < 1e-12);
+        for direction in [Vector3::x(), Vector3::y(), Vector3::z(), Vector3::new(0.8, 0.0, -0.6)] {
+            let bound = node.std_along(&direction);
+            assert!(bound >= needle.std_along(&direction) - 1e-15 && bound <= node.max_std());
+        }
+        Visit::Descend
+    });
+    // Exact along the axes of a leaf's box, where gaps between flat patches are measured.
+    for leaf in tree.leaves() {
+        for k in 0..3 {
+            let axis = leaf.obb().axes.column(k).into_owned();
+            assert!((leaf.std_along(&axis) - needle.std_along(&axis)).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_named() {
+    let settings = TreeSettings::default();
+    let good = noisy(Point3::origin(), 0.01);
+    let build = |primitive| Tree::build(vec![good, primitive], &settings).unwrap_err();
+    let nan = noisy(Point3::new(0.0, f64::NAN, 0.0), 0.01);
+    assert!(matches!(build(nan), TreeError::Coordinate { index: 1, value } if value.is_nan()));
+    let infinite = Primitive::Triangle([
+        Point3::origin(),
+        Point3::origin(),
+        Point3::new(0.0, f64::INFINITY, 0.0),
+    ]);
+    assert!(matches!(build(infinite), TreeError::Coordinate { index: 1, .. }));
+    let covariance = Covariance::isotropic(f64::INFINITY);
+    let unsure = Primitive::point(UncertainPoint { mean: Point3::origin(), covariance });
+    assert!(matches!(build(unsure), TreeError::Covariance { index: 1, .. }));
+    let point = UncertainPoint::exact(Point3::origin());
+    let heavy = Primitive::Point { point, weight: -1.0 };
+    assert!(matches!(build(heavy), TreeError::Weight { index: 1, value: -1.0 }));
+
+    for (name, bad) in [
+        ("max_leaf_points", TreeSettings { max_leaf_points: 0, ..settings }),
+        ("min_leaf_points", TreeSettings { min_leaf_points: 41, ..settings }),
+        ("min_leaf_points", TreeSettings { min_leaf_points: 0, ..settings }),
+        ("max_variation", TreeSettings { max_variation: f64::NAN, ..settings }),
+        ("sibling_overlap", TreeSettings { sibling_overlap: -0.01, ..settings }),
+    ] {
+        let error = Tree::build(vec![good], &bad).unwrap_err();
+        assert!(
+            matches!(error, TreeError::Setting { name: found, .. } if found == name),
+            "{error}"
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn random_clouds_with_ties_build_well_formed_trees(
+        // Few distinct coordinates make duplicates and shared coordinates common.
+        cells in prop::collection::vec((0..6_i32, 0..4_i32, 0..2_i32), 1..300),
+        offset in prop_oneof![Just(0.0), Just(5e6)],
+        max_leaf_points in 1..50_usize,
+        max_variation in 0.0..0.33_f64,
+    ) {
+        let cloud = cells
+            .iter()
+            .map(|&(x, y, z)| Point3::new(x as f64 * 0.01 + offset, y as f64 * 0.01, z as f64))
+            .map(|mean| noisy(mean, 0.002))
+            .collect();
+        let settings = TreeSettings {
+            max_leaf_points,
+            min_leaf_points: 1 + max_leaf_points / 4,
+            max_variation,
+            ..Default::default()
+        };
+        let tree = Tree::build(cloud, &settings.clone()).unwrap();
+        prop_assert_eq!(tree.validate(), Ok(()));
+    }
+}

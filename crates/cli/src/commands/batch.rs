@@ -1,0 +1,191 @@
+//! `cloudtouch batch`: many poses; scenes and objects are prepared once.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Result;
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Body, Query, Report};
+use cloudtouch_io::write_atomically;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+use crate::args::BatchArguments;
+use crate::case_file::{self, Case};
+use crate::load::{self, Role};
+use crate::print;
+
+/// A file in a role seen by a sensor (by its spec, which names it fully).
+type BodyKey = (PathBuf, Role, String);
+
+/// What became of one case: a report, or the reason why there is none.
+type Answer = Result<Report, String>;
+
+pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
+    let query = Query::new(arguments.common.query_settings())?;
+    let file = case_file::read(&arguments.cases)?;
+    let bodies = prepare_all(arguments, file.cases.iter().filter_map(|(_, c)| c.as_ref().ok()));
+    let progress = progress_bar(file.cases.len(), "queries");
+    let answers: Vec<Answer> = file
+        .cases
+        .par_iter()
+        .map(|(_, case)| {
+            let answer = match case {
+                Ok(case) => answer(arguments, &query, &bodies, case),
+                Err(error) => Err(format!("{error:#}")),
+            };
+            progress.inc(1);
+            answer
+        })
+        .collect();
+    progress.finish_and_clear();
+
+    let lines = file
+        .cases
+        .iter()
+        .zip(&answers)
+        .map(|((id, _), answer)| match answer {
+            Ok(report) => print::json_line(id, report),
+            Err(error) => print::json_error_line(id, error),
+        })
+        .collect::<Result<Vec<String>>>()?;
+    if let Some(path) = &arguments.jsonl {
+        write_atomically(path, |out| lines.iter().try_for_each(|line| writeln!(out, "{line}")))?;
+    }
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        for line in &lines {
+            writeln!(out, "{line}")?;
+        }
+    } else {
+        write_table(&mut out, &file.cases, &answers)?;
+    }
+    let failed = answers.iter().any(Result::is_err);
+    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+fn answer(
+    arguments: &BatchArguments,
+    query: &Query,
+    bodies: &BTreeMap<BodyKey, Result<Body, String>>,
+    case: &Case,
+) -> Answer {
+    let [scene, object] = keys(arguments, case).map(|key| match bodies.get(&key) {
+        Some(Ok(body)) => Ok(body),
+        Some(Err(error)) => Err(error.clone()),
+        None => Err(format!("{}: not prepared", key.0.display())),
+    });
+    query.run(scene?, object?, &case.scene_from_object).map_err(|error| error.to_string())
+}
+
+fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
+    let common = &arguments.common;
+    let named = |path: &Path| {
+        let name = path.to_string_lossy();
+        let found = arguments.sensor_for.iter().find(|(part, _)| name.contains(part.as_str()));
+        found.map(|(_, sensor)| sensor)
+    };
+    let key = |path: &Path, role, given: &Option<SensorModel>, default: &SensorModel| {
+        let sensor = given.as_ref().or(named(path)).unwrap_or(default);
+        (path.to_owned(), role, sensor.to_string())
+    };
+    let object_default = common.object_sensor.as_ref().unwrap_or(&common.sensor);
+    [
+        key(&case.scene, Role::Scene, &case.scene_sensor, &common.sensor),
+        key(&case.object, Role::Object, &case.object_sensor, object_default),
+    ]
+}
+
+fn prepare_all<'a>(
+    arguments: &BatchArguments,
+    cases: impl Iterator<Item = &'a Case>,
+) -> BTreeMap<BodyKey, Result<Body, String>> {
+    let wanted: BTreeSet<BodyKey> = cases.flat_map(|case| keys(arguments, case)).collect();
+    let progress = progress_bar(wanted.len(), "files");
+    let wanted: Vec<BodyKey> = wanted.into_iter().collect();
+    let bodies = wanted
+        .into_par_iter()
+        .map(|key| {
+            let (path, role, spec) = &key;
+            let body = spec
+                .parse::<SensorModel>()
+                .map_err(anyhow::Error::from)
+                .and_then(|sensor| load::body(path, *role, &sensor, &arguments.common))
+                .map_err(|error| format!("{error:#}"));
+            progress.inc(1);
+            (key, body)
+        })
+        .collect();
+    progress.finish_and_clear();
+    bodies
+}
+
+/// Drawn on standard error, and only when that is a terminal.
+fn progress_bar(length: usize, unit: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg} ({eta})")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(length as u64).with_style(style).with_message(unit)
+}
+
+fn write_table(
+    out: &mut impl std::io::Write,
+    cases: &[(String, Result<Case>)],
+    answers: &[Answer],
+) -> Result<()> {
+    writeln!(
+        out,
+        "{:<8} {:<10} {:>7}  {:<17} {:<13} {:>11}  {:>8}  scene / object",
+        "case", "label", "P", "bounds", "verdict", "gap (mm)", "time"
+    )?;
+    for ((id, case), answer) in cases.iter().zip(answers) {
+        let label = case.as_ref().ok().and_then(|c| c.label.as_deref()).unwrap_or("-");
+        let report = match answer {
+            Ok(report) => report,
+            Err(error) => {
+                writeln!(out, "{id:<8} {label:<10} error: {error}")?;
+                continue;
+            }
+        };
+        let [low, high] = report.bounds.map(print::probability);
+        let gap = report
+            .clearance_m
+            .map_or("-".to_owned(), |c| format!("{:+.1}±{:.1}", 1e3 * c.mean, 1e3 * c.std));
+        let files = case.as_ref().map_or(String::new(), |c| {
+            let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            format!("{} / {}", name(&c.scene), name(&c.object))
+        });
+        writeln!(
+            out,
+            "{id:<8} {label:<10} {:>7}  {:<17} {:<13} {gap:>11}  {:>5.1} ms  {files}",
+            print::probability(report.collision_probability),
+            format!("{low} .. {high}"),
+            print::verdict(report.verdict),
+            report.stats.query_us as f64 / 1e3,
+        )?;
+    }
+    let reports: Vec<&Report> = answers.iter().filter_map(|a| a.as_ref().ok()).collect();
+    if !reports.is_empty() {
+        writeln!(
+            out,
+            "{} answers, {} errors; median query {:.2} ms, median preparation {:.1} ms",
+            reports.len(),
+            answers.len() - reports.len(),
+            median(reports.iter().map(|r| r.stats.query_us)) / 1e3,
+            median(reports.iter().map(|r| r.stats.prepare_us)) / 1e3,
+        )?;
+    }
+    Ok(())
+}
+
+fn median(values: impl Iterator<Item = u64>) -> f64 {
+    let mut values: Vec<u64> = values.collect();
+    values.sort_unstable();
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 {
+        values[middle] as f64
+    } else {
+        0.5 * (values[middle - 1] + values[middle]) as f64
+    }
+}

@@ -1,0 +1,6 @@
+//! One file per command.
+
+pub(crate) mod batch;
+pub(crate) mod demo;
+pub(crate) mod info;
+pub(crate) mod query;

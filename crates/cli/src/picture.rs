@@ -1,0 +1,77 @@
+//! Scene, object and contacts in colour, for any viewer that reads PLY.
+
+use std::path::Path;
+
+use anyhow::Result;
+use cloudtouch::geom::{Point3, Pose};
+use cloudtouch::{Body, Report};
+use cloudtouch_io::write_colored_ply;
+
+type Color = [u8; 3];
+
+const SCENE: Color = [170, 170, 170];
+const OBJECT: Color = [70, 130, 220];
+const CERTAIN: Color = [220, 30, 20];
+const CONTACT: Color = [30, 200, 60];
+
+/// Points along a contact's normal, and how far it reaches, as a share of the object.
+const ARROW_POINTS: usize = 20;
+const ARROW_SHARE: f64 = 0.15;
+/// A mesh is drawn by points this far apart, as a share of its size.
+const MESH_SPACING_SHARE: f64 = 0.01;
+
+/// Writes the scene in grey, the object in blue, both towards red by the probability of each
+/// point, and each contact as a green line along its normal; all in the scene's frame.
+pub(crate) fn write(
+    path: &Path,
+    scene: &Body,
+    object: &Body,
+    scene_from_object: &Pose,
+    report: &Report,
+) -> Result<()> {
+    let mut points = Vec::new();
+    let mut colors = Vec::new();
+    let likely = &report.point_probabilities;
+    let identity = Pose::identity();
+    for (body, pose, base, likely) in [
+        (scene, &identity, SCENE, &likely.a),
+        (object, scene_from_object, OBJECT, &likely.b),
+    ] {
+        let first = points.len();
+        points.extend(body_points(body).iter().map(|p| pose.transform_point(p)));
+        colors.resize(points.len(), base);
+        for &(index, probability) in likely {
+            colors[first + index] = blend(base, CERTAIN, probability);
+        }
+    }
+    let size = extent(&body_points(object));
+    for contact in &report.contacts {
+        for step in 0..ARROW_POINTS {
+            let along = ARROW_SHARE * size * step as f64 / ARROW_POINTS as f64;
+            points.push(contact.point + contact.normal_a_to_b * along);
+            colors.push(CONTACT);
+        }
+    }
+    Ok(write_colored_ply(path, &points, &colors, None)?)
+}
+
+fn body_points(body: &Body) -> Vec<Point3> {
+    match body {
+        Body::Cloud(cloud) => (0..cloud.len()).map(|i| cloud.point(i)).collect(),
+        Body::Mesh(mesh) => mesh.surface_points(MESH_SPACING_SHARE * mesh.size()),
+    }
+}
+
+fn extent(points: &[Point3]) -> f64 {
+    let Some(&first) = points.first() else { return 0.0 };
+    let (low, high) =
+        points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
+    (high - low).norm()
+}
+
+fn blend(from: Color, to: Color, share: f64) -> Color {
+    std::array::from_fn(|k| {
+        let (from, to) = (f64::from(from[k]), f64::from(to[k]));
+        (from + (to - from) * share.clamp(0.0, 1.0)).round() as u8
+    })
+}

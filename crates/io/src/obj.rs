@@ -1,0 +1,184 @@
+//! Wavefront OBJ meshes: vertices and polygons; everything about looks is passed over.
+
+use std::{
+    io::{self, Write},
+    path::Path,
+};
+
+use cloudtouch_geom::{Point3, TriangleMesh};
+
+use crate::{
+    atomic::write_atomically,
+    error::{Fault, FormatError, Place, WriteError},
+    text::{Lines, excerpt, finite_triple, parse as parse_number, words},
+};
+
+/// Keywords that say nothing about the surface: texture, normals, groups, material, lines, points.
+const PASSED_OVER: [&[u8]; 17] = [
+    b"vt",
+    b"vn",
+    b"vp",
+    b"g",
+    b"o",
+    b"s",
+    b"mg",
+    b"usemtl",
+    b"mtllib",
+    b"usemap",
+    b"maplib",
+    b"l",
+    b"p",
+    b"lod",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+];
+
+/// Reads a mesh from the bytes of an OBJ file.
+///
+/// Faces are `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1, or backwards from the last vertex
+/// when negative; polygons become fans about their first corner. When the first line is nothing
+/// but two whole numbers, as some exporters write, they are taken for the counts of vertices and
+/// faces and must agree with what follows.
+///
+/// # Errors
+/// When a line begins with a keyword that is not known (free-form surfaces are not read), a
+/// coordinate is no finite number, a face has fewer than three corners or names a vertex that is
+/// not there, there are no faces, or the counts of the first line disagree.
+pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
+    if bytes.is_empty() {
+        return Err(Place::Byte(0).error(Fault::Empty));
+    }
+    let mut lines = Lines::new(bytes);
+    let mut vertices: Vec<Point3> = Vec::new();
+    let mut faces = Faces::default();
+    let mut counts = None;
+    while let Some(line) = lines.next_filled() {
+        let line = line.split(|&b| b == b'#').next().unwrap_or_default();
+        let mut line_words = words(line);
+        match line_words.next() {
+            None => {}
+            Some(b"v") => vertices.push(finite_triple(line_words, lines.number)?.into()),
+            Some(b"f") => faces.push(line_words, vertices.len(), lines.number)?,
+            Some(keyword) if PASSED_OVER.contains(&keyword) => {}
+            Some(_) if lines.number == 1 && two_counts(line).is_some() => counts = two_counts(line),
+            Some(_) => {
+                return Err(lines.place().error(Fault::BadEntry {
+                    entry: "the line",
+                    found: excerpt(line),
+                    expected: "v, f or another OBJ keyword of polygon meshes",
+                }));
+            }
+        }
+    }
+    faces.check(vertices.len())?;
+    if let Some([promised_vertices, promised_faces]) = counts {
+        for (what, promised, found) in [
+            ("vertices", promised_vertices, vertices.len()),
+            ("faces", promised_faces, faces.count),
+        ] {
+            if promised != found {
+                return Err(Place::Line(1).error(Fault::Count { what, promised, found }));
+            }
+        }
+    }
+    TriangleMesh::try_new(vertices, faces.triangles)
+        // Coordinates and indices were checked where they stand; no faces are all that is left.
+        .map_err(|_| Place::Line(1).error(Fault::NoTriangles))
+}
+
+fn two_counts(line: &[u8]) -> Option<[usize; 2]> {
+    let mut counts = words(line).map(parse_number::<usize>);
+    match (counts.next(), counts.next(), counts.next()) {
+        (Some(Some(vertices)), Some(Some(faces)), None) => Some([vertices, faces]),
+        _ => None,
+    }
+}
+
+#[derive(Default)]
+struct Faces {
+    triangles: Vec<[u32; 3]>,
+    /// Polygons, before they became triangles.
+    count: usize,
+    /// The highest vertex named, from 1, and where: it may be defined further down.
+    highest: Option<(u32, Place)>,
+}
+
+impl Faces {
+    fn push<'a>(
+        &mut self,
+        corners: impl Iterator<Item = &'a [u8]>,
+        vertices: usize,
+        line: usize,
+    ) -> Result<(), FormatError> {
+        let (mut first, mut last) = (0, 0);
+        let mut found = 0;
+        for word in corners {
+            found += 1;
+            let place = Place::Column { line, column: found };
+            let number = vertex_number(word, vertices, place)?;
+            if self.highest.is_none_or(|(highest, _)| number > highest) {
+                self.highest = Some((number, place));
+            }
+            match found {
+                1 => first = number - 1,
+                2 => {}
+                _ => self.triangles.push([first, last, number - 1]),
+            }
+            last = number - 1;
+        }
+        if found < 3 {
+            let fault = Fault::Corners { found, expected: "at least 3" };
+            return Err(Place::Line(line).error(fault));
+        }
+        self.count += 1;
+        Ok(())
+    }
+
+    fn check(&self, vertices: usize) -> Result<(), FormatError> {
+        match self.highest {
+            Some((number, place)) if number as usize > vertices => {
+                Err(place.error(Fault::MissingVertex { found: number.to_string(), vertices }))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The vertex a corner names, from 1.
+fn vertex_number(word: &[u8], vertices: usize, place: Place) -> Result<u32, FormatError> {
+    let index = word.split(|&b| b == b'/').next().unwrap_or_default();
+    let missing = || place.error(Fault::MissingVertex { found: excerpt(index), vertices });
+    let number: i64 = parse_number(index)
+        .ok_or_else(|| place.error(Fault::NotANumber { found: excerpt(word) }))?;
+    let from_start = match number {
+        1.. => number,
+        0 => return Err(missing()),
+        _ => i64::try_from(vertices)
+            .ok()
+            .and_then(|v| v.checked_add(number)?.checked_add(1))
+            .unwrap_or(0),
+    };
+    u32::try_from(from_start).ok().filter(|&n| n > 0).ok_or_else(missing)
+}
+
+/// Writes a mesh as an OBJ file in metres, whole or not at all.
+///
+/// Coordinates are written with as many digits as bring back the same bits, and vertices stay
+/// shared, neither of which an STL can do; the same mesh gives the same bytes everywhere.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_mesh_obj(path: impl AsRef<Path>, mesh: &TriangleMesh) -> Result<(), WriteError> {
+    write_atomically(path, |writer| encode(mesh, writer))
+}
+
+fn encode(mesh: &TriangleMesh, writer: &mut dyn Write) -> io::Result<()> {
+    for p in mesh.vertices() {
+        writeln!(writer, "v {} {} {}", p.x, p.y, p.z)?;
+    }
+    for [a, b, c] in mesh.triangles().iter().map(|t| t.map(|i| u64::from(i) + 1)) {
+        writeln!(writer, "f {a} {b} {c}")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,9 @@
+//! Polygon files: point clouds or meshes, ascii or binary of either byte order.
+
+mod body;
+mod header;
+mod parse;
+mod write;
+
+pub use parse::parse;
+pub use write::{write_cloud_ply, write_colored_ply};

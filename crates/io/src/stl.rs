@@ -1,0 +1,119 @@
+//! STL meshes, ascii and binary.
+
+use cloudtouch_geom::{Point3, TriangleMesh};
+
+use crate::{
+    error::{Fault, FormatError, Place},
+    scalar::{ByteOrder, Scalar},
+    text::{Lines, excerpt, finite_triple, is_padding, words},
+};
+
+/// Bytes before the first triangle of a binary file: a free text, then the count.
+const HEADER: usize = 84;
+/// Bytes of a triangle: normal, three corners, two spare bytes.
+const RECORD: usize = 50;
+
+/// Reads a mesh from the bytes of an STL file.
+///
+/// A file is ascii when its first kilobyte is plain text: binary files may begin with `solid` too,
+/// but the count after their 80 bytes of header has a zero byte. Every triangle brings its own
+/// three vertices; normals are passed over, as the order of the corners says the same.
+///
+/// # Errors
+/// When the file is cut off or goes on after the triangles it counts, has no triangles, a facet
+/// without three corners, or a coordinate that is no finite number.
+pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
+    if bytes.is_empty() {
+        return Err(Place::Byte(0).error(Fault::Empty));
+    }
+    let start = &bytes[..bytes.len().min(1024)];
+    let corners = if start.iter().any(|&b| b.is_ascii_control() && !b.is_ascii_whitespace()) {
+        binary_corners(bytes)?
+    } else {
+        ascii_corners(bytes)?
+    };
+    let Ok(count) = u32::try_from(corners.len()) else {
+        return Err(Place::Byte(0).error(Fault::TooManyVertices { found: corners.len() }));
+    };
+    let triangles = (0..count / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    TriangleMesh::try_new(corners, triangles)
+        // Coordinates were checked where they stand; no triangles are all that is left.
+        .map_err(|_| Place::Byte(0).error(Fault::NoTriangles))
+}
+
+fn binary_corners(bytes: &[u8]) -> Result<Vec<Point3>, FormatError> {
+    let Some((header, body)) = bytes.split_at_checked(HEADER) else {
+        let end = Fault::UnexpectedEnd { expected: "the rest of the binary header" };
+        return Err(Place::Byte(bytes.len()).error(end));
+    };
+    let promised = Scalar::U32.read(&header[HEADER - 4..], ByteOrder::Little) as usize;
+    let (needed, available) = (promised.saturating_mul(RECORD), body.len());
+    if needed > available {
+        return Err(Place::Byte(HEADER - 4).error(Fault::TooShort { promised, needed, available }));
+    }
+    if !is_padding(&body[needed..]) {
+        return Err(Place::Byte(HEADER + needed).error(Fault::Leftover { promised }));
+    }
+    let mut corners = Vec::with_capacity(3 * promised);
+    for (triangle, record) in body[..needed].chunks_exact(RECORD).enumerate() {
+        for corner in 1..4 {
+            let mut point = Point3::origin();
+            for axis in 0..3 {
+                let at = 12 * corner + 4 * axis;
+                let value = Scalar::F32.read(&record[at..], ByteOrder::Little);
+                if !value.is_finite() {
+                    let place = Place::Byte(HEADER + triangle * RECORD + at);
+                    return Err(place.error(Fault::NotFinite { value }));
+                }
+                point[axis] = value;
+            }
+            corners.push(point);
+        }
+    }
+    Ok(corners)
+}
+
+fn ascii_corners(bytes: &[u8]) -> Result<Vec<Point3>, FormatError> {
+    let mut lines = Lines::new(bytes);
+    let mut corners = Vec::new();
+    // How many corners the current facet has so far, and whether a solid is open.
+    let (mut facet, mut solid): (Option<usize>, bool) = (None, false);
+    while let Some(line) = lines.next_filled() {
+        let place = lines.place();
+        let mut line_words = words(line);
+        let keyword = line_words.next().unwrap_or_default().to_ascii_lowercase();
+        match (keyword.as_slice(), facet) {
+            (b"solid", None) if !solid => solid = true,
+            (_, None) if !solid => {
+                let expected = "\"solid\" or a binary header";
+                let found = excerpt(line);
+                return Err(place.error(Fault::WrongMagic { expected, found }));
+            }
+            (b"endsolid", None) => solid = false,
+            (b"facet", None) => facet = Some(0),
+            (b"vertex", Some(count)) => {
+                corners.push(finite_triple(line_words, lines.number)?.into());
+                facet = Some(count + 1);
+            }
+            (b"outer" | b"endloop", Some(_)) => {}
+            (b"endfacet", Some(3)) => facet = None,
+            (b"endfacet", Some(found)) => {
+                return Err(place.error(Fault::Corners { found, expected: "3" }));
+            }
+            _ => {
+                return Err(place.error(Fault::BadEntry {
+                    entry: "the line",
+                    found: excerpt(line),
+                    expected: match facet {
+                        Some(_) => "outer loop, vertex, endloop or endfacet",
+                        None => "facet or endsolid",
+                    },
+                }));
+            }
+        }
+    }
+    if facet.is_some() || solid {
+        return Err(lines.place().error(Fault::UnexpectedEnd { expected: "endsolid" }));
+    }
+    Ok(corners)
+}

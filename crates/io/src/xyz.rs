@@ -1,0 +1,102 @@
+//! Tables of coordinates as text: `.xyz`, `.txt`, `.csv`.
+
+use cloudtouch_geom::PointCloud;
+
+use crate::{
+    builder::{CloudBuilder, Row, find_columns},
+    error::{Fault, FormatError, Place},
+    text::{Lines, excerpt, number, parse as parse_number, words},
+};
+
+/// Reads a point cloud from a table with one point in each line.
+///
+/// Values are separated by semicolons, or else by commas, or else by white space, as the first
+/// line that is neither blank nor a comment (from `#`) shows. When the first value of that line is
+/// not a number it names the columns: x, y, z and perhaps cov_xx, cov_xy, cov_xz, cov_yy, cov_yz,
+/// cov_zz (m², all six or none), in any order and case. Without names the first three columns are
+/// x, y, z. Other columns are passed over. `nan` is a missing return.
+///
+/// # Errors
+/// When there is nothing but comments, a column is missing or named twice, a row is too short, a
+/// value is no number, or a covariance is none.
+pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
+    // Spreadsheets begin their text files with a byte order mark.
+    let mut lines = Lines::new(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
+    let first = next_row(&mut lines).ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
+    let separator = [b';', b','].into_iter().find(|separator| first.contains(separator));
+
+    let mut pending = None;
+    let columns =
+        if values(first, separator).next().is_none_or(|v| parse_number::<f64>(v).is_some()) {
+            pending = Some(first);
+            vec![0, 1, 2]
+        } else {
+            named_columns(first, separator, lines.place())?
+        };
+    let mut wanted: Vec<(usize, usize)> = columns.iter().copied().zip(0..).collect();
+    wanted.sort_unstable();
+    let expected = wanted.last().map_or(0, |&(column, _)| column + 1);
+
+    let mut cloud = CloudBuilder::new(&columns, 0);
+    while let Some(line) = pending.take().or_else(|| next_row(&mut lines)) {
+        let mut row: Row = Default::default();
+        let mut targets = wanted.iter().peekable();
+        let mut found = 0;
+        for value in values(line, separator) {
+            match targets.peek() {
+                None => break,
+                Some(&&(column, slot)) if column == found => {
+                    row[slot] = number(value, lines.number, found + 1)?;
+                    targets.next();
+                }
+                Some(_) => {}
+            }
+            found += 1;
+        }
+        if targets.peek().is_some() {
+            return Err(lines.place().error(Fault::RowLength { expected, found }));
+        }
+        cloud.push(&row, lines.place())?;
+    }
+    Ok(cloud.finish())
+}
+
+/// The next line with something in it, without its comment.
+fn next_row<'a>(lines: &mut Lines<'a>) -> Option<&'a [u8]> {
+    lines
+        .by_ref()
+        .map(|line| line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii())
+        .find(|line| !line.is_empty())
+}
+
+/// The values of a row, without the white space and quotes around them.
+fn values(line: &[u8], separator: Option<u8>) -> Box<dyn Iterator<Item = &[u8]> + '_> {
+    match separator {
+        Some(separator) => Box::new(line.split(move |&b| b == separator).map(|value| {
+            let value = value.trim_ascii();
+            value.strip_prefix(b"\"").and_then(|v| v.strip_suffix(b"\"")).unwrap_or(value)
+        })),
+        None => Box::new(words(line)),
+    }
+}
+
+fn named_columns(
+    line: &[u8],
+    separator: Option<u8>,
+    place: Place,
+) -> Result<Vec<usize>, FormatError> {
+    // CloudCompare puts two slashes before its column names.
+    let line = line.strip_prefix(b"//").unwrap_or(line).trim_ascii_start();
+    let names: Vec<String> =
+        values(line, separator).map(|v| String::from_utf8_lossy(v).into_owned()).collect();
+    find_columns(names.iter().map(String::as_str)).map_err(|fault| match fault {
+        // Whoever meant a row of numbers is helped more by seeing what was taken for names.
+        Fault::MissingColumn { .. } if !names.iter().any(|n| n.eq_ignore_ascii_case("x")) => place
+            .error(Fault::BadEntry {
+                entry: "the first row",
+                found: excerpt(line),
+                expected: "three numbers, or column names with x, y and z",
+            }),
+        fault => place.error(fault),
+    })
+}

@@ -1,0 +1,97 @@
+//! Reading by file name: what is read as what, in which unit, and what the messages say.
+
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
+use std::{fs, path::PathBuf};
+
+use cloudtouch_geom::{Covariance, Point3};
+use cloudtouch_io::{Geometry, LengthUnit, ReadError, read_cloud, read_geometry, read_mesh};
+use tempfile::TempDir;
+
+fn file(folder: &TempDir, name: &str, contents: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, contents).unwrap();
+    path
+}
+
+const MESH_PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\n\
+    property int z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+    0 0 0\n1000 0 0\n0 1000 0\n3 0 1 2\n";
+
+#[test]
+fn content_decides_and_units_count() {
+    let folder = TempDir::new().unwrap();
+    let ply = file(&folder, "a.PLY", MESH_PLY);
+    let mesh = read_mesh(&ply, LengthUnit::Millimetres).unwrap();
+    assert_eq!(mesh.vertices()[1], Point3::new(1.0, 0.0, 0.0));
+    let Geometry::Mesh(same) = read_geometry(&ply, LengthUnit::Millimetres).unwrap() else {
+        panic!("a cloud")
+    };
+    assert_eq!(same, mesh);
+    assert_eq!(read_cloud(&ply).unwrap().points[1].x, 1000.0);
+
+    let table = file(
+        &folder,
+        "a.csv",
+        "x,y,z,cov_xx,cov_xy,cov_xz,cov_yy,cov_yz,cov_zz\n100,0,0,1,0,0,4,0,1\n",
+    );
+    let Geometry::Cloud(cloud) = read_geometry(&table, LengthUnit::Centimetres).unwrap() else {
+        panic!("a mesh")
+    };
+    assert_eq!(cloud.points, [Point3::new(1.0, 0.0, 0.0)]);
+    let variances = cloud.covariances.unwrap()[0].upper_triangle();
+    let expected = Covariance::diagonal([1e-4, 4e-4, 1e-4]).upper_triangle();
+    assert!(variances.iter().zip(expected).all(|(v, e)| (v - e).abs() < 1e-18));
+
+    let pcd =
+        "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nVIEWPOINT 100 0 0 1 0 0 0\nPOINTS 0\nDATA ascii\n";
+    let pcd = file(&folder, "a.pcd", pcd);
+    let Geometry::Cloud(cloud) = read_geometry(&pcd, LengthUnit::Inches).unwrap() else {
+        panic!("a mesh")
+    };
+    assert_eq!(cloud.sensor_origin, Point3::new(2.54, 0.0, 0.0));
+}
+
+#[test]
+fn messages_name_file_place_finding_and_remedy() {
+    let folder = TempDir::new().unwrap();
+    let message = |name: &str, contents: &str| {
+        let path = file(&folder, name, contents);
+        let message = read_geometry(&path, LengthUnit::Metres).unwrap_err().to_string();
+        message.strip_prefix(&format!("{}: ", path.display())).unwrap().to_owned()
+    };
+    assert_eq!(
+        message("a.xyz", "1 2 3\n1 2 three\n"),
+        "line 2, column 3: \"three\" is not a number: write it like -0.25, 1e-3 or nan"
+    );
+    assert_eq!(
+        message("a.stl", "ply\n"),
+        "line 1: found \"ply\", expected \"solid\" or a binary header: is the file extension right?"
+    );
+    assert_eq!(message("a.pcd", ""), "byte 0: the file is empty: was it written completely?");
+    assert_eq!(
+        message("a.las", ""),
+        "the extension \"las\" is not one of .pcd, .ply, .xyz, .txt, .csv, .stl, .obj: convert or \
+         rename the file"
+    );
+}
+
+#[test]
+fn wrong_kinds_and_absent_files_are_told_apart() {
+    let folder = TempDir::new().unwrap();
+    let unit = LengthUnit::Metres;
+    for name in ["a.stl", "a.obj", "a"] {
+        let path = file(&folder, name, "");
+        assert!(matches!(read_cloud(path), Err(ReadError::Extension { .. })), "{name}");
+    }
+    for name in ["a.pcd", "a.xyz", "a.ply.gz"] {
+        let path = file(&folder, name, "");
+        assert!(matches!(read_mesh(path, unit), Err(ReadError::Extension { .. })), "{name}");
+    }
+    let absent = folder.path().join("absent.pcd");
+    assert!(matches!(read_cloud(&absent), Err(ReadError::Io { path, .. }) if path == absent));
+    let no_faces =
+        file(&folder, "b.ply", &MESH_PLY.replace("face 1", "face 0").replace("3 0 1 2\n", ""));
+    assert!(read_mesh(&no_faces, unit).unwrap_err().to_string().contains("there are no faces"));
+    assert_eq!(read_cloud(&no_faces).unwrap().len(), 3);
+}

@@ -1,0 +1,171 @@
+//! Written files: the same bits come back, the same bytes go out, nothing is left half written.
+
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
+use std::{fs, io};
+
+use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, TriangleMesh};
+use cloudtouch_io::{
+    LengthUnit, WriteError, read_cloud, read_mesh, write_atomically, write_cloud_pcd,
+    write_cloud_ply, write_colored_ply, write_mesh_obj,
+};
+use proptest::prelude::*;
+use tempfile::TempDir;
+
+/// Any bits a coordinate can have, a plain number more often than not.
+fn any_value() -> impl Strategy<Value = f64> {
+    prop_oneof![4 => -1e7..1e7_f64, 1 => any::<u64>().prop_map(f64::from_bits), 1 => Just(f64::NAN)]
+}
+
+fn any_covariance() -> impl Strategy<Value = Covariance> {
+    prop::array::uniform9(-1.0..1.0_f64).prop_map(|entries| {
+        let root = Matrix3::from_row_slice(&entries);
+        Covariance::from_symmetric(&(root * root.transpose() + Matrix3::identity() * 1e-3))
+    })
+}
+
+fn any_cloud() -> impl Strategy<Value = PointCloud> {
+    let size =
+        prop_oneof![Just((0, 1)), (1..40_usize).prop_map(|w| (w, 1)), (2..7_usize, 2..7_usize)];
+    (size, any::<bool>(), prop::array::uniform3(-1e6..1e6_f64)).prop_flat_map(
+        |((width, height), with_covariances, origin)| {
+            let rows = prop::collection::vec(
+                (prop::array::uniform3(any_value()), any_covariance()),
+                width * height,
+            );
+            rows.prop_map(move |rows| PointCloud {
+                points: rows.iter().map(|(p, _)| Point3::from(*p)).collect(),
+                covariances: with_covariances.then(|| rows.iter().map(|(_, c)| *c).collect()),
+                sensor_origin: origin.into(),
+                image_size: (height > 1).then_some((width, height)),
+            })
+        },
+    )
+}
+
+fn bits(points: &[Point3]) -> Vec<[u64; 3]> {
+    points.iter().map(|p| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()]).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn clouds_come_back_bit_for_bit(cloud in any_cloud()) {
+        let folder = TempDir::new().unwrap();
+        let [pcd, ply] = ["a.pcd", "a.ply"].map(|name| folder.path().join(name));
+        write_cloud_pcd(&pcd, &cloud).unwrap();
+        write_cloud_ply(&ply, &cloud).unwrap();
+        let from_pcd = read_cloud(&pcd).unwrap();
+        let from_ply = read_cloud(&ply).unwrap();
+        for back in [&from_pcd, &from_ply] {
+            prop_assert_eq!(bits(&back.points), bits(&cloud.points));
+            prop_assert_eq!(&back.covariances, &cloud.covariances);
+        }
+        prop_assert_eq!(from_pcd.sensor_origin, cloud.sensor_origin);
+        prop_assert_eq!(from_pcd.image_size, cloud.image_size);
+        let first = fs::read(&pcd).unwrap();
+        write_cloud_pcd(&pcd, &from_pcd).unwrap();
+        prop_assert_eq!(fs::read(&pcd).unwrap(), first);
+    }
+
+    #[test]
+    fn meshes_come_back_bit_for_bit(
+        corners in prop::collection::vec(prop::array::uniform3(-1e7..1e7_f64), 3..20),
+        picks in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..20),
+    ) {
+        let vertices: Vec<Point3> = corners.iter().map(|c| Point3::from(*c)).collect();
+        let triangles = picks.iter().map(|t| t.map(|i| i.index(vertices.len()) as u32)).collect();
+        let mesh = TriangleMesh::try_new(vertices, triangles).unwrap();
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("a.obj");
+        write_mesh_obj(&path, &mesh).unwrap();
+        prop_assert_eq!(read_mesh(&path, LengthUnit::Metres).unwrap(), mesh);
+    }
+}
+
+#[test]
+fn coloured_points_have_the_layout_viewers_expect() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.ply");
+    let points = [Point3::new(512_700.883, 5_403_547.501, 295.25)];
+    write_colored_ply(&path, &points, &[[1, 2, 3]], Some(&[0.75])).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let header = b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\n\
+        property double y\nproperty double z\nproperty uchar red\nproperty uchar green\n\
+        property uchar blue\nproperty double probability\nend_header\n";
+    let body = bytes.strip_prefix(header).unwrap();
+    assert_eq!(body[24..27], [1, 2, 3]);
+    assert_eq!(body[27..], 0.75_f64.to_le_bytes());
+    assert_eq!(read_cloud(&path).unwrap().points, points);
+}
+
+#[test]
+fn lists_of_different_length_are_refused_and_write_nothing() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.ply");
+    let points = [Point3::origin(); 2];
+    let length = |result: Result<(), WriteError>| match result {
+        Err(WriteError::Length { what, found, points: 2, .. }) => (what, found),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(length(write_colored_ply(&path, &points, &[[0; 3]], None)), ("colours", 1));
+    let colors = [[0; 3]; 2];
+    assert_eq!(
+        length(write_colored_ply(&path, &points, &colors, Some(&[0.0; 3]))),
+        ("probabilities", 3)
+    );
+    let mut cloud = PointCloud::from_points(points.to_vec());
+    cloud.covariances = Some(vec![Covariance::zero()]);
+    assert_eq!(length(write_cloud_ply(&path, &cloud)), ("covariances", 1));
+    cloud.covariances = None;
+    cloud.image_size = Some((2, 3));
+    assert_eq!(length(write_cloud_pcd(&path, &cloud)), ("image pixels", 6));
+    cloud.image_size = None;
+    cloud.sensor_origin.y = f64::NAN;
+    assert!(matches!(write_cloud_pcd(&path, &cloud), Err(WriteError::SensorOrigin { .. })));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_failed_write_leaves_the_old_file_and_no_other() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.txt");
+    write_atomically(&path, |writer| writer.write_all(b"old")).unwrap();
+    let failed = write_atomically(&path, |writer| {
+        writer.write_all(&[b'x'; 100_000])?;
+        Err(io::Error::other("the disk is full"))
+    });
+    let message = failed.unwrap_err().to_string();
+    assert_eq!(message, format!("{}: cannot be written: the disk is full", path.display()));
+    let panicked = std::panic::catch_unwind(|| write_atomically(&path, |_| panic!("on purpose")));
+    assert!(panicked.is_err());
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    write_atomically(&path, |writer| writer.write_all(b"new")).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"new");
+}
+
+#[test]
+fn impossible_targets_are_errors() {
+    let folder = TempDir::new().unwrap();
+    let nothing = |path: &std::path::Path| write_atomically(path, |_| Ok(()));
+    assert!(matches!(nothing(folder.path()), Err(WriteError::Io { .. })));
+    assert!(matches!(nothing(&folder.path().join("absent/a.txt")), Err(WriteError::Io { .. })));
+    assert!(matches!(nothing("..".as_ref()), Err(WriteError::Io { .. })));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_are_followed_and_devices_written_to() {
+    let folder = TempDir::new().unwrap();
+    let [target, link] = ["target", "link"].map(|name| folder.path().join(name));
+    fs::write(&target, "old").unwrap();
+    std::os::unix::fs::symlink(&target, &link).unwrap();
+    write_atomically(&link, |writer| writer.write_all(b"new")).unwrap();
+    assert_eq!(fs::read(&target).unwrap(), b"new");
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    write_atomically("/dev/null", |writer| writer.write_all(b"gone")).unwrap();
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}

@@ -1,0 +1,78 @@
+//! Tables of coordinates: separators, names, comments, and what can be wrong with a row.
+
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
+use cloudtouch_geom::{Covariance, Point3};
+use cloudtouch_io::{Fault, Place, xyz};
+
+fn points(text: &str) -> Vec<Point3> {
+    xyz::parse(text.as_bytes()).unwrap().points
+}
+
+fn error(text: &str) -> (Place, Fault) {
+    let error = xyz::parse(text.as_bytes()).unwrap_err();
+    (error.place, error.fault)
+}
+
+#[test]
+fn every_separator_and_header_gives_the_same_points() {
+    let expected = [Point3::new(1.0, -2.5, 3e-3), Point3::new(4.0, 5.0, 6.0)];
+    for text in [
+        "1 -2.5 3e-3\n4 5 6",
+        "  1\t-2.5   .003 \r\n\r\n4 5 6\r\n",
+        "# x y z\n1,-2.5,0.003 # first\n4, 5 ,6\n",
+        "1;-2.5;0.003;\n4;5;6;7\n",
+        "1 -2.5 0.003 lamp post\n4 5 6\n",
+        "x,y,z\n1,-2.5,0.003\n4,5,6\n",
+        "//X Y Z\n1 -2.5 0.003\n4 5 6\n",
+        "\u{feff}\"id\";\"z\";\"x\";\"note\";\"y\"\n7;0.003;1;;-2.5\n8;6;4;a, b;5\n",
+    ] {
+        assert_eq!(points(text), expected, "{text:?}");
+    }
+    assert!(points("x y z\n").is_empty());
+}
+
+#[test]
+fn missing_returns_stay() {
+    let read = points("nan nan nan\n1 2 NaN\n");
+    assert!(read[0].x.is_nan() && read[1].z.is_nan() && read[1].y == 2.0);
+}
+
+#[test]
+fn covariance_columns_are_read_and_checked() {
+    let head = "x y z cov_xx cov_xy cov_xz cov_yy cov_yz cov_zz\n";
+    let cloud = xyz::parse((head.to_owned() + "1 2 3 4 0 0 1 0 0.25\n").as_bytes()).unwrap();
+    assert_eq!(cloud.covariances, Some(vec![Covariance::diagonal([4.0, 1.0, 0.25])]));
+    let (place, fault) = error(&(head.to_owned() + "1 2 3 4 9 0 1 0 0.25\n"));
+    assert_eq!(place, Place::Line(2));
+    assert!(matches!(fault, Fault::Covariance { row: 0, .. }));
+    assert_eq!(
+        error(&head.replace("cov_xx", "var")),
+        (Place::Line(1), Fault::MissingColumn { name: "cov_xx" })
+    );
+}
+
+#[test]
+fn faults_are_named_by_line_and_column() {
+    let not_a_number = |found: &str| Fault::NotANumber { found: found.into() };
+    let column = |line, column| Place::Column { line, column };
+    assert_eq!(error(""), (Place::Byte(0), Fault::Empty));
+    assert_eq!(error("# nothing\n\n"), (Place::Byte(0), Fault::Empty));
+    assert_eq!(error("1 2 3\n# c\n1 two 3\n"), (column(3, 2), not_a_number("two")));
+    // A decimal comma must not turn three numbers into six.
+    assert_eq!(error("1,5;2,5;3,5\n").0, Place::Line(1));
+    assert_eq!(error("x;y;z\n1,5;2,5;3,5\n"), (column(2, 1), not_a_number("1,5")));
+    assert_eq!(error("1,5 2,5 3,5\n"), (column(1, 2), not_a_number("5 2")));
+    assert_eq!(error("1,,3\n"), (column(1, 2), not_a_number("")));
+    assert_eq!(error("1 2 3\n4 5\n"), (Place::Line(2), Fault::RowLength { expected: 3, found: 2 }));
+    assert_eq!(error("x,y\n1,2\n"), (Place::Line(1), Fault::MissingColumn { name: "z" }));
+    assert_eq!(
+        error("x,y,z,y\n"),
+        (Place::Line(1), Fault::Repeated { entry: "the column y".into() })
+    );
+    let (place, fault) = error("one 2 3\n");
+    assert_eq!(place, Place::Line(1));
+    assert!(
+        matches!(fault, Fault::BadEntry { entry: "the first row", found, .. } if found == "one 2 3")
+    );
+}

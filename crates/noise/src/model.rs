@@ -1,0 +1,231 @@
+//! From a measured point and its neighbourhood to an uncertain surface point.
+
+use cloudtouch_geom::{Covariance, Matrix3, UncertainPoint, Vector3};
+
+use crate::discretization::{limited, weighted_scatter};
+use crate::parallel::parallel;
+use crate::patch::Patch;
+use crate::spacing::{SPACING_NEIGHBORS, spacing_around, spacing_of_rank};
+use crate::surface::{MOST_NEIGHBORS, Surface, fit_surface};
+use crate::{Combination, Neighbor, Neighborhoods, NoiseError, NoiseSettings};
+
+/// Turns measured points into uncertain surface points.
+///
+/// Pure: what comes out of [`refine`](Self::refine) depends on its arguments alone, bit for bit,
+/// whatever was refined before and on whichever thread.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NoiseModel {
+    settings: NoiseSettings,
+}
+
+/// A surface point as the noise model knows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Refined {
+    /// Mean and covariance of the surface point, in the frame of the cloud.
+    pub point: UncertainPoint,
+    /// Local spacing of the samples, m: zero for a point alone, never above the cap.
+    pub spacing: f64,
+    /// Unit normal of the fitted surface, of either sign; `None` where none was fitted.
+    pub normal: Option<Vector3>,
+}
+
+/// How far refinement can go, without looking at neighbours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// An upper bound on the distance between measured point and refined mean, m.
+    pub shift: f64,
+    /// An upper bound on the refined standard deviation in any direction, m.
+    pub std: f64,
+}
+
+/// Buffers reused from one refinement to the next; holds no results.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    neighbors: Vec<Neighbor>,
+    offsets: Vec<Vector3>,
+    noise: Vec<Covariance>,
+}
+
+/// A point is not moved by more than this many of its standard deviations along the normal, nor
+/// trusted to lie on a surface farther off.
+const MOST_SHIFT: f64 = 3.0;
+/// Offsets from the surface beyond this many standard deviations are added to its variance.
+const TRUSTED_OFFSET: f64 = 3.5;
+/// The posterior variance of a point whose neighbourhood was chosen for its small one is
+/// optimistic; doubled, and with a part of the sensor's and of the spacing, it is calibrated.
+const POSTERIOR_INFLATION: f64 = 2.0;
+const SENSOR_PART: f64 = 0.15;
+const SPACING_PART: f64 = 0.02;
+/// The bounds are a hair wider than the clamps, which round.
+const ROUNDING: f64 = 1e-9;
+
+impl NoiseModel {
+    /// A model with checked settings.
+    ///
+    /// # Errors
+    /// When [`NoiseSettings::validate`] objects.
+    pub fn try_new(settings: NoiseSettings) -> Result<Self, NoiseError> {
+        settings.validate()?;
+        Ok(Self { settings })
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &NoiseSettings {
+        &self.settings
+    }
+
+    /// Mean and covariance of the surface point behind point `index`.
+    ///
+    /// `sensor` holds the position noise of all points. Neither the local spacing nor any
+    /// discretization standard deviation counts as larger than `spacing_cap` (m, not negative,
+    /// infinity for no cap), so that [`bounds`](Self::bounds) holds.
+    ///
+    /// With [`Combination::SurfacePosterior`] the covariance is v n nᵀ + (0.35 h)² (I − n nᵀ), n
+    /// the normal, h the spacing. A point whose neighbourhood determines no plane (alone, on a
+    /// line, fewer than five distinct positions) keeps its place and gets Σᵢ + (0.35 h)² I. With
+    /// the other combinations a point without neighbours keeps Σᵢ, to which `Convolution` adds the
+    /// cap unless it is infinite. A point that is not finite has no neighbours.
+    ///
+    /// # Panics
+    /// When `index` or the length of `sensor` does not belong to the cloud.
+    pub fn refine(
+        &self,
+        index: usize,
+        neighborhoods: &Neighborhoods,
+        sensor: &[Covariance],
+        spacing_cap: f64,
+        scratch: &mut Scratch,
+    ) -> Refined {
+        let points = neighborhoods.points();
+        assert_eq!(sensor.len(), points.len(), "one sensor covariance for each point");
+        let count = match self.settings.combination {
+            Combination::SurfacePosterior => MOST_NEIGHBORS,
+            _ => self.settings.discretization.neighbors.max(SPACING_NEIGHBORS),
+        };
+        neighborhoods.nearest_into(index, count, &mut scratch.neighbors);
+        let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
+        let unfitted = |covariance| Refined {
+            point: UncertainPoint { mean: points[index], covariance },
+            spacing,
+            normal: None,
+        };
+        match self.settings.combination {
+            Combination::Precision => {
+                let psi = self.sampling_error(index, neighborhoods, spacing_cap, scratch);
+                unfitted(psi.map_or(sensor[index], |psi| parallel(&sensor[index], &psi)))
+            }
+            Combination::Convolution => {
+                let alone = if spacing_cap.is_finite() { spacing_cap } else { 0.0 };
+                let psi = self
+                    .sampling_error(index, neighborhoods, spacing_cap, scratch)
+                    .unwrap_or(Covariance::isotropic(alone * alone));
+                unfitted(sensor[index].sum(&psi))
+            }
+            Combination::SurfacePosterior => {
+                let disc = (self.settings.disc_std * spacing).powi(2);
+                self.posterior(index, neighborhoods, sensor, spacing_cap, scratch)
+                    .unwrap_or_else(|| unfitted(sensor[index].sum(&Covariance::isotropic(disc))))
+            }
+        }
+    }
+
+    /// Upper bounds on what [`refine`](Self::refine) does to a point with this position noise,
+    /// whatever its neighbours.
+    pub fn bounds(&self, sensor: &Covariance, spacing_cap: f64) -> Bounds {
+        let sigma = sensor.max_std();
+        let widened = |part: f64| sigma.hypot(part * spacing_cap) * (1.0 + ROUNDING);
+        match self.settings.combination {
+            Combination::Precision => Bounds { shift: 0.0, std: widened(0.0) },
+            Combination::Convolution => Bounds { shift: 0.0, std: widened(1.0) },
+            Combination::SurfacePosterior => Bounds {
+                shift: MOST_SHIFT * sigma * (1.0 + ROUNDING),
+                std: widened(self.settings.disc_std.max(SPACING_PART)),
+            },
+        }
+    }
+
+    /// Ψᵢ within the cap; `None` without neighbours.
+    fn sampling_error(
+        &self,
+        index: usize,
+        neighborhoods: &Neighborhoods,
+        spacing_cap: f64,
+        scratch: &Scratch,
+    ) -> Option<Covariance> {
+        let settings = &self.settings.discretization;
+        let nearest = &scratch.neighbors[..scratch.neighbors.len().min(settings.neighbors)];
+        weighted_scatter(neighborhoods.points(), index, nearest, settings.width)
+            .map(|psi| limited(psi, spacing_cap))
+    }
+
+    /// The point given its measurement and the surface of its neighbours; `None` where there is
+    /// no surface to be fitted.
+    fn posterior(
+        &self,
+        index: usize,
+        neighborhoods: &Neighborhoods,
+        sensor: &[Covariance],
+        spacing_cap: f64,
+        scratch: &mut Scratch,
+    ) -> Option<Refined> {
+        let point = neighborhoods.points()[index];
+        let Scratch { neighbors, offsets, noise } = scratch;
+        offsets.clear();
+        offsets.extend(neighbors.iter().map(|n| neighborhoods.points()[n.index] - point));
+        noise.clear();
+        noise.extend(neighbors.iter().map(|n| sensor[n.index]));
+        let patch = Patch::new(offsets, noise, &sensor[index], spacing_around(neighbors)?);
+        let surface = fit_surface(&patch)?;
+        let normal = surface.normal;
+        let spacing = tangential_spacing(&patch, &surface)?.min(spacing_cap);
+
+        let sensor_variance = sensor[index].variance_along(&normal);
+        let mut prior_variance = surface.variance;
+        if surface.height.powi(2) > TRUSTED_OFFSET.powi(2) * patch.own_variance(&normal) {
+            prior_variance += surface.height.powi(2);
+        }
+        // Positive: the surface variance is at least a part of the floor, which is.
+        let weight = sensor_variance / (sensor_variance + prior_variance);
+        let most = MOST_SHIFT * sensor_variance.sqrt();
+        let shift = (weight * surface.height).clamp(-most, most);
+        let sampling = (SPACING_PART * spacing).powi(2);
+        let variance = (POSTERIOR_INFLATION * weight * prior_variance
+            + SENSOR_PART.powi(2) * sensor_variance
+            + sampling)
+            .min(sensor_variance + sampling);
+        let disc = (self.settings.disc_std * spacing).powi(2);
+        let along = normal * normal.transpose();
+        let covariance = along * variance + (Matrix3::identity() - along) * disc;
+        Some(Refined {
+            point: UncertainPoint {
+                mean: point + normal * shift,
+                covariance: Covariance::from_symmetric(&covariance),
+            },
+            spacing,
+            normal: Some(normal),
+        })
+    }
+}
+
+/// The spacing of the samples on the surface, noise across it left out: the sixth least distance
+/// across the normal among the neighbours near the surface; `None` when there is none.
+fn tangential_spacing(patch: &Patch, surface: &Surface) -> Option<f64> {
+    let mut nearest = [f64::INFINITY; SPACING_NEIGHBORS];
+    let mut count = 0;
+    for (offset, variance) in patch.with_variances(&surface.normal) {
+        let (residual, reach) = surface.residual_and_reach(offset);
+        let allowed = TRUSTED_OFFSET.powi(2) * (variance + surface.variance);
+        if residual * residual <= allowed {
+            count += 1;
+            let last = SPACING_NEIGHBORS - 1;
+            if reach < nearest[last] {
+                let place = nearest.partition_point(|&r| r <= reach);
+                nearest[place..].rotate_right(1);
+                nearest[place] = reach;
+            }
+        }
+    }
+    let rank = count.min(SPACING_NEIGHBORS);
+    let reach = *nearest.get(rank.checked_sub(1)?)?;
+    Some(spacing_of_rank(reach, rank))
+}

@@ -1,0 +1,46 @@
+//! The spacing of samples: the side of the square of surface that belongs to one point.
+
+use std::f64::consts::PI;
+
+use crate::{Neighbor, Neighborhoods};
+
+/// The neighbour whose distance gives the spacing: enough to average over direction, few enough
+/// to stay local.
+pub(crate) const SPACING_NEIGHBORS: usize = 6;
+
+/// The typical spacing of a cloud, m: the median over `sample` points, evenly spread over the
+/// indices, of dₖ √(π/k) with dₖ the distance to the sixth neighbour.
+///
+/// On a surface with one sample in every square of side h it is about h. Noise larger than the
+/// spacing thickens the surface and makes it too large. Zero when no sampled point has a
+/// neighbour; all points are sampled when there are fewer than `sample`.
+pub fn typical_spacing(neighborhoods: &Neighborhoods, sample: usize) -> f64 {
+    let count = neighborhoods.points().len();
+    let sample = sample.min(count);
+    let mut found = Vec::new();
+    let mut spacings = Vec::with_capacity(sample);
+    for s in 0..sample {
+        // The product fits: an index holds at most 2³² points.
+        let index = (s as u64 * count as u64 / sample as u64) as usize;
+        neighborhoods.nearest_into(index, SPACING_NEIGHBORS, &mut found);
+        spacings.extend(spacing_around(&found));
+    }
+    if spacings.is_empty() {
+        return 0.0;
+    }
+    let middle = spacings.len() / 2;
+    *spacings.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// The local spacing from neighbours in order of distance; `None` without any.
+pub(crate) fn spacing_around(neighbors: &[Neighbor]) -> Option<f64> {
+    let rank = neighbors.len().min(SPACING_NEIGHBORS);
+    let last = neighbors.get(rank.checked_sub(1)?)?;
+    Some(spacing_of_rank(last.squared_distance.sqrt(), rank))
+}
+
+/// h from the distance of the neighbour of this rank (from 1): π d² of surface holds `rank` of
+/// the squares h².
+pub(crate) fn spacing_of_rank(distance: f64, rank: usize) -> f64 {
+    distance * (PI / rank as f64).sqrt()
+}

@@ -1,0 +1,98 @@
+//! What must hold of every refined point, whatever the cloud: bounds, order, purity.
+
+mod common;
+
+use cloudtouch_geom::{Covariance, Matrix3, Point3};
+use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch};
+use proptest::prelude::*;
+
+use common::model;
+
+const ALL: [Combination; 3] =
+    [Combination::Precision, Combination::Convolution, Combination::SurfacePosterior];
+
+/// A covariance of any scale and rank.
+fn any_covariance() -> impl Strategy<Value = Covariance> {
+    let entry = prop_oneof![1 => Just(0.0), 3 => -1.0..1.0_f64];
+    (prop::array::uniform9(entry), -5..2_i32).prop_map(|(entries, exponent)| {
+        let root = Matrix3::from_row_slice(&entries) * 10_f64.powi(exponent);
+        Covariance::from_symmetric(&(root * root.transpose()))
+    })
+}
+
+/// Points with their noise: a rough sheet, lattice points, duplicates and far outliers together.
+fn any_cloud() -> impl Strategy<Value = Vec<(Point3, Covariance)>> {
+    let lattice = prop::array::uniform3((-2..3_i32).prop_map(|v| 0.1 * f64::from(v)));
+    let sheet = (-0.5..0.5_f64, -0.5..0.5_f64, -0.02..0.02_f64).prop_map(|(x, y, z)| [x, y, z]);
+    let outlier = prop::array::uniform3(-5.0..5.0_f64);
+    let point = prop_oneof![6 => sheet, 2 => lattice, 1 => outlier].prop_map(Point3::from);
+    let rough = prop::collection::vec((point.clone(), any_covariance()), 1..120);
+    // One noise for all is the common case, and the one in which fits succeed most.
+    let even = (prop::collection::vec(point, 1..120), any_covariance())
+        .prop_map(|(points, noise)| points.into_iter().map(|p| (p, noise)).collect());
+    prop_oneof![rough, even]
+}
+
+fn any_cap() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), 1e-6..1.0_f64, Just(1e3)]
+}
+
+/// Whether `larger` − `smaller` is positive semidefinite up to rounding.
+fn in_order(smaller: &Covariance, larger: &Covariance) -> bool {
+    let difference = larger.matrix() - smaller.matrix();
+    difference.symmetric_eigenvalues().min() >= -1e-9 * larger.matrix().trace()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn refined_points_keep_their_bounds(cloud in any_cloud(), cap in any_cap()) {
+        let (points, sensor): (Vec<_>, Vec<_>) = cloud.into_iter().unzip();
+        let index = Neighborhoods::try_new(points.clone()).unwrap();
+        let mut scratch = Scratch::default();
+        for combination in ALL {
+            let model = model(combination);
+            for i in 0..points.len() {
+                let refined = model.refine(i, &index, &sensor, cap, &mut scratch);
+                let bounds = model.bounds(&sensor[i], cap);
+                let covariance = refined.point.covariance;
+                let shift = (refined.point.mean - points[i]).norm();
+                // The rounding of adding a shift to a coordinate of size 5.
+                prop_assert!(shift <= bounds.shift + 1e-14, "{combination:?}: {shift} {bounds:?}");
+                let std = covariance.max_std();
+                prop_assert!(std <= bounds.std, "{combination:?}: {std} {bounds:?}");
+                prop_assert!(Covariance::try_from_matrix(&covariance.matrix()).is_ok());
+                prop_assert!(refined.spacing >= 0.0 && refined.spacing <= cap);
+                if let Some(normal) = refined.normal {
+                    prop_assert!((normal.norm() - 1.0).abs() < 1e-12);
+                }
+                match combination {
+                    Combination::Precision => prop_assert!(in_order(&covariance, &sensor[i])),
+                    Combination::Convolution => prop_assert!(in_order(&sensor[i], &covariance)),
+                    Combination::SurfacePosterior => {}
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn refinement_depends_on_its_arguments_alone(cloud in any_cloud()) {
+        let (points, sensor): (Vec<_>, Vec<_>) = cloud.into_iter().unzip();
+        let index = Neighborhoods::try_new(points.clone()).unwrap();
+        let mut scratch = Scratch::default();
+        for combination in ALL {
+            let model = model(combination);
+            let mut refine = |i| model.refine(i, &index, &sensor, 1.0, &mut scratch);
+            let forward: Vec<_> = (0..points.len()).map(&mut refine).collect();
+            let backward: Vec<_> = (0..points.len()).rev().map(&mut refine).collect();
+            prop_assert!(forward.iter().eq(backward.iter().rev()));
+        }
+    }
+}
+
+#[test]
+fn models_can_be_shared_between_threads() {
+    fn shared<T: Send + Sync>() {}
+    shared::<NoiseModel>();
+}

@@ -1,0 +1,124 @@
+//! The index against brute force, on clouds that break k-d trees.
+
+use cloudtouch_geom::Point3;
+use cloudtouch_noise::{Neighbor, Neighborhoods, NoiseError, typical_spacing};
+use proptest::prelude::*;
+
+/// The reference: every other position once, sorted by distance, then index.
+fn brute_force(
+    points: &[Point3],
+    place: &Point3,
+    leave_out_place: bool,
+    k: usize,
+) -> Vec<Neighbor> {
+    let mut all: Vec<Neighbor> = (0..points.len())
+        .filter(|&i| points[i].coords.iter().all(|v| v.is_finite()))
+        .filter(|&i| !(0..i).any(|j| points[j] == points[i]))
+        .filter(|&i| !(leave_out_place && points[i] == *place))
+        .map(|index| Neighbor { index, squared_distance: (points[index] - place).norm_squared() })
+        .collect();
+    all.sort_by(|a, b| {
+        a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
+    });
+    all.truncate(k);
+    all
+}
+
+fn check_all(points: &[Point3], k: usize) {
+    let index = Neighborhoods::try_new(points.to_vec()).expect("an index");
+    for (i, place) in points.iter().enumerate() {
+        if place.coords.iter().all(|v| v.is_finite()) {
+            assert_eq!(index.nearest(i, k), brute_force(points, place, true, k), "point {i}");
+            assert_eq!(index.nearest_to(place, k), brute_force(points, place, false, k));
+        } else {
+            assert!(index.nearest(i, k).is_empty());
+        }
+    }
+}
+
+/// Integer coordinates: ties and duplicates everywhere, and exact distances.
+fn lattice_points() -> impl Strategy<Value = Vec<Point3>> {
+    let coordinate = prop_oneof![9 => (-3..4_i32).prop_map(f64::from), 1 => Just(f64::NAN)];
+    prop::collection::vec(prop::array::uniform3(coordinate).prop_map(Point3::from), 0..80)
+}
+
+proptest! {
+    #[test]
+    fn agrees_with_brute_force_where_everything_ties(points in lattice_points(), k in 0..20_usize) {
+        check_all(&points, k);
+    }
+
+    #[test]
+    fn agrees_with_brute_force_at_random(
+        points in prop::collection::vec(
+            prop::array::uniform3(-1.0..1.0_f64).prop_map(Point3::from), 0..200),
+        k in 0..20_usize,
+    ) {
+        check_all(&points, k);
+    }
+}
+
+#[test]
+fn twenty_thousand_points_of_a_grid() {
+    let points: Vec<Point3> =
+        (0..20_000).map(|i| Point3::new(f64::from(i % 200), f64::from(i / 200), 0.0)).collect();
+    let index = Neighborhoods::try_new(points.clone()).unwrap();
+    assert_eq!(index.distinct(), 20_000);
+    for i in (0..points.len()).step_by(997) {
+        assert_eq!(index.nearest(i, 21), brute_force_fast(&points, i, 21), "point {i}");
+    }
+    let typical = typical_spacing(&index, 1000);
+    assert!((0.9..1.1).contains(&typical), "spacing {typical} of a unit grid");
+}
+
+/// The reference without its quadratic search for duplicates.
+fn brute_force_fast(points: &[Point3], i: usize, k: usize) -> Vec<Neighbor> {
+    let mut all: Vec<Neighbor> = (0..points.len())
+        .filter(|&j| j != i)
+        .map(|j| Neighbor { index: j, squared_distance: (points[j] - points[i]).norm_squared() })
+        .collect();
+    all.sort_by(|a, b| {
+        a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
+    });
+    all.truncate(k);
+    all
+}
+
+#[test]
+fn a_heap_of_equal_points_is_one_position() {
+    let mut points = vec![Point3::new(1.0, 2.0, 3.0); 500];
+    let alone = Neighborhoods::try_new(points.clone()).unwrap();
+    assert_eq!(alone.distinct(), 1);
+    assert!(alone.nearest(250, 10).is_empty());
+    assert_eq!(alone.nearest_to(&Point3::origin(), 10).len(), 1);
+
+    points.extend((0..40).map(|i| Point3::new(f64::from(i), 0.0, -0.0)));
+    points.push(Point3::new(0.0, -0.0, 0.0));
+    check_all(&points, 12);
+}
+
+#[test]
+fn nothing_and_one_point_have_no_neighbours() {
+    let empty = Neighborhoods::try_new(Vec::new()).unwrap();
+    assert!(empty.nearest_to(&Point3::origin(), 5).is_empty());
+    assert_eq!(typical_spacing(&empty, 10), 0.0);
+    let one = Neighborhoods::try_new(vec![Point3::origin()]).unwrap();
+    assert!(one.nearest(0, 5).is_empty());
+    assert!(one.nearest_to(&Point3::new(f64::NAN, 0.0, 0.0), 5).is_empty());
+    assert_eq!(typical_spacing(&one, 10), 0.0);
+}
+
+#[test]
+fn the_index_can_be_shared_between_threads() {
+    fn shared<T: Send + Sync>() {}
+    shared::<Neighborhoods>();
+}
+
+#[test]
+fn coordinates_out_of_range_are_refused() {
+    let points = vec![Point3::origin(), Point3::new(0.0, 1e200, 0.0)];
+    assert!(matches!(
+        Neighborhoods::try_new(points),
+        Err(NoiseError::CoordinateRange { index: 1, .. })
+    ));
+}

@@ -1,0 +1,25 @@
+//! Many poses of one pair of bodies.
+
+use cloudtouch_geom::Pose;
+use rayon::prelude::*;
+
+use crate::body::BodyRef;
+use crate::error::QueryError;
+use crate::query::Query;
+use crate::report::Report;
+
+impl Query {
+    /// Answers every pose, on all threads of the current rayon pool, in the order of the poses.
+    ///
+    /// Apart from times and `leaves_prepared` in the statistics, the reports are the same bits
+    /// whatever the number of threads.
+    pub fn run_batch<'a>(
+        &self,
+        a: impl Into<BodyRef<'a>>,
+        b: impl Into<BodyRef<'a>>,
+        a_from_b: &[Pose],
+    ) -> Vec<Result<Report, QueryError>> {
+        let (a, b) = (a.into(), b.into());
+        a_from_b.par_iter().map(|pose| self.run(a, b, pose)).collect()
+    }
+}

@@ -1,0 +1,66 @@
+//! Leaves whose noise model is computed when a query first visits them, and kept.
+
+use std::sync::OnceLock;
+
+use cloudtouch_bvh::{NodeId, Obb, Tree};
+use cloudtouch_geom::UncertainPoint;
+use cloudtouch_noise::Scratch;
+
+use super::Cloud;
+
+/// A point of a leaf after the noise model, in the cloud's local frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LeafPoint {
+    /// Index among the points the filter kept.
+    pub index: u32,
+    /// Where the surface is expected, and how well that is known.
+    pub point: UncertainPoint,
+    /// Distance between samples there, m.
+    pub spacing: f64,
+}
+
+/// One slot per tree node; only those of leaves are ever filled. Each is a pure function of the
+/// cloud, so it does not matter which thread fills it.
+#[derive(Debug)]
+pub(super) struct LazyLeaves {
+    slots: Vec<OnceLock<Vec<LeafPoint>>>,
+}
+
+impl LazyLeaves {
+    pub(super) fn new(tree: &Tree) -> Self {
+        Self { slots: (0..tree.node_slots()).map(|_| OnceLock::new()).collect() }
+    }
+}
+
+/// The spacing a point may be given at most: the size of its leaf. A cloud is never sparser than
+/// its leaves are large, and the tree's bounds rest on it.
+pub(super) fn spacing_cap(leaf: &Obb) -> f64 {
+    2.0 * leaf.radius()
+}
+
+impl Cloud {
+    /// The points of a leaf after the noise model, and whether this call computed them.
+    pub(crate) fn leaf(&self, id: NodeId) -> (&[LeafPoint], bool) {
+        let mut computed = false;
+        let points = self.leaves.slots[id.index()].get_or_init(|| {
+            computed = true;
+            let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
+            let cap = spacing_cap(leaf.obb());
+            let mut scratch = Scratch::default();
+            let refine = |&index: &u32| self.refine(index, cap, &mut scratch);
+            leaf.primitive_indices().iter().map(refine).collect()
+        });
+        (points, computed)
+    }
+
+    fn refine(&self, index: u32, spacing_cap: f64, scratch: &mut Scratch) -> LeafPoint {
+        let refined = self.noise.refine(
+            index as usize,
+            &self.neighborhoods,
+            &self.sensor,
+            spacing_cap,
+            scratch,
+        );
+        LeafPoint { index, point: refined.point, spacing: refined.spacing }
+    }
+}

@@ -1,0 +1,37 @@
+//! How a cloud is prepared.
+
+use cloudtouch_bvh::TreeSettings;
+use cloudtouch_noise::{Combination, NoiseSettings, SensorModel};
+
+use crate::filter::FilterSettings;
+use crate::query::Mode;
+
+/// Sensor, cleaning, noise model and tree of one cloud.
+#[derive(Debug, Clone)]
+pub struct CloudSettings {
+    /// How noisy the points are.
+    pub sensor: SensorModel,
+    /// What is removed before anything else.
+    pub filter: FilterSettings,
+    /// How position noise and discretization make an uncertain point.
+    pub noise: NoiseSettings,
+    /// How the tree is split.
+    pub tree: TreeSettings,
+}
+
+impl CloudSettings {
+    /// The settings that suit a sensor and a mode: the paper's mode combines noise by
+    /// [`Combination::Precision`], the calibrated one by [`Combination::SurfacePosterior`].
+    pub fn new(sensor: SensorModel, mode: Mode) -> Self {
+        let combination = match mode {
+            Mode::Paper => Combination::Precision,
+            Mode::Calibrated => Combination::SurfacePosterior,
+        };
+        Self {
+            filter: FilterSettings::for_sensor(&sensor),
+            sensor,
+            noise: NoiseSettings { combination, ..NoiseSettings::default() },
+            tree: TreeSettings::default(),
+        }
+    }
+}

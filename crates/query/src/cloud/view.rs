@@ -1,0 +1,73 @@
+//! A single depth image: what lies behind its surfaces was never seen.
+
+use std::sync::OnceLock;
+
+use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_noise::{Neighborhoods, typical_spacing};
+
+use super::Cloud;
+
+/// How many times the angle between pixels a ray may miss the nearest measured one.
+const ANGLE_TOLERANCE: f64 = 4.0;
+
+/// Pixels whose neighbours tell the angle between pixels.
+const SPACING_SAMPLE: usize = 200;
+
+/// Standard deviations of the measured surface that count as clearly behind it.
+const CLEARLY: f64 = 3.0;
+
+/// Where the sensor stood, and the measured directions once they are needed.
+#[derive(Debug)]
+pub(crate) struct SingleView {
+    /// In the cloud's local frame, m.
+    sensor_origin: Point3,
+    rays: OnceLock<Option<Rays>>,
+}
+
+#[derive(Debug)]
+struct Rays {
+    directions: Neighborhoods,
+    ranges: Vec<f64>,
+    /// How far a direction may be from a measured one, as a distance on the unit sphere.
+    tolerance: f64,
+}
+
+impl SingleView {
+    pub(super) fn new(sensor_origin: Point3) -> Self {
+        Self { sensor_origin, rays: OnceLock::new() }
+    }
+
+    /// Whether the sensor looked along the ray to `point` and met a surface clearly before it
+    /// (by three standard deviations). All in the cloud's local frame.
+    pub(crate) fn is_behind(&self, cloud: &Cloud, point: &Point3) -> bool {
+        let Some(rays) = self.rays.get_or_init(|| self.measure(cloud.points())) else {
+            return false;
+        };
+        let offset = point - self.sensor_origin;
+        let range = offset.norm();
+        if range == 0.0 {
+            return false;
+        }
+        let direction = Point3::from(offset / range);
+        rays.directions
+            .nearest_to(&direction, 1)
+            .first()
+            .is_some_and(|n| {
+                let margin = CLEARLY * cloud.sensor[n.index].std_bound();
+                n.squared_distance.sqrt() <= rays.tolerance && range > rays.ranges[n.index] + margin
+            })
+    }
+
+    fn measure(&self, cloud: &[Point3]) -> Option<Rays> {
+        let offsets: Vec<Vector3> = cloud.iter().map(|p| p - self.sensor_origin).collect();
+        let ranges: Vec<f64> = offsets.iter().map(Vector3::norm).collect();
+        let directions: Vec<Point3> = offsets
+            .iter()
+            .zip(&ranges)
+            .map(|(offset, &range)| Point3::from(offset / range.max(f64::MIN_POSITIVE)))
+            .collect();
+        let directions = Neighborhoods::try_new(directions).ok()?;
+        let tolerance = ANGLE_TOLERANCE * typical_spacing(&directions, SPACING_SAMPLE);
+        Some(Rays { directions, ranges, tolerance })
+    }
+}

@@ -1,0 +1,95 @@
+//! What can be wrong with the input, in words.
+
+use cloudtouch_bvh::TreeError;
+use cloudtouch_geom::{CovarianceError, MeshError};
+use cloudtouch_noise::NoiseError;
+
+use crate::filter::FilterError;
+
+/// Why a cloud or a mesh could not be prepared.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PrepareError {
+    /// No point was left after filtering.
+    #[error("no point is left of {before} after filtering ({stages}): loosen the filter or check the file")]
+    NothingLeft {
+        /// Points in the input.
+        before: usize,
+        /// What each stage removed.
+        stages: String,
+    },
+    /// A covariance of the input is not one.
+    #[error("point {index}: {source}")]
+    Covariance {
+        /// Which point, from 0.
+        index: usize,
+        /// What is wrong with it.
+        source: CovarianceError,
+    },
+    /// The cleaning pipeline was asked for something impossible.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// The sensor model or the noise settings do not fit the cloud.
+    #[error(transparent)]
+    Noise(#[from] NoiseError),
+    /// The tree could not be built.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
+    /// The mesh has nothing to collide with.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The mesh library refused the surface.
+    #[error("the mesh surface cannot be used: {reason}")]
+    Surface {
+        /// What the library said.
+        reason: String,
+    },
+}
+
+/// A query setting that is out of range.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SettingsError {
+    /// The thresholds are not 0 ≤ reject ≤ ½ ≤ accept ≤ 1.
+    #[error("thresholds accept = {accept}, reject = {reject}: need 0 <= reject <= 0.5 <= accept <= 1")]
+    Thresholds {
+        /// Probability above which a pair is in collision.
+        accept: f64,
+        /// Probability below which a pair is free.
+        reject: f64,
+    },
+    /// A setting is not a positive finite number.
+    #[error("{name} is {value}: give a positive finite number")]
+    NotPositive {
+        /// Which setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A probability or tolerance is not strictly between 0 and 1.
+    #[error("{name} is {value}: give a number between 0 and 1, ends excluded")]
+    NotAFraction {
+        /// Which setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+}
+
+/// Why a query has no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum QueryError {
+    /// The pose has an entry that is NaN or infinite.
+    #[error("the pose contains {value}: every entry must be finite")]
+    Pose {
+        /// What was found.
+        value: f64,
+    },
+    /// The trees could not be traversed.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
+    /// The two shapes cannot be tested against each other exactly.
+    #[error("the two meshes cannot be tested against each other: is one of them degenerate?")]
+    Unsupported,
+}

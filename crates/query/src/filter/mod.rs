@@ -1,0 +1,97 @@
+//! The cleaning pipeline of the paper's section 3: what a sensor delivers in, what a query should
+//! see out, with a count for every stage.
+
+mod collision_map;
+mod duplicates;
+mod outliers;
+mod range;
+mod self_points;
+mod settings;
+mod veil;
+
+use cloudtouch_geom::{Point3, PointCloud};
+use serde::Serialize;
+
+pub use self_points::SelfMesh;
+pub use settings::{FilterError, FilterSettings, OutlierSettings, VeilSettings};
+
+/// How many points one stage took away.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct StageReport {
+    /// What the stage does: `missing`, `range`, `duplicates`, `robot`, `veil`, `outliers` or
+    /// `collision map`.
+    pub stage: &'static str,
+    /// Points before it.
+    pub before: usize,
+    /// Points it removed.
+    pub removed: usize,
+}
+
+/// What is left of a cloud, and what went where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filtered {
+    /// The points kept, in their order in the input (cell centres, after a collision map).
+    pub cloud: PointCloud,
+    /// For every point kept, its row in the input; empty after a collision map, whose cells stand
+    /// for many rows.
+    pub rows: Vec<usize>,
+    /// One entry for each stage that ran, in order.
+    pub stages: Vec<StageReport>,
+}
+
+/// Runs the stages that `settings` asks for, cheapest first.
+///
+/// Rows with a NaN or infinite coordinate always go. A stage that has nothing to work with (no
+/// image layout and no neighbours, for instance) removes nothing. Every stage can only remove
+/// points, so each can hide a true obstacle; the counts tell how many points that concerns.
+///
+/// # Errors
+/// When a setting is out of range; see [`FilterError`].
+pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered, FilterError> {
+    settings.check()?;
+    let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
+    let finite = |p: &Point3| p.iter().all(|v| v.is_finite());
+    run.stage("missing", |cloud, kept| kept.retain(|&i| finite(&cloud.points[i])));
+    if settings.min_range > 0.0 || settings.max_range.is_finite() {
+        run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
+    }
+    if settings.drop_duplicates {
+        run.stage("duplicates", duplicates::keep_first);
+    }
+    if !settings.robot.is_empty() {
+        run.stage("robot", |cloud, kept| self_points::keep_outside(cloud, kept, &settings.robot));
+    }
+    if let Some(veil) = &settings.veil {
+        run.stage("veil", |cloud, kept| veil::drop_veil(cloud, kept, veil));
+    }
+    if let Some(outliers) = &settings.outliers {
+        run.stage("outliers", |cloud, kept| outliers::drop_outliers(cloud, kept, outliers));
+    }
+    let Run { kept, mut stages, .. } = run;
+    let mut filtered = cloud.select(&kept);
+    let mut rows = kept;
+    if let Some(resolution) = settings.collision_map {
+        let before = filtered.len();
+        filtered = collision_map::cell_centers(&filtered, resolution)?;
+        rows.clear();
+        let removed = before - filtered.len();
+        stages.push(StageReport { stage: "collision map", before, removed });
+    }
+    Ok(Filtered { cloud: filtered, rows, stages })
+}
+
+struct Run<'a> {
+    cloud: &'a PointCloud,
+    kept: Vec<usize>,
+    stages: Vec<StageReport>,
+}
+
+impl Run<'_> {
+    fn stage(&mut self, stage: &'static str, retain: impl FnOnce(&PointCloud, &mut Vec<usize>)) {
+        let before = self.kept.len();
+        retain(self.cloud, &mut self.kept);
+        let removed = before - self.kept.len();
+        tracing::debug!(stage, before, removed, "filter");
+        self.stages.push(StageReport { stage, before, removed });
+    }
+}

@@ -1,0 +1,82 @@
+//! Shadow (veil) points: a pixel that sees half of a near and half of a far surface returns a
+//! depth in between, where nothing is.
+//!
+//! In an image, such a point continues along its viewing ray: one neighbour is nearer, the opposite
+//! one farther, and both steps run almost along the ray. On a true surface that steep to the ray a
+//! camera gets hardly any return. Without an image layout the neighbours are the nearest points,
+//! and a veil point is one whose neighbourhood is a line along the ray.
+
+use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Vector3};
+use cloudtouch_noise::Neighborhoods;
+
+use super::VeilSettings;
+
+/// Neighbours that decide whether an unorganised neighbourhood is a line along the ray.
+const LINE_NEIGHBORS: usize = 10;
+/// A neighbourhood counts as a line when its largest variance is this many times the next.
+const LINE_RATIO: f64 = 9.0;
+
+pub(super) fn drop_veil(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
+    match cloud.image_size {
+        Some((width, height)) if width > 1 && height > 1 => {
+            kept.retain(|&i| !is_veil_in_image(cloud, i, (width, height), settings));
+        }
+        _ => drop_veil_lines(cloud, kept, settings),
+    }
+}
+
+fn is_veil_in_image(
+    cloud: &PointCloud,
+    index: usize,
+    (width, height): (usize, usize),
+    settings: &VeilSettings,
+) -> bool {
+    let (row, column) = (index / width, index % width);
+    let at = |row: usize, column: usize| cloud.points.get(row * width + column);
+    let horizontal = (column > 0 && column + 1 < width)
+        .then(|| (at(row, column - 1), at(row, column + 1)));
+    let vertical =
+        (row > 0 && row + 1 < height).then(|| (at(row - 1, column), at(row + 1, column)));
+    let point = &cloud.points[index];
+    [horizontal, vertical].into_iter().flatten().any(|(before, after)| {
+        let (Some(before), Some(after)) = (before, after) else { return false };
+        let ray = point - cloud.sensor_origin;
+        // NaN neighbours compare false, so a pixel beside a missing return is not veil.
+        let forward = along_ray(&ray, point, after, settings.max_angle);
+        let backward = along_ray(&ray, point, before, settings.max_angle);
+        forward * backward < 0.0
+    })
+}
+
+/// +1 when the step from `point` to `other` runs along the ray away from the sensor, −1 towards it,
+/// 0 when it does not run along the ray.
+fn along_ray(ray: &Vector3, point: &Point3, other: &Point3, max_angle: f64) -> f64 {
+    let step = other - point;
+    let cosine = step.dot(ray) / (step.norm() * ray.norm());
+    if cosine.abs() > max_angle.cos() { cosine.signum() } else { 0.0 }
+}
+
+fn drop_veil_lines(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
+    let points: Vec<Point3> = kept.iter().map(|&i| cloud.points[i]).collect();
+    let Ok(neighborhoods) = Neighborhoods::try_new(points) else { return };
+    let points = neighborhoods.points();
+    let veil: Vec<bool> = (0..points.len())
+        .map(|i| {
+            let neighbors = neighborhoods.nearest(i, LINE_NEIGHBORS);
+            if neighbors.len() < LINE_NEIGHBORS {
+                return false;
+            }
+            let offsets = neighbors.iter().map(|n| points[n.index] - points[i]);
+            let scatter: Matrix3 = offsets.map(|d| d * d.transpose()).sum();
+            let (variances, axes) = Covariance::from_symmetric(&scatter).eigen();
+            let ray = points[i] - cloud.sensor_origin;
+            let cosine = axes.column(0).dot(&ray).abs() / ray.norm();
+            variances[0] > LINE_RATIO * variances[1] && cosine > settings.max_angle.cos()
+        })
+        .collect();
+    let mut position = 0;
+    kept.retain(|_| {
+        position += 1;
+        !veil[position - 1]
+    });
+}

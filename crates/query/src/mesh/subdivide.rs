@@ -1,0 +1,91 @@
+//! Points on a mesh where it faces a cloud, as dense as that cloud is there (section 6 of the
+//! paper takes vertices and centroids, which miss a large triangle pierced in its interior).
+
+use cloudtouch_geom::Point3;
+
+/// Deepest subdivision of one triangle: 4¹⁰ parts, a millionth of its area each.
+const MAX_DEPTH: usize = 10;
+
+/// Where and how densely a mesh is sampled, in the mesh's local frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SampleRegion {
+    /// Middle of the cloud leaf.
+    pub center: Point3,
+    /// How far from there samples matter, m.
+    pub radius: f64,
+    /// No edge of a subdivided triangle is longer than this, m.
+    pub spacing: f64,
+}
+
+/// Vertices and centroid of every part of `triangles` inside the region, after splitting them until
+/// no edge is longer than the spacing.
+pub(crate) fn sample_region(
+    triangles: impl IntoIterator<Item = [Point3; 3]>,
+    region: &SampleRegion,
+) -> Vec<Point3> {
+    let mut points = Vec::new();
+    for corners in triangles {
+        split(corners, region, MAX_DEPTH, &mut points);
+    }
+    merge_repeated(&mut points);
+    points
+}
+
+fn split(corners: [Point3; 3], region: &SampleRegion, depth: usize, points: &mut Vec<Point3>) {
+    let [a, b, c] = corners;
+    let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+    let reach = corners.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
+    if (centroid - region.center).norm() > region.radius + reach {
+        return;
+    }
+    let longest = [(a, b), (b, c), (c, a)].map(|(p, q)| (p - q).norm()).into_iter().fold(0.0, f64::max);
+    if longest <= region.spacing || depth == 0 {
+        let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
+        points.extend([a, b, c, centroid].into_iter().filter(inside));
+        return;
+    }
+    let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| nalgebra::center(&p, &q));
+    for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+        split(part, region, depth - 1, points);
+    }
+}
+
+/// Neighbouring parts share their corners; each is wanted once.
+fn merge_repeated(points: &mut Vec<Point3>) {
+    let order = |p: &Point3, q: &Point3| {
+        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(p.z.total_cmp(&q.z))
+    };
+    points.sort_by(order);
+    points.dedup();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_large_triangle_is_sampled_in_its_interior_and_only_there() {
+        let corners =
+            [Point3::origin(), Point3::new(10.0, 0.0, 0.0), Point3::new(0.0, 10.0, 0.0)];
+        let region =
+            SampleRegion { center: Point3::new(3.0, 3.0, 0.05), radius: 0.3, spacing: 0.1 };
+        let points = sample_region([corners], &region);
+        assert!(points.len() > 30, "{} points", points.len());
+        assert!(points.iter().all(|p| (p - region.center).norm() <= region.radius));
+        // No hole: any spot of the disc has a sample within one spacing.
+        for (dx, dy) in [(0.0, 0.0), (0.2, 0.0), (-0.1, 0.15), (0.0, -0.2)] {
+            let spot = Point3::new(3.0 + dx, 3.0 + dy, 0.0);
+            assert!(points.iter().any(|p| (p - spot).norm() <= 0.1), "hole at {spot}");
+        }
+        let mut unique = points.clone();
+        unique.dedup();
+        assert_eq!(unique.len(), points.len());
+    }
+
+    #[test]
+    fn a_degenerate_triangle_ends_the_recursion() {
+        let p = Point3::new(1.0, 0.0, 0.0);
+        let region = SampleRegion { center: Point3::origin(), radius: 2.0, spacing: 1e-3 };
+        assert_eq!(sample_region([[p, p, p]], &region), vec![p]);
+    }
+}

@@ -1,0 +1,127 @@
+//! What a query has gathered so far.
+
+use cloudtouch_geom::Point3;
+
+use crate::POINT_FLOOR;
+use crate::report::{Clearance, Contact, PointProbabilities, Stats};
+
+use super::pool::{PointProbability, Side};
+
+/// Everything the parts of a query add to, and the report is made from.
+#[derive(Debug, Default)]
+pub(crate) struct Evidence {
+    points: Vec<PointProbability>,
+    contacts: Vec<Contact>,
+    clearance: Option<Clearance>,
+    /// Largest probability of any point so far.
+    largest: f64,
+    /// No point of what was culled or left out is more probable than this.
+    bound_of_rest: f64,
+    pub stats: Stats,
+}
+
+impl Evidence {
+    pub(crate) fn add_point(&mut self, point: PointProbability) {
+        self.largest = self.largest.max(point.probability);
+        if point.probability >= POINT_FLOOR {
+            self.points.push(point);
+        } else {
+            self.widen(point.probability);
+        }
+    }
+
+    /// Notes that two exact surfaces cross.
+    pub(crate) fn add_certain_collision(&mut self) {
+        self.add_point(PointProbability {
+            side: Side::A,
+            index: None,
+            position: Point3::origin(),
+            probability: 1.0,
+            correlation_length: 0.0,
+        });
+    }
+
+    pub(crate) fn add_contact(&mut self, contact: Contact) {
+        self.contacts.push(contact);
+    }
+
+    pub(crate) fn add_clearance(&mut self, clearance: Clearance) {
+        if self.clearance.is_none_or(|known| clearance.mean < known.mean) {
+            self.clearance = Some(clearance);
+        }
+    }
+
+    /// Notes that points which were not looked at may be this probable, and no more.
+    pub(crate) fn widen(&mut self, bound: f64) {
+        self.bound_of_rest = self.bound_of_rest.max(bound);
+    }
+
+    pub(crate) fn largest(&self) -> f64 {
+        self.largest
+    }
+
+    pub(crate) fn bound_of_rest(&self) -> f64 {
+        self.bound_of_rest
+    }
+
+    pub(crate) fn clearance(&self) -> Option<Clearance> {
+        self.clearance
+    }
+
+    /// One entry per point, its largest probability: a point may stand in several leaf pairs.
+    pub(crate) fn merge_points(&mut self) -> &[PointProbability] {
+        let place = |p: &PointProbability| (p.side, p.index);
+        self.points.sort_by(|p, q| {
+            place(p)
+                .cmp(&place(q))
+                .then_with(|| {
+                    let [p, q] = [p, q].map(|p| p.position);
+                    p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(p.z.total_cmp(&q.z))
+                })
+                .then(q.probability.total_cmp(&p.probability))
+        });
+        self.points.dedup_by(|later, first| {
+            place(later) == place(first)
+                && (later.index.is_some() || later.position == first.position)
+        });
+        &self.points
+    }
+
+    /// Probabilities by point, in index order; call after [`Self::merge_points`].
+    pub(crate) fn point_probabilities(&self) -> PointProbabilities {
+        let of = |side: Side| {
+            self.points
+                .iter()
+                .filter(|p| p.side == side)
+                .filter_map(|p| Some((p.index? as usize, p.probability)))
+                .collect()
+        };
+        PointProbabilities { a: of(Side::A), b: of(Side::B) }
+    }
+
+    /// The most probable contacts, no two within a hundredth of the spread of all of them.
+    pub(crate) fn top_contacts(&mut self, count: usize) -> Vec<Contact> {
+        self.contacts.sort_by(|p, q| {
+            q.probability
+                .total_cmp(&p.probability)
+                .then(p.clearance_m.total_cmp(&q.clearance_m))
+                .then(p.point.x.total_cmp(&q.point.x))
+                .then(p.point.y.total_cmp(&q.point.y))
+        });
+        let spread = self
+            .contacts
+            .iter()
+            .map(|c| (c.point - self.contacts[0].point).norm())
+            .fold(0.0, f64::max);
+        let mut chosen: Vec<Contact> = Vec::new();
+        for contact in &self.contacts {
+            if chosen.len() == count {
+                break;
+            }
+            if chosen.iter().all(|c| (c.point - contact.point).norm() > 0.01 * spread) {
+                chosen.push(*contact);
+            }
+        }
+        chosen
+    }
+}

@@ -1,0 +1,106 @@
+//! The points of two leaves, brought into one frame.
+
+use cloudtouch_bvh::NodeId;
+use cloudtouch_geom::{Point3, Pose, UncertainPoint, normal};
+
+use crate::body::BodyRef;
+use crate::cloud::{Cloud, LeafPoint};
+use crate::mesh::{Mesh, SampleRegion, sample_region};
+use crate::report::Stats;
+
+use super::classify::{PairPoint, PairPoints};
+
+/// Around a cloud leaf a mesh is sampled this many spacings farther than the leaf reaches.
+const MARGIN_SPACINGS: f64 = 2.0;
+/// ... and at least this many standard deviations, so that what is left out cannot matter.
+const MARGIN_DEVIATIONS: f64 = 4.75;
+
+/// Gathers the points of leaf `leaf_a` of A and leaf `leaf_b` of B in the local frame of A.
+///
+/// `None` when a side has no point: a mesh leaf whose triangles do not come near the cloud leaf.
+pub(crate) fn gather(
+    (a, leaf_a): (BodyRef<'_>, NodeId),
+    (b, leaf_b): (BodyRef<'_>, NodeId),
+    a_from_b: &Pose,
+    stats: &mut Stats,
+) -> Option<PairPoints> {
+    let points = match (a, b) {
+        (BodyRef::Cloud(a), BodyRef::Cloud(b)) => PairPoints {
+            a: cloud_points(a, leaf_a, &Pose::identity(), stats),
+            b: cloud_points(b, leaf_b, a_from_b, stats),
+            a_is_mesh: false,
+            b_is_mesh: false,
+        },
+        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
+            let near = cloud_points(cloud, leaf_a, &Pose::identity(), stats);
+            let b = mesh_points(mesh, leaf_b, &near, a_from_b);
+            PairPoints { a: near, b, a_is_mesh: false, b_is_mesh: true }
+        }
+        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
+            let near = cloud_points(cloud, leaf_b, a_from_b, stats);
+            let a = mesh_points(mesh, leaf_a, &near, &Pose::identity());
+            PairPoints { a, b: near, a_is_mesh: true, b_is_mesh: false }
+        }
+        // Two meshes are tested exactly and never come here.
+        (BodyRef::Mesh(_), BodyRef::Mesh(_)) => PairPoints::default(),
+    };
+    (!points.a.is_empty() && !points.b.is_empty()).then_some(points)
+}
+
+/// No point of a pair that [`gather`] found empty is more probable than this.
+pub(crate) fn bound_left_out() -> f64 {
+    normal::upper_tail(MARGIN_DEVIATIONS)
+}
+
+fn cloud_points(
+    cloud: &Cloud,
+    leaf: NodeId,
+    a_from_cloud: &Pose,
+    stats: &mut Stats,
+) -> Vec<PairPoint> {
+    let (points, computed) = cloud.leaf(leaf);
+    stats.leaves_prepared += usize::from(computed);
+    points
+        .iter()
+        .map(|p: &LeafPoint| PairPoint {
+            index: Some(p.index),
+            point: p.point.transformed(a_from_cloud),
+            spacing: p.spacing,
+        })
+        .collect()
+}
+
+/// Samples the triangles of a mesh leaf where they come near points of a cloud, as densely.
+fn mesh_points(mesh: &Mesh, leaf: NodeId, near: &[PairPoint], a_from_mesh: &Pose) -> Vec<PairPoint> {
+    let Some(region) = region_around(near, &a_from_mesh.inverse()) else { return Vec::new() };
+    let indices = mesh.tree().leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
+    let triangles = indices.iter().map(|&t| mesh.corners(t as usize));
+    sample_region(triangles, &region)
+        .iter()
+        .map(|p| PairPoint {
+            index: None,
+            point: UncertainPoint::exact(a_from_mesh.transform_point(p)),
+            spacing: region.spacing,
+        })
+        .collect()
+}
+
+fn region_around(near: &[PairPoint], mesh_from_a: &Pose) -> Option<SampleRegion> {
+    let first = near.first()?.point.mean;
+    let (low, high) = near.iter().fold((first, first), |(low, high), p| {
+        (low.inf(&p.point.mean), high.sup(&p.point.mean))
+    });
+    let center: Point3 = nalgebra::center(&low, &high);
+    let reach = near.iter().map(|p| (p.point.mean - center).norm()).fold(0.0, f64::max);
+    let std = near.iter().map(|p| p.point.covariance.std_bound()).fold(0.0, f64::max);
+    let mut spacings: Vec<f64> = near.iter().map(|p| p.spacing).collect();
+    spacings.sort_by(f64::total_cmp);
+    let median = spacings[spacings.len() / 2];
+    // A single point, or equal ones, have no spacing: their uncertainty sets the scale.
+    let spacing = if median > 0.0 { median } else { std.max(1e-3 * center.coords.norm()) };
+    Some(SampleRegion {
+        center: mesh_from_a.transform_point(&center),
+        radius: reach + (MARGIN_SPACINGS * spacing).max(MARGIN_DEVIATIONS * std),
+        spacing: spacing.max(f64::MIN_POSITIVE),
+    })
+}

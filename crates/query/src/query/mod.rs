@@ -1,0 +1,14 @@
+//! Queries: settings, the ladder for a leaf pair, and what becomes of its answer.
+
+mod classify;
+mod contacts;
+mod evidence;
+mod leaf_pair;
+mod pool;
+mod run;
+mod settings;
+mod surface;
+mod unseen;
+
+pub use run::Query;
+pub use settings::{Mode, Pooling, QuerySettings};

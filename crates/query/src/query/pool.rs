@@ -1,0 +1,92 @@
+//! From point probabilities to the probability of a pair of clouds (section 4.4 of the paper).
+
+use cloudtouch_geom::Point3;
+
+/// Which body a point belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Side {
+    A,
+    B,
+}
+
+/// The probability of one point, by the surface that separates its leaf pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PointProbability {
+    pub side: Side,
+    /// Index in the prepared cloud; `None` for a point of a mesh.
+    pub index: Option<u32>,
+    /// In the local frame of A.
+    pub position: Point3,
+    pub probability: f64,
+    /// Points nearer than this to each other tell the same story, m.
+    pub correlation_length: f64,
+}
+
+/// Points below this share of the largest probability add nothing but noise.
+const SHARE_OF_MAX: f64 = 0.8;
+
+/// The largest probability; 0 without points.
+pub(crate) fn max(points: &[PointProbability]) -> f64 {
+    points.iter().map(|p| p.probability).fold(0.0, f64::max)
+}
+
+/// 1 − Π(1 − P) over points with P ≥ 0.8·max, thinned so that no two are closer than their
+/// correlation length: neighbours on one surface are not independent witnesses, and over all
+/// points the product goes to 0 however small each P is.
+pub(crate) fn noisy_or(points: &[PointProbability]) -> f64 {
+    let floor = SHARE_OF_MAX * max(points);
+    if floor == 0.0 {
+        return 0.0;
+    }
+    let mut likely: Vec<&PointProbability> =
+        points.iter().filter(|p| p.probability >= floor).collect();
+    likely.sort_by(|p, q| {
+        let by_place = |p: &PointProbability| (p.side, p.index);
+        q.probability.total_cmp(&p.probability).then(by_place(p).cmp(&by_place(q)))
+    });
+    let mut witnesses: Vec<&PointProbability> = Vec::new();
+    let mut all_free = 1.0;
+    for point in likely {
+        let is_new = witnesses.iter().all(|w| {
+            (w.position - point.position).norm() >= w.correlation_length.max(point.correlation_length)
+        });
+        if is_new {
+            witnesses.push(point);
+            all_free *= 1.0 - point.probability;
+        }
+    }
+    1.0 - all_free
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(x: f64, probability: f64) -> PointProbability {
+        PointProbability {
+            side: Side::A,
+            index: None,
+            position: Point3::new(x, 0.0, 0.0),
+            probability,
+            correlation_length: 0.1,
+        }
+    }
+
+    #[test]
+    fn neighbours_count_once_and_distant_points_add_up() {
+        assert_eq!(noisy_or(&[]), 0.0);
+        let together = noisy_or(&[point(0.0, 0.5), point(0.01, 0.5), point(0.02, 0.45)]);
+        assert_eq!(together, 0.5);
+        let apart = noisy_or(&[point(0.0, 0.5), point(1.0, 0.5)]);
+        assert_eq!(apart, 0.75);
+        assert_eq!(max(&[point(0.0, 0.2), point(1.0, 0.5)]), 0.5);
+    }
+
+    #[test]
+    fn unlikely_points_do_not_pile_up_to_certainty() {
+        // The product over all points would be 1 − 0.99¹⁰⁰⁰ ≈ 1.
+        let mut points: Vec<_> = (0..1000).map(|i| point(f64::from(i), 0.01)).collect();
+        points.push(point(-5.0, 0.3));
+        assert_eq!(noisy_or(&points), 0.3);
+    }
+}

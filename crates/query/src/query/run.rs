@@ -1,0 +1,290 @@
+//! One query, from two prepared bodies and a pose to a report.
+
+use std::time::Instant;
+
+use cloudtouch_bvh::{Flow, TraversalSettings, traverse};
+use cloudtouch_geom::Pose;
+
+use crate::body::BodyRef;
+use crate::cloud::Cloud;
+use crate::error::{QueryError, SettingsError};
+use crate::mesh::{ExactPair, InsidePoint, Mesh, exact_pair, points_inside};
+use crate::report::{Clearance, Contact, Report, Stats, Verdict};
+
+use super::classify::{PairAnswer, PairPoint, PairPoints, classify};
+use super::contacts::contact_of;
+use super::evidence::Evidence;
+use super::leaf_pair::{self, gather};
+use super::pool::{self, PointProbability, Side};
+use super::settings::{Pooling, QuerySettings};
+use super::unseen::is_hidden;
+
+/// A checked set of settings that answers queries; cheap to copy, shared by threads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Query {
+    settings: QuerySettings,
+    traversal: TraversalSettings,
+}
+
+impl Query {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// Names the setting that is out of range, and its value.
+    pub fn new(settings: QuerySettings) -> Result<Self, SettingsError> {
+        settings.check()?;
+        let traversal = TraversalSettings {
+            kind: settings.traversal,
+            cull_probability: settings.cull_probability,
+        };
+        Ok(Self { settings, traversal })
+    }
+
+    /// The settings, as checked.
+    pub fn settings(&self) -> &QuerySettings {
+        &self.settings
+    }
+
+    /// How likely it is that the surfaces behind two bodies collide.
+    ///
+    /// `a_from_b` maps the file frame of `b` into that of `a`; nothing is rebuilt for it. Contacts
+    /// are in the frame of `a`, with normals from `a` to `b`. The answer rests on the points
+    /// sampled: surface that no point stands for cannot be found in collision.
+    ///
+    /// # Errors
+    /// When the pose is not finite, or two meshes cannot be tested exactly. A pair that could not be decided is not an error
+    /// but a verdict, and never reads as free.
+    pub fn run<'a>(
+        &self,
+        a: impl Into<BodyRef<'a>>,
+        b: impl Into<BodyRef<'a>>,
+        a_from_b: &Pose,
+    ) -> Result<Report, QueryError> {
+        let start = Instant::now();
+        let (a, b) = (a.into(), b.into());
+        let span = tracing::debug_span!("query");
+        let _entered = span.enter();
+        let entries = a_from_b.isometry().to_homogeneous();
+        if let Some(&value) = entries.iter().find(|v| !v.is_finite()) {
+            return Err(QueryError::Pose { value });
+        }
+        let local = a.local_from(&b, a_from_b);
+        let mut evidence = Evidence::default();
+        if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
+            add_exact(&mut evidence, &exact_pair(a, b, &local)?);
+        } else {
+            self.gather_evidence(a, b, &local, &mut evidence)?;
+        }
+        let mut report = self.report(evidence, a);
+        let micros = |d: std::time::Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
+        report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
+        report.stats.query_us = micros(start.elapsed());
+        tracing::debug!(
+            probability = report.collision_probability,
+            leaf_pairs = report.stats.leaf_pairs,
+            kernel_solves = report.stats.kernel_solves,
+            "query"
+        );
+        Ok(report)
+    }
+
+    fn gather_evidence(
+        &self,
+        a: BodyRef<'_>,
+        b: BodyRef<'_>,
+        a_from_b: &Pose,
+        evidence: &mut Evidence,
+    ) -> Result<(), QueryError> {
+        let b_from_a = a_from_b.inverse();
+        match (a, b) {
+            (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
+                self.add_inside(cloud, mesh, Side::A, &b_from_a, &Pose::identity(), evidence);
+            }
+            (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
+                self.add_inside(cloud, mesh, Side::B, a_from_b, a_from_b, evidence);
+            }
+            _ => {}
+        }
+        if evidence.largest() <= self.settings.stop_above {
+            self.traverse_leaf_pairs(a, b, a_from_b, evidence)?;
+        }
+        if evidence.largest() <= self.settings.accept {
+            let hidden = match (a, b) {
+                (BodyRef::Cloud(a), b) if is_hidden(a, b, a_from_b) => true,
+                (a, BodyRef::Cloud(b)) => is_hidden(b, a, &b_from_a),
+                _ => false,
+            };
+            if hidden {
+                evidence.stats.undecided += 1;
+                evidence.widen(1.0);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the points of `cloud` that lie deep in `mesh`, which leaf pairs do not see.
+    fn add_inside(
+        &self,
+        cloud: &Cloud,
+        mesh: &Mesh,
+        side: Side,
+        mesh_from_cloud: &Pose,
+        a_from_cloud: &Pose,
+        evidence: &mut Evidence,
+    ) {
+        if !mesh.is_watertight() {
+            return;
+        }
+        let inside = points_inside(cloud, mesh, mesh_from_cloud, self.settings.stop_above);
+        evidence.stats.nodes_visited += inside.nodes_visited;
+        evidence.stats.leaves_prepared += inside.leaves_prepared;
+        evidence.widen(inside.culled_bound);
+        for point in &inside.points {
+            evidence.add_point(PointProbability {
+                side,
+                index: Some(point.index),
+                position: a_from_cloud.transform_point(&point.position),
+                probability: point.probability,
+                correlation_length: CORRELATION_SPACINGS * point.spacing,
+            });
+            evidence.add_clearance(Clearance { mean: -point.depth, std: point.std });
+            evidence.add_contact(inside_contact(point, side, a_from_cloud));
+        }
+    }
+
+    fn traverse_leaf_pairs(
+        &self,
+        a: BodyRef<'_>,
+        b: BodyRef<'_>,
+        a_from_b: &Pose,
+        evidence: &mut Evidence,
+    ) -> Result<(), QueryError> {
+        let settings = &self.settings;
+        let outcome =
+            traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
+                let stats = &mut evidence.stats;
+                let Some(points) = gather((a, pair.a), (b, pair.b), a_from_b, stats)
+                else {
+                    evidence.widen(leaf_pair::bound_left_out());
+                    return Flow::Continue;
+                };
+                stats.leaf_pairs += 1;
+                let answer = classify(&points, settings, stats);
+                add_pair(&points, &answer, evidence);
+                if evidence.largest() > settings.stop_above { Flow::Stop } else { Flow::Continue }
+            })?;
+        evidence.stats.nodes_visited += outcome.nodes_visited;
+        evidence.widen(outcome.culled_bound.max(outcome.pending_bound));
+        Ok(())
+    }
+
+    fn report(&self, mut evidence: Evidence, a: BodyRef<'_>) -> Report {
+        let points = evidence.merge_points();
+        let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points));
+        let collision_probability = match self.settings.pooling {
+            Pooling::Max => max_probability,
+            Pooling::NoisyOr => noisy_or_probability,
+        };
+        let lower = collision_probability;
+        let upper = collision_probability.max(evidence.bound_of_rest());
+        let mut contacts = evidence.top_contacts(self.settings.max_contacts);
+        for contact in &mut contacts {
+            contact.point += a.origin();
+        }
+        let stats: Stats = evidence.stats;
+        Report {
+            collision_probability,
+            bounds: [lower, upper],
+            verdict: self.verdict(collision_probability, stats.undecided),
+            clearance_m: evidence.clearance(),
+            contacts,
+            stats,
+            seed: self.settings.seed,
+            mode: self.settings.mode,
+            max_probability,
+            noisy_or_probability,
+            point_probabilities: evidence.point_probabilities(),
+        }
+    }
+
+    fn verdict(&self, probability: f64, undecided: usize) -> Verdict {
+        if probability > self.settings.accept {
+            Verdict::InCollision
+        } else if undecided > 0 {
+            Verdict::Undecided
+        } else if probability < self.settings.reject {
+            Verdict::Free
+        } else {
+            // NaN would end here too, and not at free.
+            Verdict::InContact
+        }
+    }
+}
+
+/// Points nearer than this many spacings share the samples their position was estimated from.
+const CORRELATION_SPACINGS: f64 = 3.0;
+
+fn add_pair(points: &PairPoints, answer: &PairAnswer, evidence: &mut Evidence) {
+    match answer {
+        PairAnswer::Separated { a, b, .. } => {
+            let mut add_side = |side: Side, points: &[PairPoint], probabilities: &[f64]| {
+                for (point, &probability) in points.iter().zip(probabilities) {
+                    evidence.add_point(PointProbability {
+                        side,
+                        index: point.index,
+                        position: point.point.mean,
+                        probability,
+                        correlation_length: CORRELATION_SPACINGS * point.spacing,
+                    });
+                }
+            };
+            add_side(Side::A, &points.a, a);
+            add_side(Side::B, &points.b, b);
+            if let Some((contact, clearance)) = contact_of(points, answer) {
+                evidence.add_clearance(clearance);
+                if contact.probability >= crate::CONTACT_FLOOR {
+                    evidence.add_contact(contact);
+                }
+            }
+        }
+        PairAnswer::Indistinct => {
+            for (side, points) in [(Side::A, &points.a), (Side::B, &points.b)] {
+                for point in points {
+                    evidence.add_point(PointProbability {
+                        side,
+                        index: point.index,
+                        position: point.point.mean,
+                        probability: 0.5,
+                        correlation_length: f64::INFINITY,
+                    });
+                }
+            }
+            evidence.widen(1.0);
+        }
+        PairAnswer::Undecided => {
+            evidence.stats.undecided += 1;
+            evidence.widen(1.0);
+        }
+    }
+}
+
+fn inside_contact(point: &InsidePoint, cloud_side: Side, a_from_cloud: &Pose) -> Contact {
+    // Out of the mesh is towards the cloud's body; the normal runs from A to B.
+    let outward = a_from_cloud.transform_vector(&point.outward);
+    Contact {
+        point: a_from_cloud.transform_point(&point.surface_point),
+        normal_a_to_b: if cloud_side == Side::A { -outward } else { outward },
+        probability: point.probability,
+        clearance_m: -point.depth,
+    }
+}
+
+fn add_exact(evidence: &mut Evidence, pair: &ExactPair) {
+    evidence.stats.leaf_pairs = 1;
+    if pair.intersecting {
+        evidence.add_certain_collision();
+    }
+    if let Some((on_a, on_b)) = pair.nearest {
+        evidence.add_clearance(Clearance { mean: (on_b - on_a).norm(), std: 0.0 });
+    }
+}

@@ -1,0 +1,119 @@
+//! What a query is asked to do, checked once.
+
+use cloudtouch_bvh::Traversal;
+use serde::Serialize;
+
+use crate::error::SettingsError;
+
+/// Which of the two ways of estimating a probability is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mode {
+    /// Surface posteriors, certified traversal, and the most favourable of the separating
+    /// surfaces tried.
+    #[default]
+    Calibrated,
+    /// As printed in the paper: precisions added, stochastic traversal, the kernel classifier.
+    Paper,
+}
+
+/// How point probabilities become the probability of a pair of clouds (section 4.4).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Pooling {
+    /// The largest point probability.
+    #[default]
+    Max,
+    /// The chance that at least one of the likely, well separated points collides.
+    NoisyOr,
+}
+
+/// All settings of a query; [`Query::new`](crate::Query::new) checks them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QuerySettings {
+    /// How probabilities are estimated.
+    pub mode: Mode,
+    /// A: a pair with a higher probability is in collision; at least ½.
+    pub accept: f64,
+    /// B: a pair with a lower probability is free; at most ½.
+    pub reject: f64,
+    /// How point probabilities are pooled.
+    pub pooling: Pooling,
+    /// Kernel width γ for a leaf pair scaled to the unit box.
+    pub gamma: f64,
+    /// C: what a misclassified point costs, before balancing by class size.
+    pub penalty: f64,
+    /// How many times as much a misclassified mesh point costs: a mesh is trusted.
+    pub mesh_penalty_factor: f64,
+    /// r: radius of the uncertainty ellipsoids, in standard deviations (eq. 11, 12).
+    pub ellipsoid_radius: f64,
+    /// Relative gap at which a kernel problem counts as solved.
+    pub relative_gap: f64,
+    /// Which pairs of nodes are descended.
+    pub traversal: Traversal,
+    /// Pairs of boxes are culled when no point in them can be more probable than this.
+    pub cull_probability: f64,
+    /// The search ends when a point is this certain to collide; 1 never ends it early.
+    pub stop_above: f64,
+    /// How many contacts are reported at most.
+    pub max_contacts: usize,
+    /// Seed of the stochastic traversals.
+    pub seed: u64,
+}
+
+impl Default for QuerySettings {
+    fn default() -> Self {
+        Self::new(Mode::default())
+    }
+}
+
+impl QuerySettings {
+    /// The default settings of a mode.
+    pub fn new(mode: Mode) -> Self {
+        Self {
+            mode,
+            accept: 0.9,
+            reject: 0.1,
+            pooling: Pooling::Max,
+            gamma: 10.0,
+            penalty: 100.0,
+            mesh_penalty_factor: 10.0,
+            // κ = 0.84: an ellipsoid of one standard deviation.
+            ellipsoid_radius: 1.0,
+            relative_gap: 1e-3,
+            traversal: match mode {
+                Mode::Calibrated => Traversal::Certified,
+                Mode::Paper => Traversal::Paper,
+            },
+            cull_probability: 1e-6,
+            stop_above: 0.999,
+            max_contacts: 16,
+            seed: 0,
+        }
+    }
+
+    pub(super) fn check(&self) -> Result<(), SettingsError> {
+        let (accept, reject) = (self.accept, self.reject);
+        if !((0.0..=0.5).contains(&reject) && (0.5..=1.0).contains(&accept)) {
+            return Err(SettingsError::Thresholds { accept, reject });
+        }
+        for (name, value) in [
+            ("gamma", self.gamma),
+            ("penalty", self.penalty),
+            ("mesh_penalty_factor", self.mesh_penalty_factor),
+            ("ellipsoid_radius", self.ellipsoid_radius),
+            ("stop_above", self.stop_above),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(SettingsError::NotPositive { name, value });
+            }
+        }
+        for (name, value) in
+            [("relative_gap", self.relative_gap), ("cull_probability", self.cull_probability)]
+        {
+            if !(value > 0.0 && value < 1.0) {
+                return Err(SettingsError::NotAFraction { name, value });
+            }
+        }
+        Ok(())
+    }
+}

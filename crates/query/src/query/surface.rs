@@ -1,0 +1,60 @@
+//! A surface that separates the points of a leaf pair: positive on the side of A.
+
+use cloudtouch_geom::{Point3, UncertainPoint, Vector3, normal};
+use cloudtouch_svm::{Class, Classifier, Separation};
+
+/// A separating surface in the local frame of A, metres.
+#[derive(Debug)]
+pub(crate) enum Surface {
+    /// A plane.
+    Plane(Separation),
+    /// f(x) = 0 of a kernel classifier.
+    Kernel(Classifier),
+}
+
+impl Surface {
+    /// Value and gradient (per metre) at a point; the value is positive on the side of A.
+    pub(crate) fn value_and_gradient(&self, point: &Point3) -> (f64, Vector3) {
+        match self {
+            Self::Plane(plane) => (plane.signed_distance(point), -plane.normal),
+            Self::Kernel(classifier) => classifier.value_and_gradient(point),
+        }
+    }
+
+    /// Probability that a point lies on the wrong side (eq. 16); `None` when it is not a number.
+    pub(crate) fn probability(&self, point: &UncertainPoint, class: Class) -> Option<f64> {
+        match self {
+            Self::Plane(plane) => {
+                let inside = class.sign() * plane.signed_distance(&point.mean);
+                let std = point.covariance.std_along(&plane.normal);
+                let probability = normal::below_zero(inside, std);
+                probability.is_finite().then_some(probability)
+            }
+            Self::Kernel(classifier) => classifier.probability(point, class),
+        }
+    }
+
+    /// Moves a point onto the surface along the gradient; `None` when that does not succeed within
+    /// `reach` metres (a flat spot of f, or f = 0 is far away).
+    pub(crate) fn project(&self, point: &Point3, reach: f64) -> Option<(Point3, Vector3)> {
+        /// Newton steps: one does for a plane, curved surfaces need a few more.
+        const STEPS: usize = 8;
+        let mut foot = *point;
+        for _ in 0..STEPS {
+            let (value, gradient) = self.value_and_gradient(&foot);
+            let slope = gradient.norm();
+            let distance = value / slope;
+            if !distance.is_finite() {
+                return None;
+            }
+            if distance.abs() <= 1e-3 * reach {
+                return Some((foot, -gradient / slope));
+            }
+            foot -= gradient * (distance / slope);
+            if (foot - point).norm() > reach {
+                return None;
+            }
+        }
+        None
+    }
+}

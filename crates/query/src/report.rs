@@ -1,0 +1,123 @@
+//! What a query answers.
+
+use cloudtouch_geom::{Point3, Vector3};
+use serde::Serialize;
+
+use crate::query::Mode;
+
+/// The answer to one query. Serialises to the JSON object of the command-line tool.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Probability that the two underlying surfaces collide.
+    pub collision_probability: f64,
+    /// Lower and upper bound on that probability under the same model: what was culled, left out
+    /// by an early stop, or not decided widens them. [`Self::collision_probability`] lies within.
+    pub bounds: [f64; 2],
+    /// The decision at the thresholds of the query.
+    pub verdict: Verdict,
+    /// Gap between the surfaces where they come closest among the parts looked at; `None` when
+    /// everything was culled before a gap was computed.
+    pub clearance_m: Option<Clearance>,
+    /// Where the surfaces touch or may touch, most probable first.
+    pub contacts: Vec<Contact>,
+    /// What the answer cost.
+    pub stats: Stats,
+    /// Seed of the stochastic traversals.
+    pub seed: u64,
+    /// How probabilities were estimated.
+    pub mode: Mode,
+    /// The largest probability of any point (section 4.4 of the paper).
+    #[serde(skip)]
+    pub max_probability: f64,
+    /// The probability that at least one of the likely, well separated points collides
+    /// (section 4.4, noisy-or).
+    #[serde(skip)]
+    pub noisy_or_probability: f64,
+    /// Points with a probability worth telling, for pictures and planners.
+    #[serde(skip)]
+    pub point_probabilities: PointProbabilities,
+}
+
+/// The decision a query takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The probability is below the reject threshold.
+    Free,
+    /// The probability lies between the thresholds.
+    InContact,
+    /// The probability is above the accept threshold.
+    InCollision,
+    /// Some part could not be decided, and the rest does not settle the matter.
+    Undecided,
+}
+
+/// A gap between two surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Clearance {
+    /// Expected gap, m; negative in overlap.
+    pub mean: f64,
+    /// Standard deviation, m.
+    pub std: f64,
+}
+
+/// A place where the surfaces touch or may touch, in the frame of A.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Contact {
+    /// A point on the separating surface, m.
+    #[serde(serialize_with = "as_array")]
+    pub point: Point3,
+    /// Unit normal of the separating surface there, pointing from A to B.
+    #[serde(serialize_with = "vector_as_array")]
+    pub normal_a_to_b: Vector3,
+    /// Probability of the point that made this contact.
+    pub probability: f64,
+    /// Gap along the normal, m; negative in overlap.
+    pub clearance_m: f64,
+}
+
+fn as_array<S: serde::Serializer>(point: &Point3, serializer: S) -> Result<S::Ok, S::Error> {
+    [point.x, point.y, point.z].serialize(serializer)
+}
+
+fn vector_as_array<S: serde::Serializer>(v: &Vector3, serializer: S) -> Result<S::Ok, S::Error> {
+    [v.x, v.y, v.z].serialize(serializer)
+}
+
+/// What a query did: the cost that follows from how hard the pair was.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Stats {
+    /// Pairs of tree nodes tested, and nodes tested against a mesh.
+    pub nodes_visited: usize,
+    /// Pairs of leaves whose points were looked at.
+    pub leaf_pairs: usize,
+    /// Leaf pairs that a plane separates so well that no kernel problem was solved.
+    pub linear_certificates: usize,
+    /// Kernel problems solved.
+    pub kernel_solves: usize,
+    /// Kernel problems handed to the fallback solver.
+    pub fallbacks: usize,
+    /// Leaf pairs without an answer.
+    pub undecided: usize,
+    /// Largest relative gap between primal and dual value of any kernel problem.
+    pub max_relative_gap: f64,
+    /// Time to prepare the two bodies, once for all queries, µs.
+    pub prepare_us: u64,
+    /// Time of this query, µs.
+    pub query_us: u64,
+    /// Leaves whose noise model was computed for the first time by this query.
+    #[serde(skip)]
+    pub leaves_prepared: usize,
+}
+
+/// Probabilities of single points, as (index into the prepared cloud, probability) in index order.
+///
+/// Points that are not listed were culled or are below [`POINT_FLOOR`](crate::POINT_FLOOR). A body
+/// that is a mesh has no entries.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PointProbabilities {
+    /// Points of A.
+    pub a: Vec<(usize, f64)>,
+    /// Points of B.
+    pub b: Vec<(usize, f64)>,
+}

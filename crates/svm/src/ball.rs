@@ -1,0 +1,78 @@
+//! The ball step: the best cone vector of one point while all multipliers stay.
+
+use cloudtouch_geom::Vector3;
+
+/// Minimises ½ pᵀMp − h·p over |p| ≤ `radius`, with M = diag(`m`) and m descending and ≥ 0.
+///
+/// Axes with m = 0 must have h = 0 (a direction without variance has no gradient either) and get 0.
+/// Isotropic M takes the closed form, others Newton's method on 1/`radius` − 1/|p(μ)| = 0, which
+/// climbs monotonically from the lower bound |h|/`radius` − m₁.
+pub(crate) fn ball_minimiser(m: &Vector3, h: &Vector3, radius: f64) -> Vector3 {
+    let length = h.norm();
+    if radius <= 0.0 || length == 0.0 || !length.is_finite() {
+        return Vector3::zeros();
+    }
+    let at = |mu: f64| Vector3::from_fn(|k, _| if h[k] == 0.0 { 0.0 } else { h[k] / (m[k] + mu) });
+    if m[0] - m[2] <= 1e-12 * m[0] {
+        return if length <= m[0] * radius { h / m[0] } else { h * (radius / length) };
+    }
+    let free = at(0.0);
+    if free.norm() <= radius {
+        return free;
+    }
+    let mut mu = (length / radius - m[0]).max(0.0);
+    for _ in 0..50 {
+        let p = at(mu);
+        let norm = p.norm();
+        if norm <= radius * (1.0 + 1e-14) {
+            break;
+        }
+        let bent: f64 =
+            (0..3).map(|k| if p[k] == 0.0 { 0.0 } else { p[k] * p[k] / (m[k] + mu) }).sum();
+        let step = norm * norm / bent * (norm / radius - 1.0);
+        if !step.is_finite() || mu + step == mu {
+            break;
+        }
+        mu += step;
+    }
+    // The last rounding: never leave the ball.
+    crate::state::clip_to_ball(&at(mu), radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn satisfies_the_optimality_conditions(
+            m in prop::array::uniform3(-6.0..3.0_f64),
+            h in prop::array::uniform3(-1.0..1.0_f64),
+            radius in -4.0..4.0_f64,
+            shape in 0..4,
+        ) {
+            let mut m = m.map(|e| 10_f64.powf(e));
+            m.sort_by(|a, b| b.total_cmp(a));
+            let (mut m, mut h, radius) = (Vector3::from(m), Vector3::from(h), 10_f64.powf(radius));
+            match shape {
+                1 => m = Vector3::repeat(m[0]),
+                2 => { m[2] = 0.0; h[2] = 0.0; }
+                3 => { m[1] = 0.0; h[1] = 0.0; m[2] = 0.0; h[2] = 0.0; }
+                _ => {}
+            }
+            let p = ball_minimiser(&m, &h, radius);
+            prop_assert!(p.norm() <= radius * (1.0 + 1e-12));
+            // h − Mp must be a non-negative multiple of p, and zero inside the ball.
+            let residual = h - m.component_mul(&p);
+            if p.norm() < radius * (1.0 - 1e-9) {
+                prop_assert!(residual.norm() <= 1e-9 * h.norm());
+            } else {
+                let multiplier = residual.dot(&p) / p.norm_squared();
+                prop_assert!(multiplier >= -1e-9 * m[0]);
+                prop_assert!((residual - p * multiplier).norm() <= 1e-8 * h.norm());
+            }
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Hard inputs: no panic, no NaN, bounded work, and an honest ending.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+mod support;
+
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint};
+use cloudtouch_svm::{Class, Classifier, Kernel, Problem, Sample, Settings, Solution, Status};
+use support::Stream;
+
+fn sample(at: [f64; 3], class: Class, std: f64, penalty: f64) -> Sample {
+    let covariance = Covariance::isotropic(std * std);
+    Sample {
+        point: UncertainPoint { mean: Point3::from(at), covariance },
+        class,
+        radius: 1.0,
+        penalty,
+    }
+}
+
+/// Solves with both kernels and the default settings; checks what must hold for every input.
+fn check(samples: &[Sample], gamma: f64) -> Vec<Solution> {
+    [Kernel::Linear, Kernel::Gaussian { gamma }]
+        .into_iter()
+        .map(|kernel| {
+            let problem = Problem::try_new(samples, kernel).unwrap();
+            let solution = problem.solve(&Settings::default());
+            assert_ne!(solution.status, Status::NotFinite, "{kernel:?}");
+            assert!(solution.alpha.iter().all(|a| a.is_finite()));
+            assert!(solution.v.iter().flat_map(|v| v.iter()).all(|v| v.is_finite()));
+            for value in [solution.bias, solution.primal, solution.dual, solution.relative_gap] {
+                assert!(value.is_finite());
+            }
+            let n = samples.len();
+            assert!(solution.effort.smo_steps <= n * n / 2 + 50 + 20 * n);
+            assert!(solution.dual <= solution.primal * (1.0 + 1e-9));
+            if matches!(solution.status, Status::Converged | Status::Collapsed) {
+                assert!(solution.relative_gap <= 1e-3);
+            }
+            if solution.status == Status::Collapsed {
+                assert!(Classifier::try_new(&problem, &solution).is_err());
+            }
+            solution
+        })
+        .collect()
+}
+
+fn grid(
+    count: usize,
+    place: impl Fn(f64) -> [f64; 3],
+    class: Class,
+    std: f64,
+    penalty: f64,
+) -> Vec<Sample> {
+    (0..count).map(|k| sample(place(k as f64 / count as f64), class, std, penalty)).collect()
+}
+
+fn all_converged(solutions: &[Solution]) -> bool {
+    solutions.iter().all(|s| s.status == Status::Converged)
+}
+
+#[test]
+fn identical_clouds_collapse() {
+    let mut stream = Stream::new(1);
+    for std in [0.0, 0.01, 1.0] {
+        for penalty in [1e-2, 100.0, 1e6] {
+            let a: Vec<Sample> = (0..12)
+                .map(|_| {
+                    let at = [stream.unit(), stream.unit(), stream.unit()];
+                    sample(at, Class::A, std, penalty)
+                })
+                .collect();
+            let b = a.iter().map(|s| Sample { class: Class::B, ..*s });
+            let both: Vec<Sample> = a.iter().copied().chain(b).collect();
+            for solution in check(&both, 10.0) {
+                assert_eq!(solution.status, Status::Collapsed, "std {std} penalty {penalty}");
+            }
+        }
+    }
+}
+
+#[test]
+fn ellipsoids_larger_than_the_scene_leave_no_plane() {
+    let mut both = grid(10, |t| [t, 0.0, 0.1], Class::A, 10.0, 100.0);
+    both.extend(grid(10, |t| [t, 0.0, 0.0], Class::B, 10.0, 100.0));
+    // The Gaussian kernel can still bend f flat at every point, so only the plane must collapse.
+    assert_eq!(check(&both, 10.0)[0].status, Status::Collapsed);
+}
+
+#[test]
+fn one_point_a_side_and_one_against_many() {
+    let pair =
+        [sample([0.0; 3], Class::A, 0.01, 100.0), sample([0.5, 0.0, 0.0], Class::B, 0.01, 100.0)];
+    assert!(all_converged(&check(&pair, 5.0)));
+    let mut many = grid(3000, |t| [t, (37.0 * t).sin(), 0.0], Class::B, 0.001, 10.0);
+    many.push(sample([0.5, 0.0, 0.4], Class::A, 0.01, 1000.0));
+    let problem = Problem::try_new(&many, Kernel::Gaussian { gamma: 5.0 }).unwrap();
+    let solution = problem.solve(&Settings::default().max_steps(2000));
+    assert_eq!(solution.status, Status::Converged);
+    assert_eq!(problem.solve_with_clarabel(&Settings::default()).status, Status::TooLarge);
+}
+
+#[test]
+fn equal_points_collinear_and_coplanar_clouds() {
+    let same = |class, z| vec![sample([0.1, 0.2, z], class, 0.01, 100.0); 7];
+    assert!(all_converged(&check(&[same(Class::A, 0.3), same(Class::B, 0.0)].concat(), 5.0)));
+    for solution in check(&[same(Class::A, 0.0), same(Class::B, 0.0)].concat(), 5.0) {
+        assert_eq!(solution.status, Status::Collapsed);
+    }
+    let line = |class, from: f64| grid(9, move |t| [from + 0.4 * t, 0.0, 0.0], class, 0.001, 100.0);
+    assert!(all_converged(&check(&[line(Class::A, 0.0), line(Class::B, 0.6)].concat(), 5.0)));
+    // Interleaved on one line and in one plane: only that it ends is asked.
+    check(&[line(Class::A, 0.0), line(Class::B, 0.02)].concat(), 5.0);
+    let plane = |class, shift: f64| {
+        grid(25, move |t| [(25.0 * t % 5.0) / 5.0 + shift, t, 0.0], class, 0.01, 100.0)
+    };
+    check(&[plane(Class::A, 0.0), plane(Class::B, 0.1)].concat(), 5.0);
+}
+
+#[test]
+fn a_cloud_that_is_part_of_the_other() {
+    let whole = grid(20, |t| [t, 0.3 * t * t, 0.0], Class::A, 0.01, 100.0);
+    let part = whole.iter().take(5).map(|s| Sample { class: Class::B, ..*s });
+    check(&whole.iter().copied().chain(part).collect::<Vec<_>>(), 10.0);
+}
+
+#[test]
+fn extreme_penalties_and_widths() {
+    let mut stream = Stream::new(3);
+    for penalty in [1e-3, 1e3, 1e9] {
+        for gamma in [1e-6, 1.0, 1e6] {
+            for gap in [-0.1, 0.2] {
+                let cloud = |class: Class, z: f64, stream: &mut Stream| -> Vec<Sample> {
+                    (0..12)
+                        .map(|_| {
+                            let at = [stream.unit(), stream.unit(), z + 0.05 * stream.unit()];
+                            sample(at, class, 0.02, penalty)
+                        })
+                        .collect()
+                };
+                let a = cloud(Class::A, gap, &mut stream);
+                let b = cloud(Class::B, 0.0, &mut stream);
+                check(&[a, b].concat(), gamma);
+            }
+        }
+    }
+}
+
+#[test]
+fn singular_and_badly_conditioned_covariances() {
+    let shapes = [
+        Covariance::diagonal([1e-2, 0.0, 0.0]),
+        Covariance::diagonal([1e-2, 1e-14, 1e-14]),
+        Covariance::diagonal([1e-2, 1e-2, 0.0]),
+        Covariance::diagonal([1e-300, 0.0, 0.0]),
+    ];
+    for covariance in shapes {
+        let with = |s: Sample| Sample { point: UncertainPoint { covariance, ..s.point }, ..s };
+        let mut both = grid(10, |t| [t, 0.1 * t, 0.2], Class::A, 0.0, 100.0);
+        both.extend(grid(10, |t| [t, -0.1 * t, 0.0], Class::B, 0.0, 100.0));
+        let both: Vec<Sample> = both.into_iter().map(with).collect();
+        assert!(all_converged(&check(&both, 10.0)), "{covariance:?}");
+    }
+}
+
+#[test]
+fn numbers_out_of_range_never_converge() {
+    let huge =
+        [sample([1e200; 3], Class::A, 0.0, 1.0), sample([-1e200, 0.0, 0.0], Class::B, 0.0, 1.0)];
+    let problem = Problem::try_new(&huge, Kernel::Linear).unwrap();
+    let solution = problem.solve(&Settings::default());
+    assert!(!matches!(solution.status, Status::Converged), "{:?}", solution.status);
+    assert!(Classifier::try_new(&problem, &solution).is_err());
+}

@@ -1,0 +1,121 @@
+//! The slips of the first released implementation of the method, one test each.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+mod support;
+
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal};
+use cloudtouch_svm::{
+    Class, Classifier, ClassifierError, Kernel, Problem, Sample, Settings, Status, UnitBox,
+};
+use support::{Difficulty, cell};
+
+fn sample(x: f64, y: f64, class: Class, covariance: Covariance, radius: f64) -> Sample {
+    let point = UncertainPoint { mean: Point3::new(x, y, 0.0), covariance };
+    Sample { point, class, radius, penalty: 1e4 }
+}
+
+fn tight() -> Settings {
+    Settings::with_relative_gap(1e-8).unwrap()
+}
+
+fn classifier(samples: &[Sample], kernel: Kernel) -> Classifier {
+    let problem = Problem::try_new(samples, kernel).unwrap();
+    let solution = problem.solve(&tight());
+    assert_eq!(solution.status, Status::Converged);
+    Classifier::try_new(&problem, &solution).unwrap()
+}
+
+#[test]
+fn a_plain_svm_was_trained_instead_of_a_robust_one() {
+    // The ellipsoid of A ends at x = −0.3: the robust surface lies half-way from there to B.
+    let wide = Covariance::isotropic(0.01);
+    for (radius, middle) in [(0.0, 0.0), (1.0, 0.05), (2.0, 0.1)] {
+        let samples = [
+            sample(-0.5, 0.0, Class::A, wide, radius),
+            sample(0.5, 0.0, Class::B, Covariance::zero(), radius),
+        ];
+        let f = classifier(&samples, Kernel::Linear);
+        let value = f.value(&Point3::new(middle, 0.0, 0.0));
+        assert!(value.abs() < 1e-4, "radius {radius}: f = {value} at {middle}");
+    }
+    let (samples, gamma) = cell(Difficulty::Contact, 15, 3);
+    let plain: Vec<Sample> = samples.iter().map(|s| Sample { radius: 0.0, ..*s }).collect();
+    let solve = |samples: &[Sample]| {
+        Problem::try_new(samples, Kernel::Gaussian { gamma }).unwrap().solve(&tight())
+    };
+    assert!(solve(&samples).primal > 1.01 * solve(&plain).primal);
+    assert!(solve(&samples).v.iter().any(|v| v.norm() > 1e-3));
+}
+
+#[test]
+fn covariances_were_left_unscaled_while_coordinates_were_scaled() {
+    let (samples, gamma) = cell(Difficulty::Easy, 15, 1);
+    let solve_in_box = |samples: &[Sample]| {
+        let unit_box = UnitBox::around(samples.iter().map(|s| &s.point)).unwrap();
+        let inside: Vec<Sample> = samples.iter().map(|s| unit_box.sample_inside(s)).collect();
+        classifier(&inside, Kernel::Gaussian { gamma }).outside(unit_box)
+    };
+    let reference = solve_in_box(&samples);
+    for scale in [1e-3, 250.0] {
+        let scaled: Vec<Sample> = samples
+            .iter()
+            .map(|s| {
+                let mean = Point3::from(s.point.mean.coords * scale);
+                let covariance = s.point.covariance.scaled(scale);
+                Sample { point: UncertainPoint { mean, covariance }, ..*s }
+            })
+            .collect();
+        let f = solve_in_box(&scaled);
+        for (small, large) in samples.iter().zip(&scaled) {
+            let p = reference.probability(&small.point, small.class).unwrap();
+            let q = f.probability(&large.point, large.class).unwrap();
+            assert!((p - q).abs() < 1e-5, "scale {scale}: {p} {q}");
+        }
+    }
+}
+
+#[test]
+fn the_maximum_over_partial_gradient_sums_was_taken() {
+    // Many terms of both signs: every partial sum is far from the whole.
+    let (samples, gamma) = cell(Difficulty::Contact, 25, 5);
+    let f = classifier(&samples, Kernel::Gaussian { gamma });
+    assert!(f.term_count() > 5);
+    for s in &samples {
+        let at = s.point.mean;
+        let (value, _) = f.value_and_gradient(&at);
+        let slope = Vector3::from_fn(|axis, _| {
+            let mut step = Vector3::zeros();
+            step[axis] = 1e-5;
+            (f.value(&(at + step)) - f.value(&(at - step))) / 2e-5
+        });
+        let std = (s.point.covariance.sqrt() * slope).norm();
+        let expected = normal::cdf(-s.class.sign() * value / std);
+        let got = f.probability(&s.point, s.class).unwrap();
+        assert!((got - expected).abs() < 1e-6, "{got} {expected}");
+    }
+}
+
+#[test]
+fn nan_ended_as_probability_zero() {
+    let (samples, gamma) = cell(Difficulty::Easy, 10, 2);
+    let f = classifier(&samples, Kernel::Gaussian { gamma });
+    let good = samples[0].point;
+    assert!(f.probability(&good, Class::A).is_some());
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mean = Point3::new(0.0, bad, 0.0);
+        assert_eq!(f.probability(&UncertainPoint { mean, ..good }, Class::A), None);
+        assert_eq!(f.probability(&UncertainPoint::exact(mean), Class::B), None);
+        let covariance = Covariance::isotropic(bad.abs()).sum(&Covariance::diagonal([bad; 3]));
+        if !covariance.is_finite() {
+            assert_eq!(f.probability(&UncertainPoint { covariance, ..good }, Class::A), None);
+        }
+    }
+    // A solve that has not come near the optimum gives no classifier at all.
+    let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
+    let unfinished = problem.solve(&tight().max_steps(1).fallback(false));
+    assert_eq!(unfinished.status, Status::StepLimit);
+    assert!(matches!(
+        Classifier::try_new(&problem, &unfinished),
+        Err(ClassifierError::Undetermined { status: Status::StepLimit, .. })
+    ));
+}

@@ -1,0 +1,98 @@
+//! What is true of two meshes: intersection, distance, inside tests, penetration depth.
+//!
+//! Fast answers come from parry in double precision; [`brute`] has slow ones of our own, against
+//! which the tests hold them.
+
+pub mod brute;
+mod contains;
+mod penetration;
+
+use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
+use parry3d_f64::{math::Vector, query, shape::TriMesh};
+
+/// A mesh prepared for exact questions; surfaces are what counts unless a name says solid.
+pub struct ExactMesh {
+    mesh: TriangleMesh,
+    shape: TriMesh,
+    components: Vec<Point3>,
+}
+
+impl ExactMesh {
+    /// Builds the search tree and finds the connected components.
+    pub fn new(mesh: &TriangleMesh) -> Self {
+        let vertices = mesh.vertices().iter().map(|p| parry_vector(&p.coords)).collect();
+        let shape = TriMesh::new(vertices, mesh.triangles().to_vec())
+            .expect("a triangle mesh has triangles");
+        Self { mesh: mesh.clone(), shape, components: one_vertex_per_component(mesh) }
+    }
+
+    /// The mesh it was made of.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    pub(crate) fn shape(&self) -> &TriMesh {
+        &self.shape
+    }
+
+    /// Whether the two surfaces have a point in common.
+    ///
+    /// `self_from_other` places the other mesh. One solid wholly inside another does not count:
+    /// see [`Self::solids_overlap`]. May go either way when they touch within about 1e-9 m.
+    pub fn intersects(&self, other: &Self, self_from_other: &Pose) -> bool {
+        let placed = glamx::DPose3::from(*self_from_other.isometry());
+        query::intersection_test(&glamx::DPose3::IDENTITY, &self.shape, &placed, &other.shape)
+            .expect("parry intersects triangle meshes")
+            .intersecting
+    }
+
+    /// The distance between the two surfaces, m; zero when they intersect.
+    pub fn distance(&self, other: &Self, self_from_other: &Pose) -> f64 {
+        if self.intersects(other, self_from_other) {
+            return 0.0;
+        }
+        let placed = glamx::DPose3::from(*self_from_other.isometry());
+        query::distance(&glamx::DPose3::IDENTITY, &self.shape, &placed, &other.shape)
+            .expect("parry measures triangle meshes")
+            .distance
+    }
+
+    /// Whether the two solids have a point in common: surfaces that intersect, or a component of
+    /// one inside the other. Both meshes must be closed for the latter.
+    pub fn solids_overlap(&self, other: &Self, self_from_other: &Pose) -> bool {
+        // Without a common surface point a component is inside as a whole or not at all.
+        let inside = |outer: &Self, inner: &Self, outer_from_inner: &Pose| {
+            inner.components.iter().any(|p| outer.contains(&outer_from_inner.transform_point(p)))
+        };
+        self.intersects(other, self_from_other)
+            || inside(self, other, self_from_other)
+            || inside(other, self, &self_from_other.inverse())
+    }
+}
+
+/// The bridge from nalgebra to parry.
+pub(crate) fn parry_vector(v: &Vector3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+/// The first vertex of every set of triangles joined by shared vertex indices.
+fn one_vertex_per_component(mesh: &TriangleMesh) -> Vec<Point3> {
+    let mut parent: Vec<usize> = (0..mesh.vertices().len()).collect();
+    fn root(parent: &mut [usize], mut i: usize) -> usize {
+        while parent[i] != i {
+            parent[i] = parent[parent[i]];
+            i = parent[i];
+        }
+        i
+    }
+    for t in mesh.triangles() {
+        for i in [t[1], t[2]] {
+            let (a, b) = (root(&mut parent, t[0] as usize), root(&mut parent, i as usize));
+            // The lower index stays the root.
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    let mut used = vec![false; parent.len()];
+    mesh.triangles().iter().flatten().for_each(|&i| used[i as usize] = true);
+    (0..parent.len()).filter(|&i| used[i] && parent[i] == i).map(|i| mesh.vertices()[i]).collect()
+}

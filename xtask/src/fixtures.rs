@@ -1,0 +1,313 @@
+//! `cargo xtask fixtures`: small generated scenes, the same bytes from the same seed.
+//!
+//! Coordinates are rounded to 0.1 mm and answers to 0.01 mm, so that the last bits in which
+//! platforms differ do not reach the files; answers hold for the files as rounded.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt::Write as _,
+    fs,
+    path::Path,
+};
+
+use anyhow::{Context, Result, bail};
+use cloudtouch_geom::{Point3, Pose, TriangleMesh, seed};
+use cloudtouch_testkit::{
+    exact::ExactMesh,
+    noise::{NoiseKind, add_noise},
+    poses::{LabelledPose, label, poses_near_contact},
+    scene,
+    surface::sample_surface,
+};
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+const SEED: u64 = 2011;
+const COMMAND: &str = "cargo xtask fixtures";
+/// Standard deviation of the clouds' noise, m; the cases state it as the sensor.
+const NOISE: f64 = 0.002;
+const SENSOR: &str = "iso:0.002";
+/// The signed distances wanted of the cases, m: from clearly free to deep.
+const WANTED: [f64; 12] =
+    [0.3, 0.2, 0.1, 0.05, 0.025, 0.01, -0.01, -0.025, -0.05, -0.07, -0.09, -0.12];
+
+/// File contents by path below fixtures/.
+type Files = BTreeMap<String, Vec<u8>>;
+
+/// Writes every file.
+pub(crate) fn write(root: &Path) -> Result<()> {
+    store(root, &generate()?)
+}
+
+/// Fails unless the stored files are the generated ones, bit for bit, and there are no others.
+pub(crate) fn check(root: &Path) -> Result<()> {
+    compare(root, &generate()?)
+}
+
+fn store(root: &Path, files: &Files) -> Result<()> {
+    for (path, bytes) in files {
+        let path = root.join("fixtures").join(path);
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder).with_context(|| format!("make {}", folder.display()))?;
+        }
+        fs::write(&path, bytes).with_context(|| format!("write {}", path.display()))?;
+        println!("{:>8} bytes  {}", bytes.len(), path.display());
+    }
+    Ok(())
+}
+
+fn compare(root: &Path, files: &Files) -> Result<()> {
+    let folder = root.join("fixtures");
+    let mut wrong = Vec::new();
+    for (path, bytes) in files {
+        match fs::read(folder.join(path)) {
+            Ok(stored) if stored == *bytes => {}
+            Ok(_) => wrong.push(format!("{path} differs")),
+            Err(error) => wrong.push(format!("{path}: {error}")),
+        }
+    }
+    let known: BTreeSet<_> = files.keys().map(String::as_str).chain(["README.md"]).collect();
+    for path in list(&folder, "")? {
+        if !known.contains(path.as_str()) {
+            wrong.push(format!("{path} is not made by this task"));
+        }
+    }
+    if wrong.is_empty() {
+        println!("fixtures: {} files as stored", files.len());
+        return Ok(());
+    }
+    bail!("fixtures/: {}; run `{COMMAND}` and commit the result", wrong.join("; "))
+}
+
+/// Paths of all files below a folder, relative to it, with slashes.
+fn list(folder: &Path, prefix: &str) -> Result<Vec<String>> {
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder).with_context(|| format!("list {}", folder.display()))? {
+        let entry = entry?;
+        let path = format!("{prefix}{}", entry.file_name().to_string_lossy());
+        if entry.file_type()?.is_dir() {
+            paths.extend(list(&entry.path(), &format!("{path}/"))?);
+        } else {
+            paths.push(path);
+        }
+    }
+    Ok(paths)
+}
+
+fn generate() -> Result<Files> {
+    let room = rounded_mesh(&scene::room())?;
+    let piano = rounded_mesh(&scene::piano())?;
+    let mut files = Files::new();
+    let mut add = |name: &str, bytes: Vec<u8>| files.insert(format!("piano-room/{name}"), bytes);
+    add("room.obj", obj("room", &room));
+    add("piano.obj", obj("piano", &piano));
+    // The outer faces of walls and floor are not in the cloud: no sensor in the room sees them.
+    let inside = |p: &Point3| p.x.abs() < 2.6 && p.y.abs() < 2.1 && p.z > -0.05;
+    add("room.pcd", pcd(&noisy(&room, 54_000, 1, inside)));
+    add("piano.pcd", pcd(&noisy(&piano, 9_000, 2, |_| true)));
+    add("cases.json", json(&cases(&room, &piano)?)?);
+    let manifest = Manifest::of(&files);
+    files.insert("manifest.json".into(), json(&manifest)?);
+    Ok(files)
+}
+
+/// Points of the surface that pass the test, with noise.
+fn noisy(
+    mesh: &TriangleMesh,
+    count: usize,
+    stream: u64,
+    keep: impl Fn(&Point3) -> bool,
+) -> Vec<Point3> {
+    let samples = sample_surface(mesh, count, seed::derive(SEED, stream, 0));
+    let kept: Vec<_> = samples.iter().map(|s| s.position).filter(keep).collect();
+    add_noise(&kept, NoiseKind::Gaussian, NOISE, seed::derive(SEED, stream, 1))
+}
+
+/// The case file of the tool, with the exact answers as further fields.
+#[derive(Serialize)]
+struct CaseFile {
+    format: u32,
+    length_unit: &'static str,
+    pose: &'static str,
+    signed_distance: &'static str,
+    cases: Vec<Case>,
+}
+
+#[derive(Serialize)]
+struct Case {
+    id: String,
+    scene: &'static str,
+    object: &'static str,
+    scene_sensor: &'static str,
+    object_sensor: &'static str,
+    pose: [[f64; 4]; 4],
+    scene_mesh: &'static str,
+    object_mesh: &'static str,
+    in_collision: bool,
+    signed_distance_m: f64,
+}
+
+/// For each distance wanted the nearest of many random poses that is not taken yet.
+fn cases(room: &TriangleMesh, piano: &TriangleMesh) -> Result<CaseFile> {
+    let (room, piano) = (ExactMesh::new(room), ExactMesh::new(piano));
+    let mut drawn = poses_near_contact(&room, &piano, 100, seed::derive(SEED, 3, 0));
+    let mut cases = Vec::new();
+    for (i, wanted) in WANTED.into_iter().enumerate() {
+        let off = |p: &LabelledPose| (p.signed_distance - wanted).abs();
+        drawn.sort_by(|p, q| off(q).total_cmp(&off(p)));
+        let nearest = drawn.pop().context("more cases are wanted than poses drawn")?;
+        cases.push(case(format!("piano-room-{:02}", i + 1), &room, &piano, &nearest)?);
+    }
+    Ok(CaseFile {
+        format: 1,
+        length_unit: "m",
+        pose: "4x4 row-major, maps object coordinates to scene coordinates",
+        signed_distance: "between the meshes: distance when free, in overlap minus an upper bound \
+                          on the penetration depth",
+        cases,
+    })
+}
+
+fn case(id: String, room: &ExactMesh, piano: &ExactMesh, drawn: &LabelledPose) -> Result<Case> {
+    let matrix = drawn.scene_from_object.isometry().to_homogeneous().map(|v| rounded(v, 1e9));
+    // What is true of the pose as it is in the file.
+    let truth = label(room, piano, &Pose::try_from_matrix(&matrix)?);
+    Ok(Case {
+        id,
+        scene: "room.pcd",
+        object: "piano.pcd",
+        scene_sensor: SENSOR,
+        object_sensor: SENSOR,
+        pose: std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)])),
+        scene_mesh: "room.obj",
+        object_mesh: "piano.obj",
+        in_collision: truth.in_collision,
+        signed_distance_m: rounded(truth.signed_distance, 1e5),
+    })
+}
+
+#[derive(Serialize)]
+struct Manifest {
+    format: u32,
+    command: &'static str,
+    seed: u64,
+    files: Vec<Listed>,
+}
+
+#[derive(Serialize)]
+struct Listed {
+    path: String,
+    bytes: usize,
+    sha256: String,
+}
+
+impl Manifest {
+    fn of(files: &Files) -> Self {
+        let listed = |(path, bytes): (&String, &Vec<u8>)| Listed {
+            path: path.clone(),
+            bytes: bytes.len(),
+            sha256: Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
+                // Writing into a string cannot fail.
+                let _ = write!(hex, "{byte:02x}");
+                hex
+            }),
+        };
+        Self { format: 1, command: COMMAND, seed: SEED, files: files.iter().map(listed).collect() }
+    }
+}
+
+fn json(value: &impl Serialize) -> Result<Vec<u8>> {
+    let mut bytes = serde_json::to_vec_pretty(value)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// To a multiple of 1/`per_unit`; never −0.
+fn rounded(value: f64, per_unit: f64) -> f64 {
+    (value * per_unit).round() / per_unit + 0.0
+}
+
+/// The mesh with coordinates as the file has them.
+fn rounded_mesh(mesh: &TriangleMesh) -> Result<TriangleMesh> {
+    let vertices = mesh.vertices().iter().map(|p| p.map(|v| rounded(v, 1e4))).collect();
+    Ok(TriangleMesh::try_new(vertices, mesh.triangles().to_vec())?)
+}
+
+/// A Wavefront OBJ file.
+fn obj(name: &str, mesh: &TriangleMesh) -> Vec<u8> {
+    let mut text = format!("# Made by `{COMMAND}`; metres, z up.\no {name}\n");
+    for p in mesh.vertices() {
+        text += &format!("v {:.4} {:.4} {:.4}\n", p.x, p.y, p.z);
+    }
+    for t in mesh.triangles() {
+        let [a, b, c] = t.map(|i| i + 1);
+        text += &format!("f {a} {b} {c}\n");
+    }
+    text.into_bytes()
+}
+
+/// A binary PCD file of single-precision coordinates, rounded to 0.1 mm before.
+fn pcd(points: &[Point3]) -> Vec<u8> {
+    let n = points.len();
+    let header = format!(
+        "# .PCD v0.7 - made by `{COMMAND}`; metres, z up\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\n\
+         TYPE F F F\nCOUNT 1 1 1\nWIDTH {n}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {n}\n\
+         DATA binary\n"
+    );
+    let mut bytes = header.into_bytes();
+    for value in points.iter().flat_map(|p| p.iter()) {
+        bytes.extend((rounded(*value, 1e4) as f32).to_le_bytes());
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::OnceLock;
+
+    use super::*;
+
+    /// Made once for all tests.
+    fn files() -> &'static Files {
+        static FILES: OnceLock<Files> = OnceLock::new();
+        FILES.get_or_init(|| generate().unwrap())
+    }
+
+    #[test]
+    fn stored_fixtures_are_what_the_task_makes() {
+        compare(&crate::project_root(), files()).unwrap();
+    }
+
+    #[test]
+    fn fixtures_are_small_closed_and_run_from_free_to_deep() {
+        let total: usize = files().values().map(Vec::len).sum();
+        assert!(total < 600_000, "{total} bytes");
+        for mesh in [scene::room(), scene::piano()] {
+            assert_eq!(rounded_mesh(&mesh).unwrap().merged().open_edges(), 0);
+        }
+        let cases: serde_json::Value =
+            serde_json::from_slice(&files()["piano-room/cases.json"]).unwrap();
+        let cases = cases["cases"].as_array().unwrap();
+        assert_eq!(cases.len(), WANTED.len());
+        for (case, wanted) in cases.iter().zip(WANTED) {
+            let distance = case["signed_distance_m"].as_f64().unwrap();
+            assert_eq!(case["in_collision"].as_bool().unwrap(), distance < 0.0);
+            assert!((distance - wanted).abs() < 0.3 * wanted.abs(), "{distance} for {wanted}");
+        }
+    }
+
+    #[test]
+    fn a_changed_missing_or_stray_file_is_named() {
+        let root = std::env::temp_dir().join(format!("xtask-fixtures-{}", std::process::id()));
+        store(&root, files()).unwrap();
+        compare(&root, files()).unwrap();
+        fs::write(root.join("fixtures/piano-room/room.obj"), "v 0 0 0\n").unwrap();
+        fs::remove_file(root.join("fixtures/manifest.json")).unwrap();
+        fs::write(root.join("fixtures/notes.txt"), "").unwrap();
+        let error = compare(&root, files()).unwrap_err().to_string();
+        fs::remove_dir_all(&root).unwrap();
+        for part in ["room.obj differs", "manifest.json: ", "notes.txt is not made"] {
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The layers: geom <- {noise, svm, bvh} <- cloudtouch <- cli, io and testkit on geom alone.
+
+use toml::Value;
+
+use super::manifest::Manifest;
+
+/// The kinds of dependency a manifest has.
+pub(super) const KINDS: [&str; 3] = ["dependencies", "build-dependencies", "dev-dependencies"];
+
+/// A development dependency of whoever likes, and of nobody otherwise among the published.
+const TESTKIT: &str = "cloudtouch-testkit";
+
+/// What of the project a crate may depend on; `None` for one that nobody has placed yet.
+fn may_use(name: &str) -> Option<&'static [&'static str]> {
+    Some(match name {
+        "cloudtouch-geom" => &[],
+        "cloudtouch-noise" | "cloudtouch-svm" | "cloudtouch-bvh" | "cloudtouch-io" | TESTKIT => {
+            &["cloudtouch-geom"]
+        }
+        "cloudtouch" => {
+            &["cloudtouch-geom", "cloudtouch-noise", "cloudtouch-svm", "cloudtouch-bvh"]
+        }
+        "cloudtouch-cli" | "cloudtouch-benches" | "xtask" => &[
+            "cloudtouch-geom",
+            "cloudtouch-noise",
+            "cloudtouch-svm",
+            "cloudtouch-bvh",
+            "cloudtouch",
+            "cloudtouch-io",
+        ],
+        _ => return None,
+    })
+}
+
+/// Dependencies that point sideways or up, or from a published crate to an unpublished one.
+pub(super) fn check(manifests: &[Manifest]) -> Vec<String> {
+    let members: Vec<&str> = manifests.iter().map(Manifest::name).collect();
+    let mut found = Vec::new();
+    for manifest in manifests {
+        let (name, folder) = (manifest.name(), &manifest.folder);
+        let Some(allowed) = may_use(name) else {
+            found.push(format!("{folder}/Cargo.toml: `{name}` has no place in the layers"));
+            continue;
+        };
+        for kind in KINDS {
+            for (key, value) in manifest.dependencies(kind) {
+                let used = value.get("package").and_then(Value::as_str).unwrap_or(key);
+                let for_tests =
+                    used == TESTKIT && (kind == "dev-dependencies" || !manifest.is_published());
+                if members.contains(&used) && !allowed.contains(&used) && !for_tests {
+                    found.push(format!(
+                        "{folder}/Cargo.toml: `{name}` must not use `{used}` ({kind})"
+                    ));
+                }
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The faults of a project whose crates are given as name, published and dependency lines.
+    fn faults(crates: &[(&str, bool, &str)]) -> Vec<String> {
+        let manifests: Vec<_> = crates
+            .iter()
+            .map(|(name, published, dependencies)| Manifest {
+                folder: format!("crates/{name}"),
+                table: format!(
+                    "package = {{ name = '{name}', publish = {published} }}\n{dependencies}"
+                )
+                .parse()
+                .unwrap(),
+            })
+            .collect();
+        check(&manifests)
+    }
+
+    #[test]
+    fn the_layers_as_drawn_pass() {
+        let found = faults(&[
+            ("cloudtouch-geom", true, "[dependencies]\nlibm.workspace = true"),
+            ("cloudtouch-svm", true, "[dependencies]\ncloudtouch-geom.workspace = true"),
+            (
+                "cloudtouch-noise",
+                true,
+                "[dependencies]\ncloudtouch-geom.workspace = true\n\
+                 [dev-dependencies]\ncloudtouch-testkit.workspace = true",
+            ),
+            ("cloudtouch-testkit", false, "[dependencies]\ncloudtouch-geom.workspace = true"),
+            ("xtask", false, "[dependencies]\ncloudtouch-testkit.workspace = true"),
+        ]);
+        assert_eq!(found, Vec::<String>::new());
+    }
+
+    #[test]
+    fn sideways_upward_unpublished_renamed_and_unknown_are_named() {
+        let all = [
+            ("cloudtouch-geom", true, ""),
+            ("cloudtouch-noise", true, ""),
+            ("cloudtouch-testkit", false, ""),
+        ];
+        for (name, dependencies, named) in [
+            (
+                "cloudtouch-svm",
+                "[dependencies]\ncloudtouch-noise.workspace = true",
+                "cloudtouch-noise",
+            ),
+            ("cloudtouch-svm", "[dev-dependencies]\ncloudtouch-noise.workspace = true", "dev-"),
+            ("cloudtouch-bvh", "[dependencies]\ncloudtouch-testkit.workspace = true", "testkit"),
+            ("cloudtouch-io", "[build-dependencies]\ncloudtouch-noise.workspace = true", "build-"),
+            (
+                "cloudtouch-io",
+                "[dependencies]\nn = { package = 'cloudtouch-noise' }",
+                "cloudtouch-noise",
+            ),
+            ("cloudtouch-new", "", "no place"),
+        ] {
+            let found = faults(&[all.as_slice(), &[(name, true, dependencies)]].concat());
+            assert!(
+                found.len() == 1 && found[0].contains(named),
+                "{name} {dependencies}: {found:?}"
+            );
+        }
+        let upward = faults(&[
+            ("cloudtouch-geom", true, "[dependencies]\ncloudtouch.workspace = true"),
+            ("cloudtouch", true, ""),
+        ]);
+        assert_eq!(upward.len(), 1);
+    }
+}

@@ -1,0 +1,153 @@
+//! Manifests: what every crate says, inherits and ships.
+
+use std::{fs, path::Path};
+
+use anyhow::{Context, Result};
+use toml::{Table, Value};
+
+/// One member's Cargo.toml.
+pub(super) struct Manifest {
+    /// Its folder, relative to the project.
+    pub(super) folder: String,
+    pub(super) table: Table,
+}
+
+impl Manifest {
+    pub(super) fn name(&self) -> &str {
+        self.package("name").and_then(Value::as_str).unwrap_or("")
+    }
+
+    /// Whether it goes to the registry.
+    pub(super) fn is_published(&self) -> bool {
+        self.package("publish").and_then(Value::as_bool).unwrap_or(true)
+    }
+
+    /// Dependencies of one kind, each with what the manifest says of it.
+    pub(super) fn dependencies(&self, kind: &str) -> impl Iterator<Item = (&String, &Value)> {
+        self.table.get(kind).and_then(Value::as_table).into_iter().flatten()
+    }
+
+    fn package(&self, key: &str) -> Option<&Value> {
+        self.table.get("package")?.get(key)
+    }
+}
+
+/// The manifests of all members, in order of their folders.
+pub(super) fn read_all(root: &Path) -> Result<Vec<Manifest>> {
+    let mut folders = vec!["benches".to_owned(), "xtask".to_owned()];
+    for entry in fs::read_dir(root.join("crates")).context("list crates/")? {
+        folders.push(format!("crates/{}", entry?.file_name().to_string_lossy()));
+    }
+    folders.sort();
+    folders
+        .into_iter()
+        .map(|folder| {
+            let path = root.join(&folder).join("Cargo.toml");
+            let text =
+                fs::read_to_string(&path).with_context(|| format!("read {}", path.display()))?;
+            let table = text.parse().with_context(|| format!("parse {}", path.display()))?;
+            Ok(Manifest { folder, table })
+        })
+        .collect()
+}
+
+/// Everything about manifests but the layers.
+pub(super) fn check(root: &Path, manifests: &[Manifest]) -> Result<Vec<String>> {
+    let mut found: Vec<String> = manifests.iter().flat_map(check_fields).collect();
+    for manifest in manifests.iter().filter(|m| m.is_published()) {
+        if !root.join(&manifest.folder).join("README.md").is_file() {
+            found.push(format!("{}/README.md is missing: the crate is published", manifest.folder));
+        }
+    }
+    let text = fs::read_to_string(root.join("Cargo.toml")).context("read Cargo.toml")?;
+    let workspace: Table = text.parse().context("parse Cargo.toml")?;
+    found.extend(check_unversioned(&workspace, manifests));
+    Ok(found)
+}
+
+/// A path-only development dependency is dropped from a published manifest; one with a version
+/// would have to be on the registry.
+fn check_unversioned(workspace: &Table, manifests: &[Manifest]) -> Vec<String> {
+    let shared = workspace.get("workspace").and_then(|w| w.get("dependencies"));
+    let has_version = |name: &str| {
+        shared.and_then(|d| d.get(name)).is_some_and(|d| d.is_str() || d.get("version").is_some())
+    };
+    manifests
+        .iter()
+        .filter(|m| !m.is_published() && has_version(m.name()))
+        .map(|m| format!("Cargo.toml: {} is not published and must have no version", m.name()))
+        .collect()
+}
+
+fn check_fields(manifest: &Manifest) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut complain = |what: String| found.push(format!("{}/Cargo.toml: {what}", manifest.folder));
+    let inherits = |value: Option<&Value>| {
+        value.and_then(|v| v.get("workspace")).and_then(Value::as_bool) == Some(true)
+    };
+    for key in ["version", "edition", "rust-version", "license", "repository"] {
+        if !inherits(manifest.package(key)) {
+            complain(format!("`{key}.workspace = true` is missing"));
+        }
+    }
+    if !inherits(manifest.table.get("lints")) {
+        complain("`[lints] workspace = true` is missing".into());
+    }
+    let mut required = vec!["description"];
+    if manifest.is_published() {
+        required.push("readme");
+    }
+    for key in required {
+        if manifest.package(key).and_then(Value::as_str).is_none_or(str::is_empty) {
+            complain(format!("`{key}` is missing"));
+        }
+    }
+    for kind in super::layers::KINDS {
+        for (name, value) in manifest.dependencies(kind) {
+            if !inherits(Some(value)) {
+                complain(format!("`{name}` is not inherited from the workspace's dependencies"));
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn manifest(text: &str) -> Manifest {
+        Manifest { folder: "crates/x".into(), table: text.parse().unwrap() }
+    }
+
+    const GOOD: &str = "[package]\nname = 'x'\ndescription = 'd'\nreadme = 'README.md'\n\
+        version.workspace = true\nedition.workspace = true\nrust-version.workspace = true\n\
+        license.workspace = true\nrepository.workspace = true\n[lints]\nworkspace = true\n\
+        [dependencies]\nserde.workspace = true\n";
+
+    #[test]
+    fn a_good_manifest_passes_and_each_fault_is_named() {
+        assert_eq!(check_fields(&manifest(GOOD)), Vec::<String>::new());
+        for (from, to, named) in [
+            ("license.workspace = true", "license = 'MIT'", "license"),
+            ("[lints]\nworkspace = true", "", "lints"),
+            ("description = 'd'", "description = ''", "description"),
+            ("readme = 'README.md'", "", "readme"),
+            ("serde.workspace = true", "serde = '1'", "serde"),
+        ] {
+            let found = check_fields(&manifest(&GOOD.replace(from, to)));
+            assert!(found.len() == 1 && found[0].contains(named), "{from}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn an_unpublished_crate_with_a_version_is_named() {
+        let members = [manifest("[package]\nname = 'x'\npublish = false")];
+        let workspace = |dependency: &str| {
+            format!("[workspace.dependencies]\nx = {dependency}").parse::<Table>().unwrap()
+        };
+        assert!(check_unversioned(&workspace("{ path = 'x' }"), &members).is_empty());
+        let versioned = workspace("{ path = 'x', version = '0.1' }");
+        assert_eq!(check_unversioned(&versioned, &members).len(), 1);
+    }
+}
