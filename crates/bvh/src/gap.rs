@@ -174,7 +174,7 @@ mod tests {
         fn depth_is_the_shortest_parting_translation(a in any_box(), b in any_box()) {
             // Most random pairs are disjoint: pull the second toward the first.
             let mut b = b;
-            b.centre = a.centre + (b.centre - a.centre) * 0.1;
+            b.centre = a.centre + (b.centre - a.centre) * 0.02;
             let gap = signed_gap(&a, &b);
             prop_assume!(gap.signed < 0.0);
             let mut parted = b;

@@ -29,7 +29,7 @@ pub(crate) struct Surface {
     pub(crate) height: f64,
     /// Variance of that height, misfit included, m².
     pub(crate) variance: f64,
-    /// The frame of the fit, in which `heights` holds.
+    /// The frame of the fit, in which `coefficients` holds.
     frame: Frame,
     /// Height above the point's tangential position: c₀ + c₁a + c₂b + c₃(a²+b²).
     coefficients: [f64; 4],

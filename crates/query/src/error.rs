@@ -11,7 +11,9 @@ use crate::filter::FilterError;
 #[non_exhaustive]
 pub enum PrepareError {
     /// No point was left after filtering.
-    #[error("no point is left of {before} after filtering ({stages}): loosen the filter or check the file")]
+    #[error(
+        "no point is left of {before} after filtering ({stages}): loosen the filter or check the file"
+    )]
     NothingLeft {
         /// Points in the input.
         before: usize,
@@ -51,7 +53,9 @@ pub enum PrepareError {
 #[non_exhaustive]
 pub enum SettingsError {
     /// The thresholds are not 0 ≤ reject ≤ ½ ≤ accept ≤ 1.
-    #[error("thresholds accept = {accept}, reject = {reject}: need 0 <= reject <= 0.5 <= accept <= 1")]
+    #[error(
+        "thresholds accept = {accept}, reject = {reject}: need 0 <= reject <= 0.5 <= accept <= 1"
+    )]
     Thresholds {
         /// Probability above which a pair is in collision.
         accept: f64,

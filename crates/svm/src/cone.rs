@@ -33,12 +33,15 @@ pub(crate) fn longest_step(x: &Vector4<f64>, d: &Vector4<f64>) -> f64 {
     let square = |a: &Vector4<f64>, b: &Vector4<f64>| 2.0 * a[0] * b[0] - a.dot(b);
     // det(x + t d) = c + 2 b t + a t².
     let (a, b, c) = (determinant(d), square(x, d), determinant(x));
+    // Without a tail the root is double, and rounding may leave it no real root: the first
+    // component alone, which the boundary never outlasts, bounds the step as well.
+    let bound = if d[0] < 0.0 { (-x[0] / d[0]).min(1.0) } else { 1.0 };
     let discriminant = b * b - a * c;
     if discriminant < 0.0 || (a >= 0.0 && b >= 0.0) {
-        return 1.0;
+        return bound;
     }
     let q = -(b + discriminant.sqrt().copysign(b));
-    [q / a, c / q].into_iter().filter(|t| *t > 0.0).fold(1.0, f64::min)
+    [q / a, c / q].into_iter().filter(|t| *t > 0.0).fold(bound, f64::min)
 }
 
 /// The Nesterov–Todd scaling W of a pair: W z = W⁻¹ s = λ, with W = β(2 q qᵀ − J) as a square root
@@ -103,7 +106,7 @@ mod tests {
     use super::*;
 
     fn interior() -> impl Strategy<Value = Vector4<f64>> {
-        (prop::array::uniform3(-1.0..1.0_f64), -3.0..3.0_f64, 0..3_usize).prop_map(
+        (prop::array::uniform3(-1.0..1.0_f64), -3.0..3.0_f64, 0..4_usize).prop_map(
             |(tail, head, pad)| {
                 let mut x = Vector4::new(0.0, tail[0], tail[1], tail[2]);
                 (4 - pad..4).for_each(|k| x[k] = 0.0);
@@ -137,6 +140,18 @@ mod tests {
             if t < 1.0 {
                 prop_assert!(inside(t * (1.0 + 1e-6)) < 1e-6 * (x[0] + d.norm() * t));
             }
+        }
+    }
+
+    #[test]
+    fn without_a_tail_the_step_ends_where_the_first_component_does() {
+        // The determinant has a double root there, which rounding can leave without a real one.
+        for k in 1..1000 {
+            let (x, d) = (0.1 * f64::from(k), -37.0 / f64::from(k) - 0.11 * f64::from(k));
+            let along = |value: f64| Vector4::new(value, 0.0, 0.0, 0.0);
+            let t = longest_step(&along(x), &along(d));
+            assert!((t + x / d).abs() <= 1e-7, "{t} for {x} along {d}");
+            assert!(x + t * d >= 0.0);
         }
     }
 }

@@ -84,9 +84,9 @@ struct Tally {
 }
 
 fn compare(cases: impl Iterator<Item = Case>) {
-    let tight = Settings::with_relative_gap(1e-7).unwrap();
+    let tight = Settings::with_relative_gap(1e-8).unwrap();
     let reported = Settings::with_relative_gap(1e-4).unwrap();
-    let tighter = Settings::with_relative_gap(1e-8).unwrap();
+    let tighter = Settings::with_relative_gap(1e-9).unwrap();
     let mut cells: BTreeMap<_, Tally> = BTreeMap::new();
     let mut failures = Vec::new();
     let (mut worst_primal, mut worst_function) = (0.0_f64, 0.0_f64);
@@ -187,7 +187,7 @@ fn compare(cases: impl Iterator<Item = Case>) {
         "all {}: smo {}, interior point {}, Clarabel {}, collapsed {}, not converged {}",
         all.problems, all.smo, all.interior, all.clarabel, all.collapsed, all.undecided
     );
-    println!("at 1e-4 instead of 1e-7: [smo, interior point, Clarabel] = {at_reported:?}");
+    println!("at 1e-4 instead of 1e-8: [smo, interior point, Clarabel] = {at_reported:?}");
     println!(
         "worst primal {worst_primal:.1e}, worst f {worst_function:.1e}, worst Clarabel gap {reference_gap:.1e}"
     );

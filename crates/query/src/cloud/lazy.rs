@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use cloudtouch_bvh::{NodeId, Obb, Tree};
+use cloudtouch_bvh::{Node, NodeId, Tree};
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_noise::Scratch;
 
@@ -32,10 +32,11 @@ impl LazyLeaves {
     }
 }
 
-/// The spacing a point may be given at most: the size of its leaf. A cloud is never sparser than
-/// its leaves are large, and the tree's bounds rest on it.
-pub(super) fn spacing_cap(leaf: &Obb) -> f64 {
-    2.0 * leaf.radius()
+/// The spacing a point may be given at most, on which the tree's bounds rest: twice that of as
+/// many points spread evenly over a square as large as the leaf.
+pub(super) fn spacing_cap(leaf: Node<'_>) -> f64 {
+    let diameter = 2.0 * leaf.obb().radius();
+    2.0 * diameter / (leaf.primitive_indices().len().max(1) as f64).sqrt()
 }
 
 impl Cloud {
@@ -45,7 +46,7 @@ impl Cloud {
         let points = self.leaves.slots[id.index()].get_or_init(|| {
             computed = true;
             let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
-            let cap = spacing_cap(leaf.obb());
+            let cap = spacing_cap(leaf);
             let mut scratch = Scratch::default();
             let refine = |&index: &u32| self.refine(index, cap, &mut scratch);
             leaf.primitive_indices().iter().map(refine).collect()

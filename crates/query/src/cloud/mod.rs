@@ -60,16 +60,13 @@ impl Cloud {
         };
         let sensor = settings.sensor.covariances(&kept)?;
         if let Some(index) = sensor.iter().position(|c| !c.is_finite()) {
-            let source = cloudtouch_geom::CovarianceError::NotFinite {
-                row: 0,
-                column: 0,
-                value: f64::NAN,
-            };
+            let source =
+                cloudtouch_geom::CovarianceError::NotFinite { row: 0, column: 0, value: f64::NAN };
             return Err(PrepareError::Covariance { index, source });
         }
         let origin = nalgebra::center(&low, &high).coords;
         let points: Vec<Point3> = kept.points.iter().map(|p| p - origin).collect();
-                let primitives = points
+        let primitives = points
             .iter()
             .zip(&sensor)
             .map(|(&mean, &covariance)| Primitive::Point {
@@ -81,7 +78,7 @@ impl Cloud {
         let mut tree = Tree::build(primitives, &settings.tree)?;
         let noise = NoiseModel::try_new(settings.noise)?;
         tree.set_leaf_bounds(|leaf| {
-            let cap = lazy::spacing_cap(leaf.obb());
+            let cap = lazy::spacing_cap(leaf);
             let mut bounds = LeafBounds { std: 0.0, shift: 0.0 };
             for &index in leaf.primitive_indices() {
                 let point = noise.bounds(&sensor[index as usize], cap);

@@ -49,13 +49,10 @@ impl SingleView {
             return false;
         }
         let direction = Point3::from(offset / range);
-        rays.directions
-            .nearest_to(&direction, 1)
-            .first()
-            .is_some_and(|n| {
-                let margin = CLEARLY * cloud.sensor[n.index].std_bound();
-                n.squared_distance.sqrt() <= rays.tolerance && range > rays.ranges[n.index] + margin
-            })
+        rays.directions.nearest_to(&direction, 1).first().is_some_and(|n| {
+            let margin = CLEARLY * cloud.sensor[n.index].std_bound();
+            n.squared_distance.sqrt() <= rays.tolerance && range > rays.ranges[n.index] + margin
+        })
     }
 
     fn measure(&self, cloud: &[Point3]) -> Option<Rays> {

@@ -3,10 +3,7 @@
 use cloudtouch_geom::PointCloud;
 use cloudtouch_noise::{NoiseError, quantize_to_grid};
 
-pub(super) fn cell_centers(
-    cloud: &PointCloud,
-    resolution: f64,
-) -> Result<PointCloud, NoiseError> {
+pub(super) fn cell_centers(cloud: &PointCloud, resolution: f64) -> Result<PointCloud, NoiseError> {
     Ok(PointCloud {
         points: quantize_to_grid(&cloud.points, resolution)?,
         covariances: None,

@@ -41,8 +41,7 @@ impl FilterSettings {
     /// The stages that suit a kind of sensor: cameras and laser scanners see nothing nearer than
     /// 10 cm (such returns are placeholders), and cameras draw veils at depth edges.
     pub fn for_sensor(sensor: &SensorModel) -> Self {
-        let camera =
-            matches!(sensor, SensorModel::Stereo { .. } | SensorModel::Kinect);
+        let camera = matches!(sensor, SensorModel::Stereo { .. } | SensorModel::Kinect);
         let ranging = camera || matches!(sensor, SensorModel::Lidar { .. });
         Self {
             min_range: if ranging { 0.1 } else { 0.0 },
@@ -135,7 +134,9 @@ pub enum FilterError {
         value: f64,
     },
     /// The outlier settings make no sense.
-    #[error("outliers by {neighbors} neighbours and {deviations} deviations: need at least one neighbour and a number")]
+    #[error(
+        "outliers by {neighbors} neighbours and {deviations} deviations: need at least one neighbour and a number"
+    )]
     Outliers {
         /// Neighbours asked for.
         neighbors: usize,

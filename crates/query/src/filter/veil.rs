@@ -33,8 +33,8 @@ fn is_veil_in_image(
 ) -> bool {
     let (row, column) = (index / width, index % width);
     let at = |row: usize, column: usize| cloud.points.get(row * width + column);
-    let horizontal = (column > 0 && column + 1 < width)
-        .then(|| (at(row, column - 1), at(row, column + 1)));
+    let horizontal =
+        (column > 0 && column + 1 < width).then(|| (at(row, column - 1), at(row, column + 1)));
     let vertical =
         (row > 0 && row + 1 < height).then(|| (at(row - 1, column), at(row + 1, column)));
     let point = &cloud.points[index];

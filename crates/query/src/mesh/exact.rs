@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Point3, Pose};
 use parry3d_f64::math;
-use parry3d_f64::query::{closest_points, ClosestPoints, intersection_test};
+use parry3d_f64::query::{ClosestPoints, closest_points, intersection_test};
 
 use super::Mesh;
 use crate::error::QueryError;
@@ -35,12 +35,8 @@ pub(crate) fn exact_pair(a: &Mesh, b: &Mesh, a_from_b: &Pose) -> Result<ExactPai
             let on_b = a_from_b.transform_point(&point(on_b));
             ExactPair { intersecting: false, nearest: Some((point(on_a), on_b)) }
         }
-        ClosestPoints::Intersecting => {
-            ExactPair { intersecting: true, nearest: None }
-        }
-        ClosestPoints::Disjoint => {
-            ExactPair { intersecting: false, nearest: None }
-        }
+        ClosestPoints::Intersecting => ExactPair { intersecting: true, nearest: None },
+        ClosestPoints::Disjoint => ExactPair { intersecting: false, nearest: None },
     })
 }
 

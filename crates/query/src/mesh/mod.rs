@@ -1,7 +1,7 @@
 //! Triangle meshes prepared for queries: exact surfaces, with an inside where they are watertight.
 
 mod exact;
-mod inside;
+mod signed;
 mod subdivide;
 
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 use crate::error::PrepareError;
 
 pub(crate) use exact::{ExactPair, exact_pair};
-pub(crate) use inside::{InsidePoint, points_inside};
+pub(crate) use signed::{SignedPoint, Wanted, signed_points};
 pub(crate) use subdivide::{SampleRegion, sample_region};
 
 /// Triangles in a leaf of a mesh's tree: few, since each may be subdivided many times.
@@ -66,9 +66,8 @@ impl Mesh {
             flags,
         )
         .map_err(|error| PrepareError::Surface { reason: error.to_string() })?;
-        let primitives = (0..merged.triangles().len())
-            .map(|t| Primitive::Triangle(merged.corners(t)))
-            .collect();
+        let primitives =
+            (0..merged.triangles().len()).map(|t| Primitive::Triangle(merged.corners(t))).collect();
         let settings = TreeSettings {
             max_leaf_points: MAX_LEAF_TRIANGLES,
             min_leaf_points: 1,
@@ -101,8 +100,12 @@ impl Mesh {
     /// Points on the surface in the file frame, no farther apart than `spacing` metres along any
     /// triangle: for pictures.
     pub fn surface_points(&self, spacing: f64) -> Vec<Point3> {
-        let everywhere =
-            SampleRegion { center: Point3::origin(), radius: f64::INFINITY, spacing };
+        let everywhere = SampleRegion {
+            center: Point3::origin(),
+            core: f64::INFINITY,
+            radius: f64::INFINITY,
+            spacing,
+        };
         let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
         sample_region(triangles, &everywhere).iter().map(|p| p + self.origin).collect()
     }

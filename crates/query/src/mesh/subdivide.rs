@@ -3,6 +3,9 @@
 
 use cloudtouch_geom::Point3;
 
+/// Outside the core an edge may be this long for each metre it is away: the farther a sample, the
+/// less its exact place matters to a surface near the cloud leaf.
+const GRADING: f64 = 0.5;
 /// Deepest subdivision of one triangle: 4¹⁰ parts, a millionth of its area each.
 const MAX_DEPTH: usize = 10;
 
@@ -11,9 +14,12 @@ const MAX_DEPTH: usize = 10;
 pub(crate) struct SampleRegion {
     /// Middle of the cloud leaf.
     pub center: Point3,
+    /// How far the cloud leaf reaches from there: within it samples are as dense as the cloud, m.
+    pub core: f64,
     /// How far from there samples matter, m.
     pub radius: f64,
-    /// No edge of a subdivided triangle is longer than this, m.
+    /// No edge of a subdivided triangle within the core is longer than this, m; beyond it edges
+    /// may grow with the distance from it.
     pub spacing: f64,
 }
 
@@ -35,11 +41,14 @@ fn split(corners: [Point3; 3], region: &SampleRegion, depth: usize, points: &mut
     let [a, b, c] = corners;
     let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
     let reach = corners.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
-    if (centroid - region.center).norm() > region.radius + reach {
+    let away = (centroid - region.center).norm() - reach;
+    if away > region.radius {
         return;
     }
-    let longest = [(a, b), (b, c), (c, a)].map(|(p, q)| (p - q).norm()).into_iter().fold(0.0, f64::max);
-    if longest <= region.spacing || depth == 0 {
+    let limit = region.spacing.max(GRADING * (away - region.core));
+    let longest =
+        [(a, b), (b, c), (c, a)].map(|(p, q)| (p - q).norm()).into_iter().fold(0.0, f64::max);
+    if longest <= limit || depth == 0 {
         let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
         points.extend([a, b, c, centroid].into_iter().filter(inside));
         return;
@@ -65,10 +74,13 @@ mod tests {
 
     #[test]
     fn a_large_triangle_is_sampled_in_its_interior_and_only_there() {
-        let corners =
-            [Point3::origin(), Point3::new(10.0, 0.0, 0.0), Point3::new(0.0, 10.0, 0.0)];
-        let region =
-            SampleRegion { center: Point3::new(3.0, 3.0, 0.05), radius: 0.3, spacing: 0.1 };
+        let corners = [Point3::origin(), Point3::new(10.0, 0.0, 0.0), Point3::new(0.0, 10.0, 0.0)];
+        let region = SampleRegion {
+            center: Point3::new(3.0, 3.0, 0.05),
+            core: 0.3,
+            radius: 0.3,
+            spacing: 0.1,
+        };
         let points = sample_region([corners], &region);
         assert!(points.len() > 30, "{} points", points.len());
         assert!(points.iter().all(|p| (p - region.center).norm() <= region.radius));
@@ -83,9 +95,26 @@ mod tests {
     }
 
     #[test]
+    fn far_from_the_leaf_samples_are_sparse() {
+        let corners = [Point3::origin(), Point3::new(10.0, 0.0, 0.0), Point3::new(0.0, 10.0, 0.0)];
+        let dense = SampleRegion {
+            center: Point3::new(3.0, 3.0, 0.0),
+            core: 2.0,
+            radius: 2.0,
+            spacing: 0.05,
+        };
+        let graded = SampleRegion { core: 0.1, ..dense };
+        let (dense, graded) = (sample_region([corners], &dense), sample_region([corners], &graded));
+        assert!(graded.len() * 10 < dense.len(), "{} of {}", graded.len(), dense.len());
+        let near = |p: &&Point3| (*p - Point3::new(3.0, 3.0, 0.0)).norm() < 0.1;
+        assert_eq!(graded.iter().filter(near).count(), dense.iter().filter(near).count());
+    }
+
+    #[test]
     fn a_degenerate_triangle_ends_the_recursion() {
         let p = Point3::new(1.0, 0.0, 0.0);
-        let region = SampleRegion { center: Point3::origin(), radius: 2.0, spacing: 1e-3 };
+        let region =
+            SampleRegion { center: Point3::origin(), core: 2.0, radius: 2.0, spacing: 1e-3 };
         assert_eq!(sample_region([[p, p, p]], &region), vec![p]);
     }
 }

@@ -2,8 +2,8 @@
 
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
-    Class, Classifier, DEFAULT_KAPPA_MAX, Kernel, Problem, Rung, Sample, Separation, Settings, Status, UnitBox,
-    balanced_penalties, separate,
+    Class, Classifier, DEFAULT_KAPPA_MAX, Kernel, Problem, Rung, Sample, Separation, Settings,
+    Status, UnitBox, balanced_penalties, separate,
 };
 
 use crate::report::Stats;
@@ -63,6 +63,7 @@ const CERTAIN_DEVIATIONS: f64 = DEFAULT_KAPPA_MAX;
 pub(crate) fn classify(
     points: &PairPoints,
     settings: &QuerySettings,
+    known: f64,
     stats: &mut Stats,
 ) -> PairAnswer {
     let uncertain = |side: &[PairPoint]| side.iter().map(|p| p.point).collect::<Vec<_>>();
@@ -72,6 +73,9 @@ pub(crate) fn classify(
     let plane = match plane {
         Some(plane) if separation.is_some_and(|s| s.kappa >= CERTAIN_DEVIATIONS) => {
             stats.linear_certificates += 1;
+            return plane;
+        }
+        Some(plane) if settings.mode == Mode::Calibrated && plane.largest() <= known => {
             return plane;
         }
         plane => plane,

@@ -12,7 +12,7 @@ use super::pool::{PointProbability, Side};
 pub(crate) struct Evidence {
     points: Vec<PointProbability>,
     contacts: Vec<Contact>,
-    clearance: Option<Clearance>,
+    clearance: Option<(f64, Clearance)>,
     /// Largest probability of any point so far.
     largest: f64,
     /// No point of what was culled or left out is more probable than this.
@@ -45,9 +45,14 @@ impl Evidence {
         self.contacts.push(contact);
     }
 
-    pub(crate) fn add_clearance(&mut self, clearance: Clearance) {
-        if self.clearance.is_none_or(|known| clearance.mean < known.mean) {
-            self.clearance = Some(clearance);
+    /// Notes the gap at a place of this probability; the most probable place counts, and among
+    /// equally probable ones the narrowest gap.
+    pub(crate) fn add_clearance(&mut self, probability: f64, clearance: Clearance) {
+        let wins = self.clearance.is_none_or(|(most, known)| {
+            probability > most || (probability == most && clearance.mean < known.mean)
+        });
+        if wins {
+            self.clearance = Some((probability, clearance));
         }
     }
 
@@ -65,7 +70,7 @@ impl Evidence {
     }
 
     pub(crate) fn clearance(&self) -> Option<Clearance> {
-        self.clearance
+        self.clearance.map(|(_, clearance)| clearance)
     }
 
     /// One entry per point, its largest probability: a point may stand in several leaf pairs.

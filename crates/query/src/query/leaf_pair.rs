@@ -71,7 +71,12 @@ fn cloud_points(
 }
 
 /// Samples the triangles of a mesh leaf where they come near points of a cloud, as densely.
-fn mesh_points(mesh: &Mesh, leaf: NodeId, near: &[PairPoint], a_from_mesh: &Pose) -> Vec<PairPoint> {
+fn mesh_points(
+    mesh: &Mesh,
+    leaf: NodeId,
+    near: &[PairPoint],
+    a_from_mesh: &Pose,
+) -> Vec<PairPoint> {
     let Some(region) = region_around(near, &a_from_mesh.inverse()) else { return Vec::new() };
     let indices = mesh.tree().leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
     let triangles = indices.iter().map(|&t| mesh.corners(t as usize));
@@ -87,9 +92,9 @@ fn mesh_points(mesh: &Mesh, leaf: NodeId, near: &[PairPoint], a_from_mesh: &Pose
 
 fn region_around(near: &[PairPoint], mesh_from_a: &Pose) -> Option<SampleRegion> {
     let first = near.first()?.point.mean;
-    let (low, high) = near.iter().fold((first, first), |(low, high), p| {
-        (low.inf(&p.point.mean), high.sup(&p.point.mean))
-    });
+    let (low, high) = near
+        .iter()
+        .fold((first, first), |(low, high), p| (low.inf(&p.point.mean), high.sup(&p.point.mean)));
     let center: Point3 = nalgebra::center(&low, &high);
     let reach = near.iter().map(|p| (p.point.mean - center).norm()).fold(0.0, f64::max);
     let std = near.iter().map(|p| p.point.covariance.std_bound()).fold(0.0, f64::max);
@@ -100,6 +105,7 @@ fn region_around(near: &[PairPoint], mesh_from_a: &Pose) -> Option<SampleRegion>
     let spacing = if median > 0.0 { median } else { std.max(1e-3 * center.coords.norm()) };
     Some(SampleRegion {
         center: mesh_from_a.transform_point(&center),
+        core: reach,
         radius: reach + (MARGIN_SPACINGS * spacing).max(MARGIN_DEVIATIONS * std),
         spacing: spacing.max(f64::MIN_POSITIVE),
     })

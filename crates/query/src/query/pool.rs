@@ -48,7 +48,8 @@ pub(crate) fn noisy_or(points: &[PointProbability]) -> f64 {
     let mut all_free = 1.0;
     for point in likely {
         let is_new = witnesses.iter().all(|w| {
-            (w.position - point.position).norm() >= w.correlation_length.max(point.correlation_length)
+            (w.position - point.position).norm()
+                >= w.correlation_length.max(point.correlation_length)
         });
         if is_new {
             witnesses.push(point);

@@ -5,10 +5,11 @@ use std::time::Instant;
 use cloudtouch_bvh::{Flow, TraversalSettings, traverse};
 use cloudtouch_geom::Pose;
 
+use crate::CONTACT_FLOOR;
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
 use crate::error::{QueryError, SettingsError};
-use crate::mesh::{ExactPair, InsidePoint, Mesh, exact_pair, points_inside};
+use crate::mesh::{ExactPair, Mesh, SignedPoint, Wanted, exact_pair, signed_points};
 use crate::report::{Clearance, Contact, Report, Stats, Verdict};
 
 use super::classify::{PairAnswer, PairPoint, PairPoints, classify};
@@ -16,7 +17,7 @@ use super::contacts::contact_of;
 use super::evidence::Evidence;
 use super::leaf_pair::{self, gather};
 use super::pool::{self, PointProbability, Side};
-use super::settings::{Pooling, QuerySettings};
+use super::settings::{Mode, Pooling, QuerySettings};
 use super::unseen::is_hidden;
 
 /// A checked set of settings that answers queries; cheap to copy, shared by threads.
@@ -96,16 +97,18 @@ impl Query {
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let b_from_a = a_from_b.inverse();
+        let mut settled = false;
         match (a, b) {
-            (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
-                self.add_inside(cloud, mesh, Side::A, &b_from_a, &Pose::identity(), evidence);
+            (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) if mesh.is_watertight() => {
+                let poses = (&b_from_a, &Pose::identity());
+                settled = self.add_signed(cloud, mesh, Side::A, poses, evidence);
             }
-            (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
-                self.add_inside(cloud, mesh, Side::B, a_from_b, a_from_b, evidence);
+            (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) if mesh.is_watertight() => {
+                settled = self.add_signed(cloud, mesh, Side::B, (a_from_b, a_from_b), evidence);
             }
             _ => {}
         }
-        if evidence.largest() <= self.settings.stop_above {
+        if !settled && evidence.largest() <= self.settings.stop_above {
             self.traverse_leaf_pairs(a, b, a_from_b, evidence)?;
         }
         if evidence.largest() <= self.settings.accept {
@@ -122,24 +125,30 @@ impl Query {
         Ok(())
     }
 
-    /// Adds the points of `cloud` that lie deep in `mesh`, which leaf pairs do not see.
-    fn add_inside(
+    /// Adds the points of `cloud` by their signed distance from a watertight mesh, and says
+    /// whether that settles the query.
+    ///
+    /// In the calibrated mode it does: no surface between the two could be better known than the
+    /// mesh's own. In the paper's mode it only finds points deep inside, which leaf pairs miss.
+    fn add_signed(
         &self,
         cloud: &Cloud,
         mesh: &Mesh,
         side: Side,
-        mesh_from_cloud: &Pose,
-        a_from_cloud: &Pose,
+        (mesh_from_cloud, a_from_cloud): (&Pose, &Pose),
         evidence: &mut Evidence,
-    ) {
-        if !mesh.is_watertight() {
-            return;
-        }
-        let inside = points_inside(cloud, mesh, mesh_from_cloud, self.settings.stop_above);
-        evidence.stats.nodes_visited += inside.nodes_visited;
-        evidence.stats.leaves_prepared += inside.leaves_prepared;
-        evidence.widen(inside.culled_bound);
-        for point in &inside.points {
+    ) -> bool {
+        let wanted = match self.settings.mode {
+            Mode::Calibrated => Wanted::Near,
+            Mode::Paper => Wanted::Inside,
+        };
+        let stop_above = self.settings.stop_above;
+        let found = signed_points(cloud, mesh, mesh_from_cloud, wanted, stop_above);
+        evidence.stats.nodes_visited += found.nodes_visited;
+        evidence.stats.leaf_pairs += found.leaves_visited;
+        evidence.stats.leaves_prepared += found.leaves_prepared;
+        evidence.widen(found.culled_bound);
+        for point in &found.points {
             evidence.add_point(PointProbability {
                 side,
                 index: Some(point.index),
@@ -147,9 +156,13 @@ impl Query {
                 probability: point.probability,
                 correlation_length: CORRELATION_SPACINGS * point.spacing,
             });
-            evidence.add_clearance(Clearance { mean: -point.depth, std: point.std });
-            evidence.add_contact(inside_contact(point, side, a_from_cloud));
+            let clearance = Clearance { mean: point.distance, std: point.std };
+            evidence.add_clearance(point.probability, clearance);
+            if point.probability >= CONTACT_FLOOR {
+                evidence.add_contact(signed_contact(point, side, a_from_cloud));
+            }
         }
+        wanted == Wanted::Near
     }
 
     fn traverse_leaf_pairs(
@@ -162,14 +175,18 @@ impl Query {
         let settings = &self.settings;
         let outcome =
             traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
+                let known = evidence.largest();
+                if settings.mode == Mode::Calibrated && pair.bound <= known {
+                    evidence.widen(pair.bound);
+                    return Flow::Continue;
+                }
                 let stats = &mut evidence.stats;
-                let Some(points) = gather((a, pair.a), (b, pair.b), a_from_b, stats)
-                else {
+                let Some(points) = gather((a, pair.a), (b, pair.b), a_from_b, stats) else {
                     evidence.widen(leaf_pair::bound_left_out());
                     return Flow::Continue;
                 };
                 stats.leaf_pairs += 1;
-                let answer = classify(&points, settings, stats);
+                let answer = classify(&points, settings, known, stats);
                 add_pair(&points, &answer, evidence);
                 if evidence.largest() > settings.stop_above { Flow::Stop } else { Flow::Continue }
             })?;
@@ -241,8 +258,8 @@ fn add_pair(points: &PairPoints, answer: &PairAnswer, evidence: &mut Evidence) {
             add_side(Side::A, &points.a, a);
             add_side(Side::B, &points.b, b);
             if let Some((contact, clearance)) = contact_of(points, answer) {
-                evidence.add_clearance(clearance);
-                if contact.probability >= crate::CONTACT_FLOOR {
+                evidence.add_clearance(contact.probability, clearance);
+                if contact.probability >= CONTACT_FLOOR {
                     evidence.add_contact(contact);
                 }
             }
@@ -268,14 +285,14 @@ fn add_pair(points: &PairPoints, answer: &PairAnswer, evidence: &mut Evidence) {
     }
 }
 
-fn inside_contact(point: &InsidePoint, cloud_side: Side, a_from_cloud: &Pose) -> Contact {
+fn signed_contact(point: &SignedPoint, cloud_side: Side, a_from_cloud: &Pose) -> Contact {
     // Out of the mesh is towards the cloud's body; the normal runs from A to B.
     let outward = a_from_cloud.transform_vector(&point.outward);
     Contact {
         point: a_from_cloud.transform_point(&point.surface_point),
         normal_a_to_b: if cloud_side == Side::A { -outward } else { outward },
         probability: point.probability,
-        clearance_m: -point.depth,
+        clearance_m: point.distance,
     }
 }
 
@@ -285,6 +302,6 @@ fn add_exact(evidence: &mut Evidence, pair: &ExactPair) {
         evidence.add_certain_collision();
     }
     if let Some((on_a, on_b)) = pair.nearest {
-        evidence.add_clearance(Clearance { mean: (on_b - on_a).norm(), std: 0.0 });
+        evidence.add_clearance(0.0, Clearance { mean: (on_b - on_a).norm(), std: 0.0 });
     }
 }

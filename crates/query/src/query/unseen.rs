@@ -19,10 +19,8 @@ const HIDDEN_SHARE: f64 = 0.5;
 /// bodies: then neither contains the other.
 pub(crate) fn is_hidden(cloud: &Cloud, other: BodyRef<'_>, cloud_from_other: &Pose) -> bool {
     let Some(view) = cloud.view() else { return false };
-    let of_other: Vec<Point3> = coarse_samples(other)
-        .iter()
-        .map(|p| cloud_from_other.transform_point(p))
-        .collect();
+    let of_other: Vec<Point3> =
+        coarse_samples(other).iter().map(|p| cloud_from_other.transform_point(p)).collect();
     let exact = |points: &[Point3]| -> Vec<UncertainPoint> {
         points.iter().map(|&p| UncertainPoint::exact(p)).collect()
     };

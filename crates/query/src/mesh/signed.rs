@@ -1,5 +1,7 @@
-//! Points of a cloud inside a watertight mesh: deep penetration, which leaves that only see
-//! surfaces would miss.
+//! A cloud against a watertight mesh: its own surface separates inside from outside, and the
+//! signed distance to it is the exact decision function of eq. 16 (|∇f| = 1).
+//!
+//! It also finds points deep inside, which leaf pairs that only see surfaces would miss.
 
 use cloudtouch_bvh::{NodeId, Visit};
 use cloudtouch_geom::{Point3, Pose, Vector3, normal};
@@ -10,9 +12,18 @@ use crate::cloud::Cloud;
 /// Nodes farther outside than this many standard deviations are not looked into.
 const CERTAIN_DEVIATIONS: f64 = 4.75;
 
-/// A point of the cloud that is expected inside the mesh.
+/// Which points are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Those expected inside the mesh: the others are left to the leaf pairs.
+    Inside,
+    /// All that may be inside.
+    Near,
+}
+
+/// A point of the cloud at its signed distance from the mesh.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct InsidePoint {
+pub(crate) struct SignedPoint {
     /// Index in the prepared cloud.
     pub index: u32,
     /// Its expected position, in the cloud's local frame.
@@ -23,8 +34,8 @@ pub(crate) struct InsidePoint {
     pub surface_point: Point3,
     /// Unit normal of the mesh there, pointing out of the mesh.
     pub outward: Vector3,
-    /// How deep it is, m, and the standard deviation of that.
-    pub depth: f64,
+    /// Signed distance, m, negative inside, and its standard deviation.
+    pub distance: f64,
     pub std: f64,
     /// Distance between samples there, m.
     pub spacing: f64,
@@ -32,26 +43,29 @@ pub(crate) struct InsidePoint {
 
 /// What a pass over the cloud's tree found.
 #[derive(Debug, Default)]
-pub(crate) struct InsideEvidence {
-    pub points: Vec<InsidePoint>,
+pub(crate) struct SignedEvidence {
+    pub points: Vec<SignedPoint>,
     /// No point in what was not looked into is inside with more than this probability.
     pub culled_bound: f64,
     pub nodes_visited: usize,
+    pub leaves_visited: usize,
     pub leaves_prepared: usize,
-    pub largest: f64,
+    largest: f64,
 }
 
-/// Finds the points of `cloud` inside `mesh`, ending at the first one above `stop_above`.
+/// Finds the points of `cloud` that are, or may be, inside a watertight `mesh`.
 ///
-/// Nodes are pruned by the signed distance of their centre, which changes by at most a metre per
-/// metre.
-pub(crate) fn points_inside(
+/// Ends at the first point above `stop_above`. Nodes are pruned by the signed distance of their
+/// centre, which changes by at most a metre per metre, and once a point is found, by what they
+/// could still add to it.
+pub(crate) fn signed_points(
     cloud: &Cloud,
     mesh: &Mesh,
     mesh_from_cloud: &Pose,
+    wanted: Wanted,
     stop_above: f64,
-) -> InsideEvidence {
-    let mut evidence = InsideEvidence::default();
+) -> SignedEvidence {
+    let mut evidence = SignedEvidence::default();
     let cloud_from_mesh = mesh_from_cloud.inverse();
     cloud.tree().visit_nodes(|node| {
         evidence.nodes_visited += 1;
@@ -62,16 +76,15 @@ pub(crate) fn points_inside(
         let obb = node.obb();
         let center = mesh_from_cloud.transform_point(&obb.centre);
         let std = node.max_std();
-        let clear = mesh.project(&center).signed_distance
-            - obb.radius()
-            - node.shift();
-        if clear > 0.0 && clear >= CERTAIN_DEVIATIONS * std {
-            let bound = normal::below_zero(clear, std);
+        let clear = mesh.project(&center).signed_distance - obb.radius() - node.shift();
+        let bound = if clear > 0.0 { normal::below_zero(clear, std) } else { 1.0 };
+        if clear > CERTAIN_DEVIATIONS * std || bound <= evidence.largest {
             evidence.culled_bound = evidence.culled_bound.max(bound);
             return Visit::Prune;
         }
         if node.is_leaf() {
-            look_into_leaf(cloud, node.id(), mesh, (mesh_from_cloud, &cloud_from_mesh), &mut evidence);
+            let poses = (mesh_from_cloud, &cloud_from_mesh);
+            look_into_leaf(cloud, node.id(), mesh, poses, wanted, &mut evidence);
         }
         Visit::Descend
     });
@@ -83,29 +96,33 @@ fn look_into_leaf(
     leaf: NodeId,
     mesh: &Mesh,
     (mesh_from_cloud, cloud_from_mesh): (&Pose, &Pose),
-    evidence: &mut InsideEvidence,
+    wanted: Wanted,
+    evidence: &mut SignedEvidence,
 ) {
     let (points, computed) = cloud.leaf(leaf);
+    evidence.leaves_visited += 1;
     evidence.leaves_prepared += usize::from(computed);
     for point in points {
         let position = point.point.mean;
         let in_mesh = mesh_from_cloud.transform_point(&position);
         let projection = mesh.project(&in_mesh);
-        if projection.signed_distance >= 0.0 {
+        let distance = projection.signed_distance;
+        if wanted == Wanted::Inside && distance >= 0.0 {
             continue;
         }
-        let outward_in_mesh = (projection.point - in_mesh) / -projection.signed_distance;
-        let outward = cloud_from_mesh.transform_vector(&outward_in_mesh);
+        // On the surface itself no direction is outward; any one gives the same ½.
+        let outward_in_mesh = ((in_mesh - projection.point) * distance.signum()).try_normalize(0.0);
+        let outward = cloud_from_mesh.transform_vector(&outward_in_mesh.unwrap_or_else(Vector3::z));
         let std = point.point.covariance.std_along(&outward);
-        let probability = normal::below_zero(projection.signed_distance, std);
+        let probability = normal::below_zero(distance, std);
         evidence.largest = evidence.largest.max(probability);
-        evidence.points.push(InsidePoint {
+        evidence.points.push(SignedPoint {
             index: point.index,
             position,
             probability,
             surface_point: cloud_from_mesh.transform_point(&projection.point),
             outward,
-            depth: -projection.signed_distance,
+            distance,
             std,
             spacing: point.spacing,
         });
