@@ -1,1 +1,5 @@
-//! Criterion benchmarks; not published.
+//! Seeded data for the benchmarks in `benches/`; not published.
+
+pub mod leaf;
+pub mod piano_room;
+pub mod sphere;

@@ -1,6 +1,7 @@
 //! Project tasks: `cargo xtask TASK`, one file per task.
 
 mod ci;
+mod evaluate;
 mod fixtures;
 mod tidy;
 
@@ -15,6 +16,8 @@ enum Task {
     Ci,
     /// Rules on manifests, layers and text that no compiler checks.
     Tidy,
+    /// Answers of the tool on real scans and exact poses, with figures.
+    Evaluate(evaluate::Arguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -28,6 +31,7 @@ fn main() -> anyhow::Result<()> {
     match Task::parse() {
         Task::Ci => ci::run(&root),
         Task::Tidy => tidy::run(&root),
+        Task::Evaluate(arguments) => evaluate::run(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

@@ -25,10 +25,13 @@ pub struct LeafPair {
 }
 
 /// Whether to go on after a leaf pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Flow {
     /// On to the next pair.
     Continue,
+    /// On to the next pair whose [`LeafPair::bound`] is above this: the caller knows of a point as
+    /// probable, or does not care for less. What is left out counts as culled.
+    Above(f64),
     /// No further pairs.
     Stop,
 }
@@ -108,28 +111,34 @@ fn walk(
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return outcome };
     let examiner = Examiner::new(a, b, root_a, root_b, *a_from_b, *settings, seed);
     let mut queue = BinaryHeap::new();
-    let mut examine = |pair, queue: &mut BinaryHeap<Candidate>, outcome: &mut Outcome| {
-        let Examined { pair, urgency, descend } = examiner.examine(pair);
-        outcome.nodes_visited += 1;
-        if descend {
-            queue.push(Candidate { urgency, pair });
-        } else {
-            outcome.culled += 1;
-            outcome.culled_bound = outcome.culled_bound.max(pair.bound);
-            on_culled(&pair);
-        }
+    let mut cull = |pair: &LeafPair, outcome: &mut Outcome| {
+        outcome.culled += 1;
+        outcome.culled_bound = outcome.culled_bound.max(pair.bound);
+        on_culled(pair);
     };
-    examine((root_a, root_b), &mut queue, &mut outcome);
-    while let Some(Candidate { pair, .. }) = queue.pop() {
-        match examiner.narrower_pairs(&pair) {
-            Some(pairs) => {
-                for narrower in pairs {
-                    examine(narrower, &mut queue, &mut outcome);
-                }
+    let mut found = vec![(root_a, root_b)];
+    let mut wanted_above = f64::NEG_INFINITY;
+    loop {
+        for ids in found.drain(..) {
+            let Examined { pair, urgency, descend } = examiner.examine(ids);
+            outcome.nodes_visited += 1;
+            if descend && pair.bound > wanted_above {
+                queue.push(Candidate { urgency, pair });
+            } else {
+                cull(&pair, &mut outcome);
             }
-            None => {
-                outcome.leaf_pairs += 1;
-                if visit(pair) == Flow::Stop {
+        }
+        let Some(Candidate { pair, .. }) = queue.pop() else { break };
+        if pair.bound <= wanted_above {
+            cull(&pair, &mut outcome);
+        } else if let Some(narrower) = examiner.narrower_pairs(&pair) {
+            found.extend(narrower);
+        } else {
+            outcome.leaf_pairs += 1;
+            match visit(pair) {
+                Flow::Continue => {}
+                Flow::Above(bound) => wanted_above = wanted_above.max(bound),
+                Flow::Stop => {
                     outcome.stopped = true;
                     outcome.pending_bound = queue.iter().map(|c| c.pair.bound).fold(0.0, f64::max);
                     break;

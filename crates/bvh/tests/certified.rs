@@ -204,6 +204,30 @@ fn stopping_leaves_a_bound_for_the_rest() {
 }
 
 #[test]
+fn pairs_that_cannot_matter_are_left_out_and_bounded() {
+    let tree = small_leaves(bumpy_sheet(1, 300, Vector3::zeros()));
+    let above = small_leaves(bumpy_sheet(2, 300, Vector3::new(0.0, 0.0, 0.03)));
+    let flat = flat_answer(&all_of(&tree), &all_of(&above));
+    let run = |wanted: &dyn Fn(f64) -> Flow| {
+        let mut found = 0.0_f64;
+        let settings = TraversalSettings::default();
+        let outcome = traverse(&tree, &above, &Pose::identity(), &settings, 0, |pair| {
+            found = found.max(flat_answer(&held(&tree, pair.a), &held(&above, pair.b)));
+            wanted(found)
+        })
+        .unwrap();
+        (found, outcome)
+    };
+    let (_, whole) = run(&|_| Flow::Continue);
+    let (found, narrowed) = run(&Flow::Above);
+    // The largest probability is found all the same, with less work.
+    assert_eq!(found, flat);
+    assert!(narrowed.leaf_pairs < whole.leaf_pairs);
+    assert!(narrowed.culled_bound <= flat.max(whole.culled_bound));
+    assert!(!narrowed.stopped && narrowed.pending_bound == 0.0);
+}
+
+#[test]
 fn empty_trees_and_bad_poses() {
     let empty = small_leaves(vec![]);
     let some = small_leaves(bumpy_sheet(1, 30, Vector3::zeros()));

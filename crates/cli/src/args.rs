@@ -7,13 +7,34 @@ use cloudtouch::noise::SensorModel;
 use cloudtouch::{CloudSettings, Mode, OutlierSettings, Pooling, QuerySettings};
 use cloudtouch_io::LengthUnit;
 
+/// Sensor specs, for the help of the commands that take them.
+const SENSORS: &str = "\
+Sensor specs (metres, pixels, radians):
+  exact                                   no noise
+  iso:STD                                 the same standard deviation in every direction
+  axes:SX,SY,SZ                           one along each axis of the file
+  stereo:BASELINE,FOCAL_PX,DISPARITY_STD  a stereo camera; depth noise grows with z squared
+  kinect                                  a structured-light depth camera
+  lidar:RANGE_STD,BEAM_RAD                a laser scanner
+  grid:RESOLUTION                         points rounded to the cells of a grid
+  per-point                               the covariance columns of the file";
+
+const EXAMPLES: &str = "\
+Examples:
+  cloudtouch demo
+  cloudtouch info scan.pcd
+  cloudtouch query scan.pcd gripper.stl --sensor kinect --translate 0.4,0,0.9
+  cloudtouch batch cases.json --jsonl answers.jsonl
+
+Exit codes: 0 done, 1 error, 2 wrong usage; query --exit-code tells the verdict.";
+
 /// How likely is it that the surfaces behind two noisy point clouds touch?
 #[derive(Debug, Parser)]
-#[command(version, about)]
+#[command(version, after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub command: Command,
-    /// Show what happens inside (repeat for more)
+    /// Log what happens inside to standard error (repeat for more)
     #[arg(short, long, action = clap::ArgAction::Count, global = true)]
     verbose: u8,
 }
@@ -42,45 +63,51 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = SENSORS)]
 pub(crate) struct QueryArguments {
-    /// Cloud or mesh of the surroundings
+    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .stl .obj)
     pub scene: PathBuf,
     /// Cloud or mesh of the object
     pub object: PathBuf,
-    /// File with a 4x4 row-major matrix, object to scene: 16 numbers, brackets and commas allowed
-    #[arg(long, conflicts_with_all = ["translate", "rotate_rpy"])]
+    /// Text file with a 4x4 row-major matrix, object to scene
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["translate", "rotate_rpy"],
+          help_heading = "Pose (the identity when not given)")]
     pub pose: Option<PathBuf>,
     /// Where the object's origin goes in the scene, m
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true, num_args = 3)]
-    pub translate: Option<Vec<f64>>,
-    /// Roll, pitch and yaw of the object, rad
-    #[arg(long, value_name = "R,P,Y", value_delimiter = ',', allow_hyphen_values = true, num_args = 3)]
-    pub rotate_rpy: Option<Vec<f64>>,
-    #[command(flatten)]
-    pub common: CommonArguments,
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_triple, allow_hyphen_values = true,
+          help_heading = "Pose (the identity when not given)")]
+    pub translate: Option<Triple>,
+    /// Roll, pitch and yaw of the object about the axes of the scene, rad
+    #[arg(long, value_name = "R,P,Y", value_parser = parse_triple, allow_hyphen_values = true,
+          help_heading = "Pose (the identity when not given)")]
+    pub rotate_rpy: Option<Triple>,
     /// Print the report as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub json: bool,
     /// Exit with 0 free, 10 in contact, 20 in collision, 30 undecided
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub exit_code: bool,
-    /// Write scene and object in colour: grey to red by probability, object blue, contacts green
-    #[arg(long, value_name = "OUT.ply")]
+    /// Write scene (grey) and object (blue), redder with probability, contacts green
+    #[arg(long, value_name = "OUT.ply", help_heading = "Output")]
     pub ply: Option<PathBuf>,
+    #[command(flatten)]
+    pub common: CommonArguments,
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = SENSORS)]
 pub(crate) struct BatchArguments {
     /// Case file (JSON); its paths are relative to it
     pub cases: PathBuf,
-    /// Write one JSON object per case to this file
-    #[arg(long, value_name = "OUT")]
-    pub jsonl: Option<PathBuf>,
     /// Print one JSON object per case instead of a table
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub json: bool,
-    /// Sensor of the files whose name contains NAME; may be repeated, the first match counts
-    #[arg(long, value_name = "NAME=SPEC", value_parser = parse_sensor_for)]
+    /// Write one JSON object per case to this file
+    #[arg(long, value_name = "OUT.jsonl", help_heading = "Output")]
+    pub jsonl: Option<PathBuf>,
+    /// Sensor of files whose path contains NAME; repeatable, the first match counts
+    #[arg(long, value_name = "NAME=SPEC", value_parser = parse_sensor_for,
+          help_heading = "Files")]
     pub sensor_for: Vec<(String, SensorModel)>,
     #[command(flatten)]
     pub common: CommonArguments,
@@ -88,19 +115,19 @@ pub(crate) struct BatchArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArguments {
-    /// Cloud or mesh file
+    /// Cloud or mesh file (.pcd .ply .xyz .txt .csv .stl .obj)
     pub file: PathBuf,
-    /// Length unit of a mesh file
+    /// Length unit of a mesh file: m, cm, mm or in; clouds are in metres
     #[arg(long, default_value = "m")]
     pub unit: LengthUnit,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct DemoArguments {
-    /// As printed in the paper, or calibrated
-    #[arg(long, value_enum, default_value_t = ModeName::Calibrated)]
+    /// How to estimate: calibrated, or as printed in the paper
+    #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated)]
     pub mode: ModeName,
-    /// Write the deepest pose in colour
+    /// Write the pose of the full report in colour
     #[arg(long, value_name = "OUT.ply")]
     pub ply: Option<PathBuf>,
 }
@@ -108,52 +135,53 @@ pub(crate) struct DemoArguments {
 /// What query and batch share.
 #[derive(Debug, Args)]
 pub(crate) struct CommonArguments {
-    /// Sensor of scene clouds: exact | iso:STD | axes:SX,SY,SZ |
-    /// stereo:BASELINE,FOCAL_PX,DISPARITY_STD | kinect | lidar:RANGE_STD,BEAM_RAD |
-    /// grid:RESOLUTION | per-point
-    #[arg(long, value_name = "SPEC", default_value = "iso:0.005")]
+    /// Sensor of scene clouds; see below
+    #[arg(long, value_name = "SPEC", default_value = "iso:0.005", help_heading = "Files")]
     pub sensor: SensorModel,
     /// Sensor of object clouds; that of the scene when not given
-    #[arg(long, value_name = "SPEC")]
+    #[arg(long, value_name = "SPEC", help_heading = "Files")]
     pub object_sensor: Option<SensorModel>,
-    /// Length unit of mesh files
-    #[arg(long, default_value = "m")]
+    /// Unit of meshes: m, cm, mm or in; clouds are in metres
+    #[arg(long, default_value = "m", help_heading = "Files")]
     pub unit: LengthUnit,
-    /// As printed in the paper, or calibrated
-    #[arg(long, value_enum, default_value_t = ModeName::Calibrated)]
+    /// How to estimate: calibrated, or as printed in the paper
+    #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated, help_heading = "Estimate")]
     pub mode: ModeName,
-    /// In collision above this probability
-    #[arg(long, default_value_t = 0.9)]
+    /// In collision above this probability, 0.5 to 1
+    #[arg(long, value_name = "A", default_value_t = 0.9, value_parser = parse_accept,
+          help_heading = "Estimate")]
     pub accept: f64,
-    /// Free below this probability
-    #[arg(long, default_value_t = 0.1)]
+    /// Free below this probability, 0 to 0.5
+    #[arg(long, value_name = "B", default_value_t = 0.1, value_parser = parse_reject,
+          help_heading = "Estimate")]
     pub reject: f64,
-    /// How point probabilities make one number
-    #[arg(long, value_enum, default_value_t = PoolingName::Max)]
+    /// How point probabilities make one: max, or noisy-or
+    #[arg(long, value_enum, hide_possible_values = true, default_value_t = PoolingName::Max, help_heading = "Estimate")]
     pub pooling: PoolingName,
     /// Seed of the paper's stochastic traversal
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Estimate")]
     pub seed: u64,
-    /// Drop points nearer to the sensor, m (default: 0.1 for cameras and laser scanners)
-    #[arg(long)]
+    /// Drop points nearer to the sensor [cameras and lidar: 0.1]
+    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
     pub min_range: Option<f64>,
-    /// Drop points farther from the sensor, m
-    #[arg(long)]
+    /// Drop points farther from the sensor
+    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
     pub max_range: Option<f64>,
-    /// Drop statistical outliers: neighbours and standard deviations, such as 8,3
-    #[arg(long, value_name = "K,M", value_delimiter = ',', num_args = 2)]
-    pub outliers: Option<Vec<f64>>,
+    /// Drop outliers: neighbours and standard deviations, such as 8,3
+    #[arg(long, value_name = "K,M", value_parser = parse_outliers, help_heading = "Cleaning")]
+    pub outliers: Option<OutlierSettings>,
     /// Keep veil points at depth edges, which are dropped for cameras
-    #[arg(long)]
+    #[arg(long, help_heading = "Cleaning")]
     pub keep_veil: bool,
-    /// Replace scene points by the occupied cells of a grid of this resolution, m
-    #[arg(long, value_name = "RESOLUTION")]
+    /// Replace scene points by the occupied cells of a grid
+    #[arg(long, value_name = "METRES", value_parser = parse_positive, help_heading = "Cleaning")]
     pub collision_map: Option<f64>,
-    /// Mesh of a robot link in the scene's frame: scene points inside it are dropped; repeatable
-    #[arg(long, value_name = "MESH")]
+    /// Robot link in the scene's frame: points inside go; repeatable
+    #[arg(long, value_name = "MESH", help_heading = "Cleaning")]
     pub robot: Vec<PathBuf>,
-    /// Scene points this near to a robot link are dropped too, m
-    #[arg(long, default_value_t = 0.01)]
+    /// Points this near to a robot link go too
+    #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length,
+          help_heading = "Cleaning")]
     pub robot_padding: f64,
 }
 
@@ -174,10 +202,7 @@ impl CommonArguments {
         let filter = &mut settings.filter;
         filter.min_range = self.min_range.unwrap_or(filter.min_range);
         filter.max_range = self.max_range.unwrap_or(filter.max_range);
-        filter.outliers = self.outliers.as_deref().map(|given| OutlierSettings {
-            neighbors: given.first().map_or(0, |k| *k as usize),
-            deviations: given.get(1).copied().unwrap_or(f64::NAN),
-        });
+        filter.outliers = self.outliers;
         if self.keep_veil {
             filter.veil = None;
         }
@@ -217,9 +242,61 @@ impl From<PoolingName> for Pooling {
     }
 }
 
+/// Three finite numbers. A type of its own, since clap takes a bare list for repeated values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Triple(pub [f64; 3]);
+
+fn parse_triple(text: &str) -> Result<Triple, String> {
+    let numbers = text.split(',').map(parse_finite).collect::<Result<Vec<f64>, String>>()?;
+    match numbers[..] {
+        [x, y, z] => Ok(Triple([x, y, z])),
+        _ => Err(format!("{} numbers are given: write three, as in 0.4,0,-1.2", numbers.len())),
+    }
+}
+
+fn parse_finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err(format!("`{text}` is not finite")),
+        Err(_) => Err(format!("`{text}` is not a number")),
+    }
+}
+
+fn parse_length(text: &str) -> Result<f64, String> {
+    let length = parse_finite(text)?;
+    if length >= 0.0 { Ok(length) } else { Err("a length in metres is 0 or more".to_owned()) }
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    let length = parse_finite(text)?;
+    if length > 0.0 { Ok(length) } else { Err("it must be above 0, such as 0.01".to_owned()) }
+}
+
+fn parse_accept(text: &str) -> Result<f64, String> {
+    let accept = parse_finite(text)?;
+    if (0.5..=1.0).contains(&accept) { Ok(accept) } else { Err("give 0.5 to 1".to_owned()) }
+}
+
+fn parse_reject(text: &str) -> Result<f64, String> {
+    let reject = parse_finite(text)?;
+    if (0.0..=0.5).contains(&reject) { Ok(reject) } else { Err("give 0 to 0.5".to_owned()) }
+}
+
+fn parse_outliers(text: &str) -> Result<OutlierSettings, String> {
+    let form = "write neighbours and standard deviations, as in 8,3";
+    let (neighbors, deviations) = text.split_once(',').ok_or_else(|| form.to_owned())?;
+    match neighbors.trim().parse::<usize>() {
+        Ok(neighbors) if neighbors > 0 => {
+            Ok(OutlierSettings { neighbors, deviations: parse_finite(deviations)? })
+        }
+        _ => Err(format!("`{neighbors}` is not a number of neighbours: {form}")),
+    }
+}
+
 fn parse_sensor_for(text: &str) -> Result<(String, SensorModel), String> {
-    let (name, spec) =
-        text.split_once('=').ok_or_else(|| format!("`{text}`: write NAME=SPEC, as in mug=kinect"))?;
+    let (name, spec) = text
+        .split_once('=')
+        .ok_or_else(|| format!("`{text}`: write NAME=SPEC, as in mug=kinect"))?;
     let sensor = spec.parse::<SensorModel>().map_err(|error| error.to_string())?;
     Ok((name.to_owned(), sensor))
 }

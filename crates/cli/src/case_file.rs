@@ -24,9 +24,12 @@ pub(crate) struct Case {
     pub object_sensor: Option<SensorModel>,
     /// What the file says the answer is, shown beside ours; never used.
     pub label: Option<String>,
+    /// The true distance that the file claims, m; negative in overlap; never used either.
+    pub signed_distance: Option<f64>,
 }
 
 #[derive(Deserialize)]
+#[serde(rename = "case file")]
 struct RawFile {
     format: u32,
     length_unit: String,
@@ -37,11 +40,12 @@ struct RawFile {
 struct RawCase {
     scene: PathBuf,
     object: PathBuf,
-    pose: Vec<Vec<f64>>,
+    pose: Value,
     scene_sensor: Option<String>,
     object_sensor: Option<String>,
     label: Option<String>,
     in_collision: Option<bool>,
+    signed_distance_m: Option<f64>,
 }
 
 /// Reads a case file; paths in it are relative to its folder.
@@ -49,25 +53,25 @@ struct RawCase {
 /// # Errors
 /// When the file as a whole is not a case file. A bad case does not spoil the others.
 pub(crate) fn read(path: &Path) -> Result<CaseFile> {
-    let text = std::fs::read_to_string(path)
-        .with_context(|| format!("{}: cannot read the case file", path.display()))?;
-    let raw: RawFile = serde_json::from_str(&text).with_context(|| {
-        format!(
-            "{}: not a case file; it needs \"format\", \"length_unit\" and \"cases\"",
-            path.display()
-        )
-    })?;
+    let named = || path.display().to_string();
+    let text =
+        std::fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    parse(&text, path.parent().unwrap_or(Path::new(""))).with_context(named)
+}
+
+/// The cases in the text of a case file, whose paths are relative to `folder`.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn parse(text: &[u8], folder: &Path) -> Result<CaseFile> {
+    let raw: RawFile = serde_json::from_slice(text)
+        .context("not a case file, a JSON object with \"format\", \"length_unit\" and \"cases\"")?;
     if raw.format != 1 {
-        bail!("{}: case file format {}: this version reads format 1", path.display(), raw.format);
+        bail!("format {}: this version reads format 1", raw.format);
     }
     if raw.length_unit != "m" {
-        bail!(
-            "{}: length_unit `{}`: poses must be in metres (\"m\")",
-            path.display(),
-            raw.length_unit
-        );
+        bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
     }
-    let folder = path.parent().unwrap_or(Path::new("."));
     let cases = raw
         .cases
         .into_iter()
@@ -78,30 +82,47 @@ pub(crate) fn read(path: &Path) -> Result<CaseFile> {
                 Some(other) => other.to_string(),
                 None => format!("case-{}", position + 1),
             };
-            let case = parse(value, folder).with_context(|| format!("case {id}"));
+            let case = parse_case(value, folder);
             (id, case)
         })
         .collect();
     Ok(CaseFile { cases })
 }
 
-fn parse(value: Value, folder: &Path) -> Result<Case> {
-    let raw: RawCase = serde_json::from_value(value)?;
-    let rows: Vec<f64> = raw.pose.iter().flatten().copied().collect();
-    if raw.pose.len() != 4 || rows.len() != 16 {
-        bail!("the pose has {} rows and {} numbers: it must be 4x4", raw.pose.len(), rows.len());
+fn parse_case(value: Value, folder: &Path) -> Result<Case> {
+    if !value.is_object() {
+        bail!("the case is not a JSON object but {}", kind(&value));
     }
+    let raw: RawCase = serde_json::from_value(value)?;
+    let rows: Vec<[f64; 4]> = serde_json::from_value(raw.pose)
+        .context("the pose is not a list of four rows of four numbers")?;
+    if rows.len() != 4 {
+        bail!("the pose has {} rows: it must be 4x4", rows.len());
+    }
+    let entries = rows.concat();
     let sensor = |spec: Option<String>| {
         spec.map(|s| s.parse::<SensorModel>().map_err(|error| anyhow!("{error}"))).transpose()
     };
     Ok(Case {
         scene: folder.join(raw.scene),
         object: folder.join(raw.object),
-        scene_from_object: Pose::try_from_matrix(&Matrix4::from_row_slice(&rows))?,
+        scene_from_object: Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?,
         scene_sensor: sensor(raw.scene_sensor)?,
         object_sensor: sensor(raw.object_sensor)?,
         label: raw.label.or_else(|| {
             raw.in_collision.map(|hit| if hit { "collision" } else { "apart" }.to_owned())
         }),
+        signed_distance: raw.signed_distance_m,
     })
+}
+
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Null => "null",
+        Value::Bool(_) => "a truth value",
+        Value::Number(_) => "a number",
+        Value::String(_) => "a string",
+        Value::Array(_) => "a list",
+        Value::Object(_) => "an object",
+    }
 }

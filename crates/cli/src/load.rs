@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, Mesh, SelfMesh};
-use cloudtouch_io::{Geometry, read_geometry, read_mesh};
+use cloudtouch_io::{Geometry, LengthUnit, read_geometry, read_mesh};
 
 use crate::args::CommonArguments;
 
@@ -18,6 +18,9 @@ pub(crate) enum Role {
     Object,
 }
 
+/// A mesh this large is rather in millimetres than in metres, m.
+pub(crate) const SUSPICIOUS_MESH_SIZE: f64 = 100.0;
+
 /// Reads a file and prepares it; a mesh file has no sensor.
 pub(crate) fn body(
     path: &Path,
@@ -25,9 +28,26 @@ pub(crate) fn body(
     sensor: &SensorModel,
     common: &CommonArguments,
 ) -> Result<Body> {
-    let prepared = match read_geometry(path, common.unit)? {
-        Geometry::Mesh(mesh) => Body::Mesh(Mesh::prepare(&mesh).with_context(|| named(path))?),
+    let prepared = match geometry(path, common.unit)? {
+        Geometry::Mesh(mesh) => {
+            let mesh = Mesh::prepare(&mesh).with_context(|| named(path))?;
+            if common.unit == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
+                tracing::warn!(
+                    "{}: the mesh is {:.0} m across: if the file is in millimetres, give --unit mm",
+                    path.display(),
+                    mesh.size()
+                );
+            }
+            Body::Mesh(mesh)
+        }
         Geometry::Cloud(cloud) => {
+            if cloud.covariances.is_some() && *sensor != SensorModel::PerPoint {
+                tracing::warn!(
+                    "{}: its covariance columns are passed over for the sensor {sensor}: give \
+                     --sensor per-point to use them",
+                    path.display()
+                );
+            }
             let mut settings = common.cloud_settings(sensor.clone());
             if role == Role::Scene {
                 settings.filter.robot = robot(common)?;
@@ -40,6 +60,22 @@ pub(crate) fn body(
         }
     };
     Ok(prepared)
+}
+
+/// Reads a cloud, which is in metres, or a mesh in `unit`.
+///
+/// Scans know their unit and exported meshes do not, so that the two are often mixed.
+pub(crate) fn geometry(path: &Path, unit: LengthUnit) -> Result<Geometry> {
+    // Said before the extension is looked at: `cloudtouch query folder …` is not about extensions.
+    let found =
+        std::fs::metadata(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    if found.is_dir() {
+        bail!("{}: is a folder: give a cloud or mesh file", path.display());
+    }
+    Ok(match read_geometry(path, LengthUnit::Metres)? {
+        Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(unit.in_metres())),
+        cloud => cloud,
+    })
 }
 
 fn robot(common: &CommonArguments) -> Result<Vec<SelfMesh>> {

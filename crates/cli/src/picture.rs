@@ -21,7 +21,8 @@ const ARROW_SHARE: f64 = 0.15;
 const MESH_SPACING_SHARE: f64 = 0.01;
 
 /// Writes the scene in grey, the object in blue, both towards red by the probability of each
-/// point, and each contact as a green line along its normal; all in the scene's frame.
+/// point, and each contact as a green line along its normal; all in the scene's frame, with the
+/// probability as a column too.
 pub(crate) fn write(
     path: &Path,
     scene: &Body,
@@ -29,30 +30,48 @@ pub(crate) fn write(
     scene_from_object: &Pose,
     report: &Report,
 ) -> Result<()> {
-    let mut points = Vec::new();
-    let mut colors = Vec::new();
     let likely = &report.point_probabilities;
-    let identity = Pose::identity();
-    for (body, pose, base, likely) in [
-        (scene, &identity, SCENE, &likely.a),
-        (object, scene_from_object, OBJECT, &likely.b),
-    ] {
-        let first = points.len();
-        points.extend(body_points(body).iter().map(|p| pose.transform_point(p)));
-        colors.resize(points.len(), base);
-        for &(index, probability) in likely {
-            colors[first + index] = blend(base, CERTAIN, probability);
-        }
-    }
-    let size = extent(&body_points(object));
+    let object_points: Vec<Point3> =
+        body_points(object).iter().map(|p| scene_from_object.transform_point(p)).collect();
+    let arrow = ARROW_SHARE * extent(&object_points);
+    let mut picture = Picture::default();
+    picture.add_body(&body_points(scene), SCENE, &likely.a);
+    picture.add_body(&object_points, OBJECT, &likely.b);
     for contact in &report.contacts {
         for step in 0..ARROW_POINTS {
-            let along = ARROW_SHARE * size * step as f64 / ARROW_POINTS as f64;
-            points.push(contact.point + contact.normal_a_to_b * along);
-            colors.push(CONTACT);
+            let along = arrow * step as f64 / ARROW_POINTS as f64;
+            let point = contact.point + contact.normal_a_to_b * along;
+            picture.add(point, CONTACT, contact.probability);
         }
     }
-    Ok(write_colored_ply(path, &points, &colors, None)?)
+    let Picture { points, colors, probabilities } = picture;
+    Ok(write_colored_ply(path, &points, &colors, Some(&probabilities))?)
+}
+
+/// Lists of one length.
+#[derive(Default)]
+struct Picture {
+    points: Vec<Point3>,
+    colors: Vec<Color>,
+    probabilities: Vec<f64>,
+}
+
+impl Picture {
+    fn add(&mut self, point: Point3, color: Color, probability: f64) {
+        self.points.push(point);
+        self.colors.push(color);
+        self.probabilities.push(probability);
+    }
+
+    /// Points in `base`, those that are listed in `likely` by their index redder.
+    fn add_body(&mut self, points: &[Point3], base: Color, likely: &[(usize, f64)]) {
+        let first = self.points.len();
+        points.iter().for_each(|&p| self.add(p, base, 0.0));
+        for &(index, probability) in likely {
+            self.colors[first + index] = blend(base, CERTAIN, probability);
+            self.probabilities[first + index] = probability;
+        }
+    }
 }
 
 fn body_points(body: &Body) -> Vec<Point3> {

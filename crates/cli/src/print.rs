@@ -1,10 +1,26 @@
 //! Reports for people and for programs.
 
 use std::fmt::Write as _;
+use std::io::{ErrorKind, Write as _};
 
-use anyhow::Result;
-use cloudtouch::{Body, Report, StageReport, Verdict};
+use anyhow::{Context, Result};
+use cloudtouch::{Body, Clearance, Report, StageReport, Verdict};
 use serde::Serialize;
+
+/// Prints a whole answer.
+///
+/// A reader that has seen enough (`cloudtouch … | head`) is no error, and does not change the exit
+/// code: a collision must not become a success.
+pub(crate) fn to_stdout(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        outcome => outcome.context("standard output: cannot be written"),
+    }
+}
+
+/// A report for people shows this many contacts; JSON has them all.
+const CONTACTS_SHOWN: usize = 5;
 
 /// A report with the name of its case: one line of JSON.
 #[derive(Serialize)]
@@ -43,6 +59,11 @@ pub(crate) fn probability(p: f64) -> String {
     if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
 }
 
+/// A gap in millimetres with its standard deviation, or a dash when none was computed.
+pub(crate) fn gap_mm(clearance: Option<Clearance>) -> String {
+    clearance.map_or("-".to_owned(), |c| format!("{:+.1} ± {:.1}", 1e3 * c.mean, 1e3 * c.std))
+}
+
 /// A whole report in a few lines.
 pub(crate) fn report(report: &Report) -> String {
     let mut text = String::new();
@@ -63,16 +84,19 @@ pub(crate) fn report(report: &Report) -> String {
                 1e3 * c.std
             );
         }
-        None => text.push_str("clearance              not computed: everything was culled\n"),
+        None => text.push_str("clearance              not computed: too far apart to matter\n"),
     }
     if !report.contacts.is_empty() {
-        text.push_str("contacts               point (m)                 normal scene to object    P      gap (mm)\n");
+        text.push_str(
+            "contacts               point (m)                 normal scene to object    P       \
+             gap (mm)\n",
+        );
     }
-    for contact in report.contacts.iter().take(5) {
+    for contact in report.contacts.iter().take(CONTACTS_SHOWN) {
         let (p, n) = (contact.point, contact.normal_a_to_b);
         let _ = writeln!(
             text,
-            "                       {:7.3} {:7.3} {:7.3}   {:6.2} {:6.2} {:6.2}   {:>7}   {:+.1}",
+            "                       {:7.3} {:7.3} {:7.3}   {:6.2} {:6.2} {:6.2}      {:<7} {:+.1}",
             p.x,
             p.y,
             p.z,
@@ -83,11 +107,15 @@ pub(crate) fn report(report: &Report) -> String {
             1e3 * contact.clearance_m
         );
     }
+    if report.contacts.len() > CONTACTS_SHOWN {
+        let more = report.contacts.len() - CONTACTS_SHOWN;
+        let _ = writeln!(text, "                       and {more} more");
+    }
     let s = &report.stats;
     let _ = writeln!(
         text,
-        "work                   {} node pairs, {} leaf pairs, {} linear certificates, \
-         {} kernel solves, {} fallbacks, {} undecided",
+        "work                   {} node pairs, {} leaf pairs; {} settled by a plane, {} kernel \
+         solves,\n                       {} fallbacks, {} undecided",
         s.nodes_visited,
         s.leaf_pairs,
         s.linear_certificates,

@@ -55,6 +55,14 @@ impl<'a> BodyRef<'a> {
         }
     }
 
+    /// How many points stand for the body: those of a cloud, the corners of a mesh.
+    pub(crate) fn point_count(&self) -> usize {
+        match self {
+            Self::Cloud(cloud) => cloud.len(),
+            Self::Mesh(mesh) => 3 * mesh.triangle_count(),
+        }
+    }
+
     pub(crate) fn origin(&self) -> Vector3 {
         match self {
             Self::Cloud(cloud) => cloud.origin(),

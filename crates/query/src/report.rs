@@ -15,8 +15,8 @@ pub struct Report {
     pub bounds: [f64; 2],
     /// The decision at the thresholds of the query.
     pub verdict: Verdict,
-    /// Gap between the surfaces where they come closest among the parts looked at; `None` when
-    /// everything was culled before a gap was computed.
+    /// Gap between the surfaces at the most probable place; `None` when what was culled may be
+    /// closer, so that a gap that is given is the one that decides.
     pub clearance_m: Option<Clearance>,
     /// Where the surfaces touch or may touch, most probable first.
     pub contacts: Vec<Contact>,

@@ -1,7 +1,7 @@
 //! `cloudtouch batch`: many poses; scenes and objects are prepared once.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Write as _;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -54,14 +54,11 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     if let Some(path) = &arguments.jsonl {
         write_atomically(path, |out| lines.iter().try_for_each(|line| writeln!(out, "{line}")))?;
     }
-    let mut out = std::io::stdout().lock();
-    if arguments.json {
-        for line in &lines {
-            writeln!(out, "{line}")?;
-        }
+    print::to_stdout(&if arguments.json {
+        lines.iter().map(|line| format!("{line}\n")).collect()
     } else {
-        write_table(&mut out, &file.cases, &answers)?;
-    }
+        table(&file.cases, &answers)
+    })?;
     let failed = answers.iter().any(Result::is_err);
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
@@ -129,54 +126,56 @@ fn progress_bar(length: usize, unit: &'static str) -> ProgressBar {
     ProgressBar::new(length as u64).with_style(style).with_message(unit)
 }
 
-fn write_table(
-    out: &mut impl std::io::Write,
-    cases: &[(String, Result<Case>)],
-    answers: &[Answer],
-) -> Result<()> {
-    writeln!(
-        out,
-        "{:<8} {:<10} {:>7}  {:<17} {:<13} {:>11}  {:>8}  scene / object",
-        "case", "label", "P", "bounds", "verdict", "gap (mm)", "time"
-    )?;
+/// One line a case, and a line about all of them.
+fn table(cases: &[(String, Result<Case>)], answers: &[Answer]) -> String {
+    let label_of = |case: &Result<Case>| {
+        case.as_ref().ok().and_then(|c| c.label.clone()).unwrap_or("-".to_owned())
+    };
+    let width =
+        |least: usize, texts: &mut dyn Iterator<Item = usize>| texts.fold(least, usize::max);
+    let id_width = width(4, &mut cases.iter().map(|(id, _)| id.chars().count()));
+    let label_width = width(5, &mut cases.iter().map(|(_, c)| label_of(c).chars().count()));
+    let mut text = format!(
+        "{:<id_width$}  {:<label_width$}  {:>5}  {:<14}  {:<12}  {:>14}  {:>10}  scene / object\n",
+        "case", "label", "P", "bounds", "verdict", "clearance (mm)", "time"
+    );
+    // Writing to a string cannot fail.
     for ((id, case), answer) in cases.iter().zip(answers) {
-        let label = case.as_ref().ok().and_then(|c| c.label.as_deref()).unwrap_or("-");
+        let label = label_of(case);
         let report = match answer {
             Ok(report) => report,
             Err(error) => {
-                writeln!(out, "{id:<8} {label:<10} error: {error}")?;
+                let _ = writeln!(text, "{id:<id_width$}  {label:<label_width$}  error: {error}");
                 continue;
             }
         };
         let [low, high] = report.bounds.map(print::probability);
-        let gap = report
-            .clearance_m
-            .map_or("-".to_owned(), |c| format!("{:+.1}±{:.1}", 1e3 * c.mean, 1e3 * c.std));
         let files = case.as_ref().map_or(String::new(), |c| {
             let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
             format!("{} / {}", name(&c.scene), name(&c.object))
         });
-        writeln!(
-            out,
-            "{id:<8} {label:<10} {:>7}  {:<17} {:<13} {gap:>11}  {:>5.1} ms  {files}",
+        let _ = writeln!(
+            text,
+            "{id:<id_width$}  {label:<label_width$}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {files}",
             print::probability(report.collision_probability),
             format!("{low} .. {high}"),
             print::verdict(report.verdict),
+            print::gap_mm(report.clearance_m),
             report.stats.query_us as f64 / 1e3,
-        )?;
+        );
     }
     let reports: Vec<&Report> = answers.iter().filter_map(|a| a.as_ref().ok()).collect();
+    let _ = write!(text, "{} answers, {} errors", reports.len(), answers.len() - reports.len());
     if !reports.is_empty() {
-        writeln!(
-            out,
-            "{} answers, {} errors; median query {:.2} ms, median preparation {:.1} ms",
-            reports.len(),
-            answers.len() - reports.len(),
+        let _ = write!(
+            text,
+            "; median query {:.2} ms, median preparation {:.1} ms",
             median(reports.iter().map(|r| r.stats.query_us)) / 1e3,
             median(reports.iter().map(|r| r.stats.prepare_us)) / 1e3,
-        )?;
+        );
     }
-    Ok(())
+    text.push('\n');
+    text
 }
 
 fn median(values: impl Iterator<Item = u64>) -> f64 {

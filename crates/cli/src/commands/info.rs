@@ -1,34 +1,33 @@
 //! `cloudtouch info`: what a file holds, and which sensor suits it.
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use anyhow::Result;
 use cloudtouch::geom::{Point3, PointCloud, TriangleMesh};
 use cloudtouch::noise::{Neighborhoods, typical_spacing};
 use cloudtouch::{FilterSettings, filter};
-use cloudtouch_io::{Geometry, read_geometry};
+use cloudtouch_io::Geometry;
 
 use crate::args::InfoArguments;
+use crate::load::{self, SUSPICIOUS_MESH_SIZE};
+use crate::print;
 
 /// Points whose neighbours tell the spacing.
 const SPACING_SAMPLE: usize = 500;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
-    let text = match read_geometry(&arguments.file, arguments.unit)? {
+    let text = match load::geometry(&arguments.file, arguments.unit)? {
         Geometry::Cloud(cloud) => describe_cloud(&cloud)?,
         Geometry::Mesh(mesh) => describe_mesh(&mesh),
     };
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "{}\n{text}", arguments.file.display())?;
+    print::to_stdout(&format!("{}\n{text}\n", arguments.file.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn describe_cloud(cloud: &PointCloud) -> Result<String> {
     let cleaned = filter(cloud, &FilterSettings::default())?;
-    let removed = |stage: &str| {
-        cleaned.stages.iter().find(|s| s.stage == stage).map_or(0, |s| s.removed)
-    };
+    let removed =
+        |stage: &str| cleaned.stages.iter().find(|s| s.stage == stage).map_or(0, |s| s.removed);
     let mut lines = vec![
         format!("rows        {}{}", cloud.len(), image(cloud)),
         format!("missing     {} (NaN or infinite)", removed("missing")),
@@ -97,7 +96,7 @@ fn describe_mesh(mesh: &TriangleMesh) -> String {
     ];
     if let Some((low, high)) = mesh.bounding_box() {
         lines.push(format!("box         {} to {} m", triple(&low), triple(&high)));
-        if (high - low).amax() > 100.0 {
+        if (high - low).norm() > SUSPICIOUS_MESH_SIZE {
             lines.push("unit        hundreds of metres across: --unit mm?".to_owned());
         }
     }

@@ -1,13 +1,12 @@
 //! `cloudtouch query`: one object in one scene at one pose.
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use anyhow::Result;
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{Query, Verdict};
 
-use crate::args::QueryArguments;
+use crate::args::{QueryArguments, Triple};
 use crate::load::{self, Role};
 use crate::{picture, pose_file, print};
 
@@ -22,14 +21,13 @@ pub(crate) fn run(arguments: &QueryArguments) -> Result<ExitCode> {
     if let Some(path) = &arguments.ply {
         picture::write(path, &scene, &object, &pose, &report)?;
     }
-    let mut out = std::io::stdout().lock();
-    if arguments.json {
-        writeln!(out, "{}", print::json_line("query", &report)?)?;
+    let text = if arguments.json {
+        print::json_line("query", &report)?
     } else {
-        writeln!(out, "{}", print::body("scene", &scene))?;
-        writeln!(out, "{}", print::body("object", &object))?;
-        writeln!(out, "{}", print::report(&report))?;
-    }
+        [print::body("scene", &scene), print::body("object", &object), print::report(&report)]
+            .join("\n")
+    };
+    print::to_stdout(&format!("{text}\n"))?;
     Ok(if arguments.exit_code { exit_code(report.verdict) } else { ExitCode::SUCCESS })
 }
 
@@ -37,15 +35,9 @@ fn pose(arguments: &QueryArguments) -> Result<Pose> {
     if let Some(path) = &arguments.pose {
         return pose_file::read(path);
     }
-    let triple = |given: &Option<Vec<f64>>| match given.as_deref() {
-        Some(&[x, y, z]) => [x, y, z],
-        _ => [0.0; 3],
-    };
-    let [translate, rotate] = [&arguments.translate, &arguments.rotate_rpy].map(triple);
-    if let Some(value) = translate.iter().chain(&rotate).find(|v| !v.is_finite()) {
-        anyhow::bail!("the pose contains {value}: give finite numbers");
-    }
-    Ok(Pose::from_translation_rpy(Vector3::from(translate), rotate))
+    let given = |triple: Option<Triple>| triple.map_or([0.0; 3], |Triple(numbers)| numbers);
+    let offset = Vector3::from(given(arguments.translate));
+    Ok(Pose::from_translation_rpy(offset, given(arguments.rotate_rpy)))
 }
 
 fn exit_code(verdict: Verdict) -> ExitCode {

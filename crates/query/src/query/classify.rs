@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
-    Class, Classifier, DEFAULT_KAPPA_MAX, Kernel, Problem, Rung, Sample, Separation, Settings,
+    Class, Classifier, DEFAULT_KAPPA_MAX, Kernel, Problem, Rung, Sample, Settings, Solution,
     Status, UnitBox, balanced_penalties, separate,
 };
 
@@ -55,11 +55,19 @@ impl PairAnswer {
 /// every point is less probable than 1e-6.
 const CERTAIN_DEVIATIONS: f64 = DEFAULT_KAPPA_MAX;
 
+/// A kernel classifier is not trusted where the typical standard deviation is larger than this
+/// share of the pair: with ellipsoids as large as the scene, f can be bent flat at every point and
+/// its confident probabilities mean nothing.
+const TRUSTED_STD: f64 = 0.5;
+/// How much tighter a collapsed problem is solved before it is believed.
+const TIGHTER: f64 = 1e-3;
+
 /// Climbs the ladder until a rung answers.
 ///
 /// A probability is a statement about the best separating surface there is: among the surfaces
-/// tried, the calibrated mode takes the one whose worst point is least probable. The paper's mode
-/// takes the kernel classifier whenever it was trained.
+/// tried, the calibrated mode takes the one whose worst point is least probable, and trains no
+/// kernel classifier where a plane already keeps every point below what is `known` from other
+/// pairs. The paper's mode takes the kernel classifier unless a plane is certain.
 pub(crate) fn classify(
     points: &PairPoints,
     settings: &QuerySettings,
@@ -69,13 +77,13 @@ pub(crate) fn classify(
     let uncertain = |side: &[PairPoint]| side.iter().map(|p| p.point).collect::<Vec<_>>();
     let (a, b) = (uncertain(&points.a), uncertain(&points.b));
     let separation = separate(&a, &b, CERTAIN_DEVIATIONS);
-    let plane = separation.and_then(|s| by_plane(s, &a, &b));
+    let plane = separation.and_then(|s| score(Surface::Plane(s), &a, &b));
     let plane = match plane {
-        Some(plane) if separation.is_some_and(|s| s.kappa >= CERTAIN_DEVIATIONS) => {
+        Some(plane)
+            if separation.is_some_and(|s| s.kappa >= CERTAIN_DEVIATIONS)
+                || (settings.mode == Mode::Calibrated && plane.largest() <= known) =>
+        {
             stats.linear_certificates += 1;
-            return plane;
-        }
-        Some(plane) if settings.mode == Mode::Calibrated && plane.largest() <= known => {
             return plane;
         }
         plane => plane,
@@ -90,15 +98,7 @@ pub(crate) fn classify(
     }
 }
 
-/// The plane's own probabilities.
-fn by_plane(
-    separation: Separation,
-    a: &[UncertainPoint],
-    b: &[UncertainPoint],
-) -> Option<PairAnswer> {
-    score(Surface::Plane(separation), a, b)
-}
-
+/// The probabilities that a surface gives the points; `None` when one of them is not a number.
 fn score(surface: Surface, a: &[UncertainPoint], b: &[UncertainPoint]) -> Option<PairAnswer> {
     let side = |points: &[UncertainPoint], class| {
         points.iter().map(|p| surface.probability(p, class)).collect::<Option<Vec<f64>>>()
@@ -107,10 +107,20 @@ fn score(surface: Surface, a: &[UncertainPoint], b: &[UncertainPoint]) -> Option
     Some(PairAnswer::Separated { surface, a, b })
 }
 
+/// Median over the points of the largest standard deviation in any direction, m.
+fn typical_std(points: &[UncertainPoint]) -> f64 {
+    let mut stds: Vec<f64> = points.iter().map(|p| p.covariance.max_std()).collect();
+    stds.sort_by(f64::total_cmp);
+    stds[stds.len() / 2]
+}
+
 fn by_kernel(points: &PairPoints, settings: &QuerySettings, stats: &mut Stats) -> PairAnswer {
     stats.kernel_solves += 1;
     let all: Vec<UncertainPoint> = points.a.iter().chain(&points.b).map(|p| p.point).collect();
     let Some(unit_box) = UnitBox::around(&all) else { return PairAnswer::Undecided };
+    if typical_std(&all) * unit_box.scale() > TRUSTED_STD {
+        return PairAnswer::Indistinct;
+    }
     let (penalty_a, penalty_b) =
         balanced_penalties(settings.penalty, points.a.len(), points.b.len());
     let factor = |is_mesh: bool| if is_mesh { settings.mesh_penalty_factor } else { 1.0 };
@@ -128,12 +138,18 @@ fn by_kernel(points: &PairPoints, settings: &QuerySettings, stats: &mut Stats) -
         })
         .collect();
     let kernel = Kernel::Gaussian { gamma: settings.gamma };
-    let solver = Settings::with_relative_gap(settings.relative_gap);
-    let (Ok(problem), Ok(solver)) = (Problem::try_new(&samples, kernel), solver) else {
-        return PairAnswer::Undecided;
+    let Ok(problem) = Problem::try_new(&samples, kernel) else { return PairAnswer::Undecided };
+    let mut solve = |relative_gap: f64| -> Option<Solution> {
+        let solution = problem.solve(&Settings::with_relative_gap(relative_gap).ok()?);
+        stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
+        Some(solution)
     };
-    let solution = problem.solve(&solver);
-    stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
+    let mut solution = solve(settings.relative_gap);
+    if solution.as_ref().is_some_and(|s| s.status == Status::Collapsed) {
+        // A loose tolerance cannot tell a small w from none: once more, tighter.
+        solution = solve(settings.relative_gap * TIGHTER);
+    }
+    let Some(solution) = solution else { return PairAnswer::Undecided };
     stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
     if solution.status == Status::Collapsed {
         return PairAnswer::Indistinct;

@@ -5,7 +5,7 @@ use cloudtouch_geom::Point3;
 use crate::POINT_FLOOR;
 use crate::report::{Clearance, Contact, PointProbabilities, Stats};
 
-use super::pool::{PointProbability, Side};
+use super::pool::{self, PointProbability, Side};
 
 /// Everything the parts of a query add to, and the report is made from.
 #[derive(Debug, Default)]
@@ -65,12 +65,20 @@ impl Evidence {
         self.largest
     }
 
+    /// What a point must exceed to change the answer, however probabilities are pooled.
+    pub(crate) fn relevant_probability(&self) -> f64 {
+        pool::SHARE_OF_MAX * self.largest
+    }
+
     pub(crate) fn bound_of_rest(&self) -> f64 {
         self.bound_of_rest
     }
 
-    pub(crate) fn clearance(&self) -> Option<Clearance> {
-        self.clearance.map(|(_, clearance)| clearance)
+    /// The gap at the most probable place; `None` when a place that was left out may be closer.
+    /// In a collision above `accept` the search may have ended at the first certain place.
+    pub(crate) fn clearance(&self, accept: f64) -> Option<Clearance> {
+        let (probability, clearance) = self.clearance?;
+        (probability > accept || probability >= self.bound_of_rest).then_some(clearance)
     }
 
     /// One entry per point, its largest probability: a point may stand in several leaf pairs.

@@ -23,7 +23,7 @@ pub(crate) struct PointProbability {
 }
 
 /// Points below this share of the largest probability add nothing but noise.
-const SHARE_OF_MAX: f64 = 0.8;
+pub(crate) const SHARE_OF_MAX: f64 = 0.8;
 
 /// The largest probability; 0 without points.
 pub(crate) fn max(points: &[PointProbability]) -> f64 {
@@ -57,6 +57,16 @@ pub(crate) fn noisy_or(points: &[PointProbability]) -> f64 {
         }
     }
     1.0 - all_free
+}
+
+/// Upper bound on [`noisy_or`] when `total` points at most were left out, none of them more
+/// probable than `rest`.
+pub(crate) fn noisy_or_bound(points: &[PointProbability], rest: f64, total: usize) -> f64 {
+    let pooled = noisy_or(points);
+    if rest < SHARE_OF_MAX * max(points) {
+        return pooled;
+    }
+    1.0 - (1.0 - pooled) * (1.0 - rest).powf(total as f64)
 }
 
 #[cfg(test)]

@@ -76,7 +76,7 @@ impl Query {
         } else {
             self.gather_evidence(a, b, &local, &mut evidence)?;
         }
-        let mut report = self.report(evidence, a);
+        let mut report = self.report(evidence, a, b);
         let micros = |d: std::time::Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
         report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
         report.stats.query_us = micros(start.elapsed());
@@ -175,35 +175,39 @@ impl Query {
         let settings = &self.settings;
         let outcome =
             traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
-                let known = evidence.largest();
-                if settings.mode == Mode::Calibrated && pair.bound <= known {
-                    evidence.widen(pair.bound);
-                    return Flow::Continue;
-                }
+                let relevant = match settings.mode {
+                    Mode::Calibrated => evidence.relevant_probability(),
+                    // As printed, but for pairs that no probability can come from.
+                    Mode::Paper => 0.0,
+                };
+                let next = Flow::Above(relevant.max(settings.cull_probability));
                 let stats = &mut evidence.stats;
                 let Some(points) = gather((a, pair.a), (b, pair.b), a_from_b, stats) else {
                     evidence.widen(leaf_pair::bound_left_out());
-                    return Flow::Continue;
+                    return next;
                 };
                 stats.leaf_pairs += 1;
-                let answer = classify(&points, settings, known, stats);
+                let answer = classify(&points, settings, relevant, stats);
                 add_pair(&points, &answer, evidence);
-                if evidence.largest() > settings.stop_above { Flow::Stop } else { Flow::Continue }
+                if evidence.largest() > settings.stop_above { Flow::Stop } else { next }
             })?;
         evidence.stats.nodes_visited += outcome.nodes_visited;
         evidence.widen(outcome.culled_bound.max(outcome.pending_bound));
         Ok(())
     }
 
-    fn report(&self, mut evidence: Evidence, a: BodyRef<'_>) -> Report {
+    fn report(&self, mut evidence: Evidence, a: BodyRef<'_>, b: BodyRef<'_>) -> Report {
+        let rest = evidence.bound_of_rest();
         let points = evidence.merge_points();
         let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points));
-        let collision_probability = match self.settings.pooling {
-            Pooling::Max => max_probability,
-            Pooling::NoisyOr => noisy_or_probability,
+        let (collision_probability, upper) = match self.settings.pooling {
+            Pooling::Max => (max_probability, max_probability.max(rest)),
+            Pooling::NoisyOr => {
+                let total = a.point_count() + b.point_count();
+                (noisy_or_probability, pool::noisy_or_bound(points, rest, total))
+            }
         };
         let lower = collision_probability;
-        let upper = collision_probability.max(evidence.bound_of_rest());
         let mut contacts = evidence.top_contacts(self.settings.max_contacts);
         for contact in &mut contacts {
             contact.point += a.origin();
@@ -213,7 +217,7 @@ impl Query {
             collision_probability,
             bounds: [lower, upper],
             verdict: self.verdict(collision_probability, stats.undecided),
-            clearance_m: evidence.clearance(),
+            clearance_m: evidence.clearance(self.settings.accept),
             contacts,
             stats,
             seed: self.settings.seed,

@@ -1,0 +1,113 @@
+//! `cloudtouch batch`: tables, JSON lines, bad cases among good ones.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use support::{HEIGHTS, Inputs, case_at, case_file};
+
+fn good_cases() -> String {
+    case_file(&HEIGHTS.map(|(verdict, _, height)| case_at(verdict, height)))
+}
+
+#[test]
+fn every_case_gets_a_line_in_order() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &good_cases());
+    let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(0).json_lines();
+    assert_eq!(lines.len(), HEIGHTS.len());
+    for (line, (verdict, _, _)) in lines.iter().zip(HEIGHTS) {
+        assert_eq!((&line["id"], &line["verdict"]), (&verdict.into(), &verdict.into()));
+    }
+}
+
+#[test]
+fn the_table_has_a_row_a_case() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &good_cases());
+    let text = inputs.run(&["batch", "cases.json"]).quiet(0).stdout();
+    assert_eq!(text.lines().count(), HEIGHTS.len() + 2, "{text}");
+    assert!(text.contains("in collision") && text.contains("floor.pcd / box.obj"), "{text}");
+    assert!(text.contains("3 answers, 0 errors"), "{text}");
+}
+
+#[test]
+fn the_file_has_what_json_prints() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &good_cases());
+    let run = inputs.run(&["batch", "cases.json", "--json", "--jsonl", "out.jsonl"]).quiet(0);
+    assert_eq!(std::fs::read_to_string(inputs.path("out.jsonl")).unwrap(), run.stdout());
+}
+
+#[test]
+fn bad_cases_keep_their_place_and_the_rest_goes_on() {
+    let inputs = Inputs::new();
+    let with = |from: &str, to: &str| {
+        let case = case_at("bad", 0.1);
+        assert!(case.contains(from));
+        case.replace(from, to)
+    };
+    let cases = [
+        ("not a JSON object", "5".to_owned()),
+        ("not a JSON object", "null".to_owned()),
+        ("missing field `scene`", r#"{"id":"bad"}"#.to_owned()),
+        ("gone.pcd: cannot be read", with("floor.pcd", "gone.pcd")),
+        ("not a rotation", with("[[1,", "[[2,")),
+        ("mirrors", with("[[1,", "[[-1,")),
+        ("four rows of four numbers", with("[[1,", "[[null,")),
+        ("four rows of four numbers", with("[[1,", "[[1,1,")),
+        ("3 rows", with("[[1,0,0,0.01],", "[")),
+        ("last row", with("[0,0,0,1]", "[0,0,1,1]")),
+        ("unknown sensor `sonar`", with("iso:0.002", "sonar")),
+    ];
+    let mut entries: Vec<String> = cases.iter().map(|(_, case)| case.clone()).collect();
+    entries.push(case_at("good", 0.5));
+    inputs.write("cases.json", &case_file(&entries));
+    let run = inputs.run(&["batch", "cases.json", "--json"]).quiet(1);
+    let lines = run.json_lines();
+    assert_eq!(lines.len(), entries.len());
+    for ((expected, case), line) in cases.iter().zip(&lines) {
+        let error = line["error"].as_str().unwrap();
+        assert!(error.contains(expected), "{case} gives {error}");
+        assert!(line.get("verdict").is_none() && line.as_object().unwrap().len() == 2, "{line}");
+    }
+    assert_eq!((&lines[0]["id"], &lines[1]["id"]), (&"case-1".into(), &"case-2".into()));
+    assert_eq!(lines.last().unwrap()["verdict"], "free");
+    let table = inputs.run(&["batch", "cases.json"]).quiet(1).stdout();
+    assert!(table.contains("1 answers, 11 errors"), "{table}");
+}
+
+#[test]
+fn sensors_of_cases_win_over_options() {
+    let inputs = Inputs::new();
+    let case = case_at("own", 0.11);
+    let plain = case.replace(r#""scene_sensor":"iso:0.002","#, "").replace("own", "plain");
+    inputs.write("cases.json", &case_file(&[case, plain]));
+    let probabilities = |option: &str| {
+        let lines = inputs.run(&["batch", "cases.json", "--json", option]).quiet(0).json_lines();
+        lines.iter().map(|l| l["collision_probability"].as_f64().unwrap()).collect::<Vec<_>>()
+    };
+    let [plain, named] = ["--sensor=iso:0.03", "--sensor-for=floor=iso:0.03"].map(probabilities);
+    assert_eq!(plain, named);
+    assert!(plain[1] > plain[0], "{plain:?}");
+    let same = probabilities("--sensor=iso:0.002");
+    assert_eq!(same, [plain[0]; 2]);
+}
+
+#[test]
+fn threads_do_not_change_the_answers() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &good_cases());
+    let answers = |threads: &str| {
+        let mut command = assert_cmd::Command::cargo_bin("cloudtouch").unwrap();
+        let output = command
+            .env("RAYON_NUM_THREADS", threads)
+            .args(["batch", "--json"])
+            .arg(inputs.path("cases.json"))
+            .output()
+            .unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        let lines =
+            text.lines().map(|line| line.split("\"prepare_us\"").next().unwrap().to_owned());
+        lines.collect::<Vec<_>>()
+    };
+    assert_eq!(answers("1"), answers("3"));
+}

@@ -1,0 +1,31 @@
+//! `cloudtouch demo`: runs without any file, in a hundred columns, and is honest about errors.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use support::Inputs;
+
+#[test]
+fn shows_twelve_poses_and_one_in_full() {
+    let inputs = Inputs::new();
+    let before = inputs.names();
+    let text = inputs.run(&["demo"]).quiet(0).stdout();
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    let row = |line: &&str| line.contains(" apart ") || line.contains(" overlap ");
+    assert_eq!(text.lines().filter(row).count(), 12, "{text}");
+    for expected in ["29576 points", "9000 points", "in full", "collision probability"] {
+        assert!(text.contains(expected), "{text}");
+    }
+    // The ends of the series leave no doubt: 25 cm apart, 12 cm of overlap.
+    let rows: Vec<&str> = text.lines().filter(row).collect();
+    assert!(rows[0].contains("free") && rows[11].contains("in collision"), "{text}");
+    assert_eq!(inputs.names(), before);
+}
+
+#[test]
+fn paints_the_pose_it_shows() {
+    let inputs = Inputs::new();
+    let text = inputs.run(&["demo", "--ply", "demo.ply"]).quiet(0).stdout();
+    assert!(text.contains("demo.ply"), "{text}");
+    let picture = cloudtouch_io::read_cloud(inputs.path("demo.ply")).unwrap();
+    assert!(picture.points.len() >= 29576 + 9000, "{} points", picture.points.len());
+}

@@ -1,0 +1,112 @@
+//! Error messages: on standard error, with the file, what was found and what to do.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use support::Inputs;
+
+/// Runs the tool, which has to fail with one line that has all `parts`, and prints nothing.
+fn check(inputs: &Inputs, arguments: &[&str], parts: &[&str]) {
+    let before = inputs.names();
+    let run = inputs.run(arguments);
+    let error = run.stderr();
+    assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{arguments:?}: {error}");
+    assert!(error.starts_with("error: ") && error.lines().count() == 1, "{error}");
+    for part in parts {
+        assert!(error.contains(part), "`{part}` is not in: {error}");
+    }
+    assert_eq!(inputs.names(), before, "{arguments:?} left something behind");
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let inputs = Inputs::new();
+    inputs.write("empty.pcd", "");
+    inputs.write("cut.xyz", "1 2 3\n4 5\n");
+    inputs.write("notes.docx", "hello");
+    std::fs::create_dir(inputs.path("folder.pcd")).unwrap();
+    for (file, parts) in [
+        ("gone.pcd", &["gone.pcd: cannot be read: No such file"][..]),
+        ("gone", &["gone: cannot be read: No such file"]),
+        ("empty.pcd", &["empty.pcd", "empty"]),
+        ("folder.pcd", &["folder.pcd: is a folder"]),
+        (".", &[".: is a folder"]),
+        ("notes.docx", &["notes.docx", "docx", ".pcd"]),
+        ("cut.xyz", &["cut.xyz", "line 2", "2 values"]),
+    ] {
+        check(&inputs, &["query", file, "box.obj"], parts);
+        check(&inputs, &["query", "floor.pcd", file], parts);
+        check(&inputs, &["info", file], parts);
+    }
+}
+
+#[test]
+fn clouds_with_nothing_in_them() {
+    let inputs = Inputs::new();
+    inputs.write("nan.xyz", "nan nan nan\nnan nan nan\n");
+    check(&inputs, &["query", "nan.xyz", "box.obj"], &["nan.xyz", "no point is left of 2"]);
+    let far = ["query", "floor.pcd", "box.obj", "--min-range", "100"];
+    check(&inputs, &far, &["floor.pcd", "no point is left of 441", "range removed 441"]);
+    let twisted = ["query", "floor.pcd", "box.obj", "--min-range=2", "--max-range=1"];
+    check(&inputs, &twisted, &["range limits 2 m to 1 m", "min < max"]);
+    let columns = ["query", "floor.pcd", "box.obj", "--sensor", "per-point"];
+    check(&inputs, &columns, &["floor.pcd", "covariance"]);
+}
+
+#[test]
+fn pose_files() {
+    let inputs = Inputs::new();
+    let rest = "0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+    for (text, parts) in [
+        (format!("1 0 0 nan\n{rest}"), &["pose.txt", "(0, 3) is NaN", "finite"][..]),
+        (format!("1 0 0 inf\n{rest}"), &["pose.txt", "(0, 3) is inf", "finite"]),
+        (format!("2 0 0 0\n{rest}"), &["pose.txt", "not a rotation", "remove scale"]),
+        (format!("-1 0 0 0\n{rest}"), &["pose.txt", "mirrors"]),
+        ("1 0 0 0 0 1 0 0 0 0 1 0 5 0 0 1".to_owned(), &["pose.txt", "last row", "row-major"]),
+        ("1 2 3".to_owned(), &["pose.txt", "found 3 numbers", "16"]),
+        (format!("1 0 0 west\n{rest}"), &["pose.txt", "line 1", "`west`"]),
+    ] {
+        inputs.write("pose.txt", &text);
+        check(&inputs, &["query", "floor.pcd", "box.obj", "--pose", "pose.txt"], parts);
+    }
+    let gone = ["query", "floor.pcd", "box.obj", "--pose", "gone.txt"];
+    check(&inputs, &gone, &["gone.txt: cannot read the pose"]);
+}
+
+#[test]
+fn case_files() {
+    let inputs = Inputs::new();
+    for (text, parts) in [
+        ("", &["cases.json", "not a case file", "line 1"][..]),
+        ("[1]", &["cases.json", "not a case file", "\"cases\""]),
+        (r#"{"format":1,"length_unit":"m"}"#, &["missing field `cases`"]),
+        (r#"{"format":2,"length_unit":"m","cases":[]}"#, &["format 2", "format 1"]),
+        (r#"{"format":1,"length_unit":"mm","cases":[]}"#, &["`mm`", "metres"]),
+        (r#"{"format":1,"length_unit":"m","cases":[{"pose":NaN}]}"#, &["line 1 column"]),
+    ] {
+        inputs.write("cases.json", text);
+        check(&inputs, &["batch", "cases.json"], parts);
+    }
+    check(&inputs, &["batch", "floor.pcd"], &["floor.pcd: not a case file"]);
+    check(&inputs, &["batch", "gone.json"], &["gone.json: cannot be read"]);
+    check(&inputs, &["batch", "."], &[".: cannot be read"]);
+}
+
+#[test]
+fn outputs_that_cannot_be_written() {
+    let inputs = Inputs::new();
+    let ply = ["query", "floor.pcd", "box.obj", "--ply", "gone/out.ply"];
+    check(&inputs, &ply, &["gone/out.ply: cannot be written"]);
+    check(&inputs, &["demo", "--ply", "gone/out.ply"], &["gone/out.ply: cannot be written"]);
+    let case = support::case_at("a", 0.5);
+    inputs.write("cases.json", &support::case_file(&[case]));
+    let jsonl = ["batch", "cases.json", "--jsonl", "gone/out.jsonl"];
+    check(&inputs, &jsonl, &["gone/out.jsonl: cannot be written"]);
+}
+
+#[test]
+fn a_failed_query_leaves_an_old_picture_alone() {
+    let inputs = Inputs::new();
+    inputs.write("out.ply", "old");
+    check(&inputs, &["query", "gone.pcd", "box.obj", "--ply", "out.ply"], &["gone.pcd"]);
+    assert_eq!(std::fs::read_to_string(inputs.path("out.ply")).unwrap(), "old");
+}

@@ -1,0 +1,46 @@
+//! `cloudtouch info`: clouds and meshes.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use cloudtouch::geom::{Point3, PointCloud};
+use support::Inputs;
+
+#[test]
+fn counts_what_a_cloud_holds() {
+    let inputs = Inputs::new();
+    let mut cloud = support::floor();
+    cloud.points.push(cloud.points[0]);
+    cloud.points.push(Point3::new(f64::NAN, 0.0, 0.0));
+    cloudtouch_io::write_cloud_pcd(inputs.path("cloud.pcd"), &cloud).unwrap();
+    let text = inputs.run(&["info", "cloud.pcd"]).quiet(0).stdout();
+    for expected in ["rows        443", "missing     1 ", "duplicates  1\n", "sensor "] {
+        assert!(text.contains(expected), "`{expected}` is not in\n{text}");
+    }
+    let spacing = text.lines().find_map(|line| line.strip_prefix("spacing")).unwrap();
+    let millimetres: f64 = spacing.split_whitespace().next().unwrap().parse().unwrap();
+    assert!((45.0..55.0).contains(&millimetres), "{spacing}, where points are 50 mm apart");
+}
+
+#[test]
+fn a_cloud_without_any_return_is_no_error() {
+    let inputs = Inputs::new();
+    let cloud = PointCloud::from_points(vec![Point3::new(f64::NAN, 0.0, 0.0); 3]);
+    cloudtouch_io::write_cloud_pcd(inputs.path("nan.pcd"), &cloud).unwrap();
+    let text = inputs.run(&["info", "nan.pcd"]).quiet(0).stdout();
+    assert!(text.contains("missing     3 "), "{text}");
+}
+
+#[test]
+fn says_whether_a_mesh_is_closed_and_which_unit_it_may_have() {
+    let inputs = Inputs::new();
+    let text = inputs.run(&["info", "box.obj"]).quiet(0).stdout();
+    assert!(text.contains("watertight") && !text.contains("--unit"), "{text}");
+    cloudtouch_io::write_mesh_obj(inputs.path("mm.obj"), &support::cube(100.0)).unwrap();
+    let text = inputs.run(&["info", "mm.obj"]).quiet(0).stdout();
+    assert!(text.contains("--unit mm"), "{text}");
+    let text = inputs.run(&["info", "mm.obj", "--unit", "mm"]).quiet(0).stdout();
+    assert!(text.contains("(-0.100, -0.100, -0.100)") && !text.contains("--unit"), "{text}");
+    inputs.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let text = inputs.run(&["info", "open.obj"]).quiet(0).stdout();
+    assert!(text.contains("open: 3 edges"), "{text}");
+}

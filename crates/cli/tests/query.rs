@@ -1,0 +1,110 @@
+//! `cloudtouch query`: answers, poses, pictures.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use support::{HEIGHTS, Inputs};
+
+#[test]
+fn says_free_in_contact_and_in_collision() {
+    let inputs = Inputs::new();
+    for (verdict, _, height) in HEIGHTS {
+        let answer = &inputs.query_at(height, &["--json"]).quiet(0).json_lines()[0];
+        assert_eq!(answer["verdict"], verdict, "at {height} m: {answer}");
+        let text = inputs.query_at(height, &[]).quiet(0).stdout();
+        assert!(text.contains(&verdict.replace('_', " ")), "{text}");
+        assert!(text.contains("441 points") && text.contains("watertight mesh of 12"), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    }
+}
+
+#[test]
+fn a_pose_file_and_options_say_the_same() {
+    let inputs = Inputs::new();
+    // A quarter turn about z.
+    inputs.write("pose.txt", "[[0,-1,0,0.01],\n [1,0,0,0.02],\n [0,0,1,0.11],\n [0,0,0,1]]\n");
+    let arguments = ["query", "floor.pcd", "box.obj", "--sensor=iso:0.002", "--json"];
+    let from_file = inputs.run(&[&arguments[..], &["--pose", "pose.txt"]].concat()).quiet(0);
+    let options = ["--translate", "0.01,0.02,0.11", "--rotate-rpy", "0,0,1.5707963267948966"];
+    let from_options = inputs.run(&[&arguments[..], &options].concat()).quiet(0);
+    let probability = |run: &support::Run| run.json_lines()[0]["collision_probability"].as_f64();
+    let (a, b) = (probability(&from_file).unwrap(), probability(&from_options).unwrap());
+    assert!(a > 0.0 && (a - b).abs() < 1e-9, "{a} {b}");
+}
+
+#[test]
+fn negative_numbers_need_no_equals_sign() {
+    let inputs = Inputs::new();
+    let run = inputs.run(&[
+        "query",
+        "floor.pcd",
+        "box.obj",
+        "--translate",
+        "-1,2,3",
+        "--rotate-rpy",
+        "-1,0,0",
+    ]);
+    run.quiet(0);
+}
+
+#[test]
+fn a_mesh_in_millimetres_is_scaled_and_the_cloud_is_not() {
+    let inputs = Inputs::new();
+    cloudtouch_io::write_mesh_obj(inputs.path("mm.obj"), &support::cube(100.0)).unwrap();
+    let pose = "--translate=0.01,0.02,0.1";
+    let run = |file: &str, unit: &str| {
+        let scene = ["query", "floor.pcd", file, "--sensor=iso:0.002", pose, "--json"];
+        inputs.run(&[&scene[..], &["--unit", unit]].concat())
+    };
+    let right = run("mm.obj", "mm").quiet(0).json_lines().remove(0);
+    let reference = run("box.obj", "m").quiet(0).json_lines().remove(0);
+    let gap = |v: &serde_json::Value| v["clearance_m"]["mean"].as_f64().unwrap();
+    assert!((gap(&right) - gap(&reference)).abs() < 1e-9, "{right} {reference}");
+    // Without the unit there is an answer, and a warning beside it.
+    let wrong = run("mm.obj", "m");
+    assert_eq!(wrong.code(), 0);
+    assert!(wrong.stderr().contains("--unit mm"), "{}", wrong.stderr());
+    assert_eq!(wrong.json_lines().len(), 1);
+}
+
+#[test]
+fn covariance_columns_that_are_passed_over_are_mentioned() {
+    let inputs = Inputs::new();
+    let mut cloud = support::floor();
+    let covariance = cloudtouch::geom::Covariance::isotropic(1e-4);
+    cloud.covariances = Some(vec![covariance; cloud.points.len()]);
+    cloudtouch_io::write_cloud_pcd(inputs.path("known.pcd"), &cloud).unwrap();
+    let loud = inputs.run(&["query", "known.pcd", "box.obj"]);
+    assert!(loud.stderr().contains("--sensor per-point"), "{}", loud.stderr());
+    inputs.run(&["query", "known.pcd", "box.obj", "--sensor", "per-point"]).quiet(0);
+}
+
+#[test]
+fn the_picture_has_colours_and_probabilities() {
+    let inputs = Inputs::new();
+    let answer = inputs.query_at(0.1, &["--json", "--ply", "out.ply"]).quiet(0).json_lines();
+    let bytes = std::fs::read(inputs.path("out.ply")).unwrap();
+    let header_end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+    let header = String::from_utf8(bytes[..header_end].to_vec()).unwrap();
+    assert!(header.contains("property uchar red"), "{header}");
+    assert!(header.contains("property double probability"), "{header}");
+    // x, y, z, three colours, probability.
+    let row = 3 * 8 + 3 + 8;
+    let rows = bytes[header_end..].chunks_exact(row);
+    let probability = |r: &[u8]| f64::from_le_bytes(r[row - 8..].try_into().unwrap());
+    let largest = rows.map(probability).fold(0.0, f64::max);
+    let expected = answer[0]["collision_probability"].as_f64().unwrap();
+    assert!((largest - expected).abs() < 1e-12, "{largest} {expected}");
+}
+
+#[test]
+fn the_same_query_gives_the_same_answer() {
+    let inputs = Inputs::new();
+    let answer = || {
+        let mut answer = inputs.query_at(0.1, &["--json"]).json_lines().remove(0);
+        let stats = answer["stats"].as_object_mut().unwrap();
+        stats.remove("prepare_us");
+        stats.remove("query_us");
+        answer
+    };
+    assert_eq!(answer(), answer());
+}

@@ -1,0 +1,146 @@
+//! The interval of an answer contains what a query that culls nothing finds.
+//!
+//! The reference is the same query with a cull probability of 1e-300 and no early stop, which looks
+//! at practically every pair of leaves: it rests on no bound of the tree and on no order of visits.
+
+mod common;
+
+use cloudtouch::bvh::TreeSettings;
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{
+    BodyRef, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, Verdict,
+};
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::{scene, surface};
+use common::{assert_sound, at, mesh};
+use proptest::prelude::*;
+
+/// The same pair of leaves is solved from the same numbers both times, so only the bound of what
+/// was culled may be off, by the tolerance of the plane found for it.
+const TOLERANCE: f64 = 1e-3;
+
+fn run(settings: QuerySettings, a: BodyRef<'_>, b: BodyRef<'_>, pose: &Pose) -> Report {
+    let report = Query::new(settings).expect("good settings").run(a, b, pose).expect("good pose");
+    assert_sound(&report);
+    report
+}
+
+fn flat() -> QuerySettings {
+    let settings = QuerySettings::new(Mode::Calibrated);
+    QuerySettings { cull_probability: 1e-300, stop_above: 1.0, ..settings }
+}
+
+/// A cloud of `count` points with small leaves, so that there is something to cull.
+fn small_cloud(shape: &TriangleMesh, count: usize, std: f64, seed: u64) -> Cloud {
+    let points: Vec<Point3> = surface::positions(&surface::sample_surface(shape, count, seed));
+    let points = add_noise(&points, NoiseKind::Gaussian, std, seed);
+    let settings = CloudSettings {
+        tree: TreeSettings { max_leaf_points: 12, min_leaf_points: 4, ..TreeSettings::default() },
+        ..CloudSettings::new(SensorModel::Isotropic { std }, Mode::Calibrated)
+    };
+    Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud")
+}
+
+/// A random pair: a patch or a ball below, a ball of 5 cm above it.
+#[derive(Debug, Clone)]
+struct Pair {
+    below: TriangleMesh,
+    counts: [usize; 2],
+    std: f64,
+    pose: Pose,
+    seed: u64,
+}
+
+fn pairs() -> impl Strategy<Value = Pair> {
+    (
+        any::<bool>(),
+        [30_usize..150, 30_usize..150],
+        // From far below the spacing (about 2 cm) to the order of the gap.
+        0.0005_f64..0.01,
+        (-0.02_f64..0.02, -0.02_f64..0.02, -0.03_f64..0.08),
+        any::<u64>(),
+    )
+        .prop_map(|(is_patch, counts, std, (x, y, gap), seed)| {
+            let (below, top) = if is_patch {
+                (scene::plane_patch(0.2), 0.0)
+            } else {
+                (scene::sphere(0.05, 2), 0.05)
+            };
+            Pair { below, counts, std, pose: at(x, y, top + 0.05 + gap), seed }
+        })
+}
+
+fn contains(report: &Report, flat: f64) -> Result<(), TestCaseError> {
+    let [lower, upper] = report.bounds;
+    prop_assert!(flat >= lower - TOLERANCE, "flat {} below {:?}", flat, report);
+    prop_assert!(flat <= upper + TOLERANCE, "flat {} above {:?}", flat, report);
+    Ok(())
+}
+
+fn check(
+    a: BodyRef<'_>,
+    b: BodyRef<'_>,
+    pose: &Pose,
+    cull_probability: f64,
+    stop_above: f64,
+) -> Result<(), TestCaseError> {
+    let reference = run(flat(), a, b, pose);
+    // The default, which culls little, and one that culls a lot.
+    contains(&run(QuerySettings::default(), a, b, pose), reference.collision_probability)?;
+    let coarse = QuerySettings { cull_probability, stop_above, ..QuerySettings::default() };
+    contains(&run(coarse, a, b, pose), reference.collision_probability)
+}
+
+proptest! {
+    // Each case solves up to some hundred kernel problems.
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+
+    #[test]
+    fn two_clouds(pair in pairs(), cull in 1e-6_f64..0.4, stop in 0.5_f64..1.0) {
+        let a = small_cloud(&pair.below, pair.counts[0], pair.std, pair.seed);
+        let b = small_cloud(&scene::sphere(0.05, 2), pair.counts[1], pair.std, !pair.seed);
+        check((&a).into(), (&b).into(), &pair.pose, cull, stop)?;
+    }
+
+    #[test]
+    fn a_cloud_and_a_watertight_mesh(pair in pairs(), cull in 1e-6_f64..0.4, stop in 0.5_f64..1.0) {
+        let a = small_cloud(&pair.below, pair.counts[0], pair.std, pair.seed);
+        let b: Mesh = mesh(&scene::sphere(0.05, 2));
+        check((&a).into(), (&b).into(), &pair.pose, cull, stop)?;
+    }
+
+    #[test]
+    fn an_open_mesh_and_a_cloud(pair in pairs(), cull in 1e-6_f64..0.4, stop in 0.5_f64..1.0) {
+        let a: Mesh = mesh(&scene::plane_patch(0.2));
+        let b = small_cloud(&scene::sphere(0.05, 2), pair.counts[1], pair.std, pair.seed);
+        let gap = pair.pose.translation().z - 0.05;
+        check((&a).into(), (&b).into(), &at(0.01, 0.0, gap), cull, stop)?;
+    }
+}
+
+/// Stopping early keeps a lower end that holds and gives up the upper one.
+#[test]
+fn an_early_stop_widens_the_upper_end_only() {
+    let a = small_cloud(&scene::plane_patch(0.2), 150, 0.003, 1);
+    let b = small_cloud(&scene::sphere(0.05, 2), 150, 0.003, 2);
+    let pose = at(0.0, 0.0, 0.04);
+    let full = run(flat(), (&a).into(), (&b).into(), &pose);
+    let early = QuerySettings { stop_above: 0.5, ..QuerySettings::default() };
+    let early = run(early, (&a).into(), (&b).into(), &pose);
+    assert!(early.stats.leaf_pairs < full.stats.leaf_pairs, "the search did not stop early");
+    assert!(early.bounds[0] > 0.5 && early.bounds[0] <= full.collision_probability + TOLERANCE);
+    assert!(early.bounds[1] >= full.bounds[1] - TOLERANCE, "{:?}, {:?}", early.bounds, full.bounds);
+}
+
+/// What a query culled shows in its upper bound, and is a small number and not zero.
+#[test]
+fn far_apart_the_upper_bound_is_small_and_the_verdict_free() {
+    let a = small_cloud(&scene::plane_patch(0.2), 100, 0.003, 1);
+    let b = small_cloud(&scene::sphere(0.05, 2), 100, 0.003, 2);
+    let report = run(QuerySettings::default(), (&a).into(), (&b).into(), &at(0.0, 0.0, 0.5));
+    assert_eq!(report.verdict, Verdict::Free);
+    assert_eq!(report.stats.kernel_solves, 0);
+    // Not above the cull probability.
+    assert!(report.bounds[1] <= 1e-6, "{:?}", report.bounds);
+}

@@ -1,0 +1,100 @@
+//! Clouds of known surfaces, prepared, and what every report has to satisfy.
+#![allow(dead_code, reason = "each test file uses a part of it")]
+
+use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{BodyRef, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, Stats};
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::{scene, surface};
+
+pub(crate) const MODES: [Mode; 2] = [Mode::Calibrated, Mode::Paper];
+
+/// A pose that only moves.
+pub(crate) fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(Vector3::new(x, y, z))
+}
+
+/// A number in [0, 1) that depends on `stream` and `index` alone.
+pub(crate) fn uniform(stream: u64, index: u64) -> f64 {
+    seed::unit(seed::derive(stream, index, 0))
+}
+
+/// A noisy cloud of a surface, one point for each square of side `spacing`, all metres.
+///
+/// The mesh is refined first: samples are spread evenly over triangles, so that small triangles
+/// leave no holes.
+pub(crate) fn measured(mesh: &TriangleMesh, spacing: f64, std: f64, seed: u64) -> Vec<Point3> {
+    let fine = scene::subdivide_to_max_edge(mesh, spacing);
+    let count = (surface::area(mesh) / (spacing * spacing)).round() as usize;
+    let samples = surface::sample_surface(&fine, count, seed);
+    add_noise(&surface::positions(&samples), NoiseKind::Gaussian, std, seed)
+}
+
+/// Prepares points with the same noise in every direction.
+pub(crate) fn prepare(points: Vec<Point3>, std: f64, mode: Mode) -> Cloud {
+    let settings = CloudSettings::new(SensorModel::Isotropic { std }, mode);
+    Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud")
+}
+
+/// Prepares points that each bring their covariance.
+pub(crate) fn prepare_each(points: Vec<Point3>, covariances: Vec<Covariance>, mode: Mode) -> Cloud {
+    let cloud = PointCloud { covariances: Some(covariances), ..PointCloud::from_points(points) };
+    let settings = CloudSettings::new(SensorModel::PerPoint, mode);
+    Cloud::prepare(&cloud, &settings).expect("a good cloud")
+}
+
+/// Measures a surface and prepares the cloud.
+pub(crate) fn scan(mesh: &TriangleMesh, spacing: f64, std: f64, seed: u64, mode: Mode) -> Cloud {
+    prepare(measured(mesh, spacing, std, seed), std, mode)
+}
+
+pub(crate) fn mesh(mesh: &TriangleMesh) -> Mesh {
+    Mesh::prepare(mesh).expect("a good mesh")
+}
+
+/// A query with the default settings of a mode.
+pub(crate) fn query(mode: Mode) -> Query {
+    Query::new(QuerySettings::new(mode)).expect("default settings are good")
+}
+
+/// Runs a default query and checks the report.
+pub(crate) fn ask<'a>(
+    mode: Mode,
+    a: impl Into<BodyRef<'a>>,
+    b: impl Into<BodyRef<'a>>,
+    a_from_b: &Pose,
+) -> Report {
+    let report = query(mode).run(a, b, a_from_b).expect("a finite pose");
+    assert_sound(&report);
+    report
+}
+
+/// What holds of every report: probabilities are ones, nothing is NaN, normals have unit length.
+pub(crate) fn assert_sound(report: &Report) {
+    let is_probability = |p: f64| (0.0..=1.0).contains(&p);
+    let p = report.collision_probability;
+    let [lower, upper] = report.bounds;
+    assert!(is_probability(p) && is_probability(lower) && is_probability(upper), "{report:?}");
+    assert!(lower <= p && p <= upper, "{p} outside [{lower}, {upper}]");
+    assert!(is_probability(report.max_probability) && is_probability(report.noisy_or_probability));
+    if let Some(clearance) = &report.clearance_m {
+        assert!(clearance.mean.is_finite() && clearance.std.is_finite(), "{clearance:?}");
+        assert!(clearance.std >= 0.0, "{clearance:?}");
+    }
+    for contact in &report.contacts {
+        assert!(contact.point.iter().all(|v| v.is_finite()), "{contact:?}");
+        // Normalising rounds in the last places only.
+        assert!((contact.normal_a_to_b.norm() - 1.0).abs() < 1e-9, "{contact:?}");
+        assert!(is_probability(contact.probability), "{contact:?}");
+        assert!(contact.clearance_m.is_finite(), "{contact:?}");
+    }
+    let points = &report.point_probabilities;
+    assert!(points.a.iter().chain(&points.b).all(|&(_, p)| is_probability(p)));
+    assert!(report.stats.max_relative_gap >= 0.0, "{:?}", report.stats);
+}
+
+/// The report without what may differ between equal queries: times, and who prepared a leaf.
+pub(crate) fn timeless(report: &Report) -> Report {
+    let stats = Stats { prepare_us: 0, query_us: 0, leaves_prepared: 0, ..report.stats };
+    Report { stats, ..report.clone() }
+}

@@ -1,0 +1,83 @@
+//! Every pair of the catalogue of hard cases, in both modes: no panic, no NaN, no false certainty.
+
+mod common;
+
+use cloudtouch::geom::{Covariance, CovarianceError, Matrix3, Point3, PointCloud, Pose};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Mode, PrepareError, Verdict};
+use cloudtouch_testkit::hard_cases::{HardCase, hard_cases};
+use common::{MODES, ask};
+
+/// Why a side could not be prepared; every way is typed.
+#[derive(Debug, thiserror::Error)]
+enum Refused {
+    #[error(transparent)]
+    Covariance(#[from] CovarianceError),
+    #[error(transparent)]
+    Prepare(#[from] PrepareError),
+}
+
+fn prepare(points: &[Point3], matrices: &[Matrix3], mode: Mode) -> Result<Cloud, Refused> {
+    let covariances: Result<Vec<_>, _> = matrices.iter().map(Covariance::try_from_matrix).collect();
+    let cloud =
+        PointCloud { covariances: Some(covariances?), ..PointCloud::from_points(points.to_vec()) };
+    let settings = CloudSettings::new(SensorModel::PerPoint, mode);
+    Ok(Cloud::prepare(&cloud, &settings)?)
+}
+
+/// Checks one case in one mode; what is wrong with the answer, if anything.
+fn check(case: &HardCase, mode: Mode) -> Option<String> {
+    let both = prepare(&case.cloud_a, &case.covariance_a, mode)
+        .and_then(|a| Ok((a, prepare(&case.cloud_b, &case.covariance_b, mode)?)));
+    let (a, b) = match both {
+        Ok(both) => both,
+        Err(refused) => {
+            let is_empty = case.cloud_a.is_empty() || case.cloud_b.is_empty();
+            return (case.valid && !is_empty).then(|| format!("refused: {refused}"));
+        }
+    };
+    // What was not valid and still accepted was dropped, and the filter says so.
+    if !case.valid {
+        let dropped = a.filter_stages().iter().chain(b.filter_stages()).map(|s| s.removed);
+        if dropped.sum::<usize>() == 0 {
+            return Some("an invalid case was accepted whole".to_owned());
+        }
+    }
+    let report = ask(mode, &a, &b, &Pose::identity());
+    let wrong = match case.collides {
+        Some(true) => Verdict::Free,
+        Some(false) => Verdict::InCollision,
+        None => return None,
+    };
+    (report.verdict == wrong).then(|| {
+        let (p, bounds) = (report.collision_probability, report.bounds);
+        format!("{wrong:?} with P = {p} in {bounds:?}, {:?}", report.stats)
+    })
+}
+
+#[test]
+fn no_case_panics_gives_nan_or_is_decided_against_the_truth() {
+    let mut wrong = Vec::new();
+    for case in hard_cases() {
+        for mode in MODES {
+            if let Some(problem) = check(&case, mode) {
+                wrong.push(format!("{} ({}), {mode:?}: {problem}", case.name, case.reason));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Identical clouds do not say on which side of each other they are: no certainty either way is
+/// asked for, but free they are not.
+#[test]
+fn identical_clouds_are_never_free() {
+    for case in hard_cases().iter().filter(|c| ["identical", "subset"].contains(&c.name)) {
+        for mode in MODES {
+            let a = prepare(&case.cloud_a, &case.covariance_a, mode).unwrap();
+            let b = prepare(&case.cloud_b, &case.covariance_b, mode).unwrap();
+            let report = ask(mode, &a, &b, &Pose::identity());
+            assert_ne!(report.verdict, Verdict::Free, "{} {mode:?}: {report:?}", case.name);
+        }
+    }
+}

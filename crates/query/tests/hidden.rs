@@ -1,0 +1,95 @@
+//! A single depth image leaves space unseen: an object there does not read as free.
+
+mod common;
+
+use cloudtouch::geom::{PointCloud, Pose, TriangleMesh};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Verdict};
+use cloudtouch_testkit::camera::DepthCamera;
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::scene;
+use common::{MODES, ask, at, mesh, scan};
+
+/// A block of half a metre, its front 1.25 m ahead of the camera, before a wall at 3 m.
+fn view() -> PointCloud {
+    let block = ExactMesh::new(&scene::moved(&scene::cuboid([0.5; 3]), &at(0.0, 0.0, 1.5)));
+    let wall = ExactMesh::new(&scene::moved(&scene::plane_patch(6.0), &at(0.0, 0.0, 3.0)));
+    DepthCamera::default().scan(&[&block, &wall], &Pose::identity(), 1)
+}
+
+fn object() -> TriangleMesh {
+    scene::sphere(0.08, 2)
+}
+
+/// Where the object is placed, and whether the camera could see that the place is empty.
+fn places() -> [(&'static str, Pose, bool); 5] {
+    [
+        ("inside the block", at(0.0, 0.0, 1.55), false),
+        ("in the shadow of the block", at(0.05, 0.0, 2.3), false),
+        ("before the block", at(0.0, 0.0, 0.8), true),
+        ("beside the block", at(0.6, 0.0, 1.5), true),
+        ("before the wall", at(-0.9, 0.2, 2.5), true),
+    ]
+}
+
+fn prepared(cloud: &PointCloud, mode: cloudtouch::Mode) -> Cloud {
+    Cloud::prepare(cloud, &CloudSettings::new(SensorModel::Kinect, mode)).expect("a good image")
+}
+
+fn check(verdict: Verdict, seen: bool, about: impl std::fmt::Debug) {
+    if seen {
+        assert_eq!(verdict, Verdict::Free, "{about:?}");
+    } else {
+        assert_eq!(verdict, Verdict::Undecided, "{about:?}");
+    }
+}
+
+#[test]
+fn a_mesh_behind_what_was_scanned_is_undecided_and_in_seen_space_free() {
+    let (image, ball) = (view(), mesh(&object()));
+    for mode in MODES {
+        let cloud = prepared(&image, mode);
+        for (place, pose, seen) in places() {
+            let report = ask(mode, &cloud, &ball, &pose);
+            check(report.verdict, seen, (place, mode));
+            if !seen {
+                assert_eq!(report.bounds[1], 1.0, "{place}: nothing is known");
+            }
+            let swapped = ask(mode, &ball, &cloud, &pose.inverse());
+            check(swapped.verdict, seen, (place, mode, "swapped"));
+        }
+    }
+}
+
+#[test]
+fn a_cloud_behind_what_was_scanned_is_undecided_and_in_seen_space_free() {
+    let image = view();
+    for mode in MODES {
+        let cloud = prepared(&image, mode);
+        let ball = scan(&object(), 0.015, 0.001, 3, mode);
+        for (place, pose, seen) in places() {
+            check(ask(mode, &cloud, &ball, &pose).verdict, seen, (place, mode));
+        }
+    }
+}
+
+/// Without the image layout it is not known to be a single view: then nothing is hidden.
+#[test]
+fn a_cloud_without_image_layout_is_taken_as_seen_from_all_sides() {
+    let image = PointCloud { image_size: None, ..view() };
+    let ball = mesh(&object());
+    for mode in MODES {
+        let report = ask(mode, &prepared(&image, mode), &ball, &at(0.0, 0.0, 1.55));
+        assert_eq!(report.verdict, Verdict::Free, "{mode:?}: {report:?}");
+    }
+}
+
+/// What was found in collision stays so: unseen space never takes a certain collision back.
+#[test]
+fn touching_the_front_of_the_block_collides() {
+    let (image, ball) = (view(), mesh(&object()));
+    for mode in MODES {
+        let report = ask(mode, &prepared(&image, mode), &ball, &at(0.0, 0.0, 1.25));
+        assert_eq!(report.verdict, Verdict::InCollision, "{mode:?}: {report:?}");
+    }
+}

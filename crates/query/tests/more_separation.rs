@@ -1,0 +1,71 @@
+//! On average, more room means less probability, and more noise means less certainty.
+//!
+//! Single draws wobble, because the points of a noisy cloud are what they are; means over draws
+//! do not. Seeds are fixed, so that a test passes always or never.
+
+mod common;
+
+use cloudtouch::{Cloud, Mode};
+use cloudtouch_testkit::scene;
+use common::{MODES, ask, at, measured, prepare};
+
+const RADIUS: f64 = 0.08;
+const DRAWS: u64 = 6;
+
+/// Clouds of a floor and a ball, measured with `std` and said to be measured with `claimed_std`.
+fn draw(std: f64, claimed_std: f64, seed: u64, mode: Mode) -> (Cloud, Cloud) {
+    let floor = measured(&scene::plane_patch(0.25), 0.015, std, 2 * seed);
+    let ball = measured(&scene::sphere(RADIUS, 3), 0.012, std, 2 * seed + 1);
+    (prepare(floor, claimed_std, mode), prepare(ball, claimed_std, mode))
+}
+
+/// Mean probability at each gap, over the draws.
+fn mean_by_gap(gaps: &[f64], std: f64, claimed_std: f64, mode: Mode) -> Vec<f64> {
+    let mut sums = vec![0.0; gaps.len()];
+    for seed in 0..DRAWS {
+        let (a, b) = draw(std, claimed_std, seed, mode);
+        for (sum, gap) in sums.iter_mut().zip(gaps) {
+            *sum += ask(mode, &a, &b, &at(0.0, 0.0, RADIUS + gap)).collision_probability;
+        }
+    }
+    sums.iter().map(|sum| sum / DRAWS as f64).collect()
+}
+
+#[test]
+fn probability_does_not_rise_with_the_gap() {
+    let gaps: Vec<f64> = (0..12).map(|i| -0.015 + 0.004 * f64::from(i)).collect();
+    for mode in MODES {
+        for std in [0.001, 0.003] {
+            let means = mean_by_gap(&gaps, std, std, mode);
+            for (k, pair) in means.windows(2).enumerate() {
+                // Other leaves and another box for the kernel: a few hundredths of P on average.
+                assert!(
+                    pair[1] < pair[0] + 0.05,
+                    "{mode:?}, std {std}: rises at gap {}: {means:?}",
+                    gaps[k]
+                );
+            }
+            assert!(means[0] > 0.9, "{mode:?}, std {std}, in overlap: {means:?}");
+            assert!(means[11] < 0.05, "{mode:?}, std {std}, apart: {means:?}");
+        }
+    }
+}
+
+/// The same points, said to be noisier: what was nearly certain becomes less so, on both sides.
+#[test]
+fn larger_covariances_move_the_answer_towards_one_half() {
+    let std = 0.001;
+    let apart = [0.008, 0.012];
+    for mode in MODES {
+        let known = mean_by_gap(&apart, std, std, mode);
+        let vague = mean_by_gap(&apart, std, 0.006, mode);
+        for (k, gap) in apart.iter().enumerate() {
+            assert!(vague[k] > known[k], "{mode:?}, gap {gap}: {known:?}, {vague:?}");
+        }
+        let deep = [-0.02];
+        let known = mean_by_gap(&deep, std, std, mode);
+        let vague = mean_by_gap(&deep, std, 0.03, mode);
+        // Equal when both are certain to the last digit.
+        assert!(vague[0] <= known[0] + 1e-3, "{mode:?}, overlap: {known:?}, {vague:?}");
+    }
+}

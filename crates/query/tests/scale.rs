@@ -1,0 +1,73 @@
+//! Units do not matter: coordinates, covariances and pose in millimetres or kilometres give the
+//! same probability.
+
+mod common;
+
+use cloudtouch::geom::{Covariance, Point3, Pose, Vector3};
+use cloudtouch::{Cloud, Mode, Report};
+use cloudtouch_testkit::scene;
+use common::{MODES, ask, measured, mesh, prepare_each};
+
+const STD: f64 = 0.003;
+
+fn scaled(points: &[Point3], factor: f64, mode: Mode) -> Cloud {
+    let covariance = Covariance::isotropic(STD * STD).scaled(factor);
+    let points: Vec<Point3> = points.iter().map(|p| p * factor).collect();
+    let count = points.len();
+    prepare_each(points, vec![covariance; count], mode)
+}
+
+fn pose(gap: f64, factor: f64) -> Pose {
+    let offset = Vector3::new(0.02, 0.01, 0.1 + gap) * factor;
+    Pose::from_translation_rpy(offset, [0.3, 0.2, -1.0])
+}
+
+fn same(small: &Report, large: &Report, factor: f64, about: impl std::fmt::Debug) {
+    let (p, q) = (small.collision_probability, large.collision_probability);
+    // The solver's tolerance: rounding takes another path through the same problem.
+    assert!((p - q).abs() < 1e-3, "{about:?}: {p} and {q}");
+    assert_eq!(small.verdict, large.verdict, "{about:?}");
+    // A clearance belongs to the most probable place. Near 0 and 1 many places are equally probable,
+    // and in the paper's mode a random descent may find another.
+    let one_place = small.mode == Mode::Calibrated && (0.01..0.99).contains(&p);
+    if let (true, Some(s), Some(l)) = (one_place, small.clearance_m, large.clearance_m) {
+        // A tenth of the noise, since another point may be foremost.
+        assert!((s.mean - l.mean / factor).abs() < 0.1 * STD, "{about:?}: {s:?}, {l:?}");
+    }
+}
+
+#[test]
+fn two_clouds() {
+    let floor = measured(&scene::plane_patch(0.4), 0.02, STD, 1);
+    let ball = measured(&scene::sphere(0.1, 3), 0.016, STD, 2);
+    for mode in MODES {
+        for gap in [-0.02, 0.0, 0.008, 0.015, 0.04] {
+            let at = |factor: f64| {
+                let (a, b) = (scaled(&floor, factor, mode), scaled(&ball, factor, mode));
+                ask(mode, &a, &b, &pose(gap, factor))
+            };
+            let unit = at(1.0);
+            for factor in [1e-3, 1e3] {
+                same(&unit, &at(factor), factor, (mode, gap, factor));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_cloud_and_a_mesh() {
+    let floor = measured(&scene::plane_patch(0.4), 0.02, STD, 1);
+    let ball = scene::sphere(0.1, 3);
+    for mode in MODES {
+        for gap in [-0.02, 0.0, 0.008, 0.015, 0.04] {
+            let at = |factor: f64| {
+                let (a, b) = (scaled(&floor, factor, mode), mesh(&ball.clone().scaled(factor)));
+                ask(mode, &a, &b, &pose(gap, factor))
+            };
+            let unit = at(1.0);
+            for factor in [1e-3, 1e3] {
+                same(&unit, &at(factor), factor, (mode, gap, factor));
+            }
+        }
+    }
+}

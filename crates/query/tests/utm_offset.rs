@@ -1,0 +1,74 @@
+//! Clouds in map coordinates (metres east and north, in the millions) keep their millimetres.
+
+mod common;
+
+use cloudtouch::Contact;
+use cloudtouch::geom::{Point3, Pose, Vector3};
+use cloudtouch_testkit::scene;
+use common::{MODES, ask, measured, mesh, prepare};
+
+fn offset() -> Vector3 {
+    Vector3::new(500_000.0, 5_400_000.0, 300.0)
+}
+
+fn far(points: &[Point3]) -> Vec<Point3> {
+    points.iter().map(|p| p + offset()).collect()
+}
+
+/// Both clouds in one map frame: the pose is the identity, or a small motion about the scene.
+#[test]
+fn both_clouds_in_map_coordinates() {
+    let std = 0.003;
+    let floor = measured(&scene::plane_patch(0.4), 0.015, std, 1);
+    for mode in MODES {
+        for gap in [-0.01, 0.0, 0.005, 0.01, 0.03] {
+            let above = Vector3::new(0.02, 0.01, 0.1 + gap);
+            let ball: Vec<Point3> =
+                measured(&scene::sphere(0.1, 3), 0.012, std, 2).iter().map(|p| p + above).collect();
+            let near = ask(
+                mode,
+                &prepare(floor.clone(), std, mode),
+                &prepare(ball.clone(), std, mode),
+                &Pose::identity(),
+            );
+            let away = ask(
+                mode,
+                &prepare(far(&floor), std, mode),
+                &prepare(far(&ball), std, mode),
+                &Pose::identity(),
+            );
+            let (p, q) = (near.collision_probability, away.collision_probability);
+            // At 5.4e6 m a coordinate is rounded to 1e-9 m, a 3e-7th of the noise.
+            assert!((p - q).abs() < 1e-6, "{mode:?}, gap {gap}: {p} and {q}");
+            assert_eq!(near.verdict, away.verdict);
+            assert_eq!(near.contacts.len(), away.contacts.len());
+            // By place: equally probable contacts may change their order.
+            for n in &near.contacts {
+                let off = |c: &Contact| (c.point - offset() - n.point).norm();
+                let off = away.contacts.iter().map(off).fold(f64::INFINITY, f64::min);
+                assert!(off < 1e-3, "{mode:?}, gap {gap}: {n:?} is {off} m off");
+            }
+        }
+    }
+}
+
+/// A scene in map coordinates and an object in its own frame, placed by a pose with a large
+/// translation.
+#[test]
+fn a_map_and_an_object_of_its_own() {
+    let std = 0.003;
+    let floor = measured(&scene::plane_patch(0.4), 0.015, std, 1);
+    let ball = mesh(&scene::sphere(0.1, 3));
+    for mode in MODES {
+        for gap in [-0.01, 0.0, 0.005, 0.01] {
+            let above = Vector3::new(0.02, 0.01, 0.1 + gap);
+            let turned = |t: Vector3| Pose::from_translation_rpy(t, [0.5, 0.1, 2.0]);
+            let near = ask(mode, &prepare(floor.clone(), std, mode), &ball, &turned(above));
+            let away =
+                ask(mode, &prepare(far(&floor), std, mode), &ball, &turned(above + offset()));
+            let (p, q) = (near.collision_probability, away.collision_probability);
+            // As above; the rotation is applied about the object, not about the map's origin.
+            assert!((p - q).abs() < 1e-6, "{mode:?}, gap {gap}: {p} and {q}");
+        }
+    }
+}
