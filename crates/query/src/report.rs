@@ -42,13 +42,14 @@ pub struct Report {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// The probability is below the reject threshold.
+    /// The upper bound on the probability is below the reject threshold.
     Free,
     /// The probability lies between the thresholds.
     InContact,
     /// The probability is above the accept threshold.
     InCollision,
-    /// Some part could not be decided, and the rest does not settle the matter.
+    /// Some part could not be decided, or was left out without a bound below the reject threshold,
+    /// and the rest does not settle the matter.
     Undecided,
 }
 

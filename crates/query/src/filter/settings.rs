@@ -59,16 +59,15 @@ impl FilterSettings {
                 return Err(FilterError::Padding { value: link.padding });
             }
         }
-        if let Some(veil) = &self.veil {
-            if !(veil.max_angle > 0.0 && veil.max_angle < std::f64::consts::FRAC_PI_2) {
-                return Err(FilterError::VeilAngle { value: veil.max_angle });
-            }
+        if let Some(VeilSettings { max_angle: value }) = self.veil
+            && !(value > 0.0 && value < std::f64::consts::FRAC_PI_2)
+        {
+            return Err(FilterError::VeilAngle { value });
         }
-        if let Some(outliers) = &self.outliers {
-            if outliers.neighbors == 0 || outliers.deviations.is_nan() {
-                let OutlierSettings { neighbors, deviations } = *outliers;
-                return Err(FilterError::Outliers { neighbors, deviations });
-            }
+        if let Some(OutlierSettings { neighbors, deviations }) = self.outliers
+            && (neighbors == 0 || deviations.is_nan())
+        {
+            return Err(FilterError::Outliers { neighbors, deviations });
         }
         match self.collision_map {
             Some(value) if !(value > 0.0 && value.is_finite()) => {

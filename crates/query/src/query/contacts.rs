@@ -5,31 +5,67 @@ use cloudtouch_geom::{Point3, Vector3};
 use crate::report::{Clearance, Contact};
 
 use super::classify::{PairAnswer, PairPoint, PairPoints};
+use super::pool::Side;
 use super::surface::Surface;
 
-/// The contact and the clearance of one leaf pair, at its most probable point.
-///
-/// The contact lies on the separating surface; the clearance is measured along its normal between
-/// the foremost point of A and the foremost point of B nearby, so it is the gap between the
-/// surfaces and not the distance to the surface between them.
-pub(crate) fn contact_of(points: &PairPoints, answer: &PairAnswer) -> Option<(Contact, Clearance)> {
-    let PairAnswer::Separated { surface, a, b } = answer else { return None };
-    let candidates = points.a.iter().zip(a).chain(points.b.iter().zip(b));
-    let (witness, &probability) = candidates.max_by(|(p, x), (q, y)| {
-        // Among equally probable points the one nearest to the surface.
-        let depth = |p: &PairPoint| surface.value_and_gradient(&p.point.mean).0.abs();
-        x.total_cmp(y).then_with(|| depth(q).total_cmp(&depth(p)))
-    })?;
-    let reach = extent(points);
-    let (foot, normal_a_to_b) = foot_of(surface, &witness.point.mean, reach)?;
-    let clearance = gap_along(points, &foot, &normal_a_to_b, witness.spacing);
-    let contact = Contact { point: foot, normal_a_to_b, probability, clearance_m: clearance.mean };
-    Some((contact, clearance))
+/// What a leaf pair says about its most probable place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    /// The largest probability of a point of the pair.
+    pub probability: f64,
+    /// The gap there.
+    pub clearance: Clearance,
+    /// The contact there, when the point could be brought onto the separating surface.
+    pub contact: Option<Contact>,
 }
 
-fn foot_of(surface: &Surface, point: &Point3, reach: f64) -> Option<(Point3, Vector3)> {
-    let (foot, normal) = surface.project(point, reach)?;
-    normal.iter().all(|v| v.is_finite()).then_some((foot, normal))
+/// The most probable place of a leaf pair; `None` when no surface separates it.
+///
+/// The contact lies on the separating surface. The clearance is measured between the most probable
+/// point and its nearest neighbour on the other side, along the normal: it is the gap between the
+/// bodies and not the distance to the surface between them, and never exceeds the distance of two
+/// samples.
+pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> Option<Place> {
+    let PairAnswer::Separated { surface, a, b } = answer else { return None };
+    let depth = |p: &PairPoint| surface.value_and_gradient(&p.point.mean).0.abs();
+    let of = |side: Side, points: &[PairPoint], probabilities: &[f64]| {
+        let best = points.iter().zip(probabilities).max_by(|(p, x), (q, y)| {
+            // Among equally probable points the one nearest to the surface.
+            x.total_cmp(y).then_with(|| depth(q).total_cmp(&depth(p)))
+        });
+        best.map(|(point, &probability)| (side, *point, probability))
+    };
+    let (of_a, of_b) = (of(Side::A, &points.a, a)?, of(Side::B, &points.b, b)?);
+    let (side, witness, probability) = if of_a.2 >= of_b.2 { of_a } else { of_b };
+    let others = if side == Side::A { &points.b } else { &points.a };
+    let nearest = nearest(others, &witness.point.mean)?;
+
+    let reach = extent(points);
+    let foot = surface.project(&witness.point.mean, reach);
+    let normal_a_to_b = foot.map_or_else(|| normal_at(surface, &witness), |(_, normal)| normal);
+    let toward_b = if side == Side::A { 1.0 } else { -1.0 };
+    let step = (nearest.point.mean - witness.point.mean) * toward_b;
+    let std = |p: &PairPoint| p.point.covariance.std_along(&normal_a_to_b);
+    let clearance =
+        Clearance { mean: step.dot(&normal_a_to_b), std: std(&witness).hypot(std(&nearest)) };
+    let contact = foot.map(|(point, normal_a_to_b)| Contact {
+        point,
+        normal_a_to_b,
+        probability,
+        clearance_m: clearance.mean,
+    });
+    Some(Place { probability, clearance, contact })
+}
+
+/// Unit normal at a point, from A to B; zero where the surface is flat.
+fn normal_at(surface: &Surface, point: &PairPoint) -> Vector3 {
+    let (_, gradient) = surface.value_and_gradient(&point.point.mean);
+    (-gradient).try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+}
+
+fn nearest(points: &[PairPoint], place: &Point3) -> Option<PairPoint> {
+    let distance = |p: &PairPoint| (p.point.mean - place).norm_squared();
+    points.iter().min_by(|p, q| distance(p).total_cmp(&distance(q))).copied()
 }
 
 /// Largest distance of a point of the pair from its middle, m.
@@ -38,28 +74,4 @@ fn extent(points: &PairPoints) -> f64 {
     let count = (points.a.len() + points.b.len()) as f64;
     let middle = Point3::from(all().map(|p| p.coords).sum::<Vector3>() / count);
     all().map(|p| (p - middle).norm()).fold(0.0, f64::max)
-}
-
-/// Gap between the foremost points of the two sides near `foot`, along `normal`.
-fn gap_along(points: &PairPoints, foot: &Point3, normal: &Vector3, spacing: f64) -> Clearance {
-    // Heights along the normal grow from A to B, so A's foremost point is its highest.
-    let (top, top_std) = foremost(&points.a, foot, normal, spacing);
-    let (bottom, bottom_std) = foremost(&points.b, foot, &-normal, spacing);
-    Clearance { mean: -bottom - top, std: top_std.hypot(bottom_std) }
-}
-
-/// Height along `direction` of the foremost point near `foot`, and its standard deviation.
-fn foremost(side: &[PairPoint], foot: &Point3, direction: &Vector3, spacing: f64) -> (f64, f64) {
-    let across = |p: &PairPoint| {
-        let offset = p.point.mean - foot;
-        (offset - direction * offset.dot(direction)).norm()
-    };
-    // The nearest point counts in any case; others count when about as near.
-    let nearest = side.iter().map(across).fold(f64::INFINITY, f64::min);
-    let radius = nearest + 1.5 * spacing;
-    side.iter()
-        .filter(|p| across(p) <= radius)
-        .map(|p| ((p.point.mean - foot).dot(direction), p.point.covariance.std_along(direction)))
-        .max_by(|p, q| p.0.total_cmp(&q.0))
-        .unwrap_or((f64::NEG_INFINITY, 0.0))
 }

@@ -13,7 +13,7 @@ use crate::mesh::{ExactPair, Mesh, SignedPoint, Wanted, exact_pair, signed_point
 use crate::report::{Clearance, Contact, Report, Stats, Verdict};
 
 use super::classify::{PairAnswer, PairPoint, PairPoints, classify};
-use super::contacts::contact_of;
+use super::contacts::most_probable_place;
 use super::evidence::Evidence;
 use super::leaf_pair::{self, gather};
 use super::pool::{self, PointProbability, Side};
@@ -216,7 +216,7 @@ impl Query {
         Report {
             collision_probability,
             bounds: [lower, upper],
-            verdict: self.verdict(collision_probability, stats.undecided),
+            verdict: self.verdict(collision_probability, upper, stats.undecided),
             clearance_m: evidence.clearance(self.settings.accept),
             contacts,
             stats,
@@ -228,13 +228,15 @@ impl Query {
         }
     }
 
-    fn verdict(&self, probability: f64, undecided: usize) -> Verdict {
-        if probability > self.settings.accept {
+    fn verdict(&self, probability: f64, upper: f64, undecided: usize) -> Verdict {
+        let QuerySettings { accept, reject, .. } = self.settings;
+        if probability > accept {
             Verdict::InCollision
-        } else if undecided > 0 {
-            Verdict::Undecided
-        } else if probability < self.settings.reject {
+        } else if upper < reject && undecided == 0 {
             Verdict::Free
+        } else if probability < reject || undecided > 0 {
+            // What was culled, left out or not solved could still collide.
+            Verdict::Undecided
         } else {
             // NaN would end here too, and not at free.
             Verdict::InContact
@@ -261,9 +263,9 @@ fn add_pair(points: &PairPoints, answer: &PairAnswer, evidence: &mut Evidence) {
             };
             add_side(Side::A, &points.a, a);
             add_side(Side::B, &points.b, b);
-            if let Some((contact, clearance)) = contact_of(points, answer) {
-                evidence.add_clearance(contact.probability, clearance);
-                if contact.probability >= CONTACT_FLOOR {
+            if let Some(place) = most_probable_place(points, answer) {
+                evidence.add_clearance(place.probability, place.clearance);
+                if let Some(contact) = place.contact.filter(|c| c.probability >= CONTACT_FLOOR) {
                     evidence.add_contact(contact);
                 }
             }
