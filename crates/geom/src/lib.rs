@@ -1,17 +1,4 @@
-//! Plain data that every cloudtouch crate shares: points with covariances, poses, clouds and
-//! triangle meshes as read from files, the normal distribution, and seeds.
-//!
-//! Nothing here knows what a sensor, a classifier or a tree is. Units are metres and radians.
-//!
-//! ```
-//! use cloudtouch_geom::{Covariance, normal};
-//! use nalgebra::Vector3;
-//!
-//! let covariance = Covariance::diagonal([0.01_f64.powi(2), 0.01_f64.powi(2), 0.0]);
-//! assert!((covariance.std_along(&Vector3::x()) - 0.01).abs() < 1e-12);
-//! // The chance that a standard normal variable exceeds 12 is small, not zero.
-//! assert!(normal::upper_tail(12.0) > 1e-33);
-//! ```
+#![doc = include_str!("../README.md")]
 
 mod cloud;
 mod covariance;

@@ -23,8 +23,8 @@ pub(crate) struct Place {
 ///
 /// The contact lies on the separating surface. The clearance is measured between the most probable
 /// point and its nearest neighbour on the other side, along the normal: it is the gap between the
-/// bodies and not the distance to the surface between them, and never exceeds the distance of two
-/// samples.
+/// bodies and not the distance to the surface between them. A point across that surface overlaps
+/// by at least its distance from it.
 pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> Option<Place> {
     let PairAnswer::Separated { surface, a, b } = answer else { return None };
     let depth = |p: &PairPoint| surface.value_and_gradient(&p.point.mean).0.abs();
@@ -46,8 +46,15 @@ pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> O
     let toward_b = if side == Side::A { 1.0 } else { -1.0 };
     let step = (nearest.point.mean - witness.point.mean) * toward_b;
     let std = |p: &PairPoint| p.point.covariance.std_along(&normal_a_to_b);
-    let clearance =
-        Clearance { mean: step.dot(&normal_a_to_b), std: std(&witness).hypot(std(&nearest)) };
+    let mut mean = step.dot(&normal_a_to_b);
+    let (value, gradient) = surface.value_and_gradient(&witness.point.mean);
+    let own_side = (toward_b * value / gradient.norm()).max(-reach);
+    if own_side < 0.0 {
+        // It lies across the separating surface: an overlap of at least that, even if the nearest
+        // sample of the other side is farther still.
+        mean = mean.min(own_side);
+    }
+    let clearance = Clearance { mean, std: std(&witness).hypot(std(&nearest)) };
     let contact = foot.map(|(point, normal_a_to_b)| Contact {
         point,
         normal_a_to_b,
