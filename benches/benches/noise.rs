@@ -46,7 +46,11 @@ fn noise(criterion: &mut Criterion) {
             assert!((0..count).step_by(step).all(|i| refine(i).point.covariance.is_finite()));
             let name = format!("refine_1000_{combination:?}").to_lowercase();
             group.bench_function(BenchmarkId::new(name, count), |bencher| {
-                bencher.iter(|| (0..count).step_by(step).for_each(|i| drop(black_box(refine(i)))));
+                bencher.iter(|| {
+                    for index in (0..count).step_by(step) {
+                        black_box(refine(index));
+                    }
+                });
             });
         }
     }

@@ -29,12 +29,12 @@ fn queries(criterion: &mut Criterion) {
         for class in classes() {
             let pose = &class.pose.scene_from_object;
             let run = || query.run(&warm_room, &warm_piano, pose);
-            let verdict = run().expect("finite poses").verdict;
+            let report = run().expect("finite poses");
             match class.name {
-                "far" => assert_eq!(verdict, Verdict::Free),
-                "deep" => assert_eq!(verdict, Verdict::InCollision),
-                // One centimetre apart, a fifth of the spacing: the clouds cannot tell.
-                _ => assert_ne!(verdict, Verdict::Undecided),
+                "far" => assert_eq!(report.verdict, Verdict::Free),
+                "deep" => assert_eq!(report.verdict, Verdict::InCollision),
+                // A fifth of the spacing apart: any verdict will do, but not without a look.
+                _ => assert!(report.stats.leaf_pairs > 0, "{:?}", report.stats),
             }
             group.bench_function(format!("{name}/{}/repeated", class.name), |bencher| {
                 bencher.iter(run);

@@ -105,7 +105,7 @@ pub(crate) struct BatchArguments {
     /// Write one JSON object per case to this file
     #[arg(long, value_name = "OUT.jsonl", help_heading = "Output")]
     pub jsonl: Option<PathBuf>,
-    /// Sensor of files whose path contains NAME; repeatable, the first match counts
+    /// Sensor of files whose path contains NAME; the first match counts
     #[arg(long, value_name = "NAME=SPEC", value_parser = parse_sensor_for,
           help_heading = "Files")]
     pub sensor_for: Vec<(String, SensorModel)>,
@@ -124,7 +124,7 @@ pub(crate) struct InfoArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct DemoArguments {
-    /// How to estimate: calibrated, or as printed in the paper
+    /// How to estimate: calibrated, or paper (as printed)
     #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated)]
     pub mode: ModeName,
     /// Write the pose of the full report in colour
@@ -144,7 +144,7 @@ pub(crate) struct CommonArguments {
     /// Unit of meshes: m, cm, mm or in; clouds are in metres
     #[arg(long, default_value = "m", help_heading = "Files")]
     pub unit: LengthUnit,
-    /// How to estimate: calibrated, or as printed in the paper
+    /// How to estimate: calibrated, or paper (as printed)
     #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated, help_heading = "Estimate")]
     pub mode: ModeName,
     /// In collision above this probability, 0.5 to 1

@@ -48,7 +48,7 @@ pub(crate) fn body(
                     path.display()
                 );
             }
-            let mut settings = common.cloud_settings(sensor.clone());
+            let mut settings = common.cloud_settings(*sensor);
             if role == Role::Scene {
                 settings.filter.robot = robot(common)?;
                 settings.filter.collision_map = common.collision_map;

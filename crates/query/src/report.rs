@@ -56,7 +56,8 @@ pub enum Verdict {
 /// A gap between two surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Clearance {
-    /// Expected gap, m; negative in overlap.
+    /// Expected gap, m; negative in overlap. Between clouds the size of an overlap is rough: a
+    /// pair of leaves sees only its own part of it.
     pub mean: f64,
     /// Standard deviation, m.
     pub std: f64,

@@ -15,12 +15,11 @@ fn far(points: &[Point3]) -> Vec<Point3> {
     points.iter().map(|p| p + offset()).collect()
 }
 
-/// Both clouds in one map frame: the pose is the identity, or a small motion about the scene.
-#[test]
-fn both_clouds_in_map_coordinates() {
+/// The same pair of clouds near the origin and in one map frame, where the pose is the identity.
+fn near_and_away(mode: Mode, check: impl Fn(f64, Report, Report)) {
     let std = 0.003;
     let floor = measured(&scene::plane_patch(0.4), 0.015, std, 1);
-    for mode in MODES {
+    {
         for gap in [-0.01, 0.0, 0.005, 0.01, 0.03] {
             let above = Vector3::new(0.02, 0.01, 0.1 + gap);
             let ball: Vec<Point3> =
@@ -41,13 +40,6 @@ fn both_clouds_in_map_coordinates() {
             // At 5.4e6 m a coordinate is rounded to 1e-9 m, a 3e-7th of the noise.
             assert!((p - q).abs() < 1e-6, "{mode:?}, gap {gap}: {p} and {q}");
             assert_eq!(near.verdict, away.verdict);
-            assert_eq!(near.contacts.len(), away.contacts.len());
-            // By place: equally probable contacts may change their order.
-            for n in &near.contacts {
-                let off = |c: &Contact| (c.point - offset() - n.point).norm();
-                let off = away.contacts.iter().map(off).fold(f64::INFINITY, f64::min);
-                assert!(off < 1e-3, "{mode:?}, gap {gap}: {n:?} is {off} m off");
-            }
         }
     }
 }

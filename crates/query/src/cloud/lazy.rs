@@ -32,11 +32,15 @@ impl LazyLeaves {
     }
 }
 
-/// The spacing a point may be given at most, on which the tree's bounds rest: twice that of as
-/// many points spread evenly over a square as large as the leaf.
+/// The spacing a point may be given at most, on which the tree's bounds rest: half more than that
+/// of as many points spread evenly over the two longest sides of the leaf's box, or on a line.
 pub(super) fn spacing_cap(leaf: Node<'_>) -> f64 {
-    let diameter = 2.0 * leaf.obb().radius();
-    2.0 * diameter / (leaf.primitive_indices().len().max(1) as f64).sqrt()
+    let mut sides: [f64; 3] = (2.0 * leaf.obb().half_extents).into();
+    sides.sort_by(f64::total_cmp);
+    let [_, middle, longest] = sides;
+    let count = leaf.primitive_indices().len().max(1) as f64;
+    // On a line the sixth neighbour, which the spacing is measured by, is three steps away.
+    1.5 * (longest * middle / count).sqrt().max(3.0 * longest / count)
 }
 
 impl Cloud {

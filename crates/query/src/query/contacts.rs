@@ -1,11 +1,11 @@
 //! Where a leaf pair touches, with what normal, and how wide the gap is there.
 
 use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_svm::Class;
 
 use crate::report::{Clearance, Contact};
 
 use super::classify::{PairAnswer, PairPoint, PairPoints};
-use super::pool::Side;
 use super::surface::Surface;
 
 /// What a leaf pair says about its most probable place.
@@ -21,58 +21,61 @@ pub(crate) struct Place {
 
 /// The most probable place of a leaf pair; `None` when no surface separates it.
 ///
-/// The contact lies on the separating surface. The clearance is measured between the most probable
-/// point and its nearest neighbour on the other side, along the normal: it is the gap between the
-/// bodies and not the distance to the surface between them. A point across that surface overlaps
-/// by at least its distance from it.
+/// The contact lies on the separating surface, where its most probable point projects to. The
+/// clearance is what the most probable points of the two sides keep from that surface, added up:
+/// the gap between the bodies as the probability sees it, negative in overlap.
 pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> Option<Place> {
     let PairAnswer::Separated { surface, a, b } = answer else { return None };
-    let depth = |p: &PairPoint| surface.value_and_gradient(&p.point.mean).0.abs();
-    let of = |side: Side, points: &[PairPoint], probabilities: &[f64]| {
-        let best = points.iter().zip(probabilities).max_by(|(p, x), (q, y)| {
-            // Among equally probable points the one nearest to the surface.
-            x.total_cmp(y).then_with(|| depth(q).total_cmp(&depth(p)))
-        });
-        best.map(|(point, &probability)| (side, *point, probability))
-    };
-    let (of_a, of_b) = (of(Side::A, &points.a, a)?, of(Side::B, &points.b, b)?);
-    let (side, witness, probability) = if of_a.2 >= of_b.2 { of_a } else { of_b };
-    let others = if side == Side::A { &points.b } else { &points.a };
-    let nearest = nearest(others, &witness.point.mean)?;
-
     let reach = extent(points);
-    let foot = surface.project(&witness.point.mean, reach);
-    let normal_a_to_b = foot.map_or_else(|| normal_at(surface, &witness), |(_, normal)| normal);
-    let toward_b = if side == Side::A { 1.0 } else { -1.0 };
-    let step = (nearest.point.mean - witness.point.mean) * toward_b;
-    let std = |p: &PairPoint| p.point.covariance.std_along(&normal_a_to_b);
-    let mut mean = step.dot(&normal_a_to_b);
-    let (value, gradient) = surface.value_and_gradient(&witness.point.mean);
-    let own_side = (toward_b * value / gradient.norm()).max(-reach);
-    if own_side < 0.0 {
-        // It lies across the separating surface: an overlap of at least that, even if the nearest
-        // sample of the other side is farther still.
-        mean = mean.min(own_side);
-    }
-    let clearance = Clearance { mean, std: std(&witness).hypot(std(&nearest)) };
+    let of_a = foremost(surface, Class::A, &points.a, a, reach)?;
+    let of_b = foremost(surface, Class::B, &points.b, b, reach)?;
+    let clearance =
+        Clearance { mean: of_a.own_side + of_b.own_side, std: of_a.std.hypot(of_b.std) };
+    let witness = if of_a.probability >= of_b.probability { of_a } else { of_b };
+    let foot = surface.project(&witness.position, reach);
     let contact = foot.map(|(point, normal_a_to_b)| Contact {
         point,
         normal_a_to_b,
-        probability,
+        probability: witness.probability,
         clearance_m: clearance.mean,
     });
-    Some(Place { probability, clearance, contact })
+    Some(Place { probability: witness.probability, clearance, contact })
 }
 
-/// Unit normal at a point, from A to B; zero where the surface is flat.
-fn normal_at(surface: &Surface, point: &PairPoint) -> Vector3 {
-    let (_, gradient) = surface.value_and_gradient(&point.point.mean);
-    (-gradient).try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+/// The most probable point of one side.
+#[derive(Debug, Clone, Copy)]
+struct Foremost {
+    position: Point3,
+    probability: f64,
+    /// Distance from the separating surface, m, negative across it; to first order in f, and no
+    /// farther than the pair is large.
+    own_side: f64,
+    /// Standard deviation of that, m.
+    std: f64,
 }
 
-fn nearest(points: &[PairPoint], place: &Point3) -> Option<PairPoint> {
-    let distance = |p: &PairPoint| (p.point.mean - place).norm_squared();
-    points.iter().min_by(|p, q| distance(p).total_cmp(&distance(q))).copied()
+fn foremost(
+    surface: &Surface,
+    class: Class,
+    points: &[PairPoint],
+    probabilities: &[f64],
+    reach: f64,
+) -> Option<Foremost> {
+    let at = |(point, &probability): (&PairPoint, &f64)| {
+        let (value, gradient) = surface.value_and_gradient(&point.point.mean);
+        let slope = gradient.norm();
+        let direction = gradient.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        Foremost {
+            position: point.point.mean,
+            probability,
+            own_side: (class.sign() * value / slope).clamp(-reach, reach),
+            std: point.point.covariance.std_along(&direction),
+        }
+    };
+    points.iter().zip(probabilities).map(at).max_by(|p, q| {
+        // Among equally probable points the one deepest on, or nearest to, the other side.
+        p.probability.total_cmp(&q.probability).then(q.own_side.total_cmp(&p.own_side))
+    })
 }
 
 /// Largest distance of a point of the pair from its middle, m.
