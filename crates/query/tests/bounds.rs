@@ -94,7 +94,7 @@ fn check(
 
 proptest! {
     // Each case solves up to some hundred kernel problems.
-    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn two_clouds(pair in pairs(), cull in 1e-6_f64..0.4, stop in 0.5_f64..1.0) {

@@ -26,9 +26,9 @@ fn poses() -> Vec<Pose> {
 /// Reports of a batch on a pool of this many threads, with bodies nobody has queried before.
 fn batch(mode: Mode, query: &Query, threads: usize) -> Vec<Report> {
     let (floor, ball) = bodies(mode);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
     let reports = pool.install(|| query.run_batch(&floor, &ball, &poses()));
-    reports.into_iter().map(|r| timeless(&r.unwrap())).collect()
+    reports.into_iter().map(|r| timeless(&r.expect("finite poses"))).collect()
 }
 
 #[test]

@@ -142,7 +142,7 @@ fn count_veil(image: bool) -> [usize; 4] {
         cloud.image_size = None;
     }
     let settings = FilterSettings { veil: Some(VeilSettings::default()), ..off() };
-    let filtered = filter(&cloud, &settings).unwrap();
+    let filtered = filter(&cloud, &settings).expect("good settings");
     let mut kept = vec![false; cloud.len()];
     filtered.rows.iter().for_each(|&row| kept[row] = true);
     let mut counts = [0; 4];

@@ -2,8 +2,8 @@
 
 mod common;
 
-use cloudtouch::Contact;
 use cloudtouch::geom::{Point3, Pose, Vector3};
+use cloudtouch::{Contact, Mode, Report};
 use cloudtouch_testkit::scene;
 use common::{MODES, ask, measured, mesh, prepare};
 
@@ -15,32 +15,45 @@ fn far(points: &[Point3]) -> Vec<Point3> {
     points.iter().map(|p| p + offset()).collect()
 }
 
-/// The same pair of clouds near the origin and in one map frame, where the pose is the identity.
-fn near_and_away(mode: Mode, check: impl Fn(f64, Report, Report)) {
+/// Hands over reports of the same pair of clouds near the origin and in one map frame, where the
+/// pose is the identity.
+fn near_and_away(mode: Mode, check: impl Fn(&Report, &Report)) {
     let std = 0.003;
     let floor = measured(&scene::plane_patch(0.4), 0.015, std, 1);
-    {
-        for gap in [-0.01, 0.0, 0.005, 0.01, 0.03] {
-            let above = Vector3::new(0.02, 0.01, 0.1 + gap);
-            let ball: Vec<Point3> =
-                measured(&scene::sphere(0.1, 3), 0.012, std, 2).iter().map(|p| p + above).collect();
-            let near = ask(
-                mode,
-                &prepare(floor.clone(), std, mode),
-                &prepare(ball.clone(), std, mode),
-                &Pose::identity(),
-            );
-            let away = ask(
-                mode,
-                &prepare(far(&floor), std, mode),
-                &prepare(far(&ball), std, mode),
-                &Pose::identity(),
-            );
+    for gap in [-0.01, 0.0, 0.005, 0.01, 0.03] {
+        let above = Vector3::new(0.02, 0.01, 0.1 + gap);
+        let ball = measured(&scene::sphere(0.1, 3), 0.012, std, 2);
+        let ball: Vec<Point3> = ball.iter().map(|p| p + above).collect();
+        let run = |a: Vec<Point3>, b: Vec<Point3>| {
+            ask(mode, &prepare(a, std, mode), &prepare(b, std, mode), &Pose::identity())
+        };
+        check(&run(floor.clone(), ball.clone()), &run(far(&floor), far(&ball)));
+    }
+}
+
+#[test]
+fn probabilities_do_not_depend_on_the_offset() {
+    for mode in MODES {
+        near_and_away(mode, |near, away| {
             let (p, q) = (near.collision_probability, away.collision_probability);
             // At 5.4e6 m a coordinate is rounded to 1e-9 m, a 3e-7th of the noise.
-            assert!((p - q).abs() < 1e-6, "{mode:?}, gap {gap}: {p} and {q}");
-            assert_eq!(near.verdict, away.verdict);
-        }
+            assert!((p - q).abs() < 1e-6, "{mode:?}: {p} and {q}");
+            assert_eq!(near.verdict, away.verdict, "{mode:?}");
+        });
+    }
+}
+
+/// By place, since equally probable contacts may change their order.
+#[test]
+fn contacts_keep_their_millimetres() {
+    for mode in MODES {
+        near_and_away(mode, |near, away| {
+            for contact in &near.contacts {
+                let off = |c: &Contact| (c.point - offset() - contact.point).norm();
+                let off = away.contacts.iter().map(off).fold(f64::INFINITY, f64::min);
+                assert!(off < 1e-3, "{mode:?}: {contact:?} is {off} m off");
+            }
+        });
     }
 }
 

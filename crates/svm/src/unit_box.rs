@@ -1,11 +1,17 @@
 //! Uniform scaling of a pair of clouds to the unit box, covariances included.
 
+use std::f64::consts::SQRT_2;
+
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 
 use crate::Sample;
 
-/// A translation and one scale factor for all axes that map some points into a box of side 1
-/// around the origin; a kernel width then means the same for every pair.
+/// A translation and one scale factor for all axes that bring some points to the size of a unit box;
+/// a kernel width then means the same for every pair.
+///
+/// The size is taken from the ball around the centroid that holds all points, and set to that of
+/// the ball around a unit square: a square patch of surface gets side 1 however it is turned. The
+/// sides of an axis-aligned box would change with the frame, and the answer with them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitBox {
     centre: Point3,
@@ -18,33 +24,36 @@ impl UnitBox {
         Self { centre: Point3::origin(), scale: 1.0 }
     }
 
-    /// The map that puts the means of `points` into the box; `None` when there are no points or
+    /// The map that brings the means of `points` to that size; `None` when there are no points or
     /// one is not finite.
     ///
     /// Points that all coincide are scaled by their largest standard deviation instead, and by 1
     /// when that is zero too.
-    pub fn around<'a>(points: impl IntoIterator<Item = &'a UncertainPoint>) -> Option<Self> {
-        let mut points = points.into_iter();
-        let first = points.next()?;
-        let (mut low, mut high) = (first.mean, first.mean);
-        let mut std = first.covariance.std_bound();
-        let mut finite = first.mean.iter().all(|v| v.is_finite());
+    pub fn around<'a>(
+        points: impl IntoIterator<Item = &'a UncertainPoint, IntoIter: Clone>,
+    ) -> Option<Self> {
+        let points = points.into_iter();
+        let first = points.clone().next()?.mean;
+        let count = points.clone().count() as f64;
+        // Relative to the first point: a sum of map coordinates would round.
+        let shift: Vector3 = points.clone().map(|p| (p.mean - first) / count).sum();
+        let centre = first + shift;
+        let mut radius = 0.0_f64;
+        let mut std = 0.0_f64;
         for point in points {
-            finite &= point.mean.iter().all(|v| v.is_finite());
-            low = low.inf(&point.mean);
-            high = high.sup(&point.mean);
+            let distance = (point.mean - centre).norm();
+            if !distance.is_finite() {
+                return None;
+            }
+            radius = radius.max(distance);
             std = std.max(point.covariance.std_bound());
         }
-        if !finite {
-            return None;
-        }
-        let side = (high.coords * 0.5 - low.coords * 0.5).max() * 2.0;
-        let scale = [side, std]
+        let scale = [SQRT_2 * radius, std]
             .into_iter()
             .map(f64::recip)
             .find(|scale| *scale > 0.0 && scale.is_finite())
             .unwrap_or(1.0);
-        Some(Self { centre: Point3::from(low.coords * 0.5 + high.coords * 0.5), scale })
+        Some(Self { centre, scale })
     }
 
     /// Box lengths per metre: a gradient inside times this is the gradient outside.
@@ -92,17 +101,23 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_side_becomes_one_and_points_come_back() {
-        let points = [point(5e6, 1.0, 0.0), point(5e6 + 4.0, 2.0, 0.5)];
-        let unit = UnitBox::around(&points).unwrap();
-        assert!((unit.scale() - 0.25).abs() < 1e-12);
-        for p in &points {
-            let inside = unit.uncertain_point_inside(p);
-            assert!(inside.mean.coords.amax() <= 0.5 + 1e-12);
-            assert!((inside.covariance.max_std() - 0.05).abs() < 1e-12);
-            assert!((unit.point_outside(&inside.mean) - p.mean).norm() < 1e-9);
+    fn a_square_gets_side_one_however_it_is_turned_and_points_come_back() {
+        let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)];
+        for angle in [0.0_f64, 0.3, 0.8] {
+            let (sin, cos) = angle.sin_cos();
+            let turned =
+                corners.map(|(x, y)| point(5e6 + cos * x - sin * y, sin * x + cos * y, 1.0));
+            let unit = UnitBox::around(&turned).unwrap();
+            assert!((unit.scale() - 0.25).abs() < 1e-9);
+            for p in &turned {
+                let inside = unit.uncertain_point_inside(p);
+                assert!((inside.mean.coords.norm() - 0.5 * SQRT_2).abs() < 1e-9);
+                assert!((inside.covariance.max_std() - 0.05).abs() < 1e-9);
+                assert!((unit.point_outside(&inside.mean) - p.mean).norm() < 1e-9);
+            }
+            let gradient = unit.gradient_outside(&Vector3::x());
+            assert!((gradient - Vector3::x() * 0.25).norm() < 1e-9);
         }
-        assert_eq!(unit.gradient_outside(&Vector3::x()), Vector3::x() * 0.25);
     }
 
     #[test]

@@ -32,8 +32,7 @@ pub(crate) fn exact_pair(a: &Mesh, b: &Mesh, a_from_b: &Pose) -> Result<ExactPai
     let point = |v: math::Vector| Point3::new(v.x, v.y, v.z);
     Ok(match pair {
         ClosestPoints::WithinMargin(on_a, on_b) => {
-            let on_b = a_from_b.transform_point(&point(on_b));
-            ExactPair { intersecting: false, nearest: Some((point(on_a), on_b)) }
+            ExactPair { intersecting: false, nearest: Some((point(on_a), point(on_b))) }
         }
         ClosestPoints::Intersecting => ExactPair { intersecting: true, nearest: None },
         ClosestPoints::Disjoint => ExactPair { intersecting: false, nearest: None },

@@ -15,7 +15,7 @@ pub(crate) struct Place {
     pub probability: f64,
     /// The gap there.
     pub clearance: Clearance,
-    /// The contact there, when the point could be brought onto the separating surface.
+    /// The contact there; `None` where f is flat.
     pub contact: Option<Contact>,
 }
 
@@ -29,10 +29,17 @@ pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> O
     let reach = extent(points);
     let of_a = foremost(surface, Class::A, &points.a, a, reach)?;
     let of_b = foremost(surface, Class::B, &points.b, b, reach)?;
-    let clearance =
-        Clearance { mean: of_a.own_side + of_b.own_side, std: of_a.std.hypot(of_b.std) };
+    // A point across the surface overlaps by at least that, wherever the other side ends.
+    let deepest = of_a.own_side.min(of_b.own_side);
+    let sum = of_a.own_side + of_b.own_side;
+    let mean = if deepest < 0.0 { sum.min(deepest) } else { sum };
+    let clearance = Clearance { mean, std: of_a.std.hypot(of_b.std) };
     let witness = if of_a.probability >= of_b.probability { of_a } else { of_b };
-    let foot = surface.project(&witness.position, reach);
+    // A point across a curved surface may not find back to it: then it is the contact itself.
+    let foot = surface.project(&witness.position, reach).or_else(|| {
+        let (_, gradient) = surface.value_and_gradient(&witness.position);
+        Some((witness.position, -gradient.try_normalize(0.0)?))
+    });
     let contact = foot.map(|(point, normal_a_to_b)| Contact {
         point,
         normal_a_to_b,
@@ -47,8 +54,8 @@ pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> O
 struct Foremost {
     position: Point3,
     probability: f64,
-    /// Distance from the separating surface, m, negative across it; to first order in f, and no
-    /// farther than the pair is large.
+    /// Distance from the separating surface along the gradient, m, negative across it; to first
+    /// order in f, and no farther than the pair is large, when the surface cannot be reached.
     own_side: f64,
     /// Standard deviation of that, m.
     std: f64,
@@ -65,10 +72,15 @@ fn foremost(
         let (value, gradient) = surface.value_and_gradient(&point.point.mean);
         let slope = gradient.norm();
         let direction = gradient.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let first_order = (class.sign() * value / slope).clamp(-reach, reach);
+        let foot = surface.project(&point.point.mean, reach);
+        let own_side = foot.map_or(first_order, |(foot, _)| {
+            first_order.signum() * (foot - point.point.mean).norm()
+        });
         Foremost {
             position: point.point.mean,
             probability,
-            own_side: (class.sign() * value / slope).clamp(-reach, reach),
+            own_side,
             std: point.point.covariance.std_along(&direction),
         }
     };

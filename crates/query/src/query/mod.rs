@@ -8,6 +8,7 @@ mod pool;
 mod run;
 mod settings;
 mod surface;
+mod train;
 mod unseen;
 
 pub use run::Query;

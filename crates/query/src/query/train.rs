@@ -1,0 +1,111 @@
+//! The kernel classifier of one leaf pair (eq. 10 to 16 of the paper), trained in the unit box.
+
+use cloudtouch_geom::UncertainPoint;
+use cloudtouch_svm::{
+    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status, UnitBox,
+    balanced_penalties,
+};
+
+use crate::report::Stats;
+
+use super::classify::{PairAnswer, PairPoints, score};
+use super::settings::{Mode, QuerySettings};
+use super::surface::Surface;
+
+/// A classifier is not trusted where the typical standard deviation across its surface is larger
+/// than this, in box lengths: eq. 16 takes f as linear over a standard deviation, but f changes its
+/// mind over a kernel width (0.22 at the default γ), and can be bent flat at every point.
+const TRUSTED_STD: f64 = 0.1;
+/// How much tighter a problem is solved when its answer counts: the error of a probability goes
+/// with the root of the gap.
+const TIGHTER: f64 = 1e-3;
+
+/// Trains a classifier and reads the probabilities off it.
+///
+/// In the calibrated mode an answer above `known` is solved again, tighter, from where it is.
+pub(super) fn by_kernel(
+    points: &PairPoints,
+    settings: &QuerySettings,
+    known: f64,
+    stats: &mut Stats,
+) -> PairAnswer {
+    stats.kernel_solves += 1;
+    let all: Vec<UncertainPoint> = points.a.iter().chain(&points.b).map(|p| p.point).collect();
+    let Some(unit_box) = UnitBox::around(&all) else { return PairAnswer::Undecided };
+    let samples = samples(points, &all, &unit_box, settings);
+    let kernel = Kernel::Gaussian { gamma: settings.gamma };
+    let Ok(problem) = Problem::try_new(&samples, kernel) else { return PairAnswer::Undecided };
+    let [loose, tight] =
+        [settings.relative_gap, TIGHTER * settings.relative_gap].map(Settings::with_relative_gap);
+    let (Ok(loose), Ok(tight)) = (loose, tight) else { return PairAnswer::Undecided };
+
+    let sides = all.split_at(points.a.len());
+    let first = problem.solve(&loose);
+    let answer = read(&problem, &first, unit_box, sides);
+    let counts = settings.mode == Mode::Calibrated
+        && answer.largest() > known
+        && answer.largest() <= settings.stop_above;
+    // A loose tolerance cannot tell a small w from none either.
+    let (solution, answer) = if counts || first.status == Status::Collapsed {
+        let second = problem.solve_from(&tight, &first);
+        let answer = read(&problem, &second, unit_box, sides);
+        (second, answer)
+    } else {
+        (first, answer)
+    };
+    stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
+    stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
+    answer
+}
+
+fn samples(
+    points: &PairPoints,
+    all: &[UncertainPoint],
+    unit_box: &UnitBox,
+    settings: &QuerySettings,
+) -> Vec<Sample> {
+    let (penalty_a, penalty_b) =
+        balanced_penalties(settings.penalty, points.a.len(), points.b.len());
+    let factor = |is_mesh: bool| if is_mesh { settings.mesh_penalty_factor } else { 1.0 };
+    let of_a = (Class::A, penalty_a * factor(points.a_is_mesh));
+    let of_b = (Class::B, penalty_b * factor(points.b_is_mesh));
+    let sample = |(i, &point): (usize, &UncertainPoint)| {
+        let (class, penalty) = if i < points.a.len() { of_a } else { of_b };
+        let radius = settings.ellipsoid_radius;
+        unit_box.sample_inside(&Sample { point, class, radius, penalty })
+    };
+    all.iter().enumerate().map(sample).collect()
+}
+
+fn read(
+    problem: &Problem,
+    solution: &Solution,
+    unit_box: UnitBox,
+    (a, b): (&[UncertainPoint], &[UncertainPoint]),
+) -> PairAnswer {
+    if solution.status == Status::Collapsed {
+        return PairAnswer::Indistinct;
+    }
+    let Ok(classifier) = Classifier::try_new(problem, solution) else {
+        return PairAnswer::Undecided;
+    };
+    let surface = Surface::Kernel(classifier.outside(unit_box));
+    if typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale() > TRUSTED_STD {
+        return PairAnswer::Indistinct;
+    }
+    score(surface, a, b).unwrap_or(PairAnswer::Undecided)
+}
+
+/// Median over the points of the standard deviation along the gradient, m.
+fn typical_std_across<'a>(
+    surface: &Surface,
+    points: impl Iterator<Item = &'a UncertainPoint>,
+) -> f64 {
+    let across = |point: &UncertainPoint| {
+        let (_, gradient) = surface.value_and_gradient(&point.mean);
+        gradient.try_normalize(0.0).map_or(0.0, |n| point.covariance.std_along(&n))
+    };
+    let mut stds: Vec<f64> = points.map(across).collect();
+    stds.sort_by(f64::total_cmp);
+    stds[stds.len() / 2]
+}
