@@ -1,9 +1,10 @@
 //! Leaves whose noise model is computed when a query first visits them, and kept.
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use cloudtouch_bvh::{Node, NodeId, Tree};
-use cloudtouch_geom::UncertainPoint;
+use cloudtouch_geom::{UncertainPoint, Vector3};
 use cloudtouch_noise::Scratch;
 
 use super::Cloud;
@@ -17,6 +18,8 @@ pub(crate) struct LeafPoint {
     pub point: UncertainPoint,
     /// Distance between samples there, m.
     pub spacing: f64,
+    /// Unit normal of the surface there, of either sign, where one was fitted.
+    pub normal: Option<Vector3>,
 }
 
 /// One slot per tree node; only those of leaves are ever filled. Each is a pure function of the
@@ -24,11 +27,16 @@ pub(crate) struct LeafPoint {
 #[derive(Debug)]
 pub(super) struct LazyLeaves {
     slots: Vec<OnceLock<Vec<LeafPoint>>>,
+    rims: Vec<OnceLock<Vec<LeafPoint>>>,
 }
+
+/// Neighbours of a point that are joined to it by edges.
+const EDGE_NEIGHBORS: usize = 8;
 
 impl LazyLeaves {
     pub(super) fn new(tree: &Tree) -> Self {
-        Self { slots: (0..tree.node_slots()).map(|_| OnceLock::new()).collect() }
+        let empty = || (0..tree.node_slots()).map(|_| OnceLock::new()).collect();
+        Self { slots: empty(), rims: empty() }
     }
 }
 
@@ -58,6 +66,26 @@ impl Cloud {
         (points, computed)
     }
 
+    /// The neighbours of a leaf's points that lie in other leaves, after the noise model: a surface
+    /// does not end where a leaf does.
+    pub(crate) fn rim(&self, id: NodeId) -> &[LeafPoint] {
+        self.leaves.rims[id.index()].get_or_init(|| {
+            let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
+            let own: BTreeSet<u32> = leaf.primitive_indices().iter().copied().collect();
+            let neighbors_of =
+                |&index: &u32| self.neighborhoods.nearest(index as usize, EDGE_NEIGHBORS);
+            let rim: BTreeSet<u32> = own
+                .iter()
+                .flat_map(neighbors_of)
+                .map(|neighbor| neighbor.index as u32)
+                .filter(|index| !own.contains(index))
+                .collect();
+            let cap = spacing_cap(leaf);
+            let mut scratch = Scratch::default();
+            rim.iter().map(|&index| self.refine(index, cap, &mut scratch)).collect()
+        })
+    }
+
     fn refine(&self, index: u32, spacing_cap: f64, scratch: &mut Scratch) -> LeafPoint {
         let refined = self.noise.refine(
             index as usize,
@@ -66,6 +94,6 @@ impl Cloud {
             spacing_cap,
             scratch,
         );
-        LeafPoint { index, point: refined.point, spacing: refined.spacing }
+        LeafPoint { index, point: refined.point, spacing: refined.spacing, normal: refined.normal }
     }
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use cloudtouch_bvh::{Primitive, Tree, TreeSettings};
 use cloudtouch_geom::{MeshError, Point3, TriangleMesh, Vector3};
 use parry3d_f64::math::Vector;
-use parry3d_f64::query::PointQuery;
+use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 
 use crate::error::PrepareError;
@@ -131,6 +131,15 @@ impl Mesh {
         let distance = (point - nearest).norm();
         let inside = self.watertight && projection.is_inside;
         Projection { point: nearest, signed_distance: if inside { -distance } else { distance } }
+    }
+
+    /// Unit normal of the triangle nearest to a point in the local frame, outward for a watertight
+    /// mesh; `None` for a degenerate triangle.
+    pub(crate) fn normal_near(&self, point: &Point3) -> Option<Vector3> {
+        let (_, (triangle, _)) =
+            self.surface.project_local_point_and_get_location(vector(point), false);
+        let [a, b, c] = self.corners(triangle as usize);
+        (b - a).cross(&(c - a)).try_normalize(0.0)
     }
 
     pub(crate) fn origin(&self) -> Vector3 {

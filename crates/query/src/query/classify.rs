@@ -1,10 +1,11 @@
 //! One leaf pair: the ladder from a plane to a kernel classifier, and the surface it ends with.
 
-use cloudtouch_geom::UncertainPoint;
+use cloudtouch_geom::{UncertainPoint, Vector3};
 use cloudtouch_svm::{Class, DEFAULT_KAPPA_MAX, separate};
 
 use crate::report::Stats;
 
+use super::crossing::crossing;
 use super::settings::{Mode, QuerySettings};
 use super::surface::Surface;
 use super::train::by_kernel;
@@ -17,6 +18,8 @@ pub(crate) struct PairPoint {
     pub point: UncertainPoint,
     /// Distance between samples there, m.
     pub spacing: f64,
+    /// Unit normal of the surface there, of either sign, where one was fitted.
+    pub normal: Option<Vector3>,
 }
 
 /// The points of the two leaves.
@@ -41,6 +44,14 @@ pub(crate) enum PairAnswer {
 }
 
 impl PairAnswer {
+    /// Raises the probabilities of points to what other evidence says of them.
+    fn raise(&mut self, (of_a, of_b): &(Vec<f64>, Vec<f64>)) {
+        if let Self::Separated { a, b, .. } = self {
+            let pairs = a.iter_mut().zip(of_a).chain(b.iter_mut().zip(of_b));
+            pairs.for_each(|(known, other)| *known = known.max(*other));
+        }
+    }
+
     /// The largest probability of a point; 1 without an answer.
     pub(super) fn largest(&self) -> f64 {
         match self {
@@ -59,11 +70,14 @@ const CERTAIN_DEVIATIONS: f64 = DEFAULT_KAPPA_MAX;
 /// A probability is a statement about the best separating surface there is: among the surfaces
 /// tried, the calibrated mode takes the one whose worst point is least probable, and trains no
 /// kernel classifier where a plane already keeps every point below what is `known` from other
-/// pairs. The paper's mode takes the kernel classifier unless a plane is certain.
+/// pairs. A classifier can bend between the samples of surfaces that cross there, so it also has to
+/// stand against [`crossing`], for which `rims` gives the samples around the two leaves. The paper's mode takes the kernel classifier unless a plane is
+/// certain.
 pub(crate) fn classify(
     points: &PairPoints,
     settings: &QuerySettings,
     known: f64,
+    rims: impl FnOnce() -> (Vec<PairPoint>, Vec<PairPoint>),
     stats: &mut Stats,
 ) -> PairAnswer {
     let uncertain = |side: &[PairPoint]| side.iter().map(|p| p.point).collect::<Vec<_>>();
@@ -71,23 +85,35 @@ pub(crate) fn classify(
     let separation = separate(&a, &b, CERTAIN_DEVIATIONS);
     let plane = separation.and_then(|s| score(Surface::Plane(s), &a, &b));
     let plane = match plane {
-        Some(plane)
-            if separation.is_some_and(|s| s.kappa >= CERTAIN_DEVIATIONS)
-                || (settings.mode == Mode::Calibrated && plane.largest() <= known) =>
-        {
+        Some(plane) if separation.is_some_and(|s| s.kappa >= CERTAIN_DEVIATIONS) => {
             stats.linear_certificates += 1;
             return plane;
         }
         plane => plane,
     };
-    let kernel = by_kernel(points, settings, known, stats);
-    let kernel_answered = matches!(kernel, PairAnswer::Separated { .. });
-    match plane {
-        Some(plane) if !(kernel_answered && settings.mode == Mode::Paper) => {
+    if settings.mode == Mode::Paper {
+        let kernel = by_kernel(points, settings, known, stats);
+        return match (plane, kernel) {
+            (Some(plane), PairAnswer::Indistinct | PairAnswer::Undecided) => plane,
+            (_, kernel) => kernel,
+        };
+    }
+    let mut answer = match plane {
+        Some(plane) if plane.largest() <= known => {
+            stats.linear_certificates += 1;
+            plane
+        }
+        Some(plane) => {
+            let kernel = by_kernel(points, settings, known, stats);
             if plane.largest() <= kernel.largest() { plane } else { kernel }
         }
-        _ => kernel,
+        None => by_kernel(points, settings, known, stats),
+    };
+    if !(points.a_is_mesh || points.b_is_mesh) {
+        let (rim_a, rim_b) = rims();
+        answer.raise(&crossing((&points.a, &rim_a), (&points.b, &rim_b)));
     }
+    answer
 }
 
 /// The probabilities that a surface gives the points; `None` when one of them is not a number.

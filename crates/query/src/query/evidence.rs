@@ -48,6 +48,8 @@ impl Evidence {
     /// Notes the gap at a place of this probability; the most probable place counts, and among
     /// equally probable ones the narrowest gap.
     pub(crate) fn add_clearance(&mut self, probability: f64, clearance: Clearance) {
+        // Below the floor all places are equally out of the question: the narrowest gap counts.
+        let probability = probability.max(POINT_FLOOR);
         let wins = self.clearance.is_none_or(|(most, known)| {
             probability > most || (probability == most && clearance.mean < known.mean)
         });
@@ -78,7 +80,8 @@ impl Evidence {
     /// In a collision above `accept` the search may have ended at the first certain place.
     pub(crate) fn clearance(&self, accept: f64) -> Option<Clearance> {
         let (probability, clearance) = self.clearance?;
-        (probability > accept || probability >= self.bound_of_rest).then_some(clearance)
+        let decides = probability > POINT_FLOOR && probability >= self.bound_of_rest;
+        (probability > accept || decides).then_some(clearance)
     }
 
     /// One entry per point, its largest probability: a point may stand in several leaf pairs.

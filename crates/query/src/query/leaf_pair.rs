@@ -1,7 +1,7 @@
 //! The points of two leaves, brought into one frame.
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::{Point3, Pose, UncertainPoint, normal};
+use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3, normal};
 
 use crate::body::BodyRef;
 use crate::cloud::{Cloud, LeafPoint};
@@ -60,14 +60,26 @@ fn cloud_points(
 ) -> Vec<PairPoint> {
     let (points, computed) = cloud.leaf(leaf);
     stats.leaves_prepared += usize::from(computed);
-    points
-        .iter()
-        .map(|p: &LeafPoint| PairPoint {
-            index: Some(p.index),
-            point: p.point.transformed(a_from_cloud),
-            spacing: p.spacing,
-        })
-        .collect()
+    points.iter().map(|p| pair_point(p, a_from_cloud)).collect()
+}
+
+fn pair_point(point: &LeafPoint, a_from_cloud: &Pose) -> PairPoint {
+    PairPoint {
+        index: Some(point.index),
+        point: point.point.transformed(a_from_cloud),
+        spacing: point.spacing,
+        normal: point.normal.map(|n| a_from_cloud.transform_vector(&n)),
+    }
+}
+
+/// The samples around a leaf that its surface goes on to, in the local frame of A; none for a mesh.
+pub(crate) fn rim(body: BodyRef<'_>, leaf: NodeId, a_from_body: &Pose) -> Vec<PairPoint> {
+    match body {
+        BodyRef::Cloud(cloud) => {
+            cloud.rim(leaf).iter().map(|p| pair_point(p, a_from_body)).collect()
+        }
+        BodyRef::Mesh(_) => Vec::new(),
+    }
 }
 
 /// Samples the triangles of a mesh leaf where they come near points of a cloud, as densely.
@@ -86,16 +98,23 @@ fn mesh_points(
             index: None,
             point: UncertainPoint::exact(a_from_mesh.transform_point(p)),
             spacing: region.spacing,
+            normal: None,
         })
         .collect()
 }
 
+/// Mean position of some points, of which there must be one.
+pub(super) fn centroid(points: &[PairPoint]) -> Point3 {
+    let sum: Vector3 = points.iter().map(|p| p.point.mean.coords).sum();
+    Point3::from(sum / points.len() as f64)
+}
+
 fn region_around(near: &[PairPoint], mesh_from_a: &Pose) -> Option<SampleRegion> {
-    let first = near.first()?.point.mean;
-    let (low, high) = near
-        .iter()
-        .fold((first, first), |(low, high), p| (low.inf(&p.point.mean), high.sup(&p.point.mean)));
-    let center: Point3 = nalgebra::center(&low, &high);
+    if near.is_empty() {
+        return None;
+    }
+    // The centroid, and not the middle of a box: it turns with the frame.
+    let center = centroid(near);
     let reach = near.iter().map(|p| (p.point.mean - center).norm()).fold(0.0, f64::max);
     let std = near.iter().map(|p| p.point.covariance.std_bound()).fold(0.0, f64::max);
     let mut spacings: Vec<f64> = near.iter().map(|p| p.spacing).collect();

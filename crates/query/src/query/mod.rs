@@ -2,9 +2,11 @@
 
 mod classify;
 mod contacts;
+mod crossing;
 mod evidence;
 mod leaf_pair;
 mod pool;
+mod record;
 mod run;
 mod settings;
 mod surface;

@@ -1,22 +1,22 @@
 //! One query, from two prepared bodies and a pose to a report.
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
-use cloudtouch_bvh::{Flow, TraversalSettings, traverse};
+use cloudtouch_bvh::{Flow, NodeId, Traversal, TraversalSettings, traverse};
 use cloudtouch_geom::Pose;
 
-use crate::CONTACT_FLOOR;
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
 use crate::error::{QueryError, SettingsError};
-use crate::mesh::{ExactPair, Mesh, SignedPoint, Wanted, exact_pair, signed_points};
-use crate::report::{Clearance, Contact, Report, Stats, Verdict};
+use crate::mesh::{Mesh, Wanted, exact_pair, signed_points};
+use crate::report::{Report, Stats, Verdict};
 
-use super::classify::{PairAnswer, PairPoint, PairPoints, classify};
-use super::contacts::most_probable_place;
+use super::classify::classify;
 use super::evidence::Evidence;
-use super::leaf_pair::{self, gather};
-use super::pool::{self, PointProbability, Side};
+use super::leaf_pair::{self, gather, rim};
+use super::pool::{self, Side};
+use super::record::{add_exact, add_pair, add_signed_points};
 use super::settings::{Mode, Pooling, QuerySettings};
 use super::unseen::is_hidden;
 
@@ -148,20 +148,7 @@ impl Query {
         evidence.stats.leaf_pairs += found.leaves_visited;
         evidence.stats.leaves_prepared += found.leaves_prepared;
         evidence.widen(found.culled_bound);
-        for point in &found.points {
-            evidence.add_point(PointProbability {
-                side,
-                index: Some(point.index),
-                position: a_from_cloud.transform_point(&point.position),
-                probability: point.probability,
-                correlation_length: CORRELATION_SPACINGS * point.spacing,
-            });
-            let clearance = Clearance { mean: point.distance, std: point.std };
-            evidence.add_clearance(point.probability, clearance);
-            if point.probability >= CONTACT_FLOOR {
-                evidence.add_contact(signed_contact(point, side, a_from_cloud));
-            }
-        }
+        add_signed_points(&found.points, side, a_from_cloud, evidence);
         wanted == Wanted::Near
     }
 
@@ -173,8 +160,10 @@ impl Query {
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let settings = &self.settings;
+        let mut looked_at = BTreeSet::new();
         let outcome =
             traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
+                looked_at.insert((pair.a, pair.b));
                 let relevant = match settings.mode {
                     Mode::Calibrated => evidence.relevant_probability(),
                     // As printed, but for pairs that no probability can come from.
@@ -187,12 +176,41 @@ impl Query {
                     return next;
                 };
                 stats.leaf_pairs += 1;
-                let answer = classify(&points, settings, relevant, stats);
-                add_pair(&points, &answer, evidence);
+                let rims = || (rim(a, pair.a, &Pose::identity()), rim(b, pair.b, a_from_b));
+                let answer = classify(&points, settings, relevant, rims, stats);
+                add_pair((a, b, a_from_b), &points, &answer, evidence);
                 if evidence.largest() > settings.stop_above { Flow::Stop } else { next }
             })?;
         evidence.stats.nodes_visited += outcome.nodes_visited;
-        evidence.widen(outcome.culled_bound.max(outcome.pending_bound));
+        evidence.widen(outcome.pending_bound);
+        if settings.traversal == Traversal::Certified || outcome.stopped {
+            evidence.widen(outcome.culled_bound);
+        } else {
+            self.bound_what_chance_culled(a, b, a_from_b, &looked_at, evidence)?;
+        }
+        Ok(())
+    }
+
+    /// Bounds the leaf pairs that a stochastic traversal culled: the boxes of the large nodes it
+    /// culled by chance bound their points far too loosely.
+    fn bound_what_chance_culled(
+        &self,
+        a: BodyRef<'_>,
+        b: BodyRef<'_>,
+        a_from_b: &Pose,
+        looked_at: &BTreeSet<(NodeId, NodeId)>,
+        evidence: &mut Evidence,
+    ) -> Result<(), QueryError> {
+        let certified = TraversalSettings { kind: Traversal::Certified, ..self.traversal };
+        let mut left_out = 0.0_f64;
+        let outcome = traverse(a.tree(), b.tree(), a_from_b, &certified, 0, |pair| {
+            if !looked_at.contains(&(pair.a, pair.b)) {
+                left_out = left_out.max(pair.bound);
+            }
+            Flow::Above(left_out)
+        })?;
+        evidence.stats.nodes_visited += outcome.nodes_visited;
+        evidence.widen(left_out.max(outcome.culled_bound));
         Ok(())
     }
 
@@ -241,73 +259,5 @@ impl Query {
             // NaN would end here too, and not at free.
             Verdict::InContact
         }
-    }
-}
-
-/// Points nearer than this many spacings share the samples their position was estimated from.
-const CORRELATION_SPACINGS: f64 = 3.0;
-
-fn add_pair(points: &PairPoints, answer: &PairAnswer, evidence: &mut Evidence) {
-    match answer {
-        PairAnswer::Separated { a, b, .. } => {
-            let mut add_side = |side: Side, points: &[PairPoint], probabilities: &[f64]| {
-                for (point, &probability) in points.iter().zip(probabilities) {
-                    evidence.add_point(PointProbability {
-                        side,
-                        index: point.index,
-                        position: point.point.mean,
-                        probability,
-                        correlation_length: CORRELATION_SPACINGS * point.spacing,
-                    });
-                }
-            };
-            add_side(Side::A, &points.a, a);
-            add_side(Side::B, &points.b, b);
-            if let Some(place) = most_probable_place(points, answer) {
-                evidence.add_clearance(place.probability, place.clearance);
-                if let Some(contact) = place.contact.filter(|c| c.probability >= CONTACT_FLOOR) {
-                    evidence.add_contact(contact);
-                }
-            }
-        }
-        PairAnswer::Indistinct => {
-            for (side, points) in [(Side::A, &points.a), (Side::B, &points.b)] {
-                for point in points {
-                    evidence.add_point(PointProbability {
-                        side,
-                        index: point.index,
-                        position: point.point.mean,
-                        probability: 0.5,
-                        correlation_length: f64::INFINITY,
-                    });
-                }
-            }
-            evidence.widen(1.0);
-        }
-        PairAnswer::Undecided => {
-            evidence.stats.undecided += 1;
-            evidence.widen(1.0);
-        }
-    }
-}
-
-fn signed_contact(point: &SignedPoint, cloud_side: Side, a_from_cloud: &Pose) -> Contact {
-    // Out of the mesh is towards the cloud's body; the normal runs from A to B.
-    let outward = a_from_cloud.transform_vector(&point.outward);
-    Contact {
-        point: a_from_cloud.transform_point(&point.surface_point),
-        normal_a_to_b: if cloud_side == Side::A { -outward } else { outward },
-        probability: point.probability,
-        clearance_m: point.distance,
-    }
-}
-
-fn add_exact(evidence: &mut Evidence, pair: &ExactPair) {
-    evidence.stats.leaf_pairs = 1;
-    if pair.intersecting {
-        evidence.add_certain_collision();
-    }
-    if let Some((on_a, on_b)) = pair.nearest {
-        evidence.add_clearance(0.0, Clearance { mean: (on_b - on_a).norm(), std: 0.0 });
     }
 }

@@ -12,17 +12,19 @@ use super::classify::{PairAnswer, PairPoints, score};
 use super::settings::{Mode, QuerySettings};
 use super::surface::Surface;
 
-/// A classifier is not trusted where the typical standard deviation across its surface is larger
-/// than this, in box lengths: eq. 16 takes f as linear over a standard deviation, but f changes its
-/// mind over a kernel width (0.22 at the default γ), and can be bent flat at every point.
-const TRUSTED_STD: f64 = 0.1;
+/// That a pair is apart is not believed of a classifier where the typical standard deviation across
+/// its surface is larger than this, in box lengths: eq. 16 takes f as linear over a few standard
+/// deviations, but f can turn within a kernel width (0.22 at the default γ) and be flat at every
+/// point.
+const TRUSTED_STD: f64 = 0.05;
 /// How much tighter a problem is solved when its answer counts: the error of a probability goes
 /// with the root of the gap.
-const TIGHTER: f64 = 1e-3;
+const TIGHTER: f64 = 1e-2;
 
 /// Trains a classifier and reads the probabilities off it.
 ///
-/// In the calibrated mode an answer above `known` is solved again, tighter, from where it is.
+/// In the calibrated mode an answer above `known` is solved again, tighter, from where it is; not
+/// beside a mesh, whose large penalties make that dear and whose exact points pin the surface.
 pub(super) fn by_kernel(
     points: &PairPoints,
     settings: &QuerySettings,
@@ -43,6 +45,7 @@ pub(super) fn by_kernel(
     let first = problem.solve(&loose);
     let answer = read(&problem, &first, unit_box, sides);
     let counts = settings.mode == Mode::Calibrated
+        && !(points.a_is_mesh || points.b_is_mesh)
         && answer.largest() > known
         && answer.largest() <= settings.stop_above;
     // A loose tolerance cannot tell a small w from none either.
@@ -90,10 +93,12 @@ fn read(
         return PairAnswer::Undecided;
     };
     let surface = Surface::Kernel(classifier.outside(unit_box));
-    if typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale() > TRUSTED_STD {
-        return PairAnswer::Indistinct;
+    let std = typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale();
+    match score(surface, a, b) {
+        Some(answer) if std > TRUSTED_STD && answer.largest() < 0.5 => PairAnswer::Indistinct,
+        Some(answer) => answer,
+        None => PairAnswer::Undecided,
     }
-    score(surface, a, b).unwrap_or(PairAnswer::Undecided)
 }
 
 /// Median over the points of the standard deviation along the gradient, m.

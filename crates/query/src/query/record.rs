@@ -1,0 +1,126 @@
+//! What each part of a query adds to the evidence.
+
+use cloudtouch_geom::Pose;
+
+use crate::CONTACT_FLOOR;
+use crate::body::BodyRef;
+use crate::mesh::{ExactPair, SignedPoint};
+use crate::report::{Clearance, Contact};
+
+use super::classify::{PairAnswer, PairPoint, PairPoints};
+use super::contacts::most_probable_place;
+use super::evidence::Evidence;
+use super::pool::{PointProbability, Side};
+
+/// Points nearer than this many spacings share the samples their position was estimated from.
+const CORRELATION_SPACINGS: f64 = 3.0;
+
+/// Adds what a leaf pair says.
+pub(super) fn add_pair(
+    (a, b, a_from_b): (BodyRef<'_>, BodyRef<'_>, &Pose),
+    points: &PairPoints,
+    answer: &PairAnswer,
+    evidence: &mut Evidence,
+) {
+    let add_points = |evidence: &mut Evidence, probability: &dyn Fn(Side, usize) -> f64| {
+        for (side, points) in [(Side::A, &points.a), (Side::B, &points.b)] {
+            for (i, point) in points.iter().enumerate() {
+                evidence.add_point(pair_point(side, point, probability(side, i)));
+            }
+        }
+    };
+    match answer {
+        PairAnswer::Separated { a: of_a, b: of_b, .. } => {
+            add_points(evidence, &|side, i| if side == Side::A { of_a[i] } else { of_b[i] });
+        }
+        PairAnswer::Indistinct => {
+            add_points(evidence, &|_, _| 0.5);
+            evidence.widen(1.0);
+        }
+        PairAnswer::Undecided => {
+            evidence.stats.undecided += 1;
+            evidence.widen(1.0);
+        }
+    }
+    if let Some(place) = most_probable_place(points, answer) {
+        evidence.add_clearance(place.probability, place.clearance);
+        if place.probability >= CONTACT_FLOOR {
+            evidence.add_contact(onto_mesh(place.contact, a, b, a_from_b));
+        }
+    }
+}
+
+fn pair_point(side: Side, point: &PairPoint, probability: f64) -> PointProbability {
+    PointProbability {
+        side,
+        index: point.index,
+        position: point.point.mean,
+        probability,
+        correlation_length: CORRELATION_SPACINGS * point.spacing,
+    }
+}
+
+/// A contact with a mesh lies on the mesh and has its normal: that surface is known better than the
+/// one between. Out of a watertight mesh is towards the other body; the normal of an open one
+/// takes the side that the separating surface gives it.
+fn onto_mesh(contact: Contact, a: BodyRef<'_>, b: BodyRef<'_>, a_from_b: &Pose) -> Contact {
+    let (mesh, a_from_mesh, towards_b) = match (a, b) {
+        (BodyRef::Mesh(mesh), _) => (mesh, &Pose::identity(), 1.0),
+        (_, BodyRef::Mesh(mesh)) => (mesh, a_from_b, -1.0),
+        _ => return contact,
+    };
+    let in_mesh = a_from_mesh.inverse().transform_point(&contact.point);
+    let point = a_from_mesh.transform_point(&mesh.project(&in_mesh).point);
+    let Some(normal) = mesh.normal_near(&in_mesh) else { return Contact { point, ..contact } };
+    let mut normal_a_to_b = a_from_mesh.transform_vector(&normal) * towards_b;
+    if !mesh.is_watertight() && normal_a_to_b.dot(&contact.normal_a_to_b) < 0.0 {
+        normal_a_to_b = -normal_a_to_b;
+    }
+    Contact { point, normal_a_to_b, ..contact }
+}
+
+/// Adds points by their signed distance from a watertight mesh.
+pub(super) fn add_signed_points(
+    points: &[SignedPoint],
+    side: Side,
+    a_from_cloud: &Pose,
+    evidence: &mut Evidence,
+) {
+    for point in points {
+        evidence.add_point(PointProbability {
+            side,
+            index: Some(point.index),
+            position: a_from_cloud.transform_point(&point.position),
+            probability: point.probability,
+            correlation_length: CORRELATION_SPACINGS * point.spacing,
+        });
+        let clearance = Clearance { mean: point.distance, std: point.std };
+        evidence.add_clearance(point.probability, clearance);
+        if point.probability >= CONTACT_FLOOR {
+            evidence.add_contact(signed_contact(point, side, a_from_cloud));
+        }
+    }
+}
+
+fn signed_contact(point: &SignedPoint, cloud_side: Side, a_from_cloud: &Pose) -> Contact {
+    // Out of the mesh is towards the cloud's body; the normal runs from A to B.
+    let outward = a_from_cloud.transform_vector(&point.outward);
+    Contact {
+        point: a_from_cloud.transform_point(&point.surface_point),
+        normal_a_to_b: if cloud_side == Side::A { -outward } else { outward },
+        probability: point.probability,
+        clearance_m: point.distance,
+    }
+}
+
+/// Adds what is exactly known of two meshes.
+pub(super) fn add_exact(evidence: &mut Evidence, pair: &ExactPair) {
+    evidence.stats.leaf_pairs = 1;
+    if pair.intersecting {
+        evidence.add_certain_collision();
+    }
+    if let Some((on_a, on_b)) = pair.nearest {
+        // Known for certain, however improbable a collision is.
+        evidence.add_clearance(1.0, Clearance { mean: (on_b - on_a).norm(), std: 0.0 });
+    }
+}
