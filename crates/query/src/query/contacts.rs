@@ -28,8 +28,8 @@ pub(crate) struct Place {
 pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> Option<Place> {
     let PairAnswer::Separated { surface, a, b } = answer else { return None };
     let reach = extent(points);
-    let of_a = foremost(surface, Class::A, &points.a, reach)?;
-    let of_b = foremost(surface, Class::B, &points.b, reach)?;
+    let of_a = foremost(surface, Class::A, (&points.a, &points.b), reach)?;
+    let of_b = foremost(surface, Class::B, (&points.b, &points.a), reach)?;
     // A point across the surface overlaps by at least that, wherever the other side ends.
     let deepest = of_a.own_side.min(of_b.own_side);
     let sum = of_a.own_side + of_b.own_side;
@@ -74,14 +74,18 @@ fn foot_of_the_tied(
 /// The point of one side that is nearest to, or farthest across, the separating surface.
 #[derive(Debug, Clone, Copy)]
 struct Foremost {
-    /// Distance from the separating surface along the gradient, m, negative across it; to first
-    /// order in f, and no farther than the pair is large, when the surface cannot be reached.
+    /// Distance from the separating surface along the gradient, m, negative across it.
     own_side: f64,
     /// Standard deviation of that, m.
     std: f64,
 }
 
-fn foremost(surface: &Surface, class: Class, points: &[PairPoint], reach: f64) -> Option<Foremost> {
+fn foremost(
+    surface: &Surface,
+    class: Class,
+    (points, others): (&[PairPoint], &[PairPoint]),
+    reach: f64,
+) -> Option<Foremost> {
     let first_order = |point: &PairPoint| {
         let (value, gradient) = surface.value_and_gradient(&point.point.mean);
         (class.sign() * value / gradient.norm()).clamp(-reach, reach)
@@ -91,6 +95,13 @@ fn foremost(surface: &Surface, class: Class, points: &[PairPoint], reach: f64) -
     let foot = surface.project(&point.point.mean, reach);
     let own_side = foot
         .map_or(first_order, |(foot, _)| first_order.signum() * (foot - point.point.mean).norm());
+    // A point across the surface is no deeper in the other body than that body's nearest sample is
+    // away; f = 0 may bulge farther.
+    let nearest = others
+        .iter()
+        .map(|other| (other.point.mean - point.point.mean).norm())
+        .fold(f64::INFINITY, f64::min);
+    let own_side = own_side.max(-nearest);
     let (_, gradient) = surface.value_and_gradient(&point.point.mean);
     let direction = gradient.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
     Some(Foremost { own_side, std: point.point.covariance.std_along(&direction) })
