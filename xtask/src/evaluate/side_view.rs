@@ -78,16 +78,25 @@ fn colored_points(
     read_colored_ply(&ply)
 }
 
-/// Reads the one layout the tool writes: three little-endian doubles and three bytes a point.
+/// Reads the one layout the tool writes: three little-endian doubles and three bytes a point, and
+/// whatever follows them.
 fn read_colored_ply(path: &Path) -> Result<Vec<(Point3, Color)>> {
     const END: &[u8] = b"end_header\n";
-    const ROW: usize = 27;
+    const NEEDED: usize = 27;
     let bytes = fs::read(path).with_context(|| format!("read {}", path.display()))?;
     let start =
         bytes.windows(END.len()).position(|w| w == END).context("no PLY header")? + END.len();
+    let header = String::from_utf8_lossy(&bytes[..start]);
+    let count = header
+        .lines()
+        .find_map(|line| line.strip_prefix("element vertex "))
+        .and_then(|count| count.trim().parse::<usize>().ok())
+        .filter(|&count| count > 0)
+        .context("no points in the PLY header")?;
     let rows = &bytes[start..];
-    if !rows.len().is_multiple_of(ROW) {
-        bail!("{}: rows are not of {ROW} bytes", path.display());
+    let row_length = rows.len() / count;
+    if row_length < NEEDED || row_length * count != rows.len() {
+        bail!("{}: rows are not of {NEEDED} bytes or more", path.display());
     }
     let number = |row: &[u8], i: usize| {
         let mut eight = [0; 8];
@@ -95,7 +104,7 @@ fn read_colored_ply(path: &Path) -> Result<Vec<(Point3, Color)>> {
         f64::from_le_bytes(eight)
     };
     let point = |row: &[u8]| Point3::new(number(row, 0), number(row, 1), number(row, 2));
-    Ok(rows.chunks_exact(ROW).map(|row| (point(row), [row[24], row[25], row[26]])).collect())
+    Ok(rows.chunks_exact(row_length).map(|row| (point(row), [row[24], row[25], row[26]])).collect())
 }
 
 /// An orthographic projection.
