@@ -71,8 +71,8 @@ const CERTAIN_DEVIATIONS: f64 = DEFAULT_KAPPA_MAX;
 /// tried, the calibrated mode takes the one whose worst point is least probable, and trains no
 /// kernel classifier where a plane already keeps every point below what is `known` from other
 /// pairs. A classifier can bend between the samples of surfaces that cross there, so it also has to
-/// stand against [`crossing`], for which `rims` gives the samples around the two leaves. The paper's mode takes the kernel classifier unless a plane is
-/// certain.
+/// stand against [`crossing`], for which `rims` gives the samples around the two leaves. The
+/// paper's mode takes the kernel classifier unless a plane is certain.
 pub(crate) fn classify(
     points: &PairPoints,
     settings: &QuerySettings,
