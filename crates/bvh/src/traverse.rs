@@ -85,16 +85,10 @@ pub fn traverse(
     visit: impl FnMut(LeafPair) -> Flow,
 ) -> Result<Outcome, TreeError> {
     settings.validate()?;
-    check_pose(a_from_b)?;
-    Ok(walk(a, b, a_from_b, settings, seed, visit, |_| {}))
-}
-
-fn check_pose(pose: &Pose) -> Result<(), TreeError> {
-    let matrix = pose.isometry().to_homogeneous();
-    match matrix.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(TreeError::Pose { value }),
-        None => Ok(()),
+    if let Some(value) = a_from_b.non_finite_entry() {
+        return Err(TreeError::Pose { value });
     }
+    Ok(walk(a, b, a_from_b, settings, seed, visit, |_| {}))
 }
 
 /// The traversal, which also shows the pairs it culls; `settings` and the pose are checked.

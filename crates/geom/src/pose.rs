@@ -122,6 +122,12 @@ impl Pose {
         &self.0
     }
 
+    /// An entry that is NaN or infinite, if there is one: constructors other than
+    /// [`Self::try_from_matrix`] take numbers as they come.
+    pub fn non_finite_entry(&self) -> Option<f64> {
+        self.0.to_homogeneous().iter().copied().find(|value| !value.is_finite())
+    }
+
     /// R p + t.
     pub fn transform_point(&self, point: &Point3) -> Point3 {
         self.0.transform_point(point)

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use cloudtouch_bvh::{Primitive, Tree, TreeSettings};
 use cloudtouch_geom::{MeshError, Point3, TriangleMesh, Vector3};
 use parry3d_f64::math::Vector;
-use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
+use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 
 use crate::error::PrepareError;
@@ -124,21 +124,20 @@ impl Mesh {
     /// The nearest surface point to a point in the local frame.
     pub(crate) fn project(&self, point: &Point3) -> Projection {
         if !point.iter().all(|v| v.is_finite()) {
-            return Projection { point: *point, signed_distance: f64::NAN };
+            return Projection { point: *point, triangle: None, signed_distance: f64::NAN };
         }
-        let projection = self.surface.project_local_point(vector(point), false);
+        let (projection, (triangle, _)) =
+            self.surface.project_local_point_and_get_location(vector(point), false);
         let nearest = Point3::new(projection.point.x, projection.point.y, projection.point.z);
         let distance = (point - nearest).norm();
         let inside = self.watertight && projection.is_inside;
-        Projection { point: nearest, signed_distance: if inside { -distance } else { distance } }
+        let signed_distance = if inside { -distance } else { distance };
+        Projection { point: nearest, triangle: Some(triangle as usize), signed_distance }
     }
 
-    /// Unit normal of the triangle nearest to a point in the local frame, outward for a watertight
-    /// mesh; `None` for a degenerate triangle.
-    pub(crate) fn normal_near(&self, point: &Point3) -> Option<Vector3> {
-        let (_, (triangle, _)) =
-            self.surface.project_local_point_and_get_location(vector(point), false);
-        let [a, b, c] = self.corners(triangle as usize);
+    /// Unit normal of a triangle, outward for a watertight mesh; `None` for a degenerate one.
+    pub(crate) fn normal(&self, triangle: usize) -> Option<Vector3> {
+        let [a, b, c] = self.corners(triangle);
         (b - a).cross(&(c - a)).try_normalize(0.0)
     }
 
@@ -169,6 +168,8 @@ impl Mesh {
 pub(crate) struct Projection {
     /// The nearest point of the surface.
     pub point: Point3,
+    /// The triangle it lies on; `None` for a point that is not finite.
+    pub triangle: Option<usize>,
     /// Distance to it, m; negative inside.
     pub signed_distance: f64,
 }

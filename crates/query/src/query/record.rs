@@ -70,8 +70,10 @@ fn onto_mesh(contact: Contact, a: BodyRef<'_>, b: BodyRef<'_>, a_from_b: &Pose) 
         _ => return contact,
     };
     let in_mesh = a_from_mesh.inverse().transform_point(&contact.point);
-    let point = a_from_mesh.transform_point(&mesh.project(&in_mesh).point);
-    let Some(normal) = mesh.normal_near(&in_mesh) else { return Contact { point, ..contact } };
+    let projection = mesh.project(&in_mesh);
+    let point = a_from_mesh.transform_point(&projection.point);
+    let normal = projection.triangle.and_then(|triangle| mesh.normal(triangle));
+    let Some(normal) = normal else { return Contact { point, ..contact } };
     let mut normal_a_to_b = a_from_mesh.transform_vector(&normal) * towards_b;
     if !mesh.is_watertight() && normal_a_to_b.dot(&contact.normal_a_to_b) < 0.0 {
         normal_a_to_b = -normal_a_to_b;

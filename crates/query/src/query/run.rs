@@ -65,8 +65,7 @@ impl Query {
         let (a, b) = (a.into(), b.into());
         let span = tracing::debug_span!("query");
         let _entered = span.enter();
-        let entries = a_from_b.isometry().to_homogeneous();
-        if let Some(&value) = entries.iter().find(|v| !v.is_finite()) {
+        if let Some(value) = a_from_b.non_finite_entry() {
             return Err(QueryError::Pose { value });
         }
         let local = a.local_from(&b, a_from_b);
