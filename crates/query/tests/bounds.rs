@@ -144,3 +144,24 @@ fn far_apart_the_upper_bound_is_small_and_the_verdict_free() {
     // Not above the cull probability.
     assert!(report.bounds[1] <= 1e-6, "{:?}", report.bounds);
 }
+
+/// A culled pair's edge to a neighbouring leaf raised its points above the bound it was culled by.
+#[test]
+fn an_edge_that_leaves_its_leaf_raises_no_point_above_the_bound_of_the_pair() {
+    let seed = 745_084_910_551_866_825;
+    let a = small_cloud(&scene::plane_patch(0.2), 31, 0.0005, seed);
+    let b = small_cloud(&scene::sphere(0.05, 2), 35, 0.0005, !seed);
+    let pose = at(0.0, 0.0, 0.076_512_129_135_623_18);
+    check((&a).into(), (&b).into(), &pose, 0.320_900_491_189_845_1, 0.5).expect("contained");
+}
+
+/// The lower bound lay above the flat answer: with an early stop at one half, a pair above one half
+/// was not solved as tightly.
+#[test]
+fn how_tightly_a_pair_is_solved_does_not_depend_on_the_early_stop() {
+    let seed = 10_873_337_821_766_386_607;
+    let a = small_cloud(&scene::plane_patch(0.2), 54, 0.005_637_064_950_103_49, seed);
+    let b = small_cloud(&scene::sphere(0.05, 2), 34, 0.005_637_064_950_103_49, !seed);
+    let pose = at(-0.004_013_779_780_147_773, 0.016_674_680_821_064_99, 0.020_518_018_600_221_95);
+    check((&a).into(), (&b).into(), &pose, 1e-6, 0.5).expect("contained");
+}

@@ -44,11 +44,11 @@ pub(crate) enum PairAnswer {
 }
 
 impl PairAnswer {
-    /// Raises the probabilities of points to what other evidence says of them.
-    fn raise(&mut self, (of_a, of_b): &(Vec<f64>, Vec<f64>)) {
+    /// Raises the probabilities of points to what other evidence says of them, up to `most`.
+    fn raise(&mut self, (of_a, of_b): &(Vec<f64>, Vec<f64>), most: f64) {
         if let Self::Separated { a, b, .. } = self {
             let pairs = a.iter_mut().zip(of_a).chain(b.iter_mut().zip(of_b));
-            pairs.for_each(|(known, other)| *known = known.max(*other));
+            pairs.for_each(|(known, other)| *known = known.max(other.min(most)));
         }
     }
 
@@ -71,12 +71,13 @@ const CERTAIN_DEVIATIONS: f64 = DEFAULT_KAPPA_MAX;
 /// tried, the calibrated mode takes the one whose worst point is least probable, and trains no
 /// kernel classifier where a plane already keeps every point below what is `known` from other
 /// pairs. A classifier can bend between the samples of surfaces that cross there, so it also has to
-/// stand against [`crossing`], for which `rims` gives the samples around the two leaves. The
-/// paper's mode takes the kernel classifier unless a plane is certain.
+/// stand against [`crossing`], for which `rims` gives the samples around the two leaves and which
+/// raises no point above `most`. The paper's mode takes the kernel classifier unless a plane is
+/// certain.
 pub(crate) fn classify(
     points: &PairPoints,
     settings: &QuerySettings,
-    known: f64,
+    (known, most): (f64, f64),
     rims: impl FnOnce() -> (Vec<PairPoint>, Vec<PairPoint>),
     stats: &mut Stats,
 ) -> PairAnswer {
@@ -111,7 +112,7 @@ pub(crate) fn classify(
     };
     if !(points.a_is_mesh || points.b_is_mesh) {
         let (rim_a, rim_b) = rims();
-        answer.raise(&crossing((&points.a, &rim_a), (&points.b, &rim_b)));
+        answer.raise(&crossing((&points.a, &rim_a), (&points.b, &rim_b)), most);
     }
     answer
 }

@@ -19,6 +19,22 @@ const DISC_SPACINGS: f64 = 0.5;
 /// Beyond this many spacings from its middle a disc says nothing.
 const DISC_REACH: f64 = 1.5;
 
+/// An edge to a sample of another leaf can cross outside the boxes of its pair, where the bound of
+/// the pair says nothing; so much above that bound a point may be raised, and no farther: the other
+/// leaf's own pair sees the same edge.
+const ABOVE_BOUND: f64 = 3.0;
+
+/// No point of a pair is more probable than this when a surface between its boxes leaves no point
+/// more than `bound`.
+pub(crate) fn bound_with_crossing(bound: f64) -> f64 {
+    (ABOVE_BOUND * bound).min(1.0)
+}
+
+/// Pairs below this bound cannot hold a point more probable than `probability`.
+pub(crate) fn bound_without_crossing(probability: f64) -> f64 {
+    probability / ABOVE_BOUND
+}
+
 /// For every point of both sides, the probability that the surface at it crosses the other one.
 ///
 /// The rims are the samples of other leaves that the surface of each side goes on to.

@@ -13,6 +13,7 @@ use crate::mesh::{Mesh, Wanted, exact_pair, signed_points};
 use crate::report::{Report, Stats, Verdict};
 
 use super::classify::classify;
+use super::crossing::{bound_with_crossing, bound_without_crossing};
 use super::evidence::Evidence;
 use super::leaf_pair::{self, gather, rim};
 use super::pool::{self, Side};
@@ -159,6 +160,10 @@ impl Query {
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let settings = &self.settings;
+        // Only calibrated queries of two clouds look for crossings.
+        let crosses = settings.mode == Mode::Calibrated
+            && matches!((a, b), (BodyRef::Cloud(_), BodyRef::Cloud(_)));
+        let most = |bound: f64| if crosses { bound_with_crossing(bound) } else { bound };
         let mut looked_at = BTreeSet::new();
         let outcome =
             traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
@@ -168,7 +173,8 @@ impl Query {
                     // As printed, but for pairs that no probability can come from.
                     Mode::Paper => 0.0,
                 };
-                let next = Flow::Above(relevant.max(settings.cull_probability));
+                let wanted = if crosses { bound_without_crossing(relevant) } else { relevant };
+                let next = Flow::Above(wanted.max(settings.cull_probability));
                 let stats = &mut evidence.stats;
                 let Some(points) = gather((a, pair.a), (b, pair.b), a_from_b, stats) else {
                     evidence.widen(leaf_pair::bound_left_out());
@@ -176,14 +182,14 @@ impl Query {
                 };
                 stats.leaf_pairs += 1;
                 let rims = || (rim(a, pair.a, &Pose::identity()), rim(b, pair.b, a_from_b));
-                let answer = classify(&points, settings, relevant, rims, stats);
+                let answer = classify(&points, settings, (relevant, most(pair.bound)), rims, stats);
                 add_pair((a, b, a_from_b), &points, &answer, evidence);
                 if evidence.largest() > settings.stop_above { Flow::Stop } else { next }
             })?;
         evidence.stats.nodes_visited += outcome.nodes_visited;
-        evidence.widen(outcome.pending_bound);
+        evidence.widen(most(outcome.pending_bound));
         if settings.traversal == Traversal::Certified || outcome.stopped {
-            evidence.widen(outcome.culled_bound);
+            evidence.widen(most(outcome.culled_bound));
         } else {
             self.bound_what_chance_culled(a, b, a_from_b, &looked_at, evidence)?;
         }

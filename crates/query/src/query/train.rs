@@ -20,6 +20,9 @@ const TRUSTED_STD: f64 = 0.05;
 /// How much tighter a problem is solved when its answer counts: the error of a probability goes
 /// with the root of the gap.
 const TIGHTER: f64 = 1e-2;
+/// Above this probability a tighter solution would change nothing that matters. Not a setting: how
+/// tightly a pair is solved must not depend on when the search stops.
+const CERTAIN: f64 = 0.999;
 
 /// Trains a classifier and reads the probabilities off it.
 ///
@@ -47,7 +50,7 @@ pub(super) fn by_kernel(
     let counts = settings.mode == Mode::Calibrated
         && !(points.a_is_mesh || points.b_is_mesh)
         && answer.largest() > known
-        && answer.largest() <= settings.stop_above;
+        && answer.largest() <= CERTAIN;
     // A loose tolerance cannot tell a small w from none either.
     let (solution, answer) = if counts || first.status == Status::Collapsed {
         let second = problem.solve_from(&tight, &first);
