@@ -311,11 +311,13 @@ mod tests {
         let fit = fit_logistic(&features, &truths, &ones(20), 1e-3).unwrap();
         assert!(fit.converged, "{fit:?}");
         assert!(fit.coefficients.iter().all(|c| c.is_finite()));
-        // By symmetry p(9) = 1 − p(10); the slope s at which the two innermost records pull as much
-        // as the ridge, e^(−s/2) ≈ 1e-3·33·s, is 3.6.
-        let [inner, outer] = [9.0, 10.0].map(|x| fit.probability(&[x, 3.0]));
-        assert!((inner + outer - 1.0).abs() < 1e-6, "{inner} {outer}");
-        assert!((fit.coefficients[1] - 3.6).abs() < 0.2, "{fit:?}");
+        // Records at ±½, ±1½ ... from the middle pull at the slope as much as the ridge does; the
+        // variance of 0 to 19 is 33.25.
+        let slope = fit.coefficients[1];
+        let pull = |i: u32| (f64::from(i) + 0.5) * 2.0 * sigmoid(-slope * (f64::from(i) + 0.5));
+        let pulls: f64 = (0..10).map(pull).sum();
+        assert!((pulls - 1e-3 * 33.25 * slope).abs() < 1e-7, "{pulls} {slope}");
+        assert!((fit.probability(&[9.5, 3.0]) - 0.5).abs() < 1e-7);
         // A constant feature gets no slope.
         assert_eq!(fit.coefficients[2], 0.0);
         // Without a ridge the slope grows without end, which the fit must not call converged, or
