@@ -1,0 +1,86 @@
+//! Observed rates of collisions against probabilities, with the number of answers below.
+
+use std::path::Path;
+
+use anyhow::Result;
+
+use super::lines::{PANEL, Point, Series, Spread, draw_series, range_of};
+use crate::{
+    common::draw::{Axis, Style, figure, frame, guide, legend, legend_width},
+    sweep::measures::Bin,
+};
+
+/// Height of the panel of counts, pixels.
+const COUNTS: u32 = 190;
+
+/// Draws the bins of each method or family, named.
+///
+/// A forecaster is calibrated where its bars reach the diagonal; counts have a logarithmic axis,
+/// since most answers are near 0 or 1.
+///
+/// # Errors
+///
+/// When the file cannot be written.
+pub(crate) fn reliability(path: &Path, title: &str, series: &[(String, Vec<Bin>)]) -> Result<()> {
+    let names: Vec<(String, Style)> = series
+        .iter()
+        .enumerate()
+        .map(|(number, (name, _))| (name.clone(), Style::of_series(number)))
+        .collect();
+    let lines = |y: &dyn Fn(&Bin) -> (f64, Option<[f64; 2]>)| -> Vec<Series> {
+        let with_style = series.iter().zip(&names);
+        let line = |((_, bins), (_, style)): (&(String, Vec<Bin>), &(String, Style))| Series {
+            style: *style,
+            points: bins
+                .iter()
+                .map(|bin| Point { x: bin.mean, y: y(bin).0, range: y(bin).1 })
+                .collect(),
+            spread: Spread::Bars,
+        };
+        with_style.map(line).collect()
+    };
+    let rates = lines(&|bin| (bin.observed, Some(bin.interval)));
+    let counts = lines(&|bin| ((bin.count as f64).log10(), None));
+    let largest = range_of(counts.iter().flat_map(|s| &s.points).map(|p| p.y)).end;
+    let width = PANEL.0 + 40;
+    let side = legend_width(names.iter().map(|(name, _)| name.as_str()));
+    figure(path, (width + side, width + COUNTS), |area| {
+        let (area, side) = area.split_horizontally(width);
+        let (upper, lower) = area.split_vertically(width);
+        let x = Axis::unit("collision probability (mean of the bin)");
+        let mut chart = frame(&upper, title, &x, &Axis::unit("observed rate of collisions"))?;
+        guide(&mut chart, (0.0, 0.0), (1.0, 1.0))?;
+        for series in rates.iter().rev() {
+            draw_series(&mut chart, series)?;
+        }
+        let y = Axis::logarithmic("answers", 0.0..largest.max(1.0));
+        let mut chart = frame(&lower, "", &x, &y)?;
+        for series in counts.iter().rev() {
+            draw_series(&mut chart, series)?;
+        }
+        legend(&side, &names)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::{lines::tests::drawn, samples},
+        *,
+    };
+    use crate::sweep::measures;
+
+    #[test]
+    fn every_bin_is_a_point_above_and_below() {
+        let answers = samples::answers(100);
+        let series = ["a", "b"].map(|family| {
+            let judged = samples::pick(&answers, |c| c.family == family);
+            let bins = measures::reliability(&judged.samples()[0], &judged.clusters);
+            (format!("family {family}"), bins)
+        });
+        let svg = drawn("reliability", |path| reliability(path, "ours", &series));
+        // The first series has circles, also in the legend.
+        assert_eq!(svg.matches("<circle").count(), 2 * series[0].1.len() + 1);
+        assert!(svg.contains("family b") && svg.contains("observed rate of collisions"));
+    }
+}
