@@ -92,9 +92,13 @@ impl Axis {
     fn label(&self, value: f64) -> String {
         match self.labels {
             Labels::Values(digits) => format!("{value:.digits$}"),
-            Labels::Powers if value < -0.9 => format!("{:.2}", 10_f64.powf(value)),
-            Labels::Powers if value < 0.9 => format!("{:.1}", 10_f64.powf(value)),
-            Labels::Powers => format!("{:.0}", 10_f64.powf(value)),
+            Labels::Powers => {
+                // Two digits that mean something.
+                let digits = (1.0 - value.floor()).max(0.0) as usize;
+                let text = format!("{:.digits$}", 10_f64.powf(value));
+                let whole = |t: &str| t.trim_end_matches('0').trim_end_matches('.').to_owned();
+                if text.contains('.') { whole(&text) } else { text }
+            }
         }
     }
 
@@ -231,4 +235,25 @@ pub(crate) fn legend(area: &Area<'_>, entries: &[(String, Style)]) -> Result<()>
 /// Plotters' errors borrow from the drawing area, so only their text is kept.
 pub(crate) fn failed(error: impl std::fmt::Display) -> anyhow::Error {
     anyhow!("draw a chart: {error}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_are_labelled_with_what_they_are() {
+        let axis = Axis::logarithmic("time (ms)", -3.0..3.0);
+        let labels = [-3.0, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0].map(|v| axis.label(v));
+        assert_eq!(labels, ["0.001", "0.1", "0.32", "1", "3.2", "10", "32", "100"]);
+        assert_eq!(Axis::unit("share").label(0.25), "0.2");
+    }
+
+    #[test]
+    fn neighbouring_series_differ_in_colour_and_shape() {
+        for number in 0..12 {
+            let [a, b] = [number, number + 1].map(Style::of_series);
+            assert!(a.color != b.color && a.marker != b.marker, "{number}");
+        }
+    }
 }

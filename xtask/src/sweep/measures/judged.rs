@@ -47,6 +47,21 @@ impl Judged {
         Self { truths, clusters: Clusters::new(keys), methods }
     }
 
+    /// So many of the answers (or all, if fewer), evenly from the whole: for figures of single poses.
+    pub(crate) fn thinned(&self, count: usize) -> Self {
+        let total = self.truths.len();
+        let kept: Vec<usize> =
+            (0..count.min(total)).map(|i| i * total / count.min(total)).collect();
+        let of_method = |(name, said): &(String, Vec<Said>)| {
+            (name.clone(), kept.iter().map(|&i| said[i]).collect())
+        };
+        Self {
+            truths: kept.iter().map(|&i| self.truths[i]).collect(),
+            clusters: Clusters::new(kept.iter().map(|&i| self.clusters.of_pose()[i])),
+            methods: self.methods.iter().map(of_method).collect(),
+        }
+    }
+
     /// Each method's answers beside the truth, in the order of the methods.
     pub(crate) fn samples(&self) -> Vec<Sample> {
         self.methods.iter().map(|(_, said)| Sample::new(&self.truths, said)).collect()
@@ -103,5 +118,11 @@ mod tests {
         assert_eq!(near.clusters.count(), 1);
         assert_eq!((both.query_ms("x", 0.5), both.query_ms("x", 1.0)), (1.0, 3.0));
         assert!(both.query_ms("z", 0.5).is_nan());
+        // Answers 0, 2 and 4 of six.
+        let few = both.thinned(3);
+        assert_eq!(few.counts(), (3, 3));
+        assert_eq!(few.clusters.of_pose(), [0, 0, 1]);
+        assert_eq!(few.methods[0].1.len(), 3);
+        assert_eq!(both.thinned(100).counts(), (6, 3));
     }
 }

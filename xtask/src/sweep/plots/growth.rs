@@ -26,6 +26,8 @@ pub(crate) struct Growth {
 /// Draws a panel for each pose with the mean answers and a band from the 10th to the 90th
 /// percentile of the draws, and one with the share of verdicts that flip.
 ///
+/// Verdicts, all of them 0 or 1, have no band: their mean says how often they are which.
+///
 /// `flips` has one line for each method over the added noise (mm).
 ///
 /// # Errors
@@ -47,7 +49,7 @@ pub(crate) fn growth(
             x: x.clone(),
             y: Axis::unit("collision probability or verdict"),
             guides: Vec::new(),
-            series: lines(pose.methods.iter().map(|levels| levels.iter().map(mean)), Spread::Band),
+            series: lines(pose.methods.iter().map(|levels| curve(levels)), Spread::Band),
         })
         .collect();
     if !flips.is_empty() {
@@ -82,9 +84,13 @@ fn lines<Points: Iterator<Item = Point>>(
     methods.enumerate().map(line).collect()
 }
 
-fn mean((x, answers): &(f64, Vec<f64>)) -> Point {
-    let y = answers.iter().sum::<f64>() / answers.len() as f64;
-    Point { x: *x, y, range: Some([0.1, 0.9].map(|share| quantile(answers, share))) }
+fn curve(levels: &[(f64, Vec<f64>)]) -> impl Iterator<Item = Point> {
+    let are_verdicts = levels.iter().flat_map(|level| &level.1).all(|a| *a == 0.0 || *a == 1.0);
+    levels.iter().map(move |(x, answers)| {
+        let y = answers.iter().sum::<f64>() / answers.len() as f64;
+        let range = [0.1, 0.9].map(|share| quantile(answers, share));
+        Point { x: *x, y, range: (!are_verdicts).then_some(range) }
+    })
 }
 
 #[cfg(test)]
@@ -97,9 +103,11 @@ mod tests {
     #[test]
     fn a_point_is_the_mean_of_the_draws_with_their_spread() {
         let answers: Vec<f64> = (1..=10).map(|i| f64::from(i) / 10.0).collect();
-        let point = mean(&(3.0, answers));
-        assert!((point.y - 0.55).abs() < 1e-12);
-        assert_eq!((point.x, point.range), (3.0, Some([0.1, 0.9])));
+        let points: Vec<Point> = curve(&[(3.0, answers)]).collect();
+        assert!((points[0].y - 0.55).abs() < 1e-12);
+        assert_eq!((points[0].x, points[0].range), (3.0, Some([0.1, 0.9])));
+        let verdicts: Vec<Point> = curve(&[(3.0, vec![0.0, 1.0, 1.0, 1.0])]).collect();
+        assert_eq!((verdicts[0].y, verdicts[0].range), (0.75, None));
     }
 
     #[test]
@@ -135,9 +143,9 @@ mod tests {
         let flipped = [flipped(0), flipped(1)];
         let svg = drawn("growth", |path| growth(path, &["ours", "voxels 1 cm"], &poses, &flipped));
         assert_eq!(svg.matches("std of the added noise (mm)").count(), 3);
-        // A band for each method and pose; squares and their legend are polygons too.
+        // A band for each pose; squares and their legend are polygons too.
         assert_eq!(svg.matches("<circle").count(), 3 * levels.len() + 1);
-        let polygons = 2 * poses.len() + 3 * levels.len() + 1;
+        let polygons = poses.len() + 3 * levels.len() + 1;
         assert_eq!(svg.matches("<polygon").count(), polygons);
     }
 }

@@ -15,15 +15,18 @@ type Area = [i32; 4];
 /// For each point the upper left corner of its name, pixels.
 ///
 /// Names are placed in order, each at the first of eight places around its point that hides
-/// least: of points, of names placed before, and of what is outside of the given columns and rows.
+/// least: of points, of obstacles (left, top, right, bottom), of names placed before, and of what
+/// is outside of the given columns and rows.
 pub(super) fn place(
     names: &[&str],
     points: &[(i32, i32)],
+    obstacles: &[[i32; 4]],
     columns: Range<i32>,
     rows: Range<i32>,
 ) -> Vec<(i32, i32)> {
     let mut taken: Vec<Area> =
         points.iter().map(|&(x, y)| [x - GAP + 2, y - GAP + 2, x + GAP - 2, y + GAP - 2]).collect();
+    taken.extend(obstacles);
     let mut corners = Vec::new();
     for (name, &(x, y)) in names.iter().zip(points) {
         let width = text_width(name) as i32;
@@ -68,7 +71,9 @@ mod tests {
     fn names_avoid_points_one_another_and_the_edge() {
         let names = ["first", "second", "at the right edge"];
         let points = [(50, 50), (62, 52), (195, 100)];
-        let corners = place(&names, &points, 0..200, 0..200);
+        // A line to the right of the first.
+        let line = [50, 48, 58, 52];
+        let corners = place(&names, &points, &[line], 0..200, 0..200);
         let areas: Vec<Area> = names
             .iter()
             .zip(&corners)
@@ -76,6 +81,7 @@ mod tests {
             .collect();
         for (i, area) in areas.iter().enumerate() {
             assert!(area[0] >= 0 && area[2] <= 200, "{area:?}");
+            assert_eq!(overlap(area, &line), 0, "{area:?}");
             for &(x, y) in &points {
                 assert_eq!(overlap(area, &[x - 5, y - 5, x + 5, y + 5]), 0, "{area:?} {x} {y}");
             }

@@ -76,6 +76,8 @@ pub(super) fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Result<
     let ranges: Vec<(f64, [f64; 2])> =
         series.points.iter().filter_map(|p| Some((p.x, p.range?))).collect();
     match series.spread {
+        // An empty polygon would be an element all the same.
+        Spread::Band if ranges.is_empty() => {}
         Spread::Band => {
             let low = ranges.iter().map(|&(x, [low, _])| (x, low));
             let high = ranges.iter().rev().map(|&(x, [_, high])| (x, high));

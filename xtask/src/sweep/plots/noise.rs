@@ -17,7 +17,7 @@ use crate::{
 pub(crate) type Group<'a> = (&'a str, &'a dyn Fn(&Condition) -> bool);
 
 /// Draws AUC above Brier score against the standard deviation of the noise, a column for each
-/// group of conditions, with 95 % intervals.
+/// group of conditions, with 95 % intervals; points of one noise stand side by side.
 ///
 /// # Errors
 ///
@@ -41,6 +41,9 @@ pub(crate) fn noise(
         let points = || of_row.iter().flat_map(|(_, s)| s).flat_map(|s: &Series| &s.points);
         let y = range_of(points().flat_map(|p| p.range.unwrap_or([p.y; 2])));
         let x = range_of(points().map(|p| p.x));
+        for (_, series) in &mut of_row {
+            set_apart(series, 0.008 * (x.end - x.start));
+        }
         panels.extend(of_row.into_iter().map(|(title, series)| Panel {
             title,
             x: Axis::new("std of the noise (mm)", x.clone(), 0),
@@ -91,6 +94,14 @@ fn lines(
         }
     }
     series
+}
+
+/// Moves each line a little to the side, so that their bars do not hide one another.
+fn set_apart(series: &mut [Series], step: f64) {
+    let middle = 0.5 * (series.len() as f64 - 1.0);
+    for (number, line) in series.iter_mut().enumerate() {
+        line.points.iter_mut().for_each(|p| p.x += step * (number as f64 - middle));
+    }
 }
 
 #[cfg(test)]

@@ -13,9 +13,13 @@ use crate::{
 /// Height of the panel of counts, pixels.
 const COUNTS: u32 = 190;
 
+/// Rates of fewer answers than this are left out: they jump about and say nothing.
+const FEWEST: usize = 10;
+
 /// Draws the bins of each method or family, named.
 ///
-/// A forecaster is calibrated where its bars reach the diagonal; counts have a logarithmic axis,
+/// A forecaster is calibrated where its bars reach the diagonal; bins of fewer than ten answers
+/// show in the counts only. Counts have a logarithmic axis,
 /// since most answers are near 0 or 1.
 ///
 /// # Errors
@@ -27,20 +31,21 @@ pub(crate) fn reliability(path: &Path, title: &str, series: &[(String, Vec<Bin>)
         .enumerate()
         .map(|(number, (name, _))| (name.clone(), Style::of_series(number)))
         .collect();
-    let lines = |y: &dyn Fn(&Bin) -> (f64, Option<[f64; 2]>)| -> Vec<Series> {
+    let lines = |fewest: usize, y: &dyn Fn(&Bin) -> (f64, Option<[f64; 2]>)| -> Vec<Series> {
         let with_style = series.iter().zip(&names);
         let line = |((_, bins), (_, style)): (&(String, Vec<Bin>), &(String, Style))| Series {
             style: *style,
             points: bins
                 .iter()
+                .filter(|bin| bin.count >= fewest)
                 .map(|bin| Point { x: bin.mean, y: y(bin).0, range: y(bin).1 })
                 .collect(),
             spread: Spread::Bars,
         };
         with_style.map(line).collect()
     };
-    let rates = lines(&|bin| (bin.observed, Some(bin.interval)));
-    let counts = lines(&|bin| ((bin.count as f64).log10(), None));
+    let rates = lines(FEWEST, &|bin| (bin.observed, Some(bin.interval)));
+    let counts = lines(1, &|bin| ((bin.count as f64).log10(), None));
     let largest = range_of(counts.iter().flat_map(|s| &s.points).map(|p| p.y)).end;
     let width = PANEL.0 + 40;
     let side = legend_width(names.iter().map(|(name, _)| name.as_str()));
@@ -71,7 +76,7 @@ mod tests {
     use crate::sweep::measures;
 
     #[test]
-    fn every_bin_is_a_point_above_and_below() {
+    fn every_bin_is_a_point_below_and_above_when_it_has_enough_answers() {
         let answers = samples::answers(100);
         let series = ["a", "b"].map(|family| {
             let judged = samples::pick(&answers, |c| c.family == family);
@@ -80,7 +85,10 @@ mod tests {
         });
         let svg = drawn("reliability", |path| reliability(path, "ours", &series));
         // The first series has circles, also in the legend.
-        assert_eq!(svg.matches("<circle").count(), 2 * series[0].1.len() + 1);
+        let bins = &series[0].1;
+        let rates = bins.iter().filter(|bin| bin.count >= FEWEST).count();
+        assert!(0 < rates && rates < bins.len());
+        assert_eq!(svg.matches("<circle").count(), bins.len() + rates + 1);
         assert!(svg.contains("family b") && svg.contains("observed rate of collisions"));
     }
 }

@@ -53,7 +53,7 @@ pub(crate) fn roc(path: &Path, groups: &[(String, &Judged)]) -> Result<()> {
                 .map(|s| format!("{:.3}", Measure::Auc.of(s, &s.ones())).replacen("0.", ".", 1))
                 .collect();
             let style = Style { marker: None, ..Style::of_series(number) };
-            (format!("{name} ({})", aucs.join(" / ")), style)
+            (format!("{name}, AUC {}", aucs.join(" / ")), style)
         })
         .collect();
     draw(path, groups.len().max(1), &panels, &names)
@@ -77,7 +77,7 @@ mod tests {
             let sample = &judged.samples()[0];
             format!("{:.3}", Measure::Auc.of(sample, &sample.ones())).replacen("0.", ".", 1)
         };
-        let entry = format!("ours ({} / {})", auc(&all), auc(&near));
+        let entry = format!("ours, AUC {} / {}", auc(&all), auc(&near));
         assert!(svg.contains(&entry), "{entry}");
         assert!(svg.contains("share of free poses stopped"));
     }

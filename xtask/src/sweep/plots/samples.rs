@@ -15,7 +15,7 @@ pub(super) fn answers(poses: u32) -> Answers {
     for (family, width) in [("a", 1.0), ("b", 0.5)] {
         for std in [0.0, 0.002, 0.005, 0.01, 0.02] {
             let unit = |pose: u32, use_of| {
-                seed::unit(seed::derive(family.len() as u64, pose.into(), use_of))
+                seed::unit(seed::derive(family.as_bytes()[0].into(), pose.into(), use_of))
             };
             let truths: Vec<Truth> = (0..poses)
                 .map(|pose| 0.2 * (unit(pose, 0) - 0.4))
@@ -23,7 +23,11 @@ pub(super) fn answers(poses: u32) -> Answers {
                 .collect();
             let said = |method: u64, blur: f64| -> Vec<Said> {
                 let of_pose = |(pose, truth): (u32, &Truth)| {
-                    let seed = seed::derive(method, pose.into(), (1e4 * std) as u64);
+                    let seed = seed::derive(
+                        method,
+                        pose.into(),
+                        (1e4 * std) as u64 + u64::from(family == "b"),
+                    );
                     // About logistic, like the probability below.
                     let u = seed::unit(seed).clamp(1e-6, 1.0 - 1e-6);
                     let score = -truth.signed_distance + blur * (u / (1.0 - u)).ln();

@@ -84,8 +84,9 @@ fn draw_panel(area: &Area<'_>, x_name: &str, y_name: &str, spots: &[Place]) -> R
     let title = format!("{y_name} against time");
     let mut chart = frame(area, &title, &x, &Axis::new(y_name, 0.0..errors.end, 2))?;
     let points: Vec<(f64, f64)> = spots.iter().map(|s| (s.x, s.error.value)).collect();
-    let stairs = LineSeries::new(staircase(&points), BLUE.mix(0.5).stroke_width(2));
-    chart.draw_series(stairs).map_err(failed)?;
+    let stairs = staircase(&points);
+    let line = LineSeries::new(stairs.clone(), BLUE.mix(0.5).stroke_width(2));
+    chart.draw_series(line).map_err(failed)?;
     for (spot, is_on_front) in spots.iter().zip(on_front(&points)) {
         let color = if is_on_front { BLUE } else { GREY };
         let bar = vec![(spot.x, spot.error.low), (spot.x, spot.error.high)];
@@ -100,10 +101,17 @@ fn draw_panel(area: &Area<'_>, x_name: &str, y_name: &str, spots: &[Place]) -> R
     }
     // Names go where they hide neither a point nor one another.
     let pixels: Vec<(i32, i32)> = points.iter().map(|at| chart.backend_coord(at)).collect();
+    let bars = spots.iter().map(|s| [(s.x, s.error.low), (s.x, s.error.high)]);
+    let stairs = stairs.windows(2).map(|pair| [pair[0], pair[1]]);
+    let lines: Vec<[i32; 4]> = bars
+        .chain(stairs)
+        .map(|ends| ends.map(|end| chart.backend_coord(&end)))
+        .map(|[a, b]| [a.0.min(b.0) - 2, a.1.min(b.1) - 2, a.0.max(b.0) + 2, a.1.max(b.1) + 2])
+        .collect();
     let (columns, rows) = chart.plotting_area().get_pixel_range();
     let names: Vec<&str> = spots.iter().map(|s| s.name.as_str()).collect();
     let base = area.get_base_pixel();
-    for (spot, at) in spots.iter().zip(place(&names, &pixels, columns, rows)) {
+    for (spot, at) in spots.iter().zip(place(&names, &pixels, &lines, columns, rows)) {
         let font = ("sans-serif", 13).into_font();
         let font = if spot.is_default { font.style(FontStyle::Bold) } else { font };
         let at = (at.0 - base.0, at.1 - base.1);
