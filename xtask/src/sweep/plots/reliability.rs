@@ -31,21 +31,13 @@ pub(crate) fn reliability(path: &Path, title: &str, series: &[(String, Vec<Bin>)
         .enumerate()
         .map(|(number, (name, _))| (name.clone(), Style::of_series(number)))
         .collect();
-    let lines = |fewest: usize, y: &dyn Fn(&Bin) -> (f64, Option<[f64; 2]>)| -> Vec<Series> {
-        let with_style = series.iter().zip(&names);
-        let line = |((_, bins), (_, style)): (&(String, Vec<Bin>), &(String, Style))| Series {
-            style: *style,
-            points: bins
-                .iter()
-                .filter(|bin| bin.count >= fewest)
-                .map(|bin| Point { x: bin.mean, y: y(bin).0, range: y(bin).1 })
-                .collect(),
-            spread: Spread::Bars,
-        };
-        with_style.map(line).collect()
-    };
-    let rates = lines(FEWEST, &|bin| (bin.observed, Some(bin.interval)));
-    let counts = lines(1, &|bin| ((bin.count as f64).log10(), None));
+    let rates = lines(series, FEWEST, |bin| Point {
+        x: bin.mean,
+        y: bin.observed,
+        range: Some(bin.interval),
+    });
+    let counts =
+        lines(series, 1, |bin| Point { x: bin.mean, y: (bin.count as f64).log10(), range: None });
     let largest = range_of(counts.iter().flat_map(|s| &s.points).map(|p| p.y)).end;
     let width = PANEL.0 + 40;
     let side = legend_width(names.iter().map(|(name, _)| name.as_str()));
@@ -65,6 +57,20 @@ pub(crate) fn reliability(path: &Path, title: &str, series: &[(String, Vec<Bin>)
         }
         legend(&side, &names)
     })
+}
+
+/// A line for each series through its bins of at least so many answers.
+fn lines(
+    series: &[(String, Vec<Bin>)],
+    fewest: usize,
+    point: impl Fn(&Bin) -> Point,
+) -> Vec<Series> {
+    let line = |(number, (_, bins)): (usize, &(String, Vec<Bin>))| Series {
+        style: Style::of_series(number),
+        points: bins.iter().filter(|bin| bin.count >= fewest).map(&point).collect(),
+        spread: Spread::Bars,
+    };
+    series.iter().enumerate().map(line).collect()
 }
 
 #[cfg(test)]
