@@ -3,14 +3,11 @@
 mod approach;
 mod case_file;
 mod chart;
-mod machine;
 mod piano;
 mod piano_data;
 mod real_scans;
 mod report;
 mod side_view;
-mod statistics;
-mod table;
 mod tool;
 
 use std::{

@@ -1,8 +1,10 @@
 //! Project tasks: `cargo xtask TASK`, one file per task.
 
 mod ci;
+mod common;
 mod evaluate;
 mod fixtures;
+mod sweep;
 mod tidy;
 
 use std::path::{Path, PathBuf};

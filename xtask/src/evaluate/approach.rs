@@ -12,9 +12,11 @@ use super::{
     case_file::{Case, CaseFile},
     chart::{self, Curve, Mark},
     side_view,
+    tool::{Answer, Tool},
+};
+use crate::common::{
     statistics::largest_drop,
     table::{Table, bounds, probability},
-    tool::{Answer, Tool},
 };
 
 /// A fall of the probability by this much along the approach is noise.

@@ -10,9 +10,11 @@ use super::{
     case_file::{Case, CaseFile},
     chart,
     piano_data::{Meeting, Sampled, Sampling},
+    tool::{Answer, Batch, Tool},
+};
+use crate::common::{
     statistics::{auc, brier, quantile},
     table::{Table, bounds, probability},
-    tool::{Answer, Batch, Tool},
 };
 
 /// Fine samples, then about 10,000 and 40,000 points; little and much noise.

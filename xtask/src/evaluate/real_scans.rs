@@ -7,9 +7,11 @@ use anyhow::Result;
 use super::{
     Places, Section,
     case_file::{Case, CaseFile},
+    tool::{Answer, Tool},
+};
+use crate::common::{
     statistics::quantile,
     table::{Table, bounds, probability},
-    tool::{Answer, Tool},
 };
 
 /// The sensor of each scan, by a part of its file name.

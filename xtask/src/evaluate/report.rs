@@ -4,7 +4,8 @@ use std::{fmt::Write as _, fs, path::Path};
 
 use anyhow::{Context, Result};
 
-use super::{SEED, Section, machine, tool::Tool};
+use super::{SEED, Section, tool::Tool};
+use crate::common::machine;
 
 /// Writes the document; every number in it comes from this run.
 pub(super) fn write(root: &Path, tool: &Tool, sections: &[Section]) -> Result<()> {

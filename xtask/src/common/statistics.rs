@@ -1,7 +1,7 @@
 //! Scores of probabilities against the truth, and ranks of times.
 
 /// The value below which the share `q` lies (nearest rank); NaN of nothing.
-pub(super) fn quantile(values: &[f64], q: f64) -> f64 {
+pub(crate) fn quantile(values: &[f64], q: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let rank = (q * sorted.len() as f64).ceil() as usize;
@@ -10,7 +10,7 @@ pub(super) fn quantile(values: &[f64], q: f64) -> f64 {
 
 /// Chance that a collision gets a higher probability than a free pair, ties counting half; NaN
 /// when there are none of one kind.
-pub(super) fn auc(scored: &[(f64, bool)]) -> f64 {
+pub(crate) fn auc(scored: &[(f64, bool)]) -> f64 {
     let of = |kind| scored.iter().filter(move |s| s.1 == kind).map(|s| s.0);
     let (mut wins, mut pairs) = (0.0, 0.0);
     for hit in of(true) {
@@ -29,13 +29,13 @@ pub(super) fn auc(scored: &[(f64, bool)]) -> f64 {
 }
 
 /// Mean squared difference of probability and truth; NaN of nothing.
-pub(super) fn brier(scored: &[(f64, bool)]) -> f64 {
+pub(crate) fn brier(scored: &[(f64, bool)]) -> f64 {
     let squares = scored.iter().map(|&(p, truth)| (p - f64::from(u8::from(truth))).powi(2));
     squares.sum::<f64>() / scored.len() as f64
 }
 
 /// How far a series falls below its own running maximum, at most.
-pub(super) fn largest_drop(values: impl IntoIterator<Item = f64>) -> f64 {
+pub(crate) fn largest_drop(values: impl IntoIterator<Item = f64>) -> f64 {
     let (mut highest, mut drop) = (f64::NEG_INFINITY, 0.0_f64);
     for value in values {
         highest = highest.max(value);

@@ -3,16 +3,16 @@
 use std::fmt;
 
 /// Rows under a header.
-pub(super) struct Table {
+pub(crate) struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    pub(super) fn new(header: &[&str]) -> Self {
+    pub(crate) fn new(header: &[&str]) -> Self {
         Self { rows: vec![header.iter().map(|cell| (*cell).to_owned()).collect()] }
     }
 
-    pub(super) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
 }
@@ -41,12 +41,12 @@ impl fmt::Display for Table {
 }
 
 /// A probability with the digits that mean something.
-pub(super) fn probability(p: f64) -> String {
+pub(crate) fn probability(p: f64) -> String {
     if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
 }
 
 /// Lower and upper bound.
-pub(super) fn bounds([low, high]: [f64; 2]) -> String {
+pub(crate) fn bounds([low, high]: [f64; 2]) -> String {
     format!("{} .. {}", probability(low), probability(high))
 }
 

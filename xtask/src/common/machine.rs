@@ -8,7 +8,7 @@ use std::{
 };
 
 /// Today in UTC as year-month-day.
-pub(super) fn date() -> String {
+pub(crate) fn date() -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
     let [year, month, day] = civil(seconds / 86_400);
     format!("{year}-{month:02}-{day:02}")
@@ -29,7 +29,7 @@ fn civil(days: u64) -> [u64; 3] {
 }
 
 /// Processor and number of cores.
-pub(super) fn processor() -> String {
+pub(crate) fn processor() -> String {
     let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info
         .lines()
@@ -41,7 +41,7 @@ pub(super) fn processor() -> String {
 }
 
 /// The commit of the sources, and whether they differ from it.
-pub(super) fn commit(root: &Path) -> String {
+pub(crate) fn commit(root: &Path) -> String {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").args(arguments).current_dir(root).output().ok()?;
         let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
