@@ -3,6 +3,7 @@
 mod ci;
 mod evaluate;
 mod fixtures;
+mod sweep;
 mod tidy;
 
 use std::path::{Path, PathBuf};
