@@ -1,6 +1,6 @@
 //! A k-d tree over the different positions of a cloud.
 
-use std::num::NonZeroUsize;
+use std::{cmp::Ordering, num::NonZeroUsize};
 
 use cloudtouch_geom::Point3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
@@ -31,8 +31,9 @@ impl Index {
         let count = u32::try_from(points.len()).map_err(|error| failed(error.to_string()))?;
         let mut entries: Vec<(u32, [f64; 3])> =
             (0..count).zip(points).map(|(index, p)| (index, place(p))).collect();
-        entries
-            .sort_unstable_by(|(i, p), (j, q)| p.partial_cmp(q).unwrap_or(i.cmp(j)).then(i.cmp(j)));
+        // Finite numbers without −0 have a total order.
+        let by_place = |p: &[f64; 3], q: &[f64; 3]| p.partial_cmp(q).unwrap_or(Ordering::Equal);
+        entries.sort_unstable_by(|(i, p), (j, q)| by_place(p, q).then(i.cmp(j)));
         entries.dedup_by(|later, first| later.1 == first.1);
         entries.sort_unstable_by_key(|entry| entry.0);
         let tree = ImmutableKdTree::new_from_entries(&entries)
@@ -83,4 +84,48 @@ fn place(point: &Point3) -> [f64; 3] {
 
 fn squared(limit: f64) -> f64 {
     (limit * limit * SLACK).min(f64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_testkit::brute::nearest_neighbours;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sweep::rivals::test_clouds::cloud;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
+        #[test]
+        fn what_is_near_is_found(
+            points in cloud(1..300), places in cloud(1..20), limit in 0.0..0.3_f64,
+            count in 1..80_usize,
+        ) {
+            let index = Index::try_new(&points).unwrap();
+            for place in &places {
+                let order = nearest_neighbours(&points, place, points.len());
+                let distance = |i: usize| (points[i] - place).norm();
+                let near: Vec<usize> =
+                    order.iter().copied().filter(|&i| distance(i) <= limit).collect();
+
+                let found = index.nearest(place, NonZeroUsize::new(count).unwrap());
+                prop_assert!(found.iter().map(|f| f.index).eq(order.iter().copied().take(count)));
+                let mut found: Vec<Found> = index.within(place, limit).collect();
+                found.sort_by(|f, g| f.distance.total_cmp(&g.distance));
+                prop_assert!(found.iter().map(|f| f.index).eq(near.iter().copied()));
+                let found = index.nearest_within(place, limit).map(|f| f.index);
+                prop_assert_eq!(found, near.first().copied());
+            }
+        }
+    }
+
+    #[test]
+    fn twins_are_one_point_under_the_first_index() {
+        let places = [[0.0, 1.0, 2.0], [-0.0, 1.0, 2.0], [5.0, 1.0, 2.0], [0.0, 1.0, 2.0]];
+        let points = places.map(Point3::from);
+        let index = Index::try_new(&points).unwrap();
+        let found = index.nearest(&points[3], NonZeroUsize::new(4).unwrap());
+        assert_eq!(found.iter().map(|f| f.index).collect::<Vec<_>>(), [0, 2]);
+    }
 }

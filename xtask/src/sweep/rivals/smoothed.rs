@@ -183,6 +183,20 @@ mod tests {
         ) {
             agrees_with_every_pair(&a, &b, &pose, std);
         }
+
+        #[test]
+        fn minimum_and_scale_are_symmetric(
+            a in cloud(1..150), b in cloud(1..150), pose in pose(), std in 0.0..0.05_f64,
+        ) {
+            let measure = |a: &[Point3], b: &[Point3], pose: &Pose| {
+                let observed = Observed::try_new(a, b, pose, std).unwrap();
+                SmoothedDistance::new(1).measure(&observed).unwrap()
+            };
+            let (there, back) = (measure(&a, &b, &pose), measure(&b, &a, &pose.inverse()));
+            let [there_least, back_least] = [&there, &back].map(|s| s.distances.ascending[0]);
+            prop_assert!((there_least - back_least).abs() <= 1e-14);
+            prop_assert!((there.scale - back.scale).abs() <= 1e-14);
+        }
     }
 
     #[test]
