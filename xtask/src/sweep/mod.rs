@@ -6,3 +6,4 @@
 mod measures;
 mod plots;
 mod record;
+mod rivals;
