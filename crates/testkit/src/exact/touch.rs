@@ -1,4 +1,4 @@
-//! Signed distances at the cost of some hundred overlap tests.
+//! What counts as contact, and the shortest translation that ends it.
 
 use cloudtouch_geom::{Pose, Vector3};
 use nalgebra::UnitQuaternion;
@@ -33,52 +33,41 @@ impl ExactMesh {
         }
     }
 
-    /// The distance when free; in contact minus an upper bound on the shortest translation that
-    /// ends it, m; minus infinity when none was found.
+    /// The shortest way out of contact that is found, given one that is known.
     ///
-    /// Unlike [`penetration_depth`](Self::penetration_depth) it looks first along 42 directions
-    /// (for a convex contact the nearest is at most 20° off) and then closer around the best, and
-    /// gives up a direction that is not free at the length to be undercut: some ten times fewer
-    /// overlap tests. Never deeper than a way out that is `known`.
-    pub fn signed_distance(
+    /// Its length is an upper bound on the penetration depth. It looks along the 162 directions of
+    /// [`penetration_depth`](Self::penetration_depth), then closer around the best, but gives up a
+    /// direction that is not free at the length to be undercut: far fewer tests, and as good when
+    /// the known way is not much too long.
+    pub fn shortest_way_out(
         &self,
         other: &Self,
         self_from_other: &Pose,
         touch: Touch,
-        known: Option<WayOut>,
-    ) -> f64 {
+        known: WayOut,
+    ) -> WayOut {
         let free_at = |offset: Vector3| {
             !self.touches(other, &Pose::from_translation(offset).after(self_from_other), touch)
         };
-        if free_at(Vector3::zeros()) {
-            return self.distance(other, self_from_other);
+        let mut best = known;
+        for direction in sphere(1.0, 2).vertices() {
+            shorten(&mut best, direction.coords, &free_at);
         }
-        let size =
-            |m: &Self| m.mesh().bounding_box().map_or(0.0, |(low, high)| (high - low).norm());
-        let mut best = known.unwrap_or(WayOut {
-            direction: Vector3::z(),
-            // Not a way out yet, but none needs to be longer.
-            length: size(self) + size(other),
-        });
-        let mut found = known.is_some();
-        for direction in sphere(1.0, 1).vertices() {
-            found |= shorten(&mut best, direction.coords, &free_at);
-        }
-        for angle in [0.3, 0.15, 0.08, 0.04] {
+        for angle in [0.15, 0.08, 0.04] {
             let around = best.direction;
             for direction in ring(&around, angle) {
-                found |= shorten(&mut best, direction, &free_at);
+                shorten(&mut best, direction, &free_at);
             }
         }
-        if found { -best.length } else { f64::NEG_INFINITY }
+        best
     }
 }
 
-/// Takes a shorter way out along `direction`, if there is one; whether there was.
-fn shorten(best: &mut WayOut, direction: Vector3, free_at: &impl Fn(Vector3) -> bool) -> bool {
+/// Takes a shorter way out along `direction`, if there is one.
+fn shorten(best: &mut WayOut, direction: Vector3, free_at: &impl Fn(Vector3) -> bool) {
     let mut high = 0.99 * best.length;
     if !free_at(direction * high) {
-        return false;
+        return;
     }
     let mut low = 0.0;
     while high - low > 1e-6_f64.max(2e-3 * high) {
@@ -86,7 +75,6 @@ fn shorten(best: &mut WayOut, direction: Vector3, free_at: &impl Fn(Vector3) -> 
         if free_at(direction * middle) { high = middle } else { low = middle }
     }
     *best = WayOut { direction, length: high };
-    true
 }
 
 /// Six unit vectors at an angle from a unit vector, evenly around it.

@@ -4,7 +4,6 @@ use cloudtouch_geom::{Covariance, Point3, PointCloud, Vector3, seed};
 use parry3d_f64::{
     math::Vector,
     query::{Ray, RayCast},
-    shape::FeatureId,
 };
 use rand::RngExt;
 
@@ -135,9 +134,7 @@ impl DepthView {
 fn first_hit(body: &ExactMesh, ray: &Vector3, max: f64) -> Option<SurfaceSample> {
     let cast = Ray::new(Vector::ZERO, parry_vector(ray));
     let hit = body.shape().cast_local_ray_and_get_normal(&cast, max, false)?;
-    let FeatureId::Face(face) = hit.feature else { return None };
-    // Faces hit from behind are counted on after all the others.
-    let triangle = face as usize % body.mesh().triangles().len();
+    let triangle = hit.subshape as usize;
     Some(SurfaceSample {
         position: Point3::from(ray * hit.time_of_impact),
         normal: scaled_normal(&body.mesh().corners(triangle)).normalize(),

@@ -16,11 +16,13 @@ use crate::{
     scene::{assemble, cylinder, moved, union_of_boxes},
 };
 
-/// A row of three or four pieces, up to 4 m long, and one of one or two.
+/// Two rows of three or four pieces, up to 4 m long and a metre apart, and one of two.
 pub(super) fn scene(seed: u64) -> FamilyScene {
     let rng = &mut seed::generator(seed);
-    let (pieces, fewer) = (rng.random_range(3..=4), rng.random_range(1..=2));
-    let (a, b) = (ExactMesh::new(&row(pieces, rng)), ExactMesh::new(&row(fewer, rng)));
+    let [near, far] = [0; 2].map(|_| row(rng.random_range(3..=4), rng));
+    let across = Pose::from_translation(Vector3::y() * between(1.2, 1.6, rng));
+    let a = ExactMesh::new(&assemble([near, moved(&far, &across)]));
+    let b = ExactMesh::new(&row(2, rng));
     let [seen_a, seen_b] = [&a, &b].map(|body| seen_from(body, &all_around(body), 0.1));
     let ends = Ends::of(&seen_a, &seen_b, seed);
     FamilyScene {

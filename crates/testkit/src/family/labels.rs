@@ -36,11 +36,12 @@ impl Wanted {
 
 impl FamilyScene {
     /// `count` poses with exact answers, in an order of no meaning: at least half have a
-    /// |signed distance| up to 3 cm, half collide, and so do half of the near ones.
+    /// |signed distance| up to 3 cm, half collide, and so do about half of the near ones (exactly,
+    /// but for these, when `count` is a multiple of four).
     ///
     /// The object goes straight to a first contact in a way that suits the family and then back, up
     /// to 50 cm, or on, up to 20 cm (the gripper 6 cm, a sheet 60 cm). The depth of an overlap is
-    /// bounded from above, see [`ExactMesh::signed_distance`](crate::exact::ExactMesh::signed_distance).
+    /// bounded from above, see [`ExactMesh::shortest_way_out`](crate::exact::ExactMesh::shortest_way_out).
     pub fn poses(&self, count: usize, seed: u64) -> Vec<LabelledPose> {
         let mut order: Vec<u64> = (0..count as u64).collect();
         order.sort_by_key(|&i| seed::derive(seed, 2, i));
@@ -75,16 +76,16 @@ impl FamilyScene {
         panic!("a thousand approaches gave no pose that is {wanted:?}");
     }
 
+    /// The answer for a place on an approach, which is free up to its contact.
     fn label(&self, approach: &Approach, along: f64) -> LabelledPose {
-        let pose = approach.pose(along);
-        // The way it came.
-        let back = (along > approach.contact)
-            .then(|| WayOut { direction: -approach.direction, length: along - approach.contact });
-        let signed_distance = self.a.signed_distance(&self.b, &pose, self.touch, back);
-        LabelledPose {
-            scene_from_object: pose,
-            in_collision: signed_distance <= 0.0,
-            signed_distance,
-        }
+        let scene_from_object = approach.pose(along);
+        let in_collision = self.a.touches(&self.b, &scene_from_object, self.touch);
+        let signed_distance = if in_collision {
+            let back = WayOut { direction: -approach.direction, length: along - approach.contact };
+            -self.a.shortest_way_out(&self.b, &scene_from_object, self.touch, back).length
+        } else {
+            self.a.distance(&self.b, &scene_from_object)
+        };
+        LabelledPose { scene_from_object, in_collision, signed_distance }
     }
 }

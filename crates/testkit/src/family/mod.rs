@@ -41,7 +41,8 @@ pub enum Family {
     InterlockedTori,
     /// A board 2 cm thick against a box, a wedge or another board.
     ThinSlab,
-    /// A row of tables, shelves, chairs and racks up to 4 m long against one or two of them.
+    /// Tables, shelves, chairs and racks in two rows up to 4 m long, against two of them side by
+    /// side.
     Furniture,
 }
 

@@ -1,6 +1,6 @@
 //! How the moving body comes to a first contact.
 
-use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_geom::{Point3, TriangleMesh, Vector3, seed};
 use nalgebra::UnitQuaternion;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -36,14 +36,8 @@ pub(super) struct Ends {
 
 impl Ends {
     /// A thousand points of each surface that sensors see.
-    pub(super) fn of(
-        scene: &cloudtouch_geom::TriangleMesh,
-        object: &cloudtouch_geom::TriangleMesh,
-        seed: u64,
-    ) -> Self {
-        let points = |mesh, stream| {
-            sample_surface(mesh, 1000, cloudtouch_geom::seed::derive(seed, 100, stream))
-        };
+    pub(super) fn of(scene: &TriangleMesh, object: &TriangleMesh, seed: u64) -> Self {
+        let points = |mesh, stream| sample_surface(mesh, 1000, seed::derive(seed, 100, stream));
         Self { targets: points(scene, 0), grips: points(object, 1) }
     }
 

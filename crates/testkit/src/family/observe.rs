@@ -1,6 +1,6 @@
 //! What the bodies look like to a sensor.
 
-use cloudtouch_geom::{Point3, PointCloud, TriangleMesh, seed};
+use cloudtouch_geom::{PointCloud, TriangleMesh, seed};
 
 use super::{FamilyScene, depth_view::DepthView};
 use crate::{
@@ -85,10 +85,5 @@ impl FamilyScene {
             Seen::Surface(mesh) | Seen::Known(mesh) => (area(mesh) / points as f64).sqrt(),
             Seen::Image(view) => view.spacing(points),
         }
-    }
-
-    /// Where the camera that observes A stands in A's frame, if one does.
-    pub fn camera_position(&self) -> Option<Point3> {
-        matches!(self.seen[Side::A as usize], Seen::Image(_)).then(Point3::origin)
     }
 }
