@@ -114,7 +114,7 @@ impl DepthCamera {
     }
 
     /// The depth of a pixel to the right or below that lies across a depth edge, if any.
-    fn depth_across_edge(&self, depths: &[f64], i: usize) -> Option<f64> {
+    pub(crate) fn depth_across_edge(&self, depths: &[f64], i: usize) -> Option<f64> {
         let right = (!(i + 1).is_multiple_of(self.width)).then_some(i + 1);
         [right, Some(i + self.width)]
             .into_iter()

@@ -3,6 +3,7 @@
 pub mod brute;
 pub mod camera;
 pub mod exact;
+pub mod family;
 pub mod hard_cases;
 pub mod noise;
 pub mod poses;

@@ -25,7 +25,7 @@ pub fn add_noise(points: &[Point3], kind: NoiseKind, std: f64, seed: u64) -> Vec
 }
 
 /// An error with standard deviation 1 along every axis.
-fn unit_error(kind: NoiseKind, rng: &mut impl Rng) -> Vector3 {
+pub(crate) fn unit_error(kind: NoiseKind, rng: &mut impl Rng) -> Vector3 {
     let normal = normal_vector(rng);
     match kind {
         NoiseKind::Gaussian => normal,

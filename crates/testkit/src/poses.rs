@@ -6,7 +6,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::{
-    exact::ExactMesh,
+    exact::{ExactMesh, Touch},
     random,
     surface::{SurfaceSample, sample_surface},
 };
@@ -27,7 +27,7 @@ pub struct LabelledPose {
 pub const NEAR: f64 = 0.03;
 
 /// The gap at which an approach counts as contact, m.
-const CONTACT_GAP: f64 = 1e-4;
+pub(crate) const CONTACT_GAP: f64 = 1e-4;
 
 /// `count` poses: at least half with |signed distance| ≤ 3 cm, the rest up to 50 cm of retreat
 /// from the first contact or 20 cm of advance into it, in an order of no meaning.
@@ -50,7 +50,7 @@ pub fn poses_near_contact(
     (0..count)
         .map(|i| {
             let mut rng = seed::generator(seed::derive(seed, 1, i as u64));
-            let approach = Approach::draw(scene, object, &targets, &grips, &mut rng);
+            let approach = Approach::draw(scene, object, Touch::Solids, &targets, &grips, &mut rng);
             let share = rng.random::<f64>();
             // Positive is back into the open.
             let retreat = match i % 4 {
@@ -73,19 +73,24 @@ pub fn label(scene: &ExactMesh, object: &ExactMesh, scene_from_object: &Pose) ->
 }
 
 /// A straight path from a free pose into the scene.
-struct Approach {
-    rotation: UnitQuaternion<f64>,
-    start: Vector3,
+pub(crate) struct Approach {
+    pub(crate) rotation: UnitQuaternion<f64>,
+    pub(crate) start: Vector3,
     /// Unit length.
-    direction: Vector3,
+    pub(crate) direction: Vector3,
     /// The last free distance along the path before the first contact, m.
-    contact: f64,
+    pub(crate) contact: f64,
 }
 
 impl Approach {
-    fn draw(
+    /// Straight ahead from somewhere free to where the object touches.
+    ///
+    /// # Panics
+    /// When no free place is found in 10,000 tries.
+    pub(crate) fn draw(
         scene: &ExactMesh,
         object: &ExactMesh,
+        touch: Touch,
         targets: &[SurfaceSample],
         grips: &[SurfaceSample],
         rng: &mut ChaCha8Rng,
@@ -106,7 +111,7 @@ impl Approach {
             let path = target - grip - start;
             let Some(direction) = path.try_normalize(0.05) else { continue };
             let mut approach = Self { rotation, start, direction, contact: 0.0 };
-            if scene.solids_overlap(object, &approach.pose(0.0)) {
+            if scene.touches(object, &approach.pose(0.0), touch) {
                 continue;
             }
             approach.advance(scene, object);
@@ -115,13 +120,15 @@ impl Approach {
         panic!("no free place for the object in or around the scene's box");
     }
 
-    fn pose(&self, along: f64) -> Pose {
+    pub(crate) fn pose(&self, along: f64) -> Pose {
         let offset = Translation3::from(self.start + self.direction * along);
         Pose::from_isometry(Isometry3::from_parts(offset, self.rotation))
     }
 
     /// Moves on by the exact distance, which cannot jump over a contact, until that is small.
-    fn advance(&mut self, scene: &ExactMesh, object: &ExactMesh) {
+    ///
+    /// It must be known that there is a contact ahead.
+    pub(crate) fn advance(&mut self, scene: &ExactMesh, object: &ExactMesh) {
         loop {
             let gap = scene.distance(object, &self.pose(self.contact));
             if gap < CONTACT_GAP {

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch_testkit::{
-    exact::{ExactMesh, brute},
+    exact::{ExactMesh, Touch, WayOut, brute},
     poses::poses_near_contact,
     scene,
 };
@@ -124,6 +124,29 @@ fn penetration_depth_is_near_the_truth_and_never_below() {
     }
     let free = Pose::from_translation(Vector3::new(0.0, 0.0, 0.71));
     assert_eq!(a.penetration_depth(&b, &free), 0.0);
+}
+
+#[test]
+fn the_shortest_way_out_ends_the_contact_and_is_near_the_depth() {
+    let a = ExactMesh::new(&scene::cuboid([1.0; 3]));
+    let b = ExactMesh::new(&scene::sphere(0.2, 3));
+    for depth in [0.01, 0.1, 0.3] {
+        let pose = Pose::from_translation(Vector3::new(0.0, 0.1, 0.7 - depth));
+        let known = WayOut { direction: Vector3::x(), length: 0.8 };
+        let found = a.shortest_way_out(&b, &pose, Touch::Solids, known);
+        assert!((0.97 * depth..1.01 * depth).contains(&found.length), "{found:?} for {depth}");
+        let out = Pose::from_translation(found.direction * found.length).after(&pose);
+        assert!(!a.touches(&b, &out, Touch::Solids));
+    }
+    // Open sheets that cross have no inside: the shorter side is the way out.
+    let sheet = ExactMesh::new(&scene::rectangle(1.0, 2.0));
+    let upright = Pose::from_translation_rpy(
+        Vector3::new(0.3, 0.0, 0.0),
+        [0.0, 0.5 * std::f64::consts::PI, 0.0],
+    );
+    let known = WayOut { direction: Vector3::x(), length: 0.9 };
+    let found = sheet.shortest_way_out(&sheet, &upright, Touch::Surfaces, known);
+    assert!((found.length - 0.2).abs() < 1e-3, "{found:?}");
 }
 
 #[test]

@@ -6,9 +6,12 @@
 pub mod brute;
 mod contains;
 mod penetration;
+mod touch;
 
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
 use parry3d_f64::{math::Vector, query, shape::TriMesh};
+
+pub use touch::{Touch, WayOut};
 
 /// A mesh prepared for exact questions; surfaces are what counts unless a name says solid.
 pub struct ExactMesh {

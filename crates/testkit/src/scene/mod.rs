@@ -10,11 +10,14 @@ mod polygon;
 mod primitives;
 mod refine;
 mod room;
+mod union;
 
 pub use assemble::{assemble, moved};
 pub use piano::piano;
 pub use primitives::{
-    crossing_sheets, cuboid, peg, plane_patch, plate_with_hole, sphere, thin_slab, torus, wedge,
+    crossing_sheets, cuboid, cylinder, peg, plane_patch, plate_with_hole, rectangle, sphere,
+    thin_slab, torus, wedge,
 };
 pub use refine::subdivide_to_max_edge;
 pub use room::room;
+pub use union::union_of_boxes;

@@ -8,7 +8,12 @@ use super::assemble::{assemble, block, mesh, prism};
 
 /// An open square of side `size` in the plane z = 0, facing +z: two triangles.
 pub fn plane_patch(size: f64) -> TriangleMesh {
-    sheet(Vector3::x() * size, Vector3::y() * size)
+    rectangle(size, size)
+}
+
+/// An open rectangle in the plane z = 0, facing +z, with these sides along x and y.
+pub fn rectangle(width: f64, length: f64) -> TriangleMesh {
+    sheet(Vector3::x() * width, Vector3::y() * length)
 }
 
 /// Two open squares of side `size` that cross at right angles along the x axis.
@@ -136,7 +141,13 @@ pub fn plate_with_hole(size: f64, thickness: f64, hole_radius: f64) -> TriangleM
 
 /// A closed cylinder of 32 sides along z, its corners at `radius`.
 pub fn peg(radius: f64, length: f64) -> TriangleMesh {
-    let outline: Vec<_> = unit_circle(32).iter().map(|&[x, y]| [radius * x, radius * y]).collect();
+    cylinder(radius, length, 32)
+}
+
+/// A closed cylinder along z of so many `sides`, its corners at `radius`.
+pub fn cylinder(radius: f64, length: f64, sides: usize) -> TriangleMesh {
+    let outline: Vec<_> =
+        unit_circle(sides).iter().map(|&[x, y]| [radius * x, radius * y]).collect();
     prism(&outline, -0.5 * length, 0.5 * length)
 }
 
