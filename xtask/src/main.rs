@@ -20,6 +20,8 @@ enum Task {
     Tidy,
     /// Answers of the tool on real scans and exact poses, with figures.
     Evaluate(evaluate::Arguments),
+    /// Every method against exact truth on generated scenes, with tables and figures.
+    Sweep(sweep::Arguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -34,6 +36,7 @@ fn main() -> anyhow::Result<()> {
         Task::Ci => ci::run(&root),
         Task::Tidy => tidy::run(&root),
         Task::Evaluate(arguments) => evaluate::run(&root, &arguments),
+        Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

@@ -25,6 +25,7 @@ impl Clusters {
     }
 
     /// Every answer is of a pose of its own.
+    #[cfg(test)]
     pub(crate) fn separate(count: usize) -> Self {
         Self::new(0..count)
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Result, ensure};
 
-use super::lines::{Panel, Point, Series, Spread, draw, range_of};
+use super::lines::{Panel, Point, Series, draw, range_of};
 use crate::{
     common::draw::{Axis, BLUE, Marker, Style, VERMILION},
     sweep::measures::Judged,
@@ -37,10 +37,8 @@ pub(crate) fn distance(path: &Path, method: &str, groups: &[(String, &Judged)]) 
                     .filter(|dot| dot.2 == collides)
                     .map(|&(x, y, _)| Point { x, y, range: None })
                     .collect(),
-                spread: Spread::Bars,
             };
-            let curve =
-                Series { style: CURVE, points: local_mean(dots, &range), spread: Spread::Bars };
+            let curve = Series { style: CURVE, points: local_mean(dots, &range) };
             Panel {
                 title: (*title).clone(),
                 x: Axis::new("signed distance (mm)", range.clone(), 0),

@@ -26,7 +26,6 @@ pub(super) struct Panel {
 pub(super) struct Series {
     pub(super) style: Style,
     pub(super) points: Vec<Point>,
-    pub(super) spread: Spread,
 }
 
 /// A point and how far its value may be off.
@@ -35,13 +34,6 @@ pub(super) struct Point {
     pub(super) x: f64,
     pub(super) y: f64,
     pub(super) range: Option<[f64; 2]>,
-}
-
-/// How the ranges of the points are shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Spread {
-    Bars,
-    Band,
 }
 
 /// Draws the panels in rows of so many; series are named once, at the right.
@@ -70,27 +62,15 @@ pub(super) fn draw(
     })
 }
 
-/// One line with its spread and markers.
+/// One line with the ranges of its points and markers.
 pub(super) fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Result<()> {
     let Style { color, marker, line } = series.style;
     let ranges: Vec<(f64, [f64; 2])> =
         series.points.iter().filter_map(|p| Some((p.x, p.range?))).collect();
-    match series.spread {
-        // An empty polygon would be an element all the same.
-        Spread::Band if ranges.is_empty() => {}
-        Spread::Band => {
-            let low = ranges.iter().map(|&(x, [low, _])| (x, low));
-            let high = ranges.iter().rev().map(|&(x, [_, high])| (x, high));
-            let band: Vec<(f64, f64)> = low.chain(high).collect();
-            chart.draw_series([Polygon::new(band, color.mix(0.16))]).map_err(failed)?;
-        }
-        Spread::Bars => {
-            let bars = ranges.iter().map(|&(x, [low, high])| {
-                PathElement::new(vec![(x, low), (x, high)], color.mix(0.55).stroke_width(1))
-            });
-            chart.draw_series(bars).map_err(failed)?;
-        }
-    }
+    let bars = ranges.iter().map(|&(x, [low, high])| {
+        PathElement::new(vec![(x, low), (x, high)], color.mix(0.55).stroke_width(1))
+    });
+    chart.draw_series(bars).map_err(failed)?;
     let points = || series.points.iter().map(|p| (p.x, p.y));
     if line {
         chart.draw_series(LineSeries::new(points(), color.stroke_width(2))).map_err(failed)?;

@@ -1,7 +1,6 @@
 //! The figures: what the methods say against what is true, noise and time.
 
 mod distance;
-mod growth;
 mod labels;
 mod lines;
 mod noise;
@@ -13,8 +12,7 @@ mod samples;
 mod speed;
 
 pub(crate) use distance::distance;
-pub(crate) use growth::{Growth, growth};
-pub(crate) use noise::{Group, noise};
+pub(crate) use noise::noise;
 pub(crate) use reliability::reliability;
 pub(crate) use roc::roc;
 pub(crate) use speed::{Tradeoff, speed};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::lines::{Panel, Point, Series, Spread, draw, range_of};
+use super::lines::{Panel, Point, Series, draw, range_of};
 use crate::{
     common::draw::{Axis, Style},
     sweep::{
@@ -73,11 +73,7 @@ fn lines(
     stds.sort_by(f64::total_cmp);
     stds.dedup();
     let mut series: Vec<Series> = (0..methods.len())
-        .map(|number| Series {
-            style: Style::of_series(number),
-            points: Vec::new(),
-            spread: Spread::Bars,
-        })
+        .map(|number| Series { style: Style::of_series(number), points: Vec::new() })
         .collect();
     for std in stds {
         let judged = Judged::pick(answers, methods, |c, _| keep(c) && c.std == std);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::lines::{PANEL, Point, Series, Spread, draw_series, range_of};
+use super::lines::{PANEL, Point, Series, draw_series, range_of};
 use crate::{
     common::draw::{Axis, Style, figure, frame, guide, legend, legend_width},
     sweep::measures::Bin,
@@ -68,7 +68,6 @@ fn lines(
     let line = |(number, (_, bins)): (usize, &(String, Vec<Bin>))| Series {
         style: Style::of_series(number),
         points: bins.iter().filter(|bin| bin.count >= fewest).map(&point).collect(),
-        spread: Spread::Bars,
     };
     series.iter().enumerate().map(line).collect()
 }

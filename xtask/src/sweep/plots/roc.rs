@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::lines::{Panel, Point, Series, Spread, draw};
+use super::lines::{Panel, Point, Series, draw};
 use crate::{
     common::draw::{Axis, Style},
     sweep::measures::{self, Judged, Measure},
@@ -31,7 +31,6 @@ pub(crate) fn roc(path: &Path, groups: &[(String, &Judged)]) -> Result<()> {
                     .into_iter()
                     .map(|(x, y)| Point { x, y, range: None })
                     .collect(),
-                spread: Spread::Bars,
             });
             Panel {
                 title: format!("{title} ({answers} answers, {collisions} collisions)"),

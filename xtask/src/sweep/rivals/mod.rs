@@ -5,7 +5,6 @@ mod box_cells;
 mod boxes;
 mod distance;
 mod error;
-mod flips;
 mod index;
 mod observed;
 mod plain_svm;
@@ -21,10 +20,9 @@ use std::time::Instant;
 pub(crate) use boxes::{BoxMap, ObjectMesh};
 pub(crate) use distance::{CloudDistance, Distances};
 pub(crate) use error::{RivalError, Side};
-pub(crate) use flips::flips;
 pub(crate) use observed::Observed;
 pub(crate) use plain_svm::PlainSvm;
-pub(crate) use smoothed::{Smoothed, SmoothedDistance};
+pub(crate) use smoothed::SmoothedDistance;
 
 /// What a method says of a pose, and what that cost on one thread.
 #[derive(Debug, Clone, Copy, PartialEq)]
