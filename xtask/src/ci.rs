@@ -9,7 +9,7 @@ use std::{
 
 use anyhow::{Context, Result, bail};
 
-use crate::{fixtures, tidy};
+use crate::{fixtures, sweep, tidy};
 
 /// Not published, so not packaged.
 const UNPUBLISHED: [&str; 3] = ["cloudtouch-testkit", "cloudtouch-benches", "xtask"];
@@ -32,6 +32,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     let exclude: String = UNPUBLISHED.iter().map(|name| format!(" --exclude {name}")).collect();
     let package = format!("package --locked --workspace{exclude} --allow-dirty --no-verify");
     step("package", &format!("cargo {package}"), || cargo(root, &package))?;
+    step("sweep", "cargo xtask sweep --short", sweep::check)?;
     let test = "test --locked --workspace --no-fail-fast";
     let mut tally = Tally::default();
     let result = step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {

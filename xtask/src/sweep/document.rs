@@ -42,7 +42,7 @@ const FIGURES: [[&str; 3]; 5] = [
       probability; below, how many answers.",
     ],
     ["sweep-roc.svg", "ROC", "Collisions found against free poses stopped."],
-    ["sweep-noise.svg", "AUC and Brier score against noise", ""],
+    ["sweep-noise.svg", "AUC and Brier score against noise", "All families and densities pooled."],
     [
         "sweep-speed.svg",
         "Speed against error",
