@@ -1,17 +1,16 @@
 //! The document docs/real-scans.md, wholly made by a run.
 
-use std::{fmt::Write as _, fs, path::Path};
+use std::{fmt::Write as _, path::Path};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 
 use super::{SEED, Section, tool::Tool};
-use crate::common::machine;
+use crate::common::{files::write_whole, machine};
 
 /// Writes the document; every number in it comes from this run.
 pub(super) fn write(root: &Path, tool: &Tool, sections: &[Section]) -> Result<()> {
     let path = root.join("docs/real-scans.md");
-    fs::write(&path, text(root, tool, sections)?)
-        .with_context(|| format!("write {}", path.display()))?;
+    write_whole(&path, text(root, tool, sections)?)?;
     println!("wrote {}", path.display());
     Ok(())
 }

@@ -87,10 +87,8 @@ fn group(title: &str, judged: &Judged, differences: bool, rows: &mut Vec<Row>) -
     let (count, collisions) = judged.counts();
     let names = judged.methods.iter().map(|(name, _)| name.clone());
     let samples: Vec<_> = names.zip(judged.samples()).collect();
-    let bootstrap = Bootstrap::new(SEED);
-    let all = measure(&samples, &Measure::ALL, &judged.clusters, bootstrap);
+    let all = measure(&samples, &Measure::ALL, &judged.clusters, Bootstrap::new(SEED));
     rows.extend(all.rows(title, (count, collisions), OURS));
-    let shown = measure(&samples, &SHOWN, &judged.clusters, bootstrap);
     let mut text = format!("{title}: {count} answers, {collisions} of them collisions.");
     let ours = samples.iter().find(|(name, _)| name == OURS);
     if let Some(chance) = ours.and_then(|(_, s)| chance_error(s, &judged.clusters, SEED)) {
@@ -99,9 +97,10 @@ fn group(title: &str, judged: &Judged, differences: bool, rows: &mut Vec<Row>) -
             chance.mean
         );
     }
-    text += &format!("\n\n{}\n", shown.table());
+    text += &format!("\n\n{}\n", all.table(&SHOWN));
     if differences {
-        text += &format!("\nThe same, minus `{OURS}`:\n\n{}\n", shown.differences_table(OURS));
+        text +=
+            &format!("\nThe same, minus `{OURS}`:\n\n{}\n", all.differences_table(OURS, &SHOWN));
     }
     text
 }

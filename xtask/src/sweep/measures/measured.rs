@@ -131,17 +131,17 @@ impl Measured {
         Some(self.replicates.difference(first?, second?))
     }
 
-    /// A row for each method, a column for each measure.
-    pub(crate) fn table(&self) -> Table {
-        self.table_of("method", &self.methods, |method, measure| {
+    /// A row for each method, a column for each of these measures.
+    pub(crate) fn table(&self, shown: &[Measure]) -> Table {
+        table_of("method", &self.methods, shown, |method, measure| {
             self.estimate(method, measure).map_or(String::new(), |e| e.to_string())
         })
     }
 
     /// How much every other method differs from this one; bold where the interval excludes zero.
-    pub(crate) fn differences_table(&self, from: &str) -> Table {
+    pub(crate) fn differences_table(&self, from: &str, shown: &[Measure]) -> Table {
         let others: Vec<String> = self.methods.iter().filter(|m| *m != from).cloned().collect();
-        self.table_of(&format!("minus {from}"), &others, |method, measure| {
+        table_of(&format!("minus {from}"), &others, shown, |method, measure| {
             match self.difference(method, from, measure) {
                 Some(e) if e.excludes_zero() => format!("**{e:+}**"),
                 Some(e) => format!("{e:+}"),
@@ -150,28 +150,28 @@ impl Measured {
         })
     }
 
-    fn table_of(
-        &self,
-        corner: &str,
-        rows: &[String],
-        cell: impl Fn(&str, Measure) -> String,
-    ) -> Table {
-        let names: Vec<String> = self.measures.iter().map(|m| m.name()).collect();
-        let header: Vec<&str> =
-            std::iter::once(corner).chain(names.iter().map(String::as_str)).collect();
-        let mut table = Table::new(&header);
-        for method in rows {
-            let cells = self.measures.iter().map(|&measure| cell(method, measure));
-            table.row(std::iter::once(method.clone()).chain(cells));
-        }
-        table
-    }
-
     fn index(&self, method: &str, measure: Measure) -> Option<usize> {
         let method = self.methods.iter().position(|m| m == method)?;
         let measure = self.measures.iter().position(|m| *m == measure)?;
         Some(method * self.measures.len() + measure)
     }
+}
+
+fn table_of(
+    corner: &str,
+    rows: &[String],
+    shown: &[Measure],
+    cell: impl Fn(&str, Measure) -> String,
+) -> Table {
+    let names: Vec<String> = shown.iter().map(|m| m.name()).collect();
+    let header: Vec<&str> =
+        std::iter::once(corner).chain(names.iter().map(String::as_str)).collect();
+    let mut table = Table::new(&header);
+    for method in rows {
+        let cells = shown.iter().map(|&measure| cell(method, measure));
+        table.row(std::iter::once(method.clone()).chain(cells));
+    }
+    table
 }
 
 #[cfg(test)]
@@ -216,12 +216,12 @@ mod tests {
     #[test]
     fn tables_have_a_row_for_each_method() {
         let measured = measured();
-        let table = measured.table().to_string();
+        let table = measured.table(&Measure::ALL).to_string();
         assert_eq!(table.lines().count(), 4);
         assert!(table.contains("false stops at 1 % misses"), "{table}");
         let auc = measured.estimate("good", Measure::Auc).unwrap();
         assert!(table.contains(&format!("| good   | {auc} ")), "{table}");
-        let differences = measured.differences_table("good").to_string();
+        let differences = measured.differences_table("good", &Measure::ALL).to_string();
         assert_eq!(differences.lines().count(), 3);
         assert!(differences.contains("| minus good |") && differences.contains("| **-."));
     }
