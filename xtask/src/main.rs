@@ -1,5 +1,6 @@
 //! Project tasks: `cargo xtask TASK`, one file per task.
 
+mod calibrate;
 mod ci;
 mod common;
 mod evaluate;
@@ -22,6 +23,8 @@ enum Task {
     Evaluate(evaluate::Arguments),
     /// Every method against exact truth on generated scenes, with tables and figures.
     Sweep(sweep::Arguments),
+    /// Fits the constants that turn evidence into a probability.
+    Calibrate(calibrate::Arguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -37,6 +40,7 @@ fn main() -> anyhow::Result<()> {
         Task::Tidy => tidy::run(&root),
         Task::Evaluate(arguments) => evaluate::run(&root, &arguments),
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
+        Task::Calibrate(arguments) => calibrate::run(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

@@ -1,6 +1,6 @@
 //! A point cloud as read from a sensor or a file.
 
-use crate::{Covariance, Point3};
+use crate::{Covariance, Point3, Vector3};
 
 /// Points in one frame, in file order, NaN rows included.
 ///
@@ -11,6 +11,9 @@ pub struct PointCloud {
     pub points: Vec<Point3>,
     /// One covariance per point, when the file has them.
     pub covariances: Option<Vec<Covariance>>,
+    /// One unit normal per point, of either sign, when the surface is known: the cloud was sampled
+    /// from a model, for instance. They are believed, so leave out what was fitted to noisy points.
+    pub normals: Option<Vec<Vector3>>,
     /// Where the sensor was, in the frame of the points, m.
     pub sensor_origin: Point3,
     /// Width and height when the cloud is an image, row by row.
@@ -39,11 +42,9 @@ impl PointCloud {
     /// When an index is out of range.
     pub fn select(&self, indices: &[usize]) -> Self {
         Self {
-            points: indices.iter().map(|&i| self.points[i]).collect(),
-            covariances: self
-                .covariances
-                .as_ref()
-                .map(|all| indices.iter().map(|&i| all[i]).collect()),
+            points: pick(&self.points, indices),
+            covariances: self.covariances.as_ref().map(|all| pick(all, indices)),
+            normals: self.normals.as_ref().map(|all| pick(all, indices)),
             sensor_origin: self.sensor_origin,
             image_size: None,
         }
@@ -53,6 +54,10 @@ impl PointCloud {
     pub fn bounding_box(&self) -> Option<(Point3, Point3)> {
         bounding_box(self.points.iter().filter(|p| p.iter().all(|v| v.is_finite())))
     }
+}
+
+fn pick<T: Copy>(all: &[T], indices: &[usize]) -> Vec<T> {
+    indices.iter().map(|&i| all[i]).collect()
 }
 
 /// Lowest and highest corner of some points; `None` when there is none.

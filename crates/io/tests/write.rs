@@ -36,6 +36,7 @@ fn any_cloud() -> impl Strategy<Value = PointCloud> {
             rows.prop_map(move |rows| PointCloud {
                 points: rows.iter().map(|(p, _)| Point3::from(*p)).collect(),
                 covariances: with_covariances.then(|| rows.iter().map(|(_, c)| *c).collect()),
+                normals: None,
                 sensor_origin: origin.into(),
                 image_size: (height > 1).then_some((width, height)),
             })

@@ -129,6 +129,42 @@ impl NoiseModel {
         }
     }
 
+    /// Mean and covariance of a surface point whose unit normal is known, not fitted: the point stays
+    /// where it was measured, with v n nᵀ + (0.35 h)² (I − n nᵀ), v the variance of `sensor` along
+    /// the normal and a part of the spacing. Within [`bounds`](Self::bounds).
+    ///
+    /// # Panics
+    /// When `index` does not belong to the cloud.
+    pub fn with_normal(
+        &self,
+        index: usize,
+        normal: Vector3,
+        neighborhoods: &Neighborhoods,
+        sensor: &Covariance,
+        spacing_cap: f64,
+        scratch: &mut Scratch,
+    ) -> Refined {
+        neighborhoods.nearest_into(index, SPACING_NEIGHBORS, &mut scratch.neighbors);
+        let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
+        let variance = sensor.variance_along(&normal) + (SPACING_PART * spacing).powi(2);
+        Refined {
+            point: UncertainPoint {
+                mean: neighborhoods.points()[index],
+                covariance: self.disc(&normal, variance, spacing),
+            },
+            spacing,
+            normal: Some(normal),
+        }
+    }
+
+    /// v n nᵀ + (0.35 h)² (I − n nᵀ).
+    fn disc(&self, normal: &Vector3, variance: f64, spacing: f64) -> Covariance {
+        let disc = (self.settings.disc_std * spacing).powi(2);
+        let along = normal * normal.transpose();
+        let covariance = along * variance + (Matrix3::identity() - along) * disc;
+        Covariance::from_symmetric(&covariance)
+    }
+
     /// Upper bounds on what [`refine`](Self::refine) does to a point with this position noise,
     /// whatever its neighbours.
     pub fn bounds(&self, sensor: &Covariance, spacing_cap: f64) -> Bounds {
@@ -193,13 +229,10 @@ impl NoiseModel {
             + SENSOR_PART.powi(2) * sensor_variance
             + sampling)
             .min(sensor_variance + sampling);
-        let disc = (self.settings.disc_std * spacing).powi(2);
-        let along = normal * normal.transpose();
-        let covariance = along * variance + (Matrix3::identity() - along) * disc;
         Some(Refined {
             point: UncertainPoint {
                 mean: point + normal * shift,
-                covariance: Covariance::from_symmetric(&covariance),
+                covariance: self.disc(&normal, variance, spacing),
             },
             spacing,
             normal: Some(normal),

@@ -1,7 +1,7 @@
 //! What can be wrong with the input, in words.
 
 use cloudtouch_bvh::TreeError;
-use cloudtouch_geom::{CovarianceError, MeshError};
+use cloudtouch_geom::{CovarianceError, MeshError, Vector3};
 use cloudtouch_noise::NoiseError;
 
 use crate::filter::FilterError;
@@ -28,6 +28,16 @@ pub enum PrepareError {
         /// What is wrong with it.
         source: CovarianceError,
     },
+    /// A given normal has no direction.
+    #[error(
+        "point {index}: normal {normal:?} has no direction; leave the normals out to have them fitted"
+    )]
+    Normal {
+        /// Which of the points that were kept, from 0.
+        index: usize,
+        /// The normal given.
+        normal: Vector3,
+    },
     /// The cleaning pipeline was asked for something impossible.
     #[error(transparent)]
     Filter(#[from] FilterError),
@@ -52,6 +62,33 @@ pub enum PrepareError {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
+    /// Two numbers that are no interval of probabilities.
+    #[error("{name} = [{lowest}, {highest}]: need 0 <= lowest <= highest <= 1")]
+    NotAnInterval {
+        /// Which setting.
+        name: &'static str,
+        /// Its lower end.
+        lowest: f64,
+        /// Its upper end.
+        highest: f64,
+    },
+    /// A slope of a recalibration has the wrong sign.
+    #[error(
+        "recalibration: more evidence ({name}) would make a collision less probable; \
+         leave it out of the fit, with a slope of 0"
+    )]
+    Slope {
+        /// Whose slope.
+        name: &'static str,
+    },
+    /// A number that has to be finite.
+    #[error("{name} = {value}: must be finite")]
+    NotFinite {
+        /// Which setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The thresholds are not 0 ≤ reject ≤ ½ ≤ accept ≤ 1.
     #[error(
         "thresholds accept = {accept}, reject = {reject}: need 0 <= reject <= 0.5 <= accept <= 1"

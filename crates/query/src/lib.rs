@@ -17,7 +17,7 @@ pub use filter::{
     filter,
 };
 pub use mesh::Mesh;
-pub use query::{Mode, Pooling, Query, QuerySettings};
+pub use query::{ContactEvidence, Mode, Pooling, Query, QuerySettings, Recalibration};
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Verdict};
 
 /// The crates below, for users who need their types: a query takes a [`geom::Pose`], a cloud a

@@ -3,7 +3,7 @@
 use cloudtouch_geom::{Point3, Vector3};
 use serde::Serialize;
 
-use crate::query::Mode;
+use crate::query::{ContactEvidence, Mode};
 
 /// The answer to one query. Serialises to the JSON object of the command-line tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,6 +20,9 @@ pub struct Report {
     pub clearance_m: Option<Clearance>,
     /// Where the surfaces touch or may touch, most probable first.
     pub contacts: Vec<Contact>,
+    /// What the probability rests on, for two clouds in the calibrated mode.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evidence: Option<ContactEvidence>,
     /// What the answer cost.
     pub stats: Stats,
     /// Seed of the stochastic traversals.

@@ -85,6 +85,7 @@ impl DepthCamera {
         PointCloud {
             points,
             covariances: None,
+            normals: None,
             sensor_origin: Point3::origin(),
             image_size: Some((self.width, self.height)),
         }

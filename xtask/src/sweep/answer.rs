@@ -2,9 +2,9 @@
 
 use anyhow::{Context, Result};
 use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, noise::SensorModel,
+    Body, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, noise::SensorModel,
 };
-use cloudtouch_geom::{Point3, Pose, seed};
+use cloudtouch_geom::{Point3, PointCloud, Pose, seed};
 use cloudtouch_testkit::{
     family::{Family, FamilyScene, Observation, Side},
     poses::LabelledPose,
@@ -12,8 +12,8 @@ use cloudtouch_testkit::{
 use rayon::prelude::*;
 
 use super::{
-    OURS, SEED,
-    plan::{Part, Plan},
+    ORACLE, OURS, SEED,
+    plan::{Methods, Part, Plan},
     record::{Answers, Block, Condition, Said, Truth},
     rivals::{Answer, BoxMap, CloudDistance, ObjectMesh, Observed, PlainSvm, SmoothedDistance},
 };
@@ -31,12 +31,12 @@ struct Variant {
 }
 
 /// The answers of all methods to all of a plan.
-pub(super) fn all(plan: &Plan) -> Result<Answers> {
+pub(crate) fn all(plan: &Plan) -> Result<Answers> {
     let mut answers = Answers::default();
     for part in &plan.parts {
         let variants = variants(part)?;
         for condition in &part.conditions {
-            answers.add(block(part, &variants, condition, plan.with_rivals)?)?;
+            answers.add(block(part, &variants, condition, plan.methods)?)?;
             eprintln!(
                 "sweep: {} {} points {} mm done",
                 condition.family,
@@ -65,7 +65,7 @@ fn block(
     part: &Part,
     variants: &[Variant],
     condition: &Condition,
-    with_rivals: bool,
+    methods: Methods,
 ) -> Result<Block> {
     let asked: Vec<(usize, &Variant, usize)> = variants
         .iter()
@@ -77,7 +77,7 @@ fn block(
         .par_iter()
         .map(|&(number, variant, k)| {
             let draw = seed::derive(SEED, number as u64, seed_of(condition));
-            answer(part.family, variant, &variant.poses[k], condition, draw, with_rivals)
+            answer(part.family, variant, &variant.poses[k], condition, draw, methods)
                 .with_context(|| format!("{}, pose {number}", condition.family))
         })
         .collect::<Result<_>>()?;
@@ -109,37 +109,73 @@ fn answer(
     pose: &LabelledPose,
     condition: &Condition,
     draw: u64,
-    with_rivals: bool,
+    methods: Methods,
 ) -> Result<Vec<(&'static str, Said)>> {
     let Condition { points, noise, std, .. } = *condition;
     let [a, b] = [Side::A, Side::B].map(|s| variant.scene.observe(s, points, noise, std, draw));
     let a_from_b = &pose.scene_from_object;
-    let modes: &[(&str, Mode)] = if with_rivals {
-        &[(OURS, Mode::Calibrated), ("paper", Mode::Paper)]
-    } else {
-        &[(OURS, Mode::Calibrated)]
+    let calibrated = QuerySettings::new(Mode::Calibrated);
+    let settings: &[(&str, QuerySettings)] = match methods {
+        Methods::Ours => &[(OURS, calibrated)],
+        Methods::Evidence => {
+            &[(OURS, QuerySettings { doubt: [0.0, 1.0], stop_above: 1.0, ..calibrated })]
+        }
+        Methods::All => &[(OURS, calibrated), ("paper", QuerySettings::new(Mode::Paper))],
     };
     let mut all = Vec::new();
-    for &(name, mode) in modes {
+    for &(name, settings) in settings {
+        let mode = settings.mode;
         let body_a = Body::Cloud(prepared(&a, mode)?);
         // The gripper is known exactly: its user gives the mesh.
         let body_b = match family {
             Family::Tabletop => Body::Mesh(Mesh::prepare(variant.scene.b.mesh())?),
             _ => Body::Cloud(prepared(&b, mode)?),
         };
-        let report = Query::new(QuerySettings::new(mode))?.run(&body_a, &body_b, a_from_b)?;
-        let said = Said {
-            score: report.collision_probability,
-            probability: Some(report.collision_probability),
-            bounds: Some(report.bounds),
-            micros: report.stats.query_us as f64,
-        };
-        all.push((name, said));
+        all.push((name, ours(&Query::new(settings)?.run(&body_a, &body_b, a_from_b)?)));
+        if settings.mode == Mode::Calibrated && methods != Methods::Ours {
+            let mesh_b = matches!(body_b, Body::Mesh(_)).then_some(&body_b);
+            all.push((ORACLE, oracle([&a, &b], a_from_b, mesh_b, settings)?));
+        }
     }
-    if with_rivals {
+    if methods == Methods::All {
         all.extend(rivals([&finite(&a), &finite(&b)], a_from_b, a.std, &variant.boxes_against)?);
     }
     Ok(all)
+}
+
+/// Ours, given for every sampled point where it truly is and the true normal of the surface there:
+/// what sampling alone leaves to be known.
+fn oracle(
+    [a, b]: [&Observation; 2],
+    a_from_b: &Pose,
+    mesh_b: Option<&Body>,
+    settings: QuerySettings,
+) -> Result<Said> {
+    let body_a = Body::Cloud(exact(a)?);
+    let exact_b = mesh_b.is_none().then(|| exact(b)).transpose()?.map(Body::Cloud);
+    let body_b = mesh_b.or(exact_b.as_ref()).context("one of the two is there")?;
+    Ok(ours(&Query::new(settings)?.run(&body_a, body_b, a_from_b)?))
+}
+
+/// The cloud without its noise; points that no surface made are left out.
+fn exact(observation: &Observation) -> Result<Cloud> {
+    let samples = || observation.truth.iter().flatten();
+    let cloud = PointCloud {
+        normals: Some(samples().map(|s| s.normal).collect()),
+        ..PointCloud::from_points(samples().map(|s| s.position).collect())
+    };
+    let sensor = SensorModel::Isotropic { std: 0.0 };
+    Ok(Cloud::prepare(&cloud, &CloudSettings::new(sensor, Mode::Calibrated))?)
+}
+
+fn ours(report: &Report) -> Said {
+    Said {
+        score: report.collision_probability,
+        probability: Some(report.collision_probability),
+        bounds: Some(report.bounds),
+        evidence: report.evidence,
+        micros: report.stats.query_us as f64,
+    }
 }
 
 fn rivals(
@@ -171,6 +207,7 @@ fn said(answer: Answer) -> Said {
         score: answer.score,
         probability: answer.probability,
         bounds: None,
+        evidence: None,
         micros: answer.micros,
     }
 }

@@ -1,13 +1,13 @@
 //! `cargo xtask sweep`: collision probabilities of many scenes, noises and methods against exact
 //! truth.
 
-mod answer;
+pub(crate) mod answer;
 mod document;
 mod figures;
 mod measures;
-mod plan;
+pub(crate) mod plan;
 mod plots;
-mod record;
+pub(crate) mod record;
 mod rivals;
 mod short;
 mod tables;
@@ -24,6 +24,8 @@ use plan::Plan;
 const SEED: u64 = 2011;
 /// What ours is called in tables and files.
 const OURS: &str = "calibrated";
+/// ... and ours given every sampled point as it truly is.
+const ORACLE: &str = "oracle";
 
 /// What `cargo xtask sweep` is given.
 #[derive(Args)]

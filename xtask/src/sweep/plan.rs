@@ -14,7 +14,7 @@ pub(super) const DENSE: usize = 40_000;
 const VARIANTS: u64 = 4;
 
 /// One family with its poses and conditions.
-pub(super) struct Part {
+pub(crate) struct Part {
     pub family: Family,
     /// Poses of each variant.
     pub poses_of_variant: usize,
@@ -22,11 +22,21 @@ pub(super) struct Part {
     pub conditions: Vec<Condition>,
 }
 
+/// Who answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Methods {
+    /// Ours alone.
+    Ours,
+    /// Ours, which gathers all evidence however clear the first of it is.
+    Evidence,
+    /// Ours, the paper's mode and the alternatives.
+    All,
+}
+
 /// What a sweep consists of.
-pub(super) struct Plan {
+pub(crate) struct Plan {
     pub parts: Vec<Part>,
-    /// Whether the alternatives and the paper's mode answer too.
-    pub with_rivals: bool,
+    pub methods: Methods,
 }
 
 impl Plan {
@@ -38,7 +48,15 @@ impl Plan {
             variants: VARIANTS,
             conditions: conditions(family.name()),
         };
-        Self { parts: Family::ALL.iter().map(part).collect(), with_rivals: true }
+        Self { parts: Family::ALL.iter().map(part).collect(), methods: Methods::All }
+    }
+
+    /// The evidence on poses that [`Self::full`] does not ask about, of every family of clouds.
+    pub(crate) fn evidence(poses: usize) -> Self {
+        let mut plan = Self::full(poses);
+        // Against a mesh there is another model.
+        plan.parts.retain(|part| part.family != Family::Tabletop);
+        Self { methods: Methods::Evidence, ..plan }
     }
 
     /// One condition of a few families, ours alone.
@@ -49,7 +67,7 @@ impl Plan {
             variants: 1,
             conditions: vec![gaussian(family.name(), points, std)],
         };
-        Self { parts: families.iter().map(part).collect(), with_rivals: false }
+        Self { parts: families.iter().map(part).collect(), methods: Methods::Ours }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::{fmt::Write as _, path::Path};
 
 use anyhow::{Result, ensure};
+use cloudtouch::ContactEvidence;
 use cloudtouch_testkit::noise::NoiseKind;
 
 use crate::common::files::write_whole;
@@ -38,6 +39,8 @@ pub(crate) struct Said {
     pub(crate) probability: Option<f64>,
     /// Lower and upper bound of the probability.
     pub(crate) bounds: Option<[f64; 2]>,
+    /// What the probability rests on, for a method that tells.
+    pub(crate) evidence: Option<ContactEvidence>,
     /// Time of the query, microseconds.
     pub(crate) micros: f64,
 }
@@ -111,21 +114,22 @@ impl Answers {
     fn csv(&self) -> String {
         let mut text = String::from(
             "family,points,noise,std_m,pose,collides,signed_distance_m,method,score,probability,\
-             probability_low,probability_high,micros\n",
+             probability_low,probability_high,deviations,crossing,misclassified,micros\n",
         );
         for block in &self.blocks {
             let Condition { family, points, noise, std } = &block.condition;
             for (i, (truth, pose)) in block.truths.iter().zip(&block.poses).enumerate() {
                 for (method, said) in &block.methods {
                     let Truth { collides, signed_distance } = truth;
-                    let Said { score, probability, bounds, micros } = said[i];
+                    let Said { score, probability, bounds, evidence, micros } = said[i];
                     let [low, high] = bounds.map_or([None; 2], |b| b.map(Some)).map(cell);
                     let probability = cell(probability);
+                    let [z, crossing, misclassified] = evidence_cells(evidence);
                     // Writing to a string cannot fail.
                     let _ = writeln!(
                         text,
                         "{family},{points},{},{std},{pose},{collides},{signed_distance},{},\
-                         {score},{probability},{low},{high},{micros}",
+                         {score},{probability},{low},{high},{z},{crossing},{misclassified},{micros}",
                         noise_name(*noise),
                         quoted(method),
                     );
@@ -157,6 +161,12 @@ fn cell(value: Option<f64>) -> String {
     value.map_or(String::new(), |v| v.to_string())
 }
 
+fn evidence_cells(evidence: Option<ContactEvidence>) -> [String; 3] {
+    let Some(evidence) = evidence else { return Default::default() };
+    let ContactEvidence { deviations, crossing, misclassified } = evidence;
+    [Some(deviations), Some(crossing), misclassified].map(cell)
+}
+
 fn is_answer(said: &Said) -> bool {
     let unit = 0.0..=1.0;
     !said.score.is_nan()
@@ -170,8 +180,13 @@ fn is_answer(said: &Said) -> bool {
 mod tests {
     use super::*;
 
-    const GOOD: Said =
-        Said { score: 1.5, probability: Some(0.25), bounds: Some([0.0, 0.5]), micros: 12.5 };
+    const GOOD: Said = Said {
+        score: 1.5,
+        probability: Some(0.25),
+        bounds: Some([0.0, 0.5]),
+        evidence: None,
+        micros: 12.5,
+    };
 
     fn block(method: &str, said: Vec<Said>) -> Block {
         Block {
@@ -198,8 +213,8 @@ mod tests {
         assert_eq!(
             rows,
             [
-                "boxes,2500,gaussian,0.005,7,true,-0.01,ours,1.5,0.25,0,0.5,12.5",
-                "boxes,2500,gaussian,0.005,7,true,-0.01,\"boxes, 1 cm\",1.5,,,,12.5",
+                "boxes,2500,gaussian,0.005,7,true,-0.01,ours,1.5,0.25,0,0.5,,,,12.5",
+                "boxes,2500,gaussian,0.005,7,true,-0.01,\"boxes, 1 cm\",1.5,,,,,,,12.5",
             ]
         );
         let columns = csv.lines().next().unwrap().split(',').count();

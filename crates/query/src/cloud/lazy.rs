@@ -1,6 +1,5 @@
-//! Leaves whose noise model is computed when a query first visits them, and kept.
+//! Surface pieces whose noise model is computed when a query first comes near them, and kept.
 
-use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use cloudtouch_bvh::{Node, NodeId, Tree};
@@ -8,10 +7,11 @@ use cloudtouch_geom::{UncertainPoint, Vector3};
 use cloudtouch_noise::Scratch;
 
 use super::Cloud;
+use super::edge::{Edge, edges_of};
 
-/// A point of a leaf after the noise model, in the cloud's local frame.
+/// The piece of surface about a sample, in the cloud's local frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LeafPoint {
+pub(crate) struct Surfel {
     /// Index among the points the filter kept.
     pub index: u32,
     /// Where the surface is expected, and how well that is known.
@@ -22,22 +22,44 @@ pub(crate) struct LeafPoint {
     pub normal: Option<Vector3>,
 }
 
-/// One slot per tree node; only those of leaves are ever filled. Each is a pure function of the
-/// cloud, so it does not matter which thread fills it.
-#[derive(Debug)]
-pub(super) struct LazyLeaves {
-    slots: Vec<OnceLock<Vec<LeafPoint>>>,
-    rims: Vec<OnceLock<Vec<LeafPoint>>>,
+impl Surfel {
+    /// Variance of the position across the surface, m²; zero where no normal was fitted.
+    pub(crate) fn variance_across(&self) -> f64 {
+        self.normal.map_or(0.0, |normal| self.point.covariance.variance_along(&normal))
+    }
 }
 
-/// Neighbours of a point that are joined to it by edges.
-const EDGE_NEIGHBORS: usize = 8;
+/// One slot per point, and per tree node, of which only those of leaves are ever filled. Each is a
+/// pure function of the cloud, so it does not matter which thread fills it.
+#[derive(Debug)]
+pub(super) struct LazySurface {
+    surfels: Vec<OnceLock<Box<Surfel>>>,
+    leaves: Vec<OnceLock<Vec<Surfel>>>,
+    edges: Vec<OnceLock<Vec<Edge>>>,
+    /// What the spacing of each point is limited to, m.
+    spacing_caps: Vec<f64>,
+}
 
-impl LazyLeaves {
-    pub(super) fn new(tree: &Tree) -> Self {
-        let empty = || (0..tree.node_slots()).map(|_| OnceLock::new()).collect();
-        Self { slots: empty(), rims: empty() }
+impl LazySurface {
+    pub(super) fn new(tree: &Tree, points: usize) -> Self {
+        let mut spacing_caps = vec![0.0; points];
+        for leaf in tree.leaves() {
+            let cap = spacing_cap(leaf);
+            for &index in leaf.primitive_indices() {
+                spacing_caps[index as usize] = cap;
+            }
+        }
+        Self {
+            surfels: slots(points),
+            leaves: slots(tree.node_slots()),
+            edges: slots(tree.node_slots()),
+            spacing_caps,
+        }
     }
+}
+
+fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
+    (0..count).map(|_| OnceLock::new()).collect()
 }
 
 /// The spacing a point may be given at most, on which the tree's bounds rest: half more than that
@@ -52,48 +74,42 @@ pub(super) fn spacing_cap(leaf: Node<'_>) -> f64 {
 }
 
 impl Cloud {
-    /// The points of a leaf after the noise model, and whether this call computed them.
-    pub(crate) fn leaf(&self, id: NodeId) -> (&[LeafPoint], bool) {
+    /// The surface at the points of a leaf, and whether this call computed it.
+    pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
         let mut computed = false;
-        let points = self.leaves.slots[id.index()].get_or_init(|| {
+        let surfels = self.surface.leaves[id.index()].get_or_init(|| {
             computed = true;
             let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
-            let cap = spacing_cap(leaf);
             let mut scratch = Scratch::default();
-            let refine = |&index: &u32| self.refine(index, cap, &mut scratch);
-            leaf.primitive_indices().iter().map(refine).collect()
+            let surfel = |&index: &u32| *self.surfel(index, &mut scratch);
+            leaf.primitive_indices().iter().map(surfel).collect()
         });
-        (points, computed)
+        (surfels, computed)
     }
 
-    /// The neighbours of a leaf's points that lie in other leaves, after the noise model: a surface
-    /// does not end where a leaf does.
-    pub(crate) fn rim(&self, id: NodeId) -> &[LeafPoint] {
-        self.leaves.rims[id.index()].get_or_init(|| {
+    /// The edges that start or end at a point of a leaf.
+    pub(crate) fn leaf_edges(&self, id: NodeId) -> &[Edge] {
+        self.surface.edges[id.index()].get_or_init(|| {
             let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
-            let own: BTreeSet<u32> = leaf.primitive_indices().iter().copied().collect();
-            let neighbors_of =
-                |&index: &u32| self.neighborhoods.nearest(index as usize, EDGE_NEIGHBORS);
-            let rim: BTreeSet<u32> = own
-                .iter()
-                .flat_map(neighbors_of)
-                .map(|neighbor| neighbor.index as u32)
-                .filter(|index| !own.contains(index))
-                .collect();
-            let cap = spacing_cap(leaf);
-            let mut scratch = Scratch::default();
-            rim.iter().map(|&index| self.refine(index, cap, &mut scratch)).collect()
+            edges_of(self, leaf.primitive_indices())
         })
     }
 
-    fn refine(&self, index: u32, spacing_cap: f64, scratch: &mut Scratch) -> LeafPoint {
-        let refined = self.noise.refine(
-            index as usize,
-            &self.neighborhoods,
-            &self.sensor,
-            spacing_cap,
-            scratch,
-        );
-        LeafPoint { index, point: refined.point, spacing: refined.spacing, normal: refined.normal }
+    /// The surface at one point.
+    pub(super) fn surfel(&self, index: u32, scratch: &mut Scratch) -> &Surfel {
+        let place = index as usize;
+        self.surface.surfels[place].get_or_init(|| {
+            let cap = self.surface.spacing_caps[place];
+            let near = &self.neighborhoods;
+            let refined = match self.normals.as_ref().map(|normals| normals[place]) {
+                Some(normal) => {
+                    let sensor = &self.sensor[place];
+                    self.noise.with_normal(place, normal, near, sensor, cap, scratch)
+                }
+                None => self.noise.refine(place, near, &self.sensor, cap, scratch),
+            };
+            let (point, spacing, normal) = (refined.point, refined.spacing, refined.normal);
+            Box::new(Surfel { index, point, spacing, normal })
+        })
     }
 }

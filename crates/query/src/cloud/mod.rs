@@ -1,6 +1,7 @@
 //! Noisy clouds prepared for queries: filtered, indexed, in a tree; the costly part of the noise
 //! model is computed for a leaf when a query first visits it.
 
+mod edge;
 mod lazy;
 mod settings;
 mod view;
@@ -9,13 +10,14 @@ use std::time::{Duration, Instant};
 
 use cloudtouch_bvh::{LeafBounds, Primitive, Tree};
 use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, Vector3};
-use cloudtouch_noise::{Neighborhoods, NoiseModel};
+use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel};
 
 use crate::error::PrepareError;
 use crate::filter::{StageReport, filter};
 
-use lazy::LazyLeaves;
-pub(crate) use lazy::LeafPoint;
+pub(crate) use edge::{EDGE_SPACINGS, Edge};
+use lazy::LazySurface;
+pub(crate) use lazy::Surfel;
 pub use settings::CloudSettings;
 use view::SingleView;
 
@@ -26,13 +28,15 @@ pub struct Cloud {
     origin: Vector3,
     /// Position noise of each point (Σ of the paper).
     sensor: Vec<Covariance>,
+    /// Unit normals, where the surface is known.
+    normals: Option<Vec<Vector3>>,
     rows: Vec<usize>,
     stages: Vec<StageReport>,
     /// The points kept by the filter, in the local frame, and which are near which.
     neighborhoods: Neighborhoods,
     noise: NoiseModel,
     tree: Tree,
-    leaves: LazyLeaves,
+    surface: LazySurface,
     view: Option<SingleView>,
     prepare_time: Duration,
 }
@@ -64,6 +68,10 @@ impl Cloud {
                 cloudtouch_geom::CovarianceError::NotFinite { row: 0, column: 0, value: f64::NAN };
             return Err(PrepareError::Covariance { index, source });
         }
+        let normals = match (&kept.normals, settings.noise.combination) {
+            (Some(normals), Combination::SurfacePosterior) => Some(unit(normals)?),
+            _ => None,
+        };
         let origin = nalgebra::center(&low, &high).coords;
         let points: Vec<Point3> = kept.points.iter().map(|p| p - origin).collect();
         let primitives = points
@@ -87,7 +95,7 @@ impl Cloud {
             }
             bounds
         })?;
-        let leaves = LazyLeaves::new(&tree);
+        let surface = LazySurface::new(&tree, sensor.len());
         // An organised cloud is a depth image: one view, with unseen space behind it.
         let view = cloud
             .image_size
@@ -97,12 +105,13 @@ impl Cloud {
         Ok(Self {
             origin,
             sensor,
+            normals,
             rows: filtered.rows,
             stages,
             neighborhoods,
             noise,
             tree,
-            leaves,
+            surface,
             view,
             prepare_time,
         })
@@ -150,6 +159,16 @@ impl Cloud {
         self.neighborhoods.points()
     }
 
+    /// The largest standard deviation of the position noise of a kept point, m.
+    pub(crate) fn sensor_std(&self, index: u32) -> f64 {
+        self.sensor[index as usize].max_std()
+    }
+
+    /// Standard deviation of a surfel along its surface, in spacings.
+    pub(crate) fn disc_std(&self) -> f64 {
+        self.noise.settings().disc_std
+    }
+
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
     }
@@ -157,4 +176,13 @@ impl Cloud {
     pub(crate) fn view(&self) -> Option<&SingleView> {
         self.view.as_ref()
     }
+}
+
+/// Normals scaled to length one.
+fn unit(normals: &[Vector3]) -> Result<Vec<Vector3>, PrepareError> {
+    let unit = |(index, normal): (usize, &Vector3)| {
+        let scaled = normal.try_normalize(0.0).filter(|n| n.iter().all(|c| c.is_finite()));
+        scaled.ok_or(PrepareError::Normal { index, normal: *normal })
+    };
+    normals.iter().enumerate().map(unit).collect()
 }

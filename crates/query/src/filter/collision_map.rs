@@ -4,10 +4,6 @@ use cloudtouch_geom::PointCloud;
 use cloudtouch_noise::{NoiseError, quantize_to_grid};
 
 pub(super) fn cell_centers(cloud: &PointCloud, resolution: f64) -> Result<PointCloud, NoiseError> {
-    Ok(PointCloud {
-        points: quantize_to_grid(&cloud.points, resolution)?,
-        covariances: None,
-        sensor_origin: cloud.sensor_origin,
-        image_size: None,
-    })
+    let points = quantize_to_grid(&cloud.points, resolution)?;
+    Ok(PointCloud { sensor_origin: cloud.sensor_origin, ..PointCloud::from_points(points) })
 }

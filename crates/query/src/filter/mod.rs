@@ -49,6 +49,15 @@ pub struct Filtered {
 /// When a setting is out of range; see [`FilterError`].
 pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered, FilterError> {
     settings.check()?;
+    let counts = [
+        ("covariances", cloud.covariances.as_ref().map(Vec::len)),
+        ("normals", cloud.normals.as_ref().map(Vec::len)),
+    ];
+    for (what, count) in counts {
+        if let Some(count) = count.filter(|&count| count != cloud.len()) {
+            return Err(FilterError::Count { what, count, points: cloud.len() });
+        }
+    }
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
     let finite = |p: &Point3| p.iter().all(|v| v.is_finite());
     run.stage("missing", |cloud, kept| kept.retain(|&i| finite(&cloud.points[i])));

@@ -112,6 +112,16 @@ impl Default for OutlierSettings {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilterError {
+    /// The cloud does not have one of something for each point.
+    #[error("{count} {what} for {points} points: give one for each, or none")]
+    Count {
+        /// Of what.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many points there are.
+        points: usize,
+    },
     /// The range limits are not 0 ≤ min < max.
     #[error("range limits {min} m to {max} m: need 0 <= min < max")]
     Range {

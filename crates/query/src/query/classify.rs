@@ -1,11 +1,10 @@
 //! One leaf pair: the ladder from a plane to a kernel classifier, and the surface it ends with.
 
-use cloudtouch_geom::{UncertainPoint, Vector3};
+use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{Class, DEFAULT_KAPPA_MAX, separate};
 
 use crate::report::Stats;
 
-use super::crossing::crossing;
 use super::settings::{Mode, QuerySettings};
 use super::surface::Surface;
 use super::train::by_kernel;
@@ -18,8 +17,6 @@ pub(crate) struct PairPoint {
     pub point: UncertainPoint,
     /// Distance between samples there, m.
     pub spacing: f64,
-    /// Unit normal of the surface there, of either sign, where one was fitted.
-    pub normal: Option<Vector3>,
 }
 
 /// The points of the two leaves.
@@ -44,14 +41,6 @@ pub(crate) enum PairAnswer {
 }
 
 impl PairAnswer {
-    /// Raises the probabilities of points to what other evidence says of them, up to `most`.
-    fn raise(&mut self, (of_a, of_b): &(Vec<f64>, Vec<f64>), most: f64) {
-        if let Self::Separated { a, b, .. } = self {
-            let pairs = a.iter_mut().zip(of_a).chain(b.iter_mut().zip(of_b));
-            pairs.for_each(|(known, other)| *known = known.max(other.min(most)));
-        }
-    }
-
     /// The largest probability of a point; 1 without an answer.
     pub(super) fn largest(&self) -> f64 {
         match self {
@@ -70,15 +59,11 @@ const CERTAIN_DEVIATIONS: f64 = DEFAULT_KAPPA_MAX;
 /// A probability is a statement about the best separating surface there is: among the surfaces
 /// tried, the calibrated mode takes the one whose worst point is least probable, and trains no
 /// kernel classifier where a plane already keeps every point below what is `known` from other
-/// pairs. A classifier can bend between the samples of surfaces that cross there, so it also has to
-/// stand against [`crossing`], for which `rims` gives the samples around the two leaves and which
-/// raises no point above `most`. The paper's mode takes the kernel classifier unless a plane is
-/// certain.
+/// pairs. The paper's mode takes the kernel classifier unless a plane is certain.
 pub(crate) fn classify(
     points: &PairPoints,
     settings: &QuerySettings,
-    (known, most): (f64, f64),
-    rims: impl FnOnce() -> (Vec<PairPoint>, Vec<PairPoint>),
+    known: f64,
     stats: &mut Stats,
 ) -> PairAnswer {
     let uncertain = |side: &[PairPoint]| side.iter().map(|p| p.point).collect::<Vec<_>>();
@@ -99,7 +84,7 @@ pub(crate) fn classify(
             (_, kernel) => kernel,
         };
     }
-    let mut answer = match plane {
+    match plane {
         Some(plane) if plane.largest() <= known => {
             stats.linear_certificates += 1;
             plane
@@ -109,12 +94,7 @@ pub(crate) fn classify(
             if plane.largest() <= kernel.largest() { plane } else { kernel }
         }
         None => by_kernel(points, settings, known, stats),
-    };
-    if !(points.a_is_mesh || points.b_is_mesh) {
-        let (rim_a, rim_b) = rims();
-        answer.raise(&crossing((&points.a, &rim_a), (&points.b, &rim_b)), most);
     }
-    answer
 }
 
 /// The probabilities that a surface gives the points; `None` when one of them is not a number.

@@ -4,7 +4,7 @@ use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3, normal};
 
 use crate::body::BodyRef;
-use crate::cloud::{Cloud, LeafPoint};
+use crate::cloud::{Cloud, Surfel};
 use crate::mesh::{Mesh, SampleRegion, sample_region};
 use crate::report::Stats;
 
@@ -63,22 +63,11 @@ fn cloud_points(
     points.iter().map(|p| pair_point(p, a_from_cloud)).collect()
 }
 
-fn pair_point(point: &LeafPoint, a_from_cloud: &Pose) -> PairPoint {
+fn pair_point(point: &Surfel, a_from_cloud: &Pose) -> PairPoint {
     PairPoint {
         index: Some(point.index),
         point: point.point.transformed(a_from_cloud),
         spacing: point.spacing,
-        normal: point.normal.map(|n| a_from_cloud.transform_vector(&n)),
-    }
-}
-
-/// The samples around a leaf that its surface goes on to, in the local frame of A; none for a mesh.
-pub(crate) fn rim(body: BodyRef<'_>, leaf: NodeId, a_from_body: &Pose) -> Vec<PairPoint> {
-    match body {
-        BodyRef::Cloud(cloud) => {
-            cloud.rim(leaf).iter().map(|p| pair_point(p, a_from_body)).collect()
-        }
-        BodyRef::Mesh(_) => Vec::new(),
     }
 }
 
@@ -98,7 +87,6 @@ fn mesh_points(
             index: None,
             point: UncertainPoint::exact(a_from_mesh.transform_point(p)),
             spacing: region.spacing,
-            normal: None,
         })
         .collect()
 }

@@ -1,8 +1,9 @@
 //! Queries: settings, the ladder for a leaf pair, and what becomes of its answer.
 
+mod calibrated;
 mod classify;
 mod contacts;
-mod crossing;
+mod estimate;
 mod evidence;
 mod leaf_pair;
 mod pool;
@@ -13,5 +14,6 @@ mod surface;
 mod train;
 mod unseen;
 
+pub use calibrated::{ContactEvidence, Recalibration};
 pub use run::Query;
 pub use settings::{Mode, Pooling, QuerySettings};

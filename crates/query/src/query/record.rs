@@ -13,7 +13,7 @@ use super::evidence::Evidence;
 use super::pool::{PointProbability, Side};
 
 /// Points nearer than this many spacings share the samples their position was estimated from.
-const CORRELATION_SPACINGS: f64 = 3.0;
+pub(super) const CORRELATION_SPACINGS: f64 = 3.0;
 
 /// Adds what a leaf pair says.
 pub(super) fn add_pair(

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::time::Instant;
 
 use cloudtouch_bvh::{Flow, NodeId, Traversal, TraversalSettings, traverse};
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
@@ -12,14 +12,15 @@ use crate::error::{QueryError, SettingsError};
 use crate::mesh::{Mesh, Wanted, exact_pair, signed_points};
 use crate::report::{Report, Stats, Verdict};
 
+use super::calibrated;
 use super::classify::classify;
-use super::crossing::{bound_with_crossing, bound_without_crossing};
+use super::estimate::Estimate;
 use super::evidence::Evidence;
-use super::leaf_pair::{self, gather, rim};
+use super::leaf_pair::{self, gather};
 use super::pool::{self, Side};
 use super::record::{add_exact, add_pair, add_signed_points};
 use super::settings::{Mode, Pooling, QuerySettings};
-use super::unseen::is_hidden;
+use super::unseen::is_either_hidden;
 
 /// A checked set of settings that answers queries; cheap to copy, shared by threads.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,12 +72,8 @@ impl Query {
         }
         let local = a.local_from(&b, a_from_b);
         let mut evidence = Evidence::default();
-        if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
-            add_exact(&mut evidence, &exact_pair(a, b, &local)?);
-        } else {
-            self.gather_evidence(a, b, &local, &mut evidence)?;
-        }
-        let mut report = self.report(evidence, a, b);
+        let estimate = self.estimate(a, b, &local, &mut evidence)?;
+        let mut report = self.report(evidence, estimate, a.origin());
         let micros = |d: std::time::Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
         report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
         report.stats.query_us = micros(start.elapsed());
@@ -87,6 +84,45 @@ impl Query {
             "query"
         );
         Ok(report)
+    }
+
+    fn estimate(
+        &self,
+        a: BodyRef<'_>,
+        b: BodyRef<'_>,
+        a_from_b: &Pose,
+        evidence: &mut Evidence,
+    ) -> Result<Estimate, QueryError> {
+        let mut estimate = match (a, b) {
+            (BodyRef::Mesh(a), BodyRef::Mesh(b)) => {
+                add_exact(evidence, &exact_pair(a, b, a_from_b)?);
+                self.pooled(evidence, 0)
+            }
+            (BodyRef::Cloud(a), BodyRef::Cloud(b)) if self.settings.mode == Mode::Calibrated => {
+                calibrated::estimate((a, b), a_from_b, &self.settings, evidence)?
+            }
+            _ => {
+                self.gather_evidence(a, b, a_from_b, evidence)?;
+                self.pooled(evidence, a.point_count() + b.point_count())
+            }
+        };
+        if estimate.probability <= self.settings.accept && is_either_hidden(a, b, a_from_b) {
+            evidence.stats.undecided += 1;
+            evidence.widen(1.0);
+            estimate.bounds[1] = 1.0;
+        }
+        Ok(estimate)
+    }
+
+    /// The probability by the points alone (section 4.4); `total` is how many there are.
+    fn pooled(&self, evidence: &mut Evidence, total: usize) -> Estimate {
+        let rest = evidence.bound_of_rest();
+        let points = evidence.merge_points();
+        let (probability, upper) = match self.settings.pooling {
+            Pooling::Max => (pool::max(points), pool::max(points).max(rest)),
+            Pooling::NoisyOr => (pool::noisy_or(points), pool::noisy_or_bound(points, rest, total)),
+        };
+        Estimate { probability, bounds: [probability, upper], evidence: None }
     }
 
     fn gather_evidence(
@@ -110,17 +146,6 @@ impl Query {
         }
         if !settled && evidence.largest() <= self.settings.stop_above {
             self.traverse_leaf_pairs(a, b, a_from_b, evidence)?;
-        }
-        if evidence.largest() <= self.settings.accept {
-            let hidden = match (a, b) {
-                (BodyRef::Cloud(a), b) if is_hidden(a, b, a_from_b) => true,
-                (a, BodyRef::Cloud(b)) => is_hidden(b, a, &b_from_a),
-                _ => false,
-            };
-            if hidden {
-                evidence.stats.undecided += 1;
-                evidence.widen(1.0);
-            }
         }
         Ok(())
     }
@@ -160,10 +185,6 @@ impl Query {
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let settings = &self.settings;
-        // Only calibrated queries of two clouds look for crossings.
-        let crosses = settings.mode == Mode::Calibrated
-            && matches!((a, b), (BodyRef::Cloud(_), BodyRef::Cloud(_)));
-        let most = |bound: f64| if crosses { bound_with_crossing(bound) } else { bound };
         let mut looked_at = BTreeSet::new();
         let outcome =
             traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
@@ -173,23 +194,21 @@ impl Query {
                     // As printed, but for pairs that no probability can come from.
                     Mode::Paper => 0.0,
                 };
-                let wanted = if crosses { bound_without_crossing(relevant) } else { relevant };
-                let next = Flow::Above(wanted.max(settings.cull_probability));
+                let next = Flow::Above(relevant.max(settings.cull_probability));
                 let stats = &mut evidence.stats;
                 let Some(points) = gather((a, pair.a), (b, pair.b), a_from_b, stats) else {
                     evidence.widen(leaf_pair::bound_left_out());
                     return next;
                 };
                 stats.leaf_pairs += 1;
-                let rims = || (rim(a, pair.a, &Pose::identity()), rim(b, pair.b, a_from_b));
-                let answer = classify(&points, settings, (relevant, most(pair.bound)), rims, stats);
+                let answer = classify(&points, settings, relevant, stats);
                 add_pair((a, b, a_from_b), &points, &answer, evidence);
                 if evidence.largest() > settings.stop_above { Flow::Stop } else { next }
             })?;
         evidence.stats.nodes_visited += outcome.nodes_visited;
-        evidence.widen(most(outcome.pending_bound));
+        evidence.widen(outcome.pending_bound);
         if settings.traversal == Traversal::Certified || outcome.stopped {
-            evidence.widen(most(outcome.culled_bound));
+            evidence.widen(outcome.culled_bound);
         } else {
             self.bound_what_chance_culled(a, b, a_from_b, &looked_at, evidence)?;
         }
@@ -219,29 +238,21 @@ impl Query {
         Ok(())
     }
 
-    fn report(&self, mut evidence: Evidence, a: BodyRef<'_>, b: BodyRef<'_>) -> Report {
-        let rest = evidence.bound_of_rest();
+    fn report(&self, mut evidence: Evidence, estimate: Estimate, origin: Vector3) -> Report {
         let points = evidence.merge_points();
         let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points));
-        let (collision_probability, upper) = match self.settings.pooling {
-            Pooling::Max => (max_probability, max_probability.max(rest)),
-            Pooling::NoisyOr => {
-                let total = a.point_count() + b.point_count();
-                (noisy_or_probability, pool::noisy_or_bound(points, rest, total))
-            }
-        };
-        let lower = collision_probability;
         let mut contacts = evidence.top_contacts(self.settings.max_contacts);
         for contact in &mut contacts {
-            contact.point += a.origin();
+            contact.point += origin;
         }
         let stats: Stats = evidence.stats;
         Report {
-            collision_probability,
-            bounds: [lower, upper],
-            verdict: self.verdict(collision_probability, upper, stats.undecided),
+            collision_probability: estimate.probability,
+            bounds: estimate.bounds,
+            verdict: self.verdict(estimate.probability, estimate.bounds[1], stats.undecided),
             clearance_m: evidence.clearance(self.settings.accept),
             contacts,
+            evidence: estimate.evidence,
             stats,
             seed: self.settings.seed,
             mode: self.settings.mode,

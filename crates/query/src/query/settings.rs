@@ -5,6 +5,8 @@ use serde::Serialize;
 
 use crate::error::SettingsError;
 
+use super::calibrated::Recalibration;
+
 /// Which of the two ways of estimating a probability is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -38,6 +40,11 @@ pub struct QuerySettings {
     pub reject: f64,
     /// How point probabilities are pooled.
     pub pooling: Pooling,
+    /// Two clouds in the calibrated mode: the classifier is asked where geometry alone gives a
+    /// probability in this interval.
+    pub doubt: [f64; 2],
+    /// Two clouds in the calibrated mode: from evidence to the probability.
+    pub recalibration: Recalibration,
     /// Kernel width γ for a leaf pair scaled to the unit box.
     pub gamma: f64,
     /// C: what a misclassified point costs, before balancing by class size.
@@ -74,6 +81,8 @@ impl QuerySettings {
             accept: 0.9,
             reject: 0.1,
             pooling: Pooling::Max,
+            doubt: [0.1, 0.9],
+            recalibration: Recalibration::default(),
             gamma: 10.0,
             penalty: 100.0,
             mesh_penalty_factor: 10.0,
@@ -106,6 +115,10 @@ impl QuerySettings {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(SettingsError::NotPositive { name, value });
             }
+        }
+        let [lowest, highest] = self.doubt;
+        if !(0.0 <= lowest && lowest <= highest && highest <= 1.0) {
+            return Err(SettingsError::NotAnInterval { name: "doubt", lowest, highest });
         }
         for (name, value) in
             [("relative_gap", self.relative_gap), ("cull_probability", self.cull_probability)]

@@ -11,9 +11,18 @@ const SAMPLES: usize = 100;
 /// An object with this share of its surface behind the scan counts as hidden.
 const HIDDEN_SHARE: f64 = 0.5;
 
+/// Whether either body lies mostly behind what the other, a cloud, saw.
+pub(crate) fn is_either_hidden(a: BodyRef<'_>, b: BodyRef<'_>, a_from_b: &Pose) -> bool {
+    match (a, b) {
+        (BodyRef::Cloud(cloud), b) if is_hidden(cloud, b, a_from_b) => true,
+        (a, BodyRef::Cloud(cloud)) => is_hidden(cloud, a, &a_from_b.inverse()),
+        _ => false,
+    }
+}
+
 /// Whether the other body lies mostly behind what `cloud` saw, so that "no surface near" does not
 /// mean "free". False when the cloud is not a single view.
-pub(crate) fn is_hidden(cloud: &Cloud, other: BodyRef<'_>, cloud_from_other: &Pose) -> bool {
+fn is_hidden(cloud: &Cloud, other: BodyRef<'_>, cloud_from_other: &Pose) -> bool {
     let Some(view) = cloud.view() else { return false };
     let samples = coarse_samples(other);
     let behind = |p: &&Point3| view.is_behind(cloud, &cloud_from_other.transform_point(p));

@@ -32,6 +32,7 @@ mod tests {
             score: 0.0,
             probability: None,
             bounds: Some(bounds),
+            evidence: None,
             micros: 1.0,
         });
         let sample = Sample::new(&truths, &said);

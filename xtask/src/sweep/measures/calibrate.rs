@@ -78,7 +78,13 @@ mod tests {
             .map(|i| Truth { collides: i >= 5 && i != 8 || i == 2, signed_distance: 0.0 })
             .collect();
         let said: Vec<Said> = (0..10)
-            .map(|i| Said { score: scale * f64::from(i), probability, bounds: None, micros: 1.0 })
+            .map(|i| Said {
+                score: scale * f64::from(i),
+                probability,
+                bounds: None,
+                evidence: None,
+                micros: 1.0,
+            })
             .collect();
         Block {
             condition: Condition { family, points: 1, noise: NoiseKind::Gaussian, std: 0.0 },

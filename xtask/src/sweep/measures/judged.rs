@@ -90,7 +90,8 @@ mod tests {
 
     #[test]
     fn only_common_conditions_and_wanted_poses_are_kept() {
-        let said = |micros| Said { score: 0.0, probability: None, bounds: None, micros };
+        let said =
+            |micros| Said { score: 0.0, probability: None, bounds: None, evidence: None, micros };
         let block = |family, std, methods: &[&str]| Block {
             condition: Condition { family, points: 1, noise: NoiseKind::Gaussian, std },
             poses: vec![0, 1],

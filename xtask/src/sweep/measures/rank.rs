@@ -129,7 +129,13 @@ mod tests {
                 .collect();
             let said: Vec<Said> = pairs
                 .iter()
-                .map(|&(score, _)| Said { score, probability: None, bounds: None, micros: 1.0 })
+                .map(|&(score, _)| Said {
+                    score,
+                    probability: None,
+                    bounds: None,
+                    evidence: None,
+                    micros: 1.0,
+                })
                 .collect();
             let sample = Sample::new(&truths, &said);
             spearman(&sample, &sample.ones())

@@ -118,6 +118,7 @@ pub(super) mod tests {
                 score,
                 probability: (0.0..=1.0).contains(&score).then_some(score),
                 bounds: None,
+                evidence: None,
                 micros: 1.0,
             })
             .collect();

@@ -36,6 +36,7 @@ pub(super) fn answers(poses: u32) -> Answers {
                         score,
                         probability: (method == 0).then_some(p),
                         bounds: (method == 0).then_some([0.9 * p, 0.9 * p + 0.1]),
+                        evidence: None,
                         micros: 1000.0 + 500.0 * u,
                     }
                 };

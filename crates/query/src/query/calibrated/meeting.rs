@@ -1,0 +1,100 @@
+//! Two pieces of surface: how many standard deviations are between them, and where they would meet.
+
+use cloudtouch_geom::{Matrix3, Point3, Vector3};
+
+use crate::cloud::Surfel;
+
+/// Where two pieces of surface would meet.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Meeting {
+    /// z: the Mahalanobis distance of the two pieces.
+    pub deviations: f64,
+    /// The place both are most likely to have in common.
+    pub place: Point3,
+    /// Unit normal of the plane that separates them best, from A to B; `None` where both are at one
+    /// place.
+    pub normal: Option<Vector3>,
+    /// Gap across that plane, m, and its standard deviation; their ratio is `deviations`.
+    pub gap: f64,
+    pub std: f64,
+}
+
+/// Squared Mahalanobis distance δᵀ(Σa+Σb)⁻¹δ of two pieces; `None` where it is not below `limit`.
+/// Exact pieces that are apart are infinitely far from each other.
+pub(super) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) -> Option<f64> {
+    let offset = b.point.mean - a.point.mean;
+    let joint = a.point.covariance.sum(&b.point.covariance);
+    // No direction has more than the whole variance: most pairs end here.
+    let total = joint.std_bound().powi(2);
+    if offset.norm_squared() >= limit * total {
+        return None;
+    }
+    let squared = offset.dot(&solve(&joint.matrix(), &offset)?);
+    (squared < limit).then_some(squared.max(0.0))
+}
+
+impl Meeting {
+    /// The meeting of two pieces, `None` where both are exact.
+    pub(super) fn of(a: &Surfel, b: &Surfel) -> Option<Self> {
+        let offset = b.point.mean - a.point.mean;
+        let joint = a.point.covariance.sum(&b.point.covariance);
+        let weighted = solve(&joint.matrix(), &offset)?;
+        let deviations = offset.dot(&weighted).max(0.0).sqrt();
+        let place = a.point.mean + a.point.covariance.matrix() * weighted;
+        let normal = weighted.try_normalize(0.0);
+        let gap = normal.map_or(0.0, |n| n.dot(&offset));
+        let std = normal.map_or_else(|| joint.max_std(), |n| joint.std_along(&n));
+        Some(Self { deviations, place, normal, gap, std })
+    }
+}
+
+/// Σ⁻¹v by cofactors, which round evenly for discs of any size; `None` where Σ is singular.
+fn solve(sigma: &Matrix3, v: &Vector3) -> Option<Vector3> {
+    let [x, y, z] = [0, 1, 2].map(|k| sigma.column(k).into_owned());
+    let (yz, zx, xy) = (y.cross(&z), z.cross(&x), x.cross(&y));
+    let determinant = x.dot(&yz);
+    let solved = Vector3::new(yz.dot(v), zx.dot(v), xy.dot(v)) / determinant;
+    solved.iter().all(|c| c.is_finite()).then_some(solved)
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Covariance, UncertainPoint};
+
+    use super::*;
+
+    fn disc(mean: Point3, normal: Vector3, across: f64, along: f64) -> Surfel {
+        let covariance = Covariance::from_axis(&normal, across, along);
+        Surfel {
+            index: 0,
+            point: UncertainPoint { mean, covariance },
+            spacing: 1.0,
+            normal: Some(normal),
+        }
+    }
+
+    #[test]
+    fn discs_facing_each_other_are_their_gap_over_their_noise_apart() {
+        let a = disc(Point3::origin(), Vector3::z(), 0.03, 0.35);
+        let b = disc(Point3::new(0.0, 0.0, 0.1), Vector3::z(), 0.04, 0.35);
+        let meeting = Meeting::of(&a, &b).unwrap();
+        assert!((meeting.deviations - 0.1 / 0.05).abs() < 1e-12);
+        assert!((meeting.gap - 0.1).abs() < 1e-12 && (meeting.std - 0.05).abs() < 1e-12);
+        assert_eq!(meeting.normal, Some(Vector3::z()));
+        // The better known one moves less.
+        assert!((meeting.place.z - 0.1 * 0.0009 / 0.0025).abs() < 1e-12);
+        let squared = squared_deviations(&a, &b, 100.0).unwrap();
+        assert!((squared - 4.0).abs() < 1e-12);
+        assert_eq!(squared_deviations(&a, &b, 3.9), None);
+    }
+
+    #[test]
+    fn exact_pieces_are_apart_and_never_nan() {
+        let exact = |x: f64| disc(Point3::new(x, 0.0, 0.0), Vector3::z(), 0.0, 0.0);
+        assert_eq!(squared_deviations(&exact(0.0), &exact(1.0), 1e9), None);
+        assert!(Meeting::of(&exact(0.0), &exact(0.0)).is_none());
+        let one_place = disc(Point3::origin(), Vector3::z(), 0.1, 0.1);
+        let meeting = Meeting::of(&one_place, &one_place).unwrap();
+        assert_eq!((meeting.deviations, meeting.gap, meeting.normal), (0.0, 0.0, None));
+    }
+}

@@ -1,0 +1,195 @@
+//! Two clouds in the calibrated mode: geometry first, the classifier where geometry leaves doubt,
+//! and a probability fitted to scenes whose truth is known.
+//!
+//! The search gathers how far apart the surfaces are in standard deviations and how clearly they
+//! cross; in doubt a robust classifier is trained on up to three contact patches. See
+//! docs/decisions for what this replaced and why.
+
+mod crossing;
+mod meeting;
+mod patches;
+mod recalibration;
+mod search;
+
+use cloudtouch_bvh::TraversalSettings;
+use cloudtouch_geom::{Pose, Vector3};
+
+use crate::CONTACT_FLOOR;
+use crate::body::BodyRef;
+use crate::cloud::Cloud;
+use crate::error::QueryError;
+use crate::report::{Clearance, Contact};
+
+use super::classify::{PairAnswer, classify};
+use super::estimate::Estimate;
+use super::evidence::Evidence;
+use super::pool::{PointProbability, Side};
+use super::record::{CORRELATION_SPACINGS, add_pair};
+use super::settings::QuerySettings;
+
+use patches::patches;
+pub use recalibration::{ContactEvidence, Recalibration};
+use search::{Finding, Found, Leaf, search};
+
+/// Estimates how probable a collision of two clouds is; points, contacts and clearance go to
+/// `evidence`.
+pub(super) fn estimate(
+    (a, b): (&Cloud, &Cloud),
+    a_from_b: &Pose,
+    settings: &QuerySettings,
+    evidence: &mut Evidence,
+) -> Result<Estimate, QueryError> {
+    let traversal =
+        TraversalSettings { kind: settings.traversal, cull_probability: settings.cull_probability };
+    let recalibration = &settings.recalibration;
+    let is_enough = |deviations: f64, crossing: f64| {
+        recalibration.by_geometry(deviations, crossing.ln_1p()) > settings.stop_above
+    };
+    let stats = &mut evidence.stats;
+    let found = search((a, b), a_from_b, &traversal, settings.seed, is_enough, stats)?;
+    let mut of_geometry = ContactEvidence {
+        deviations: found.deviations,
+        crossing: found.crossing.ln_1p(),
+        misclassified: None,
+    };
+    let mut estimate = by_geometry(settings, &found, &of_geometry);
+    let [lowest, highest] = settings.doubt;
+    let is_doubtful = (lowest..=highest).contains(&estimate.probability);
+    if is_doubtful && found.is_complete {
+        let misclassified = ask_classifier((a, b), a_from_b, &found, settings, evidence);
+        of_geometry.misclassified = Some(misclassified.value);
+        estimate = by_all(recalibration, &of_geometry, &misclassified);
+    } else {
+        for finding in &found.findings {
+            add_finding(finding, evidence);
+        }
+        add_leaves(&found, evidence);
+    }
+    Ok(estimate)
+}
+
+/// The answer of geometry alone. Leaves apart for certain have no more than the bound they were
+/// culled by.
+///
+/// More evidence only raises either model; so after an early stop the answer lies above the lesser
+/// of what both say now, or above that of geometry where the classifier would not be asked.
+fn by_geometry(
+    settings: &QuerySettings,
+    found: &Found<'_>,
+    evidence: &ContactEvidence,
+) -> Estimate {
+    let ContactEvidence { deviations, crossing, .. } = *evidence;
+    let probability = if found.is_complete && found.leaves_a.is_empty() {
+        found.culled_bound
+    } else {
+        settings.recalibration.by_geometry(deviations, crossing)
+    };
+    let bounds = if found.is_complete {
+        [probability; 2]
+    } else if probability > settings.doubt[1] {
+        [probability, 1.0]
+    } else {
+        [probability.min(settings.recalibration.by_all(deviations, crossing, 0.0)), 1.0]
+    };
+    Estimate { probability, bounds, evidence: Some(*evidence) }
+}
+
+fn by_all(
+    recalibration: &Recalibration,
+    evidence: &ContactEvidence,
+    misclassified: &Misclassified,
+) -> Estimate {
+    let of = |count| recalibration.by_all(evidence.deviations, evidence.crossing, count);
+    Estimate {
+        probability: of(misclassified.value),
+        bounds: misclassified.bounds.map(of),
+        evidence: Some(*evidence),
+    }
+}
+
+/// ΣP, largest over the patches, and between what bounds it is known.
+#[derive(Debug, Default)]
+struct Misclassified {
+    value: f64,
+    bounds: [f64; 2],
+}
+
+impl Misclassified {
+    fn add(&mut self, value: f64, [lower, upper]: [f64; 2]) {
+        self.value = self.value.max(value);
+        self.bounds = [self.bounds[0].max(lower), self.bounds[1].max(upper)];
+    }
+}
+
+fn ask_classifier(
+    (a, b): (&Cloud, &Cloud),
+    a_from_b: &Pose,
+    found: &Found<'_>,
+    settings: &QuerySettings,
+    evidence: &mut Evidence,
+) -> Misclassified {
+    let mut misclassified = Misclassified::default();
+    for points in patches((a, b), found) {
+        let answer = classify(&points, settings, 0.0, &mut evidence.stats);
+        match &answer {
+            PairAnswer::Separated { a, b, .. } => {
+                let sum = a.iter().chain(b).sum();
+                misclassified.add(sum, [sum; 2]);
+            }
+            PairAnswer::Indistinct | PairAnswer::Undecided => {
+                let count = (points.a.len() + points.b.len()) as f64;
+                misclassified.add(0.5 * count, [0.0, count]);
+            }
+        }
+        let bodies = (BodyRef::Cloud(a), BodyRef::Cloud(b), a_from_b);
+        add_pair(bodies, &points, &answer, evidence);
+    }
+    misclassified
+}
+
+/// Adds the place that a finding is about, as geometry sees it.
+fn add_finding(finding: &Finding, evidence: &mut Evidence) {
+    let meeting = &finding.meeting;
+    let by_gap = cloudtouch_geom::normal::upper_tail(meeting.deviations / std::f64::consts::SQRT_2);
+    let toward = |axis: Vector3| if axis.dot(&finding.toward_b) < 0.0 { -axis } else { axis };
+    let fallback = || finding.toward_b.try_normalize(0.0).unwrap_or_else(Vector3::z);
+    let (place, normal, probability, clearance) = match finding.crossing {
+        Some(found) if found.probability > by_gap => {
+            let clearance = Clearance { mean: -found.depth, std: found.std };
+            (found.place, toward(found.axis), found.probability, clearance)
+        }
+        _ => {
+            let clearance = Clearance { mean: meeting.gap, std: meeting.std };
+            (meeting.place, meeting.normal.unwrap_or_else(fallback), by_gap, clearance)
+        }
+    };
+    evidence.add_clearance(probability, clearance);
+    if probability >= CONTACT_FLOOR {
+        evidence.add_contact(Contact {
+            point: place,
+            normal_a_to_b: normal,
+            probability,
+            clearance_m: clearance.mean,
+        });
+    }
+}
+
+fn add_leaves(found: &Found<'_>, evidence: &mut Evidence) {
+    for (side, leaves) in [(Side::A, &found.leaves_a), (Side::B, &found.leaves_b)] {
+        for leaf in leaves.values() {
+            add_leaf(side, leaf, evidence);
+        }
+    }
+}
+
+fn add_leaf(side: Side, leaf: &Leaf<'_>, evidence: &mut Evidence) {
+    for (surfel, &probability) in leaf.surfels.iter().zip(&leaf.probabilities) {
+        evidence.add_point(PointProbability {
+            side,
+            index: Some(surfel.index),
+            position: surfel.point.mean,
+            probability,
+            correlation_length: CORRELATION_SPACINGS * surfel.spacing,
+        });
+    }
+}

@@ -1,0 +1,128 @@
+//! From evidence to a probability: logistic regressions fitted on scenes whose truth is known.
+
+use serde::Serialize;
+
+use crate::error::SettingsError;
+
+/// Deviations beyond this say no more than these.
+pub(crate) const MOST_DEVIATIONS: f64 = 5.3;
+/// Keeps the logarithm of no misclassified point finite.
+const MISCLASSIFIED_FLOOR: f64 = 0.02;
+
+/// What the probability of two clouds rests on in the calibrated mode.
+///
+/// Each number is comparable between scenes: none has a unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ContactEvidence {
+    /// z: the least Mahalanobis distance between two pieces of surface, one of each cloud; at most
+    /// 5.3.
+    pub deviations: f64,
+    /// ln(1 + Σs): how clearly edges between neighbours of one cloud pass through the surface of
+    /// the other, s being standard deviations of each crossing, up to 6.
+    pub crossing: f64,
+    /// ΣP (eq. 16): how many points of a contact patch are expected on the wrong side of the
+    /// surface that separates it best, largest over the patches; `None` where the other two leave
+    /// no doubt and no classifier was trained.
+    pub misclassified: Option<f64>,
+}
+
+/// Two logistic regressions from [`ContactEvidence`] to a probability: by geometry alone, and with
+/// the classifier.
+///
+/// The default is fitted on generated scenes (`cargo xtask calibrate`; docs/accuracy.md says how
+/// well it fits scenes it was not fitted on). Who has labelled scenes can fit another to the
+/// evidence in their reports.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recalibration {
+    /// Intercept, and slopes of `crossing` and `deviations`.
+    by_geometry: [f64; 3],
+    /// Intercept, and slopes of `crossing`, `deviations` and ln(`misclassified` + 0.02).
+    by_all: [f64; 4],
+}
+
+impl Default for Recalibration {
+    fn default() -> Self {
+        Self { by_geometry: [-0.6, 0.9, -0.9], by_all: [-2.384, 0.667, -0.373, 0.982] }
+    }
+}
+
+impl Recalibration {
+    /// Coefficients from a fit of one's own: the intercept first, then the slopes of `crossing`,
+    /// `deviations` (not positive), and in `by_all` of ln(`misclassified` + 0.02).
+    ///
+    /// # Errors
+    /// When one is not finite, or its sign is not that of evidence: more crossing, fewer deviations
+    /// and more misclassified points must not make a collision less probable. Bounds rest on that.
+    pub fn try_new(by_geometry: [f64; 3], by_all: [f64; 4]) -> Result<Self, SettingsError> {
+        let all = by_geometry.iter().chain(&by_all);
+        let [_, crossing, deviations] = by_geometry;
+        let [_, crossing_too, deviations_too, misclassified] = by_all;
+        for (name, value) in [
+            ("crossing", crossing),
+            ("crossing", crossing_too),
+            ("deviations", -deviations),
+            ("deviations", -deviations_too),
+            ("misclassified", misclassified),
+        ] {
+            if value < 0.0 {
+                return Err(SettingsError::Slope { name });
+            }
+        }
+        match all.copied().find(|value| !value.is_finite()) {
+            Some(value) => Err(SettingsError::NotFinite { name: "recalibration", value }),
+            None => Ok(Self { by_geometry, by_all }),
+        }
+    }
+
+    /// The probability given the geometry alone. It grows with every crossing found and every
+    /// deviation less.
+    pub(super) fn by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
+        let [intercept, on_crossing, on_deviations] = self.by_geometry;
+        logistic(intercept + on_crossing * crossing + on_deviations * deviations)
+    }
+
+    /// The probability given the classifier too.
+    pub(super) fn by_all(&self, deviations: f64, crossing: f64, misclassified: f64) -> f64 {
+        let [intercept, on_crossing, on_deviations, on_misclassified] = self.by_all;
+        logistic(
+            intercept
+                + on_crossing * crossing
+                + on_deviations * deviations
+                + on_misclassified * (misclassified + MISCLASSIFIED_FLOOR).ln(),
+        )
+    }
+}
+
+fn logistic(x: f64) -> f64 {
+    1.0 / (1.0 + (-x).exp())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_passes_its_own_check() {
+        let Recalibration { by_geometry, by_all } = Recalibration::default();
+        assert_eq!(Recalibration::try_new(by_geometry, by_all), Ok(Recalibration::default()));
+    }
+
+    #[test]
+    fn slopes_against_the_evidence_and_nan_are_refused() {
+        let (geometry, all) = ([0.0, 1.0, -1.0], [0.0, 1.0, -1.0, 1.0]);
+        assert!(Recalibration::try_new(geometry, all).is_ok());
+        let more_crossing_is_less = [0.0, -1.0, -1.0];
+        let error = Recalibration::try_new(more_crossing_is_less, all).unwrap_err();
+        assert_eq!(error, SettingsError::Slope { name: "crossing" });
+        assert!(Recalibration::try_new(geometry, [0.0, 1.0, 1.0, 1.0]).is_err());
+        assert!(Recalibration::try_new(geometry, [f64::NAN, 1.0, -1.0, 1.0]).is_err());
+    }
+
+    #[test]
+    fn nothing_found_is_improbable_and_everything_is_not() {
+        let default = Recalibration::default();
+        assert!(default.by_geometry(MOST_DEVIATIONS, 0.0) < 0.02);
+        assert!(default.by_geometry(0.0, 6.0) > 0.95);
+        assert!(default.by_all(0.0, 6.0, 30.0) > 0.95);
+    }
+}

@@ -1,0 +1,235 @@
+//! The search for what two clouds say of a collision by their geometry alone.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use cloudtouch_bvh::{Flow, LeafPair, NodeId, TraversalSettings, traverse};
+use cloudtouch_geom::{Pose, Vector3, normal};
+
+use crate::cloud::{Cloud, Edge, Surfel};
+use crate::error::QueryError;
+use crate::report::Stats;
+
+use super::crossing::{Crossing, REACH_SPACINGS, crossing};
+use super::meeting::{Meeting, squared_deviations};
+use super::recalibration::MOST_DEVIATIONS;
+
+/// Places that are more than this many deviations above the least are not looked at.
+const DEVIATIONS_OF_INTEREST: f64 = 1.5;
+
+/// A leaf that the search came by, in the local frame of A.
+#[derive(Debug)]
+pub(super) struct Leaf<'a> {
+    pub surfels: Cow<'a, [Surfel]>,
+    edges: Cow<'a, [Edge]>,
+    /// For each surfel how likely it is to collide, by geometry.
+    pub probabilities: Vec<f64>,
+}
+
+/// What a pair of leaves says.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Finding {
+    /// Of the two pieces of surface with the least deviations between them.
+    pub meeting: Meeting,
+    /// Which these are.
+    pub between: [u32; 2],
+    /// The larger of their spacings, m.
+    pub spacing: f64,
+    /// The most probable crossing.
+    pub crossing: Option<Crossing>,
+    /// From the middle of the leaf of A to that of B.
+    pub toward_b: Vector3,
+}
+
+/// All that the search found.
+#[derive(Debug, Default)]
+pub(super) struct Found<'a> {
+    pub leaves_a: BTreeMap<NodeId, Leaf<'a>>,
+    pub leaves_b: BTreeMap<NodeId, Leaf<'a>>,
+    pub findings: Vec<Finding>,
+    /// The least deviations between two pieces of surface, at most [`MOST_DEVIATIONS`].
+    pub deviations: f64,
+    /// Clearness of all crossings together.
+    pub crossing: f64,
+    /// Whether what was left out can change neither of these.
+    pub is_complete: bool,
+    /// No point of what was culled has a higher probability than this.
+    pub culled_bound: f64,
+}
+
+/// Looks at the pairs of leaves where the surfaces may touch until `is_enough` of the deviations
+/// and the crossing found so far.
+pub(super) fn search<'a>(
+    (a, b): (&'a Cloud, &'a Cloud),
+    a_from_b: &Pose,
+    settings: &TraversalSettings,
+    seed: u64,
+    is_enough: impl Fn(f64, f64) -> bool,
+    stats: &mut Stats,
+) -> Result<Found<'a>, QueryError> {
+    let mut found = Found { deviations: MOST_DEVIATIONS, ..Found::default() };
+    let crossings_end = deviations_without_crossing(a, b);
+    let outcome = traverse(a.tree(), b.tree(), a_from_b, settings, seed, |pair| {
+        stats.leaf_pairs += 1;
+        found.add((a, b), a_from_b, &pair, stats);
+        if is_enough(found.deviations, found.crossing) {
+            return Flow::Stop;
+        }
+        Flow::Above(bound_at(found.deviations_of_interest().max(crossings_end)))
+    })?;
+    stats.nodes_visited += outcome.nodes_visited;
+    let harmless = bound_at(found.deviations_of_interest().max(crossings_end));
+    found.is_complete = !outcome.stopped && outcome.culled_bound <= harmless;
+    found.culled_bound = outcome.culled_bound;
+    Ok(found)
+}
+
+/// A pair of boxes between whose points there are at least so many deviations has no point more
+/// probable than this: with a gap g and standard deviations up to σ, z ≥ g/(√2σ) and P ≤ Φ(−g/(2σ)).
+fn bound_at(deviations: f64) -> f64 {
+    normal::upper_tail(deviations / std::f64::consts::SQRT_2)
+}
+
+/// Leaves with at least so many deviations between their boxes have no crossing: it would be
+/// farther than [`REACH_SPACINGS`] from one of them, and σ is at least that of a disc.
+fn deviations_without_crossing(a: &Cloud, b: &Cloud) -> f64 {
+    REACH_SPACINGS / (std::f64::consts::SQRT_2 * a.disc_std().min(b.disc_std()))
+}
+
+impl<'a> Found<'a> {
+    /// Places with more deviations than this change nothing.
+    pub(super) fn deviations_of_interest(&self) -> f64 {
+        (self.deviations + DEVIATIONS_OF_INTEREST).min(MOST_DEVIATIONS)
+    }
+
+    fn add(
+        &mut self,
+        (a, b): (&'a Cloud, &'a Cloud),
+        a_from_b: &Pose,
+        pair: &LeafPair,
+        stats: &mut Stats,
+    ) {
+        let leaf_a = self.leaves_a.entry(pair.a).or_insert_with(|| {
+            let (surfels, computed) = a.leaf(pair.a);
+            stats.leaves_prepared += usize::from(computed);
+            Leaf::new(Cow::Borrowed(surfels), Cow::Borrowed(a.leaf_edges(pair.a)))
+        });
+        let leaf_b = self.leaves_b.entry(pair.b).or_insert_with(|| {
+            let (surfels, computed) = b.leaf(pair.b);
+            stats.leaves_prepared += usize::from(computed);
+            let surfels = surfels.iter().map(|s| transformed(s, a_from_b)).collect();
+            let edges = b.leaf_edges(pair.b).iter().map(|e| e.transformed(a_from_b)).collect();
+            Leaf::new(Cow::Owned(surfels), Cow::Owned(edges))
+        });
+        let nearest = nearest_pieces(leaf_a, leaf_b);
+        let mut best = None;
+        if pair.gap <= REACH_SPACINGS * leaf_a.largest_spacing().max(leaf_b.largest_spacing()) {
+            self.crossing += add_crossings(leaf_a, leaf_b, &mut best);
+            self.crossing += add_crossings(leaf_b, leaf_a, &mut best);
+        }
+        let Some((squared, i, j)) = nearest else { return };
+        let (on_a, on_b) = (&leaf_a.surfels[i], &leaf_b.surfels[j]);
+        self.deviations = self.deviations.min(squared.sqrt());
+        if let Some(meeting) = Meeting::of(on_a, on_b) {
+            self.findings.push(Finding {
+                meeting,
+                between: [on_a.index, on_b.index],
+                spacing: on_a.spacing.max(on_b.spacing),
+                crossing: best,
+                toward_b: leaf_b.middle() - leaf_a.middle(),
+            });
+        }
+    }
+}
+
+impl<'a> Leaf<'a> {
+    fn new(surfels: Cow<'a, [Surfel]>, edges: Cow<'a, [Edge]>) -> Self {
+        let probabilities = vec![0.0; surfels.len()];
+        Self { surfels, edges, probabilities }
+    }
+
+    fn largest_spacing(&self) -> f64 {
+        self.surfels.iter().map(|s| s.spacing).fold(0.0, f64::max)
+    }
+
+    fn middle(&self) -> Vector3 {
+        let sum: Vector3 = self.surfels.iter().map(|s| s.point.mean.coords).sum();
+        sum / self.surfels.len() as f64
+    }
+
+    fn raise(&mut self, place: usize, probability: f64) {
+        self.probabilities[place] = self.probabilities[place].max(probability);
+    }
+}
+
+fn transformed(surfel: &Surfel, a_from_b: &Pose) -> Surfel {
+    Surfel {
+        point: surfel.point.transformed(a_from_b),
+        normal: surfel.normal.map(|n| a_from_b.transform_vector(&n)),
+        ..*surfel
+    }
+}
+
+/// The least squared deviations between two pieces, and which these are; raises the probability of
+/// each piece to that of its plane: halfway between two equally well known pieces it is z/√2
+/// deviations from either.
+fn nearest_pieces(a: &mut Leaf<'_>, b: &mut Leaf<'_>) -> Option<(f64, usize, usize)> {
+    let mut least = MOST_DEVIATIONS.powi(2);
+    let mut nearest = None;
+    let mut least_of_b = vec![least; b.surfels.len()];
+    for i in 0..a.surfels.len() {
+        let mut least_of_a = MOST_DEVIATIONS.powi(2);
+        for (j, least_of_b) in least_of_b.iter_mut().enumerate() {
+            let limit = least_of_b.max(least_of_a);
+            let Some(squared) = squared_deviations(&a.surfels[i], &b.surfels[j], limit) else {
+                continue;
+            };
+            least_of_a = least_of_a.min(squared);
+            *least_of_b = least_of_b.min(squared);
+            if squared < least {
+                least = squared;
+                nearest = Some((squared, i, j));
+            }
+        }
+        if least_of_a < MOST_DEVIATIONS.powi(2) {
+            a.raise(i, bound_at(least_of_a.sqrt()));
+        }
+    }
+    for (j, least) in least_of_b.into_iter().enumerate() {
+        if least < MOST_DEVIATIONS.powi(2) {
+            b.raise(j, bound_at(least.sqrt()));
+        }
+    }
+    nearest
+}
+
+/// Clearness of all crossings of edges of one leaf with discs of another; the points they join, and
+/// those of the discs, are as probable as their clearest crossing.
+fn add_crossings(
+    of_edges: &mut Leaf<'_>,
+    of_discs: &mut Leaf<'_>,
+    best: &mut Option<Crossing>,
+) -> f64 {
+    let mut total = 0.0;
+    let Leaf { edges, probabilities, .. } = of_edges;
+    for edge in edges.iter() {
+        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
+        let half = 0.5 * (edge.ends[1] - edge.ends[0]).norm();
+        for (disc, of_disc) in of_discs.surfels.iter().zip(&mut of_discs.probabilities) {
+            let reach = half + REACH_SPACINGS * disc.spacing;
+            if (disc.point.mean - middle).norm_squared() > reach * reach {
+                continue;
+            }
+            let Some(found) = crossing(edge, disc) else { continue };
+            total += found.clearness;
+            *of_disc = of_disc.max(found.probability);
+            for place in edge.own.into_iter().flatten() {
+                probabilities[place] = probabilities[place].max(found.probability);
+            }
+            if best.is_none_or(|best| found.probability > best.probability) {
+                *best = Some(found);
+            }
+        }
+    }
+    total
+}
