@@ -6,19 +6,21 @@ use serde_json::Value;
 use support::{HEIGHTS, Inputs, case_at, case_file};
 
 /// As documented in the README.
-const REPORT: [&str; 9] = [
+const REPORT: [&str; 10] = [
     "id",
     "collision_probability",
     "bounds",
     "verdict",
     "clearance_m",
     "contacts",
+    "evidence",
     "stats",
     "seed",
     "mode",
 ];
 const CLEARANCE: [&str; 2] = ["mean", "std"];
 const CONTACT: [&str; 4] = ["point", "normal_a_to_b", "probability", "clearance_m"];
+const EVIDENCE: [&str; 3] = ["deviations", "crossing", "misclassified"];
 const STATS: [&str; 9] = [
     "nodes_visited",
     "leaf_pairs",
@@ -64,7 +66,14 @@ fn keys_come_in_the_documented_order() {
         .copied()
         .collect();
     let mut at = 0;
-    for key in order.into_iter().chain(["stats"]).chain(STATS).chain(["seed", "mode"]) {
+    for key in order
+        .into_iter()
+        .chain(["evidence"])
+        .chain(EVIDENCE)
+        .chain(["stats"])
+        .chain(STATS)
+        .chain(["seed", "mode"])
+    {
         let quoted = format!("\"{key}\":");
         let found = text[at..].find(&quoted);
         at += found.unwrap_or_else(|| panic!("{key} is missing or too early in {text}"));
@@ -111,6 +120,11 @@ fn check_report(report: &Value) {
         assert!((length - 1.0).abs() < 1e-9, "{contact}");
         assert!((0.0..=1.0).contains(&number(&contact["probability"])));
         number(&contact["clearance_m"]);
+    }
+    // Only two clouds in the calibrated mode have it.
+    assert_eq!(report["evidence"].is_null(), report["mode"] == "paper", "{report}");
+    if !report["evidence"].is_null() {
+        check_keys(&report["evidence"], &EVIDENCE);
     }
     check_keys(&report["stats"], &STATS);
     for (key, value) in report["stats"].as_object().unwrap() {

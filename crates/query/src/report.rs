@@ -20,8 +20,7 @@ pub struct Report {
     pub clearance_m: Option<Clearance>,
     /// Where the surfaces touch or may touch, most probable first.
     pub contacts: Vec<Contact>,
-    /// What the probability rests on, for two clouds in the calibrated mode.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// What the probability rests on; `None` but for two clouds in the calibrated mode.
     pub evidence: Option<ContactEvidence>,
     /// What the answer cost.
     pub stats: Stats,

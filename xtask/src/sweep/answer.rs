@@ -1,22 +1,21 @@
 //! Fresh clouds for every condition and pose, and what each method says of them.
 
 use anyhow::{Context, Result};
-use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, noise::SensorModel,
-};
-use cloudtouch_geom::{Point3, PointCloud, Pose, seed};
+use cloudtouch_geom::{Point3, Pose, seed};
 use cloudtouch_testkit::{
-    family::{Family, FamilyScene, Observation, Side},
+    family::{FamilyScene, Observation, Side},
     poses::LabelledPose,
 };
 use rayon::prelude::*;
 
 use super::{
-    ORACLE, OURS, SEED,
+    SEED,
+    ours::Ours,
     plan::{Methods, Part, Plan},
     record::{Answers, Block, Condition, Said, Truth},
     rivals::{Answer, BoxMap, CloudDistance, ObjectMesh, Observed, PlainSvm, SmoothedDistance},
 };
+use crate::calibrate::Fitted;
 
 /// Side of the boxes of a collision map, m.
 const BOX: f64 = 0.01;
@@ -33,10 +32,12 @@ struct Variant {
 /// The answers of all methods to all of a plan.
 pub(crate) fn all(plan: &Plan) -> Result<Answers> {
     let mut answers = Answers::default();
+    let fitted = Fitted::stored()?;
     for part in &plan.parts {
         let variants = variants(part)?;
+        let ours = Ours::try_new(plan.methods, part.family, &fitted)?;
         for condition in &part.conditions {
-            answers.add(block(part, &variants, condition, plan.methods)?)?;
+            answers.add(block(&variants, condition, &ours, plan.methods)?)?;
             eprintln!(
                 "sweep: {} {} points {} mm done",
                 condition.family,
@@ -62,9 +63,9 @@ fn variants(part: &Part) -> Result<Vec<Variant>> {
 }
 
 fn block(
-    part: &Part,
     variants: &[Variant],
     condition: &Condition,
+    ours: &Ours,
     methods: Methods,
 ) -> Result<Block> {
     let asked: Vec<(usize, &Variant, usize)> = variants
@@ -77,7 +78,7 @@ fn block(
         .par_iter()
         .map(|&(number, variant, k)| {
             let draw = seed::derive(SEED, number as u64, seed_of(condition));
-            answer(part.family, variant, &variant.poses[k], condition, draw, methods)
+            answer(variant, &variant.poses[k], condition, draw, ours, methods)
                 .with_context(|| format!("{}, pose {number}", condition.family))
         })
         .collect::<Result<_>>()?;
@@ -104,78 +105,21 @@ fn seed_of(condition: &Condition) -> u64 {
 }
 
 fn answer(
-    family: Family,
     variant: &Variant,
     pose: &LabelledPose,
     condition: &Condition,
     draw: u64,
+    ours: &Ours,
     methods: Methods,
 ) -> Result<Vec<(&'static str, Said)>> {
     let Condition { points, noise, std, .. } = *condition;
     let [a, b] = [Side::A, Side::B].map(|s| variant.scene.observe(s, points, noise, std, draw));
     let a_from_b = &pose.scene_from_object;
-    let calibrated = QuerySettings::new(Mode::Calibrated);
-    let settings: &[(&str, QuerySettings)] = match methods {
-        Methods::Ours => &[(OURS, calibrated)],
-        Methods::Evidence => {
-            &[(OURS, QuerySettings { doubt: [0.0, 1.0], stop_above: 1.0, ..calibrated })]
-        }
-        Methods::All => &[(OURS, calibrated), ("paper", QuerySettings::new(Mode::Paper))],
-    };
-    let mut all = Vec::new();
-    for &(name, settings) in settings {
-        let mode = settings.mode;
-        let body_a = Body::Cloud(prepared(&a, mode)?);
-        // The gripper is known exactly: its user gives the mesh.
-        let body_b = match family {
-            Family::Tabletop => Body::Mesh(Mesh::prepare(variant.scene.b.mesh())?),
-            _ => Body::Cloud(prepared(&b, mode)?),
-        };
-        all.push((name, ours(&Query::new(settings)?.run(&body_a, &body_b, a_from_b)?)));
-        if settings.mode == Mode::Calibrated && methods != Methods::Ours {
-            let mesh_b = matches!(body_b, Body::Mesh(_)).then_some(&body_b);
-            all.push((ORACLE, oracle([&a, &b], a_from_b, mesh_b, settings)?));
-        }
-    }
+    let mut all = ours.answer(variant.scene.b.mesh(), [&a, &b], a_from_b)?;
     if methods == Methods::All {
         all.extend(rivals([&finite(&a), &finite(&b)], a_from_b, a.std, &variant.boxes_against)?);
     }
     Ok(all)
-}
-
-/// Ours, given for every sampled point where it truly is and the true normal of the surface there:
-/// what sampling alone leaves to be known.
-fn oracle(
-    [a, b]: [&Observation; 2],
-    a_from_b: &Pose,
-    mesh_b: Option<&Body>,
-    settings: QuerySettings,
-) -> Result<Said> {
-    let body_a = Body::Cloud(exact(a)?);
-    let exact_b = mesh_b.is_none().then(|| exact(b)).transpose()?.map(Body::Cloud);
-    let body_b = mesh_b.or(exact_b.as_ref()).context("one of the two is there")?;
-    Ok(ours(&Query::new(settings)?.run(&body_a, body_b, a_from_b)?))
-}
-
-/// The cloud without its noise; points that no surface made are left out.
-fn exact(observation: &Observation) -> Result<Cloud> {
-    let samples = || observation.truth.iter().flatten();
-    let cloud = PointCloud {
-        normals: Some(samples().map(|s| s.normal).collect()),
-        ..PointCloud::from_points(samples().map(|s| s.position).collect())
-    };
-    let sensor = SensorModel::Isotropic { std: 0.0 };
-    Ok(Cloud::prepare(&cloud, &CloudSettings::new(sensor, Mode::Calibrated))?)
-}
-
-fn ours(report: &Report) -> Said {
-    Said {
-        score: report.collision_probability,
-        probability: Some(report.collision_probability),
-        bounds: Some(report.bounds),
-        evidence: report.evidence,
-        micros: report.stats.query_us as f64,
-    }
 }
 
 fn rivals(
@@ -210,14 +154,6 @@ fn said(answer: Answer) -> Said {
         evidence: None,
         micros: answer.micros,
     }
-}
-
-fn prepared(observation: &Observation, mode: Mode) -> Result<Cloud> {
-    let sensor = match &observation.cloud.covariances {
-        Some(_) => SensorModel::PerPoint,
-        None => SensorModel::Isotropic { std: observation.std },
-    };
-    Ok(Cloud::prepare(&observation.cloud, &CloudSettings::new(sensor, mode))?)
 }
 
 /// The rows with a return.

@@ -4,7 +4,8 @@
 pub(crate) mod answer;
 mod document;
 mod figures;
-mod measures;
+pub(crate) mod measures;
+mod ours;
 pub(crate) mod plan;
 mod plots;
 pub(crate) mod record;
@@ -23,9 +24,9 @@ use plan::Plan;
 /// All randomness of the sweep comes from this.
 const SEED: u64 = 2011;
 /// What ours is called in tables and files.
-const OURS: &str = "calibrated";
+pub(crate) const OURS: &str = "calibrated";
 /// ... and ours given every sampled point as it truly is.
-const ORACLE: &str = "oracle";
+pub(crate) const ORACLE: &str = "oracle";
 
 /// What `cargo xtask sweep` is given.
 #[derive(Args)]

@@ -36,7 +36,7 @@ impl Edge {
 /// which has the same edge.
 ///
 /// Only points that are among each other's nearest are joined, so that both leaves agree.
-pub(super) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
+pub(crate) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
     let places: BTreeMap<u32, usize> = indices.iter().copied().zip(0..).collect();
     let mut scratch = Scratch::default();
     let nearest = |index: u32| cloud.neighborhoods.nearest(index as usize, NEIGHBORS);

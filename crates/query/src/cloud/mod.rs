@@ -15,6 +15,8 @@ use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel};
 use crate::error::PrepareError;
 use crate::filter::{StageReport, filter};
 
+#[cfg(test)]
+pub(crate) use edge::edges_of;
 pub(crate) use edge::{EDGE_SPACINGS, Edge};
 use lazy::LazySurface;
 pub(crate) use lazy::Surfel;

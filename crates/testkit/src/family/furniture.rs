@@ -29,7 +29,7 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
         a,
         b,
         touch: Touch::Solids,
-        seen: [Seen::Surface(seen_a), Seen::Surface(seen_b)],
+        seen: [Seen::Surface(ExactMesh::new(&seen_a)), Seen::Surface(ExactMesh::new(&seen_b))],
         motion: Motion::Open { ends, deepest: 0.2 },
     }
 }

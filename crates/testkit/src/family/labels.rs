@@ -3,7 +3,7 @@
 use cloudtouch_geom::seed;
 use rand_chacha::ChaCha8Rng;
 
-use super::FamilyScene;
+use super::{FamilyScene, observe::Seen};
 use crate::{
     exact::WayOut,
     poses::{Approach, CONTACT_GAP, LabelledPose, NEAR},
@@ -12,6 +12,8 @@ use crate::{
 
 /// How far free poses go back from contact, m.
 const FARTHEST: f64 = 0.5;
+/// How much closer than what is seen the surfaces may come near contact, m.
+const HIDDEN: f64 = 0.005;
 
 /// What a pose is drawn for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,11 +71,23 @@ impl FamilyScene {
             };
             let labelled = self.label(&approach, approach.contact - retreat);
             // Far enough ahead there may be no overlap any more.
-            if labelled.in_collision != wanted.is_free() {
+            if labelled.in_collision != wanted.is_free() && self.shows(&labelled) {
                 return labelled;
             }
         }
         panic!("a thousand approaches gave no pose that is {wanted:?}");
+    }
+
+    /// Whether the surface that sensors see shows what is true of a pose: it crosses where the bodies
+    /// collide, and comes about as close as they do near contact. What nobody saw no method could
+    /// tell.
+    fn shows(&self, pose: &LabelledPose) -> bool {
+        let [Seen::Surface(a), Seen::Surface(b)] = &self.seen else { return true };
+        if pose.in_collision {
+            return a.intersects(b, &pose.scene_from_object);
+        }
+        pose.signed_distance > NEAR
+            || a.distance(b, &pose.scene_from_object) < pose.signed_distance + HIDDEN
     }
 
     /// The answer for a place on an approach, which is free up to its contact.

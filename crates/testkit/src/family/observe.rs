@@ -4,6 +4,7 @@ use cloudtouch_geom::{PointCloud, TriangleMesh, seed};
 
 use super::{FamilyScene, depth_view::DepthView};
 use crate::{
+    exact::ExactMesh,
     noise::{NoiseKind, add_noise},
     surface::{SurfaceSample, area, positions, sample_surface},
 };
@@ -39,7 +40,7 @@ pub struct Observation {
 /// How a body is observed.
 pub(super) enum Seen {
     /// Samples of this part of the surface, with noise.
-    Surface(TriangleMesh),
+    Surface(ExactMesh),
     /// Samples of this surface; the body is known, so there is no noise.
     Known(TriangleMesh),
     /// From one side, by a camera.
@@ -64,7 +65,7 @@ impl FamilyScene {
     ) -> Observation {
         let stream = |use_of_it| seed::derive(seed, side as u64, use_of_it);
         let (samples, std) = match &self.seen[side as usize] {
-            Seen::Surface(mesh) => (sample_surface(mesh, points, stream(0)), std),
+            Seen::Surface(seen) => (sample_surface(seen.mesh(), points, stream(0)), std),
             Seen::Known(mesh) => (sample_surface(mesh, points, stream(0)), 0.0),
             Seen::Image(view) => {
                 return view.observe(&self.a, points, noise, std, [stream(0), stream(1)]);
@@ -82,7 +83,8 @@ impl FamilyScene {
     /// has to itself; of a depth image the distance of neighbouring rays in the middle of the scene.
     pub fn spacing(&self, side: Side, points: usize) -> f64 {
         match &self.seen[side as usize] {
-            Seen::Surface(mesh) | Seen::Known(mesh) => (area(mesh) / points as f64).sqrt(),
+            Seen::Surface(seen) => (area(seen.mesh()) / points as f64).sqrt(),
+            Seen::Known(mesh) => (area(mesh) / points as f64).sqrt(),
             Seen::Image(view) => view.spacing(points),
         }
     }

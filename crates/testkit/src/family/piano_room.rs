@@ -48,7 +48,10 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
         a: room,
         b: piano,
         touch: Touch::Solids,
-        seen: [Seen::Surface(seen_room), Seen::Surface(seen_piano)],
+        seen: [
+            Seen::Surface(ExactMesh::new(&seen_room)),
+            Seen::Surface(ExactMesh::new(&seen_piano)),
+        ],
         motion: Motion::Open { ends, deepest: 0.2 },
     }
 }

@@ -78,7 +78,7 @@ pub(super) fn wholly_seen(
         a: ExactMesh::new(&a),
         b: ExactMesh::new(&b),
         touch,
-        seen: [Seen::Surface(a), Seen::Surface(b)],
+        seen: [Seen::Surface(ExactMesh::new(&a)), Seen::Surface(ExactMesh::new(&b))],
         motion,
     }
 }

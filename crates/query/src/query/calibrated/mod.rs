@@ -143,6 +143,12 @@ fn ask_classifier(
         }
         let bodies = (BodyRef::Cloud(a), BodyRef::Cloud(b), a_from_b);
         add_pair(bodies, &points, &answer, evidence);
+        let (deviations, crossing) = (found.deviations, found.crossing.ln_1p());
+        let so_far = settings.recalibration.by_all(deviations, crossing, misclassified.value);
+        if so_far > settings.doubt[1] {
+            // No doubt is left, and further patches could only say more of the same.
+            break;
+        }
     }
     misclassified
 }

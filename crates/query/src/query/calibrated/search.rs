@@ -233,3 +233,83 @@ fn add_crossings(
     }
     total
 }
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Point3, PointCloud};
+    use cloudtouch_noise::SensorModel;
+    use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+    use cloudtouch_testkit::{scene, surface};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cloud::edges_of;
+    use crate::{CloudSettings, Mode};
+
+    fn ball(count: usize, std: f64, seed: u64) -> Cloud {
+        let samples = surface::sample_surface(&scene::sphere(0.05, 2), count, seed);
+        let points: Vec<Point3> =
+            add_noise(&surface::positions(&samples), NoiseKind::Gaussian, std, seed);
+        let mut settings = CloudSettings::new(SensorModel::Isotropic { std }, Mode::Calibrated);
+        settings.tree.max_leaf_points = 12;
+        settings.tree.min_leaf_points = 4;
+        Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap()
+    }
+
+    /// All pieces and edges of a cloud, in the frame of A, as if it were one leaf.
+    fn whole(cloud: &Cloud, a_from_cloud: &Pose) -> (Vec<Surfel>, Vec<Edge>) {
+        let leaves = cloud.tree().leaves().map(|leaf| leaf.id());
+        let surfels = leaves.flat_map(|id| cloud.leaf(id).0.to_vec());
+        let indices: Vec<u32> = (0..cloud.len() as u32).collect();
+        let edges = edges_of(cloud, &indices);
+        (
+            surfels.map(|s| transformed(&s, a_from_cloud)).collect(),
+            edges.iter().map(|e| e.transformed(a_from_cloud)).collect(),
+        )
+    }
+
+    /// Every piece against every other and every edge against every disc.
+    fn brute_force(a: &Cloud, b: &Cloud, a_from_b: &Pose) -> (f64, f64) {
+        let (surfels_a, edges_a) = whole(a, &Pose::identity());
+        let (surfels_b, edges_b) = whole(b, a_from_b);
+        let mut least = MOST_DEVIATIONS.powi(2);
+        for s in &surfels_a {
+            for t in &surfels_b {
+                least = squared_deviations(s, t, least).unwrap_or(least);
+            }
+        }
+        let through = |edges: &[Edge], discs: &[Surfel]| -> f64 {
+            edges
+                .iter()
+                .flat_map(|edge| discs.iter().filter_map(move |disc| crossing(edge, disc)))
+                .map(|crossing| crossing.clearness)
+                .sum()
+        };
+        (least.sqrt(), through(&edges_a, &surfels_b) + through(&edges_b, &surfels_a))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+        #[test]
+        fn the_search_finds_what_brute_force_finds(
+            counts in [40_usize..200, 40_usize..200],
+            std in 0.0002_f64..0.01,
+            offset in 0.05_f64..0.2,
+            turn in -3.0_f64..3.0,
+            seed in any::<u64>(),
+        ) {
+            let (a, b) = (ball(counts[0], std, seed), ball(counts[1], std, !seed));
+            let offset = Vector3::new(0.0, 0.3 * offset, offset);
+            let pose = Pose::from_translation_rpy(offset, [turn, 0.3, 0.0]);
+            let settings = TraversalSettings::default();
+            let found =
+                search((&a, &b), &pose, &settings, 0, |_, _| false, &mut Stats::default()).unwrap();
+            prop_assert!(found.is_complete);
+            let (deviations, clearness) = brute_force(&a, &b, &pose);
+            prop_assert!((found.deviations - deviations).abs() < 1e-9);
+            // The sums run in different orders.
+            prop_assert!((found.crossing - clearness).abs() <= 1e-9 * (1.0 + clearness));
+        }
+    }
+}
