@@ -4,6 +4,7 @@ mod ci;
 mod common;
 mod evaluate;
 mod fixtures;
+mod stability;
 mod sweep;
 mod tidy;
 
@@ -22,6 +23,8 @@ enum Task {
     Evaluate(evaluate::Arguments),
     /// Every method against exact truth on generated scenes, with tables and figures.
     Sweep(sweep::Arguments),
+    /// Hard cases, maps of the solver and motions that must change nothing, with figures.
+    Stability(stability::Arguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -37,6 +40,7 @@ fn main() -> anyhow::Result<()> {
         Task::Tidy => tidy::run(&root),
         Task::Evaluate(arguments) => evaluate::run(&root, &arguments),
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
+        Task::Stability(arguments) => stability::run(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }
