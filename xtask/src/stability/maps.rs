@@ -253,7 +253,7 @@ impl Map {
         };
         let panels = [
             panel("steps", Scale::Decades(0, 5), |c| c.steps),
-            panel("relative gap", Scale::Decades(-16, 0), |c| c.gap),
+            panel("relative gap", Scale::Decades(-8, 0), |c| c.gap),
             third,
             panel("fallback", Scale::Share, |c| c.fallback),
         ];
