@@ -29,8 +29,11 @@ struct Pair {
     covariance: Covariance,
 }
 
+/// A change of a pair that must not change its probability.
+type Motion = fn(&Pair) -> Pair;
+
 /// The motions by name.
-const MOTIONS: [(&str, fn(&Pair) -> Pair); 7] = [
+const MOTIONS: [(&str, Motion); 7] = [
     ("moved by 1e3 m", |pair| pair.placed(&far(1e3), 1.0)),
     ("moved by 1e6 m", |pair| pair.placed(&far(1e6), 1.0)),
     ("scaled by 1e-6", |pair| pair.placed(&Pose::identity(), 1e-6)),
