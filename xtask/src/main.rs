@@ -5,6 +5,7 @@ mod ci;
 mod common;
 mod evaluate;
 mod fixtures;
+mod stability;
 mod sweep;
 mod tidy;
 
@@ -25,6 +26,8 @@ enum Task {
     Sweep(sweep::Arguments),
     /// Fits the constants that turn evidence into a probability.
     Calibrate(calibrate::Arguments),
+    /// Hard cases, maps of the solver and motions that must change nothing, with figures.
+    Stability(stability::Arguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -41,6 +44,7 @@ fn main() -> anyhow::Result<()> {
         Task::Evaluate(arguments) => evaluate::run(&root, &arguments),
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Calibrate(arguments) => calibrate::run(&root, &arguments),
+        Task::Stability(arguments) => stability::run(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

@@ -16,6 +16,11 @@ use crate::state::State;
 
 /// Seven to twelve iterations are usual at 1e-4; past this rounding has stopped the progress.
 const MAX_ITERATIONS: usize = 60;
+/// An iteration without a smaller gap counts as stalled only once the gap has fallen to this: until
+/// then multipliers that have to grow to a large penalty leave it near 1 while all goes well.
+const NEAR: f64 = 0.1;
+/// Stalled iterations after which rounding has stopped the progress.
+const MAX_STALLED: usize = 5;
 /// Share of the way to the boundary that a step goes.
 const STEP: f64 = 0.99;
 
@@ -51,8 +56,9 @@ pub(crate) fn solve(problem: &Problem, relative_gap: f64) -> Option<(State<'_>, 
         } else {
             worse += 1;
         }
-        let done = best.as_ref().is_some_and(|(_, least)| *least <= relative_gap);
-        if done || worse >= 5 || at.step(problem, &variables, &quadratic).is_none() {
+        let least = best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
+        let stalled = worse >= MAX_STALLED && least <= NEAR;
+        if least <= relative_gap || stalled || at.step(problem, &variables, &quadratic).is_none() {
             return best.map(|(state, _)| (state, iteration));
         }
     }

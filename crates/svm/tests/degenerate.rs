@@ -4,7 +4,9 @@
 mod support;
 
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint};
-use cloudtouch_svm::{Class, Classifier, Kernel, Problem, Sample, Settings, Solution, Status};
+use cloudtouch_svm::{
+    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status,
+};
 use support::Stream;
 
 fn sample(at: [f64; 3], class: Class, std: f64, penalty: f64) -> Sample {
@@ -170,4 +172,28 @@ fn numbers_out_of_range_never_converge() {
     let solution = problem.solve(&Settings::default());
     assert!(!matches!(solution.status, Status::Converged), "{:?}", solution.status);
     assert!(Classifier::try_new(&problem, &solution).is_err());
+}
+
+/// The relative gap stays near 1 for more than ten iterations while multipliers grow from 10 to 1e7.
+#[test]
+fn the_interior_point_method_gave_up_while_multipliers_grew_to_a_large_penalty() {
+    for (penalty, gamma) in
+        [(1e6, 1.0), (1e7, 1.0), (1e7, 10.0), (1e9, 0.1), (1e9, 1.0), (1e9, 10.0)]
+    {
+        let mut stream = Stream::new(17);
+        // Sheets that cross: slack at many points, so that their multipliers go to the penalty.
+        let mut sheet = |class: Class, slope: f64| -> Vec<Sample> {
+            let mut at = |_| {
+                let (x, y) = (stream.unit() - 0.5, stream.unit() - 0.5);
+                sample([x, y, slope * x + 0.01 * stream.unit()], class, 0.02, penalty)
+            };
+            (0..30).map(&mut at).collect()
+        };
+        let both = [sheet(Class::A, 0.4), sheet(Class::B, 0.0)].concat();
+        let problem = Problem::try_new(&both, Kernel::Gaussian { gamma }).unwrap();
+        let solution = problem.solve(&Settings::with_relative_gap(1e-4).unwrap());
+        let place = format!("C {penalty}, gamma {gamma}: {:?}", solution.rung);
+        assert_eq!(solution.status, Status::Converged, "{place}");
+        assert_ne!(solution.rung, Rung::Clarabel, "{place}");
+    }
 }

@@ -2,8 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use cloudtouch_geom::Covariance;
-use cloudtouch_testkit::{brute, hard_cases::hard_cases};
+use cloudtouch_geom::{Covariance, Pose};
+use cloudtouch_testkit::{
+    brute,
+    exact::brute::point_distance,
+    hard_cases::{hard_cases, hard_meshes, hard_poses, hard_problems},
+};
 
 #[test]
 fn names_are_unique_and_every_point_has_a_matrix() {
@@ -50,6 +54,48 @@ fn free_cases_keep_a_clearance_of_many_deviations() {
         free += 1;
     }
     assert!(free > 10);
+}
+
+#[test]
+fn names_of_the_other_lists_are_unique_too() {
+    fn check<'a>(names: impl Iterator<Item = &'a str>) {
+        let names: Vec<_> = names.collect();
+        let unique: BTreeSet<_> = names.iter().collect();
+        assert_eq!(unique.len(), names.len(), "{names:?}");
+    }
+    check(hard_problems().iter().map(|p| p.name));
+    check(hard_meshes().iter().map(|m| m.name));
+    check(hard_poses().iter().map(|p| p.name));
+}
+
+#[test]
+fn problems_have_a_radius_for_each_point_and_settings_that_are_allowed() {
+    for problem in hard_problems() {
+        assert_eq!(problem.points_a.len(), problem.radii_a.len(), "{}", problem.name);
+        assert_eq!(problem.points_b.len(), problem.radii_b.len(), "{}", problem.name);
+        assert!(problem.penalty > 0.0 && problem.gamma > 0.0, "{}", problem.name);
+    }
+    let radii = hard_problems()[0].radii_a.clone();
+    assert!(radii.contains(&0.0) && radii.contains(&6.0));
+}
+
+#[test]
+fn poses_are_rigid_where_they_are_said_to_be() {
+    for pose in hard_poses() {
+        assert_eq!(Pose::try_from_matrix(&pose.matrix).is_ok(), pose.valid, "{}", pose.name);
+    }
+}
+
+#[test]
+fn meshes_have_a_surface_where_they_are_said_to_and_free_clouds_keep_away() {
+    for case in hard_meshes() {
+        assert_eq!(case.mesh.merged().triangles().is_empty(), !case.valid, "{}", case.name);
+        if case.valid && !case.collides {
+            let distances = case.cloud.iter().map(|p| point_distance(&case.mesh, p));
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            assert!(nearest >= 4.9 * case.std, "{}: {nearest} m", case.name);
+        }
+    }
 }
 
 #[test]

@@ -1,0 +1,213 @@
+//! What must hold of every classifier and plane: derivatives, signs, and how answers may move when
+//! points or uncertainty are added.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+mod support;
+
+use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
+use cloudtouch_svm::{
+    Class, Classifier, Kernel, Problem, Sample, Settings, Solution, Status, UnitBox, separate,
+};
+use proptest::prelude::*;
+use support::{Difficulty, Stream, cell};
+
+fn solve(samples: &[Sample], kernel: Kernel) -> (Problem, Solution) {
+    let problem = Problem::try_new(samples, kernel).unwrap();
+    let solution = problem.solve(&Settings::with_relative_gap(1e-8).unwrap());
+    (problem, solution)
+}
+
+/// A leaf problem that is solved and determines probabilities, with its classifier.
+fn solved(seed: u64) -> Option<(Vec<Sample>, Kernel, Solution, Classifier)> {
+    let difficulty = if seed.is_multiple_of(2) { Difficulty::Easy } else { Difficulty::Contact };
+    let (samples, gamma) = cell(difficulty, 8 + (seed % 13) as usize, seed);
+    let kernel = if seed.is_multiple_of(5) { Kernel::Linear } else { Kernel::Gaussian { gamma } };
+    let (problem, solution) = solve(&samples, kernel);
+    let f = Classifier::try_new(&problem, &solution).ok()?;
+    Some((samples, kernel, solution, f))
+}
+
+fn sides(samples: &[Sample]) -> [Vec<UncertainPoint>; 2] {
+    [Class::A, Class::B]
+        .map(|class| samples.iter().filter(|s| s.class == class).map(|s| s.point).collect())
+}
+
+/// Central differences of `value` around `at`.
+fn slope(value: impl Fn(&Point3) -> f64, at: &Point3, step: f64) -> Vector3 {
+    Vector3::from_fn(|axis, _| {
+        let mut along = Vector3::zeros();
+        along[axis] = step;
+        (value(&(at + along)) - value(&(at - along))) / (2.0 * step)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Metres outside the box, box lengths inside: the gradient outside has to be per metre.
+    #[test]
+    fn gradients_outside_the_unit_box_are_per_metre(seed in 0..10_000_u64, exponent in -3..4_i32) {
+        let (samples, gamma) = cell(Difficulty::Contact, 10, seed);
+        let scale = 10_f64.powi(exponent);
+        let offset = Vector3::new(3.0, -2.0, 1.0) * scale;
+        let scaled: Vec<Sample> = samples
+            .iter()
+            .map(|s| Sample {
+                point: UncertainPoint {
+                    mean: Point3::from(s.point.mean.coords * scale + offset),
+                    covariance: s.point.covariance.scaled(scale),
+                },
+                ..*s
+            })
+            .collect();
+        let unit_box = UnitBox::around(scaled.iter().map(|s| &s.point)).unwrap();
+        let inside: Vec<Sample> = scaled.iter().map(|s| unit_box.sample_inside(s)).collect();
+        let (problem, solution) = solve(&inside, Kernel::Gaussian { gamma });
+        let Ok(f) = Classifier::try_new(&problem, &solution) else { return Ok(()) };
+        let g = f.clone().outside(unit_box);
+        for s in &scaled {
+            let at = s.point.mean;
+            let (value, gradient) = g.value_and_gradient(&at);
+            let within = unit_box.point_inside(&at);
+            let (value_within, gradient_within) = f.value_and_gradient(&within);
+            prop_assert!((value - value_within).abs() <= 1e-9 * (1.0 + value.abs()));
+            let brought = unit_box.gradient_outside(&gradient_within);
+            prop_assert!((gradient - brought).norm() <= 1e-9 * (1.0 + gradient.norm()));
+            let measured = slope(|p| g.value(p), &at, 1e-5 * scale);
+            // Differences: h²·f''' and the rounding of f over h, both per metre.
+            let tolerance = 1e-5 * (gamma / scale + gradient.norm());
+            prop_assert!((gradient - measured).norm() <= tolerance, "{} {}", gradient, measured);
+        }
+    }
+
+    #[test]
+    fn swapping_the_classes_turns_value_and_gradient_round(seed in 0..10_000_u64) {
+        let Some((samples, kernel, _, f)) = solved(seed) else { return Ok(()) };
+        let swapped: Vec<Sample> =
+            samples.iter().map(|s| Sample { class: s.class.opposite(), ..*s }).collect();
+        let (problem, solution) = solve(&swapped, kernel);
+        let g = Classifier::try_new(&problem, &solution).unwrap();
+        let scale = solution.squared_norm.sqrt().max(1.0);
+        for s in &samples {
+            let (value, gradient) = f.value_and_gradient(&s.point.mean);
+            let (other, turned) = g.value_and_gradient(&s.point.mean);
+            // Two gaps of 1e-8 leave |w − w*| up to 1e-4 of the objective's root.
+            prop_assert!((value + other).abs() <= 1e-3 * scale, "{} {}", value, other);
+            prop_assert!((gradient + turned).norm() <= 1e-2 * scale, "{} {}", gradient, turned);
+        }
+    }
+
+    /// A point that is on its own side beyond the margin has no say in the optimum.
+    #[test]
+    fn adding_points_beyond_the_margin(seed in 0..10_000_u64) {
+        let Some((samples, kernel, solution, f)) = solved(seed) else { return Ok(()) };
+        let mut stream = Stream::new(seed);
+        let mut more = samples.clone();
+        for _ in 0..200 {
+            let mean = Point3::from(stream.normal_vector() * 0.5);
+            let point = UncertainPoint { mean, ..samples[0].point };
+            let (value, gradient) = f.value_and_gradient(&mean);
+            let class = if value > 0.0 { Class::A } else { Class::B };
+            let reach = samples[0].radius * point.covariance.std_along(&gradient);
+            // Clearly beyond the margin: f itself is known to about 1e-4.
+            if value.abs() - reach > 1.01 && more.len() < samples.len() + 10 {
+                more.push(Sample { point, class, ..samples[0] });
+            }
+        }
+        let (_, with_more) = solve(&more, kernel);
+        prop_assert!(
+            (solution.primal - with_more.primal).abs() <= 1e-6 * solution.primal,
+            "{} became {} with {} points more",
+            solution.primal, with_more.primal, more.len() - samples.len()
+        );
+    }
+
+    /// With the surface given, more uncertainty brings every probability nearer to ½ from its side.
+    #[test]
+    fn a_larger_covariance_brings_a_probability_towards_one_half(
+        seed in 0..10_000_u64,
+        factor in 1.0..100.0_f64,
+    ) {
+        let Some((samples, _, _, f)) = solved(seed) else { return Ok(()) };
+        for s in &samples {
+            let wider = UncertainPoint { covariance: s.point.covariance.scaled(factor), ..s.point };
+            let p = f.probability(&s.point, s.class).unwrap();
+            let q = f.probability(&wider, s.class).unwrap();
+            prop_assert!((q - 0.5).abs() <= (p - 0.5).abs() + 1e-12, "{} {}", p, q);
+            prop_assert!((p < 0.5) == (q < 0.5) || (p - 0.5).abs() < 1e-9, "{} {}", p, q);
+        }
+    }
+
+    #[test]
+    fn a_warm_start_gives_the_probabilities_of_a_cold_one(
+        seed in 0..10_000_u64,
+        shift in -0.01..0.01_f64,
+    ) {
+        let Some((samples, kernel, before, _)) = solved(seed) else { return Ok(()) };
+        let moved: Vec<Sample> = samples
+            .iter()
+            .map(|s| {
+                let by = if s.class == Class::A { shift } else { 0.0 };
+                let mean = s.point.mean + Vector3::z() * by;
+                Sample { point: UncertainPoint { mean, ..s.point }, ..*s }
+            })
+            .collect();
+        let settings = Settings::with_relative_gap(1e-8).unwrap();
+        let problem = Problem::try_new(&moved, kernel).unwrap();
+        let (cold, warm) = (problem.solve(&settings), problem.solve_from(&settings, &before));
+        prop_assert_eq!(cold.status, warm.status);
+        if cold.status == Status::Converged {
+            let [f, g] = [cold, warm].map(|s| Classifier::try_new(&problem, &s).unwrap());
+            for s in &moved {
+                let p = f.probability(&s.point, s.class).unwrap();
+                let q = g.probability(&s.point, s.class).unwrap();
+                prop_assert!((p - q).abs() < 1e-3, "{} {}", p, q);
+            }
+        }
+    }
+
+    #[test]
+    fn a_separating_plane_has_two_sides(seed in 0..10_000_u64, up in 0.0..0.5_f64) {
+        let (samples, _) = cell(Difficulty::Easy, 15, seed);
+        let [mut a, b] = sides(&samples);
+        a.iter_mut().for_each(|p| p.mean.z += up);
+        // κ is found to about one part in a thousand whichever way round.
+        let (Some(forth), Some(back)) = (separate(&a, &b, 50.0), separate(&b, &a, 50.0)) else {
+            prop_assert_eq!(separate(&a, &b, 50.0).is_some(), separate(&b, &a, 50.0).is_some());
+            return Ok(());
+        };
+        prop_assert!((forth.kappa - back.kappa).abs() <= 5e-3 * forth.kappa);
+        prop_assert!((forth.normal.norm() - 1.0).abs() < 1e-12);
+        prop_assert!(forth.signed_distance(&forth.point).abs() < 1e-12);
+        let measured = slope(|p| forth.signed_distance(p), &Point3::new(0.3, 0.1, -0.2), 1e-3);
+        // From A to B the distance, which is positive in A, falls.
+        prop_assert!((measured + forth.normal).norm() < 1e-9);
+        let whole = |cloud: &[UncertainPoint], sign: f64| {
+            cloud.iter().all(|p| sign * forth.signed_distance(&p.mean) > 0.0)
+        };
+        prop_assert!(whole(&a, 1.0) && whole(&b, -1.0));
+        prop_assert!(forth.normal.dot(&back.normal) < -0.9, "{} {}", forth.normal, back.normal);
+    }
+
+    /// κ counts standard deviations, so it goes down as they go up; far points cannot raise it, nor
+    /// lower it when they lie behind their own cloud.
+    #[test]
+    fn a_plane_under_more_noise_and_far_points(seed in 0..10_000_u64, factor in 1.0..10.0_f64) {
+        let (samples, _) = cell(Difficulty::Easy, 15, seed);
+        let [a, b] = sides(&samples);
+        let Some(plane) = separate(&a, &b, 50.0) else { return Ok(()) };
+        let wider = |cloud: &[UncertainPoint]| -> Vec<UncertainPoint> {
+            let grown = |p: &UncertainPoint| p.covariance.scaled(factor);
+            cloud.iter().map(|p| UncertainPoint { covariance: grown(p), ..*p }).collect()
+        };
+        let noisy = separate(&wider(&a), &wider(&b), 50.0).unwrap();
+        prop_assert!((noisy.kappa * factor / plane.kappa - 1.0).abs() < 5e-3);
+        let mut more = a.clone();
+        for k in 0..5 {
+            let far = plane.normal * (-100.0 * f64::from(k + 1));
+            more.push(UncertainPoint { mean: plane.point + far, ..a[0] });
+        }
+        let with_far = separate(&more, &b, 50.0).unwrap();
+        prop_assert!((with_far.kappa / plane.kappa - 1.0).abs() < 5e-3, "{} {}", with_far.kappa, plane.kappa);
+    }
+}
