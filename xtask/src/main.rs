@@ -22,6 +22,8 @@ enum Task {
     Evaluate(evaluate::Arguments),
     /// Every method against exact truth on generated scenes, with tables and figures.
     Sweep(sweep::Arguments),
+    /// Answers to fixed poses in a real scan while noise is added to it.
+    Growth(sweep::GrowthArguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -37,6 +39,7 @@ fn main() -> anyhow::Result<()> {
         Task::Tidy => tidy::run(&root),
         Task::Evaluate(arguments) => evaluate::run(&root, &arguments),
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
+        Task::Growth(arguments) => sweep::growth(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

@@ -4,6 +4,7 @@
 mod answer;
 mod document;
 mod figures;
+mod growth;
 mod measures;
 mod plan;
 mod plots;
@@ -17,6 +18,7 @@ use std::{fs, path::Path};
 use anyhow::{Context, Result};
 use clap::Args;
 
+pub(crate) use growth::{Arguments as GrowthArguments, run as growth};
 use measures::calibrate_scores;
 use plan::Plan;
 

@@ -2,7 +2,7 @@
 
 mod distance;
 mod labels;
-mod lines;
+pub(super) mod lines;
 mod noise;
 mod pareto;
 mod reliability;
