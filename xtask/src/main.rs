@@ -24,6 +24,8 @@ enum Task {
     Sweep(sweep::Arguments),
     /// Answers to fixed poses in a real scan while noise is added to it.
     Growth(sweep::GrowthArguments),
+    /// Query time against error, one setting changed at a time.
+    Settings(sweep::SettingsArguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -40,6 +42,7 @@ fn main() -> anyhow::Result<()> {
         Task::Evaluate(arguments) => evaluate::run(&root, &arguments),
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Growth(arguments) => sweep::growth(&root, &arguments),
+        Task::Settings(arguments) => sweep::settings(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

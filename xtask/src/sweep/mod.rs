@@ -10,8 +10,10 @@ mod plan;
 mod plots;
 mod record;
 mod rivals;
+mod settings;
 mod short;
 mod tables;
+pub(crate) mod variant;
 
 use std::{fs, path::Path};
 
@@ -21,6 +23,7 @@ use clap::Args;
 pub(crate) use growth::{Arguments as GrowthArguments, run as growth};
 use measures::calibrate_scores;
 use plan::Plan;
+pub(crate) use settings::{Arguments as SettingsArguments, run as settings};
 
 /// All randomness of the sweep comes from this.
 const SEED: u64 = 2011;

@@ -13,6 +13,7 @@ mod speed;
 
 pub(crate) use distance::distance;
 pub(crate) use noise::noise;
+pub(crate) use pareto::on_front;
 pub(crate) use reliability::reliability;
 pub(crate) use roc::roc;
 pub(crate) use speed::{Tradeoff, speed};

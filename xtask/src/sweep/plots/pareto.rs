@@ -2,7 +2,7 @@
 
 /// Whether each point (time, error) is on the front: no other one is at most as slow and at most
 /// as wrong, and better in either.
-pub(super) fn on_front(points: &[(f64, f64)]) -> Vec<bool> {
+pub(crate) fn on_front(points: &[(f64, f64)]) -> Vec<bool> {
     points.iter().map(|a| !points.iter().any(|b| b.0 <= a.0 && b.1 <= a.1 && b != a)).collect()
 }
 
