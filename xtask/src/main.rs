@@ -26,6 +26,8 @@ enum Task {
     Growth(sweep::GrowthArguments),
     /// Query time against error, one setting changed at a time.
     Settings(sweep::SettingsArguments),
+    /// Writes one of the sweep's large scenes to target/scenes/.
+    Scene(fixtures::SceneArguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -43,6 +45,7 @@ fn main() -> anyhow::Result<()> {
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Growth(arguments) => sweep::growth(&root, &arguments),
         Task::Settings(arguments) => sweep::settings(&root, &arguments),
+        Task::Scene(arguments) => fixtures::write_scene(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

@@ -2,6 +2,7 @@
 //! truth.
 
 mod answer;
+mod coverage;
 mod document;
 mod figures;
 mod growth;
@@ -9,6 +10,7 @@ mod measures;
 mod plan;
 mod plots;
 mod record;
+mod resample;
 mod rivals;
 mod settings;
 mod short;
@@ -29,6 +31,10 @@ pub(crate) use settings::{Arguments as SettingsArguments, run as settings};
 const SEED: u64 = 2011;
 /// What ours is called in tables and files.
 const OURS: &str = "calibrated";
+/// Poses of each family whose bounds are compared with a search of everything.
+const COVERAGE_POSES: usize = 32;
+/// Pairs of clouds drawn for one pose.
+const RESAMPLED: u64 = 100;
 
 /// What `cargo xtask sweep` is given.
 #[derive(Args)]
@@ -36,6 +42,9 @@ pub(crate) struct Arguments {
     /// Poses of each family; the same ones under every condition
     #[arg(long, default_value_t = 48)]
     poses: usize,
+    /// Only the coverage of bounds and the spread over fresh clouds, printed
+    #[arg(long, conflicts_with_all = ["short", "update_docs"])]
+    checks: bool,
     /// A few conditions only, compared with recorded bounds; what CI runs
     #[arg(long)]
     short: bool,
@@ -54,6 +63,10 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     if arguments.short {
         return check();
     }
+    if arguments.checks {
+        checks()?.iter().for_each(|section| println!("## {}\n\n{}", section.title, section.text));
+        return Ok(());
+    }
     let folder = root.join("target/sweep");
     let figures = if arguments.update_docs { root.join("docs/figures") } else { folder.clone() };
     for place in [&folder, &figures] {
@@ -62,7 +75,8 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let mut answers = answer::all(&Plan::full(arguments.poses))?;
     calibrate_scores(&mut answers)?;
     answers.write_csv(&folder.join("answers.csv"))?;
-    let sections = tables::sections(&answers, &folder)?;
+    let mut sections = tables::sections(&answers, &folder)?;
+    sections.extend(checks()?);
     figures::draw(&answers, &figures)?;
     let text = document::text(root, arguments.poses, &sections)?;
     print!("{text}");
@@ -70,4 +84,9 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         document::write(root, &text)?;
     }
     Ok(())
+}
+
+/// What is measured beside the table of answers.
+fn checks() -> Result<[tables::Section; 2]> {
+    Ok([coverage::section(COVERAGE_POSES)?, resample::section(RESAMPLED)?])
 }

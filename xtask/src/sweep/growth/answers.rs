@@ -80,7 +80,7 @@ fn answers(
     let total = OWN_STD.hypot(std);
     let sensor = SensorModel::Isotropic { std: total };
     let asked = |mode| -> Result<_> {
-        let cloud = Cloud::prepare(noisy, &CloudSettings::new(sensor.clone(), mode))?;
+        let cloud = Cloud::prepare(noisy, &CloudSettings::new(sensor, mode))?;
         Ok((cloud, Query::new(QuerySettings::new(mode))?))
     };
     let ours = [asked(Mode::Calibrated)?, asked(Mode::Paper)?];

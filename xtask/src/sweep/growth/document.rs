@@ -17,11 +17,11 @@ use crate::{
 /// Added noise that has columns of its own, m.
 const SHOWN: [f64; 3] = [0.005, 0.01, 0.02];
 
-/// How far a pose is past first contact, and its smallest measured distance.
+/// How far a pose is past first contact, and the smallest signed distance of a measured point.
 pub(super) fn place(case: &Case) -> String {
     let mm = |value: Option<f64>| value.map_or("?".into(), |v| format!("{:+.0} mm", 1e3 * v));
     format!(
-        "{} past contact (nearest point {})",
+        "advance {}, nearest point {}",
         mm(case.advance_past_first_contact_m),
         mm(case.measured.as_ref().map(|m| m.min_signed_distance_m)),
     )
@@ -69,7 +69,11 @@ pub(super) fn text(
          `collision`) of which none is stated; over all noises.\n\n{}",
         methods(cases, answers)
     )?;
-    writeln!(text, "Mean answers without added noise and with 10 mm of it:\n")?;
+    writeln!(
+        text,
+        "Mean answers without added noise and with 10 mm of it; the advance is past first contact \
+         with a measured point:\n"
+    )?;
     writeln!(text, "{}", poses(cases, answers))?;
     writeln!(text, "DIR is the folder of the scans, which are not part of the project.")?;
     Ok(text)

@@ -1,10 +1,10 @@
 //! The figures: what the methods say against what is true, noise and time.
 
 mod distance;
-mod labels;
+pub(super) mod labels;
 pub(super) mod lines;
 mod noise;
-mod pareto;
+pub(super) mod pareto;
 mod reliability;
 mod roc;
 #[cfg(test)]
@@ -13,7 +13,6 @@ mod speed;
 
 pub(crate) use distance::distance;
 pub(crate) use noise::noise;
-pub(crate) use pareto::on_front;
 pub(crate) use reliability::reliability;
 pub(crate) use roc::roc;
 pub(crate) use speed::{Tradeoff, speed};

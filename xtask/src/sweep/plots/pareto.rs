@@ -7,7 +7,7 @@ pub(crate) fn on_front(points: &[(f64, f64)]) -> Vec<bool> {
 }
 
 /// The front as a staircase by rising time.
-pub(super) fn staircase(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+pub(crate) fn staircase(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let on_front = on_front(points).into_iter().zip(points);
     let mut front: Vec<(f64, f64)> = on_front.filter(|(on, _)| *on).map(|(_, p)| *p).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));

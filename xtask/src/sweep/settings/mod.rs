@@ -2,6 +2,7 @@
 
 mod answers;
 mod changes;
+mod plot;
 
 use std::{fmt::Write as _, fs, path::Path};
 
@@ -11,7 +12,7 @@ use clap::Args;
 use super::{
     SEED,
     measures::{Bootstrap, Judged, Measure, Measured, measure},
-    plots::{self, Tradeoff, on_front},
+    plots::{Tradeoff, pareto::on_front},
 };
 use crate::common::{files::write_whole, machine, table::Table};
 use answers::{FAMILIES, POINTS, STD, ask};
@@ -44,7 +45,7 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let update = arguments.update_docs;
     let figures = root.join(if update { "docs/figures" } else { "target/settings" });
     fs::create_dir_all(&figures).with_context(|| format!("make {}", figures.display()))?;
-    plots::speed(&figures.join("settings.svg"), "median query time (ms)", &tradeoffs)?;
+    plot::draw(&figures.join("settings.svg"), &settings, &tradeoffs)?;
     let table = table(&settings, &tradeoffs, &judged, &measured);
     let text = text(root, arguments.poses, &judged, &table)?;
     print!("{text}");
@@ -138,6 +139,11 @@ fn text(root: &Path, poses: usize, judged: &Judged, table: &Table) -> Result<Str
     writeln!(text, "- commit: {}", machine::commit(root))?;
     writeln!(text, "- machine: {}", machine::processor())?;
     writeln!(text, "- seed: {SEED}\n")?;
-    writeln!(text, "![Speed against error](figures/settings.svg)\n\n{table}")?;
+    writeln!(
+        text,
+        "Labels in the figure are the values; those next to the default are left out. The scale \
+         of the errors is fine: see the intervals below.\n\n\
+         ![Speed against error](figures/settings.svg)\n\n{table}"
+    )?;
     Ok(text.trim_end().to_owned() + "\n")
 }
