@@ -20,6 +20,8 @@ use crate::sweep::{
 pub(super) const POINTS: usize = 5_000;
 /// Standard deviation of the noise, m.
 pub(super) const STD: f64 = 0.005;
+/// How often a query is timed.
+const TIMED: usize = 3;
 /// Which kinds of contact: solid bodies in a room, thin parts side by side, one smooth contact.
 pub(super) const FAMILIES: [Family; 3] =
     [Family::PianoRoom, Family::Furniture, Family::SphereAndPlane];
@@ -65,7 +67,8 @@ fn block(family: Family, settings: &[Setting], poses: usize) -> Result<Block> {
     Ok(block)
 }
 
-/// The second of two equal queries: the first has made what is made once for all poses.
+/// The answer, and the least time of a few equal queries after a first one, which makes what is
+/// made once for all poses: other work of the machine only ever adds to a time.
 fn said_of(scene: &FamilyScene, pose: &LabelledPose, setting: &Setting, draw: u64) -> Result<Said> {
     let a_from_b: &Pose = &pose.scene_from_object;
     let body = |side| -> Result<Body> {
@@ -77,12 +80,15 @@ fn said_of(scene: &FamilyScene, pose: &LabelledPose, setting: &Setting, draw: u6
     };
     let (a, b) = (body(Side::A)?, body(Side::B)?);
     let query = Query::new(setting.query)?;
-    query.run(&a, &b, a_from_b)?;
     let report = query.run(&a, &b, a_from_b)?;
+    let mut micros = f64::INFINITY;
+    for _ in 0..TIMED {
+        micros = micros.min(query.run(&a, &b, a_from_b)?.stats.query_us as f64);
+    }
     Ok(Said {
         score: report.collision_probability,
         probability: Some(report.collision_probability),
         bounds: Some(report.bounds),
-        micros: report.stats.query_us as f64,
+        micros,
     })
 }

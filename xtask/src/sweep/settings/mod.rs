@@ -128,10 +128,10 @@ fn text(root: &Path, poses: usize, judged: &Judged, table: &Table) -> Result<Str
          kernel's width γ and penalty C, the traversal, and the mode. Families {families}; \
          {POINTS} points a cloud, {:.0} mm of noise; {count} poses, {collisions} of them \
          collisions, all settings on the same clouds.\n\n\
-         Times are of the second of two equal queries, on one thread: what is computed once for \
-         all poses is there. `a [b, c]` is a value with its 95 % bootstrap interval over poses; \
-         differences are paired, in bold where the interval excludes zero. On the front: no other \
-         row is at most as slow and at most as wrong.\n\n\
+         Times are of one thread, the least of three equal queries after a first one: what is \
+         computed once for all poses is there. `a [b, c]` is a value with its 95 % bootstrap \
+         interval over poses; differences are paired, in bold where the interval excludes zero. On \
+         the front: no other row is at most as slow and at most as wrong.\n\n\
          ```text\ncargo run --release -p xtask -- settings --poses {poses} --update-docs\n```\n\n",
         1e3 * STD,
     );
