@@ -1,7 +1,7 @@
 //! `cargo xtask evaluate`: the tool's own answers on real scans and on exact mesh poses.
 
 mod approach;
-mod case_file;
+pub(crate) mod case_file;
 mod chart;
 mod piano;
 mod piano_data;

@@ -3,6 +3,8 @@
 //! Coordinates are rounded to 0.1 mm and answers to 0.01 mm, so that the last bits in which
 //! platforms differ do not reach the files; answers hold for the files as rounded.
 
+mod scenes;
+
 use std::{
     collections::{BTreeMap, BTreeSet},
     fmt::Write as _,
@@ -21,6 +23,8 @@ use cloudtouch_testkit::{
 };
 use serde::Serialize;
 use sha2::{Digest, Sha256};
+
+pub(crate) use scenes::{Arguments as SceneArguments, write_scene};
 
 const SEED: u64 = 2011;
 const COMMAND: &str = "cargo xtask fixtures";
@@ -106,6 +110,7 @@ fn generate() -> Result<Files> {
     add("room.pcd", pcd(&noisy(&room, 54_000, 1, inside)));
     add("piano.pcd", pcd(&noisy(&piano, 9_000, 2, |_| true)));
     add("cases.json", json(&cases(&room, &piano)?)?);
+    files.insert(scenes::LIST.into(), scenes::list()?);
     let manifest = Manifest::of(&files);
     files.insert("manifest.json".into(), json(&manifest)?);
     Ok(files)
@@ -206,14 +211,18 @@ impl Manifest {
         let listed = |(path, bytes): (&String, &Vec<u8>)| Listed {
             path: path.clone(),
             bytes: bytes.len(),
-            sha256: Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
-                // Writing into a string cannot fail.
-                let _ = write!(hex, "{byte:02x}");
-                hex
-            }),
+            sha256: sha256(bytes),
         };
         Self { format: 1, command: COMMAND, seed: SEED, files: files.iter().map(listed).collect() }
     }
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
+        // Writing into a string cannot fail.
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
 }
 
 fn json(value: &impl Serialize) -> Result<Vec<u8>> {

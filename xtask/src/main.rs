@@ -28,6 +28,12 @@ enum Task {
     Calibrate(calibrate::Arguments),
     /// Hard cases, maps of the solver and motions that must change nothing, with figures.
     Stability(stability::Arguments),
+    /// Answers to fixed poses in a real scan while noise is added to it.
+    Growth(sweep::GrowthArguments),
+    /// Query time against error, one setting changed at a time.
+    Settings(sweep::SettingsArguments),
+    /// Writes one of the sweep's large scenes to target/scenes/.
+    Scene(fixtures::SceneArguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -45,6 +51,9 @@ fn main() -> anyhow::Result<()> {
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Calibrate(arguments) => calibrate::run(&root, &arguments),
         Task::Stability(arguments) => stability::run(&root, &arguments),
+        Task::Growth(arguments) => sweep::growth(&root, &arguments),
+        Task::Settings(arguments) => sweep::settings(&root, &arguments),
+        Task::Scene(arguments) => fixtures::write_scene(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

@@ -8,57 +8,57 @@ use serde::{Deserialize, Serialize};
 
 /// The cases of a file, in order.
 #[derive(Debug, Clone, Deserialize, Serialize)]
-pub(super) struct CaseFile {
-    pub(super) format: u32,
-    pub(super) length_unit: String,
-    pub(super) cases: Vec<Case>,
+pub(crate) struct CaseFile {
+    pub(crate) format: u32,
+    pub(crate) length_unit: String,
+    pub(crate) cases: Vec<Case>,
 }
 
 /// One object in one scene at one pose, with what is known of the answer.
 #[derive(Debug, Clone, Deserialize, Serialize)]
-pub(super) struct Case {
-    pub(super) id: String,
-    pub(super) scene: String,
-    pub(super) object: String,
+pub(crate) struct Case {
+    pub(crate) id: String,
+    pub(crate) scene: String,
+    pub(crate) object: String,
     /// Row by row, object to scene, m.
-    pub(super) pose: [[f64; 4]; 4],
+    pub(crate) pose: [[f64; 4]; 4],
     /// Free, near, contact, shallow or collision; of the measured cloud.
     #[serde(default)]
-    pub(super) label: Option<String>,
+    pub(crate) label: Option<String>,
     /// What the label rests on: distance, depth or advance.
     #[serde(default)]
-    pub(super) label_basis: Option<String>,
+    pub(crate) label_basis: Option<String>,
     #[serde(default)]
-    pub(super) measured: Option<Measured>,
+    pub(crate) measured: Option<Measured>,
     /// How far the object went past first contact along its straight line, m.
     #[serde(default)]
-    pub(super) advance_past_first_contact_m: Option<f64>,
+    pub(crate) advance_past_first_contact_m: Option<f64>,
     /// Present in cases of the approach series.
     #[serde(default)]
-    pub(super) series: Option<serde_json::Value>,
+    pub(crate) series: Option<serde_json::Value>,
     /// Whether the meshes intersect.
     #[serde(default)]
-    pub(super) in_collision: Option<bool>,
+    pub(crate) in_collision: Option<bool>,
     /// Distance of the meshes, or minus their penetration depth, m.
     #[serde(default)]
-    pub(super) signed_distance_m: Option<f64>,
+    pub(crate) signed_distance_m: Option<f64>,
 }
 
 /// What was measured of the scene points against the object's mesh.
 #[derive(Debug, Clone, Deserialize, Serialize)]
-pub(super) struct Measured {
+pub(crate) struct Measured {
     /// The smallest signed distance of a scene point, m; negative inside the object.
-    pub(super) min_signed_distance_m: f64,
+    pub(crate) min_signed_distance_m: f64,
 }
 
 impl Case {
     /// Where the object's origin is in the scene, m.
-    pub(super) fn translation(&self) -> Vector3 {
+    pub(crate) fn translation(&self) -> Vector3 {
         Vector3::new(self.pose[0][3], self.pose[1][3], self.pose[2][3])
     }
 
     /// Whether the meshes intersect and their signed distance; only exact cases say so.
-    pub(super) fn exact_answer(&self) -> Result<(bool, f64)> {
+    pub(crate) fn exact_answer(&self) -> Result<(bool, f64)> {
         self.in_collision.zip(self.signed_distance_m).ok_or_else(|| {
             anyhow!("case {}: in_collision or signed_distance_m is missing", self.id)
         })
@@ -66,18 +66,18 @@ impl Case {
 }
 
 impl CaseFile {
-    pub(super) fn read(path: &Path) -> Result<Self> {
+    pub(crate) fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).with_context(|| format!("read {}", path.display()))?;
         serde_json::from_slice(&bytes).with_context(|| format!("{}", path.display()))
     }
 
-    pub(super) fn write(&self, path: &Path) -> Result<()> {
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
         fs::write(path, serde_json::to_vec_pretty(self)?)
             .with_context(|| format!("write {}", path.display()))
     }
 
     /// Some of the cases, with the paths they had relative to `folder` made absolute.
-    pub(super) fn only(&self, folder: &Path, keep: impl Fn(&Case) -> bool) -> Self {
+    pub(crate) fn only(&self, folder: &Path, keep: impl Fn(&Case) -> bool) -> Self {
         let absolute = |path: &str| folder.join(path).to_string_lossy().into_owned();
         let cases = self.cases.iter().filter(|case| keep(case)).map(|case| Case {
             scene: absolute(&case.scene),

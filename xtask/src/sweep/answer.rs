@@ -14,6 +14,7 @@ use super::{
     plan::{Methods, Part, Plan},
     record::{Answers, Block, Condition, Said, Truth},
     rivals::{Answer, BoxMap, CloudDistance, ObjectMesh, Observed, PlainSvm, SmoothedDistance},
+    variant,
 };
 use crate::calibrate::Fitted;
 
@@ -53,7 +54,7 @@ fn variants(part: &Part) -> Result<Vec<Variant>> {
     (0..part.variants)
         .into_par_iter()
         .map(|variant| {
-            let of_variant = seed::derive(SEED, part.family as u64, variant);
+            let of_variant = variant::seed_of(part.family, variant);
             let scene = part.family.scene(of_variant);
             let poses = scene.poses(part.poses_of_variant, seed::derive(of_variant, 1, 0));
             let boxes_against = ObjectMesh::try_new(scene.b.mesh())?;

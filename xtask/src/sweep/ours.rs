@@ -2,8 +2,7 @@
 
 use anyhow::Result;
 use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Recalibration, Report,
-    noise::SensorModel,
+    Body, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Recalibration, noise::SensorModel,
 };
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::{Family, Observation};
@@ -58,7 +57,7 @@ impl Ours {
             } else {
                 Body::Cloud(prepare(b)?)
             };
-            anyhow::Ok(said(&query.run(&prepare(a)?, &body_b, a_from_b)?))
+            anyhow::Ok(Said::from(&query.run(&prepare(a)?, &body_b, a_from_b)?))
         };
         let mut all = vec![(OURS, ask(&self.calibrated, &|o| as_seen(o, Mode::Calibrated))?)];
         if let Some(query) = &self.oracle {
@@ -89,14 +88,4 @@ fn exact(observation: &Observation) -> Result<Cloud> {
     };
     let sensor = SensorModel::Isotropic { std: 0.0 };
     Ok(Cloud::prepare(&cloud, &CloudSettings::new(sensor, Mode::Calibrated))?)
-}
-
-fn said(report: &Report) -> Said {
-    Said {
-        score: report.collision_probability,
-        probability: Some(report.collision_probability),
-        bounds: Some(report.bounds),
-        evidence: report.evidence,
-        micros: report.stats.query_us as f64,
-    }
 }

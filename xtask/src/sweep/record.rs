@@ -3,7 +3,7 @@
 use std::{fmt::Write as _, path::Path};
 
 use anyhow::{Result, ensure};
-use cloudtouch::ContactEvidence;
+use cloudtouch::{ContactEvidence, Report};
 use cloudtouch_testkit::noise::NoiseKind;
 
 use crate::common::files::write_whole;
@@ -43,6 +43,18 @@ pub(crate) struct Said {
     pub(crate) evidence: Option<ContactEvidence>,
     /// Time of the query, microseconds.
     pub(crate) micros: f64,
+}
+
+impl From<&Report> for Said {
+    fn from(report: &Report) -> Self {
+        Self {
+            score: report.collision_probability,
+            probability: Some(report.collision_probability),
+            bounds: Some(report.bounds),
+            evidence: report.evidence,
+            micros: report.stats.query_us as f64,
+        }
+    }
 }
 
 /// The poses of one condition with the answers of every method.

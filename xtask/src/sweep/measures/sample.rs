@@ -44,8 +44,6 @@ impl Sample {
     }
 
     /// Gives the probabilities that the bounds are judged by, one for each pose.
-    // The sweep does not run the query that culls nothing yet, so only the measure's test does.
-    #[cfg(test)]
     pub(crate) fn with_reference(mut self, reference: &[f64]) -> Self {
         self.reference = Some(reference.to_vec());
         self

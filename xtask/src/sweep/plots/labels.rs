@@ -17,7 +17,7 @@ type Area = [i32; 4];
 /// Names are placed in order, each at the first of eight places around its point that hides
 /// least: of points, of obstacles (left, top, right, bottom), of names placed before, and of what
 /// is outside of the given columns and rows.
-pub(super) fn place(
+pub(crate) fn place(
     names: &[&str],
     points: &[(i32, i32)],
     obstacles: &[[i32; 4]],

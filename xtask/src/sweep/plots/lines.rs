@@ -13,31 +13,31 @@ use crate::common::draw::{
 pub(super) const PANEL: (u32, u32) = (430, 340);
 
 /// One panel.
-pub(super) struct Panel {
-    pub(super) title: String,
-    pub(super) x: Axis,
-    pub(super) y: Axis,
+pub(crate) struct Panel {
+    pub(crate) title: String,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
     /// Dashed lines.
-    pub(super) guides: Vec<[(f64, f64); 2]>,
-    pub(super) series: Vec<Series>,
+    pub(crate) guides: Vec<[(f64, f64); 2]>,
+    pub(crate) series: Vec<Series>,
 }
 
 /// One line.
-pub(super) struct Series {
-    pub(super) style: Style,
-    pub(super) points: Vec<Point>,
+pub(crate) struct Series {
+    pub(crate) style: Style,
+    pub(crate) points: Vec<Point>,
 }
 
 /// A point and how far its value may be off.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Point {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) range: Option<[f64; 2]>,
+pub(crate) struct Point {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) range: Option<[f64; 2]>,
 }
 
 /// Draws the panels in rows of so many; series are named once, at the right.
-pub(super) fn draw(
+pub(crate) fn draw(
     path: &Path,
     columns: usize,
     panels: &[Panel],
@@ -63,7 +63,7 @@ pub(super) fn draw(
 }
 
 /// One line with the ranges of its points and markers.
-pub(super) fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Result<()> {
+pub(crate) fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Result<()> {
     let Style { color, marker, line } = series.style;
     let ranges: Vec<(f64, [f64; 2])> =
         series.points.iter().filter_map(|p| Some((p.x, p.range?))).collect();
@@ -82,7 +82,7 @@ pub(super) fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Result<
 }
 
 /// A range that contains all values, with a little room; [0, 1] of nothing.
-pub(super) fn range_of(values: impl IntoIterator<Item = f64>) -> std::ops::Range<f64> {
+pub(crate) fn range_of(values: impl IntoIterator<Item = f64>) -> std::ops::Range<f64> {
     let finite = values.into_iter().filter(|v| v.is_finite());
     let (low, high) = finite.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
     if low > high {
@@ -93,17 +93,14 @@ pub(super) fn range_of(values: impl IntoIterator<Item = f64>) -> std::ops::Range
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(in crate::sweep) mod tests {
     use std::path::PathBuf;
 
     use super::*;
 
     /// Draws into a file of its own and gives its text; the file is kept where
     /// `XTASK_SAMPLE_FIGURES` names a folder, to be looked at.
-    pub(in crate::sweep::plots) fn drawn(
-        name: &str,
-        draw: impl FnOnce(&Path) -> Result<()>,
-    ) -> String {
+    pub(in crate::sweep) fn drawn(name: &str, draw: impl FnOnce(&Path) -> Result<()>) -> String {
         let kept = std::env::var_os("XTASK_SAMPLE_FIGURES").map(PathBuf::from);
         let folder = kept.clone().unwrap_or_else(std::env::temp_dir);
         let id = if kept.is_some() { 0 } else { std::process::id() };

@@ -1,10 +1,10 @@
 //! The figures: what the methods say against what is true, noise and time.
 
 mod distance;
-mod labels;
-mod lines;
+pub(super) mod labels;
+pub(super) mod lines;
 mod noise;
-mod pareto;
+pub(super) mod pareto;
 mod reliability;
 mod roc;
 #[cfg(test)]

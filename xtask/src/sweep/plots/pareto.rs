@@ -2,12 +2,12 @@
 
 /// Whether each point (time, error) is on the front: no other one is at most as slow and at most
 /// as wrong, and better in either.
-pub(super) fn on_front(points: &[(f64, f64)]) -> Vec<bool> {
+pub(crate) fn on_front(points: &[(f64, f64)]) -> Vec<bool> {
     points.iter().map(|a| !points.iter().any(|b| b.0 <= a.0 && b.1 <= a.1 && b != a)).collect()
 }
 
 /// The front as a staircase by rising time.
-pub(super) fn staircase(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+pub(crate) fn staircase(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let on_front = on_front(points).into_iter().zip(points);
     let mut front: Vec<(f64, f64)> = on_front.filter(|(on, _)| *on).map(|(_, p)| *p).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,0 +1,94 @@
+//! The settings that are tried: the defaults, and one change at a time.
+
+use cloudtouch::{
+    Mode, QuerySettings,
+    bvh::{Traversal, TreeSettings},
+};
+
+/// Tree and query settings with what is not as it is by default.
+pub(super) struct Setting {
+    /// The setting that was changed.
+    pub(super) changed: &'static str,
+    /// Its value.
+    pub(super) value: String,
+    pub(super) tree: TreeSettings,
+    pub(super) query: QuerySettings,
+}
+
+impl Setting {
+    /// What it is called in figures and lists.
+    pub(super) fn name(&self) -> String {
+        format!("{} {}", self.changed, self.value).trim_end().to_owned()
+    }
+
+    fn new(changed: &'static str, value: impl ToString) -> Self {
+        let value = value.to_string();
+        Self { changed, value, tree: TreeSettings::default(), query: QuerySettings::default() }
+    }
+
+    fn tree(changed: &'static str, value: impl ToString, edit: impl Fn(&mut TreeSettings)) -> Self {
+        let mut setting = Self::new(changed, value);
+        edit(&mut setting.tree);
+        setting
+    }
+
+    fn query(
+        changed: &'static str,
+        value: impl ToString,
+        edit: impl Fn(&mut QuerySettings),
+    ) -> Self {
+        let mut setting = Self::new(changed, value);
+        edit(&mut setting.query);
+        setting
+    }
+}
+
+/// The defaults first.
+pub(super) fn all() -> Vec<Setting> {
+    let mut all = vec![Setting::new("default", "")];
+    all.extend(
+        [10, 20, 80, 160].map(|n| Setting::tree("n_max", n, |tree| tree.max_leaf_points = n)),
+    );
+    all.extend(
+        [("0.02", 0.02), ("0.05", 0.05), ("0.2", 0.2), ("off", 1.0 / 3.0)]
+            .map(|(value, most)| Setting::tree("σ_max", value, |tree| tree.max_variation = most)),
+    );
+    all.extend(
+        [1e-9, 1e-4, 1e-3, 1e-2]
+            .map(|p| Setting::query("ε", format!("{p:.0e}"), |query| query.cull_probability = p)),
+    );
+    all.extend([1e-1, 1e-2, 1e-4].map(|gap| {
+        Setting::query("tolerance", format!("{gap:.0e}"), |query| query.relative_gap = gap)
+    }));
+    all.extend([1.0, 3.0, 20.0, 40.0].map(|g| Setting::query("γ", g, |query| query.gamma = g)));
+    all.extend([1.0, 10.0, 1000.0].map(|c| Setting::query("C", c, |query| query.penalty = c)));
+    all.extend(
+        [("gap-aware", Traversal::GapAware), ("paper", Traversal::Paper)].map(|(value, kind)| {
+            Setting::query("traversal", value, |query| query.traversal = kind)
+        }),
+    );
+    all.push(Setting::query("mode", "paper", |query| *query = QuerySettings::new(Mode::Paper)));
+    all.push(Setting::query("mode", "paper, certified traversal", |query| {
+        *query =
+            QuerySettings { traversal: Traversal::Certified, ..QuerySettings::new(Mode::Paper) };
+    }));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_setting_is_sound_has_a_name_of_its_own_and_is_no_default_but_the_first() {
+        let all = all();
+        for (i, setting) in all.iter().enumerate() {
+            cloudtouch::Query::new(setting.query).unwrap();
+            setting.tree.validate().unwrap();
+            let is_default = setting.tree == TreeSettings::default()
+                && setting.query == QuerySettings::default();
+            assert_eq!(is_default, i == 0, "{}", setting.name());
+            assert!(all[..i].iter().all(|other| other.name() != setting.name()));
+        }
+    }
+}
