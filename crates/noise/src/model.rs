@@ -1,6 +1,6 @@
 //! From a measured point and its neighbourhood to an uncertain surface point.
 
-use cloudtouch_geom::{Covariance, Matrix3, UncertainPoint, Vector3};
+use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, Vector3};
 
 use crate::discretization::{limited, weighted_scatter};
 use crate::parallel::parallel;
@@ -42,8 +42,34 @@ pub struct Bounds {
 #[derive(Debug, Default)]
 pub struct Scratch {
     neighbors: Vec<Neighbor>,
+    patch: Buffers,
+    /// The same of a wider neighbourhood.
+    wide_neighbors: Vec<Neighbor>,
+    wide_patch: Buffers,
+}
+
+#[derive(Debug, Default)]
+struct Buffers {
     offsets: Vec<Vector3>,
     noise: Vec<Covariance>,
+}
+
+impl Buffers {
+    /// The neighbours as a patch about point `index`.
+    fn patch<'a>(
+        &'a mut self,
+        index: usize,
+        neighbors: impl Iterator<Item = &'a Neighbor> + Clone,
+        points: &[Point3],
+        sensor: &'a [Covariance],
+        spacing: f64,
+    ) -> Patch<'a> {
+        self.offsets.clear();
+        self.offsets.extend(neighbors.clone().map(|n| points[n.index] - points[index]));
+        self.noise.clear();
+        self.noise.extend(neighbors.map(|n| sensor[n.index]));
+        Patch::new(&self.offsets, &self.noise, &sensor[index], spacing)
+    }
 }
 
 /// A point is not moved by more than this many of its standard deviations along the normal, nor
@@ -56,6 +82,15 @@ const TRUSTED_OFFSET: f64 = 3.5;
 const POSTERIOR_INFLATION: f64 = 2.0;
 const SENSOR_PART: f64 = 0.15;
 const SPACING_PART: f64 = 0.02;
+/// Where the noise is more than this many spacings the nearest neighbours are all noise: the surface
+/// is looked for among as many from farther away too, ...
+const NOISY_SPACINGS: f64 = 1.5;
+/// ... every so manieth of the nearest.
+const STRIDES: [usize; 2] = [4, 16];
+/// How often a wider neighbourhood is gathered.
+const PASSES: usize = 3;
+/// A wider patch may have this many times the variance.
+const WIDER: f64 = 2.0;
 /// The bounds are a hair wider than the clamps, which round.
 const ROUNDING: f64 = 1e-9;
 
@@ -204,14 +239,32 @@ impl NoiseModel {
         spacing_cap: f64,
         scratch: &mut Scratch,
     ) -> Option<Refined> {
-        let point = neighborhoods.points()[index];
-        let Scratch { neighbors, offsets, noise } = scratch;
-        offsets.clear();
-        offsets.extend(neighbors.iter().map(|n| neighborhoods.points()[n.index] - point));
-        noise.clear();
-        noise.extend(neighbors.iter().map(|n| sensor[n.index]));
-        let patch = Patch::new(offsets, noise, &sensor[index], spacing_around(neighbors)?);
-        let surface = fit_surface(&patch)?;
+        let points = neighborhoods.points();
+        let point = points[index];
+        let Scratch { neighbors, patch, wide_neighbors, wide_patch } = scratch;
+        let around = spacing_around(neighbors)?;
+        let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
+        let mut found = fit_surface(&patch);
+        if sensor[index].max_std() > NOISY_SPACINGS * around {
+            for stride in STRIDES {
+                let mut place = point;
+                let mut wide = None;
+                // What is nearest to a displaced point agrees with it more than it should: once
+                // more about where the surface seems to be.
+                for _ in 0..PASSES {
+                    let count = stride * MOST_NEIGHBORS;
+                    neighborhoods.nearest_to_into(&place, count, wide_neighbors);
+                    let every = wide_neighbors.iter().skip(stride - 1).step_by(stride);
+                    wide = fit_surface(&wide_patch.patch(index, every, points, sensor, around));
+                    let Some(surface) = &wide else { break };
+                    place = point + surface.normal * surface.height;
+                }
+                if wide.is_some_and(|w| found.is_none_or(|f| w.variance < WIDER * f.variance)) {
+                    found = wide;
+                }
+            }
+        }
+        let surface = found?;
         let normal = surface.normal;
         let spacing = tangential_spacing(&patch, &surface)?.min(spacing_cap);
 

@@ -78,8 +78,13 @@ impl Neighborhoods {
     /// then index. A place that is not finite has none.
     pub fn nearest_to(&self, place: &Point3, k: usize) -> Vec<Neighbor> {
         let mut found = Vec::new();
-        self.search(place, k, false, &mut found);
+        self.nearest_to_into(place, k, &mut found);
         found
+    }
+
+    /// [`Self::nearest_to`] into a buffer, whose old content is dropped.
+    pub(crate) fn nearest_to_into(&self, place: &Point3, k: usize, found: &mut Vec<Neighbor>) {
+        self.search(place, k, false, found);
     }
 
     /// [`Self::nearest`] into a buffer, whose old content is dropped.

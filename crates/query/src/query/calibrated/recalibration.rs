@@ -42,7 +42,7 @@ pub struct Recalibration {
 
 impl Default for Recalibration {
     fn default() -> Self {
-        Self { by_geometry: [-0.6, 0.9, -0.9], by_all: [-2.384, 0.667, -0.373, 0.982] }
+        Self { by_geometry: [0.607, 0.47, -1.61], by_all: [-0.154, 0.459, -1.139, 0.339] }
     }
 }
 
