@@ -48,14 +48,13 @@ struct RawCase {
     signed_distance_m: Option<f64>,
 }
 
-/// Reads a case file; paths in it are relative to its folder.
+/// Reads a case file of at most `max_bytes`; paths in it are relative to its folder.
 ///
 /// # Errors
-/// When the file as a whole is not a case file. A bad case does not spoil the others.
-pub(crate) fn read(path: &Path) -> Result<CaseFile> {
+/// When the file is larger, or as a whole not a case file. A bad case does not spoil the others.
+pub(crate) fn read(path: &Path, max_bytes: u64) -> Result<CaseFile> {
     let named = || path.display().to_string();
-    let text =
-        std::fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    let text = cloudtouch_io::read_bytes(path, max_bytes)?;
     parse(&text, path.parent().unwrap_or(Path::new(""))).with_context(named)
 }
 

@@ -48,6 +48,19 @@ pub enum PrepareError {
     },
 }
 
+/// A mesh takes more parts than allowed to be sampled as densely as asked.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "samples of the mesh at a spacing of {spacing} m take more than {max_parts} triangles: sample \
+     it less densely, or raise the limit on parts"
+)]
+pub struct SubdivisionError {
+    /// Longest edge wanted, m.
+    pub spacing: f64,
+    /// Triangles allowed, before and after splitting.
+    pub max_parts: usize,
+}
+
 /// A query setting that is out of range.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]

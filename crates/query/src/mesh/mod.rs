@@ -12,11 +12,11 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 
-use crate::error::PrepareError;
+use crate::error::{PrepareError, SubdivisionError};
 
 pub(crate) use exact::{ExactPair, exact_pair};
 pub(crate) use signed::{SignedPoint, Wanted, signed_points};
-pub(crate) use subdivide::{SampleRegion, sample_region};
+pub(crate) use subdivide::{SampleRegion, sample_region, sample_region_within};
 
 /// Triangles in a leaf of a mesh's tree: few, since each may be subdivided many times.
 const MAX_LEAF_TRIANGLES: usize = 8;
@@ -98,8 +98,16 @@ impl Mesh {
     }
 
     /// Points on the surface in the file frame, no farther apart than `spacing` metres along any
-    /// triangle: for pictures.
-    pub fn surface_points(&self, spacing: f64) -> Vec<Point3> {
+    /// triangle: for pictures. A triangle is split into no more than 4¹⁰ parts, however large.
+    ///
+    /// # Errors
+    /// When that takes more than `max_parts` triangles before and after splitting, each of up to
+    /// four points; [`MAX_MESH_PARTS`](crate::MAX_MESH_PARTS) suits most.
+    pub fn surface_points(
+        &self,
+        spacing: f64,
+        max_parts: usize,
+    ) -> Result<Vec<Point3>, SubdivisionError> {
         let everywhere = SampleRegion {
             center: Point3::origin(),
             core: f64::INFINITY,
@@ -107,7 +115,9 @@ impl Mesh {
             spacing,
         };
         let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
-        sample_region(triangles, &everywhere).iter().map(|p| p + self.origin).collect()
+        let mut points = sample_region_within(triangles, &everywhere, max_parts)?;
+        points.iter_mut().for_each(|p| *p += self.origin);
+        Ok(points)
     }
 
     /// Distance from a point in the mesh's file frame to the surface, m; negative inside a

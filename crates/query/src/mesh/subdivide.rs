@@ -3,6 +3,8 @@
 
 use cloudtouch_geom::Point3;
 
+use crate::error::SubdivisionError;
+
 /// Outside the core an edge may be this long for each metre it is away: the farther a sample, the
 /// less its exact place matters to a surface near the cloud leaf.
 const GRADING: f64 = 0.5;
@@ -29,33 +31,70 @@ pub(crate) fn sample_region(
     triangles: impl IntoIterator<Item = [Point3; 3]>,
     region: &SampleRegion,
 ) -> Vec<Point3> {
-    let mut points = Vec::new();
-    for corners in triangles {
-        split(corners, region, MAX_DEPTH, &mut points);
-    }
-    merge_repeated(&mut points);
-    points
+    let mut samples = Samples { region, points: Vec::new(), parts: 0, max_parts: usize::MAX };
+    samples.add(triangles);
+    samples.points
 }
 
-fn split(corners: [Point3; 3], region: &SampleRegion, depth: usize, points: &mut Vec<Point3>) {
-    let [a, b, c] = corners;
-    let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-    let reach = corners.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
-    let away = (centroid - region.center).norm() - reach;
-    if away > region.radius {
-        return;
+/// [`sample_region`], unless it takes more than `max_parts` parts, those left out included.
+///
+/// # Errors
+/// Before more than a few points for each part allowed are held in memory.
+pub(crate) fn sample_region_within(
+    triangles: impl IntoIterator<Item = [Point3; 3]>,
+    region: &SampleRegion,
+    max_parts: usize,
+) -> Result<Vec<Point3>, SubdivisionError> {
+    let mut samples = Samples { region, points: Vec::new(), parts: 0, max_parts };
+    samples.add(triangles);
+    if samples.parts > max_parts {
+        return Err(SubdivisionError { spacing: region.spacing, max_parts });
     }
-    let limit = region.spacing.max(GRADING * (away - region.core));
-    let longest =
-        [(a, b), (b, c), (c, a)].map(|(p, q)| (p - q).norm()).into_iter().fold(0.0, f64::max);
-    if longest <= limit || depth == 0 {
-        let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
-        points.extend([a, b, c, centroid].into_iter().filter(inside));
-        return;
+    Ok(samples.points)
+}
+
+/// Samples in the making.
+struct Samples<'a> {
+    region: &'a SampleRegion,
+    points: Vec<Point3>,
+    /// Triangles looked at so far, before and after splitting.
+    parts: usize,
+    max_parts: usize,
+}
+
+impl Samples<'_> {
+    fn add(&mut self, triangles: impl IntoIterator<Item = [Point3; 3]>) {
+        for corners in triangles {
+            self.split(corners, MAX_DEPTH);
+        }
+        merge_repeated(&mut self.points);
     }
-    let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| nalgebra::center(&p, &q));
-    for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-        split(part, region, depth - 1, points);
+
+    fn split(&mut self, corners: [Point3; 3], depth: usize) {
+        self.parts = self.parts.saturating_add(1);
+        if self.parts > self.max_parts {
+            return;
+        }
+        let (region, points) = (self.region, &mut self.points);
+        let [a, b, c] = corners;
+        let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+        let reach = corners.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
+        let away = (centroid - region.center).norm() - reach;
+        if away > region.radius {
+            return;
+        }
+        let limit = region.spacing.max(GRADING * (away - region.core));
+        let longest =
+            [(a, b), (b, c), (c, a)].map(|(p, q)| (p - q).norm()).into_iter().fold(0.0, f64::max);
+        if longest <= limit || depth == 0 {
+            let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
+            points.extend([a, b, c, centroid].into_iter().filter(inside));
+            return;
+        }
+        let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| nalgebra::center(&p, &q));
+        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            self.split(part, depth - 1);
+        }
     }
 }
 
@@ -69,6 +108,7 @@ fn merge_repeated(points: &mut Vec<Point3>) {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 mod tests {
     use super::*;
 
@@ -108,6 +148,26 @@ mod tests {
         assert!(graded.len() * 10 < dense.len(), "{} of {}", graded.len(), dense.len());
         let near = |p: &&Point3| (*p - Point3::new(3.0, 3.0, 0.0)).norm() < 0.1;
         assert_eq!(graded.iter().filter(near).count(), dense.iter().filter(near).count());
+    }
+
+    #[test]
+    fn ten_million_parts_are_refused_before_they_are_held() {
+        let corners = [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
+        let region = |spacing| SampleRegion {
+            center: Point3::origin(),
+            core: f64::INFINITY,
+            radius: f64::INFINITY,
+            spacing,
+        };
+        // Three splits make 64 parts of 85 triangles in all.
+        let fits = sample_region_within([corners], &region(0.2), 85).unwrap();
+        assert_eq!(fits, sample_region([corners], &region(0.2)));
+        let error = sample_region_within([corners], &region(0.2), 84).unwrap_err();
+        assert_eq!(error, SubdivisionError { spacing: 0.2, max_parts: 84 });
+        // Ten triangles, a million parts each.
+        for spacing in [1e-3, 0.0, -1.0, f64::NAN] {
+            assert!(sample_region_within([corners; 10], &region(spacing), 1000).is_err());
+        }
     }
 
     #[test]
