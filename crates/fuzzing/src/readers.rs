@@ -58,7 +58,11 @@ fn check(bytes: &[u8], points_per_byte: usize, result: Result<Geometry, FormatEr
                 assert!(covariances.iter().all(|c| c.is_finite()), "covariances are finite");
             }
             if let Some((width, height)) = cloud.image_size {
-                assert_eq!(width.checked_mul(height), Some(cloud.len()), "one point for each pixel");
+                assert_eq!(
+                    width.checked_mul(height),
+                    Some(cloud.len()),
+                    "one point for each pixel"
+                );
             }
             assert!(cloud.sensor_origin.iter().all(|v| v.is_finite()), "the sensor is somewhere");
         }

@@ -4,8 +4,8 @@ use crate::error::{Fault, FormatError, Place};
 
 /// What is read at most; beyond it there is an error, before the memory is taken.
 ///
-/// The defaults suit a computer with 16 GB, preparation of the body included. Larger scenes are
-/// better thinned or split than read whole; whoever has the memory raises the limits.
+/// A body at the default limits takes about 3 GB, preparation for queries included. Larger scenes
+/// are better thinned or split than read whole; whoever has the memory raises the limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReadLimits {
     /// Bytes of a file, and of the points of a compressed one; 2 GiB.
