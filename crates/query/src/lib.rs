@@ -7,6 +7,7 @@ mod error;
 mod filter;
 mod mesh;
 mod query;
+mod range;
 mod report;
 
 pub use body::{Body, BodyRef};

@@ -24,6 +24,7 @@ pub(super) fn query_settings(u: &mut Unstructured<'_>) -> Result<QuerySettings> 
         cull_probability: setting(u, usual.cull_probability, 0.0, 1.0)?,
         stop_above: setting(u, usual.stop_above, 0.0, 2.0)?,
         max_contacts: count(u, usual.max_contacts)?,
+        max_mesh_parts: count(u, usual.max_mesh_parts)?,
         seed: u.arbitrary::<u16>()?.into(),
         ..usual
     })

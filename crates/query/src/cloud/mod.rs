@@ -13,6 +13,7 @@ use cloudtouch_noise::{Neighborhoods, NoiseModel};
 
 use crate::error::PrepareError;
 use crate::filter::{StageReport, filter};
+use crate::range::check_points;
 
 use lazy::LazyLeaves;
 pub(crate) use lazy::LeafPoint;
@@ -41,8 +42,8 @@ impl Cloud {
     /// Filters a cloud, models its sensor, and builds its index and tree.
     ///
     /// # Errors
-    /// When nothing is left after filtering, a covariance is not one, or a setting is out of
-    /// range.
+    /// When nothing is left after filtering, a coordinate is beyond 1e50 m, a covariance is not one,
+    /// or a setting is out of range.
     pub fn prepare(cloud: &PointCloud, settings: &CloudSettings) -> Result<Self, PrepareError> {
         let start = Instant::now();
         let span = tracing::debug_span!("prepare_cloud", points = cloud.len());
@@ -58,6 +59,7 @@ impl Cloud {
                 stages: removed.join(", "),
             });
         };
+        check_points(&kept.points)?;
         let sensor = settings.sensor.covariances(&kept)?;
         if let Some(index) = sensor.iter().position(|c| !c.is_finite()) {
             let source =

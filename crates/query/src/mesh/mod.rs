@@ -13,10 +13,11 @@ use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 
 use crate::error::{PrepareError, SubdivisionError};
+use crate::range::check_points;
 
 pub(crate) use exact::{ExactPair, exact_pair};
 pub(crate) use signed::{SignedPoint, Wanted, signed_points};
-pub(crate) use subdivide::{SampleRegion, sample_region, sample_region_within};
+pub(crate) use subdivide::{SampleRegion, sample_region};
 
 /// Triangles in a leaf of a mesh's tree: few, since each may be subdivided many times.
 const MAX_LEAF_TRIANGLES: usize = 8;
@@ -40,7 +41,7 @@ impl Mesh {
     /// Merges vertices, looks whether the mesh is watertight, and builds its tree.
     ///
     /// # Errors
-    /// When every triangle is degenerate, or the tree cannot be built.
+    /// When every triangle is degenerate, a coordinate is beyond 1e50 m, or the tree cannot be built.
     pub fn prepare(mesh: &TriangleMesh) -> Result<Self, PrepareError> {
         let start = Instant::now();
         let mut merged = mesh.merged();
@@ -50,6 +51,7 @@ impl Mesh {
         if merged.triangles().is_empty() {
             return Err(PrepareError::Mesh(MeshError::Empty));
         }
+        check_points(merged.vertices())?;
         let origin = nalgebra::center(&low, &high).coords;
         let watertight = merged.open_edges() == 0;
         let vertices: Vec<Point3> = merged.vertices().iter().map(|p| p - origin).collect();
@@ -115,7 +117,7 @@ impl Mesh {
             spacing,
         };
         let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
-        let mut points = sample_region_within(triangles, &everywhere, max_parts)?;
+        let mut points = sample_region(triangles, &everywhere, max_parts)?;
         points.iter_mut().for_each(|p| *p += self.origin);
         Ok(points)
     }

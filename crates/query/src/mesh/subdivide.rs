@@ -27,29 +27,23 @@ pub(crate) struct SampleRegion {
 
 /// Vertices and centroid of every part of `triangles` inside the region, after splitting them until
 /// no edge is longer than the spacing.
-pub(crate) fn sample_region(
-    triangles: impl IntoIterator<Item = [Point3; 3]>,
-    region: &SampleRegion,
-) -> Vec<Point3> {
-    let mut samples = Samples { region, points: Vec::new(), parts: 0, max_parts: usize::MAX };
-    samples.add(triangles);
-    samples.points
-}
-
-/// [`sample_region`], unless it takes more than `max_parts` parts, those left out included.
 ///
 /// # Errors
-/// Before more than a few points for each part allowed are held in memory.
-pub(crate) fn sample_region_within(
+/// When that takes more than `max_parts` parts, those that were split or left out included; before
+/// more than a few points for each of them are held in memory.
+pub(crate) fn sample_region(
     triangles: impl IntoIterator<Item = [Point3; 3]>,
     region: &SampleRegion,
     max_parts: usize,
 ) -> Result<Vec<Point3>, SubdivisionError> {
     let mut samples = Samples { region, points: Vec::new(), parts: 0, max_parts };
-    samples.add(triangles);
+    for corners in triangles {
+        samples.split(corners, MAX_DEPTH);
+    }
     if samples.parts > max_parts {
         return Err(SubdivisionError { spacing: region.spacing, max_parts });
     }
+    merge_repeated(&mut samples.points);
     Ok(samples.points)
 }
 
@@ -63,13 +57,6 @@ struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    fn add(&mut self, triangles: impl IntoIterator<Item = [Point3; 3]>) {
-        for corners in triangles {
-            self.split(corners, MAX_DEPTH);
-        }
-        merge_repeated(&mut self.points);
-    }
-
     fn split(&mut self, corners: [Point3; 3], depth: usize) {
         self.parts = self.parts.saturating_add(1);
         if self.parts > self.max_parts {
@@ -121,7 +108,7 @@ mod tests {
             radius: 0.3,
             spacing: 0.1,
         };
-        let points = sample_region([corners], &region);
+        let points = sample_region([corners], &region, 10_000).unwrap();
         assert!(points.len() > 30, "{} points", points.len());
         assert!(points.iter().all(|p| (p - region.center).norm() <= region.radius));
         // No hole: any spot of the disc has a sample within one spacing.
@@ -144,7 +131,8 @@ mod tests {
             spacing: 0.05,
         };
         let graded = SampleRegion { core: 0.1, ..dense };
-        let (dense, graded) = (sample_region([corners], &dense), sample_region([corners], &graded));
+        let (dense, graded) =
+            [dense, graded].map(|r| sample_region([corners], &r, 1_000_000).unwrap()).into();
         assert!(graded.len() * 10 < dense.len(), "{} of {}", graded.len(), dense.len());
         let near = |p: &&Point3| (*p - Point3::new(3.0, 3.0, 0.0)).norm() < 0.1;
         assert_eq!(graded.iter().filter(near).count(), dense.iter().filter(near).count());
@@ -160,13 +148,12 @@ mod tests {
             spacing,
         };
         // Three splits make 64 parts of 85 triangles in all.
-        let fits = sample_region_within([corners], &region(0.2), 85).unwrap();
-        assert_eq!(fits, sample_region([corners], &region(0.2)));
-        let error = sample_region_within([corners], &region(0.2), 84).unwrap_err();
+        assert!(sample_region([corners], &region(0.2), 85).is_ok());
+        let error = sample_region([corners], &region(0.2), 84).unwrap_err();
         assert_eq!(error, SubdivisionError { spacing: 0.2, max_parts: 84 });
         // Ten triangles, a million parts each.
         for spacing in [1e-3, 0.0, -1.0, f64::NAN] {
-            assert!(sample_region_within([corners; 10], &region(spacing), 1000).is_err());
+            assert!(sample_region([corners; 10], &region(spacing), 1000).is_err());
         }
     }
 
@@ -175,6 +162,6 @@ mod tests {
         let p = Point3::new(1.0, 0.0, 0.0);
         let region =
             SampleRegion { center: Point3::origin(), core: 2.0, radius: 2.0, spacing: 1e-3 };
-        assert_eq!(sample_region([[p, p, p]], &region), vec![p]);
+        assert_eq!(sample_region([[p, p, p]], &region, 1), Ok(vec![p]));
     }
 }

@@ -10,6 +10,7 @@ use crate::body::BodyRef;
 use crate::cloud::Cloud;
 use crate::error::{QueryError, SettingsError};
 use crate::mesh::{Mesh, Wanted, exact_pair, signed_points};
+use crate::range::bad_entry;
 use crate::report::{Report, Stats, Verdict};
 
 use super::classify::classify;
@@ -54,8 +55,9 @@ impl Query {
     /// sampled: surface that no point stands for cannot be found in collision.
     ///
     /// # Errors
-    /// When the pose is not finite, or two meshes cannot be tested exactly. A pair that could not be decided is not an error
-    /// but a verdict, and never reads as free.
+    /// When the pose is not finite or beyond 1e50 m, two meshes cannot be tested exactly, or a mesh
+    /// takes more parts than allowed to be sampled as densely as the cloud. A pair that could not be
+    /// decided is not an error but a verdict, and never reads as free.
     pub fn run<'a>(
         &self,
         a: impl Into<BodyRef<'a>>,
@@ -66,7 +68,7 @@ impl Query {
         let (a, b) = (a.into(), b.into());
         let span = tracing::debug_span!("query");
         let _entered = span.enter();
-        if let Some(value) = a_from_b.non_finite_entry() {
+        if let Some(value) = bad_entry(a_from_b) {
             return Err(QueryError::Pose { value });
         }
         let local = a.local_from(&b, a_from_b);
@@ -165,6 +167,7 @@ impl Query {
             && matches!((a, b), (BodyRef::Cloud(_), BodyRef::Cloud(_)));
         let most = |bound: f64| if crosses { bound_with_crossing(bound) } else { bound };
         let mut looked_at = BTreeSet::new();
+        let mut failed = None;
         let outcome =
             traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
                 looked_at.insert((pair.a, pair.b));
@@ -176,9 +179,17 @@ impl Query {
                 let wanted = if crosses { bound_without_crossing(relevant) } else { relevant };
                 let next = Flow::Above(wanted.max(settings.cull_probability));
                 let stats = &mut evidence.stats;
-                let Some(points) = gather((a, pair.a), (b, pair.b), a_from_b, stats) else {
-                    evidence.widen(leaf_pair::bound_left_out());
-                    return next;
+                let max_parts = settings.max_mesh_parts;
+                let points = match gather((a, pair.a), (b, pair.b), a_from_b, max_parts, stats) {
+                    Ok(Some(points)) => points,
+                    Ok(None) => {
+                        evidence.widen(leaf_pair::bound_left_out());
+                        return next;
+                    }
+                    Err(error) => {
+                        failed = Some(error);
+                        return Flow::Stop;
+                    }
                 };
                 stats.leaf_pairs += 1;
                 let rims = || (rim(a, pair.a, &Pose::identity()), rim(b, pair.b, a_from_b));
@@ -186,6 +197,9 @@ impl Query {
                 add_pair((a, b, a_from_b), &points, &answer, evidence);
                 if evidence.largest() > settings.stop_above { Flow::Stop } else { next }
             })?;
+        if let Some(error) = failed {
+            return Err(error.into());
+        }
         evidence.stats.nodes_visited += outcome.nodes_visited;
         evidence.widen(most(outcome.pending_bound));
         if settings.traversal == Traversal::Certified || outcome.stopped {
