@@ -57,7 +57,7 @@ pub struct QuerySettings {
     /// How many contacts are reported at most.
     pub max_contacts: usize,
     /// How many triangles, before and after splitting, the part of a mesh that faces a leaf of a
-    /// cloud is sampled by at most; a usual part takes some hundreds.
+    /// cloud is sampled by at most; a usual part takes some thousands.
     pub max_mesh_parts: usize,
     /// Seed of the stochastic traversals.
     pub seed: u64,
