@@ -12,7 +12,8 @@ use anyhow::{Context, Result, bail};
 use crate::{fixtures, sweep, tidy};
 
 /// Not published, so not packaged.
-const UNPUBLISHED: [&str; 3] = ["cloudtouch-testkit", "cloudtouch-benches", "xtask"];
+const UNPUBLISHED: [&str; 4] =
+    ["cloudtouch-testkit", "cloudtouch-fuzzing", "cloudtouch-benches", "xtask"];
 
 /// Runs every step. Tests come last, and the last line sums them up.
 pub(crate) fn run(root: &Path) -> Result<()> {

@@ -94,7 +94,7 @@ impl Tree {
         let node = &self.nodes[id as usize];
         let count = node.count as usize;
         count > self.settings.max_leaf_points
-            || (count >= 2 * self.settings.min_leaf_points
+            || (count / 2 >= self.settings.min_leaf_points
                 && node.moments.variation() > self.settings.max_variation)
     }
 

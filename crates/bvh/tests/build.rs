@@ -24,6 +24,15 @@ fn degenerate_clouds_build_well_formed_trees() {
 }
 
 #[test]
+fn leaves_of_any_size_may_be_asked_for() {
+    let most = usize::MAX;
+    let settings =
+        TreeSettings { max_leaf_points: most, min_leaf_points: most, ..TreeSettings::default() };
+    let cloud = (0..50).map(|i| noisy(Point3::new(i as f64, 0.0, 0.0), 0.01)).collect();
+    assert_eq!(Tree::build(cloud, &settings).unwrap().leaves().count(), 1);
+}
+
+#[test]
 fn an_empty_tree_has_no_root() {
     let tree = Tree::build(vec![], &TreeSettings::default()).unwrap();
     assert!(tree.is_empty() && tree.root().is_none() && tree.leaves().next().is_none());

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{CloudSettings, Mode, OutlierSettings, Pooling, QuerySettings};
-use cloudtouch_io::LengthUnit;
+use cloudtouch_io::{LengthUnit, ReadLimits};
 
 /// Sensor specs, for the help of the commands that take them.
 const SENSORS: &str = "\
@@ -120,6 +120,31 @@ pub(crate) struct InfoArguments {
     /// Length unit of a mesh file: m, cm, mm or in; clouds are in metres
     #[arg(long, default_value = "m")]
     pub unit: LengthUnit,
+    #[command(flatten)]
+    pub limits: LimitArguments,
+}
+
+/// How large a file may be.
+#[derive(Debug, Args)]
+pub(crate) struct LimitArguments {
+    /// Read at most this many points of a file
+    #[arg(long, value_name = "N", default_value_t = ReadLimits::default().points,
+          help_heading = "Limits")]
+    max_points: usize,
+    /// Read at most this many triangles of a file
+    #[arg(long, value_name = "N", default_value_t = ReadLimits::default().triangles,
+          help_heading = "Limits")]
+    max_triangles: usize,
+    /// Read at most this many bytes of a file
+    #[arg(long, value_name = "N", default_value_t = ReadLimits::default().bytes,
+          help_heading = "Limits")]
+    max_bytes: u64,
+}
+
+impl LimitArguments {
+    pub(crate) fn read_limits(&self) -> ReadLimits {
+        ReadLimits { bytes: self.max_bytes, points: self.max_points, triangles: self.max_triangles }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -183,6 +208,8 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length,
           help_heading = "Cleaning")]
     pub robot_padding: f64,
+    #[command(flatten)]
+    pub limits: LimitArguments,
 }
 
 impl CommonArguments {

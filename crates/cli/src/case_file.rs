@@ -48,14 +48,13 @@ struct RawCase {
     signed_distance_m: Option<f64>,
 }
 
-/// Reads a case file; paths in it are relative to its folder.
+/// Reads a case file of at most `max_bytes`; paths in it are relative to its folder.
 ///
 /// # Errors
-/// When the file as a whole is not a case file. A bad case does not spoil the others.
-pub(crate) fn read(path: &Path) -> Result<CaseFile> {
+/// When the file is larger, or as a whole not a case file. A bad case does not spoil the others.
+pub(crate) fn read(path: &Path, max_bytes: u64) -> Result<CaseFile> {
     let named = || path.display().to_string();
-    let text =
-        std::fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    let text = cloudtouch_io::read_bytes(path, max_bytes)?;
     parse(&text, path.parent().unwrap_or(Path::new(""))).with_context(named)
 }
 
@@ -64,6 +63,10 @@ pub(crate) fn read(path: &Path) -> Result<CaseFile> {
 /// # Errors
 /// As [`read`].
 pub(crate) fn parse(text: &[u8], folder: &Path) -> Result<CaseFile> {
+    parse_whole(text, folder).map_err(shortened)
+}
+
+fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
     let raw: RawFile = serde_json::from_slice(text)
         .context("not a case file, a JSON object with \"format\", \"length_unit\" and \"cases\"")?;
     if raw.format != 1 {
@@ -82,7 +85,7 @@ pub(crate) fn parse(text: &[u8], folder: &Path) -> Result<CaseFile> {
                 Some(other) => other.to_string(),
                 None => format!("case-{}", position + 1),
             };
-            let case = parse_case(value, folder);
+            let case = parse_case(value, folder).map_err(shortened);
             (id, case)
         })
         .collect();
@@ -116,6 +119,20 @@ fn parse_case(value: Value, folder: &Path) -> Result<Case> {
     })
 }
 
+/// The error with its causes in one message, of which no more is kept than its beginning and its
+/// end: messages quote what they found, which may be most of the file, and then say where.
+fn shortened(error: anyhow::Error) -> anyhow::Error {
+    const KEPT: usize = 200;
+    let message = format!("{error:#}");
+    let characters = message.chars().count();
+    if characters <= 2 * KEPT {
+        return error;
+    }
+    let start: String = message.chars().take(KEPT).collect();
+    let end: String = message.chars().skip(characters - KEPT).collect();
+    anyhow!("{start} ... {end}")
+}
+
 fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
@@ -124,5 +141,35 @@ fn kind(value: &Value) -> &'static str {
         Value::String(_) => "a string",
         Value::Array(_) => "a list",
         Value::Object(_) => "an object",
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+mod tests {
+    use super::*;
+
+    fn message(text: &str) -> String {
+        let file = parse(text.as_bytes(), Path::new(""));
+        let error = file.and_then(|mut file| file.cases.remove(0).1.map(|_| ())).unwrap_err();
+        format!("{error:#}")
+    }
+
+    #[test]
+    fn messages_quote_no_more_than_an_excerpt_and_still_say_where() {
+        let long = "x".repeat(100_000);
+        let whole = message(&format!("\"{long}\""));
+        assert!(whole.len() < 450 && whole.ends_with("at line 1 column 100002"), "{whole}");
+        let case = |sensor: &str| {
+            let pose = "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]";
+            let case =
+                format!(r#"{{"scene":"a","object":"b","pose":{pose},"scene_sensor":"{sensor}"}}"#);
+            message(&format!(r#"{{"format":1,"length_unit":"m","cases":[{case}]}}"#))
+        };
+        let spec = case(&long);
+        assert!(spec.len() < 450 && spec.starts_with("unknown sensor `xxx"), "{spec}");
+        assert!(case("sonar").contains("`sonar`"));
+        let unit = message(&format!(r#"{{"format":1,"length_unit":"{long}","cases":[]}}"#));
+        assert!(unit.len() < 450 && unit.ends_with("(\"m\")"), "{unit}");
     }
 }

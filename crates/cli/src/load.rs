@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, Mesh, SelfMesh};
-use cloudtouch_io::{Geometry, LengthUnit, read_geometry, read_mesh};
+use cloudtouch_io::{Geometry, LengthUnit, ReadLimits, read_geometry_within, read_mesh_within};
 
 use crate::args::CommonArguments;
 
@@ -28,7 +28,7 @@ pub(crate) fn body(
     sensor: &SensorModel,
     common: &CommonArguments,
 ) -> Result<Body> {
-    let prepared = match geometry(path, common.unit)? {
+    let prepared = match geometry(path, common.unit, &common.limits.read_limits())? {
         Geometry::Mesh(mesh) => {
             let mesh = Mesh::prepare(&mesh).with_context(|| named(path))?;
             if common.unit == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
@@ -65,14 +65,14 @@ pub(crate) fn body(
 /// Reads a cloud, which is in metres, or a mesh in `unit`.
 ///
 /// Scans know their unit and exported meshes do not, so that the two are often mixed.
-pub(crate) fn geometry(path: &Path, unit: LengthUnit) -> Result<Geometry> {
+pub(crate) fn geometry(path: &Path, unit: LengthUnit, limits: &ReadLimits) -> Result<Geometry> {
     // Said before the extension is looked at: `cloudtouch query folder …` is not about extensions.
     let found =
         std::fs::metadata(path).with_context(|| format!("{}: cannot be read", path.display()))?;
     if found.is_dir() {
         bail!("{}: is a folder: give a cloud or mesh file", path.display());
     }
-    Ok(match read_geometry(path, LengthUnit::Metres)? {
+    Ok(match read_geometry_within(path, LengthUnit::Metres, limits)? {
         Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(unit.in_metres())),
         cloud => cloud,
     })
@@ -83,7 +83,7 @@ fn robot(common: &CommonArguments) -> Result<Vec<SelfMesh>> {
         .robot
         .iter()
         .map(|path| {
-            let mesh = read_mesh(path, common.unit)?;
+            let mesh = read_mesh_within(path, common.unit, &common.limits.read_limits())?;
             let mesh = Mesh::prepare(&mesh).with_context(|| named(path))?;
             Ok(SelfMesh {
                 mesh: Arc::new(mesh),

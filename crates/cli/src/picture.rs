@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use cloudtouch::geom::{Point3, Pose};
-use cloudtouch::{Body, Report};
+use cloudtouch::{Body, MAX_MESH_PARTS, Report};
 use cloudtouch_io::write_colored_ply;
 
 type Color = [u8; 3];
@@ -32,10 +32,10 @@ pub(crate) fn write(
 ) -> Result<()> {
     let likely = &report.point_probabilities;
     let object_points: Vec<Point3> =
-        body_points(object).iter().map(|p| scene_from_object.transform_point(p)).collect();
+        body_points(object)?.iter().map(|p| scene_from_object.transform_point(p)).collect();
     let arrow = ARROW_SHARE * extent(&object_points);
     let mut picture = Picture::default();
-    picture.add_body(&body_points(scene), SCENE, &likely.a);
+    picture.add_body(&body_points(scene)?, SCENE, &likely.a);
     picture.add_body(&object_points, OBJECT, &likely.b);
     for contact in &report.contacts {
         for step in 0..ARROW_POINTS {
@@ -74,11 +74,13 @@ impl Picture {
     }
 }
 
-fn body_points(body: &Body) -> Vec<Point3> {
-    match body {
+fn body_points(body: &Body) -> Result<Vec<Point3>> {
+    Ok(match body {
         Body::Cloud(cloud) => (0..cloud.len()).map(|i| cloud.point(i)).collect(),
-        Body::Mesh(mesh) => mesh.surface_points(MESH_SPACING_SHARE * mesh.size()),
-    }
+        Body::Mesh(mesh) => {
+            mesh.surface_points(MESH_SPACING_SHARE * mesh.size(), MAX_MESH_PARTS)?
+        }
+    })
 }
 
 fn extent(points: &[Point3]) -> f64 {

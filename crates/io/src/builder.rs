@@ -4,7 +4,10 @@ use std::path::Path;
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud};
 
-use crate::error::{Fault, FormatError, Place, WriteError};
+use crate::{
+    error::{Fault, FormatError, Place, WriteError},
+    limits::ReadLimits,
+};
 
 /// Names of the columns a cloud is made of: coordinates (m), then the covariance (m²).
 pub(crate) const COLUMN_NAMES: [&str; 9] =
@@ -45,13 +48,15 @@ pub(crate) fn find_columns<'a>(
 pub(crate) struct CloudBuilder {
     points: Vec<Point3>,
     covariances: Option<Vec<Covariance>>,
+    limits: ReadLimits,
 }
 
 impl CloudBuilder {
     /// `columns` as found by [`find_columns`]; `capacity` must be backed by bytes of the file.
-    pub(crate) fn new(columns: &[usize], capacity: usize) -> Self {
+    pub(crate) fn new(columns: &[usize], capacity: usize, limits: &ReadLimits) -> Self {
+        let capacity = capacity.min(limits.points);
         let covariances = (columns.len() > 3).then(|| Vec::with_capacity(capacity));
-        Self { points: Vec::with_capacity(capacity), covariances }
+        Self { points: Vec::with_capacity(capacity), covariances, limits: *limits }
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -62,6 +67,7 @@ impl CloudBuilder {
     pub(crate) fn push(&mut self, values: &Row, place: Place) -> Result<(), FormatError> {
         let [x, y, z, xx, xy, xz, yy, yz, zz] = *values;
         let point = Point3::new(x, y, z);
+        self.limits.check_points(self.points.len() + 1, place)?;
         if let Some(covariances) = &mut self.covariances {
             let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
             covariances.push(match Covariance::try_from_matrix(&matrix) {
@@ -121,7 +127,7 @@ mod tests {
     #[test]
     fn only_a_missing_return_may_lack_a_covariance() {
         let columns = [0; 9];
-        let mut builder = CloudBuilder::new(&columns, 0);
+        let mut builder = CloudBuilder::new(&columns, 0, &ReadLimits::default());
         let mut row = [f64::NAN; 9];
         builder.push(&row, Place::Line(1)).unwrap();
         row[..2].fill(1.0);

@@ -19,6 +19,18 @@ pub enum ReadError {
         /// What the operating system said.
         cause: io::Error,
     },
+    /// It has more bytes than are read.
+    #[error(
+        "{}: has more than {limit} bytes, the most that is read: split or thin the file, or raise \
+         the limit on bytes",
+        path.display()
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Bytes read at most, [`ReadLimits::bytes`](crate::ReadLimits::bytes).
+        limit: u64,
+    },
     /// The extension is not one of a format that holds what was asked for.
     #[error(
         "{}: the extension {found:?} is not one of {supported}: convert or rename the file",
@@ -177,6 +189,19 @@ pub enum Fault {
         needed: usize,
         /// Bytes that are there.
         available: usize,
+    },
+    /// There is more than is read, or the header promises more.
+    #[error(
+        "there are {found} {what} or more, and at most {limit} are read: split or thin the file, \
+         or raise the limit on {what}"
+    )]
+    TooMany {
+        /// What there are too many of.
+        what: &'static str,
+        /// How many are promised, or found so far.
+        found: usize,
+        /// How many are read, see [`ReadLimits`](crate::ReadLimits).
+        limit: usize,
     },
     /// A text file has fewer rows than its header says.
     #[error(

@@ -10,6 +10,7 @@ use cloudtouch_geom::{Point3, TriangleMesh};
 use crate::{
     atomic::write_atomically,
     error::{Fault, FormatError, Place, WriteError},
+    limits::ReadLimits,
     text::{Lines, excerpt, finite_triple, parse as parse_number, words},
 };
 
@@ -44,8 +45,17 @@ const PASSED_OVER: [&[u8]; 17] = [
 /// # Errors
 /// When a line begins with a keyword that is not known (free-form surfaces are not read), a
 /// coordinate is no finite number, a face has fewer than three corners or names a vertex that is
-/// not there, there are no faces, or the counts of the first line disagree.
+/// not there, there are no faces, the counts of the first line disagree, or there is more than the
+/// default [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
+    parse_within(bytes, &ReadLimits::default())
+}
+
+/// As [`parse`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, FormatError> {
     if bytes.is_empty() {
         return Err(Place::Byte(0).error(Fault::Empty));
     }
@@ -58,8 +68,14 @@ pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
         let mut line_words = words(line);
         match line_words.next() {
             None => {}
-            Some(b"v") => vertices.push(finite_triple(line_words, lines.number)?.into()),
-            Some(b"f") => faces.push(line_words, vertices.len(), lines.number)?,
+            Some(b"v") => {
+                limits.check_points(vertices.len() + 1, lines.place())?;
+                vertices.push(finite_triple(line_words, lines.number)?.into());
+            }
+            Some(b"f") => {
+                faces.push(line_words, vertices.len(), lines.number)?;
+                limits.check_triangles(faces.triangles.len(), lines.place())?;
+            }
             Some(keyword) if PASSED_OVER.contains(&keyword) => {}
             Some(_) if lines.number == 1 && two_counts(line).is_some() => counts = two_counts(line),
             Some(_) => {

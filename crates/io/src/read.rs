@@ -1,11 +1,16 @@
 //! Files by their extension: opens, parses, converts to metres.
 
-use std::{fs, path::Path};
+use std::{
+    fs::File,
+    io::{self, Read as _},
+    path::Path,
+};
 
 use cloudtouch_geom::{PointCloud, TriangleMesh};
 
 use crate::{
     error::{Fault, FormatError, Place, ReadError},
+    limits::ReadLimits,
     obj, pcd, ply, stl,
     unit::LengthUnit,
     xyz,
@@ -27,19 +32,30 @@ pub enum Geometry {
 /// # Errors
 /// When the file cannot be opened, has another extension, or is malformed; see [`Fault`].
 pub fn read_cloud(path: impl AsRef<Path>) -> Result<PointCloud, ReadError> {
+    read_cloud_within(path, &ReadLimits::default())
+}
+
+/// As [`read_cloud`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`read_cloud`].
+pub fn read_cloud_within(
+    path: impl AsRef<Path>,
+    limits: &ReadLimits,
+) -> Result<PointCloud, ReadError> {
     let path = path.as_ref();
     let parse: Parser<PointCloud> = match extension(path).as_str() {
-        "pcd" => pcd::parse,
-        "ply" => |bytes| {
-            Ok(match ply::parse(bytes)? {
+        "pcd" => pcd::parse_within,
+        "ply" => |bytes, limits| {
+            Ok(match ply::parse_within(bytes, limits)? {
                 Geometry::Cloud(cloud) => cloud,
                 Geometry::Mesh(mesh) => PointCloud::from_points(mesh.vertices().to_vec()),
             })
         },
-        "xyz" | "txt" | "csv" => xyz::parse,
+        "xyz" | "txt" | "csv" => xyz::parse_within,
         _ => return Err(unsupported(path, ".pcd, .ply, .xyz, .txt, .csv (point clouds)")),
     };
-    read(path, parse)
+    read(path, parse, limits)
 }
 
 /// Reads a triangle mesh and converts it from `unit` to metres: `.stl`, `.obj` or `.ply`.
@@ -51,17 +67,29 @@ pub fn read_cloud(path: impl AsRef<Path>) -> Result<PointCloud, ReadError> {
 /// When the file cannot be opened, has another extension, is malformed, has no faces or a
 /// coordinate that is not finite; see [`Fault`].
 pub fn read_mesh(path: impl AsRef<Path>, unit: LengthUnit) -> Result<TriangleMesh, ReadError> {
+    read_mesh_within(path, unit, &ReadLimits::default())
+}
+
+/// As [`read_mesh`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_mesh_within(
+    path: impl AsRef<Path>,
+    unit: LengthUnit,
+    limits: &ReadLimits,
+) -> Result<TriangleMesh, ReadError> {
     let path = path.as_ref();
     let parse: Parser<TriangleMesh> = match extension(path).as_str() {
-        "stl" => stl::parse,
-        "obj" => obj::parse,
-        "ply" => |bytes| match ply::parse(bytes)? {
+        "stl" => stl::parse_within,
+        "obj" => obj::parse_within,
+        "ply" => |bytes, limits| match ply::parse_within(bytes, limits)? {
             Geometry::Mesh(mesh) => Ok(mesh),
             Geometry::Cloud(_) => Err(Place::Line(1).error(Fault::NoTriangles)),
         },
         _ => return Err(unsupported(path, ".stl, .obj, .ply (meshes)")),
     };
-    Ok(read(path, parse)?.scaled(unit.in_metres()))
+    Ok(read(path, parse, limits)?.scaled(unit.in_metres()))
 }
 
 /// Reads a cloud or a mesh, whichever the file holds, and converts it from `unit` to metres.
@@ -72,28 +100,64 @@ pub fn read_mesh(path: impl AsRef<Path>, unit: LengthUnit) -> Result<TriangleMes
 /// # Errors
 /// As [`read_cloud`] and [`read_mesh`].
 pub fn read_geometry(path: impl AsRef<Path>, unit: LengthUnit) -> Result<Geometry, ReadError> {
+    read_geometry_within(path, unit, &ReadLimits::default())
+}
+
+/// As [`read_geometry`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`read_geometry`].
+pub fn read_geometry_within(
+    path: impl AsRef<Path>,
+    unit: LengthUnit,
+    limits: &ReadLimits,
+) -> Result<Geometry, ReadError> {
     let path = path.as_ref();
     let parse: Parser<Geometry> = match extension(path).as_str() {
-        "pcd" => |bytes| pcd::parse(bytes).map(Geometry::Cloud),
-        "xyz" | "txt" | "csv" => |bytes| xyz::parse(bytes).map(Geometry::Cloud),
-        "stl" => |bytes| stl::parse(bytes).map(Geometry::Mesh),
-        "obj" => |bytes| obj::parse(bytes).map(Geometry::Mesh),
-        "ply" => ply::parse,
+        "pcd" => |bytes, limits| pcd::parse_within(bytes, limits).map(Geometry::Cloud),
+        "xyz" | "txt" | "csv" => {
+            |bytes, limits| xyz::parse_within(bytes, limits).map(Geometry::Cloud)
+        }
+        "stl" => |bytes, limits| stl::parse_within(bytes, limits).map(Geometry::Mesh),
+        "obj" => |bytes, limits| obj::parse_within(bytes, limits).map(Geometry::Mesh),
+        "ply" => ply::parse_within,
         _ => return Err(unsupported(path, ".pcd, .ply, .xyz, .txt, .csv, .stl, .obj")),
     };
     let factor = unit.in_metres();
-    Ok(match read(path, parse)? {
+    Ok(match read(path, parse, limits)? {
         Geometry::Cloud(cloud) => Geometry::Cloud(scaled(cloud, factor)),
         Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(factor)),
     })
 }
 
-type Parser<T> = fn(&[u8]) -> Result<T, FormatError>;
+type Parser<T> = fn(&[u8], &ReadLimits) -> Result<T, FormatError>;
 
-fn read<T>(path: &Path, parse: Parser<T>) -> Result<T, ReadError> {
-    let bytes = fs::read(path).map_err(|cause| ReadError::Io { path: path.to_owned(), cause })?;
-    parse(&bytes)
+fn read<T>(path: &Path, parse: Parser<T>, limits: &ReadLimits) -> Result<T, ReadError> {
+    let bytes = read_bytes(path, limits.bytes)?;
+    parse(&bytes, limits)
         .map_err(|problem| ReadError::Format { path: path.to_owned(), problem: Box::new(problem) })
+}
+
+/// The contents of a file of at most `limit` bytes.
+///
+/// The limit holds whatever the file system says of its size: a device or a pipe has none.
+///
+/// # Errors
+/// When it cannot be opened or read, or has more bytes.
+pub fn read_bytes(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, ReadError> {
+    let path = path.as_ref();
+    let failed = |cause| ReadError::Io { path: path.to_owned(), cause };
+    let too_large = || ReadError::TooLarge { path: path.to_owned(), limit };
+    let file = File::open(path).map_err(failed)?;
+    let size = file.metadata().map_err(failed)?.len();
+    if size > limit {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    let expected = usize::try_from(size).unwrap_or(usize::MAX);
+    bytes.try_reserve_exact(expected).map_err(|_| failed(io::ErrorKind::OutOfMemory.into()))?;
+    let read = file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+    if read as u64 > limit { Err(too_large()) } else { Ok(bytes) }
 }
 
 fn extension(path: &Path) -> String {

@@ -4,6 +4,7 @@ use cloudtouch_geom::{Point3, TriangleMesh};
 
 use crate::{
     error::{Fault, FormatError, Place},
+    limits::ReadLimits,
     scalar::{ByteOrder, Scalar},
     text::{Lines, excerpt, finite_triple, is_padding, words},
 };
@@ -21,16 +22,25 @@ const RECORD: usize = 50;
 ///
 /// # Errors
 /// When the file is cut off or goes on after the triangles it counts, has no triangles, a facet
-/// without three corners, or a coordinate that is no finite number.
+/// without three corners, a coordinate that is no finite number, or more triangles than the default
+/// [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
+    parse_within(bytes, &ReadLimits::default())
+}
+
+/// As [`parse`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, FormatError> {
     if bytes.is_empty() {
         return Err(Place::Byte(0).error(Fault::Empty));
     }
     let start = &bytes[..bytes.len().min(1024)];
     let corners = if start.iter().any(|&b| b.is_ascii_control() && !b.is_ascii_whitespace()) {
-        binary_corners(bytes)?
+        binary_corners(bytes, limits)?
     } else {
-        ascii_corners(bytes)?
+        ascii_corners(bytes, limits)?
     };
     let Ok(count) = u32::try_from(corners.len()) else {
         return Err(Place::Byte(0).error(Fault::TooManyVertices { found: corners.len() }));
@@ -41,7 +51,7 @@ pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
         .map_err(|_| Place::Byte(0).error(Fault::NoTriangles))
 }
 
-fn binary_corners(bytes: &[u8]) -> Result<Vec<Point3>, FormatError> {
+fn binary_corners(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3>, FormatError> {
     let Some((header, body)) = bytes.split_at_checked(HEADER) else {
         let end = Fault::UnexpectedEnd { expected: "the rest of the binary header" };
         return Err(Place::Byte(bytes.len()).error(end));
@@ -54,6 +64,7 @@ fn binary_corners(bytes: &[u8]) -> Result<Vec<Point3>, FormatError> {
     if !is_padding(&body[needed..]) {
         return Err(Place::Byte(HEADER + needed).error(Fault::Leftover { promised }));
     }
+    limits.check_triangles(promised, Place::Byte(HEADER - 4))?;
     let mut corners = Vec::with_capacity(3 * promised);
     for (triangle, record) in body[..needed].chunks_exact(RECORD).enumerate() {
         for corner in 1..4 {
@@ -73,7 +84,7 @@ fn binary_corners(bytes: &[u8]) -> Result<Vec<Point3>, FormatError> {
     Ok(corners)
 }
 
-fn ascii_corners(bytes: &[u8]) -> Result<Vec<Point3>, FormatError> {
+fn ascii_corners(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3>, FormatError> {
     let mut lines = Lines::new(bytes);
     let mut corners = Vec::new();
     // How many corners the current facet has so far, and whether a solid is open.
@@ -92,6 +103,7 @@ fn ascii_corners(bytes: &[u8]) -> Result<Vec<Point3>, FormatError> {
             (b"endsolid", None) => solid = false,
             (b"facet", None) => facet = Some(0),
             (b"vertex", Some(count)) => {
+                limits.check_triangles(corners.len() / 3 + 1, place)?;
                 corners.push(finite_triple(line_words, lines.number)?.into());
                 facet = Some(count + 1);
             }

@@ -5,6 +5,7 @@ use cloudtouch_geom::PointCloud;
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
     error::{Fault, FormatError, Place},
+    limits::ReadLimits,
     text::{Lines, excerpt, number, parse as parse_number, words},
 };
 
@@ -18,8 +19,17 @@ use crate::{
 ///
 /// # Errors
 /// When there is nothing but comments, a column is missing or named twice, a row is too short, a
-/// value is no number, or a covariance is none.
+/// value is no number, a covariance is none, or there
+/// are more points than the default [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
+    parse_within(bytes, &ReadLimits::default())
+}
+
+/// As [`parse`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, FormatError> {
     // Spreadsheets begin their text files with a byte order mark.
     let mut lines = Lines::new(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
     let first = next_row(&mut lines).ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
@@ -37,7 +47,7 @@ pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
     wanted.sort_unstable();
     let expected = wanted.last().map_or(0, |&(column, _)| column + 1);
 
-    let mut cloud = CloudBuilder::new(&columns, 0);
+    let mut cloud = CloudBuilder::new(&columns, 0, limits);
     while let Some(line) = pending.take().or_else(|| next_row(&mut lines)) {
         let mut row: Row = Default::default();
         let mut targets = wanted.iter().peekable();

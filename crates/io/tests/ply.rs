@@ -206,3 +206,13 @@ fn binary_files_cut_off_or_too_long_are_named_by_byte() {
     assert!(matches!(promise(&whole), (Place::Line(3), Fault::TooShort { .. })));
     assert!(matches!(promise(SQUARE.as_bytes()), (_, Fault::FewRows { .. })));
 }
+
+#[test]
+fn vertices_without_coordinates_are_no_cloud() {
+    // They would take no bytes, so that any number of them could be promised.
+    let text = "ply\nformat ascii 1.0\nelement vertex 1000000000000\nend_header\n";
+    assert_eq!(
+        ply::parse(text.as_bytes()).unwrap_err().to_string(),
+        "line 3: there is no column x: it needs x, y, z, and all six of cov_* or none"
+    );
+}

@@ -20,6 +20,17 @@ pub enum PrepareError {
         /// What each stage removed.
         stages: String,
     },
+    /// A coordinate is so large that squares and volumes leave the range of `f64`.
+    #[error(
+        "point {index} has the coordinate {value:e}, beyond 1e50 m: check the unit, or remove the \
+         point"
+    )]
+    CoordinateRange {
+        /// Which point kept by the filter, or vertex of the merged mesh, from 0.
+        index: usize,
+        /// What was found, m.
+        value: f64,
+    },
     /// A covariance of the input is not one.
     #[error("point {index}: {source}")]
     Covariance {
@@ -56,6 +67,19 @@ pub enum PrepareError {
         /// What the library said.
         reason: String,
     },
+}
+
+/// A mesh takes more parts than allowed to be sampled as densely as asked.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "samples of the mesh at a spacing of {spacing} m take more than {max_parts} triangles: sample \
+     it less densely, or raise the limit on parts"
+)]
+pub struct SubdivisionError {
+    /// Longest edge wanted, m.
+    pub spacing: f64,
+    /// Triangles allowed, before and after splitting.
+    pub max_parts: usize,
 }
 
 /// A query setting that is out of range.
@@ -121,12 +145,15 @@ pub enum SettingsError {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum QueryError {
-    /// The pose has an entry that is NaN or infinite.
-    #[error("the pose contains {value}: every entry must be finite")]
+    /// The pose has an entry that is NaN, infinite, or a translation beyond 1e50 m.
+    #[error("the pose contains {value:e}: every entry must be finite, and at most 1e50 m")]
     Pose {
         /// What was found.
         value: f64,
     },
+    /// A mesh cannot be sampled as densely as the cloud that it faces.
+    #[error(transparent)]
+    Subdivision(#[from] SubdivisionError),
     /// The trees could not be traversed.
     #[error(transparent)]
     Tree(#[from] TreeError),

@@ -7,11 +7,12 @@ mod error;
 mod filter;
 mod mesh;
 mod query;
+mod range;
 mod report;
 
 pub use body::{Body, BodyRef};
 pub use cloud::{Cloud, CloudSettings};
-pub use error::{PrepareError, QueryError, SettingsError};
+pub use error::{PrepareError, QueryError, SettingsError, SubdivisionError};
 pub use filter::{
     FilterError, FilterSettings, Filtered, OutlierSettings, SelfMesh, StageReport, VeilSettings,
     filter,
@@ -28,6 +29,10 @@ pub use cloudtouch_noise as noise;
 
 /// Points with a smaller probability are not listed one by one.
 pub const POINT_FLOOR: f64 = 1e-6;
+
+/// Triangles that a mesh is split into at most where nothing else is said: their points take about
+/// 500 MB.
+pub const MAX_MESH_PARTS: usize = 5_000_000;
 
 /// Contacts with a smaller probability are not reported.
 pub const CONTACT_FLOOR: f64 = 0.01;

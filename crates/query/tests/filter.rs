@@ -325,3 +325,24 @@ fn stages_with_nothing_to_work_on_remove_nothing() {
     let same = PointCloud::from_points(vec![Point3::new(0.0, 0.0, 1.0); 30]);
     assert_eq!(filter(&same, &settings).unwrap().cloud.len(), 30);
 }
+
+#[test]
+fn lists_of_different_lengths_are_refused() {
+    let refused = |cloud: &PointCloud| filter(cloud, &off()).unwrap_err();
+    for covariances in [0, 99, 101] {
+        let mut cloud = PointCloud::from_points(grid(100));
+        cloud.covariances = Some(vec![Covariance::zero(); covariances]);
+        assert_eq!(
+            refused(&cloud),
+            FilterError::Count { what: "covariances", count: covariances, points: 100 }
+        );
+    }
+    for (width, height) in [(20, 4), (0, 0), (usize::MAX, 2)] {
+        let mut cloud = PointCloud::from_points(grid(100));
+        cloud.image_size = Some((width, height));
+        let error = FilterError::ImageSize { points: 100, width, height };
+        assert_eq!(refused(&cloud), error);
+        let settings = CloudSettings::new(SensorModel::Exact, Mode::Calibrated);
+        assert_eq!(Cloud::prepare(&cloud, &settings).unwrap_err(), PrepareError::Filter(error));
+    }
+}

@@ -20,7 +20,7 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
         "cloudtouch" => {
             &["cloudtouch-geom", "cloudtouch-noise", "cloudtouch-svm", "cloudtouch-bvh"]
         }
-        "cloudtouch-cli" | "cloudtouch-benches" | "xtask" => &[
+        "cloudtouch-cli" | "cloudtouch-benches" | "cloudtouch-fuzzing" | "xtask" => &[
             "cloudtouch-geom",
             "cloudtouch-noise",
             "cloudtouch-svm",

@@ -25,7 +25,7 @@ type Answer = Result<Report, String>;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     let query = Query::new(arguments.common.query_settings())?;
-    let file = case_file::read(&arguments.cases)?;
+    let file = case_file::read(&arguments.cases, arguments.common.limits.read_limits().bytes)?;
     let bodies = prepare_all(arguments, file.cases.iter().filter_map(|(_, c)| c.as_ref().ok()));
     let progress = progress_bar(file.cases.len(), "queries");
     let answers: Vec<Answer> = file

@@ -16,10 +16,11 @@ use crate::print;
 const SPACING_SAMPLE: usize = 500;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
-    let text = match load::geometry(&arguments.file, arguments.unit)? {
-        Geometry::Cloud(cloud) => describe_cloud(&cloud)?,
-        Geometry::Mesh(mesh) => describe_mesh(&mesh),
-    };
+    let text =
+        match load::geometry(&arguments.file, arguments.unit, &arguments.limits.read_limits())? {
+            Geometry::Cloud(cloud) => describe_cloud(&cloud)?,
+            Geometry::Mesh(mesh) => describe_mesh(&mesh),
+        };
     print::to_stdout(&format!("{}\n{text}\n", arguments.file.display()))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -17,6 +17,8 @@ pub(super) struct Header {
     /// Where the FIELDS are, for errors about them.
     pub(super) fields_place: Place,
     pub(super) points: usize,
+    /// Where their number is, for errors about it.
+    pub(super) points_place: Place,
     pub(super) image_size: Option<(usize, usize)>,
     pub(super) sensor_origin: Point3,
     pub(super) data: Data,
@@ -60,6 +62,10 @@ struct Entry<'a> {
 }
 
 impl Entry<'_> {
+    fn place(&self) -> Place {
+        Place::Line(self.line)
+    }
+
     fn bad(&self, found: &[u8], expected: &'static str) -> FormatError {
         Place::Line(self.line).error(Fault::BadEntry {
             entry: self.name,
@@ -138,6 +144,10 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<Header, FormatError> {
         fields,
         fields_place: Place::Line(names.line),
         points,
+        points_place: entries
+            .get("POINTS")
+            .or(entries.get("WIDTH"))
+            .map_or(entries.end, Entry::place),
         image_size,
         sensor_origin: match entries.get("VIEWPOINT") {
             Some(entry) => finite_triple(words(entry.text), entry.line)?.into(),

@@ -8,6 +8,7 @@ use super::header::{self, Data, Field, Header};
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
     error::{Fault, FormatError, Place},
+    limits::ReadLimits,
     scalar::{ByteOrder, Scalar},
     text::{Lines, is_padding, number, words},
 };
@@ -25,8 +26,17 @@ const LARGEST_EXPANSION: usize = 88;
 ///
 /// # Errors
 /// When the header lacks or contradicts something, the file is shorter than it promises (found
-/// before memory is taken), a value is no number, or a covariance is none.
+/// before memory is taken), a value is no number, a covariance is none, or there are more points
+/// than the default [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
+    parse_within(bytes, &ReadLimits::default())
+}
+
+/// As [`parse`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, FormatError> {
     let mut lines = Lines::new(bytes);
     let header = header::read(&mut lines)?;
     let columns = find_columns(header.fields.iter().map(|field| field.name.as_str()))
@@ -39,9 +49,9 @@ pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
         }));
     }
     let cloud = match header.data {
-        Data::Ascii => parse_ascii(&header, &columns, lines),
-        Data::Binary => parse_binary(&header, &columns, lines),
-        Data::BinaryCompressed => parse_compressed(&header, &columns, lines),
+        Data::Ascii => parse_ascii(&header, &columns, lines, limits),
+        Data::Binary => parse_binary(&header, &columns, lines, limits),
+        Data::BinaryCompressed => parse_compressed(&header, &columns, lines, limits),
     }?;
     Ok(PointCloud { image_size: header.image_size, sensor_origin: header.sensor_origin, ..cloud })
 }
@@ -50,6 +60,7 @@ fn parse_ascii(
     header: &Header,
     columns: &[usize],
     mut lines: Lines<'_>,
+    limits: &ReadLimits,
 ) -> Result<PointCloud, FormatError> {
     // Which word of a row goes where, in the order of the words.
     let word_of = |field: usize| {
@@ -62,7 +73,7 @@ fn parse_ascii(
 
     // A number and its separator take two bytes.
     let capacity = header.points.min(lines.rest().len() / expected.saturating_mul(2) + 1);
-    let mut cloud = CloudBuilder::new(columns, capacity);
+    let mut cloud = CloudBuilder::new(columns, capacity, limits);
     while let Some(line) = lines.next_filled() {
         if line.starts_with(b"#") {
             continue;
@@ -97,6 +108,7 @@ fn parse_binary(
     header: &Header,
     columns: &[usize],
     lines: Lines<'_>,
+    limits: &ReadLimits,
 ) -> Result<PointCloud, FormatError> {
     let (body, start) = (lines.rest(), lines.position);
     let record = size_of_fields(&header.fields);
@@ -106,32 +118,39 @@ fn parse_binary(
         return Err(Place::Byte(start).error(Fault::TooShort { promised, needed, available }));
     };
     check_end(header, rest, start + needed)?;
+    limits.check_points(header.points, header.points_place)?;
     let columns = columns.iter().map(|&field| Column {
         start: size_of_fields(&header.fields[..field]),
         stride: record,
         scalar: header.fields[field].scalar,
     });
-    gather(body, header.points, &columns.collect::<Vec<_>>(), |row| start + row * record)
+    gather(body, header.points, &columns.collect::<Vec<_>>(), limits, |row| start + row * record)
 }
 
 fn parse_compressed(
     header: &Header,
     columns: &[usize],
     lines: Lines<'_>,
+    limits: &ReadLimits,
 ) -> Result<PointCloud, FormatError> {
     let start = lines.position;
-    let body = unpack(header, lines.rest(), start)?;
+    let body = unpack(header, lines.rest(), start, limits)?;
     // Unpacked, each field is stored for all points before the next one begins.
     let columns = columns.iter().map(|&field| Column {
         start: size_of_fields(&header.fields[..field]).saturating_mul(header.points),
         stride: header.fields[field].scalar.size(),
         scalar: header.fields[field].scalar,
     });
-    gather(&body, header.points, &columns.collect::<Vec<_>>(), |_| start)
+    gather(&body, header.points, &columns.collect::<Vec<_>>(), limits, |_| start)
 }
 
 /// The uncompressed fields; as long as the header says.
-fn unpack<'a>(header: &Header, body: &'a [u8], start: usize) -> Result<Cow<'a, [u8]>, FormatError> {
+fn unpack<'a>(
+    header: &Header,
+    body: &'a [u8],
+    start: usize,
+    limits: &ReadLimits,
+) -> Result<Cow<'a, [u8]>, FormatError> {
     if header.points == 0 {
         check_end(header, body, start)?;
         return Ok(Cow::Borrowed(&[]));
@@ -154,6 +173,8 @@ fn unpack<'a>(header: &Header, body: &'a [u8], start: usize) -> Result<Cow<'a, [
     if size > packed_size.saturating_mul(LARGEST_EXPANSION) {
         return Err(damaged("is too short to unpack to the size it announces"));
     }
+    limits.check_points(header.points, header.points_place)?;
+    limits.check_unpacked(size, Place::Byte(start))?;
     // The unpacker counts with 32-bit signed numbers.
     if size > i32::MAX as usize {
         return Err(damaged("unpacks to more than 2 GiB"));
@@ -179,10 +200,11 @@ fn gather(
     bytes: &[u8],
     points: usize,
     columns: &[Column],
+    limits: &ReadLimits,
     byte_of_row: impl Fn(usize) -> usize,
 ) -> Result<PointCloud, FormatError> {
     let indices: Vec<usize> = (0..columns.len()).collect();
-    let mut cloud = CloudBuilder::new(&indices, points);
+    let mut cloud = CloudBuilder::new(&indices, points, limits);
     let mut values: Row = Default::default();
     for row in 0..points {
         for (value, column) in values.iter_mut().zip(columns) {

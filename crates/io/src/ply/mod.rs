@@ -5,5 +5,5 @@ mod header;
 mod parse;
 mod write;
 
-pub use parse::parse;
+pub use parse::{parse, parse_within};
 pub use write::{write_cloud_ply, write_colored_ply};

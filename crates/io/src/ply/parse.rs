@@ -9,6 +9,7 @@ use super::{
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
     error::{Fault, FormatError, Place},
+    limits::ReadLimits,
     read::Geometry,
     scalar::Scalar,
     text::{Lines, is_padding},
@@ -23,8 +24,17 @@ use crate::{
 /// # Errors
 /// When the header is malformed, the file is shorter than it promises (found before memory is
 /// taken) or goes on, a value is no number, a covariance is none, a vertex of a mesh is not
-/// finite, or a face names a vertex that is not there.
+/// finite, a face names a vertex that is not there, or there is more than the default
+/// [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<Geometry, FormatError> {
+    parse_within(bytes, &ReadLimits::default())
+}
+
+/// As [`parse`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<Geometry, FormatError> {
     let mut lines = Lines::new(bytes);
     let header = header::read(&mut lines)?;
     let vertex_element = header
@@ -43,11 +53,13 @@ pub fn parse(bytes: &[u8]) -> Result<Geometry, FormatError> {
     let mut body = Body::new(bytes, lines, header.byte_order);
     let mut cloud = PointCloud::default();
     let mut triangles = Vec::new();
-    for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
+    // Rows without properties take no bytes: any number of them may be promised.
+    let is_read = |e: &&Element| !e.properties.is_empty() || e.name == "vertex";
+    for element in header.elements.iter().filter(is_read) {
         check_length(element, &body)?;
         match element.name.as_str() {
-            "vertex" => cloud = read_vertices(element, &mut body, is_mesh)?,
-            "face" => triangles = read_faces(element, &mut body, vertices)?,
+            "vertex" => cloud = read_vertices(element, &mut body, is_mesh, limits)?,
+            "face" => triangles = read_faces(element, &mut body, vertices, limits)?,
             _ => skip(element, &mut body)?,
         }
     }
@@ -81,6 +93,7 @@ fn read_vertices(
     element: &Element,
     body: &mut Body<'_>,
     must_be_finite: bool,
+    limits: &ReadLimits,
 ) -> Result<PointCloud, FormatError> {
     let mut columns = find_columns(element.properties.iter().map(|p| p.name.as_str()))
         .map_err(|fault| element.place.error(fault))?;
@@ -91,7 +104,10 @@ fn read_vertices(
     let slots: Vec<Option<usize>> = (0..element.properties.len())
         .map(|property| columns.iter().position(|&column| column == property))
         .collect();
-    let mut cloud = CloudBuilder::new(&columns, capacity(element, body));
+    if body.is_binary() {
+        limits.check_points(element.count, element.place)?;
+    }
+    let mut cloud = CloudBuilder::new(&columns, capacity(element, body), limits);
     let mut values: Row = Default::default();
     for row in 0..element.count {
         body.begin_row(row, element.count)?;
@@ -124,6 +140,7 @@ fn read_faces(
     element: &Element,
     body: &mut Body<'_>,
     vertices: usize,
+    limits: &ReadLimits,
 ) -> Result<Vec<[u32; 3]>, FormatError> {
     if element.count == 0 {
         return Ok(Vec::new());
@@ -137,7 +154,7 @@ fn read_faces(
             .place
             .error(Fault::MissingEntry { entry: "list property vertex_indices among the faces" }));
     }
-    let mut triangles = Vec::with_capacity(capacity(element, body));
+    let mut triangles = Vec::with_capacity(capacity(element, body).min(limits.triangles));
     for row in 0..element.count {
         body.begin_row(row, element.count)?;
         for property in &element.properties {
@@ -159,6 +176,7 @@ fn read_faces(
                         triangles.push([first, last, next]);
                         last = next;
                     }
+                    limits.check_triangles(triangles.len(), body.place())?;
                 }
                 kind => skip_property(kind, body)?,
             }

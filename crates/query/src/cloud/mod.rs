@@ -14,6 +14,7 @@ use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel};
 
 use crate::error::PrepareError;
 use crate::filter::{StageReport, filter};
+use crate::range::check_points;
 
 #[cfg(test)]
 pub(crate) use edge::edges_of;
@@ -47,8 +48,8 @@ impl Cloud {
     /// Filters a cloud, models its sensor, and builds its index and tree.
     ///
     /// # Errors
-    /// When nothing is left after filtering, a covariance is not one, or a setting is out of
-    /// range.
+    /// When nothing is left after filtering, a coordinate is beyond 1e50 m, a covariance is not one,
+    /// or a setting is out of range.
     pub fn prepare(cloud: &PointCloud, settings: &CloudSettings) -> Result<Self, PrepareError> {
         let start = Instant::now();
         let span = tracing::debug_span!("prepare_cloud", points = cloud.len());
@@ -64,6 +65,7 @@ impl Cloud {
                 stages: removed.join(", "),
             });
         };
+        check_points(&kept.points)?;
         let sensor = settings.sensor.covariances(&kept)?;
         if let Some(index) = sensor.iter().position(|c| !c.is_finite()) {
             let source =

@@ -46,18 +46,11 @@ pub struct Filtered {
 /// points, so each can hide a true obstacle; the counts tell how many points that concerns.
 ///
 /// # Errors
-/// When a setting is out of range; see [`FilterError`].
+/// When a setting is out of range, or the cloud does not have a covariance for each point or a point
+/// for each pixel; see [`FilterError`].
 pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered, FilterError> {
     settings.check()?;
-    let counts = [
-        ("covariances", cloud.covariances.as_ref().map(Vec::len)),
-        ("normals", cloud.normals.as_ref().map(Vec::len)),
-    ];
-    for (what, count) in counts {
-        if let Some(count) = count.filter(|&count| count != cloud.len()) {
-            return Err(FilterError::Count { what, count, points: cloud.len() });
-        }
-    }
+    check_lengths(cloud)?;
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
     let finite = |p: &Point3| p.iter().all(|v| v.is_finite());
     run.stage("missing", |cloud, kept| kept.retain(|&i| finite(&cloud.points[i])));
@@ -87,6 +80,25 @@ pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered,
         stages.push(StageReport { stage: "collision map", before, removed });
     }
     Ok(Filtered { cloud: filtered, rows, stages })
+}
+
+fn check_lengths(cloud: &PointCloud) -> Result<(), FilterError> {
+    let points = cloud.len();
+    let counts = [
+        ("covariances", cloud.covariances.as_ref().map(Vec::len)),
+        ("normals", cloud.normals.as_ref().map(Vec::len)),
+    ];
+    for (what, count) in counts {
+        if let Some(count) = count.filter(|&count| count != points) {
+            return Err(FilterError::Count { what, count, points });
+        }
+    }
+    match cloud.image_size {
+        Some((width, height)) if width.checked_mul(height) != Some(points) => {
+            Err(FilterError::ImageSize { points, width, height })
+        }
+        _ => Ok(()),
+    }
 }
 
 struct Run<'a> {

@@ -108,7 +108,7 @@ impl Default for OutlierSettings {
     }
 }
 
-/// A setting of the pipeline that is out of range.
+/// A setting of the pipeline that is out of range, or a cloud whose lists do not fit together.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilterError {
@@ -151,6 +151,19 @@ pub enum FilterError {
         neighbors: usize,
         /// Deviations asked for.
         deviations: f64,
+    },
+    /// The cloud does not have as many points as its image has pixels.
+    #[error(
+        "the cloud has {points} points and an image of {width} x {height}: give one for each pixel, \
+         NaN where there is no return"
+    )]
+    ImageSize {
+        /// How many points.
+        points: usize,
+        /// Pixels in a row.
+        width: usize,
+        /// Rows of the image.
+        height: usize,
     },
     /// The points do not fit into a collision map.
     #[error(transparent)]

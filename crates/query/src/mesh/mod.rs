@@ -12,7 +12,8 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 
-use crate::error::PrepareError;
+use crate::error::{PrepareError, SubdivisionError};
+use crate::range::check_points;
 
 pub(crate) use exact::{ExactPair, exact_pair};
 pub(crate) use signed::{SignedPoint, Wanted, signed_points};
@@ -40,7 +41,7 @@ impl Mesh {
     /// Merges vertices, looks whether the mesh is watertight, and builds its tree.
     ///
     /// # Errors
-    /// When every triangle is degenerate, or the tree cannot be built.
+    /// When every triangle is degenerate, a coordinate is beyond 1e50 m, or the tree cannot be built.
     pub fn prepare(mesh: &TriangleMesh) -> Result<Self, PrepareError> {
         let start = Instant::now();
         let mut merged = mesh.merged();
@@ -50,6 +51,7 @@ impl Mesh {
         if merged.triangles().is_empty() {
             return Err(PrepareError::Mesh(MeshError::Empty));
         }
+        check_points(merged.vertices())?;
         let origin = nalgebra::center(&low, &high).coords;
         let watertight = merged.open_edges() == 0;
         let vertices: Vec<Point3> = merged.vertices().iter().map(|p| p - origin).collect();
@@ -98,8 +100,16 @@ impl Mesh {
     }
 
     /// Points on the surface in the file frame, no farther apart than `spacing` metres along any
-    /// triangle: for pictures.
-    pub fn surface_points(&self, spacing: f64) -> Vec<Point3> {
+    /// triangle: for pictures. A triangle is split into no more than 4¹⁰ parts, however large.
+    ///
+    /// # Errors
+    /// When that takes more than `max_parts` triangles before and after splitting, each of up to
+    /// four points; [`MAX_MESH_PARTS`](crate::MAX_MESH_PARTS) suits most.
+    pub fn surface_points(
+        &self,
+        spacing: f64,
+        max_parts: usize,
+    ) -> Result<Vec<Point3>, SubdivisionError> {
         let everywhere = SampleRegion {
             center: Point3::origin(),
             core: f64::INFINITY,
@@ -107,7 +117,9 @@ impl Mesh {
             spacing,
         };
         let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
-        sample_region(triangles, &everywhere).iter().map(|p| p + self.origin).collect()
+        let mut points = sample_region(triangles, &everywhere, max_parts)?;
+        points.iter_mut().for_each(|p| *p += self.origin);
+        Ok(points)
     }
 
     /// Distance from a point in the mesh's file frame to the surface, m; negative inside a

@@ -3,6 +3,8 @@
 
 use cloudtouch_geom::Point3;
 
+use crate::error::SubdivisionError;
+
 /// Outside the core an edge may be this long for each metre it is away: the farther a sample, the
 /// less its exact place matters to a surface near the cloud leaf.
 const GRADING: f64 = 0.5;
@@ -25,37 +27,61 @@ pub(crate) struct SampleRegion {
 
 /// Vertices and centroid of every part of `triangles` inside the region, after splitting them until
 /// no edge is longer than the spacing.
+///
+/// # Errors
+/// When that takes more than `max_parts` parts, those that were split or left out included; before
+/// more than a few points for each of them are held in memory.
 pub(crate) fn sample_region(
     triangles: impl IntoIterator<Item = [Point3; 3]>,
     region: &SampleRegion,
-) -> Vec<Point3> {
-    let mut points = Vec::new();
+    max_parts: usize,
+) -> Result<Vec<Point3>, SubdivisionError> {
+    let mut samples = Samples { region, points: Vec::new(), parts: 0, max_parts };
     for corners in triangles {
-        split(corners, region, MAX_DEPTH, &mut points);
+        samples.split(corners, MAX_DEPTH);
     }
-    merge_repeated(&mut points);
-    points
+    if samples.parts > max_parts {
+        return Err(SubdivisionError { spacing: region.spacing, max_parts });
+    }
+    merge_repeated(&mut samples.points);
+    Ok(samples.points)
 }
 
-fn split(corners: [Point3; 3], region: &SampleRegion, depth: usize, points: &mut Vec<Point3>) {
-    let [a, b, c] = corners;
-    let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-    let reach = corners.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
-    let away = (centroid - region.center).norm() - reach;
-    if away > region.radius {
-        return;
-    }
-    let limit = region.spacing.max(GRADING * (away - region.core));
-    let longest =
-        [(a, b), (b, c), (c, a)].map(|(p, q)| (p - q).norm()).into_iter().fold(0.0, f64::max);
-    if longest <= limit || depth == 0 {
-        let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
-        points.extend([a, b, c, centroid].into_iter().filter(inside));
-        return;
-    }
-    let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| nalgebra::center(&p, &q));
-    for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-        split(part, region, depth - 1, points);
+/// Samples in the making.
+struct Samples<'a> {
+    region: &'a SampleRegion,
+    points: Vec<Point3>,
+    /// Triangles looked at so far, before and after splitting.
+    parts: usize,
+    max_parts: usize,
+}
+
+impl Samples<'_> {
+    fn split(&mut self, corners: [Point3; 3], depth: usize) {
+        self.parts = self.parts.saturating_add(1);
+        if self.parts > self.max_parts {
+            return;
+        }
+        let (region, points) = (self.region, &mut self.points);
+        let [a, b, c] = corners;
+        let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+        let reach = corners.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
+        let away = (centroid - region.center).norm() - reach;
+        if away > region.radius {
+            return;
+        }
+        let limit = region.spacing.max(GRADING * (away - region.core));
+        let longest =
+            [(a, b), (b, c), (c, a)].map(|(p, q)| (p - q).norm()).into_iter().fold(0.0, f64::max);
+        if longest <= limit || depth == 0 {
+            let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
+            points.extend([a, b, c, centroid].into_iter().filter(inside));
+            return;
+        }
+        let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| nalgebra::center(&p, &q));
+        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            self.split(part, depth - 1);
+        }
     }
 }
 
@@ -69,6 +95,7 @@ fn merge_repeated(points: &mut Vec<Point3>) {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 mod tests {
     use super::*;
 
@@ -81,7 +108,7 @@ mod tests {
             radius: 0.3,
             spacing: 0.1,
         };
-        let points = sample_region([corners], &region);
+        let points = sample_region([corners], &region, 10_000).unwrap();
         assert!(points.len() > 30, "{} points", points.len());
         assert!(points.iter().all(|p| (p - region.center).norm() <= region.radius));
         // No hole: any spot of the disc has a sample within one spacing.
@@ -104,10 +131,30 @@ mod tests {
             spacing: 0.05,
         };
         let graded = SampleRegion { core: 0.1, ..dense };
-        let (dense, graded) = (sample_region([corners], &dense), sample_region([corners], &graded));
+        let (dense, graded) =
+            [dense, graded].map(|r| sample_region([corners], &r, 1_000_000).unwrap()).into();
         assert!(graded.len() * 10 < dense.len(), "{} of {}", graded.len(), dense.len());
         let near = |p: &&Point3| (*p - Point3::new(3.0, 3.0, 0.0)).norm() < 0.1;
         assert_eq!(graded.iter().filter(near).count(), dense.iter().filter(near).count());
+    }
+
+    #[test]
+    fn ten_million_parts_are_refused_before_they_are_held() {
+        let corners = [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
+        let region = |spacing| SampleRegion {
+            center: Point3::origin(),
+            core: f64::INFINITY,
+            radius: f64::INFINITY,
+            spacing,
+        };
+        // Three splits make 64 parts of 85 triangles in all.
+        assert!(sample_region([corners], &region(0.2), 85).is_ok());
+        let error = sample_region([corners], &region(0.2), 84).unwrap_err();
+        assert_eq!(error, SubdivisionError { spacing: 0.2, max_parts: 84 });
+        // Ten triangles, a million parts each.
+        for spacing in [1e-3, 0.0, -1.0, f64::NAN] {
+            assert!(sample_region([corners; 10], &region(spacing), 1000).is_err());
+        }
     }
 
     #[test]
@@ -115,6 +162,6 @@ mod tests {
         let p = Point3::new(1.0, 0.0, 0.0);
         let region =
             SampleRegion { center: Point3::origin(), core: 2.0, radius: 2.0, spacing: 1e-3 };
-        assert_eq!(sample_region([[p, p, p]], &region), vec![p]);
+        assert_eq!(sample_region([[p, p, p]], &region, 1), Ok(vec![p]));
     }
 }

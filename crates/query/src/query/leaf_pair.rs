@@ -5,6 +5,7 @@ use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3, normal};
 
 use crate::body::BodyRef;
 use crate::cloud::{Cloud, Surfel};
+use crate::error::SubdivisionError;
 use crate::mesh::{Mesh, SampleRegion, sample_region};
 use crate::report::Stats;
 
@@ -18,12 +19,16 @@ const MARGIN_DEVIATIONS: f64 = 4.75;
 /// Gathers the points of leaf `leaf_a` of A and leaf `leaf_b` of B in the local frame of A.
 ///
 /// `None` when a side has no point: a mesh leaf whose triangles do not come near the cloud leaf.
+///
+/// # Errors
+/// When a mesh takes more than `max_parts` parts to be sampled as densely as the cloud.
 pub(crate) fn gather(
     (a, leaf_a): (BodyRef<'_>, NodeId),
     (b, leaf_b): (BodyRef<'_>, NodeId),
     a_from_b: &Pose,
+    max_parts: usize,
     stats: &mut Stats,
-) -> Option<PairPoints> {
+) -> Result<Option<PairPoints>, SubdivisionError> {
     let points = match (a, b) {
         (BodyRef::Cloud(a), BodyRef::Cloud(b)) => PairPoints {
             a: cloud_points(a, leaf_a, &Pose::identity(), stats),
@@ -33,18 +38,18 @@ pub(crate) fn gather(
         },
         (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
             let near = cloud_points(cloud, leaf_a, &Pose::identity(), stats);
-            let b = mesh_points(mesh, leaf_b, &near, a_from_b);
+            let b = mesh_points(mesh, leaf_b, &near, a_from_b, max_parts)?;
             PairPoints { a: near, b, a_is_mesh: false, b_is_mesh: true }
         }
         (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
             let near = cloud_points(cloud, leaf_b, a_from_b, stats);
-            let a = mesh_points(mesh, leaf_a, &near, &Pose::identity());
+            let a = mesh_points(mesh, leaf_a, &near, &Pose::identity(), max_parts)?;
             PairPoints { a, b: near, a_is_mesh: true, b_is_mesh: false }
         }
         // Two meshes are tested exactly and never come here.
         (BodyRef::Mesh(_), BodyRef::Mesh(_)) => PairPoints::default(),
     };
-    (!points.a.is_empty() && !points.b.is_empty()).then_some(points)
+    Ok((!points.a.is_empty() && !points.b.is_empty()).then_some(points))
 }
 
 /// No point of a pair that [`gather`] found empty is more probable than this.
@@ -77,18 +82,20 @@ fn mesh_points(
     leaf: NodeId,
     near: &[PairPoint],
     a_from_mesh: &Pose,
-) -> Vec<PairPoint> {
-    let Some(region) = region_around(near, &a_from_mesh.inverse()) else { return Vec::new() };
+    max_parts: usize,
+) -> Result<Vec<PairPoint>, SubdivisionError> {
+    let Some(region) = region_around(near, &a_from_mesh.inverse()) else { return Ok(Vec::new()) };
     let indices = mesh.tree().leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
     let triangles = indices.iter().map(|&t| mesh.corners(t as usize));
-    sample_region(triangles, &region)
+    let points = sample_region(triangles, &region, max_parts)?;
+    Ok(points
         .iter()
         .map(|p| PairPoint {
             index: None,
             point: UncertainPoint::exact(a_from_mesh.transform_point(p)),
             spacing: region.spacing,
         })
-        .collect()
+        .collect())
 }
 
 /// Mean position of some points, of which there must be one.

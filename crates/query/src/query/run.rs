@@ -10,6 +10,7 @@ use crate::body::BodyRef;
 use crate::cloud::Cloud;
 use crate::error::{QueryError, SettingsError};
 use crate::mesh::{Mesh, Wanted, exact_pair, signed_points};
+use crate::range::bad_entry;
 use crate::report::{Report, Stats, Verdict};
 
 use super::calibrated;
@@ -55,8 +56,9 @@ impl Query {
     /// sampled: surface that no point stands for cannot be found in collision.
     ///
     /// # Errors
-    /// When the pose is not finite, or two meshes cannot be tested exactly. A pair that could not be decided is not an error
-    /// but a verdict, and never reads as free.
+    /// When the pose is not finite or beyond 1e50 m, two meshes cannot be tested exactly, or a mesh
+    /// takes more parts than allowed to be sampled as densely as the cloud. A pair that could not be
+    /// decided is not an error but a verdict, and never reads as free.
     pub fn run<'a>(
         &self,
         a: impl Into<BodyRef<'a>>,
@@ -67,7 +69,7 @@ impl Query {
         let (a, b) = (a.into(), b.into());
         let span = tracing::debug_span!("query");
         let _entered = span.enter();
-        if let Some(value) = a_from_b.non_finite_entry() {
+        if let Some(value) = bad_entry(a_from_b) {
             return Err(QueryError::Pose { value });
         }
         let local = a.local_from(&b, a_from_b);
@@ -186,6 +188,7 @@ impl Query {
     ) -> Result<(), QueryError> {
         let settings = &self.settings;
         let mut looked_at = BTreeSet::new();
+        let mut failed = None;
         let outcome =
             traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
                 looked_at.insert((pair.a, pair.b));
@@ -196,15 +199,26 @@ impl Query {
                 };
                 let next = Flow::Above(relevant.max(settings.cull_probability));
                 let stats = &mut evidence.stats;
-                let Some(points) = gather((a, pair.a), (b, pair.b), a_from_b, stats) else {
-                    evidence.widen(leaf_pair::bound_left_out());
-                    return next;
+                let max_parts = settings.max_mesh_parts;
+                let points = match gather((a, pair.a), (b, pair.b), a_from_b, max_parts, stats) {
+                    Ok(Some(points)) => points,
+                    Ok(None) => {
+                        evidence.widen(leaf_pair::bound_left_out());
+                        return next;
+                    }
+                    Err(error) => {
+                        failed = Some(error);
+                        return Flow::Stop;
+                    }
                 };
                 stats.leaf_pairs += 1;
                 let answer = classify(&points, settings, relevant, stats);
                 add_pair((a, b, a_from_b), &points, &answer, evidence);
                 if evidence.largest() > settings.stop_above { Flow::Stop } else { next }
             })?;
+        if let Some(error) = failed {
+            return Err(error.into());
+        }
         evidence.stats.nodes_visited += outcome.nodes_visited;
         evidence.widen(outcome.pending_bound);
         if settings.traversal == Traversal::Certified || outcome.stopped {

@@ -63,6 +63,9 @@ pub struct QuerySettings {
     pub stop_above: f64,
     /// How many contacts are reported at most.
     pub max_contacts: usize,
+    /// How many triangles, before and after splitting, the part of a mesh that faces a leaf of a
+    /// cloud is sampled by at most; a usual part takes some thousands.
+    pub max_mesh_parts: usize,
     /// Seed of the stochastic traversals.
     pub seed: u64,
 }
@@ -100,6 +103,7 @@ impl QuerySettings {
                 Mode::Paper => 0.999,
             },
             max_contacts: 16,
+            max_mesh_parts: 20_000,
             seed: 0,
         }
     }

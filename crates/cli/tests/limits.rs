@@ -1,0 +1,41 @@
+//! Limits on what is read: the error names the file, what was found and the limit.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use support::Inputs;
+
+fn check(inputs: &Inputs, arguments: &[&str], parts: &[&str]) {
+    let run = inputs.run(arguments);
+    let error = run.stderr();
+    assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{arguments:?}: {error}");
+    for part in parts {
+        assert!(error.contains(part), "`{part}` is not in: {error}");
+    }
+}
+
+#[test]
+fn a_header_that_promises_10_to_the_12_points_ends_in_an_error() {
+    let inputs = Inputs::new();
+    let header = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1000000000000\nDATA";
+    inputs.write("binary.pcd", &format!("{header} binary\n"));
+    inputs.write("ascii.pcd", &format!("{header} ascii\n1 2 3\n"));
+    for file in ["binary.pcd", "ascii.pcd"] {
+        check(&inputs, &["info", file], &[file, "promises 1000000000000 rows"]);
+    }
+}
+
+#[test]
+fn each_limit_can_be_set() {
+    let inputs = Inputs::new();
+    let limits = ["--max-points=440", "--max-triangles=11", "--max-bytes=30"];
+    for (limit, file, parts) in [
+        (limits[0], "floor.pcd", &["floor.pcd", "441 points", "440", "limit"][..]),
+        (limits[1], "box.obj", &["box.obj", "12 triangles", "11", "limit"]),
+        (limits[2], "floor.pcd", &["floor.pcd", "more than 30 bytes", "limit"]),
+    ] {
+        check(&inputs, &["info", file, limit], parts);
+        check(&inputs, &["query", "floor.pcd", "box.obj", limit], parts);
+    }
+    check(&inputs, &["batch", "floor.pcd", limits[2]], &["floor.pcd", "more than 30 bytes"]);
+    assert_eq!(inputs.run(&["info", "floor.pcd", "--max-points=441"]).code(), 0);
+}

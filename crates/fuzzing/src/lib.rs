@@ -1,0 +1,23 @@
+#![doc = include_str!("../README.md")]
+
+mod cases;
+mod query;
+mod readers;
+
+pub use cases::case_file;
+pub use query::query;
+pub use readers::{read_obj, read_pcd, read_ply, read_stl, read_xyz};
+
+/// A target: takes bytes, and panics when the code under test does what it must not.
+pub type Target = fn(&[u8]);
+
+/// Every target under the name of its folder of seeds.
+pub const TARGETS: [(&str, Target); 7] = [
+    ("read_pcd", read_pcd),
+    ("read_ply", read_ply),
+    ("read_xyz", read_xyz),
+    ("read_stl", read_stl),
+    ("read_obj", read_obj),
+    ("case_file", case_file),
+    ("query", query),
+];

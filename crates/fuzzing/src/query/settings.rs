@@ -1,0 +1,91 @@
+//! Settings of clouds and queries, in range and out of it.
+
+use arbitrary::{Result, Unstructured};
+use cloudtouch::bvh::{Traversal, TreeSettings};
+use cloudtouch::noise::{Combination, SensorModel};
+use cloudtouch::{CloudSettings, Mode, OutlierSettings, Pooling, QuerySettings, VeilSettings};
+
+use super::numbers::{count, number, setting};
+
+pub(super) fn query_settings(u: &mut Unstructured<'_>) -> Result<QuerySettings> {
+    let mode = if u.arbitrary()? { Mode::Paper } else { Mode::Calibrated };
+    let usual = QuerySettings::new(mode);
+    let traversals = [usual.traversal, Traversal::Certified, Traversal::GapAware, Traversal::Paper];
+    Ok(QuerySettings {
+        accept: setting(u, usual.accept, 0.5, 1.0)?,
+        reject: setting(u, usual.reject, 0.0, 0.5)?,
+        pooling: if u.arbitrary()? { Pooling::NoisyOr } else { Pooling::Max },
+        gamma: setting(u, usual.gamma, 0.0, 1000.0)?,
+        penalty: setting(u, usual.penalty, 0.0, 1e6)?,
+        mesh_penalty_factor: setting(u, usual.mesh_penalty_factor, 0.0, 100.0)?,
+        ellipsoid_radius: setting(u, usual.ellipsoid_radius, 0.0, 10.0)?,
+        relative_gap: setting(u, usual.relative_gap, 1e-9, 1.0)?,
+        traversal: *u.choose(&traversals)?,
+        cull_probability: setting(u, usual.cull_probability, 0.0, 1.0)?,
+        stop_above: setting(u, usual.stop_above, 0.0, 2.0)?,
+        max_contacts: count(u, usual.max_contacts)?,
+        max_mesh_parts: count(u, usual.max_mesh_parts)?,
+        seed: u.arbitrary::<u16>()?.into(),
+        ..usual
+    })
+}
+
+pub(super) fn cloud_settings(u: &mut Unstructured<'_>, mode: Mode) -> Result<CloudSettings> {
+    let mut settings = CloudSettings::new(sensor(u)?, mode);
+    if u.arbitrary()? {
+        // Only half of the inputs spend bytes on what rarely matters.
+        return Ok(settings);
+    }
+    let (filter, noise) = (&mut settings.filter, &mut settings.noise);
+    filter.min_range = setting(u, filter.min_range, 0.0, 1.0)?;
+    filter.max_range = setting(u, filter.max_range, 0.0, 10.0)?;
+    filter.drop_duplicates = u.arbitrary()?;
+    if u.arbitrary()? {
+        let max_angle = setting(u, VeilSettings::default().max_angle, 0.0, 1.6)?;
+        filter.veil = Some(VeilSettings { max_angle });
+    }
+    if u.arbitrary()? {
+        let usual = OutlierSettings::default();
+        filter.outliers = Some(OutlierSettings {
+            neighbors: count(u, usual.neighbors)?,
+            deviations: setting(u, usual.deviations, -1.0, 5.0)?,
+        });
+    }
+    if u.arbitrary()? {
+        filter.collision_map = Some(setting(u, 0.05, 0.0, 1.0)?);
+    }
+    let combinations =
+        [Combination::SurfacePosterior, Combination::Precision, Combination::Convolution];
+    noise.combination = *u.choose(&combinations)?;
+    noise.discretization.neighbors = count(u, noise.discretization.neighbors)?;
+    noise.discretization.width = setting(u, noise.discretization.width, 0.0, 10.0)?;
+    noise.disc_std = setting(u, noise.disc_std, 0.0, 2.0)?;
+    let usual = TreeSettings::default();
+    settings.tree = TreeSettings {
+        max_leaf_points: count(u, usual.max_leaf_points)?,
+        min_leaf_points: count(u, usual.min_leaf_points)?,
+        max_variation: setting(u, usual.max_variation, 0.0, 0.34)?,
+        sibling_overlap: setting(u, usual.sibling_overlap, 0.0, 0.5)?,
+    };
+    Ok(settings)
+}
+
+fn sensor(u: &mut Unstructured<'_>) -> Result<SensorModel> {
+    Ok(match u.arbitrary::<u8>()? % 8 {
+        0 => SensorModel::PerPoint,
+        1 => SensorModel::Exact,
+        2 => SensorModel::Isotropic { std: number(u)?.abs() },
+        3 => SensorModel::Axes { stds: [number(u)?.abs(), number(u)?.abs(), number(u)?] },
+        4 => SensorModel::Stereo {
+            baseline: setting(u, 0.09, 0.0, 1.0)?,
+            focal_px: setting(u, 570.0, 0.0, 1000.0)?,
+            disparity_std: setting(u, 0.2, 0.0, 5.0)?,
+        },
+        5 => SensorModel::Kinect,
+        6 => SensorModel::Lidar {
+            range_std: setting(u, 0.02, 0.0, 1.0)?,
+            beam_rad: setting(u, 0.003, 0.0, 1.0)?,
+        },
+        _ => SensorModel::Grid { resolution: setting(u, 0.05, 0.0, 1.0)? },
+    })
+}

@@ -1,0 +1,81 @@
+//! File readers: any bytes give a cloud or mesh that they back, or an error that says where.
+
+use cloudtouch_io::{FormatError, Geometry, obj, pcd, ply, stl, xyz};
+
+/// What LZF makes of a byte at most; a compressed PCD may hold a point in every unpacked byte.
+const LARGEST_EXPANSION: usize = 88;
+
+/// No message is longer: it holds an excerpt of the file, never the file.
+const LONGEST_MESSAGE: usize = 500;
+
+/// Bytes as a PCD file.
+///
+/// # Panics
+/// When the reader makes more points of them than they can hold, or gives no good error.
+pub fn read_pcd(bytes: &[u8]) {
+    check(bytes, LARGEST_EXPANSION, pcd::parse(bytes).map(Geometry::Cloud));
+}
+
+/// Bytes as a PLY file.
+///
+/// # Panics
+/// As [`read_pcd`].
+pub fn read_ply(bytes: &[u8]) {
+    check(bytes, 1, ply::parse(bytes));
+}
+
+/// Bytes as a table of coordinates.
+///
+/// # Panics
+/// As [`read_pcd`].
+pub fn read_xyz(bytes: &[u8]) {
+    check(bytes, 1, xyz::parse(bytes).map(Geometry::Cloud));
+}
+
+/// Bytes as an STL file.
+///
+/// # Panics
+/// As [`read_pcd`].
+pub fn read_stl(bytes: &[u8]) {
+    check(bytes, 1, stl::parse(bytes).map(Geometry::Mesh));
+}
+
+/// Bytes as an OBJ file.
+///
+/// # Panics
+/// As [`read_pcd`].
+pub fn read_obj(bytes: &[u8]) {
+    check(bytes, 1, obj::parse(bytes).map(Geometry::Mesh));
+}
+
+fn check(bytes: &[u8], points_per_byte: usize, result: Result<Geometry, FormatError>) {
+    let most = points_per_byte * bytes.len();
+    match result {
+        Ok(Geometry::Cloud(cloud)) => {
+            assert!(cloud.len() <= most, "{} points of {} bytes", cloud.len(), bytes.len());
+            if let Some(covariances) = &cloud.covariances {
+                assert_eq!(covariances.len(), cloud.len(), "one covariance for each point");
+                assert!(covariances.iter().all(|c| c.is_finite()), "covariances are finite");
+            }
+            if let Some((width, height)) = cloud.image_size {
+                assert_eq!(
+                    width.checked_mul(height),
+                    Some(cloud.len()),
+                    "one point for each pixel"
+                );
+            }
+            assert!(cloud.sensor_origin.iter().all(|v| v.is_finite()), "the sensor is somewhere");
+        }
+        Ok(Geometry::Mesh(mesh)) => {
+            let (vertices, triangles) = (mesh.vertices().len(), mesh.triangles().len());
+            assert!(vertices <= most && triangles <= most, "{triangles} triangles");
+            assert!(triangles > 0, "a mesh has triangles");
+        }
+        Err(error) => {
+            let message = error.to_string();
+            let place = ["line ", "byte "].iter().any(|start| message.starts_with(start));
+            assert!(place, "no place in: {message}");
+            assert!(message.len() < LONGEST_MESSAGE, "{} bytes of message", message.len());
+        }
+    }
+}
