@@ -89,6 +89,8 @@ const NOISY_SPACINGS: f64 = 1.5;
 const STRIDES: [usize; 2] = [4, 16];
 /// How often a wider neighbourhood is gathered.
 const PASSES: usize = 3;
+/// What the variance of a wide fit is multiplied by: on planes it then is that of the errors.
+const WIDE_INFLATION: f64 = 2.0;
 /// A wider patch may have this many times the variance.
 const WIDER: f64 = 2.0;
 /// The bounds are a hair wider than the clamps, which round.
@@ -244,7 +246,7 @@ impl NoiseModel {
         let Scratch { neighbors, patch, wide_neighbors, wide_patch } = scratch;
         let around = spacing_around(neighbors)?;
         let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
-        let mut found = fit_surface(&patch);
+        let mut found = None;
         if sensor[index].max_std() > NOISY_SPACINGS * around {
             for stride in STRIDES {
                 let mut place = point;
@@ -259,12 +261,19 @@ impl NoiseModel {
                     let Some(surface) = &wide else { break };
                     place = point + surface.normal * surface.height;
                 }
-                if wide.is_some_and(|w| found.is_none_or(|f| w.variance < WIDER * f.variance)) {
+                if wide.is_some_and(|w: Surface| {
+                    found.is_none_or(|f: Surface| w.variance < WIDER * f.variance)
+                }) {
                     found = wide;
                 }
             }
         }
-        let surface = found?;
+        // Three passes still leave some of that agreement, which no residual shows.
+        let inflated = |mut surface: Surface| {
+            surface.variance *= WIDE_INFLATION;
+            surface
+        };
+        let surface = found.map(inflated).or_else(|| fit_surface(&patch))?;
         let normal = surface.normal;
         let spacing = tangential_spacing(&patch, &surface)?.min(spacing_cap);
 

@@ -53,7 +53,7 @@ fn samples_much_denser_than_the_noise_are_averaged_over_a_wider_neighbourhood() 
             .map(|i| model.refine(i, &hoods, &sensor, f64::INFINITY, &mut scratch))
             .collect();
         let left = root_mean_square(refined.iter().map(|r| r.point.mean.z));
-        assert!(left < 0.3 * std, "spacing {spacing}: {left}");
+        assert!(left < 0.45 * std, "spacing {spacing}: {left}");
         let stated =
             root_mean_square(refined.iter().map(|r| r.point.covariance.std_along(&Vector3::z())));
         assert!(left < 1.2 * stated && stated < 0.5 * std, "{left} stated as {stated}");

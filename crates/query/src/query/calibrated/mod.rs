@@ -20,12 +20,13 @@ use crate::cloud::Cloud;
 use crate::error::QueryError;
 use crate::report::{Clearance, Contact};
 
-use super::classify::{PairAnswer, classify};
+use super::classify::PairAnswer;
 use super::estimate::Estimate;
 use super::evidence::Evidence;
 use super::pool::{PointProbability, Side};
 use super::record::{CORRELATION_SPACINGS, add_pair};
 use super::settings::QuerySettings;
+use super::train::{Trust, by_kernel};
 
 use patches::patches;
 pub use recalibration::{ContactEvidence, Recalibration};
@@ -130,7 +131,7 @@ fn ask_classifier(
 ) -> Misclassified {
     let mut misclassified = Misclassified::default();
     for points in patches((a, b), found) {
-        let answer = classify(&points, settings, 0.0, &mut evidence.stats);
+        let answer = by_kernel(&points, settings, (0.0, Trust::Always), &mut evidence.stats);
         match &answer {
             PairAnswer::Separated { a, b, .. } => {
                 let sum = a.iter().chain(b).sum();
