@@ -126,10 +126,10 @@ fn an_early_stop_widens_the_upper_end_only() {
     let b = small_cloud(&scene::sphere(0.05, 2), 150, 0.003, 2);
     let pose = at(0.0, 0.0, 0.04);
     let full = run(flat(), (&a).into(), (&b).into(), &pose);
-    let early = QuerySettings { stop_above: 0.5, ..QuerySettings::default() };
+    let early = QuerySettings { stop_above: 0.92, ..QuerySettings::default() };
     let early = run(early, (&a).into(), (&b).into(), &pose);
     assert!(early.stats.leaf_pairs < full.stats.leaf_pairs, "the search did not stop early");
-    assert!(early.bounds[0] > 0.5 && early.bounds[0] <= full.collision_probability + TOLERANCE);
+    assert!(early.bounds[0] > 0.92 && early.bounds[0] <= full.collision_probability + TOLERANCE);
     assert!(early.bounds[1] >= full.bounds[1] - TOLERANCE, "{:?}, {:?}", early.bounds, full.bounds);
 }
 

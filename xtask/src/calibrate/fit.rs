@@ -8,8 +8,6 @@ use crate::sweep::{measures::fit_logistic, record::Block};
 
 /// Keeps slopes finite where a feature separates the scenes.
 const RIDGE: f64 = 1e-3;
-/// The classifier is asked where geometry says between these; its model is fitted there.
-const DOUBT: [f64; 2] = [0.1, 0.9];
 
 /// Coefficients as `Recalibration::try_new` takes them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -42,26 +40,19 @@ pub(super) fn records<'a>(
     Ok(all)
 }
 
-/// Fits both. A slope that would count evidence the wrong way round is left out.
+/// Fits both on all records: the second on the doubtful ones alone, where it is asked, judged other
+/// families worse. A slope that would count evidence the wrong way round is left out.
 pub(super) fn fit(records: &[Record]) -> Result<Coefficients> {
     let geometry = |e: &ContactEvidence| vec![e.crossing, e.deviations];
     let [intercept, crossing, deviations] = constrained(records, geometry, [1.0, -1.0])?[..] else {
         unreachable!("two features have three coefficients");
     };
     let by_geometry = [intercept, crossing, deviations];
-    let doubtful: Vec<Record> = records
-        .iter()
-        .filter(|r| {
-            let x = intercept + crossing * r.evidence.crossing + deviations * r.evidence.deviations;
-            (DOUBT[0]..=DOUBT[1]).contains(&(1.0 / (1.0 + (-x).exp())))
-        })
-        .copied()
-        .collect();
     let all = |e: &ContactEvidence| {
         let misclassified = e.misclassified.unwrap_or(0.0);
         vec![e.crossing, e.deviations, (misclassified + 0.02).ln()]
     };
-    let by_all = constrained(&doubtful, all, [1.0, -1.0, 1.0])?;
+    let by_all = constrained(records, all, [1.0, -1.0, 1.0])?;
     let by_all = by_all.try_into().map_err(|v| anyhow::anyhow!("four coefficients, not {v:?}"))?;
     Ok(Coefficients { by_geometry, by_all })
 }

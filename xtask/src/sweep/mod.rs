@@ -16,6 +16,7 @@ mod rivals;
 mod settings;
 mod short;
 mod tables;
+mod targets;
 pub(crate) mod variant;
 
 use std::{fs, path::Path};
@@ -78,7 +79,8 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let mut answers = answer::all(&Plan::full(arguments.poses))?;
     calibrate_scores(&mut answers)?;
     answers.write_csv(&folder.join("answers.csv"))?;
-    let mut sections = tables::sections(&answers, &folder)?;
+    let mut sections = vec![targets::section(&answers)];
+    sections.extend(tables::sections(&answers, &folder)?);
     sections.extend(checks()?);
     figures::draw(&answers, &figures)?;
     let text = document::text(root, arguments.poses, &sections)?;

@@ -10,6 +10,9 @@ use crate::{
     sweep::measures::{self, Judged, Measure},
 };
 
+/// Steps of a curve smaller than this share of the figure's side cannot be seen.
+const FINEST: f64 = 1.0 / 300.0;
+
 /// Draws a panel for each group of poses, titled, with one curve for each of its methods.
 ///
 /// All groups have the methods of the first, in the same order; the legend gives the AUC of each
@@ -27,8 +30,7 @@ pub(crate) fn roc(path: &Path, groups: &[(String, &Judged)]) -> Result<()> {
             let (answers, collisions) = judged.counts();
             let series = samples.iter().enumerate().map(|(number, sample)| Series {
                 style: Style { marker: None, ..Style::of_series(number) },
-                points: measures::roc(sample)
-                    .into_iter()
+                points: thinned(&measures::roc(sample))
                     .map(|(x, y)| Point { x, y, range: None })
                     .collect(),
             });
@@ -58,12 +60,34 @@ pub(crate) fn roc(path: &Path, groups: &[(String, &Judged)]) -> Result<()> {
     draw(path, groups.len().max(1), &panels, &names)
 }
 
+/// The points that can be told apart in the figure, the last one among them.
+fn thinned(curve: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> {
+    let mut drawn: Option<(f64, f64)> = None;
+    let last = curve.len().saturating_sub(1);
+    curve.iter().enumerate().filter_map(move |(i, &(x, y))| {
+        let is_apart = drawn.is_none_or(|(u, v)| (x - u).max(y - v) > FINEST);
+        (is_apart || i == last).then(|| {
+            drawn = Some((x, y));
+            (x, y)
+        })
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::{
         super::{lines::tests::drawn, samples},
         *,
     };
+
+    #[test]
+    fn thinning_keeps_both_ends_and_what_can_be_seen() {
+        let curve: Vec<(f64, f64)> = (0..=10_000).map(|i| (1e-4 * f64::from(i), 1.0)).collect();
+        let thin: Vec<_> = thinned(&curve).collect();
+        assert!((200..=302).contains(&thin.len()), "{}", thin.len());
+        assert_eq!((thin.first(), thin.last()), (curve.first(), curve.last()));
+        assert_eq!(thinned(&[]).count(), 0);
+    }
 
     #[test]
     fn each_method_has_a_curve_and_its_areas() {

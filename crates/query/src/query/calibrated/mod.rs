@@ -29,6 +29,7 @@ use super::settings::QuerySettings;
 use super::train::{Trust, by_kernel};
 
 use patches::patches;
+use recalibration::MOST_CERTAIN;
 pub use recalibration::{ContactEvidence, Recalibration};
 use search::{Finding, Found, Leaf, search};
 
@@ -44,7 +45,8 @@ pub(super) fn estimate(
         TraversalSettings { kind: settings.traversal, cull_probability: settings.cull_probability };
     let recalibration = &settings.recalibration;
     let is_enough = |deviations: f64, crossing: f64| {
-        recalibration.by_geometry(deviations, crossing.ln_1p()) > settings.stop_above
+        let probability = recalibration.by_geometry(deviations, crossing.ln_1p());
+        probability > settings.stop_above || is_final(settings, probability)
     };
     let stats = &mut evidence.stats;
     let found = search((a, b), a_from_b, &traversal, settings.seed, is_enough, stats)?;
@@ -85,7 +87,7 @@ fn by_geometry(
     } else {
         settings.recalibration.by_geometry(deviations, crossing)
     };
-    let bounds = if found.is_complete {
+    let bounds = if found.is_complete || is_final(settings, probability) {
         [probability; 2]
     } else if probability > settings.doubt[1] {
         [probability, 1.0]
@@ -93,6 +95,11 @@ fn by_geometry(
         [probability.min(settings.recalibration.by_all(deviations, crossing, 0.0)), 1.0]
     };
     Estimate { probability, bounds, evidence: Some(*evidence) }
+}
+
+/// Whether no further evidence of geometry can change the answer.
+fn is_final(settings: &QuerySettings, by_geometry: f64) -> bool {
+    by_geometry >= MOST_CERTAIN && settings.doubt[1] < MOST_CERTAIN
 }
 
 fn by_all(

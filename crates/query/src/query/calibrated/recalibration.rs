@@ -6,6 +6,9 @@ use crate::error::SettingsError;
 
 /// Deviations beyond this say no more than these.
 pub(crate) const MOST_DEVIATIONS: f64 = 5.3;
+/// Geometry alone is not believed beyond this, so that a search may end there and miss nothing: by
+/// the fits hardly more than one in a hundred such poses is free.
+pub(super) const MOST_CERTAIN: f64 = 0.97;
 /// Keeps the logarithm of no misclassified point finite.
 const MISCLASSIFIED_FLOOR: f64 = 0.02;
 
@@ -42,7 +45,7 @@ pub struct Recalibration {
 
 impl Default for Recalibration {
     fn default() -> Self {
-        Self { by_geometry: [0.607, 0.47, -1.61], by_all: [-0.154, 0.459, -1.139, 0.339] }
+        Self { by_geometry: [0.608, 0.47, -1.611], by_all: [-1.039, 0.416, 0.0, 0.939] }
     }
 }
 
@@ -74,11 +77,11 @@ impl Recalibration {
         }
     }
 
-    /// The probability given the geometry alone. It grows with every crossing found and every
-    /// deviation less.
+    /// The probability given the geometry alone, at most [`MOST_CERTAIN`]. It grows with every
+    /// crossing found and every deviation less.
     pub(super) fn by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
         let [intercept, on_crossing, on_deviations] = self.by_geometry;
-        logistic(intercept + on_crossing * crossing + on_deviations * deviations)
+        logistic(intercept + on_crossing * crossing + on_deviations * deviations).min(MOST_CERTAIN)
     }
 
     /// The probability given the classifier too.
@@ -123,6 +126,7 @@ mod tests {
         let default = Recalibration::default();
         assert!(default.by_geometry(MOST_DEVIATIONS, 0.0) < 0.02);
         assert!(default.by_geometry(0.0, 6.0) > 0.95);
+        assert_eq!(default.by_geometry(0.0, 1e3), MOST_CERTAIN);
         assert!(default.by_all(0.0, 6.0, 30.0) > 0.95);
     }
 }
