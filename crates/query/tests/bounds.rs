@@ -122,9 +122,9 @@ proptest! {
 /// Stopping early keeps a lower end that holds and gives up the upper one.
 #[test]
 fn an_early_stop_widens_the_upper_end_only() {
-    let a = small_cloud(&scene::plane_patch(0.2), 150, 0.003, 1);
-    let b = small_cloud(&scene::sphere(0.05, 2), 150, 0.003, 2);
-    let pose = at(0.0, 0.0, 0.04);
+    let a = small_cloud(&scene::plane_patch(0.2), 600, 0.001, 1);
+    let b = small_cloud(&scene::sphere(0.05, 2), 600, 0.001, 2);
+    let pose = at(0.0, 0.0, 0.02);
     let full = run(flat(), (&a).into(), (&b).into(), &pose);
     let early = QuerySettings { stop_above: 0.92, ..QuerySettings::default() };
     let early = run(early, (&a).into(), (&b).into(), &pose);

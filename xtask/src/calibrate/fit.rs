@@ -48,11 +48,14 @@ pub(super) fn fit(records: &[Record]) -> Result<Coefficients> {
         unreachable!("two features have three coefficients");
     };
     let by_geometry = [intercept, crossing, deviations];
+    // Where the noise is as large as the patches the classifier says nothing.
+    let is_classified = |r: &&Record| r.evidence.misclassified.is_some();
+    let classified: Vec<Record> = records.iter().filter(is_classified).copied().collect();
     let all = |e: &ContactEvidence| {
-        let misclassified = e.misclassified.unwrap_or(0.0);
+        let misclassified = e.misclassified.unwrap_or(f64::NAN);
         vec![e.crossing, e.deviations, (misclassified + 0.02).ln()]
     };
-    let by_all = constrained(records, all, [1.0, -1.0, 1.0])?;
+    let by_all = constrained(&classified, all, [1.0, -1.0, 1.0])?;
     let by_all = by_all.try_into().map_err(|v| anyhow::anyhow!("four coefficients, not {v:?}"))?;
     Ok(Coefficients { by_geometry, by_all })
 }

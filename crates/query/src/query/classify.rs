@@ -7,7 +7,7 @@ use crate::report::Stats;
 
 use super::settings::{Mode, QuerySettings};
 use super::surface::Surface;
-use super::train::{Trust, by_kernel};
+use super::train::by_kernel;
 
 /// A point on one side of a leaf pair, in the local frame of A.
 #[derive(Debug, Clone, Copy)]
@@ -78,7 +78,7 @@ pub(crate) fn classify(
         plane => plane,
     };
     if settings.mode == Mode::Paper {
-        let kernel = by_kernel(points, settings, (known, Trust::Small), stats);
+        let kernel = by_kernel(points, settings, known, stats);
         return match (plane, kernel) {
             (Some(plane), PairAnswer::Indistinct | PairAnswer::Undecided) => plane,
             (_, kernel) => kernel,
@@ -90,10 +90,10 @@ pub(crate) fn classify(
             plane
         }
         Some(plane) => {
-            let kernel = by_kernel(points, settings, (known, Trust::Small), stats);
+            let kernel = by_kernel(points, settings, known, stats);
             if plane.largest() <= kernel.largest() { plane } else { kernel }
         }
-        None => by_kernel(points, settings, (known, Trust::Small), stats),
+        None => by_kernel(points, settings, known, stats),
     }
 }
 

@@ -24,15 +24,6 @@ const TIGHTER: f64 = 1e-2;
 /// tightly a pair is solved must not depend on when the search stops.
 const CERTAIN: f64 = 0.999;
 
-/// Whether a classifier is believed that says apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Trust {
-    /// Where the noise is small beside the pair.
-    Small,
-    /// Always: what it says is one part of the evidence.
-    Always,
-}
-
 /// Trains a classifier and reads the probabilities off it.
 ///
 /// In the calibrated mode an answer above `known` is solved again, tighter, from where it is; not
@@ -40,7 +31,7 @@ pub(super) enum Trust {
 pub(super) fn by_kernel(
     points: &PairPoints,
     settings: &QuerySettings,
-    (known, trust): (f64, Trust),
+    known: f64,
     stats: &mut Stats,
 ) -> PairAnswer {
     stats.kernel_solves += 1;
@@ -55,7 +46,7 @@ pub(super) fn by_kernel(
 
     let sides = all.split_at(points.a.len());
     let first = problem.solve(&loose);
-    let answer = read(&problem, &first, unit_box, trust, sides);
+    let answer = read(&problem, &first, unit_box, sides);
     let counts = settings.mode == Mode::Calibrated
         && !(points.a_is_mesh || points.b_is_mesh)
         && answer.largest() > known
@@ -63,7 +54,7 @@ pub(super) fn by_kernel(
     // A loose tolerance cannot tell a small w from none either.
     let (solution, answer) = if counts || first.status == Status::Collapsed {
         let second = problem.solve_from(&tight, &first);
-        let answer = read(&problem, &second, unit_box, trust, sides);
+        let answer = read(&problem, &second, unit_box, sides);
         (second, answer)
     } else {
         (first, answer)
@@ -96,7 +87,6 @@ fn read(
     problem: &Problem,
     solution: &Solution,
     unit_box: UnitBox,
-    trust: Trust,
     (a, b): (&[UncertainPoint], &[UncertainPoint]),
 ) -> PairAnswer {
     if solution.status == Status::Collapsed {
@@ -108,9 +98,7 @@ fn read(
     let surface = Surface::Kernel(classifier.outside(unit_box));
     let std = typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale();
     match score(surface, a, b) {
-        Some(answer) if trust == Trust::Small && std > TRUSTED_STD && answer.largest() < 0.5 => {
-            PairAnswer::Indistinct
-        }
+        Some(answer) if std > TRUSTED_STD && answer.largest() < 0.5 => PairAnswer::Indistinct,
         Some(answer) => answer,
         None => PairAnswer::Undecided,
     }

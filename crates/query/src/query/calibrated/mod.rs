@@ -26,7 +26,7 @@ use super::evidence::Evidence;
 use super::pool::{PointProbability, Side};
 use super::record::{CORRELATION_SPACINGS, add_pair};
 use super::settings::QuerySettings;
-use super::train::{Trust, by_kernel};
+use super::train::by_kernel;
 
 use patches::patches;
 use recalibration::MOST_CERTAIN;
@@ -57,9 +57,10 @@ pub(super) fn estimate(
     };
     let mut estimate = by_geometry(settings, &found, &of_geometry);
     let [lowest, highest] = settings.doubt;
-    let is_doubtful = (lowest..=highest).contains(&estimate.probability);
-    if is_doubtful && found.is_complete {
-        let misclassified = ask_classifier((a, b), a_from_b, &found, settings, evidence);
+    let is_doubtful = (lowest..=highest).contains(&estimate.probability) && found.is_complete;
+    let answer =
+        is_doubtful.then(|| ask_classifier((a, b), a_from_b, &found, settings, evidence)).flatten();
+    if let Some(misclassified) = answer {
         of_geometry.misclassified = Some(misclassified.value);
         estimate = by_all(recalibration, &of_geometry, &misclassified);
     } else {
@@ -116,49 +117,60 @@ fn by_all(
 }
 
 /// ΣP, largest over the patches, and between what bounds it is known.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Misclassified {
     value: f64,
     bounds: [f64; 2],
 }
 
 impl Misclassified {
-    fn add(&mut self, value: f64, [lower, upper]: [f64; 2]) {
-        self.value = self.value.max(value);
-        self.bounds = [self.bounds[0].max(lower), self.bounds[1].max(upper)];
+    fn known(value: f64) -> Self {
+        Self { value, bounds: [value; 2] }
+    }
+
+    /// Of a patch of so many points that no solver could decide.
+    fn unknown(points: usize) -> Self {
+        let points = points as f64;
+        Self { value: 0.5 * points, bounds: [0.0, points] }
+    }
+
+    fn or_more(self, other: Self) -> Self {
+        let [[low, high], [other_low, other_high]] = [self.bounds, other.bounds];
+        Self {
+            value: self.value.max(other.value),
+            bounds: [low.max(other_low), high.max(other_high)],
+        }
     }
 }
 
+/// What the classifier says of the patches; `None` where the noise is as large as all of them, so
+/// that geometry has to do.
 fn ask_classifier(
     (a, b): (&Cloud, &Cloud),
     a_from_b: &Pose,
     found: &Found<'_>,
     settings: &QuerySettings,
     evidence: &mut Evidence,
-) -> Misclassified {
-    let mut misclassified = Misclassified::default();
+) -> Option<Misclassified> {
+    let (deviations, crossing) = (found.deviations, found.crossing.ln_1p());
+    let mut all: Option<Misclassified> = None;
     for points in patches((a, b), found) {
-        let answer = by_kernel(&points, settings, (0.0, Trust::Always), &mut evidence.stats);
-        match &answer {
-            PairAnswer::Separated { a, b, .. } => {
-                let sum = a.iter().chain(b).sum();
-                misclassified.add(sum, [sum; 2]);
-            }
-            PairAnswer::Indistinct | PairAnswer::Undecided => {
-                let count = (points.a.len() + points.b.len()) as f64;
-                misclassified.add(0.5 * count, [0.0, count]);
-            }
-        }
-        let bodies = (BodyRef::Cloud(a), BodyRef::Cloud(b), a_from_b);
-        add_pair(bodies, &points, &answer, evidence);
-        let (deviations, crossing) = (found.deviations, found.crossing.ln_1p());
+        let answer = by_kernel(&points, settings, 0.0, &mut evidence.stats);
+        let of_patch = match &answer {
+            PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(b).sum()),
+            PairAnswer::Undecided => Misclassified::unknown(points.a.len() + points.b.len()),
+            PairAnswer::Indistinct => continue,
+        };
+        let misclassified = all.unwrap_or_default().or_more(of_patch);
+        all = Some(misclassified);
+        add_pair((BodyRef::Cloud(a), BodyRef::Cloud(b), a_from_b), &points, &answer, evidence);
         let so_far = settings.recalibration.by_all(deviations, crossing, misclassified.value);
         if so_far > settings.doubt[1] {
             // No doubt is left, and further patches could only say more of the same.
             break;
         }
     }
-    misclassified
+    all
 }
 
 /// Adds the place that a finding is about, as geometry sees it.
