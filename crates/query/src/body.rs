@@ -9,6 +9,10 @@ use crate::{Cloud, Mesh};
 
 /// A prepared cloud or mesh, owned.
 #[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a scene has a few bodies, each far larger on the heap"
+)]
 pub enum Body {
     /// A noisy cloud.
     Cloud(Cloud),

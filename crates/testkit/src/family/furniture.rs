@@ -29,7 +29,10 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
         a,
         b,
         touch: Touch::Solids,
-        seen: [Seen::Surface(ExactMesh::new(&seen_a)), Seen::Surface(ExactMesh::new(&seen_b))],
+        seen: [
+            Seen::Surface(Box::new(ExactMesh::new(&seen_a))),
+            Seen::Surface(Box::new(ExactMesh::new(&seen_b))),
+        ],
         motion: Motion::Open { ends, deepest: 0.2 },
     }
 }

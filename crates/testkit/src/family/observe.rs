@@ -40,7 +40,7 @@ pub struct Observation {
 /// How a body is observed.
 pub(super) enum Seen {
     /// Samples of this part of the surface, with noise.
-    Surface(ExactMesh),
+    Surface(Box<ExactMesh>),
     /// Samples of this surface; the body is known, so there is no noise.
     Known(TriangleMesh),
     /// From one side, by a camera.

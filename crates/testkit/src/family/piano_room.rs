@@ -49,8 +49,8 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
         b: piano,
         touch: Touch::Solids,
         seen: [
-            Seen::Surface(ExactMesh::new(&seen_room)),
-            Seen::Surface(ExactMesh::new(&seen_piano)),
+            Seen::Surface(Box::new(ExactMesh::new(&seen_room))),
+            Seen::Surface(Box::new(ExactMesh::new(&seen_piano))),
         ],
         motion: Motion::Open { ends, deepest: 0.2 },
     }

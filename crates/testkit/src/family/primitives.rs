@@ -78,7 +78,10 @@ pub(super) fn wholly_seen(
         a: ExactMesh::new(&a),
         b: ExactMesh::new(&b),
         touch,
-        seen: [Seen::Surface(ExactMesh::new(&a)), Seen::Surface(ExactMesh::new(&b))],
+        seen: [
+            Seen::Surface(Box::new(ExactMesh::new(&a))),
+            Seen::Surface(Box::new(ExactMesh::new(&b))),
+        ],
         motion,
     }
 }

@@ -1,0 +1,47 @@
+//! A cloud that brings its normals is not fitted: they are believed.
+
+mod common;
+
+use cloudtouch::geom::{Point3, PointCloud, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, FilterError, Mode, PrepareError};
+use common::{ask, at};
+
+/// A square of 40 cm, a point every 2 cm, with these normals.
+fn sheet(normal: Vector3) -> PointCloud {
+    let place = |i: usize| Point3::new(0.02 * (i % 20) as f64, 0.02 * (i / 20) as f64, 0.0);
+    let points: Vec<Point3> = (0..400).map(place).collect();
+    PointCloud { normals: Some(vec![normal; points.len()]), ..PointCloud::from_points(points) }
+}
+
+fn prepare(cloud: &PointCloud) -> Result<Cloud, PrepareError> {
+    let sensor = SensorModel::Isotropic { std: 0.0 };
+    Cloud::prepare(cloud, &CloudSettings::new(sensor, Mode::Calibrated))
+}
+
+/// Discs across their normals: sheets 1 cm apart are far from each other, in deviations, when they
+/// lie flat, and reach into each other when every disc is told to stand upright.
+#[test]
+fn discs_lie_across_the_normals_given() {
+    let deviations = |normal| {
+        let cloud = prepare(&sheet(normal)).unwrap();
+        ask(Mode::Calibrated, &cloud, &cloud, &at(0.0, 0.0, 0.01)).evidence.unwrap().deviations
+    };
+    let (flat, upright) = (deviations(Vector3::z()), deviations(Vector3::x()));
+    assert!(flat > 5.0 && upright < 1.5, "flat {flat}, upright {upright}");
+    // Length does not matter.
+    assert_eq!(flat, deviations(Vector3::z() * 2.0));
+}
+
+#[test]
+fn normals_that_are_none_are_refused() {
+    for bad in [Vector3::zeros(), Vector3::new(f64::NAN, 0.0, 1.0)] {
+        let error = prepare(&sheet(bad)).unwrap_err();
+        assert!(matches!(error, PrepareError::Normal { index: 0, .. }), "{error}");
+    }
+    let mut short = sheet(Vector3::z());
+    short.normals = Some(vec![Vector3::z(); 399]);
+    let error = prepare(&short).unwrap_err();
+    let wanted = FilterError::Count { what: "normals", count: 399, points: 400 };
+    assert_eq!(error, PrepareError::Filter(wanted));
+}
