@@ -8,30 +8,29 @@
 mod crossing;
 mod meeting;
 mod patches;
+mod places;
 mod recalibration;
 mod search;
 
 use cloudtouch_bvh::TraversalSettings;
-use cloudtouch_geom::{Pose, Vector3};
+use cloudtouch_geom::Pose;
 
-use crate::CONTACT_FLOOR;
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
 use crate::error::QueryError;
-use crate::report::{Clearance, Contact};
 
 use super::classify::PairAnswer;
 use super::estimate::Estimate;
 use super::evidence::Evidence;
-use super::pool::{PointProbability, Side};
-use super::record::{CORRELATION_SPACINGS, add_pair};
+use super::record::add_pair;
 use super::settings::QuerySettings;
 use super::train::by_kernel;
 
 use patches::patches;
+use places::{add_finding, add_leaves};
 use recalibration::MOST_CERTAIN;
 pub use recalibration::{ContactEvidence, Recalibration};
-use search::{Finding, Found, Leaf, search};
+use search::{Found, search};
 
 /// Estimates how probable a collision of two clouds is; points, contacts and clearance go to
 /// `evidence`.
@@ -171,51 +170,4 @@ fn ask_classifier(
         }
     }
     all
-}
-
-/// Adds the place that a finding is about, as geometry sees it.
-fn add_finding(finding: &Finding, evidence: &mut Evidence) {
-    let meeting = &finding.meeting;
-    let by_gap = cloudtouch_geom::normal::upper_tail(meeting.deviations / std::f64::consts::SQRT_2);
-    let toward = |axis: Vector3| if axis.dot(&finding.toward_b) < 0.0 { -axis } else { axis };
-    let fallback = || finding.toward_b.try_normalize(0.0).unwrap_or_else(Vector3::z);
-    let (place, normal, probability, clearance) = match finding.crossing {
-        Some(found) if found.probability > by_gap => {
-            let clearance = Clearance { mean: -found.depth, std: found.std };
-            (found.place, toward(found.axis), found.probability, clearance)
-        }
-        _ => {
-            let clearance = Clearance { mean: meeting.gap, std: meeting.std };
-            (meeting.place, meeting.normal.unwrap_or_else(fallback), by_gap, clearance)
-        }
-    };
-    evidence.add_clearance(probability, clearance);
-    if probability >= CONTACT_FLOOR {
-        evidence.add_contact(Contact {
-            point: place,
-            normal_a_to_b: normal,
-            probability,
-            clearance_m: clearance.mean,
-        });
-    }
-}
-
-fn add_leaves(found: &Found<'_>, evidence: &mut Evidence) {
-    for (side, leaves) in [(Side::A, &found.leaves_a), (Side::B, &found.leaves_b)] {
-        for leaf in leaves.values() {
-            add_leaf(side, leaf, evidence);
-        }
-    }
-}
-
-fn add_leaf(side: Side, leaf: &Leaf<'_>, evidence: &mut Evidence) {
-    for (surfel, &probability) in leaf.surfels.iter().zip(&leaf.probabilities) {
-        evidence.add_point(PointProbability {
-            side,
-            index: Some(surfel.index),
-            position: surfel.point.mean,
-            probability,
-            correlation_length: CORRELATION_SPACINGS * surfel.spacing,
-        });
-    }
 }
