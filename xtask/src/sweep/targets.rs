@@ -17,8 +17,8 @@ const CAUSES: &str = "Why targets are missed. Sampling: on the piano room, the s
 the furniture the oracle misses the limits too, since overlaps between samples 2 to 4 cm apart show \
 in none of them. Noise of 10 and 20 mm: a surface fitted over several spacings rounds the edges and \
 corners where first contacts are; the oracle has them. Calibration by family: with 32 poses of a \
-family the ECE of a perfect forecaster is about .05 already, and the peg in its hole, two surfaces \
-side by side a centimetre or two apart, does read too high.";
+family the ECE of a perfect forecaster is .06 to .08 already; beyond that the peg in its hole, two \
+surfaces side by side a centimetre or two apart, reads too high.";
 
 /// The table of targets.
 pub(super) fn section(answers: &Answers) -> Section {
