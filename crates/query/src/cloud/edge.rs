@@ -39,13 +39,13 @@ impl Edge {
 pub(crate) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
     let places: BTreeMap<u32, usize> = indices.iter().copied().zip(0..).collect();
     let mut scratch = Scratch::default();
-    let nearest = |index: u32| cloud.neighborhoods.nearest(index as usize, NEIGHBORS);
+    let mut nearest = Nearest { cloud, known: BTreeMap::new() };
     let mut edges = Vec::new();
     for (&p, &place) in &places {
-        for q in nearest(p).iter().map(|neighbor| neighbor.index as u32) {
+        for q in nearest.of(p) {
             let other = places.get(&q).copied();
             let is_second = other.is_some() && q < p;
-            if is_second || !nearest(q).iter().any(|neighbor| neighbor.index as u32 == p) {
+            if q == p || is_second || !nearest.of(q).contains(&p) {
                 continue;
             }
             let from = *cloud.surfel(p, &mut scratch);
@@ -60,6 +60,26 @@ pub(crate) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
         }
     }
     edges
+}
+
+/// The points nearest to points of a leaf; most are asked for several times.
+struct Nearest<'a> {
+    cloud: &'a Cloud,
+    known: BTreeMap<u32, [u32; NEIGHBORS]>,
+}
+
+impl Nearest<'_> {
+    /// With fewer neighbours the point itself fills the rest, to which no edge leads.
+    fn of(&mut self, index: u32) -> [u32; NEIGHBORS] {
+        *self.known.entry(index).or_insert_with(|| {
+            let mut nearest = [index; NEIGHBORS];
+            let found = self.cloud.neighborhoods.nearest(index as usize, NEIGHBORS);
+            for (slot, neighbor) in nearest.iter_mut().zip(found) {
+                *slot = neighbor.index as u32;
+            }
+            nearest
+        })
+    }
 }
 
 fn runs_along(p: &Surfel, q: &Surfel) -> bool {

@@ -21,7 +21,8 @@ const DEVIATIONS_OF_INTEREST: f64 = 1.5;
 #[derive(Debug)]
 pub(super) struct Leaf<'a> {
     pub surfels: Cow<'a, [Surfel]>,
-    edges: Cow<'a, [Edge]>,
+    /// `None` until they are needed.
+    edges: Option<Cow<'a, [Edge]>>,
     /// For each surfel how likely it is to collide, by geometry.
     pub probabilities: Vec<f64>,
 }
@@ -112,18 +113,21 @@ impl<'a> Found<'a> {
         let leaf_a = self.leaves_a.entry(pair.a).or_insert_with(|| {
             let (surfels, computed) = a.leaf(pair.a);
             stats.leaves_prepared += usize::from(computed);
-            Leaf::new(Cow::Borrowed(surfels), Cow::Borrowed(a.leaf_edges(pair.a)))
+            Leaf::new(Cow::Borrowed(surfels))
         });
         let leaf_b = self.leaves_b.entry(pair.b).or_insert_with(|| {
             let (surfels, computed) = b.leaf(pair.b);
             stats.leaves_prepared += usize::from(computed);
             let surfels = surfels.iter().map(|s| transformed(s, a_from_b)).collect();
-            let edges = b.leaf_edges(pair.b).iter().map(|e| e.transformed(a_from_b)).collect();
-            Leaf::new(Cow::Owned(surfels), Cow::Owned(edges))
+            Leaf::new(Cow::Owned(surfels))
         });
         let nearest = nearest_pieces(leaf_a, leaf_b);
         let mut best = None;
         if pair.gap <= REACH_SPACINGS * leaf_a.largest_spacing().max(leaf_b.largest_spacing()) {
+            leaf_a.edges.get_or_insert_with(|| Cow::Borrowed(a.leaf_edges(pair.a)));
+            leaf_b.edges.get_or_insert_with(|| {
+                b.leaf_edges(pair.b).iter().map(|e| e.transformed(a_from_b)).collect()
+            });
             self.crossing += add_crossings(leaf_a, leaf_b, &mut best);
             self.crossing += add_crossings(leaf_b, leaf_a, &mut best);
         }
@@ -143,9 +147,9 @@ impl<'a> Found<'a> {
 }
 
 impl<'a> Leaf<'a> {
-    fn new(surfels: Cow<'a, [Surfel]>, edges: Cow<'a, [Edge]>) -> Self {
+    fn new(surfels: Cow<'a, [Surfel]>) -> Self {
         let probabilities = vec![0.0; surfels.len()];
-        Self { surfels, edges, probabilities }
+        Self { surfels, edges: None, probabilities }
     }
 
     fn largest_spacing(&self) -> f64 {
@@ -212,7 +216,7 @@ fn add_crossings(
 ) -> f64 {
     let mut total = 0.0;
     let Leaf { edges, probabilities, .. } = of_edges;
-    for edge in edges.iter() {
+    for edge in edges.iter().flat_map(|edges| edges.iter()) {
         let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
         let half = 0.5 * (edge.ends[1] - edge.ends[0]).norm();
         for (disc, of_disc) in of_discs.surfels.iter().zip(&mut of_discs.probabilities) {
