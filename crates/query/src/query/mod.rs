@@ -6,6 +6,7 @@ mod contacts;
 mod estimate;
 mod evidence;
 mod leaf_pair;
+mod leaf_pairs;
 mod pool;
 mod record;
 mod run;

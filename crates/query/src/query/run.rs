@@ -1,9 +1,7 @@
 //! One query, from two prepared bodies and a pose to a report.
 
-use std::collections::BTreeSet;
 use std::time::Instant;
 
-use cloudtouch_bvh::{Flow, NodeId, Traversal, TraversalSettings, traverse};
 use cloudtouch_geom::{Pose, Vector3};
 
 use crate::body::BodyRef;
@@ -14,12 +12,10 @@ use crate::range::bad_entry;
 use crate::report::{Report, Stats, Verdict};
 
 use super::calibrated;
-use super::classify::classify;
 use super::estimate::Estimate;
 use super::evidence::Evidence;
-use super::leaf_pair::{self, gather};
 use super::pool::{self, Side};
-use super::record::{add_exact, add_pair, add_signed_points};
+use super::record::{add_exact, add_signed_points};
 use super::settings::{Mode, Pooling, QuerySettings};
 use super::unseen::is_either_hidden;
 
@@ -27,7 +23,6 @@ use super::unseen::is_either_hidden;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Query {
     settings: QuerySettings,
-    traversal: TraversalSettings,
 }
 
 impl Query {
@@ -37,11 +32,7 @@ impl Query {
     /// Names the setting that is out of range, and its value.
     pub fn new(settings: QuerySettings) -> Result<Self, SettingsError> {
         settings.check()?;
-        let traversal = TraversalSettings {
-            kind: settings.traversal,
-            cull_probability: settings.cull_probability,
-        };
-        Ok(Self { settings, traversal })
+        Ok(Self { settings })
     }
 
     /// The settings, as checked.
@@ -177,79 +168,6 @@ impl Query {
         evidence.widen(found.culled_bound);
         add_signed_points(&found.points, side, a_from_cloud, evidence);
         wanted == Wanted::Near
-    }
-
-    fn traverse_leaf_pairs(
-        &self,
-        a: BodyRef<'_>,
-        b: BodyRef<'_>,
-        a_from_b: &Pose,
-        evidence: &mut Evidence,
-    ) -> Result<(), QueryError> {
-        let settings = &self.settings;
-        let mut looked_at = BTreeSet::new();
-        let mut failed = None;
-        let outcome =
-            traverse(a.tree(), b.tree(), a_from_b, &self.traversal, settings.seed, |pair| {
-                looked_at.insert((pair.a, pair.b));
-                let relevant = match settings.mode {
-                    Mode::Calibrated => evidence.relevant_probability(),
-                    // As printed, but for pairs that no probability can come from.
-                    Mode::Paper => 0.0,
-                };
-                let next = Flow::Above(relevant.max(settings.cull_probability));
-                let stats = &mut evidence.stats;
-                let max_parts = settings.max_mesh_parts;
-                let points = match gather((a, pair.a), (b, pair.b), a_from_b, max_parts, stats) {
-                    Ok(Some(points)) => points,
-                    Ok(None) => {
-                        evidence.widen(leaf_pair::bound_left_out());
-                        return next;
-                    }
-                    Err(error) => {
-                        failed = Some(error);
-                        return Flow::Stop;
-                    }
-                };
-                stats.leaf_pairs += 1;
-                let answer = classify(&points, settings, relevant, stats);
-                add_pair((a, b, a_from_b), &points, &answer, evidence);
-                if evidence.largest() > settings.stop_above { Flow::Stop } else { next }
-            })?;
-        if let Some(error) = failed {
-            return Err(error.into());
-        }
-        evidence.stats.nodes_visited += outcome.nodes_visited;
-        evidence.widen(outcome.pending_bound);
-        if settings.traversal == Traversal::Certified || outcome.stopped {
-            evidence.widen(outcome.culled_bound);
-        } else {
-            self.bound_what_chance_culled(a, b, a_from_b, &looked_at, evidence)?;
-        }
-        Ok(())
-    }
-
-    /// Bounds the leaf pairs that a stochastic traversal culled: the boxes of the large nodes it
-    /// culled by chance bound their points far too loosely.
-    fn bound_what_chance_culled(
-        &self,
-        a: BodyRef<'_>,
-        b: BodyRef<'_>,
-        a_from_b: &Pose,
-        looked_at: &BTreeSet<(NodeId, NodeId)>,
-        evidence: &mut Evidence,
-    ) -> Result<(), QueryError> {
-        let certified = TraversalSettings { kind: Traversal::Certified, ..self.traversal };
-        let mut left_out = 0.0_f64;
-        let outcome = traverse(a.tree(), b.tree(), a_from_b, &certified, 0, |pair| {
-            if !looked_at.contains(&(pair.a, pair.b)) {
-                left_out = left_out.max(pair.bound);
-            }
-            Flow::Above(left_out)
-        })?;
-        evidence.stats.nodes_visited += outcome.nodes_visited;
-        evidence.widen(left_out.max(outcome.culled_bound));
-        Ok(())
     }
 
     fn report(&self, mut evidence: Evidence, estimate: Estimate, origin: Vector3) -> Report {

@@ -1,6 +1,6 @@
 //! What a query is asked to do, checked once.
 
-use cloudtouch_bvh::Traversal;
+use cloudtouch_bvh::{Traversal, TraversalSettings};
 use serde::Serialize;
 
 use crate::error::SettingsError;
@@ -103,6 +103,11 @@ impl QuerySettings {
             max_mesh_parts: 20_000,
             seed: 0,
         }
+    }
+
+    /// What the traversal of two trees is asked.
+    pub(super) fn traversal(&self) -> TraversalSettings {
+        TraversalSettings { kind: self.traversal, cull_probability: self.cull_probability }
     }
 
     pub(super) fn check(&self) -> Result<(), SettingsError> {

@@ -12,7 +12,6 @@ mod places;
 mod recalibration;
 mod search;
 
-use cloudtouch_bvh::TraversalSettings;
 use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
@@ -40,15 +39,13 @@ pub(super) fn estimate(
     settings: &QuerySettings,
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
-    let traversal =
-        TraversalSettings { kind: settings.traversal, cull_probability: settings.cull_probability };
     let recalibration = &settings.recalibration;
     let is_enough = |deviations: f64, crossing: f64| {
         let probability = recalibration.by_geometry(deviations, crossing.ln_1p());
         probability > settings.stop_above || is_final(settings, probability)
     };
     let stats = &mut evidence.stats;
-    let found = search((a, b), a_from_b, &traversal, settings.seed, is_enough, stats)?;
+    let found = search((a, b), a_from_b, &settings.traversal(), settings.seed, is_enough, stats)?;
     let mut of_geometry = ContactEvidence {
         deviations: found.deviations,
         crossing: found.crossing.ln_1p(),
