@@ -8,6 +8,7 @@ use cloudtouch_geom::{Point3, Pose, Vector3, normal};
 
 use super::Mesh;
 use crate::cloud::Cloud;
+use crate::query::clock::Clock;
 
 /// Nodes farther outside than this many standard deviations are not looked into.
 const CERTAIN_DEVIATIONS: f64 = 4.75;
@@ -55,7 +56,7 @@ pub(crate) struct SignedEvidence {
 
 /// Finds the points of `cloud` that are, or may be, inside a watertight `mesh`.
 ///
-/// Ends at the first point above `stop_above`. Nodes are pruned by the signed distance of their
+/// Ends at the first point above `stop_above`, or when time is over. Nodes are pruned by the signed distance of their
 /// centre, which changes by at most a metre per metre, and once a point is found, by what they
 /// could still add to it.
 pub(crate) fn signed_points(
@@ -63,13 +64,13 @@ pub(crate) fn signed_points(
     mesh: &Mesh,
     mesh_from_cloud: &Pose,
     wanted: Wanted,
-    stop_above: f64,
+    (stop_above, clock): (f64, &Clock),
 ) -> SignedEvidence {
     let mut evidence = SignedEvidence::default();
     let cloud_from_mesh = mesh_from_cloud.inverse();
     cloud.tree().visit_nodes(|node| {
         evidence.nodes_visited += 1;
-        if evidence.largest > stop_above {
+        if evidence.largest > stop_above || clock.is_over() {
             evidence.culled_bound = 1.0;
             return Visit::Prune;
         }

@@ -9,6 +9,7 @@ use crate::body::BodyRef;
 use crate::error::QueryError;
 
 use super::classify::classify;
+use super::clock::Clock;
 use super::evidence::Evidence;
 use super::leaf_pair::{self, gather};
 use super::record::add_pair;
@@ -22,6 +23,7 @@ impl Query {
         a: BodyRef<'_>,
         b: BodyRef<'_>,
         a_from_b: &Pose,
+        clock: &Clock,
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let settings = self.settings();
@@ -52,7 +54,8 @@ impl Query {
                 stats.leaf_pairs += 1;
                 let answer = classify(&points, settings, relevant, stats);
                 add_pair((a, b, a_from_b), &points, &answer, evidence);
-                if evidence.largest() > settings.stop_above { Flow::Stop } else { next }
+                let is_enough = evidence.largest() > settings.stop_above || clock.is_over();
+                if is_enough { Flow::Stop } else { next }
             })?;
         if let Some(error) = failed {
             return Err(error.into());

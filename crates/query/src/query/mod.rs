@@ -2,6 +2,7 @@
 
 mod calibrated;
 mod classify;
+pub(crate) mod clock;
 mod contacts;
 mod estimate;
 mod evidence;

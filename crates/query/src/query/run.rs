@@ -12,6 +12,7 @@ use crate::range::bad_entry;
 use crate::report::{Report, Stats, Verdict};
 
 use super::calibrated;
+use super::clock::Clock;
 use super::estimate::Estimate;
 use super::evidence::Evidence;
 use super::pool::{self, Side};
@@ -65,7 +66,8 @@ impl Query {
         }
         let local = a.local_from(&b, a_from_b);
         let mut evidence = Evidence::default();
-        let estimate = self.estimate(a, b, &local, &mut evidence)?;
+        let clock = Clock::new(start, self.settings.deadline);
+        let estimate = self.estimate(a, b, &local, &clock, &mut evidence)?;
         let mut report = self.report(evidence, estimate, a.origin());
         let micros = |d: std::time::Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
         report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
@@ -84,6 +86,7 @@ impl Query {
         a: BodyRef<'_>,
         b: BodyRef<'_>,
         a_from_b: &Pose,
+        clock: &Clock,
         evidence: &mut Evidence,
     ) -> Result<Estimate, QueryError> {
         let mut estimate = match (a, b) {
@@ -92,10 +95,10 @@ impl Query {
                 self.pooled(evidence, 0)
             }
             (BodyRef::Cloud(a), BodyRef::Cloud(b)) if self.settings.mode == Mode::Calibrated => {
-                calibrated::estimate((a, b), a_from_b, &self.settings, evidence)?
+                calibrated::estimate((a, b), a_from_b, (&self.settings, clock), evidence)?
             }
             _ => {
-                self.gather_evidence(a, b, a_from_b, evidence)?;
+                self.gather_evidence(a, b, a_from_b, clock, evidence)?;
                 self.pooled(evidence, a.point_count() + b.point_count())
             }
         };
@@ -123,6 +126,7 @@ impl Query {
         a: BodyRef<'_>,
         b: BodyRef<'_>,
         a_from_b: &Pose,
+        clock: &Clock,
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let b_from_a = a_from_b.inverse();
@@ -130,15 +134,16 @@ impl Query {
         match (a, b) {
             (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) if mesh.is_watertight() => {
                 let poses = (&b_from_a, &Pose::identity());
-                settled = self.add_signed(cloud, mesh, Side::A, poses, evidence);
+                settled = self.add_signed(cloud, mesh, Side::A, poses, clock, evidence);
             }
             (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) if mesh.is_watertight() => {
-                settled = self.add_signed(cloud, mesh, Side::B, (a_from_b, a_from_b), evidence);
+                settled =
+                    self.add_signed(cloud, mesh, Side::B, (a_from_b, a_from_b), clock, evidence);
             }
             _ => {}
         }
         if !settled && evidence.largest() <= self.settings.stop_above {
-            self.traverse_leaf_pairs(a, b, a_from_b, evidence)?;
+            self.traverse_leaf_pairs(a, b, a_from_b, clock, evidence)?;
         }
         Ok(())
     }
@@ -154,6 +159,7 @@ impl Query {
         mesh: &Mesh,
         side: Side,
         (mesh_from_cloud, a_from_cloud): (&Pose, &Pose),
+        clock: &Clock,
         evidence: &mut Evidence,
     ) -> bool {
         let wanted = match self.settings.mode {
@@ -161,7 +167,7 @@ impl Query {
             Mode::Paper => Wanted::Inside,
         };
         let stop_above = self.settings.stop_above;
-        let found = signed_points(cloud, mesh, mesh_from_cloud, wanted, stop_above);
+        let found = signed_points(cloud, mesh, mesh_from_cloud, wanted, (stop_above, clock));
         evidence.stats.nodes_visited += found.nodes_visited;
         evidence.stats.leaf_pairs += found.leaves_visited;
         evidence.stats.leaves_prepared += found.leaves_prepared;

@@ -1,5 +1,7 @@
 //! What a query is asked to do, checked once.
 
+use std::time::Duration;
+
 use cloudtouch_bvh::{Traversal, TraversalSettings};
 use serde::Serialize;
 
@@ -62,6 +64,10 @@ pub struct QuerySettings {
     /// The search ends when a collision is this certain; 1 never ends it early. Between two clouds in
     /// the calibrated mode it ends at 0.97 too, where more of the same changes nothing.
     pub stop_above: f64,
+    /// How long a query may search. What was not looked at by then raises the upper bound, to 1 as a
+    /// rule, and is no guess; a classifier that is being trained is waited for. With a limit answers
+    /// depend on the speed of the machine.
+    pub deadline: Option<Duration>,
     /// How many contacts are reported at most.
     pub max_contacts: usize,
     /// How many triangles, before and after splitting, the part of a mesh that faces a leaf of a
@@ -99,6 +105,7 @@ impl QuerySettings {
             },
             cull_probability: 1e-6,
             stop_above: 0.999,
+            deadline: None,
             max_contacts: 16,
             max_mesh_parts: 20_000,
             seed: 0,

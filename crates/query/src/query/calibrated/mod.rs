@@ -19,6 +19,7 @@ use crate::cloud::Cloud;
 use crate::error::QueryError;
 
 use super::classify::PairAnswer;
+use super::clock::Clock;
 use super::estimate::Estimate;
 use super::evidence::Evidence;
 use super::record::add_pair;
@@ -36,13 +37,13 @@ use search::{Found, search};
 pub(super) fn estimate(
     (a, b): (&Cloud, &Cloud),
     a_from_b: &Pose,
-    settings: &QuerySettings,
+    (settings, clock): (&QuerySettings, &Clock),
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
     let recalibration = &settings.recalibration;
     let is_enough = |deviations: f64, crossing: f64| {
         let probability = recalibration.by_geometry(deviations, crossing.ln_1p());
-        probability > settings.stop_above || is_final(settings, probability)
+        probability > settings.stop_above || is_final(settings, probability) || clock.is_over()
     };
     let stats = &mut evidence.stats;
     let found = search((a, b), a_from_b, &settings.traversal(), settings.seed, is_enough, stats)?;
@@ -54,8 +55,9 @@ pub(super) fn estimate(
     let mut estimate = by_geometry(settings, &found, &of_geometry);
     let [lowest, highest] = settings.doubt;
     let is_doubtful = (lowest..=highest).contains(&estimate.probability) && found.is_complete;
-    let answer =
-        is_doubtful.then(|| ask_classifier((a, b), a_from_b, &found, settings, evidence)).flatten();
+    let answer = is_doubtful
+        .then(|| ask_classifier((a, b), a_from_b, &found, (settings, clock), evidence))
+        .flatten();
     if let Some(misclassified) = answer {
         of_geometry.misclassified = Some(misclassified.value);
         estimate = by_all(recalibration, &of_geometry, &misclassified);
@@ -145,16 +147,23 @@ fn ask_classifier(
     (a, b): (&Cloud, &Cloud),
     a_from_b: &Pose,
     found: &Found<'_>,
-    settings: &QuerySettings,
+    (settings, clock): (&QuerySettings, &Clock),
     evidence: &mut Evidence,
 ) -> Option<Misclassified> {
     let (deviations, crossing) = (found.deviations, found.crossing.ln_1p());
     let mut all: Option<Misclassified> = None;
     for points in patches((a, b), found) {
+        let count = points.a.len() + points.b.len();
+        if clock.is_over() {
+            // Of the patches that are left only bounds are known.
+            let left = Misclassified { value: 0.0, ..Misclassified::unknown(count) };
+            all = all.map(|known| known.or_more(left)).or(Some(Misclassified::unknown(count)));
+            continue;
+        }
         let answer = by_kernel(&points, settings, 0.0, &mut evidence.stats);
         let of_patch = match &answer {
             PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(b).sum()),
-            PairAnswer::Undecided => Misclassified::unknown(points.a.len() + points.b.len()),
+            PairAnswer::Undecided => Misclassified::unknown(count),
             PairAnswer::Indistinct => continue,
         };
         let misclassified = all.unwrap_or_default().or_more(of_patch);
