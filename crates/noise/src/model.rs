@@ -83,9 +83,9 @@ const POSTERIOR_INFLATION: f64 = 2.0;
 const SENSOR_PART: f64 = 0.15;
 const SPACING_PART: f64 = 0.02;
 /// Where the noise is more than this many spacings the nearest neighbours are all noise: the surface
-/// is looked for among as many from farther away too, ...
+/// is looked for among as many from farther away, ...
 const NOISY_SPACINGS: f64 = 1.5;
-/// ... every so manieth of the nearest.
+/// ... every fourth or sixteenth of four or sixteen times as many.
 const STRIDES: [usize; 2] = [4, 16];
 /// How often a wider neighbourhood is gathered.
 const PASSES: usize = 3;
@@ -243,37 +243,13 @@ impl NoiseModel {
     ) -> Option<Refined> {
         let points = neighborhoods.points();
         let point = points[index];
-        let Scratch { neighbors, patch, wide_neighbors, wide_patch } = scratch;
-        let around = spacing_around(neighbors)?;
+        let around = spacing_around(&scratch.neighbors)?;
+        let is_noisy = sensor[index].max_std() > NOISY_SPACINGS * around;
+        let wide =
+            is_noisy.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
+        let Scratch { neighbors, patch, .. } = scratch;
         let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
-        let mut found = None;
-        if sensor[index].max_std() > NOISY_SPACINGS * around {
-            for stride in STRIDES {
-                let mut place = point;
-                let mut wide = None;
-                // What is nearest to a displaced point agrees with it more than it should: once
-                // more about where the surface seems to be.
-                for _ in 0..PASSES {
-                    let count = stride * MOST_NEIGHBORS;
-                    neighborhoods.nearest_to_into(&place, count, wide_neighbors);
-                    let every = wide_neighbors.iter().skip(stride - 1).step_by(stride);
-                    wide = fit_surface(&wide_patch.patch(index, every, points, sensor, around));
-                    let Some(surface) = &wide else { break };
-                    place = point + surface.normal * surface.height;
-                }
-                if wide.is_some_and(|w: Surface| {
-                    found.is_none_or(|f: Surface| w.variance < WIDER * f.variance)
-                }) {
-                    found = wide;
-                }
-            }
-        }
-        // Three passes still leave some of that agreement, which no residual shows.
-        let inflated = |mut surface: Surface| {
-            surface.variance *= WIDE_INFLATION;
-            surface
-        };
-        let surface = found.map(inflated).or_else(|| fit_surface(&patch))?;
+        let surface = wide.or_else(|| fit_surface(&patch))?;
         let normal = surface.normal;
         let spacing = tangential_spacing(&patch, &surface)?.min(spacing_cap);
 
@@ -300,6 +276,55 @@ impl NoiseModel {
             normal: Some(normal),
         })
     }
+}
+
+/// The surface by neighbours from farther away, where the nearest are all noise: the widest fit that
+/// is not plainly worse than a narrower one. `None` where none of them determines a plane.
+fn wide_surface(
+    index: usize,
+    neighborhoods: &Neighborhoods,
+    sensor: &[Covariance],
+    spacing: f64,
+    scratch: &mut Scratch,
+) -> Option<Surface> {
+    let mut found: Option<Surface> = None;
+    for stride in STRIDES {
+        let wide = strided_surface(stride, index, neighborhoods, sensor, spacing, scratch);
+        let Some(wide) = wide else { continue };
+        if found.is_none_or(|narrower| wide.variance < WIDER * narrower.variance) {
+            found = Some(wide);
+        }
+    }
+    // The passes leave some agreement with the point, which no residual shows.
+    found.map(|mut surface| {
+        surface.variance *= WIDE_INFLATION;
+        surface
+    })
+}
+
+/// The surface by every `stride`-th of as many times more neighbours. What is nearest to a displaced
+/// point agrees with it more than it should, so they are gathered again about where the surface
+/// seems to be.
+fn strided_surface(
+    stride: usize,
+    index: usize,
+    neighborhoods: &Neighborhoods,
+    sensor: &[Covariance],
+    spacing: f64,
+    scratch: &mut Scratch,
+) -> Option<Surface> {
+    let points = neighborhoods.points();
+    let Scratch { wide_neighbors, wide_patch, .. } = scratch;
+    let mut place = points[index];
+    let mut found = None;
+    for _ in 0..PASSES {
+        neighborhoods.nearest_to_into(&place, stride * MOST_NEIGHBORS, wide_neighbors);
+        let every = wide_neighbors.iter().skip(stride - 1).step_by(stride);
+        let surface = fit_surface(&wide_patch.patch(index, every, points, sensor, spacing))?;
+        place = points[index] + surface.normal * surface.height;
+        found = Some(surface);
+    }
+    found
 }
 
 /// The spacing of the samples on the surface, noise across it left out: the sixth least distance

@@ -1,13 +1,10 @@
 //! The two logistic regressions from evidence to a probability.
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use cloudtouch::ContactEvidence;
 use serde::{Deserialize, Serialize};
 
-use crate::sweep::{measures::fit_logistic, record::Block};
-
-/// Keeps slopes finite where a feature separates the scenes.
-const RIDGE: f64 = 1e-3;
+use crate::sweep::{measures::fit_plainly, record::Block};
 
 /// Coefficients as `Recalibration::try_new` takes them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -30,8 +27,7 @@ pub(super) fn records<'a>(
 ) -> Result<Vec<Record>> {
     let mut all = Vec::new();
     for block in blocks {
-        let said = block.methods.iter().find(|(name, _)| name == method);
-        let (_, said) = said.with_context(|| format!("{method} did not answer"))?;
+        let said = block.said(method).with_context(|| format!("{method} did not answer"))?;
         for (said, truth) in said.iter().zip(&block.truths) {
             let evidence = said.evidence.context("an answer without evidence")?;
             all.push(Record { evidence, collides: truth.collides });
@@ -52,8 +48,7 @@ pub(super) fn fit(records: &[Record]) -> Result<Coefficients> {
     let is_classified = |r: &&Record| r.evidence.misclassified.is_some();
     let classified: Vec<Record> = records.iter().filter(is_classified).copied().collect();
     let all = |e: &ContactEvidence| {
-        let misclassified = e.misclassified.unwrap_or(f64::NAN);
-        vec![e.crossing, e.deviations, (misclassified + 0.02).ln()]
+        vec![e.crossing, e.deviations, e.ln_misclassified().unwrap_or(f64::NAN)]
     };
     let by_all = constrained(&classified, all, [1.0, -1.0, 1.0])?;
     let by_all = by_all.try_into().map_err(|v| anyhow::anyhow!("four coefficients, not {v:?}"))?;
@@ -67,15 +62,13 @@ fn constrained<const N: usize>(
     signs: [f64; N],
 ) -> Result<Vec<f64>> {
     let truths: Vec<bool> = records.iter().map(|r| r.collides).collect();
-    let weights = vec![1.0; records.len()];
     let mut is_used = [true; N];
     loop {
         let used = |row: Vec<f64>| -> Vec<f64> {
             row.into_iter().zip(is_used).filter(|(_, used)| *used).map(|(x, _)| x).collect()
         };
         let rows: Vec<Vec<f64>> = records.iter().map(|r| used(features(&r.evidence))).collect();
-        let fit = fit_logistic(&rows, &truths, &weights, RIDGE)?;
-        ensure!(fit.converged, "the fit did not converge: {fit:?}");
+        let fit = fit_plainly(&rows, &truths)?;
         let mut slopes = fit.coefficients[1..].iter();
         let mut all = vec![rounded(fit.coefficients[0])];
         all.extend(is_used.map(|used| {

@@ -8,11 +8,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 use anyhow::Result;
 use clap::Args;
 
-use crate::sweep::{
-    ORACLE, OURS, answer,
-    plan::Plan,
-    record::{Answers, Block},
-};
+use crate::sweep::{ORACLE, OURS, answer, plan::Plan, record::Answers};
 use fit::{Coefficients, fit, records};
 pub(crate) use stored::Fitted;
 
@@ -47,13 +43,10 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
 }
 
 fn without_each(answers: &Answers, method: &str) -> Result<BTreeMap<String, Coefficients>> {
-    let family = |block: &Block| block.condition.family;
     let mut all = BTreeMap::new();
-    for judged in answers.blocks().iter().map(family) {
-        if !all.contains_key(judged) {
-            let others = answers.blocks().iter().filter(|block| family(block) != judged);
-            all.insert(judged.to_owned(), fit(&records(others, method)?)?);
-        }
+    for judged in answers.families() {
+        let others = answers.blocks().iter().filter(|block| block.condition.family != judged);
+        all.insert(judged.to_owned(), fit(&records(others, method)?)?);
     }
     Ok(all)
 }

@@ -7,6 +7,16 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
+/// The lines of a document that say when, from what and where its numbers were made.
+pub(crate) fn provenance(root: &Path, seed: u64) -> String {
+    format!(
+        "- date: {}\n- commit: {}\n- machine: {}\n- seed: {seed}\n",
+        date(),
+        commit(root),
+        processor()
+    )
+}
+
 /// Today in UTC as year-month-day.
 pub(crate) fn date() -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());

@@ -19,10 +19,7 @@ pub(super) fn text(root: &Path, sheet: &Sheet) -> Result<String> {
          <!-- Made by `cargo xtask stability --update-docs`; edit xtask/src/stability/, not this. -->\n\n",
     );
     writeln!(text, "{INTRODUCTION}\n\n```text\ncargo xtask stability --update-docs\n```\n")?;
-    writeln!(text, "- date: {}", machine::date())?;
-    writeln!(text, "- commit: {}", machine::commit(root))?;
-    writeln!(text, "- machine: {}", machine::processor())?;
-    writeln!(text, "- seed: {SEED}\n")?;
+    writeln!(text, "{}", machine::provenance(root, SEED))?;
     writeln!(text, "## Goals\n\n{}", goals(sheet))?;
     if !sheet.faults.is_empty() {
         writeln!(text, "## Faults\n")?;

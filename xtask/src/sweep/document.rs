@@ -62,10 +62,7 @@ pub(super) fn text(root: &Path, poses: usize, sections: &[Section]) -> Result<St
         text,
         "{INTRODUCTION}\n\n```text\ncargo run --release -p xtask -- sweep --poses {poses} --update-docs\n```\n"
     )?;
-    writeln!(text, "- date: {}", machine::date())?;
-    writeln!(text, "- commit: {}", machine::commit(root))?;
-    writeln!(text, "- machine: {}", machine::processor())?;
-    writeln!(text, "- seed: {SEED}\n")?;
+    writeln!(text, "{}", machine::provenance(root, SEED))?;
     for [file, title, caption] in FIGURES {
         writeln!(text, "## {title}\n\n{caption}\n\n![{title}](figures/{file})\n")?;
     }

@@ -69,6 +69,13 @@ pub(crate) struct Block {
     pub(crate) methods: Vec<(String, Vec<Said>)>,
 }
 
+impl Block {
+    /// What a method says of each pose; `None` when it did not answer.
+    pub(crate) fn said(&self, method: &str) -> Option<&[Said]> {
+        self.methods.iter().find(|(name, _)| name == method).map(|(_, said)| said.as_slice())
+    }
+}
+
 /// All answers of a sweep, one block for each condition.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Answers {
@@ -107,6 +114,17 @@ impl Answers {
     /// The blocks in the order in which they were added.
     pub(crate) fn blocks(&self) -> &[Block] {
         &self.blocks
+    }
+
+    /// The families, each once, in the order of the blocks.
+    pub(crate) fn families(&self) -> Vec<&'static str> {
+        let mut families = Vec::new();
+        for block in &self.blocks {
+            if !families.contains(&block.condition.family) {
+                families.push(block.condition.family);
+            }
+        }
+        families
     }
 
     /// The blocks, to fill in what is derived from all of them.

@@ -46,13 +46,6 @@ pub(super) fn methods(answers: &Answers) -> Vec<&str> {
     first.map_or(Vec::new(), |b| b.methods.iter().map(|(name, _)| name.as_str()).collect())
 }
 
-/// The families, in the order of the answers.
-pub(super) fn families(answers: &Answers) -> Vec<&'static str> {
-    let mut families: Vec<_> = answers.blocks().iter().map(|b| b.condition.family).collect();
-    families.dedup();
-    families
-}
-
 /// All tables; writes all measures of the same groups to `folder` as measures.csv and .json.
 pub(super) fn sections(answers: &Answers, folder: &Path) -> Result<Vec<Section>> {
     let mut rows: Vec<Row> = Vec::new();
@@ -79,7 +72,7 @@ pub(super) fn sections(answers: &Answers, folder: &Path) -> Result<Vec<Section>>
         &|c| c.noise == NoiseKind::HeavyTailed,
         false,
     );
-    for family in families(answers) {
+    for family in answers.families() {
         pooled(&format!("Family {family}"), &|c| is_pooled(c) && c.family == family, false);
     }
     write_csv(&folder.join("measures.csv"), &rows)?;

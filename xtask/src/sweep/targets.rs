@@ -5,7 +5,7 @@ use super::{
     measures::{Bootstrap, Estimate, Judged, Measure, Measured, measure},
     plan::{DENSE, STDS},
     record::{Answers, Condition, Truth},
-    tables::{Section, families, is_near, is_pooled, methods},
+    tables::{Section, is_near, is_pooled, methods},
 };
 use crate::common::table::Table;
 
@@ -29,7 +29,7 @@ pub(super) fn section(answers: &Answers) -> Section {
         count: 0,
     };
     targets.near_the_oracle();
-    for family in families(answers) {
+    for family in answers.families() {
         targets.family(family);
     }
     targets.dense();

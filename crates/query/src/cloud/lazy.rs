@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use cloudtouch_bvh::{Node, NodeId, Tree};
-use cloudtouch_geom::{UncertainPoint, Vector3};
+use cloudtouch_geom::{Pose, UncertainPoint, Vector3};
 use cloudtouch_noise::Scratch;
 
 use super::Cloud;
@@ -23,6 +23,15 @@ pub(crate) struct Surfel {
 }
 
 impl Surfel {
+    /// The same piece in another frame.
+    pub(crate) fn transformed(&self, pose: &Pose) -> Self {
+        Self {
+            point: self.point.transformed(pose),
+            normal: self.normal.map(|normal| pose.transform_vector(&normal)),
+            ..*self
+        }
+    }
+
     /// Variance of the position across the surface, m²; zero where no normal was fitted.
     pub(crate) fn variance_across(&self) -> f64 {
         self.normal.map_or(0.0, |normal| self.point.covariance.variance_along(&normal))

@@ -3,6 +3,7 @@
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{Class, DEFAULT_KAPPA_MAX, separate};
 
+use crate::cloud::Surfel;
 use crate::report::Stats;
 
 use super::settings::{Mode, QuerySettings};
@@ -17,6 +18,13 @@ pub(crate) struct PairPoint {
     pub point: UncertainPoint,
     /// Distance between samples there, m.
     pub spacing: f64,
+}
+
+impl From<&Surfel> for PairPoint {
+    /// A piece of surface that is in the local frame of A already.
+    fn from(surfel: &Surfel) -> Self {
+        Self { index: Some(surfel.index), point: surfel.point, spacing: surfel.spacing }
+    }
 }
 
 /// The points of the two leaves.

@@ -4,7 +4,7 @@ use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3, normal};
 
 use crate::body::BodyRef;
-use crate::cloud::{Cloud, Surfel};
+use crate::cloud::Cloud;
 use crate::error::SubdivisionError;
 use crate::mesh::{Mesh, SampleRegion, sample_region};
 use crate::report::Stats;
@@ -65,15 +65,7 @@ fn cloud_points(
 ) -> Vec<PairPoint> {
     let (points, computed) = cloud.leaf(leaf);
     stats.leaves_prepared += usize::from(computed);
-    points.iter().map(|p| pair_point(p, a_from_cloud)).collect()
-}
-
-fn pair_point(point: &Surfel, a_from_cloud: &Pose) -> PairPoint {
-    PairPoint {
-        index: Some(point.index),
-        point: point.point.transformed(a_from_cloud),
-        spacing: point.spacing,
-    }
+    points.iter().map(|s| PairPoint::from(&s.transformed(a_from_cloud))).collect()
 }
 
 /// Samples the triangles of a mesh leaf where they come near points of a cloud, as densely.

@@ -50,10 +50,7 @@ pub(super) fn text(
         cases.len(),
         1e3 * OWN_STD,
     );
-    writeln!(text, "- date: {}", machine::date())?;
-    writeln!(text, "- commit: {}", machine::commit(root))?;
-    writeln!(text, "- machine: {}", machine::processor())?;
-    writeln!(text, "- seed: {SEED}\n")?;
+    writeln!(text, "{}", machine::provenance(root, SEED))?;
     writeln!(
         text,
         "Lines are means over the draws, bars reach from the 10th to the 90th percentile of a \

@@ -2,11 +2,8 @@
 
 use anyhow::{Context, Result, ensure};
 
-use super::fit_logistic;
+use super::fit_plainly;
 use crate::sweep::record::{Answers, Block};
-
-/// Keeps a score that separates the fitted families from a slope without end.
-const RIDGE: f64 = 1e-3;
 
 /// Gives every answer without a probability one: a logistic function of its score, fitted on the
 /// answers of the same method in all other families.
@@ -20,11 +17,8 @@ const RIDGE: f64 = 1e-3;
 /// or only free poses.
 pub(crate) fn calibrate_scores(answers: &mut Answers) -> Result<()> {
     let mut methods: Vec<String> = Vec::new();
-    let mut families: Vec<&'static str> = Vec::new();
+    let families = answers.families();
     for block in answers.blocks() {
-        if !families.contains(&block.condition.family) {
-            families.push(block.condition.family);
-        }
         for (method, said) in &block.methods {
             let is_bare = said.iter().any(|s| s.probability.is_none());
             if is_bare && !methods.contains(method) {
@@ -53,8 +47,7 @@ fn calibrate(answers: &mut Answers, method: &str, family: &str) -> Result<()> {
         features.extend(block.methods[at].1.iter().map(|s| vec![s.score]));
         truths.extend(block.truths.iter().map(|t| t.collides));
     }
-    let fit = fit_logistic(&features, &truths, &vec![1.0; truths.len()], RIDGE)?;
-    ensure!(fit.converged, "the fit did not converge: {fit:?}");
+    let fit = fit_plainly(&features, &truths)?;
     for block in answers.blocks_mut().iter_mut().filter(|b| b.condition.family == family) {
         let Some(at) = said(block) else { continue };
         for said in &mut block.methods[at].1 {

@@ -30,10 +30,8 @@ impl Judged {
         let mut keys = Vec::new();
         let mut of_method = vec![Vec::new(); methods.len()];
         for block in answers.blocks() {
-            let said: Option<Vec<&Vec<Said>>> = methods
-                .iter()
-                .map(|m| block.methods.iter().find(|(name, _)| name == m).map(|(_, said)| said))
-                .collect();
+            let said: Option<Vec<&[Said]>> =
+                methods.iter().map(|method| block.said(method)).collect();
             let Some(said) = said else { continue };
             for (i, truth) in block.truths.iter().enumerate() {
                 if keep(&block.condition, truth) {

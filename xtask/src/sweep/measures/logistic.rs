@@ -29,6 +29,20 @@ impl Fit {
     }
 }
 
+/// Keeps the slope of a feature that separates the classes finite.
+const RIDGE: f64 = 1e-3;
+
+/// A fit in which every record counts once, with a ridge that is lost among a hundred records.
+///
+/// # Errors
+///
+/// Those of [`fit_logistic`], and when it does not converge.
+pub(crate) fn fit_plainly(features: &[Vec<f64>], truths: &[bool]) -> Result<Fit> {
+    let fit = fit_logistic(features, truths, &vec![1.0; truths.len()], RIDGE)?;
+    ensure!(fit.converged, "the fit did not converge: {fit:?}");
+    Ok(fit)
+}
+
 /// Minimises Σ wᵢ·(−ln p(truthᵢ)) + ½·ridge·Σ (cⱼ·sdⱼ)², sdⱼ the weighted standard deviation of
 /// feature j.
 ///
@@ -41,7 +55,7 @@ impl Fit {
 ///
 /// When the lists differ in length, a value is not finite, a weight or the ridge negative, one
 /// class is missing, or features depend on one another and the ridge is 0.
-pub(crate) fn fit_logistic(
+fn fit_logistic(
     features: &[Vec<f64>],
     truths: &[bool],
     weights: &[f64],

@@ -17,7 +17,7 @@ pub(crate) use bootstrap::{Bootstrap, Clusters, Estimate, replicate};
 pub(crate) use calibrate::calibrate_scores;
 pub(crate) use calibration::{Bin, chance_error, reliability};
 pub(crate) use judged::Judged;
-pub(crate) use logistic::fit_logistic;
+pub(crate) use logistic::fit_plainly;
 pub(crate) use measured::{Measure, Measured, measure};
 pub(crate) use rank::roc;
 pub(crate) use rows::{Row, write_csv, write_json};

@@ -135,10 +135,7 @@ fn text(root: &Path, poses: usize, judged: &Judged, table: &Table) -> Result<Str
          ```text\ncargo run --release -p xtask -- settings --poses {poses} --update-docs\n```\n\n",
         1e3 * STD,
     );
-    writeln!(text, "- date: {}", machine::date())?;
-    writeln!(text, "- commit: {}", machine::commit(root))?;
-    writeln!(text, "- machine: {}", machine::processor())?;
-    writeln!(text, "- seed: {SEED}\n")?;
+    writeln!(text, "{}", machine::provenance(root, SEED))?;
     writeln!(
         text,
         "Labels in the figure are the values; those next to the default are left out. The scale \

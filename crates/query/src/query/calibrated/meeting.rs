@@ -1,6 +1,6 @@
 //! Two pieces of surface: how many standard deviations are between them, and where they would meet.
 
-use cloudtouch_geom::{Matrix3, Point3, Vector3};
+use cloudtouch_geom::{Matrix3, Point3, Vector3, normal};
 
 use crate::cloud::Surfel;
 
@@ -17,6 +17,15 @@ pub(super) struct Meeting {
     /// Gap across that plane, m, and its standard deviation; their ratio is `deviations`.
     pub gap: f64,
     pub std: f64,
+}
+
+/// The probability of pieces so many deviations apart, by the plane halfway between two that are
+/// equally well known: it is z/√2 deviations from either.
+///
+/// A pair of boxes between whose points there are at least so many deviations has no point more
+/// probable than this: with a gap g and standard deviations up to σ, z ≥ g/(√2σ) and P ≤ Φ(−g/(2σ)).
+pub(super) fn probability_at(deviations: f64) -> f64 {
+    normal::upper_tail(deviations / std::f64::consts::SQRT_2)
 }
 
 /// Squared Mahalanobis distance δᵀ(Σa+Σb)⁻¹δ of two pieces; `None` where it is not below `limit`.

@@ -47,26 +47,24 @@ pub(super) fn estimate(
     };
     let stats = &mut evidence.stats;
     let found = search((a, b), a_from_b, &settings.traversal(), settings.seed, is_enough, stats)?;
-    let mut of_geometry = ContactEvidence {
+    let of_geometry = ContactEvidence {
         deviations: found.deviations,
         crossing: found.crossing.ln_1p(),
         misclassified: None,
     };
-    let mut estimate = by_geometry(settings, &found, &of_geometry);
+    let estimate = by_geometry(settings, &found, of_geometry);
     let [lowest, highest] = settings.doubt;
     let is_doubtful = (lowest..=highest).contains(&estimate.probability) && found.is_complete;
     let answer = is_doubtful
         .then(|| ask_classifier((a, b), a_from_b, &found, (settings, clock), evidence))
         .flatten();
     if let Some(misclassified) = answer {
-        of_geometry.misclassified = Some(misclassified.value);
-        estimate = by_all(recalibration, &of_geometry, &misclassified);
-    } else {
-        for finding in &found.findings {
-            add_finding(finding, evidence);
-        }
-        add_leaves(&found, evidence);
+        return Ok(by_all(recalibration, of_geometry, &misclassified));
     }
+    for finding in &found.findings {
+        add_finding(finding, evidence);
+    }
+    add_leaves(&found, evidence);
     Ok(estimate)
 }
 
@@ -75,12 +73,8 @@ pub(super) fn estimate(
 ///
 /// More evidence only raises either model; so after an early stop the answer lies above the lesser
 /// of what both say now, or above that of geometry where the classifier would not be asked.
-fn by_geometry(
-    settings: &QuerySettings,
-    found: &Found<'_>,
-    evidence: &ContactEvidence,
-) -> Estimate {
-    let ContactEvidence { deviations, crossing, .. } = *evidence;
+fn by_geometry(settings: &QuerySettings, found: &Found<'_>, evidence: ContactEvidence) -> Estimate {
+    let ContactEvidence { deviations, crossing, .. } = evidence;
     let probability = if found.is_complete && found.leaves_a.is_empty() {
         found.culled_bound
     } else {
@@ -93,7 +87,7 @@ fn by_geometry(
     } else {
         [probability.min(settings.recalibration.by_all(deviations, crossing, 0.0)), 1.0]
     };
-    Estimate { probability, bounds, evidence: Some(*evidence) }
+    Estimate { probability, bounds, evidence: Some(evidence) }
 }
 
 /// Whether no further evidence of geometry can change the answer.
@@ -103,14 +97,15 @@ fn is_final(settings: &QuerySettings, by_geometry: f64) -> bool {
 
 fn by_all(
     recalibration: &Recalibration,
-    evidence: &ContactEvidence,
+    of_geometry: ContactEvidence,
     misclassified: &Misclassified,
 ) -> Estimate {
-    let of = |count| recalibration.by_all(evidence.deviations, evidence.crossing, count);
+    let of = |count| recalibration.by_all(of_geometry.deviations, of_geometry.crossing, count);
+    let evidence = ContactEvidence { misclassified: Some(misclassified.value), ..of_geometry };
     Estimate {
         probability: of(misclassified.value),
         bounds: misclassified.bounds.map(of),
-        evidence: Some(*evidence),
+        evidence: Some(evidence),
     }
 }
 

@@ -71,6 +71,5 @@ fn around(seed: &Seed, leaves: &BTreeMap<NodeId, Leaf<'_>>) -> Vec<PairPoint> {
         .collect();
     near.sort_by(|s, t| distance(s).total_cmp(&distance(t)).then(s.index.cmp(&t.index)));
     near.truncate(MOST_POINTS);
-    let point = |s: &Surfel| PairPoint { index: Some(s.index), point: s.point, spacing: s.spacing };
-    near.into_iter().map(point).collect()
+    near.into_iter().map(PairPoint::from).collect()
 }

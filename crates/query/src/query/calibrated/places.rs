@@ -1,6 +1,6 @@
 //! What geometry says of places and points, for the report.
 
-use cloudtouch_geom::{Vector3, normal};
+use cloudtouch_geom::Vector3;
 
 use crate::CONTACT_FLOOR;
 use crate::query::evidence::Evidence;
@@ -8,6 +8,7 @@ use crate::query::pool::{PointProbability, Side};
 use crate::query::record::CORRELATION_SPACINGS;
 use crate::report::{Clearance, Contact};
 
+use super::meeting::probability_at;
 use super::search::{Finding, Found, Leaf};
 
 /// A crossing that is more likely than not is where two leaves touch; else they are apart by the gap
@@ -17,7 +18,7 @@ const LIKELY: f64 = 0.5;
 /// Adds the place that a finding is about, as geometry sees it.
 pub(super) fn add_finding(finding: &Finding, evidence: &mut Evidence) {
     let meeting = &finding.meeting;
-    let by_gap = normal::upper_tail(meeting.deviations / std::f64::consts::SQRT_2);
+    let by_gap = probability_at(meeting.deviations);
     let toward = |axis: Vector3| if axis.dot(&finding.toward_b) < 0.0 { -axis } else { axis };
     let fallback = || finding.toward_b.try_normalize(0.0).unwrap_or_else(Vector3::z);
     let (place, axis, probability, clearance) = match finding.crossing {

@@ -49,6 +49,18 @@ impl Default for Recalibration {
     }
 }
 
+impl ContactEvidence {
+    /// ln(`misclassified` + 0.02), what the second regression takes; `None` where no classifier was
+    /// trained.
+    pub fn ln_misclassified(&self) -> Option<f64> {
+        self.misclassified.map(ln_above_floor)
+    }
+}
+
+fn ln_above_floor(misclassified: f64) -> f64 {
+    (misclassified + MISCLASSIFIED_FLOOR).ln()
+}
+
 impl Recalibration {
     /// Coefficients from a fit of one's own: the intercept first, then the slopes of `crossing`,
     /// `deviations` (not positive), and in `by_all` of ln(`misclassified` + 0.02).
@@ -91,7 +103,7 @@ impl Recalibration {
             intercept
                 + on_crossing * crossing
                 + on_deviations * deviations
-                + on_misclassified * (misclassified + MISCLASSIFIED_FLOOR).ln(),
+                + on_misclassified * ln_above_floor(misclassified),
         )
     }
 }

@@ -4,14 +4,14 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use cloudtouch_bvh::{Flow, LeafPair, NodeId, TraversalSettings, traverse};
-use cloudtouch_geom::{Pose, Vector3, normal};
+use cloudtouch_geom::{Pose, Vector3};
 
 use crate::cloud::{Cloud, Edge, Surfel};
 use crate::error::QueryError;
 use crate::report::Stats;
 
 use super::crossing::{Crossing, REACH_SPACINGS, crossing};
-use super::meeting::{Meeting, squared_deviations};
+use super::meeting::{Meeting, probability_at, squared_deviations};
 use super::recalibration::MOST_DEVIATIONS;
 
 /// Places that are more than this many deviations above the least are not looked at.
@@ -76,19 +76,13 @@ pub(super) fn search<'a>(
         if is_enough(found.deviations, found.crossing) {
             return Flow::Stop;
         }
-        Flow::Above(bound_at(found.deviations_of_interest().max(crossings_end)))
+        Flow::Above(probability_at(found.deviations_of_interest().max(crossings_end)))
     })?;
     stats.nodes_visited += outcome.nodes_visited;
-    let harmless = bound_at(found.deviations_of_interest().max(crossings_end));
+    let harmless = probability_at(found.deviations_of_interest().max(crossings_end));
     found.is_complete = !outcome.stopped && outcome.culled_bound <= harmless;
     found.culled_bound = outcome.culled_bound;
     Ok(found)
-}
-
-/// A pair of boxes between whose points there are at least so many deviations has no point more
-/// probable than this: with a gap g and standard deviations up to σ, z ≥ g/(√2σ) and P ≤ Φ(−g/(2σ)).
-fn bound_at(deviations: f64) -> f64 {
-    normal::upper_tail(deviations / std::f64::consts::SQRT_2)
 }
 
 /// Leaves with at least so many deviations between their boxes have no crossing: it would be
@@ -118,7 +112,7 @@ impl<'a> Found<'a> {
         let leaf_b = self.leaves_b.entry(pair.b).or_insert_with(|| {
             let (surfels, computed) = b.leaf(pair.b);
             stats.leaves_prepared += usize::from(computed);
-            let surfels = surfels.iter().map(|s| transformed(s, a_from_b)).collect();
+            let surfels = surfels.iter().map(|s| s.transformed(a_from_b)).collect();
             Leaf::new(Cow::Owned(surfels))
         });
         let nearest = nearest_pieces(leaf_a, leaf_b);
@@ -166,14 +160,6 @@ impl<'a> Leaf<'a> {
     }
 }
 
-fn transformed(surfel: &Surfel, a_from_b: &Pose) -> Surfel {
-    Surfel {
-        point: surfel.point.transformed(a_from_b),
-        normal: surfel.normal.map(|n| a_from_b.transform_vector(&n)),
-        ..*surfel
-    }
-}
-
 /// The least squared deviations between two pieces, and which these are; raises the probability of
 /// each piece to that of its plane: halfway between two equally well known pieces it is z/√2
 /// deviations from either.
@@ -196,12 +182,12 @@ fn nearest_pieces(a: &mut Leaf<'_>, b: &mut Leaf<'_>) -> Option<(f64, usize, usi
             }
         }
         if least_of_a < MOST_DEVIATIONS.powi(2) {
-            a.raise(i, bound_at(least_of_a.sqrt()));
+            a.raise(i, probability_at(least_of_a.sqrt()));
         }
     }
     for (j, least) in least_of_b.into_iter().enumerate() {
         if least < MOST_DEVIATIONS.powi(2) {
-            b.raise(j, bound_at(least.sqrt()));
+            b.raise(j, probability_at(least.sqrt()));
         }
     }
     nearest
@@ -267,7 +253,7 @@ mod tests {
         let indices: Vec<u32> = (0..cloud.len() as u32).collect();
         let edges = edges_of(cloud, &indices);
         (
-            surfels.map(|s| transformed(&s, a_from_cloud)).collect(),
+            surfels.map(|s| s.transformed(a_from_cloud)).collect(),
             edges.iter().map(|e| e.transformed(a_from_cloud)).collect(),
         )
     }
