@@ -29,6 +29,16 @@ pub enum CovarianceError {
         /// What was found.
         value: f64,
     },
+    /// An entry is so large that sums of it overflow.
+    #[error("covariance entry ({row}, {column}) is {value:e} m²: entries go up to 1e200 m²")]
+    TooLarge {
+        /// Row of the entry, from 0.
+        row: usize,
+        /// Column of the entry, from 0.
+        column: usize,
+        /// What was found.
+        value: f64,
+    },
     /// The matrix differs from its transpose by more than rounding.
     #[error(
         "covariance is not symmetric: entry ({row}, {column}) differs from its mirror by {difference}"
@@ -51,6 +61,8 @@ pub enum CovarianceError {
 
 /// Relative size of what counts as rounding when a matrix is checked.
 const ROUNDING: f64 = 1e-9;
+/// Larger entries could overflow when a few are added or a pair is multiplied.
+const LARGEST: f64 = 1e200;
 
 impl Covariance {
     /// No uncertainty at all.
@@ -82,14 +94,17 @@ impl Covariance {
     /// Checks a matrix and takes it; a negative eigenvalue within rounding becomes zero.
     ///
     /// # Errors
-    /// When an entry is not finite, or the matrix is not symmetric, or it has a negative
-    /// eigenvalue; rounding is 1e-9 of its largest entry.
+    /// When an entry is not finite or beyond 1e200 m², or the matrix is not symmetric, or it has a
+    /// negative eigenvalue; rounding is 1e-9 of its largest entry.
     pub fn try_from_matrix(matrix: &Matrix3) -> Result<Self, CovarianceError> {
         for row in 0..3 {
             for column in 0..3 {
                 let value = matrix[(row, column)];
                 if !value.is_finite() {
                     return Err(CovarianceError::NotFinite { row, column, value });
+                }
+                if value.abs() > LARGEST {
+                    return Err(CovarianceError::TooLarge { row, column, value });
                 }
             }
         }
@@ -295,6 +310,16 @@ mod tests {
         assert!(matches!(
             Covariance::try_from_matrix(&m),
             Err(CovarianceError::NotFinite { row: 1, column: 1, .. })
+        ));
+    }
+
+    #[test]
+    fn two_finite_entries_whose_sum_is_infinite_are_refused() {
+        let mut m = Matrix3::identity();
+        (m[(1, 2)], m[(2, 1)]) = (1e308, 1e308);
+        assert!(matches!(
+            Covariance::try_from_matrix(&m),
+            Err(CovarianceError::TooLarge { row: 1, column: 2, .. })
         ));
     }
 
