@@ -1,6 +1,6 @@
 //! Bounds on the spread and the movement of a node's points, and how they climb the tree.
 
-use cloudtouch_geom::{Matrix3, Vector3};
+use cloudtouch_geom::{Covariance, Matrix3, Vector3};
 
 use crate::{Node, Primitive, Tree, TreeError};
 
@@ -15,6 +15,9 @@ pub struct LeafBounds {
     pub std: f64,
     /// How far (m) the mean of any of the points may move; finite.
     pub shift: f64,
+    /// How far (m) the surface that any of the points stands for may reach from its mean, in any
+    /// direction; finite.
+    pub reach: f64,
 }
 
 /// Bounds on all points of a node.
@@ -26,35 +29,65 @@ pub(crate) struct SpreadBounds {
     pub(crate) axis_std: Vector3,
     /// How far a mean may move, m.
     pub(crate) shift: f64,
+    /// How far the surface a point stands for reaches from its mean, in any direction and along each
+    /// box axis, m.
+    pub(crate) max_reach: f64,
+    pub(crate) axis_reach: Vector3,
 }
 
 impl SpreadBounds {
-    pub(crate) const NONE: Self =
-        Self { max_std: 0.0, axis_std: Vector3::new(0.0, 0.0, 0.0), shift: 0.0 };
+    pub(crate) const NONE: Self = Self {
+        max_std: 0.0,
+        axis_std: Vector3::new(0.0, 0.0, 0.0),
+        shift: 0.0,
+        max_reach: 0.0,
+        axis_reach: Vector3::new(0.0, 0.0, 0.0),
+    };
 
     /// The bounds of one primitive seen along `axes`: those given for its refinement, else its
-    /// own covariance.
-    pub(crate) fn of(primitive: &Primitive, refined: Option<LeafBounds>, axes: &Matrix3) -> Self {
-        if let Some(LeafBounds { std, shift }) = refined {
-            return Self { max_std: std, axis_std: Vector3::repeat(std), shift };
+    /// own covariance and the extent given.
+    pub(crate) fn of(
+        primitive: &Primitive,
+        refined: Option<LeafBounds>,
+        extent: Option<&Covariance>,
+        axes: &Matrix3,
+    ) -> Self {
+        let own = Self::NONE;
+        if let Some(LeafBounds { std, shift, reach }) = refined {
+            return Self { shift, ..own.with_std(std).with_reach(reach) };
         }
-        let Some(covariance) = primitive.covariance() else { return Self::NONE };
-        let [xx, xy, xz, yy, yz, zz] = covariance.upper_triangle();
-        if xy == 0.0 && xz == 0.0 && yz == 0.0 && xx == yy && yy == zz {
-            let std = xx.sqrt();
-            return Self { max_std: std, axis_std: Vector3::repeat(std), shift: 0.0 };
-        }
-        Self {
-            max_std: covariance.max_std(),
-            axis_std: Vector3::from_fn(|k, _| covariance.std_along(&axes.column(k).into_owned())),
-            shift: 0.0,
+        let along = |of: &Covariance| {
+            let std = |k| of.std_along(&axes.column(k).into_owned());
+            Vector3::new(std(0), std(1), std(2))
+        };
+        let own = match primitive.covariance() {
+            None => own,
+            Some(covariance) => match covariance.isotropic_variance() {
+                Some(variance) => own.with_std(variance.sqrt()),
+                None => Self { max_std: covariance.max_std(), axis_std: along(covariance), ..own },
+            },
+        };
+        match extent {
+            None => own,
+            Some(extent) => Self { max_reach: extent.max_std(), axis_reach: along(extent), ..own },
         }
     }
 
-    /// The same bounds along other axes: |n·a_k| s_k adds up to at least the deviation along n.
+    fn with_std(self, std: f64) -> Self {
+        Self { max_std: std, axis_std: Vector3::repeat(std), ..self }
+    }
+
+    fn with_reach(self, reach: f64) -> Self {
+        Self { max_reach: reach, axis_reach: Vector3::repeat(reach), ..self }
+    }
+
+    /// The same bounds along other axes: |n·a_k| s_k adds up to at least the deviation along n, and
+    /// as much for the reach.
     pub(crate) fn turned(&self, from: &Matrix3, to: &Matrix3) -> Self {
-        let along = to.tr_mul(from).abs() * self.axis_std;
-        Self { axis_std: along.map(|std| std.min(self.max_std)), ..*self }
+        let turn = to.tr_mul(from).abs();
+        let axis_std = (turn * self.axis_std).map(|std| std.min(self.max_std));
+        let axis_reach = (turn * self.axis_reach).map(|reach| reach.min(self.max_reach));
+        Self { axis_std, axis_reach, ..*self }
     }
 
     /// Bounds that hold for both, seen along the same axes.
@@ -63,6 +96,8 @@ impl SpreadBounds {
             max_std: self.max_std.max(other.max_std),
             axis_std: self.axis_std.sup(&other.axis_std),
             shift: self.shift.max(other.shift),
+            max_reach: self.max_reach.max(other.max_reach),
+            axis_reach: self.axis_reach.sup(&other.axis_reach),
         }
     }
 
@@ -92,9 +127,10 @@ impl Tree {
         let mut refined = self.refined.clone();
         for leaf in self.leaves() {
             let bounds = bounds_of(leaf);
-            if !(bounds.std >= 0.0 && bounds.shift >= 0.0 && bounds.shift.is_finite()) {
-                let LeafBounds { std, shift } = bounds;
-                return Err(TreeError::LeafBounds { leaf: leaf.id().index(), std, shift });
+            let is_length = |value: f64| value >= 0.0 && value.is_finite();
+            if !(bounds.std >= 0.0 && is_length(bounds.shift) && is_length(bounds.reach)) {
+                let LeafBounds { std, shift, reach } = bounds;
+                return Err(TreeError::LeafBounds { leaf: leaf.id().index(), std, shift, reach });
             }
             for &index in leaf.primitive_indices() {
                 refined[index as usize] = Some(bounds);
@@ -103,6 +139,38 @@ impl Tree {
         self.refined = refined;
         self.update_bounds(self.root);
         Ok(())
+    }
+
+    /// Forgets what [`Self::set_leaf_bounds`] said: the primitives are what they will stay.
+    pub fn clear_leaf_bounds(&mut self) {
+        self.refined.fill(None);
+        self.update_bounds(self.root);
+    }
+
+    /// Sets, by index, how far the surface that a primitive stands for reaches from its mean, and
+    /// carries it upward: along a unit vector n √(nᵀEn), E the extent. Without it no surface reaches
+    /// beyond the primitives themselves.
+    ///
+    /// Extents stay with the primitives as bounds do, which stand in for them where both are set; a
+    /// primitive inserted later has none.
+    ///
+    /// # Errors
+    /// [`TreeError::Count`] when there is not one for every index; the tree is then unchanged.
+    pub fn set_extents(&mut self, extents: Vec<Covariance>) -> Result<(), TreeError> {
+        if extents.len() != self.primitives.len() {
+            let (expected, found) = (self.primitives.len(), extents.len());
+            return Err(TreeError::Count { expected, found });
+        }
+        self.extents = extents;
+        self.update_bounds(self.root);
+        Ok(())
+    }
+
+    /// The bounds of one primitive seen along `axes`.
+    pub(crate) fn bounds_of_primitive(&self, index: u32, axes: &Matrix3) -> SpreadBounds {
+        let index = index as usize;
+        let extent = self.extents.get(index);
+        SpreadBounds::of(&self.primitives[index], self.refined[index], extent, axes)
     }
 
     /// Recomputes the bounds of everything below `from` and of itself, children before parents.
@@ -118,8 +186,8 @@ impl Tree {
         let axes = &node.obb.axes;
         let largest = |all: SpreadBounds, one: SpreadBounds| all.max(&one);
         match node.children {
-            None => (self.indices_of(id).iter().map(|&i| i as usize))
-                .map(|i| SpreadBounds::of(&self.primitives[i], self.refined[i], axes))
+            None => (self.indices_of(id).iter())
+                .map(|&index| self.bounds_of_primitive(index, axes))
                 .fold(SpreadBounds::NONE, largest),
             Some(children) => (children.map(|child| &self.nodes[child as usize]).iter())
                 .map(|child| child.bounds.turned(&child.obb.axes, axes))

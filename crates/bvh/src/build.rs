@@ -37,6 +37,7 @@ impl Tree {
             settings: *settings,
             primitives,
             refined: vec![None; count],
+            extents: Vec::new(),
             leaf_of: vec![None; count],
             order: (0..count as u32).collect(),
             nodes: Vec::new(),

@@ -64,10 +64,10 @@ pub enum TreeError {
         /// The index asked for.
         index: usize,
     },
-    /// A leaf bound is negative or NaN, or a shift infinite.
+    /// A leaf bound is negative or NaN, or a shift or a reach infinite.
     #[error(
-        "the bounds of leaf {leaf} are std {std} and shift {shift}: both must be zero or more, \
-         and the shift finite"
+        "the bounds of leaf {leaf} are std {std}, shift {shift} and reach {reach}: all must be zero \
+         or more, shift and reach finite"
     )]
     LeafBounds {
         /// Index of the leaf's node.
@@ -76,6 +76,8 @@ pub enum TreeError {
         std: f64,
         /// The shift given, m.
         shift: f64,
+        /// The reach given, m.
+        reach: f64,
     },
     /// The pose has an entry that is not finite.
     #[error(

@@ -1,10 +1,10 @@
 //! The test of one pair of nodes: gap, bound, urgency, and whether to descend.
 
-use cloudtouch_geom::{Pose, seed};
+use cloudtouch_geom::{Pose, Vector3, seed};
 
 use crate::leakage::{Side, gap_aware_probability, paper_probability, plane_bound};
 use crate::node::NodeData;
-use crate::{LeafPair, NodeId, Traversal, TraversalSettings, Tree, signed_gap};
+use crate::{LeafPair, NodeId, Obb, Traversal, TraversalSettings, Tree, signed_gap};
 
 /// What is known of a pair of nodes.
 #[derive(Debug, Clone, Copy)]
@@ -49,14 +49,17 @@ impl<'a> Examiner<'a> {
     /// The gap and bound of a pair, how urgent it is, and whether to descend it.
     pub(crate) fn examine(&self, (id_a, id_b): (u32, u32)) -> Examined {
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
-        let between = signed_gap(&a.obb, &b.obb.transformed(&self.a_from_b));
-        let gap = between.signed - a.bounds.shift - b.bounds.shift - self.rounding;
+        let between = signed_gap(&self.shape(a), &self.shape(b).transformed(&self.a_from_b));
         let axis_in_b = self.b_from_a.transform_vector(&between.axis);
+        let apart = between.signed - a.bounds.shift - b.bounds.shift - self.rounding;
+        let may_cross = apart < 0.0;
+        // Along the axis that parts the surfaces most the points are farther apart by their reach.
+        let gap = apart + self.reach(a, &between.axis) + self.reach(b, &axis_in_b);
         let std_a = a.bounds.std_along(&a.obb.axes, &between.axis);
         let std_b = b.bounds.std_along(&b.obb.axes, &axis_in_b);
-        let bound = plane_bound(gap, std_a.max(std_b));
+        let bound = if may_cross { 1.0 } else { plane_bound(gap, std_a.max(std_b)) };
         let (name_a, name_b) = (NodeId(id_a), NodeId(id_b));
-        let pair = LeafPair { a: name_a, b: name_b, gap, axis: between.axis, bound };
+        let pair = LeafPair { a: name_a, b: name_b, gap, axis: between.axis, bound, may_cross };
 
         let reach = |node: &NodeData| node.obb.radius() + node.bounds.shift;
         let size = reach(a).min(reach(b));
@@ -76,6 +79,17 @@ impl<'a> Examiner<'a> {
         Examined { pair, urgency, descend }
     }
 
+    /// The box of what may not overlap: of the surfaces where crossings are told apart, else of the
+    /// points.
+    fn shape(&self, node: &NodeData) -> Obb {
+        if self.settings.crossings { node.surface_box() } else { node.obb }
+    }
+
+    /// How much farther than the box of the points that box reaches along a unit vector, m.
+    fn reach(&self, node: &NodeData, direction: &Vector3) -> f64 {
+        if self.settings.crossings { node.reach_along(direction) } else { 0.0 }
+    }
+
     /// Whether an event of this probability happens to this pair of nodes under this seed.
     fn draw(&self, probability: f64, id_a: u32, id_b: u32) -> bool {
         // The extremes need no generator.
@@ -90,7 +104,10 @@ impl<'a> Examiner<'a> {
         let (NodeId(id_a), NodeId(id_b)) = (pair.a, pair.b);
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
         let a_is_larger = a.obb.radius() >= b.obb.radius();
-        match (a.children, b.children) {
+        let below = |node: &NodeData| {
+            node.children.filter(|_| node.count as usize > self.settings.leaf_points)
+        };
+        match (below(a), below(b)) {
             (Some(children), None) => Some(children.map(|child| (child, id_b))),
             (None, Some(children)) => Some(children.map(|child| (id_a, child))),
             (Some(children), Some(_)) if a_is_larger => Some(children.map(|child| (child, id_b))),

@@ -36,6 +36,19 @@ pub(crate) struct NodeData {
     pub(crate) in_use: bool,
 }
 
+impl NodeData {
+    /// The box that holds the surface its primitives stand for.
+    pub(crate) fn surface_box(&self) -> Obb {
+        Obb { half_extents: self.obb.half_extents + self.bounds.axis_reach, ..self.obb }
+    }
+
+    /// How much farther than the box of the points that of the surface reaches along a unit vector,
+    /// m.
+    pub(crate) fn reach_along(&self, direction: &Vector3) -> f64 {
+        self.obb.axes.tr_mul(direction).abs().dot(&self.bounds.axis_reach)
+    }
+}
+
 /// A node of a tree, to look at.
 #[derive(Debug, Clone, Copy)]
 pub struct Node<'a> {
@@ -87,6 +100,12 @@ impl<'a> Node<'a> {
     /// How far (m) the means of its points may still move; see [`Tree::set_leaf_bounds`].
     pub fn shift(&self) -> f64 {
         self.data().bounds.shift
+    }
+
+    /// A bound on how far (m) the surface its points stand for reaches from their means; see
+    /// [`LeafBounds::reach`](crate::LeafBounds::reach) and [`Tree::set_extents`].
+    pub fn reach(&self) -> f64 {
+        self.data().bounds.max_reach
     }
 
     /// Whether it has no children.

@@ -81,11 +81,21 @@ pub struct TraversalSettings {
     /// Probability a point may have at most in a pair that [`Traversal::Certified`] culls, in
     /// \[0, 0.5\]; the others do not use it.
     pub cull_probability: f64,
+    /// Whether pairs whose surfaces may cross ([`crate::LeafPair::may_cross`]) are told apart; if not,
+    /// how far surfaces reach beyond their points is left out of account.
+    pub crossings: bool,
+    /// Nodes of at most so many primitives are taken for leaves; those of the tree always are.
+    pub leaf_points: usize,
 }
 
 impl Default for TraversalSettings {
     fn default() -> Self {
-        Self { kind: Traversal::default(), cull_probability: 1e-6 }
+        Self {
+            kind: Traversal::default(),
+            cull_probability: 1e-6,
+            crossings: false,
+            leaf_points: 0,
+        }
     }
 }
 

@@ -15,12 +15,17 @@ pub struct LeafPair {
     pub a: NodeId,
     /// Leaf of the second tree.
     pub b: NodeId,
-    /// Signed distance (m) of the two boxes, each grown by its shift; see [`crate::Gap::signed`].
+    /// Signed distance (m) of the two boxes along `axis`, each grown by its shift; see
+    /// [`crate::Gap::signed`].
     pub gap: f64,
-    /// Unit vector of the axis of that gap, in the frame of the first tree, toward the second.
+    /// Unit vector of the axis along which the surfaces are farthest apart, in the frame of the
+    /// first tree, toward the second.
     pub axis: Vector3,
-    /// No point of either leaf has a higher collision probability than this: Φ(−gap/(2σ)) for
-    /// disjoint boxes, else 1.
+    /// Whether the surfaces the points stand for may cross: their boxes, grown by their reach too,
+    /// overlap.
+    pub may_cross: bool,
+    /// No point of either leaf has a higher collision probability than this: Φ(−gap/(2σ)) where the
+    /// surfaces are apart, else 1.
     pub bound: f64,
 }
 
@@ -222,8 +227,8 @@ mod tests {
             for corner in primitive.corners() {
                 let margin = plane - outward.dot(&a_from_tree.transform_point(corner).coords);
                 let along = a_from_tree.inverse().transform_vector(outward);
-                let LeafBounds { std, shift } =
-                    refined.unwrap_or(LeafBounds { std: primitive.std_along(&along), shift: 0.0 });
+                let own = LeafBounds { std: primitive.std_along(&along), shift: 0.0, reach: 0.0 };
+                let LeafBounds { std, shift, .. } = refined.unwrap_or(own);
                 let probability = normal::below_zero(margin - shift, std);
                 assert!(
                     probability <= bound * (1.0 + 1e-6) + 1e-300,
@@ -246,7 +251,8 @@ mod tests {
             a.set_leaf_bounds(|_| bounds).unwrap();
             b.set_leaf_bounds(|_| bounds).unwrap();
         }
-        let traversal = TraversalSettings { kind, cull_probability: 1e-4 };
+        let traversal =
+            TraversalSettings { kind, cull_probability: 1e-4, ..TraversalSettings::default() };
         let (mut visited, mut culled) = (BTreeSet::new(), BTreeSet::new());
         let mut highest = 0.0_f64;
         let on_pair = |pair: LeafPair| {
@@ -291,7 +297,7 @@ mod tests {
             offset in prop::array::uniform3(-0.6..0.6_f64),
             angles in prop::array::uniform3(-3.1..3.1_f64),
             refined in prop_oneof![
-                Just(None), Just(Some(LeafBounds { std: 0.005, shift: 0.01 }))
+                Just(None), Just(Some(LeafBounds { std: 0.005, shift: 0.01, reach: 0.02 }))
             ],
         ) {
             let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
@@ -308,6 +314,7 @@ mod tests {
                 b: NodeId(b),
                 gap: urgency,
                 axis: Vector3::x(),
+                may_cross: true,
                 bound: 1.0,
             },
         };

@@ -1,5 +1,7 @@
 //! The tree itself: flat arrays and the accessors over them.
 
+use cloudtouch_geom::Covariance;
+
 use crate::coverage::fraction_outside;
 use crate::node::NodeData;
 use crate::{LeafBounds, Node, NodeId, Primitive, TreeSettings};
@@ -15,6 +17,8 @@ pub struct Tree {
     pub(crate) primitives: Vec<Primitive>,
     /// By index: the bounds set for the refinement of a primitive.
     pub(crate) refined: Vec<Option<LeafBounds>>,
+    /// By index: how far the surface of a primitive reaches; shorter when none was set.
+    pub(crate) extents: Vec<Covariance>,
     /// By index: the leaf that holds a primitive, `None` once removed.
     pub(crate) leaf_of: Vec<Option<u32>>,
     /// A permutation of the present indices; every node owns a contiguous range of it.

@@ -96,9 +96,7 @@ impl Tree {
         let node = &self.nodes[id as usize];
         let axes = &node.obb.axes;
         for &index in self.indices_of(id) {
-            let (primitive, refined) =
-                (&self.primitives[index as usize], self.refined[index as usize]);
-            let covered = covers(&node.bounds, &SpreadBounds::of(primitive, refined, axes));
+            let covered = covers(&node.bounds, &self.bounds_of_primitive(index, axes));
             self.require(id, covered, "a primitive exceeds the bounds of its node")?;
         }
         for child in node.children.into_iter().flatten() {
@@ -114,5 +112,7 @@ fn covers(outer: &SpreadBounds, inner: &SpreadBounds) -> bool {
     let enough = |outer: f64, inner: f64| outer >= inner * (1.0 - ROUNDING);
     enough(outer.max_std, inner.max_std)
         && enough(outer.shift, inner.shift)
+        && enough(outer.max_reach, inner.max_reach)
         && (0..3).all(|k| enough(outer.axis_std[k], inner.axis_std[k]))
+        && (0..3).all(|k| enough(outer.axis_reach[k], inner.axis_reach[k]))
 }

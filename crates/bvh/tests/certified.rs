@@ -138,20 +138,21 @@ fn refined_bounds_are_used_for_culling() {
     let before = run(&a, &b);
     assert_eq!((before.leaf_pairs, before.nodes_visited), (0, 1));
     // Unknown deviations: nothing may be culled.
-    a.set_leaf_bounds(|_| LeafBounds { std: f64::INFINITY, shift: 0.0 }).unwrap();
+    a.set_leaf_bounds(|_| LeafBounds { std: f64::INFINITY, shift: 0.0, reach: 0.0 }).unwrap();
     assert_eq!(run(&a, &b).culled, 0);
     // Known deviations, but means that may move across the gap.
-    a.set_leaf_bounds(|_| LeafBounds { std: 0.001, shift: 0.25 }).unwrap();
-    b.set_leaf_bounds(|_| LeafBounds { std: 0.001, shift: 0.2 }).unwrap();
+    a.set_leaf_bounds(|_| LeafBounds { std: 0.001, shift: 0.25, reach: 0.0 }).unwrap();
+    b.set_leaf_bounds(|_| LeafBounds { std: 0.001, shift: 0.2, reach: 0.0 }).unwrap();
     let moving = run(&a, &b);
     assert!(moving.leaf_pairs > 0);
     assert_eq!(a.root().unwrap().shift(), 0.25);
     // One leaf alone that may move: its ancestors know, the others do not care.
     let special = b.leaves().last().unwrap().id();
-    a.set_leaf_bounds(|_| LeafBounds { std: 0.001, shift: 0.0 }).unwrap();
+    a.set_leaf_bounds(|_| LeafBounds { std: 0.001, shift: 0.0, reach: 0.0 }).unwrap();
     b.set_leaf_bounds(|leaf| LeafBounds {
         std: 0.001,
         shift: if leaf.id() == special { 0.5 } else { 0.0 },
+        reach: 0.0,
     })
     .unwrap();
     b.validate().unwrap();
@@ -164,7 +165,8 @@ fn refined_bounds_are_used_for_culling() {
     .unwrap();
     assert!(!visited.is_empty() && visited.iter().all(|&leaf| leaf == special));
     // Bounds given are no looser than what they replace, once they say so.
-    let error = a.set_leaf_bounds(|_| LeafBounds { std: 0.0, shift: f64::NAN }).unwrap_err();
+    let error =
+        a.set_leaf_bounds(|_| LeafBounds { std: 0.0, shift: f64::NAN, reach: 0.0 }).unwrap_err();
     assert!(matches!(error, TreeError::LeafBounds { shift, .. } if shift.is_nan()));
     assert_eq!(a.root().unwrap().shift(), 0.0);
 }

@@ -104,7 +104,7 @@ fn bounds_stay_with_the_points() {
     let special = tree.leaf_of(42).unwrap();
     tree.set_leaf_bounds(|leaf| {
         let std = if leaf.id() == special { 0.7 } else { 0.001 };
-        LeafBounds { std, shift: 2.0 * std }
+        LeafBounds { std, shift: 2.0 * std, reach: std }
     })
     .unwrap();
     tree.refit(&shaken(&cloud, 1, 0.5)).unwrap();

@@ -75,6 +75,13 @@ impl Covariance {
         Self::diagonal([variance; 3])
     }
 
+    /// The variance (m²) where it is the same in every direction, else `None`.
+    pub fn isotropic_variance(&self) -> Option<f64> {
+        let is_round = self.xx == self.yy && self.yy == self.zz;
+        let is_diagonal = self.xy == 0.0 && self.xz == 0.0 && self.yz == 0.0;
+        (is_round && is_diagonal).then_some(self.xx)
+    }
+
     /// Independent variances (m²) along x, y and z; negative ones count as zero.
     pub fn diagonal(variances: [f64; 3]) -> Self {
         let [xx, yy, zz] = variances.map(not_negative);

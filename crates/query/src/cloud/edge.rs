@@ -11,6 +11,9 @@ use super::{Cloud, Surfel};
 const NEIGHBORS: usize = 8;
 /// Edges join samples up to this many of the smaller of their spacings apart.
 pub(crate) const EDGE_SPACINGS: f64 = 2.2;
+/// The disc about a sample stands for the surface up to so many spacings from it; no edge reaches
+/// farther from its own end to its middle.
+pub(crate) const DISC_SPACINGS: f64 = 1.5;
 /// Edges run along the surface: the sine of their angle to it is at most this.
 const SLOPE: f64 = 0.5;
 

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use cloudtouch_bvh::{Node, NodeId, Tree};
-use cloudtouch_geom::{Pose, UncertainPoint, Vector3};
+use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3};
 use cloudtouch_noise::Scratch;
 
 use super::Cloud;
@@ -38,6 +38,9 @@ impl Surfel {
     }
 }
 
+/// Points that a spacing is told from, at most.
+const REGION_POINTS: usize = 40;
+
 /// One slot per point, and per tree node, of which only those of leaves are ever filled. Each is a
 /// pure function of the cloud, so it does not matter which thread fills it.
 #[derive(Debug)]
@@ -53,7 +56,7 @@ impl LazySurface {
     pub(super) fn new(tree: &Tree, points: usize) -> Self {
         let mut spacing_caps = vec![0.0; points];
         for leaf in tree.leaves() {
-            let cap = spacing_cap(leaf);
+            let cap = spacing_cap(tree, leaf);
             for &index in leaf.primitive_indices() {
                 spacing_caps[index as usize] = cap;
             }
@@ -67,28 +70,45 @@ impl LazySurface {
     }
 }
 
+impl LazySurface {
+    /// What the spacing of each point of a leaf is limited to, m.
+    pub(super) fn spacing_cap(&self, leaf: Node<'_>) -> f64 {
+        leaf.primitive_indices().first().map_or(0.0, |&index| self.spacing_caps[index as usize])
+    }
+}
+
 fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
     (0..count).map(|_| OnceLock::new()).collect()
 }
 
-/// The spacing a point may be given at most, on which the tree's bounds rest: half more than that
-/// of as many points spread evenly over the two longest sides of the leaf's box, or on a line.
-pub(super) fn spacing_cap(leaf: Node<'_>) -> f64 {
-    let mut sides: [f64; 3] = (2.0 * leaf.obb().half_extents).into();
+/// The spacing a point of a leaf may be given at most, on which the tree's bounds rest: half more
+/// than that of as many points spread evenly over the two longest sides of the region's box, or on a
+/// line.
+fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
+    let around = region(tree, leaf);
+    let mut sides: [f64; 3] = (2.0 * around.obb().half_extents).into();
     sides.sort_by(f64::total_cmp);
     let [_, middle, longest] = sides;
-    let count = leaf.primitive_indices().len().max(1) as f64;
+    let count = around.primitive_indices().len().max(1) as f64;
     // On a line the sixth neighbour, which the spacing is measured by, is three steps away.
     1.5 * (longest * middle / count).sqrt().max(3.0 * longest / count)
 }
 
+/// The largest node around a leaf with few enough points to tell their spacing there.
+fn region<'a>(tree: &'a Tree, leaf: Node<'a>) -> Node<'a> {
+    let parent = |node: &Node<'a>| node.parent().and_then(|id| tree.node(id));
+    let is_small = |node: &Node<'a>| node.primitive_indices().len() <= REGION_POINTS;
+    let around = std::iter::successors(Some(leaf), parent).take_while(is_small).last();
+    around.unwrap_or(leaf)
+}
+
 impl Cloud {
-    /// The surface at the points of a leaf, and whether this call computed it.
+    /// The surface at the points of a node, and whether this call computed it.
     pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
         let mut computed = false;
         let surfels = self.surface.leaves[id.index()].get_or_init(|| {
             computed = true;
-            let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
+            let Some(leaf) = self.tree.node(id) else { return Vec::new() };
             let mut scratch = Scratch::default();
             let surfel = |&index: &u32| *self.surfel(index, &mut scratch);
             leaf.primitive_indices().iter().map(surfel).collect()
@@ -102,6 +122,13 @@ impl Cloud {
             let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
             edges_of(self, leaf.primitive_indices())
         })
+    }
+
+    /// The surface at the points measured nearest to a place in the local frame.
+    pub(crate) fn surfels_near(&self, place: &Point3, count: usize) -> Vec<Surfel> {
+        let mut scratch = Scratch::default();
+        let nearest = self.neighborhoods.nearest_to(place, count);
+        nearest.iter().map(|near| *self.surfel(near.index as u32, &mut scratch)).collect()
     }
 
     /// The surface at one point.

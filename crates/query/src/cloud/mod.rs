@@ -3,6 +3,7 @@
 
 mod edge;
 mod lazy;
+mod refine;
 mod settings;
 mod view;
 
@@ -18,7 +19,7 @@ use crate::range::check_points;
 
 #[cfg(test)]
 pub(crate) use edge::edges_of;
-pub(crate) use edge::{EDGE_SPACINGS, Edge};
+pub(crate) use edge::{DISC_SPACINGS, Edge};
 use lazy::LazySurface;
 pub(crate) use lazy::Surfel;
 pub use settings::CloudSettings;
@@ -89,9 +90,11 @@ impl Cloud {
         let neighborhoods = Neighborhoods::try_new(points)?;
         let mut tree = Tree::build(primitives, &settings.tree)?;
         let noise = NoiseModel::try_new(settings.noise)?;
+        let surface = LazySurface::new(&tree, sensor.len());
         tree.set_leaf_bounds(|leaf| {
-            let cap = lazy::spacing_cap(leaf);
-            let mut bounds = LeafBounds { std: 0.0, shift: 0.0 };
+            let cap = surface.spacing_cap(leaf);
+            let reach = DISC_SPACINGS * cap;
+            let mut bounds = LeafBounds { std: 0.0, shift: 0.0, reach };
             for &index in leaf.primitive_indices() {
                 let point = noise.bounds(&sensor[index as usize], cap);
                 bounds.std = bounds.std.max(point.std);
@@ -99,7 +102,6 @@ impl Cloud {
             }
             bounds
         })?;
-        let surface = LazySurface::new(&tree, sensor.len());
         // An organised cloud is a depth image: one view, with unseen space behind it.
         let view = cloud
             .image_size
@@ -166,11 +168,6 @@ impl Cloud {
     /// The largest standard deviation of the position noise of a kept point, m.
     pub(crate) fn sensor_std(&self, index: u32) -> f64 {
         self.sensor[index as usize].max_std()
-    }
-
-    /// Standard deviation of a surfel along its surface, in spacings.
-    pub(crate) fn disc_std(&self) -> f64 {
-        self.noise.settings().disc_std
     }
 
     pub(crate) fn tree(&self) -> &Tree {

@@ -31,7 +31,15 @@ impl CloudSettings {
             filter: FilterSettings::for_sensor(&sensor),
             sensor,
             noise: NoiseSettings { combination, ..NoiseSettings::default() },
-            tree: TreeSettings::default(),
+            tree: match mode {
+                Mode::Paper => TreeSettings::default(),
+                // Contact patches do not end where leaves do: small ones are searched sooner.
+                Mode::Calibrated => TreeSettings {
+                    max_leaf_points: 12,
+                    min_leaf_points: 6,
+                    ..TreeSettings::default()
+                },
+            },
         }
     }
 }

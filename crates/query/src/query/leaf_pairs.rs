@@ -16,7 +16,15 @@ use super::record::add_pair;
 use super::run::Query;
 use super::settings::Mode;
 
+/// What the classifier wants of a cloud at a time.
+const LEAF_POINTS: usize = 40;
+
 impl Query {
+    /// Clouds of the calibrated mode have smaller leaves than the classifier wants.
+    fn leaf_traversal(&self) -> TraversalSettings {
+        TraversalSettings { leaf_points: LEAF_POINTS, ..self.settings().traversal() }
+    }
+
     /// Classifies the leaf pairs that may touch and bounds the others.
     pub(super) fn traverse_leaf_pairs(
         &self,
@@ -27,36 +35,36 @@ impl Query {
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let settings = self.settings();
+        let traversal = self.leaf_traversal();
         let mut looked_at = BTreeSet::new();
         let mut failed = None;
-        let outcome =
-            traverse(a.tree(), b.tree(), a_from_b, &settings.traversal(), settings.seed, |pair| {
-                looked_at.insert((pair.a, pair.b));
-                let relevant = match settings.mode {
-                    Mode::Calibrated => evidence.relevant_probability(),
-                    // As printed, but for pairs that no probability can come from.
-                    Mode::Paper => 0.0,
-                };
-                let next = Flow::Above(relevant.max(settings.cull_probability));
-                let stats = &mut evidence.stats;
-                let max_parts = settings.max_mesh_parts;
-                let points = match gather((a, pair.a), (b, pair.b), a_from_b, max_parts, stats) {
-                    Ok(Some(points)) => points,
-                    Ok(None) => {
-                        evidence.widen(leaf_pair::bound_left_out());
-                        return next;
-                    }
-                    Err(error) => {
-                        failed = Some(error);
-                        return Flow::Stop;
-                    }
-                };
-                stats.leaf_pairs += 1;
-                let answer = classify(&points, settings, relevant, stats);
-                add_pair((a, b, a_from_b), &points, &answer, evidence);
-                let is_enough = evidence.largest() > settings.stop_above || clock.is_over();
-                if is_enough { Flow::Stop } else { next }
-            })?;
+        let outcome = traverse(a.tree(), b.tree(), a_from_b, &traversal, settings.seed, |pair| {
+            looked_at.insert((pair.a, pair.b));
+            let relevant = match settings.mode {
+                Mode::Calibrated => evidence.relevant_probability(),
+                // As printed, but for pairs that no probability can come from.
+                Mode::Paper => 0.0,
+            };
+            let next = Flow::Above(relevant.max(settings.cull_probability));
+            let stats = &mut evidence.stats;
+            let max_parts = settings.max_mesh_parts;
+            let points = match gather((a, pair.a), (b, pair.b), a_from_b, max_parts, stats) {
+                Ok(Some(points)) => points,
+                Ok(None) => {
+                    evidence.widen(leaf_pair::bound_left_out());
+                    return next;
+                }
+                Err(error) => {
+                    failed = Some(error);
+                    return Flow::Stop;
+                }
+            };
+            stats.leaf_pairs += 1;
+            let answer = classify(&points, settings, relevant, stats);
+            add_pair((a, b, a_from_b), &points, &answer, evidence);
+            let is_enough = evidence.largest() > settings.stop_above || clock.is_over();
+            if is_enough { Flow::Stop } else { next }
+        })?;
         if let Some(error) = failed {
             return Err(error.into());
         }
@@ -80,8 +88,7 @@ impl Query {
         looked_at: &BTreeSet<(NodeId, NodeId)>,
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
-        let certified =
-            TraversalSettings { kind: Traversal::Certified, ..self.settings().traversal() };
+        let certified = TraversalSettings { kind: Traversal::Certified, ..self.leaf_traversal() };
         let mut left_out = 0.0_f64;
         let outcome = traverse(a.tree(), b.tree(), a_from_b, &certified, 0, |pair| {
             if !looked_at.contains(&(pair.a, pair.b)) {

@@ -114,7 +114,11 @@ impl QuerySettings {
 
     /// What the traversal of two trees is asked.
     pub(super) fn traversal(&self) -> TraversalSettings {
-        TraversalSettings { kind: self.traversal, cull_probability: self.cull_probability }
+        TraversalSettings {
+            kind: self.traversal,
+            cull_probability: self.cull_probability,
+            ..TraversalSettings::default()
+        }
     }
 
     pub(super) fn check(&self) -> Result<(), SettingsError> {

@@ -8,17 +8,12 @@
 
 use cloudtouch_geom::{Point3, Vector3, normal};
 
-use crate::cloud::{EDGE_SPACINGS, Edge, Surfel};
+use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
 
 /// The weight of a disc falls off like a normal density with this many spacings.
-const DISC_SPACINGS: f64 = 0.5;
-/// Beyond this many spacings from its middle a disc says nothing.
-const DISC_REACH: f64 = 1.5;
+const WEIGHT_SPACINGS: f64 = 0.5;
 /// No crossing is clearer than this many standard deviations.
 const CLEAREST: f64 = 6.0;
-/// A crossing is at most so many of the larger spacing from the nearer end of its edge to the
-/// middle of its disc.
-pub(super) const REACH_SPACINGS: f64 = 0.5 * EDGE_SPACINGS + DISC_REACH;
 
 /// An edge that crosses a disc.
 #[derive(Debug, Clone, Copy)]
@@ -51,13 +46,13 @@ pub(super) fn crossing(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
     let share = above / (above - below);
     let place = edge.ends[0] + (edge.ends[1] - edge.ends[0]) * share;
     let off = (place - middle).norm() / disc.spacing;
-    if off.is_nan() || off > DISC_REACH {
+    if off.is_nan() || off > DISC_SPACINGS {
         return None;
     }
     let of_disc = disc.variance_across();
     let stds = edge.across.map(|across| (across + of_disc).sqrt());
     let clear = (above.abs() / stds[0]).min(below.abs() / stds[1]);
-    let near = (-0.5 * (off / DISC_SPACINGS).powi(2)).exp();
+    let near = (-0.5 * (off / WEIGHT_SPACINGS).powi(2)).exp();
     // Twice the excess over one half: none on the disc, certain far from it.
     let sure = |height: f64, std| 1.0 - 2.0 * normal::below_zero(height.abs(), std);
     Some(Crossing {

@@ -28,7 +28,7 @@ use super::train::by_kernel;
 
 use patches::patches;
 use places::{add_finding, add_leaves};
-use recalibration::MOST_CERTAIN;
+use recalibration::{MOST_CERTAIN, MOST_DEVIATIONS};
 pub use recalibration::{ContactEvidence, Recalibration};
 use search::{Found, search};
 
@@ -68,17 +68,18 @@ pub(super) fn estimate(
     Ok(estimate)
 }
 
-/// The answer of geometry alone. Leaves apart for certain have no more than the bound they were
-/// culled by.
+/// The answer of geometry alone. Surfaces too far apart to tell by how much have no more than the
+/// bound they were culled by.
 ///
 /// More evidence only raises either model; so after an early stop the answer lies above the lesser
 /// of what both say now, or above that of geometry where the classifier would not be asked.
 fn by_geometry(settings: &QuerySettings, found: &Found<'_>, evidence: ContactEvidence) -> Estimate {
     let ContactEvidence { deviations, crossing, .. } = evidence;
-    let probability = if found.is_complete && found.leaves_a.is_empty() {
-        found.culled_bound
+    let by_geometry = settings.recalibration.by_geometry(deviations, crossing);
+    let probability = if found.is_complete && deviations >= MOST_DEVIATIONS && crossing == 0.0 {
+        by_geometry.min(found.culled_bound)
     } else {
-        settings.recalibration.by_geometry(deviations, crossing)
+        by_geometry
     };
     let bounds = if found.is_complete || is_final(settings, probability) {
         [probability; 2]
@@ -147,7 +148,7 @@ fn ask_classifier(
 ) -> Option<Misclassified> {
     let (deviations, crossing) = (found.deviations, found.crossing.ln_1p());
     let mut all: Option<Misclassified> = None;
-    for points in patches((a, b), found) {
+    for points in patches((a, b), a_from_b, found) {
         let count = points.a.len() + points.b.len();
         if clock.is_over() {
             // Of the patches that are left only bounds are known.

@@ -1,20 +1,19 @@
 //! Contact patches: the surroundings of the places where two clouds are least apart, across the
 //! borders of leaves, for the classifier.
 
-use std::collections::BTreeMap;
-
-use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::{Point3, Pose};
 
 use crate::cloud::{Cloud, Surfel};
 use crate::query::classify::{PairPoint, PairPoints};
 
-use super::search::{Finding, Found, Leaf};
+use super::search::{Finding, Found};
 
 /// More patches than this add little: the first is the least apart.
 const MOST_PATCHES: usize = 3;
 /// Points of one cloud in a patch, at most.
 const MOST_POINTS: usize = 30;
+/// What these are chosen from: the points nearest as measured.
+const GATHERED_POINTS: usize = 40;
 /// A patch reaches so many spacings ...
 const REACH_SPACINGS: f64 = 3.0;
 /// ... and so many standard deviations of the position noise.
@@ -28,12 +27,21 @@ struct Seed {
 }
 
 /// The patches of a search, the least apart first, no two of which have their middles within reach.
-pub(super) fn patches((a, b): (&Cloud, &Cloud), found: &Found<'_>) -> Vec<PairPoints> {
-    let gather = |seed: Seed| PairPoints {
-        a: around(&seed, &found.leaves_a),
-        b: around(&seed, &found.leaves_b),
-        a_is_mesh: false,
-        b_is_mesh: false,
+pub(super) fn patches(
+    (a, b): (&Cloud, &Cloud),
+    a_from_b: &Pose,
+    found: &Found<'_>,
+) -> Vec<PairPoints> {
+    let b_from_a = a_from_b.inverse();
+    let gather = |seed: Seed| {
+        let in_b = Seed { place: b_from_a.transform_point(&seed.place), ..seed };
+        let moved = |surfel: &Surfel| PairPoint::from(&surfel.transformed(a_from_b));
+        PairPoints {
+            a: around(&seed, a).iter().map(PairPoint::from).collect(),
+            b: around(&in_b, b).iter().map(moved).collect(),
+            a_is_mesh: false,
+            b_is_mesh: false,
+        }
     };
     let is_whole = |patch: &PairPoints| !patch.a.is_empty() && !patch.b.is_empty();
     seeds((a, b), found).into_iter().map(gather).filter(is_whole).collect()
@@ -61,15 +69,12 @@ fn seeds((a, b): (&Cloud, &Cloud), found: &Found<'_>) -> Vec<Seed> {
     seeds
 }
 
-/// The points of one cloud nearest to a seed, among the leaves the search came by.
-fn around(seed: &Seed, leaves: &BTreeMap<NodeId, Leaf<'_>>) -> Vec<PairPoint> {
+/// The pieces of surface of one cloud nearest to a seed in its frame.
+fn around(seed: &Seed, cloud: &Cloud) -> Vec<Surfel> {
     let distance = |s: &Surfel| (s.point.mean - seed.place).norm();
-    let mut near: Vec<&Surfel> = leaves
-        .values()
-        .flat_map(|leaf| leaf.surfels.iter())
-        .filter(|s| distance(s) <= seed.reach)
-        .collect();
+    let mut near = cloud.surfels_near(&seed.place, GATHERED_POINTS);
+    near.retain(|s| distance(s) <= seed.reach);
     near.sort_by(|s, t| distance(s).total_cmp(&distance(t)).then(s.index.cmp(&t.index)));
     near.truncate(MOST_POINTS);
-    near.into_iter().map(PairPoint::from).collect()
+    near
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::error::SettingsError;
 
 /// Deviations beyond this say no more than these.
-pub(crate) const MOST_DEVIATIONS: f64 = 5.3;
+pub(crate) const MOST_DEVIATIONS: f64 = 3.0;
 /// Geometry alone is not believed beyond this, so that a search may end there and miss nothing: by
 /// the fits hardly more than one in a hundred such poses is free.
 pub(super) const MOST_CERTAIN: f64 = 0.97;
@@ -18,7 +18,7 @@ const MISCLASSIFIED_FLOOR: f64 = 0.02;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ContactEvidence {
     /// z: the least Mahalanobis distance between two pieces of surface, one of each cloud; at most
-    /// 5.3.
+    /// 3.
     pub deviations: f64,
     /// ln(1 + Σs): how clearly edges between neighbours of one cloud pass through the surface of
     /// the other, s being standard deviations of each crossing, up to 6.

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use cloudtouch_bvh::{Flow, LeafPair, NodeId, TraversalSettings, traverse};
 use cloudtouch_geom::{Pose, Vector3};
 
-use crate::cloud::{Cloud, Edge, Surfel};
+use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
 use crate::error::QueryError;
 use crate::report::Stats;
 
-use super::crossing::{Crossing, REACH_SPACINGS, crossing};
+use super::crossing::{Crossing, crossing};
 use super::meeting::{Meeting, probability_at, squared_deviations};
 use super::recalibration::MOST_DEVIATIONS;
 
@@ -69,26 +69,20 @@ pub(super) fn search<'a>(
     stats: &mut Stats,
 ) -> Result<Found<'a>, QueryError> {
     let mut found = Found { deviations: MOST_DEVIATIONS, ..Found::default() };
-    let crossings_end = deviations_without_crossing(a, b);
-    let outcome = traverse(a.tree(), b.tree(), a_from_b, settings, seed, |pair| {
+    let settings = TraversalSettings { crossings: true, ..*settings };
+    let outcome = traverse(a.tree(), b.tree(), a_from_b, &settings, seed, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), a_from_b, &pair, stats);
         if is_enough(found.deviations, found.crossing) {
             return Flow::Stop;
         }
-        Flow::Above(probability_at(found.deviations_of_interest().max(crossings_end)))
+        Flow::Above(probability_at(found.deviations_of_interest()))
     })?;
     stats.nodes_visited += outcome.nodes_visited;
-    let harmless = probability_at(found.deviations_of_interest().max(crossings_end));
+    let harmless = probability_at(found.deviations_of_interest());
     found.is_complete = !outcome.stopped && outcome.culled_bound <= harmless;
     found.culled_bound = outcome.culled_bound;
     Ok(found)
-}
-
-/// Leaves with at least so many deviations between their boxes have no crossing: it would be
-/// farther than [`REACH_SPACINGS`] from one of them, and σ is at least that of a disc.
-fn deviations_without_crossing(a: &Cloud, b: &Cloud) -> f64 {
-    REACH_SPACINGS / (std::f64::consts::SQRT_2 * a.disc_std().min(b.disc_std()))
 }
 
 impl<'a> Found<'a> {
@@ -117,7 +111,7 @@ impl<'a> Found<'a> {
         });
         let nearest = nearest_pieces(leaf_a, leaf_b);
         let mut best = None;
-        if pair.gap <= REACH_SPACINGS * leaf_a.largest_spacing().max(leaf_b.largest_spacing()) {
+        if pair.may_cross {
             leaf_a.edges.get_or_insert_with(|| Cow::Borrowed(a.leaf_edges(pair.a)));
             leaf_b.edges.get_or_insert_with(|| {
                 b.leaf_edges(pair.b).iter().map(|e| e.transformed(a_from_b)).collect()
@@ -144,10 +138,6 @@ impl<'a> Leaf<'a> {
     fn new(surfels: Cow<'a, [Surfel]>) -> Self {
         let probabilities = vec![0.0; surfels.len()];
         Self { surfels, edges: None, probabilities }
-    }
-
-    fn largest_spacing(&self) -> f64 {
-        self.surfels.iter().map(|s| s.spacing).fold(0.0, f64::max)
     }
 
     fn middle(&self) -> Vector3 {
@@ -206,7 +196,7 @@ fn add_crossings(
         let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
         let half = 0.5 * (edge.ends[1] - edge.ends[0]).norm();
         for (disc, of_disc) in of_discs.surfels.iter().zip(&mut of_discs.probabilities) {
-            let reach = half + REACH_SPACINGS * disc.spacing;
+            let reach = half + DISC_SPACINGS * disc.spacing;
             if (disc.point.mean - middle).norm_squared() > reach * reach {
                 continue;
             }
