@@ -1,27 +1,40 @@
 //! The test of one pair of nodes: gap, bound, urgency, and whether to descend.
 
-use cloudtouch_geom::{Pose, Vector3, seed};
+use cloudtouch_geom::{Matrix3, Point3, Pose, Vector3, seed};
 
-use crate::leakage::{Side, gap_aware_probability, paper_probability, plane_bound};
+use crate::leakage::{Side, gap_aware_probability, paper_probability, plane_deviations};
 use crate::node::NodeData;
-use crate::{LeafPair, NodeId, Obb, Traversal, TraversalSettings, Tree, signed_gap};
+use crate::{Obb, Traversal, TraversalSettings, Tree, signed_gap};
 
 /// What is known of a pair of nodes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Examined {
-    /// Not necessarily of leaves.
-    pub(crate) pair: LeafPair,
+    pub(crate) a: u32,
+    pub(crate) b: u32,
+    /// See [`crate::LeafPair`].
+    pub(crate) gap: f64,
+    pub(crate) axis: Vector3,
+    /// How many standard deviations from a point of either to the middle of the gap, at least; minus
+    /// infinity where the surfaces may cross.
+    pub(crate) deviations: f64,
     /// Small is urgent: negative for an overlap, relative to the smaller node, else the gap, m.
     pub(crate) urgency: f64,
     pub(crate) descend: bool,
+}
+
+impl Examined {
+    pub(crate) fn may_cross(&self) -> bool {
+        self.deviations == f64::NEG_INFINITY
+    }
 }
 
 /// Tests single pairs: everything that stays the same during one traversal.
 pub(crate) struct Examiner<'a> {
     a: &'a Tree,
     b: &'a Tree,
-    a_from_b: Pose,
-    b_from_a: Pose,
+    /// The rotation and translation of A from B.
+    rotation: Matrix3,
+    translation: Vector3,
     settings: TraversalSettings,
     seed: u64,
     /// How far the pose can misplace a box by rounding, m.
@@ -43,27 +56,38 @@ impl<'a> Examiner<'a> {
             + reach(&b.nodes[root_b as usize])
             + a_from_b.translation().norm();
         let rounding = 16.0 * f64::EPSILON * size;
-        Self { a, b, a_from_b, b_from_a: a_from_b.inverse(), settings, seed, rounding }
+        let rotation = a_from_b.rotation().to_rotation_matrix().into_inner();
+        Self { a, b, rotation, translation: a_from_b.translation(), settings, seed, rounding }
     }
 
     /// The gap and bound of a pair, how urgent it is, and whether to descend it.
     pub(crate) fn examine(&self, (id_a, id_b): (u32, u32)) -> Examined {
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
-        let between = signed_gap(&self.shape(a), &self.shape(b).transformed(&self.a_from_b));
-        let axis_in_b = self.b_from_a.transform_vector(&between.axis);
+        let between = signed_gap(&self.shape(a), &self.moved(&self.shape(b)));
         let apart = between.signed - a.bounds.shift - b.bounds.shift - self.rounding;
-        let may_cross = apart < 0.0;
-        // Along the axis that parts the surfaces most the points are farther apart by their reach.
-        let gap = apart + self.reach(a, &between.axis) + self.reach(b, &axis_in_b);
-        let std_a = a.bounds.std_along(&a.obb.axes, &between.axis);
-        let std_b = b.bounds.std_along(&b.obb.axes, &axis_in_b);
-        let bound = if may_cross { 1.0 } else { plane_bound(gap, std_a.max(std_b)) };
-        let (name_a, name_b) = (NodeId(id_a), NodeId(id_b));
-        let pair = LeafPair { a: name_a, b: name_b, gap, axis: between.axis, bound, may_cross };
-
         let reach = |node: &NodeData| node.obb.radius() + node.bounds.shift;
         let size = reach(a).min(reach(b));
-        let urgency = if gap < 0.0 && size > 0.0 { gap / size } else { gap };
+        let relative = |gap: f64| if gap < 0.0 && size > 0.0 { gap / size } else { gap };
+        let (axis, overlap) = (between.axis, f64::NEG_INFINITY);
+        if apart < 0.0 && !self.settings.crossings {
+            let urgency = relative(apart);
+            return Examined {
+                a: id_a,
+                b: id_b,
+                gap: apart,
+                axis,
+                deviations: overlap,
+                urgency,
+                descend: true,
+            };
+        }
+        let axis_in_b = self.rotation.tr_mul(&axis);
+        // Along the axis that parts the surfaces most the points are farther apart by their reach.
+        let gap = apart + self.reach(a, &axis) + self.reach(b, &axis_in_b);
+        let std_a = a.bounds.std_along(&a.obb.axes, &axis);
+        let std_b = b.bounds.std_along(&b.obb.axes, &axis_in_b);
+        let deviations =
+            if apart < 0.0 { overlap } else { plane_deviations(gap, std_a.max(std_b)) };
         // Coverages take a pass over all points, so only the rules that need them ask.
         let sides = || {
             let outside_a = self.a.fraction_outside(id_a);
@@ -72,11 +96,20 @@ impl<'a> Examiner<'a> {
         };
         let descend = gap <= 0.0
             || match self.settings.kind {
-                Traversal::Certified => bound > self.settings.cull_probability,
+                Traversal::Certified => deviations < self.settings.cull_deviations,
                 Traversal::Paper => self.draw(paper_probability(sides()), id_a, id_b),
                 Traversal::GapAware => self.draw(gap_aware_probability(gap, sides()), id_a, id_b),
             };
-        Examined { pair, urgency, descend }
+        Examined { a: id_a, b: id_b, gap, axis, deviations, urgency: relative(gap), descend }
+    }
+
+    /// A box of B in the frame of A.
+    fn moved(&self, of_b: &Obb) -> Obb {
+        Obb {
+            centre: Point3::from(self.rotation * of_b.centre.coords + self.translation),
+            axes: self.rotation * of_b.axes,
+            half_extents: of_b.half_extents,
+        }
     }
 
     /// The box of what may not overlap: of the surfaces where crossings are told apart, else of the
@@ -100,8 +133,8 @@ impl<'a> Examiner<'a> {
     }
 
     /// The pairs one step down, by splitting the larger node; `None` for two leaves.
-    pub(crate) fn narrower_pairs(&self, pair: &LeafPair) -> Option<[(u32, u32); 2]> {
-        let (NodeId(id_a), NodeId(id_b)) = (pair.a, pair.b);
+    pub(crate) fn narrower_pairs(&self, pair: &Examined) -> Option<[(u32, u32); 2]> {
+        let (id_a, id_b) = (pair.a, pair.b);
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
         let a_is_larger = a.obb.radius() >= b.obb.radius();
         let below = |node: &NodeData| {

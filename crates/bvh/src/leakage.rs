@@ -2,11 +2,17 @@
 
 use cloudtouch_geom::normal;
 
-/// The largest probability Φ(−δ/(2σ)) a point at least half the gap δ behind the mid-plane of the
-/// gap can have with a standard deviation of at most σ across that plane; 1 for overlapping boxes,
-/// which no plane separates.
-pub(crate) fn plane_bound(gap: f64, std: f64) -> f64 {
-    if gap < 0.0 { 1.0 } else { normal::below_zero(0.5 * gap, std) }
+/// How many standard deviations there are at least from a point to the mid-plane of a gap of δ ≥ 0
+/// when its deviation across that plane is at most σ: δ/(2σ).
+pub(crate) fn plane_deviations(gap: f64, std: f64) -> f64 {
+    // A point on the plane is as likely on either side, however well it is known.
+    if gap <= 0.0 { 0.0 } else { 0.5 * gap / std }
+}
+
+/// The largest probability to be beyond a plane so many deviations away; 1 for minus infinity, which
+/// stands for no plane at all.
+pub(crate) fn bound_at(deviations: f64) -> f64 {
+    normal::upper_tail(deviations)
 }
 
 /// What decides about a node of a pair: 1 − P_cov, and its largest deviation along the gap.
@@ -53,12 +59,13 @@ mod tests {
 
     #[test]
     fn bounds_of_touching_overlapping_and_exact_boxes() {
-        assert_eq!(plane_bound(-1e-9, 0.01), 1.0);
-        assert_eq!(plane_bound(0.0, 0.01), 0.5);
-        assert_eq!(plane_bound(0.0, 0.0), 0.5);
-        assert_eq!(plane_bound(1e-9, 0.0), 0.0);
-        assert_eq!(plane_bound(1.0, f64::INFINITY), 0.5);
-        assert!((plane_bound(0.02, 0.01) - normal::cdf(-1.0)).abs() < 1e-15);
+        let bound = |gap, std| bound_at(plane_deviations(gap, std));
+        assert_eq!(bound_at(f64::NEG_INFINITY), 1.0);
+        assert_eq!(bound(0.0, 0.01), 0.5);
+        assert_eq!(bound(0.0, 0.0), 0.5);
+        assert_eq!(bound(1e-9, 0.0), 0.0);
+        assert_eq!(bound(1.0, f64::INFINITY), 0.5);
+        assert!((bound(0.02, 0.01) - normal::cdf(-1.0)).abs() < 1e-15);
     }
 
     /// The claim of [`crate::Traversal::GapAware`]: the mean chance of crossing never exceeds

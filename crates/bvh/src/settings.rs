@@ -68,7 +68,7 @@ pub enum Traversal {
     /// that in other directions.
     GapAware,
     /// Unless the mid-plane of the gap proves that no point of either node has a probability above
-    /// [`TraversalSettings::cull_probability`]. Draws nothing.
+    /// [`TraversalSettings::cull_deviations`]. Draws nothing.
     #[default]
     Certified,
 }
@@ -78,9 +78,10 @@ pub enum Traversal {
 pub struct TraversalSettings {
     /// Which pairs with disjoint boxes are descended.
     pub kind: Traversal,
-    /// Probability a point may have at most in a pair that [`Traversal::Certified`] culls, in
-    /// \[0, 0.5\]; the others do not use it.
-    pub cull_probability: f64,
+    /// [`Traversal::Certified`] culls pairs with at least so many standard deviations from the points
+    /// to the middle of the gap: none of these has a higher probability than Φ(−`cull_deviations`).
+    /// Zero or more; the others do not use it.
+    pub cull_deviations: f64,
     /// Whether pairs whose surfaces may cross ([`crate::LeafPair::may_cross`]) are told apart; if not,
     /// how far surfaces reach beyond their points is left out of account.
     pub crossings: bool,
@@ -92,7 +93,8 @@ impl Default for TraversalSettings {
     fn default() -> Self {
         Self {
             kind: Traversal::default(),
-            cull_probability: 1e-6,
+            // Below one in a million.
+            cull_deviations: 4.76,
             crossings: false,
             leaf_points: 0,
         }
@@ -105,7 +107,7 @@ impl TraversalSettings {
     /// # Errors
     /// [`TreeError::Setting`] with the first field that is out of its documented range.
     pub fn validate(&self) -> Result<(), TreeError> {
-        in_range("cull_probability", self.cull_probability, 0.0, 0.5, "from 0 to 0.5")
+        in_range("cull_deviations", self.cull_deviations, 0.0, f64::INFINITY, "at least 0")
     }
 }
 

@@ -3,9 +3,10 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use cloudtouch_geom::{Pose, Vector3};
+use cloudtouch_geom::{Pose, Vector3, normal};
 
 use crate::examine::{Examined, Examiner};
+use crate::leakage::bound_at;
 use crate::{NodeId, TraversalSettings, Tree, TreeError};
 
 /// Two leaves whose points may touch.
@@ -37,6 +38,9 @@ pub enum Flow {
     /// On to the next pair whose [`LeafPair::bound`] is above this: the caller knows of a point as
     /// probable, or does not care for less. What is left out counts as culled.
     Above(f64),
+    /// The same in standard deviations: on to the next pair with fewer than these from its points to
+    /// the middle of its gap, or whose surfaces may cross.
+    Within(f64),
     /// No further pairs.
     Stop,
 }
@@ -45,7 +49,7 @@ pub enum Flow {
 ///
 /// With p the largest collision probability found in the leaf pairs visited, the true maximum over
 /// all points lies in [p, max(p, `culled_bound`, `pending_bound`)].
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
     /// Node pairs whose boxes were tested.
     pub nodes_visited: usize,
@@ -56,10 +60,28 @@ pub struct Outcome {
     /// No point below a culled pair has a higher collision probability than this: the largest
     /// Φ(−δ/(2σ)) of them, 0 when none was culled.
     pub culled_bound: f64,
+    /// That bound in standard deviations, δ/(2σ): infinite when none was culled, minus infinity when
+    /// the surfaces of one may cross.
+    pub culled_deviations: f64,
     /// Whether the caller stopped it.
     pub stopped: bool,
     /// The same bound for the pairs that were left when the caller stopped; 0 when none was.
     pub pending_bound: f64,
+}
+
+impl Default for Outcome {
+    /// Of a traversal that found nothing to visit.
+    fn default() -> Self {
+        Self {
+            nodes_visited: 0,
+            leaf_pairs: 0,
+            culled: 0,
+            culled_bound: 0.0,
+            culled_deviations: f64::INFINITY,
+            stopped: false,
+            pending_bound: 0.0,
+        }
+    }
 }
 
 /// Visits the pairs of leaves, one of each tree, that may touch; which those are is said by
@@ -104,61 +126,70 @@ fn walk(
     settings: &TraversalSettings,
     seed: u64,
     mut visit: impl FnMut(LeafPair) -> Flow,
-    mut on_culled: impl FnMut(&LeafPair),
+    mut on_culled: impl FnMut(&Examined),
 ) -> Outcome {
     let mut outcome = Outcome::default();
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return outcome };
     let examiner = Examiner::new(a, b, root_a, root_b, *a_from_b, *settings, seed);
     let mut queue = BinaryHeap::new();
-    let mut cull = |pair: &LeafPair, outcome: &mut Outcome| {
+    let mut cull = |pair: &Examined, outcome: &mut Outcome| {
         outcome.culled += 1;
-        outcome.culled_bound = outcome.culled_bound.max(pair.bound);
+        outcome.culled_deviations = outcome.culled_deviations.min(pair.deviations);
         on_culled(pair);
     };
     let mut found = vec![(root_a, root_b)];
-    let mut wanted_above = f64::NEG_INFINITY;
+    let mut wanted_within = f64::INFINITY;
     loop {
         for ids in found.drain(..) {
-            let Examined { pair, urgency, descend } = examiner.examine(ids);
+            let pair = examiner.examine(ids);
             outcome.nodes_visited += 1;
-            if descend && pair.bound > wanted_above {
-                queue.push(Candidate { urgency, pair });
+            if pair.descend && pair.deviations < wanted_within {
+                queue.push(Candidate(pair));
             } else {
                 cull(&pair, &mut outcome);
             }
         }
-        let Some(Candidate { pair, .. }) = queue.pop() else { break };
-        if pair.bound <= wanted_above {
+        let Some(Candidate(pair)) = queue.pop() else { break };
+        if pair.deviations >= wanted_within {
             cull(&pair, &mut outcome);
         } else if let Some(narrower) = examiner.narrower_pairs(&pair) {
             found.extend(narrower);
         } else {
             outcome.leaf_pairs += 1;
-            match visit(pair) {
+            match visit(LeafPair::from(pair)) {
                 Flow::Continue => {}
-                Flow::Above(bound) => wanted_above = wanted_above.max(bound),
+                Flow::Above(bound) => wanted_within = wanted_within.min(-normal::quantile(bound)),
+                Flow::Within(deviations) => wanted_within = wanted_within.min(deviations),
                 Flow::Stop => {
                     outcome.stopped = true;
-                    outcome.pending_bound = queue.iter().map(|c| c.pair.bound).fold(0.0, f64::max);
+                    let deviations = queue.iter().map(|Candidate(pair)| pair.deviations);
+                    outcome.pending_bound = bound_at(deviations.fold(f64::INFINITY, f64::min));
                     break;
                 }
             }
         }
     }
+    outcome.culled_bound = bound_at(outcome.culled_deviations);
     outcome
+}
+
+impl From<Examined> for LeafPair {
+    fn from(pair: Examined) -> Self {
+        let Examined { a, b, gap, axis, deviations, .. } = pair;
+        let (a, b, may_cross) = (NodeId(a), NodeId(b), pair.may_cross());
+        Self { a, b, gap, axis, may_cross, bound: bound_at(deviations) }
+    }
 }
 
 /// A pair in the queue; the greatest comes out first.
 #[derive(Debug, Clone, Copy)]
-struct Candidate {
-    urgency: f64,
-    pair: LeafPair,
-}
+struct Candidate(Examined);
 
 impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        (other.urgency.total_cmp(&self.urgency))
-            .then_with(|| (other.pair.a, other.pair.b).cmp(&(self.pair.a, self.pair.b)))
+    fn cmp(&self, Self(other): &Self) -> Ordering {
+        let Self(pair) = self;
+        (other.urgency.total_cmp(&pair.urgency))
+            .then_with(|| (other.a, other.b).cmp(&(pair.a, pair.b)))
     }
 }
 
@@ -252,14 +283,15 @@ mod tests {
             b.set_leaf_bounds(|_| bounds).unwrap();
         }
         let traversal =
-            TraversalSettings { kind, cull_probability: 1e-4, ..TraversalSettings::default() };
+            TraversalSettings { kind, cull_deviations: 3.72, ..TraversalSettings::default() };
         let (mut visited, mut culled) = (BTreeSet::new(), BTreeSet::new());
         let mut highest = 0.0_f64;
         let on_pair = |pair: LeafPair| {
             assert!(visited.insert((pair.a.0, pair.b.0)), "visited twice");
             Flow::Continue
         };
-        let on_culled = |pair: &LeafPair| {
+        let on_culled = |pair: &Examined| {
+            let pair = LeafPair::from(*pair);
             highest = highest.max(pair.bound);
             for leaf_a in leaves_below(&a, pair.a) {
                 for leaf_b in leaves_below(&b, pair.b) {
@@ -307,16 +339,10 @@ mod tests {
 
     #[test]
     fn the_most_urgent_pair_comes_out_first() {
-        let candidate = |urgency, a, b| Candidate {
-            urgency,
-            pair: LeafPair {
-                a: NodeId(a),
-                b: NodeId(b),
-                gap: urgency,
-                axis: Vector3::x(),
-                may_cross: true,
-                bound: 1.0,
-            },
+        let candidate = |urgency, a, b| {
+            let deviations = f64::NEG_INFINITY;
+            let axis = Vector3::x();
+            Candidate(Examined { a, b, gap: urgency, axis, deviations, urgency, descend: true })
         };
         let mut queue: BinaryHeap<_> = [
             candidate(0.1, 0, 0),
@@ -326,8 +352,7 @@ mod tests {
             candidate(0.0, 1, 1),
         ]
         .into();
-        let order: Vec<_> =
-            std::iter::from_fn(|| queue.pop()).map(|c| (c.pair.a.0, c.pair.b.0)).collect();
+        let order: Vec<_> = std::iter::from_fn(|| queue.pop()).map(|c| (c.0.a, c.0.b)).collect();
         assert_eq!(order, [(2, 9), (3, 0), (3, 1), (1, 1), (0, 0)]);
     }
 }

@@ -241,9 +241,9 @@ fn empty_trees_and_bad_poses() {
     let bad = Pose::from_translation(Vector3::new(0.0, f64::NAN, 0.0));
     let error = traverse(&some, &some, &bad, &settings, 0, &mut visit).unwrap_err();
     assert!(matches!(error, TreeError::Pose { value } if value.is_nan()));
-    let unsure = TraversalSettings { cull_probability: 0.7, ..settings };
+    let unsure = TraversalSettings { cull_deviations: -0.1, ..settings };
     let error = traverse(&some, &some, &here, &unsure, 0, &mut visit).unwrap_err();
-    assert!(matches!(error, TreeError::Setting { name: "cull_probability", .. }));
+    assert!(matches!(error, TreeError::Setting { name: "cull_deviations", .. }));
 }
 
 #[test]

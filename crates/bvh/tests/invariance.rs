@@ -4,7 +4,7 @@
 mod common;
 
 use cloudtouch_bvh::{Flow, Outcome, Primitive, TraversalSettings, Tree, traverse};
-use cloudtouch_geom::{Pose, UncertainPoint, Vector3, seed};
+use cloudtouch_geom::{Pose, UncertainPoint, Vector3, normal, seed};
 use common::{bumpy_sheet, flat_answer, held, moved, small_leaves};
 use proptest::prelude::*;
 
@@ -47,7 +47,7 @@ proptest! {
         let (forth, there) = search(&a, &b, &pose);
         let (back, again) = search(&b, &a, &pose.inverse());
         // Both hold the answer of all pairs; what is below the culling bound may differ.
-        let limit = TraversalSettings::default().cull_probability;
+        let limit = normal::upper_tail(TraversalSettings::default().cull_deviations);
         prop_assert!((forth - back).abs() <= limit + 1e-9 * forth, "{} {}", forth, back);
         prop_assert!(there.culled_bound <= limit && again.culled_bound <= limit);
     }
@@ -99,7 +99,7 @@ proptest! {
         let (a, b, pose) = sheets(stream, gap);
         let b = small_leaves(b);
         let (found, _) = search(&small_leaves(a.clone()), &b, &pose);
-        let limit = TraversalSettings::default().cull_probability;
+        let limit = normal::upper_tail(TraversalSettings::default().cull_deviations);
         let doubled = small_leaves([a.clone(), a.clone()].concat());
         let far = moved(&a, &Vector3::new(1e4, -2e4, 3e3));
         let with_far = small_leaves([a, far].concat());

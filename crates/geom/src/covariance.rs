@@ -253,7 +253,14 @@ impl Covariance {
 
     /// Σ + Ψ: the covariance of a sum of independent errors.
     pub fn sum(&self, other: &Self) -> Self {
-        Self::from_symmetric(&(self.matrix() + other.matrix()))
+        Self {
+            xx: self.xx + other.xx,
+            xy: self.xy + other.xy,
+            xz: self.xz + other.xz,
+            yy: self.yy + other.yy,
+            yz: self.yz + other.yz,
+            zz: self.zz + other.zz,
+        }
     }
 }
 

@@ -13,7 +13,7 @@ const NEIGHBORS: usize = 8;
 pub(crate) const EDGE_SPACINGS: f64 = 2.2;
 /// The disc about a sample stands for the surface up to so many spacings from it; no edge reaches
 /// farther from its own end to its middle.
-pub(crate) const DISC_SPACINGS: f64 = 1.5;
+pub(crate) const DISC_SPACINGS: f64 = 1.1;
 /// Edges run along the surface: the sine of their angle to it is at most this.
 const SLOPE: f64 = 0.5;
 
@@ -22,6 +22,8 @@ const SLOPE: f64 = 0.5;
 pub(crate) struct Edge {
     /// Where it starts and ends.
     pub ends: [Point3; 2],
+    /// Half its length, m.
+    pub half_length: f64,
     /// Variances of the ends across the surface, m².
     pub across: [f64; 2],
     /// Which points of the leaf it joins, by their place in it; `None` for a point of another leaf.
@@ -56,6 +58,7 @@ pub(crate) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
             if runs_along(&from, &to) {
                 edges.push(Edge {
                     ends: [from.point.mean, to.point.mean],
+                    half_length: 0.5 * (to.point.mean - from.point.mean).norm(),
                     across: [from.variance_across(), to.variance_across()],
                     own: [Some(place), other],
                 });

@@ -18,6 +18,8 @@ pub(crate) struct Surfel {
     pub point: UncertainPoint,
     /// Distance between samples there, m.
     pub spacing: f64,
+    /// The largest variance of `point` in any direction, m²; never too small by rounding.
+    pub most_variance: f64,
     /// Unit normal of the surface there, of either sign, where one was fitted.
     pub normal: Option<Vector3>,
 }
@@ -38,6 +40,8 @@ impl Surfel {
     }
 }
 
+/// Relative rounding of an eigenvalue, generously.
+const ROUNDING: f64 = 1e-9;
 /// Points that a spacing is told from, at most.
 const REGION_POINTS: usize = 40;
 
@@ -145,7 +149,8 @@ impl Cloud {
                 None => self.noise.refine(place, near, &self.sensor, cap, scratch),
             };
             let (point, spacing, normal) = (refined.point, refined.spacing, refined.normal);
-            Box::new(Surfel { index, point, spacing, normal })
+            let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
+            Box::new(Surfel { index, point, spacing, most_variance, normal })
         })
     }
 }

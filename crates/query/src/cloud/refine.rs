@@ -9,9 +9,9 @@ use super::edge::{DISC_SPACINGS, Edge};
 use super::{Cloud, Surfel};
 use crate::error::PrepareError;
 
-/// With this factor an ellipsoid over a disc holds the near halves of the edges at its middle too:
-/// they are up to 1.1 of its 1.5 spacings long.
-const EDGE_FACTOR: f64 = 1.5;
+/// The half axes of an ellipsoid, along a disc and across it, that holds everything up to (1, 1): the
+/// sum of their inverse squares is less than one.
+const HOLDS_BOTH: [f64; 2] = [1.1, 2.5];
 
 impl Cloud {
     /// Computes the surface at every point, on all threads of the pool, and fits the tree to it.
@@ -35,8 +35,8 @@ impl Cloud {
         });
         let mut extents = vec![Covariance::zero(); self.len()];
         for &leaf in &leaves {
-            for (surfel, across) in self.leaf(leaf).0.iter().zip(self.edges_across(leaf)) {
-                extents[surfel.index as usize] = extent(surfel, across);
+            for (surfel, edges) in self.leaf(leaf).0.iter().zip(self.near_halves(leaf)) {
+                extents[surfel.index as usize] = extent(surfel, edges);
             }
         }
         let mut scratch = Scratch::default();
@@ -50,25 +50,33 @@ impl Cloud {
         Ok(self)
     }
 
-    /// For each point of a leaf how far its edges rise from its disc up to their middles, m.
-    fn edges_across(&self, leaf: NodeId) -> Vec<f64> {
+    /// For each point of a leaf how far the near halves of its edges reach along its disc and across
+    /// it, m.
+    fn near_halves(&self, leaf: NodeId) -> Vec<[f64; 2]> {
         let surfels = self.leaf(leaf).0;
-        let mut across = vec![0.0_f64; surfels.len()];
+        let mut reach = vec![[0.0_f64; 2]; surfels.len()];
         for Edge { ends, own, .. } in self.leaf_edges(leaf) {
+            let half = 0.5 * (ends[1] - ends[0]);
             for place in own.iter().flatten() {
-                let rise = surfels[*place].normal.map_or(0.0, |n| n.dot(&(ends[1] - ends[0])));
-                across[*place] = across[*place].max(0.5 * rise.abs());
+                let across = surfels[*place].normal.map_or(0.0, |n| n.dot(&half).abs());
+                let along = (half.norm_squared() - across * across).max(0.0).sqrt();
+                let [known_along, known_across] = reach[*place];
+                reach[*place] = [known_along.max(along), known_across.max(across)];
             }
         }
-        across
+        reach
     }
 }
 
 /// An ellipsoid, as a covariance, that holds the disc of a piece of surface and the near halves of
 /// its edges; nothing where no normal was fitted, for there is neither.
-fn extent(surfel: &Surfel, across: f64) -> Covariance {
+fn extent(surfel: &Surfel, [edges_along, edges_across]: [f64; 2]) -> Covariance {
     let Some(normal) = surfel.normal else { return Covariance::zero() };
-    let along = normal * normal.transpose();
-    let [disc, across] = [DISC_SPACINGS * surfel.spacing, EDGE_FACTOR * across].map(|r| r * r);
-    Covariance::from_symmetric(&((Matrix3::identity() - along) * disc + along * across))
+    let [by_along, by_across] = HOLDS_BOTH;
+    let along = (DISC_SPACINGS * surfel.spacing).max(by_along * edges_along);
+    let across = by_across * edges_across;
+    let outer = normal * normal.transpose();
+    Covariance::from_symmetric(
+        &((Matrix3::identity() - outer) * along.powi(2) + outer * across.powi(2)),
+    )
 }

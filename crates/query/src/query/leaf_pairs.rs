@@ -22,7 +22,7 @@ const LEAF_POINTS: usize = 40;
 impl Query {
     /// Clouds of the calibrated mode have smaller leaves than the classifier wants.
     fn leaf_traversal(&self) -> TraversalSettings {
-        TraversalSettings { leaf_points: LEAF_POINTS, ..self.settings().traversal() }
+        TraversalSettings { leaf_points: LEAF_POINTS, ..self.traversal() }
     }
 
     /// Classifies the leaf pairs that may touch and bounds the others.

@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use cloudtouch_geom::{Pose, Vector3};
+use cloudtouch_bvh::TraversalSettings;
+use cloudtouch_geom::{Pose, Vector3, normal};
 
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
@@ -24,6 +25,8 @@ use super::unseen::is_either_hidden;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Query {
     settings: QuerySettings,
+    /// `cull_probability` in standard deviations.
+    cull_deviations: f64,
 }
 
 impl Query {
@@ -33,12 +36,21 @@ impl Query {
     /// Names the setting that is out of range, and its value.
     pub fn new(settings: QuerySettings) -> Result<Self, SettingsError> {
         settings.check()?;
-        Ok(Self { settings })
+        Ok(Self { settings, cull_deviations: -normal::quantile(settings.cull_probability) })
     }
 
     /// The settings, as checked.
     pub fn settings(&self) -> &QuerySettings {
         &self.settings
+    }
+
+    /// What the traversal of two trees is asked.
+    pub(super) fn traversal(&self) -> TraversalSettings {
+        TraversalSettings {
+            kind: self.settings.traversal,
+            cull_deviations: self.cull_deviations.max(0.0),
+            ..TraversalSettings::default()
+        }
     }
 
     /// How likely it is that the surfaces behind two bodies collide.
@@ -95,7 +107,7 @@ impl Query {
                 self.pooled(evidence, 0)
             }
             (BodyRef::Cloud(a), BodyRef::Cloud(b)) if self.settings.mode == Mode::Calibrated => {
-                calibrated::estimate((a, b), a_from_b, (&self.settings, clock), evidence)?
+                calibrated::estimate((a, b), a_from_b, (self, clock), evidence)?
             }
             _ => {
                 self.gather_evidence(a, b, a_from_b, clock, evidence)?;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use cloudtouch_bvh::{Traversal, TraversalSettings};
+use cloudtouch_bvh::Traversal;
 use serde::Serialize;
 
 use crate::error::SettingsError;
@@ -109,15 +109,6 @@ impl QuerySettings {
             max_contacts: 16,
             max_mesh_parts: 20_000,
             seed: 0,
-        }
-    }
-
-    /// What the traversal of two trees is asked.
-    pub(super) fn traversal(&self) -> TraversalSettings {
-        TraversalSettings {
-            kind: self.traversal,
-            cull_probability: self.cull_probability,
-            ..TraversalSettings::default()
         }
     }
 

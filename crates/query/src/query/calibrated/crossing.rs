@@ -10,6 +10,8 @@ use cloudtouch_geom::{Point3, Vector3, normal};
 
 use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
 
+use super::leaf::Leaf;
+
 /// The weight of a disc falls off like a normal density with this many spacings.
 const WEIGHT_SPACINGS: f64 = 0.5;
 /// No crossing is clearer than this many standard deviations.
@@ -30,6 +32,42 @@ pub(super) struct Crossing {
     /// How far the end that is nearer to the disc has come through, m, and its standard deviation.
     pub depth: f64,
     pub std: f64,
+}
+
+/// Clearness of all crossings of edges of one leaf with discs of another; the points they join, and
+/// those of the discs, are as probable as their clearest crossing.
+pub(super) fn add_crossings(
+    of_edges: &mut Leaf<'_>,
+    of_discs: &mut Leaf<'_>,
+    best: &mut Option<Crossing>,
+) -> f64 {
+    let mut total = 0.0;
+    let around = of_discs.ball;
+    // Taken out, for the edges are borrowed while probabilities are raised.
+    let mut of_ends = std::mem::take(&mut of_edges.crossing);
+    for edge in of_edges.edges() {
+        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
+        if !around.is_within(&middle, edge.half_length + DISC_SPACINGS * around.spacing) {
+            continue;
+        }
+        for (disc, of_disc) in of_discs.surfels.iter().zip(&mut of_discs.crossing) {
+            let reach = edge.half_length + DISC_SPACINGS * disc.spacing;
+            if (disc.point.mean - middle).norm_squared() > reach * reach {
+                continue;
+            }
+            let Some(found) = crossing(edge, disc) else { continue };
+            total += found.clearness;
+            *of_disc = of_disc.max(found.probability);
+            for place in edge.own.into_iter().flatten() {
+                of_ends[place] = of_ends[place].max(found.probability);
+            }
+            if best.is_none_or(|best| found.probability > best.probability) {
+                *best = Some(found);
+            }
+        }
+    }
+    of_edges.crossing = of_ends;
+    total
 }
 
 /// Whether an edge of a leaf crosses a disc; `None` too where the end nearer to the disc's plane is
@@ -87,6 +125,7 @@ mod tests {
             index: 0,
             point: UncertainPoint { mean: Point3::origin(), covariance },
             spacing: 1.0,
+            most_variance: covariance.max_std().powi(2),
             normal: Some(Vector3::z()),
         }
     }
@@ -94,6 +133,7 @@ mod tests {
     fn upright(x: f64, low: f64, high: f64) -> Edge {
         Edge {
             ends: [Point3::new(x, 0.0, low), Point3::new(x, 0.0, high)],
+            half_length: 0.5 * (high - low),
             across: [0.0; 2],
             own: [Some(0), None],
         }

@@ -32,12 +32,11 @@ pub(super) fn probability_at(deviations: f64) -> f64 {
 /// Exact pieces that are apart are infinitely far from each other.
 pub(super) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) -> Option<f64> {
     let offset = b.point.mean - a.point.mean;
-    let joint = a.point.covariance.sum(&b.point.covariance);
-    // No direction has more than the whole variance: most pairs end here.
-    let total = joint.std_bound().powi(2);
-    if offset.norm_squared() >= limit * total {
+    // No direction has more variance than this: most pairs end here.
+    if offset.norm_squared() >= limit * (a.most_variance + b.most_variance) {
         return None;
     }
+    let joint = a.point.covariance.sum(&b.point.covariance);
     let squared = offset.dot(&solve(&joint.matrix(), &offset)?);
     (squared < limit).then_some(squared.max(0.0))
 }
@@ -78,6 +77,7 @@ mod tests {
             index: 0,
             point: UncertainPoint { mean, covariance },
             spacing: 1.0,
+            most_variance: covariance.max_std().powi(2),
             normal: Some(normal),
         }
     }

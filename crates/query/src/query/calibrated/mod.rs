@@ -6,7 +6,9 @@
 //! docs/decisions for what this replaced and why.
 
 mod crossing;
+mod leaf;
 mod meeting;
+mod nearest;
 mod patches;
 mod places;
 mod recalibration;
@@ -23,13 +25,14 @@ use super::clock::Clock;
 use super::estimate::Estimate;
 use super::evidence::Evidence;
 use super::record::add_pair;
+use super::run::Query;
 use super::settings::QuerySettings;
 use super::train::by_kernel;
 
 use patches::patches;
 use places::{add_finding, add_leaves};
-use recalibration::{MOST_CERTAIN, MOST_DEVIATIONS};
 pub use recalibration::{ContactEvidence, Recalibration};
+use recalibration::{MOST_CERTAIN, MOST_DEVIATIONS};
 use search::{Found, search};
 
 /// Estimates how probable a collision of two clouds is; points, contacts and clearance go to
@@ -37,16 +40,17 @@ use search::{Found, search};
 pub(super) fn estimate(
     (a, b): (&Cloud, &Cloud),
     a_from_b: &Pose,
-    (settings, clock): (&QuerySettings, &Clock),
+    (query, clock): (&Query, &Clock),
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
+    let settings = query.settings();
     let recalibration = &settings.recalibration;
     let is_enough = |deviations: f64, crossing: f64| {
         let probability = recalibration.by_geometry(deviations, crossing.ln_1p());
         probability > settings.stop_above || is_final(settings, probability) || clock.is_over()
     };
     let stats = &mut evidence.stats;
-    let found = search((a, b), a_from_b, &settings.traversal(), settings.seed, is_enough, stats)?;
+    let found = search((a, b), a_from_b, &query.traversal(), settings.seed, is_enough, stats)?;
     let of_geometry = ContactEvidence {
         deviations: found.deviations,
         crossing: found.crossing.ln_1p(),

@@ -8,8 +8,9 @@ use crate::query::pool::{PointProbability, Side};
 use crate::query::record::CORRELATION_SPACINGS;
 use crate::report::{Clearance, Contact};
 
+use super::leaf::Leaf;
 use super::meeting::probability_at;
-use super::search::{Finding, Found, Leaf};
+use super::search::{Finding, Found};
 
 /// A crossing that is more likely than not is where two leaves touch; else they are apart by the gap
 /// of their nearest pieces.
@@ -51,7 +52,7 @@ pub(super) fn add_leaves(found: &Found<'_>, evidence: &mut Evidence) {
 }
 
 fn add_leaf(side: Side, leaf: &Leaf<'_>, evidence: &mut Evidence) {
-    for (surfel, &probability) in leaf.surfels.iter().zip(&leaf.probabilities) {
+    for (surfel, probability) in leaf.probabilities() {
         evidence.add_point(PointProbability {
             side,
             index: Some(surfel.index),

@@ -1,31 +1,22 @@
 //! The search for what two clouds say of a collision by their geometry alone.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use cloudtouch_bvh::{Flow, LeafPair, NodeId, TraversalSettings, traverse};
 use cloudtouch_geom::{Pose, Vector3};
 
-use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
+use crate::cloud::Cloud;
 use crate::error::QueryError;
 use crate::report::Stats;
 
-use super::crossing::{Crossing, crossing};
-use super::meeting::{Meeting, probability_at, squared_deviations};
+use super::crossing::{Crossing, add_crossings};
+use super::leaf::Leaf;
+use super::meeting::Meeting;
+use super::nearest::nearest_pieces;
 use super::recalibration::MOST_DEVIATIONS;
 
 /// Places that are more than this many deviations above the least are not looked at.
 const DEVIATIONS_OF_INTEREST: f64 = 1.5;
-
-/// A leaf that the search came by, in the local frame of A.
-#[derive(Debug)]
-pub(super) struct Leaf<'a> {
-    pub surfels: Cow<'a, [Surfel]>,
-    /// `None` until they are needed.
-    edges: Option<Cow<'a, [Edge]>>,
-    /// For each surfel how likely it is to collide, by geometry.
-    pub probabilities: Vec<f64>,
-}
 
 /// What a pair of leaves says.
 #[derive(Debug, Clone, Copy)]
@@ -69,18 +60,18 @@ pub(super) fn search<'a>(
     stats: &mut Stats,
 ) -> Result<Found<'a>, QueryError> {
     let mut found = Found { deviations: MOST_DEVIATIONS, ..Found::default() };
-    let settings = TraversalSettings { crossings: true, ..*settings };
+    let cull_deviations = settings.cull_deviations.min(found.relevant_half_gap());
+    let settings = TraversalSettings { crossings: true, cull_deviations, ..*settings };
     let outcome = traverse(a.tree(), b.tree(), a_from_b, &settings, seed, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), a_from_b, &pair, stats);
         if is_enough(found.deviations, found.crossing) {
             return Flow::Stop;
         }
-        Flow::Above(probability_at(found.deviations_of_interest()))
+        Flow::Within(found.relevant_half_gap())
     })?;
     stats.nodes_visited += outcome.nodes_visited;
-    let harmless = probability_at(found.deviations_of_interest());
-    found.is_complete = !outcome.stopped && outcome.culled_bound <= harmless;
+    found.is_complete = !outcome.stopped && outcome.culled_deviations >= found.relevant_half_gap();
     found.culled_bound = outcome.culled_bound;
     Ok(found)
 }
@@ -91,6 +82,12 @@ impl<'a> Found<'a> {
         (self.deviations + DEVIATIONS_OF_INTEREST).min(MOST_DEVIATIONS)
     }
 
+    /// The same from a point to the middle of a gap: with standard deviations up to σ on both sides of
+    /// a gap of δ there are δ/(√2σ) deviations between the points, of which it takes δ/(2σ).
+    fn relevant_half_gap(&self) -> f64 {
+        self.deviations_of_interest() / std::f64::consts::SQRT_2
+    }
+
     fn add(
         &mut self,
         (a, b): (&'a Cloud, &'a Cloud),
@@ -98,24 +95,15 @@ impl<'a> Found<'a> {
         pair: &LeafPair,
         stats: &mut Stats,
     ) {
-        let leaf_a = self.leaves_a.entry(pair.a).or_insert_with(|| {
-            let (surfels, computed) = a.leaf(pair.a);
-            stats.leaves_prepared += usize::from(computed);
-            Leaf::new(Cow::Borrowed(surfels))
-        });
-        let leaf_b = self.leaves_b.entry(pair.b).or_insert_with(|| {
-            let (surfels, computed) = b.leaf(pair.b);
-            stats.leaves_prepared += usize::from(computed);
-            let surfels = surfels.iter().map(|s| s.transformed(a_from_b)).collect();
-            Leaf::new(Cow::Owned(surfels))
-        });
+        let leaf_a = self.leaves_a.entry(pair.a);
+        let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, stats));
+        let leaf_b = self.leaves_b.entry(pair.b);
+        let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(a_from_b), stats));
         let nearest = nearest_pieces(leaf_a, leaf_b);
         let mut best = None;
         if pair.may_cross {
-            leaf_a.edges.get_or_insert_with(|| Cow::Borrowed(a.leaf_edges(pair.a)));
-            leaf_b.edges.get_or_insert_with(|| {
-                b.leaf_edges(pair.b).iter().map(|e| e.transformed(a_from_b)).collect()
-            });
+            leaf_a.load_edges(a, pair.a, None);
+            leaf_b.load_edges(b, pair.b, Some(a_from_b));
             self.crossing += add_crossings(leaf_a, leaf_b, &mut best);
             self.crossing += add_crossings(leaf_b, leaf_a, &mut best);
         }
@@ -128,90 +116,10 @@ impl<'a> Found<'a> {
                 between: [on_a.index, on_b.index],
                 spacing: on_a.spacing.max(on_b.spacing),
                 crossing: best,
-                toward_b: leaf_b.middle() - leaf_a.middle(),
+                toward_b: leaf_a.toward(leaf_b),
             });
         }
     }
-}
-
-impl<'a> Leaf<'a> {
-    fn new(surfels: Cow<'a, [Surfel]>) -> Self {
-        let probabilities = vec![0.0; surfels.len()];
-        Self { surfels, edges: None, probabilities }
-    }
-
-    fn middle(&self) -> Vector3 {
-        let sum: Vector3 = self.surfels.iter().map(|s| s.point.mean.coords).sum();
-        sum / self.surfels.len() as f64
-    }
-
-    fn raise(&mut self, place: usize, probability: f64) {
-        self.probabilities[place] = self.probabilities[place].max(probability);
-    }
-}
-
-/// The least squared deviations between two pieces, and which these are; raises the probability of
-/// each piece to that of its plane: halfway between two equally well known pieces it is z/√2
-/// deviations from either.
-fn nearest_pieces(a: &mut Leaf<'_>, b: &mut Leaf<'_>) -> Option<(f64, usize, usize)> {
-    let mut least = MOST_DEVIATIONS.powi(2);
-    let mut nearest = None;
-    let mut least_of_b = vec![least; b.surfels.len()];
-    for i in 0..a.surfels.len() {
-        let mut least_of_a = MOST_DEVIATIONS.powi(2);
-        for (j, least_of_b) in least_of_b.iter_mut().enumerate() {
-            let limit = least_of_b.max(least_of_a);
-            let Some(squared) = squared_deviations(&a.surfels[i], &b.surfels[j], limit) else {
-                continue;
-            };
-            least_of_a = least_of_a.min(squared);
-            *least_of_b = least_of_b.min(squared);
-            if squared < least {
-                least = squared;
-                nearest = Some((squared, i, j));
-            }
-        }
-        if least_of_a < MOST_DEVIATIONS.powi(2) {
-            a.raise(i, probability_at(least_of_a.sqrt()));
-        }
-    }
-    for (j, least) in least_of_b.into_iter().enumerate() {
-        if least < MOST_DEVIATIONS.powi(2) {
-            b.raise(j, probability_at(least.sqrt()));
-        }
-    }
-    nearest
-}
-
-/// Clearness of all crossings of edges of one leaf with discs of another; the points they join, and
-/// those of the discs, are as probable as their clearest crossing.
-fn add_crossings(
-    of_edges: &mut Leaf<'_>,
-    of_discs: &mut Leaf<'_>,
-    best: &mut Option<Crossing>,
-) -> f64 {
-    let mut total = 0.0;
-    let Leaf { edges, probabilities, .. } = of_edges;
-    for edge in edges.iter().flat_map(|edges| edges.iter()) {
-        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
-        let half = 0.5 * (edge.ends[1] - edge.ends[0]).norm();
-        for (disc, of_disc) in of_discs.surfels.iter().zip(&mut of_discs.probabilities) {
-            let reach = half + DISC_SPACINGS * disc.spacing;
-            if (disc.point.mean - middle).norm_squared() > reach * reach {
-                continue;
-            }
-            let Some(found) = crossing(edge, disc) else { continue };
-            total += found.clearness;
-            *of_disc = of_disc.max(found.probability);
-            for place in edge.own.into_iter().flatten() {
-                probabilities[place] = probabilities[place].max(found.probability);
-            }
-            if best.is_none_or(|best| found.probability > best.probability) {
-                *best = Some(found);
-            }
-        }
-    }
-    total
 }
 
 #[cfg(test)]
@@ -223,7 +131,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::cloud::edges_of;
+    use crate::cloud::{Edge, Surfel, edges_of};
+    use crate::query::calibrated::crossing::crossing;
+    use crate::query::calibrated::meeting::squared_deviations;
     use crate::{CloudSettings, Mode};
 
     fn ball(count: usize, std: f64, seed: u64) -> Cloud {

@@ -1,0 +1,113 @@
+//! A leaf that the search came by, with what is known of its points so far.
+
+use std::borrow::Cow;
+
+use cloudtouch_bvh::NodeId;
+use cloudtouch_geom::{Point3, Pose, Vector3};
+
+use crate::cloud::{Cloud, Edge, Surfel};
+use crate::report::Stats;
+
+use super::meeting::probability_at;
+use super::recalibration::MOST_DEVIATIONS;
+
+/// A leaf in the local frame of A.
+#[derive(Debug)]
+pub(super) struct Leaf<'a> {
+    pub surfels: Cow<'a, [Surfel]>,
+    /// `None` until they are needed.
+    edges: Option<Cow<'a, [Edge]>>,
+    /// For each surfel the squared deviations to the nearest piece of the other cloud, at most those
+    /// of [`MOST_DEVIATIONS`].
+    pub squared: Vec<f64>,
+    /// For each surfel the probability of its clearest crossing.
+    pub crossing: Vec<f64>,
+    pub ball: Ball,
+}
+
+/// What all pieces of a leaf are in.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ball {
+    pub middle: Point3,
+    /// How far the mean of a piece is from there at most, m.
+    pub radius: f64,
+    /// The largest variance of a piece in any direction, m².
+    pub variance: f64,
+    /// The largest spacing, m.
+    pub spacing: f64,
+}
+
+impl<'a> Leaf<'a> {
+    /// A leaf of a cloud, moved to the frame of A by `pose`, or of A itself.
+    pub(super) fn load(
+        cloud: &'a Cloud,
+        id: NodeId,
+        pose: Option<&Pose>,
+        stats: &mut Stats,
+    ) -> Self {
+        let (surfels, computed) = cloud.leaf(id);
+        stats.leaves_prepared += usize::from(computed);
+        let surfels = match pose {
+            None => Cow::Borrowed(surfels),
+            Some(pose) => surfels.iter().map(|s| s.transformed(pose)).collect(),
+        };
+        let squared = vec![MOST_DEVIATIONS.powi(2); surfels.len()];
+        let crossing = vec![0.0; surfels.len()];
+        let ball = Ball::around(&surfels);
+        Self { surfels, edges: None, squared, crossing, ball }
+    }
+
+    /// Gets its edges, once.
+    pub(super) fn load_edges(&mut self, cloud: &'a Cloud, id: NodeId, pose: Option<&Pose>) {
+        self.edges.get_or_insert_with(|| {
+            let edges = cloud.leaf_edges(id);
+            match pose {
+                None => Cow::Borrowed(edges),
+                Some(pose) => edges.iter().map(|e| e.transformed(pose)).collect(),
+            }
+        });
+    }
+
+    /// None before they were loaded.
+    pub(super) fn edges(&self) -> &[Edge] {
+        self.edges.as_deref().unwrap_or_default()
+    }
+
+    /// From its middle to that of another leaf.
+    pub(super) fn toward(&self, other: &Self) -> Vector3 {
+        other.ball.middle - self.ball.middle
+    }
+
+    /// How likely each piece is to collide, by geometry: halfway between two equally well known
+    /// pieces a plane is z/√2 deviations from either.
+    pub(super) fn probabilities(&self) -> impl Iterator<Item = (&Surfel, f64)> {
+        let of = |(&squared, &crossing): (&f64, &f64)| {
+            let is_near = squared < MOST_DEVIATIONS.powi(2);
+            let by_gap = if is_near { probability_at(squared.sqrt()) } else { 0.0 };
+            by_gap.max(crossing)
+        };
+        self.surfels.iter().zip(self.squared.iter().zip(&self.crossing).map(of))
+    }
+}
+
+impl Ball {
+    fn around(surfels: &[Surfel]) -> Self {
+        let sum: Vector3 = surfels.iter().map(|s| s.point.mean.coords).sum();
+        let middle = Point3::from(sum / surfels.len() as f64);
+        let mut ball = Self { middle, radius: 0.0, variance: 0.0, spacing: 0.0 };
+        for surfel in surfels {
+            ball.radius = ball.radius.max((surfel.point.mean - middle).norm_squared());
+            ball.variance = ball.variance.max(surfel.most_variance);
+            ball.spacing = ball.spacing.max(surfel.spacing);
+        }
+        ball.radius = ball.radius.sqrt();
+        ball
+    }
+
+    /// Whether a place is at most so far from some place in the ball; never no by rounding.
+    pub(super) fn is_within(&self, place: &Point3, distance: f64) -> bool {
+        const ROUNDING: f64 = 1e-9;
+        let reach = (self.radius + distance) * (1.0 + ROUNDING);
+        (place - self.middle).norm_squared() <= reach * reach
+    }
+}
