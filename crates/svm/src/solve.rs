@@ -9,11 +9,10 @@ use crate::settings::Settings;
 use crate::smo::{Limits, improve};
 use crate::solution::{Effort, Rung, Solution, Status};
 use crate::state::{Certificate, State};
+use crate::work;
 
-/// Steps of the automatic budget that serve even the smallest problem.
-const BASE_STEPS: usize = 50;
-/// No automatic budget is larger: at 10⁵ points a step takes about a millisecond.
-const MOST_STEPS: usize = 200_000;
+/// Twenty are usual.
+const CLARABEL_ITERATIONS: usize = 200;
 
 impl Problem {
     /// Solves the problem from scratch.
@@ -21,7 +20,9 @@ impl Problem {
     /// SMO runs first. When it does not reach the tolerance (and [`Settings::fallback`] allows it)
     /// the dense interior point method takes over, then Clarabel on the same dual; the answer with
     /// the smallest gap is returned. The gap is always recomputed from the multipliers.
-    /// Deterministic.
+    /// Deterministic, and bounded: each of the three may do so much work and no more, whatever the
+    /// size of the problem, and none begins what it could not finish. A solve takes milliseconds as
+    /// a rule, some seconds at worst, and then ends as [`Status::StepLimit`].
     pub fn solve(&self, settings: &Settings) -> Solution {
         self.climb(State::cold(self), settings)
     }
@@ -57,7 +58,7 @@ impl Problem {
         let span = tracing::debug_span!("robust_svm_clarabel", points = self.len());
         let _entered = span.enter();
         let mut effort = Effort::default();
-        match self.fall_back(Rung::Clarabel, settings, &mut effort) {
+        match self.ask_clarabel(CLARABEL_ITERATIONS, settings, &mut effort) {
             Some(state) => {
                 let certificate = state.certificate();
                 self.conclude(&state, &certificate, settings, Rung::Clarabel, effort)
@@ -80,9 +81,7 @@ impl Problem {
         let mut effort = Effort::default();
         let limits = Limits {
             relative_gap: tolerance,
-            max_steps: settings
-                .step_budget()
-                .unwrap_or_else(|| (n.saturating_mul(n) / 2 + BASE_STEPS).min(MOST_STEPS)),
+            max_steps: settings.step_budget().unwrap_or_else(|| work::step_budget(n)),
             predict: settings.step_budget().is_none(),
         };
         let mut certificate = improve(&mut state, &limits, &mut effort);
@@ -91,7 +90,9 @@ impl Problem {
             if certificate.relative_gap() <= tolerance || !settings.allows_fallback() {
                 break;
             }
-            let Some(mut other) = self.fall_back(fallback, settings, &mut effort) else { continue };
+            let Some(mut other) = self.fall_back(fallback, &state, settings, &mut effort) else {
+                continue;
+            };
             let mut second = other.certificate();
             if second.relative_gap() > tolerance {
                 // Interior points stop short of the last digits, which are SMO's to find.
@@ -105,13 +106,33 @@ impl Problem {
         self.conclude(&state, &certificate, settings, rung, effort)
     }
 
-    fn fall_back(&self, rung: Rung, settings: &Settings, effort: &mut Effort) -> Option<State<'_>> {
-        if rung == Rung::InteriorPoint {
-            let (state, iterations) = interior::solve(self, settings.relative_gap())?;
-            effort.interior_iterations += iterations;
-            return Some(state);
+    /// What another rung finds; `None` when the problem is too large for it.
+    fn fall_back(
+        &self,
+        rung: Rung,
+        so_far: &State<'_>,
+        settings: &Settings,
+        effort: &mut Effort,
+    ) -> Option<State<'_>> {
+        if rung == Rung::Clarabel {
+            let allowed = work::clarabel_iterations(self)?.min(CLARABEL_ITERATIONS);
+            return self.ask_clarabel(allowed, settings, effort);
         }
-        let dual = clarabel_dual::solve(self, settings.relative_gap())?;
+        // Where SMO got stuck its multipliers are of the right size, if nothing more.
+        let typical = so_far.alpha.iter().sum::<f64>() / self.len() as f64;
+        let allowed = work::interior_iterations(self)?;
+        let (state, iterations) = interior::solve(self, settings.relative_gap(), typical, allowed)?;
+        effort.interior_iterations += iterations;
+        Some(state)
+    }
+
+    fn ask_clarabel(
+        &self,
+        max_iterations: usize,
+        settings: &Settings,
+        effort: &mut Effort,
+    ) -> Option<State<'_>> {
+        let dual = clarabel_dual::solve(self, settings.relative_gap(), max_iterations)?;
         effort.clarabel_iterations += dual.iterations;
         Some(State::from_duals(self, &dual.alpha, &dual.p))
     }
