@@ -93,7 +93,7 @@ fn check(mode: Mode, a_from_b: &Pose) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn two_clouds_by_classifiers_on_patches(a_from_b in poses()) {

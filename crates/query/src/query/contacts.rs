@@ -173,6 +173,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
         #[test]
         fn contacts_lie_on_the_surface_and_normals_lead_down_it((points, mode) in scenes()) {
             let answer = answer(&points, mode);
