@@ -1,5 +1,6 @@
 //! Symmetric positive semidefinite 3×3 matrices: zero and singular ones are ordinary values.
 
+use crate::message::number;
 use nalgebra::SymmetricEigen;
 
 use crate::{Matrix3, Vector3};
@@ -20,7 +21,7 @@ pub struct Covariance {
 #[non_exhaustive]
 pub enum CovarianceError {
     /// An entry is NaN or infinite.
-    #[error("covariance entry ({row}, {column}) is {value}: every entry must be finite")]
+    #[error("covariance entry ({row}, {column}) is {}: every entry must be finite", number(*value))]
     NotFinite {
         /// Row of the entry, from 0.
         row: usize,
@@ -41,7 +42,8 @@ pub enum CovarianceError {
     },
     /// The matrix differs from its transpose by more than rounding.
     #[error(
-        "covariance is not symmetric: entry ({row}, {column}) differs from its mirror by {difference}"
+        "covariance is not symmetric: entry ({row}, {column}) differs from its mirror by {}",
+        number(*difference)
     )]
     NotSymmetric {
         /// Row of the worst entry.
@@ -52,7 +54,10 @@ pub enum CovarianceError {
         difference: f64,
     },
     /// The matrix has a negative eigenvalue beyond rounding.
-    #[error("covariance has the negative eigenvalue {eigenvalue}: variances cannot be negative")]
+    #[error(
+        "covariance has the negative eigenvalue {}: variances cannot be negative",
+        number(*eigenvalue)
+    )]
     Negative {
         /// The smallest eigenvalue.
         eigenvalue: f64,

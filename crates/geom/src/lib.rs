@@ -3,6 +3,7 @@
 mod cloud;
 mod covariance;
 mod mesh;
+pub mod message;
 pub mod normal;
 mod pose;
 pub mod seed;

@@ -1,5 +1,6 @@
 //! A triangle mesh as read from a file.
 
+use crate::message::number;
 use std::collections::HashMap;
 
 use crate::{Point3, cloud::bounding_box};
@@ -16,7 +17,10 @@ pub struct TriangleMesh {
 #[non_exhaustive]
 pub enum MeshError {
     /// A vertex has a coordinate that is NaN or infinite.
-    #[error("vertex {vertex} has the coordinate {value}: every coordinate must be finite")]
+    #[error(
+        "vertex {vertex} has the coordinate {}: every coordinate must be finite",
+        number(*value)
+    )]
     NotFinite {
         /// Which vertex, from 0.
         vertex: usize,

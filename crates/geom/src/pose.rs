@@ -1,5 +1,6 @@
 //! Rigid motions, checked when they come from outside.
 
+use crate::message::number;
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
 use crate::{Matrix3, Point3, Vector3};
@@ -15,7 +16,7 @@ pub struct Pose(Isometry3<f64>);
 #[non_exhaustive]
 pub enum PoseError {
     /// An entry is NaN or infinite.
-    #[error("pose entry ({row}, {column}) is {value}: every entry must be finite")]
+    #[error("pose entry ({row}, {column}) is {}: every entry must be finite", number(*value))]
     NotFinite {
         /// Row of the entry, from 0.
         row: usize,

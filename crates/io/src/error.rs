@@ -3,6 +3,7 @@
 //! The messages are complete in themselves (file, place, finding, remedy), so no error has a
 //! further `source` that a reporter would print a second time.
 
+use cloudtouch_geom::message::number;
 use std::{fmt, io, path::PathBuf};
 
 use cloudtouch_geom::CovarianceError;
@@ -82,7 +83,10 @@ pub enum WriteError {
         points: usize,
     },
     /// The sensor origin is NaN or infinite, which no reader would take back.
-    #[error("{}: the sensor origin has the coordinate {value}: it must be finite", path.display())]
+    #[error(
+        "{}: the sensor origin has the coordinate {}: it must be finite",
+        path.display(), number(*value)
+    )]
     SensorOrigin {
         /// The file.
         path: PathBuf,
@@ -244,7 +248,10 @@ pub enum Fault {
         found: String,
     },
     /// A coordinate of a mesh, or of the sensor, is NaN or infinite.
-    #[error("the coordinate {value} is not finite: only points of a cloud may be missing")]
+    #[error(
+        "the coordinate {} is not finite: only points of a cloud may be missing",
+        number(*value)
+    )]
     NotFinite {
         /// What was found.
         value: f64,

@@ -1,6 +1,7 @@
 //! What can be wrong with a sensor, a cloud or the settings.
 
 use cloudtouch_geom::Point3;
+use cloudtouch_geom::message::{number, position};
 
 /// Why uncertain points could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -27,7 +28,7 @@ pub enum NoiseError {
         problem: String,
     },
     /// A value of the sensor is out of range.
-    #[error("{name} of the sensor is {value}: it must be finite and {requirement}")]
+    #[error("{name} of the sensor is {}: it must be finite and {requirement}", number(*value))]
     SensorValue {
         /// Which value.
         name: &'static str,
@@ -51,7 +52,8 @@ pub enum NoiseError {
     },
     /// The covariance of a point is not finite, or too large to be represented.
     #[error(
-        "the covariance of point {index} at {point} is not finite: remove the point or rescale the cloud"
+        "the covariance of point {index} at {} is not finite: remove the point or rescale the cloud",
+        position(point)
     )]
     CovarianceNotFinite {
         /// Which point.
@@ -60,7 +62,10 @@ pub enum NoiseError {
         point: Point3,
     },
     /// The sensor origin is not finite.
-    #[error("the sensor origin {origin} is not finite: give the position the cloud was seen from")]
+    #[error(
+        "the sensor origin {} is not finite: give the position the cloud was seen from",
+        position(origin)
+    )]
     SensorOrigin {
         /// What was given.
         origin: Point3,
@@ -72,7 +77,10 @@ pub enum NoiseError {
         points: usize,
     },
     /// A coordinate is so large that squared distances leave the range of `f64`.
-    #[error("point {index} at {point} is beyond 1e150 m: check the unit, or remove the point")]
+    #[error(
+        "point {index} at {} is beyond 1e150 m: check the unit, or remove the point",
+        position(point)
+    )]
     CoordinateRange {
         /// Which point.
         index: usize,
@@ -88,7 +96,7 @@ pub enum NoiseError {
         reason: String,
     },
     /// A setting is out of range.
-    #[error("setting `{name}` is {value}: it must be finite and {requirement}")]
+    #[error("setting `{name}` is {}: it must be finite and {requirement}", number(*value))]
     Setting {
         /// Which setting.
         name: &'static str,
@@ -98,7 +106,7 @@ pub enum NoiseError {
         requirement: &'static str,
     },
     /// The probability mass of the ellipsoids is out of range.
-    #[error("kappa is {kappa}: the {rule} radius needs a value in {range}")]
+    #[error("kappa is {}: the {rule} radius needs a value in {range}", number(*kappa))]
     Kappa {
         /// What was given.
         kappa: f64,
@@ -108,7 +116,10 @@ pub enum NoiseError {
         range: &'static str,
     },
     /// A point lies too many cells from the origin to be put on the grid.
-    #[error("point {index} at {point} is more than 2^53 cells of {resolution} m from the origin")]
+    #[error(
+        "point {index} at {} is more than 2^53 cells of {} m from the origin",
+        position(point), number(*resolution)
+    )]
     GridRange {
         /// Which point.
         index: usize,
@@ -117,4 +128,18 @@ pub enum NoiseError {
         /// Edge length of a cell, m.
         resolution: f64,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn far_points_are_spelled_in_few_digits() {
+        let error = NoiseError::CoordinateRange { index: 3, point: Point3::new(0.5, -1e300, 2.0) };
+        let expected = "point 3 at (0.5, -1e300, 2) is beyond 1e150 m: ";
+        assert!(error.to_string().starts_with(expected), "{error}");
+        let error = NoiseError::SensorValue { name: "std", value: -0.25, requirement: "positive" };
+        assert!(error.to_string().starts_with("std of the sensor is -0.25: "), "{error}");
+    }
 }

@@ -1,6 +1,7 @@
 //! What can be wrong with the input, in words.
 
 use cloudtouch_bvh::TreeError;
+use cloudtouch_geom::message::number;
 use cloudtouch_geom::{CovarianceError, MeshError, Vector3};
 use cloudtouch_noise::NoiseError;
 
@@ -22,8 +23,9 @@ pub enum PrepareError {
     },
     /// A coordinate is so large that squares and volumes leave the range of `f64`.
     #[error(
-        "point {index} has the coordinate {value:e}, beyond 1e50 m: check the unit, or remove the \
-         point"
+        "point {index} has the coordinate {}, beyond 1e50 m: check the unit, or remove the \
+         point",
+        number(*value)
     )]
     CoordinateRange {
         /// Which point kept by the filter, or vertex of the merged mesh, from 0.
@@ -72,8 +74,9 @@ pub enum PrepareError {
 /// A mesh takes more parts than allowed to be sampled as densely as asked.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "samples of the mesh at a spacing of {spacing} m take more than {max_parts} triangles: sample \
-     it less densely, or raise the limit on parts"
+    "samples of the mesh at a spacing of {} m take more than {max_parts} triangles: sample \
+     it less densely, or raise the limit on parts",
+    number(*spacing)
 )]
 pub struct SubdivisionError {
     /// Longest edge wanted, m.
@@ -87,7 +90,10 @@ pub struct SubdivisionError {
 #[non_exhaustive]
 pub enum SettingsError {
     /// Two numbers that are no interval of probabilities.
-    #[error("{name} = [{lowest}, {highest}]: need 0 <= lowest <= highest <= 1")]
+    #[error(
+        "{name} = [{}, {}]: need 0 <= lowest <= highest <= 1",
+        number(*lowest), number(*highest)
+    )]
     NotAnInterval {
         /// Which setting.
         name: &'static str,
@@ -106,7 +112,7 @@ pub enum SettingsError {
         name: &'static str,
     },
     /// A number that has to be finite.
-    #[error("{name} = {value}: must be finite")]
+    #[error("{name} = {}: must be finite", number(*value))]
     NotFinite {
         /// Which setting.
         name: &'static str,
@@ -115,7 +121,8 @@ pub enum SettingsError {
     },
     /// The thresholds are not 0 ≤ reject ≤ ½ ≤ accept ≤ 1.
     #[error(
-        "thresholds accept = {accept}, reject = {reject}: need 0 <= reject <= 0.5 <= accept <= 1"
+        "thresholds accept = {}, reject = {}: need 0 <= reject <= 0.5 <= accept <= 1",
+        number(*accept), number(*reject)
     )]
     Thresholds {
         /// Probability above which a pair is in collision.
@@ -124,7 +131,7 @@ pub enum SettingsError {
         reject: f64,
     },
     /// A setting is not a positive finite number.
-    #[error("{name} is {value}: give a positive finite number")]
+    #[error("{name} is {}: give a positive finite number", number(*value))]
     NotPositive {
         /// Which setting.
         name: &'static str,
@@ -132,7 +139,7 @@ pub enum SettingsError {
         value: f64,
     },
     /// A probability or tolerance is not strictly between 0 and 1.
-    #[error("{name} is {value}: give a number between 0 and 1, ends excluded")]
+    #[error("{name} is {}: give a number between 0 and 1, ends excluded", number(*value))]
     NotAFraction {
         /// Which setting.
         name: &'static str,
@@ -146,7 +153,7 @@ pub enum SettingsError {
 #[non_exhaustive]
 pub enum QueryError {
     /// The pose has an entry that is NaN, infinite, or a translation beyond 1e50 m.
-    #[error("the pose contains {value:e}: every entry must be finite, and at most 1e50 m")]
+    #[error("the pose contains {}: every entry must be finite, and at most 1e50 m", number(*value))]
     Pose {
         /// What was found.
         value: f64,
@@ -160,4 +167,27 @@ pub enum QueryError {
     /// The two shapes cannot be tested against each other exactly.
     #[error("the two meshes cannot be tested against each other: is one of them degenerate?")]
     Unsupported,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_spelled_in_few_digits_and_ordinary_ones_plainly() {
+        for (value, spelled) in [(-0.5, "is -0.5:"), (1e300, "is 1e300:"), (f64::NAN, "is NaN:")] {
+            let message = SettingsError::NotPositive { name: "gamma", value }.to_string();
+            assert!(message.contains(spelled), "{message}");
+        }
+        let spacing = SubdivisionError { spacing: 1e-300, max_parts: 20_000 }.to_string();
+        assert!(
+            spacing.contains("spacing of 1e-300 m take more than 20000 triangles"),
+            "{spacing}"
+        );
+        let thresholds = SettingsError::Thresholds { accept: 0.25, reject: 0.75 }.to_string();
+        assert!(
+            thresholds.starts_with("thresholds accept = 0.25, reject = 0.75: "),
+            "{thresholds}"
+        );
+    }
 }

@@ -68,7 +68,8 @@ pub struct Clearance {
 /// A place where the surfaces touch or may touch, in the frame of A.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Contact {
-    /// A point on the separating surface, m.
+    /// A point on the separating surface, m; where that passes far from the most probable samples,
+    /// as deep in an overlap, the middle of these.
     #[serde(serialize_with = "as_array")]
     pub point: Point3,
     /// Unit normal of the separating surface there, pointing from A to B.

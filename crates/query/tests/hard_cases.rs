@@ -4,8 +4,8 @@ mod common;
 
 use cloudtouch::geom::{Covariance, CovarianceError, Matrix3, Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode, PrepareError, Verdict};
-use cloudtouch_testkit::hard_cases::{HardCase, hard_cases};
+use cloudtouch::{Cloud, CloudSettings, Mesh, Mode, PrepareError, Verdict};
+use cloudtouch_testkit::hard_cases::{HardCase, hard_cases, hard_meshes};
 use common::{MODES, ask};
 
 /// Why a side could not be prepared; every way is typed.
@@ -78,6 +78,20 @@ fn identical_clouds_are_never_free() {
             let b = prepare(&case.cloud_b, &case.covariance_b, mode).unwrap();
             let report = ask(mode, &a, &b, &Pose::identity());
             assert_ne!(report.verdict, Verdict::Free, "{} {mode:?}: {report:?}", case.name);
+        }
+    }
+}
+
+/// What a cloud does to each mesh is beyond doubt: through it, inside it or well away.
+#[test]
+fn every_mesh_is_decided_as_the_truth_is() {
+    for case in hard_meshes().iter().filter(|case| case.valid) {
+        let solid = Mesh::prepare(&case.mesh).unwrap();
+        let expected = if case.collides { Verdict::InCollision } else { Verdict::Free };
+        for mode in MODES {
+            let cloud = common::prepare(case.cloud.clone(), case.std, mode);
+            let report = ask(mode, &cloud, &solid, &Pose::identity());
+            assert_eq!(report.verdict, expected, "{} {mode:?}: {:?}", case.name, report.stats);
         }
     }
 }

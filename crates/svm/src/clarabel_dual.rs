@@ -20,7 +20,11 @@ pub(crate) struct ClarabelDual {
 }
 
 /// Solves the dual with Clarabel; `None` when the problem is too large or Clarabel refuses it.
-pub(crate) fn solve(problem: &Problem, relative_gap: f64) -> Option<ClarabelDual> {
+pub(crate) fn solve(
+    problem: &Problem,
+    relative_gap: f64,
+    max_iterations: usize,
+) -> Option<ClarabelDual> {
     let variables = variables(problem);
     let quadratic = upper_triangle(&gram(problem, &variables)?);
     let linear: Vec<f64> =
@@ -29,7 +33,7 @@ pub(crate) fn solve(problem: &Problem, relative_gap: f64) -> Option<ClarabelDual
     let tolerance = (relative_gap * 0.1).clamp(1e-12, 1e-4);
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
-        .max_iter(200)
+        .max_iter(u32::try_from(max_iterations).unwrap_or(u32::MAX))
         .max_threads(1)
         .tol_gap_abs(tolerance)
         .tol_gap_rel(tolerance)

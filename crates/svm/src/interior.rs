@@ -24,6 +24,9 @@ const MAX_STALLED: usize = 5;
 /// Share of the way to the boundary that a step goes.
 const STEP: f64 = 0.99;
 
+/// Multipliers start from at least this, where penalties allow it.
+const START: f64 = 10.0;
+
 /// The iterate: one cone pair and one bound pair for each point.
 struct Iterate {
     z: Vec<Vector4<f64>>,
@@ -40,15 +43,25 @@ struct Direction {
     bias: f64,
 }
 
-/// Solves the dual to `relative_gap`, or as far as rounding lets it; the best state found, and the
-/// iterations. `None` when the problem is too large for a dense matrix or leaves the range of f64.
-pub(crate) fn solve(problem: &Problem, relative_gap: f64) -> Option<(State<'_>, usize)> {
+/// Solves the dual to `relative_gap`, or as far as rounding and `allowed` iterations let it; the best
+/// state found, and the iterations. `None` when the problem is too large for a dense matrix or leaves
+/// the range of f64.
+///
+/// `typical` is a guess at the mean of the multipliers: each iteration changes them by a bounded
+/// factor, so that large penalties take many iterations from a small start.
+pub(crate) fn solve(
+    problem: &Problem,
+    relative_gap: f64,
+    typical: f64,
+    allowed: usize,
+) -> Option<(State<'_>, usize)> {
     let variables = variables(problem);
     let quadratic = gram(problem, &variables)?;
-    let mut at = Iterate::start(problem);
+    let mut at = Iterate::start(problem, typical.max(START));
     let mut best: Option<(State<'_>, f64)> = None;
     let mut worse = 0;
-    for iteration in 0..MAX_ITERATIONS {
+    let allowed = allowed.min(MAX_ITERATIONS);
+    for iteration in 0..allowed {
         let (state, gap) = at.certify(problem);
         if gap.is_finite() && best.as_ref().is_none_or(|(_, least)| gap < *least) {
             best = Some((state, gap));
@@ -62,14 +75,14 @@ pub(crate) fn solve(problem: &Problem, relative_gap: f64) -> Option<(State<'_>, 
             return best.map(|(state, _)| (state, iteration));
         }
     }
-    best.map(|(state, _)| (state, MAX_ITERATIONS))
+    best.map(|(state, _)| (state, allowed))
 }
 
 impl Iterate {
-    /// Multipliers well inside their range with Σcα = 0, cone vectors 0.
-    fn start(problem: &Problem) -> Self {
+    /// Multipliers of about `size` and well inside their range with Σcα = 0, cone vectors 0.
+    fn start(problem: &Problem, size: f64) -> Self {
         let points = &problem.points;
-        let first = |penalty: f64| (0.5 * penalty).min(10.0);
+        let first = |penalty: f64| (0.5 * penalty).min(size);
         let total = |sign: f64| -> f64 {
             points.iter().filter(|p| p.sign == sign).map(|p| first(p.penalty)).sum()
         };

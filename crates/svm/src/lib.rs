@@ -18,6 +18,7 @@ mod solution;
 mod solve;
 mod state;
 mod unit_box;
+mod work;
 
 pub use classifier::{Classifier, ClassifierError};
 pub use kernel::Kernel;

@@ -1,5 +1,6 @@
 //! The checked training problem, with the ellipsoid radius folded into each covariance factor.
 
+use cloudtouch_geom::message::number;
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
 use crate::{Class, Kernel, Sample};
@@ -43,7 +44,7 @@ pub enum ProblemError {
         index: usize,
     },
     /// A radius is negative or not finite.
-    #[error("sample {index} has the radius {value}: it must be finite and not negative")]
+    #[error("sample {index} has the radius {}: it must be finite and not negative", number(*value))]
     Radius {
         /// Which sample.
         index: usize,
@@ -51,7 +52,7 @@ pub enum ProblemError {
         value: f64,
     },
     /// A penalty is not positive and finite.
-    #[error("sample {index} has the penalty {value}: it must be positive and finite")]
+    #[error("sample {index} has the penalty {}: it must be positive and finite", number(*value))]
     Penalty {
         /// Which sample.
         index: usize,
@@ -59,7 +60,7 @@ pub enum ProblemError {
         value: f64,
     },
     /// γ is not positive and finite.
-    #[error("the kernel width gamma is {value}: it must be positive and finite")]
+    #[error("the kernel width gamma is {}: it must be positive and finite", number(*value))]
     Gamma {
         /// What was given.
         value: f64,

@@ -1,5 +1,7 @@
 //! How far to solve: accuracy, step budget, and whether the fallback may run.
 
+use cloudtouch_geom::message::number;
+
 /// Checked settings of a solve; every value of this type is valid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -14,7 +16,8 @@ pub struct Settings {
 pub enum SettingsError {
     /// The tolerance is not a number in its range.
     #[error(
-        "relative gap {value} is outside (0, 0.1]: 1e-3 serves verdicts, 1e-4 reported figures"
+        "relative gap {} is outside (0, 0.1]: 1e-3 serves verdicts, 1e-4 reported figures",
+        number(*value)
     )]
     RelativeGap {
         /// What was given.

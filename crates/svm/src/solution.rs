@@ -20,6 +20,10 @@ pub struct Solution {
     pub squared_norm: f64,
     /// (primal − dual) / primal, recomputed from the multipliers alone.
     pub relative_gap: f64,
+    /// How far the probability of a sample may be off by what the gap leaves open: an estimate, from
+    /// the share of its bound on f that errors were seen to take. Only where f hardly reaches its
+    /// margins, as at tiny penalties or kernel widths; 0 elsewhere, where [`Self::relative_gap`] tells.
+    pub probability_error: f64,
     /// How the solve ended.
     pub status: Status,
     /// Which solver gave the answer.
@@ -70,13 +74,18 @@ pub struct Effort {
     pub clarabel_iterations: usize,
 }
 
+/// Beyond this gap errors of 0.6 in a probability have been seen.
+const LARGEST_GAP: f64 = 3e-2;
+/// With a larger estimate of the error a probability is not read.
+pub(crate) const LARGEST_ERROR: f64 = 0.1;
+
 impl Solution {
-    /// Whether probabilities may be read: the gap is at most 3e-2 and w is known not to vanish.
-    ///
-    /// Beyond that gap errors of 0.6 in a probability have been seen.
+    /// Whether probabilities may be read: the gap is at most 3e-2, w is known not to vanish, and no
+    /// sample's probability may be off by more than 0.1 ([`Self::probability_error`]).
     pub fn determines_probabilities(&self) -> bool {
         matches!(self.status, Status::Converged | Status::StepLimit)
-            && self.relative_gap <= 3e-2
+            && self.relative_gap <= LARGEST_GAP
             && self.squared_norm > 2.0 * self.relative_gap * self.primal
+            && self.probability_error <= LARGEST_ERROR
     }
 }

@@ -7,13 +7,32 @@ use crate::interior;
 use crate::problem::Problem;
 use crate::settings::Settings;
 use crate::smo::{Limits, improve};
-use crate::solution::{Effort, Rung, Solution, Status};
+use crate::solution::{Effort, LARGEST_ERROR, Rung, Solution, Status};
 use crate::state::{Certificate, State};
+use crate::work;
 
-/// Steps of the automatic budget that serve even the smallest problem.
-const BASE_STEPS: usize = 50;
-/// No automatic budget is larger: at 10⁵ points a step takes about a millisecond.
-const MOST_STEPS: usize = 200_000;
+/// Twenty are usual.
+const CLARABEL_ITERATIONS: usize = 200;
+/// How much tighter a problem is solved that determines no probability yet.
+const TIGHTER: f64 = 1e-2;
+/// No tolerance is tightened beyond this: rounding is next.
+const TIGHTEST: f64 = 1e-14;
+
+/// How far the ladder has come.
+struct Reached<'a> {
+    state: State<'a>,
+    certificate: Certificate,
+    rung: Rung,
+}
+
+impl Reached<'_> {
+    /// Whether a gap that is small beside the objective is not small beside w.
+    fn leaves_probabilities_open(&self, tolerance: f64) -> bool {
+        self.certificate.relative_gap() <= tolerance
+            && !is_collapsed(&self.state, &self.certificate)
+            && self.state.probability_error(&self.certificate) > LARGEST_ERROR
+    }
+}
 
 impl Problem {
     /// Solves the problem from scratch.
@@ -21,7 +40,12 @@ impl Problem {
     /// SMO runs first. When it does not reach the tolerance (and [`Settings::fallback`] allows it)
     /// the dense interior point method takes over, then Clarabel on the same dual; the answer with
     /// the smallest gap is returned. The gap is always recomputed from the multipliers.
-    /// Deterministic.
+    /// Where the tolerance leaves the probabilities of samples open, as at tiny penalties or kernel
+    /// widths, the problem is solved tighter than asked.
+    ///
+    /// Deterministic, and bounded: each of the three may do so much work and no more, whatever the
+    /// size of the problem, and none begins what it could not finish. A solve takes milliseconds as
+    /// a rule, some seconds at worst, and then ends as [`Status::StepLimit`].
     pub fn solve(&self, settings: &Settings) -> Solution {
         self.climb(State::cold(self), settings)
     }
@@ -57,7 +81,7 @@ impl Problem {
         let span = tracing::debug_span!("robust_svm_clarabel", points = self.len());
         let _entered = span.enter();
         let mut effort = Effort::default();
-        match self.fall_back(Rung::Clarabel, settings, &mut effort) {
+        match self.ask_clarabel(CLARABEL_ITERATIONS, settings.relative_gap(), &mut effort) {
             Some(state) => {
                 let certificate = state.certificate();
                 self.conclude(&state, &certificate, settings, Rung::Clarabel, effort)
@@ -72,46 +96,96 @@ impl Problem {
         }
     }
 
-    fn climb<'a>(&'a self, mut state: State<'a>, settings: &Settings) -> Solution {
+    fn climb<'a>(&'a self, state: State<'a>, settings: &Settings) -> Solution {
         let span = tracing::debug_span!("robust_svm_solve", points = self.len());
         let _entered = span.enter();
-        let n = self.len();
-        let tolerance = settings.relative_gap();
         let mut effort = Effort::default();
+        let mut tolerance = settings.relative_gap();
+        let rungs = [Rung::InteriorPoint, Rung::Clarabel];
+        let mut reached = self.climb_to(tolerance, state, &rungs, settings, &mut effort);
+        while settings.step_budget().is_none()
+            && tolerance > TIGHTEST
+            && effort.smo_steps < work::step_budget(self.len())
+            && reached.leaves_probabilities_open(tolerance)
+        {
+            // What is left of the steps, and our own interior point method, but not Clarabel.
+            tolerance = (TIGHTER * reached.certificate.relative_gap()).max(TIGHTEST);
+            let start = reached.state.clone();
+            let next = self.climb_to(tolerance, start, &rungs[..1], settings, &mut effort);
+            if next.certificate.relative_gap() >= reached.certificate.relative_gap() {
+                break;
+            }
+            let polished = next.rung == Rung::Smo;
+            reached = Reached { rung: if polished { reached.rung } else { next.rung }, ..next };
+        }
+        self.conclude(&reached.state, &reached.certificate, settings, reached.rung, effort)
+    }
+
+    /// The ladder once, over the `fallbacks` in their order.
+    fn climb_to<'a>(
+        &'a self,
+        tolerance: f64,
+        mut state: State<'a>,
+        fallbacks: &[Rung],
+        settings: &Settings,
+        effort: &mut Effort,
+    ) -> Reached<'a> {
+        let n = self.len();
+        let automatic = work::step_budget(n).saturating_sub(effort.smo_steps);
         let limits = Limits {
             relative_gap: tolerance,
-            max_steps: settings
-                .step_budget()
-                .unwrap_or_else(|| (n.saturating_mul(n) / 2 + BASE_STEPS).min(MOST_STEPS)),
+            max_steps: settings.step_budget().unwrap_or(automatic),
             predict: settings.step_budget().is_none(),
         };
-        let mut certificate = improve(&mut state, &limits, &mut effort);
+        let mut certificate = improve(&mut state, &limits, effort);
         let mut rung = Rung::Smo;
-        for fallback in [Rung::InteriorPoint, Rung::Clarabel] {
+        for &fallback in fallbacks {
             if certificate.relative_gap() <= tolerance || !settings.allows_fallback() {
                 break;
             }
-            let Some(mut other) = self.fall_back(fallback, settings, &mut effort) else { continue };
+            let Some(mut other) = self.fall_back(fallback, &state, tolerance, effort) else {
+                continue;
+            };
             let mut second = other.certificate();
             if second.relative_gap() > tolerance {
                 // Interior points stop short of the last digits, which are SMO's to find.
                 let polish = Limits { max_steps: 10 * n, predict: false, ..limits };
-                second = improve(&mut other, &polish, &mut effort);
+                second = improve(&mut other, &polish, effort);
             }
             if second.relative_gap() < certificate.relative_gap() {
                 (state, certificate, rung) = (other, second, fallback);
             }
         }
-        self.conclude(&state, &certificate, settings, rung, effort)
+        Reached { state, certificate, rung }
     }
 
-    fn fall_back(&self, rung: Rung, settings: &Settings, effort: &mut Effort) -> Option<State<'_>> {
-        if rung == Rung::InteriorPoint {
-            let (state, iterations) = interior::solve(self, settings.relative_gap())?;
-            effort.interior_iterations += iterations;
-            return Some(state);
+    /// What another rung finds; `None` when the problem is too large for it.
+    fn fall_back(
+        &self,
+        rung: Rung,
+        so_far: &State<'_>,
+        relative_gap: f64,
+        effort: &mut Effort,
+    ) -> Option<State<'_>> {
+        if rung == Rung::Clarabel {
+            let allowed = work::clarabel_iterations(self)?.min(CLARABEL_ITERATIONS);
+            return self.ask_clarabel(allowed, relative_gap, effort);
         }
-        let dual = clarabel_dual::solve(self, settings.relative_gap())?;
+        // Where SMO got stuck its multipliers are of the right size, if nothing more.
+        let typical = so_far.alpha.iter().sum::<f64>() / self.len() as f64;
+        let allowed = work::interior_iterations(self)?;
+        let (state, iterations) = interior::solve(self, relative_gap, typical, allowed)?;
+        effort.interior_iterations += iterations;
+        Some(state)
+    }
+
+    fn ask_clarabel(
+        &self,
+        max_iterations: usize,
+        relative_gap: f64,
+        effort: &mut Effort,
+    ) -> Option<State<'_>> {
+        let dual = clarabel_dual::solve(self, relative_gap, max_iterations)?;
         effort.clarabel_iterations += dual.iterations;
         Some(State::from_duals(self, &dual.alpha, &dual.p))
     }
@@ -129,7 +203,7 @@ impl Problem {
             Status::NotFinite
         } else if relative_gap > settings.relative_gap() {
             Status::StepLimit
-        } else if certificate.squared_norm <= 2.0 * certificate.gap + norm_rounding(state) {
+        } else if is_collapsed(state, certificate) {
             Status::Collapsed
         } else {
             Status::Converged
@@ -159,11 +233,17 @@ impl Problem {
             dual: certificate.dual,
             squared_norm: certificate.squared_norm,
             relative_gap,
+            probability_error: state.probability_error(certificate),
             status,
             rung,
             effort,
         }
     }
+}
+
+/// Whether w = 0 cannot be excluded.
+fn is_collapsed(state: &State<'_>, certificate: &Certificate) -> bool {
+    certificate.squared_norm <= 2.0 * certificate.gap + norm_rounding(state)
 }
 
 /// What rounding alone can leave of |w|² when w = 0: the terms of βᵀBβ cancel.

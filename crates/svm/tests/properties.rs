@@ -44,6 +44,39 @@ fn slope(value: impl Fn(&Point3) -> f64, at: &Point3, step: f64) -> Vector3 {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
+    /// At tiny penalties or kernel widths w is small beside the objective, and a gap that is small
+    /// there says little of f.
+    #[test]
+    fn probabilities_that_are_read_do_not_hang_on_the_tolerance(
+        seed in 0..10_000_u64,
+        log_penalty in -5.0..2.0_f64,
+        log_gamma in -4.0..1.5_f64,
+    ) {
+        let difficulty = [Difficulty::Easy, Difficulty::Contact, Difficulty::Hard][seed as usize % 3];
+        let (mut samples, _) = cell(difficulty, 4 + (seed % 12) as usize, seed);
+        samples.iter_mut().for_each(|s| s.penalty = 10_f64.powf(log_penalty));
+        let kernel = Kernel::Gaussian { gamma: 10_f64.powf(log_gamma) };
+        let problem = Problem::try_new(&samples, kernel).unwrap();
+        let loose = problem.solve(&Settings::with_relative_gap(1e-3).unwrap());
+        let tight = problem.solve(&Settings::with_relative_gap(1e-8).unwrap());
+        let both = [&loose, &tight].map(|solution| Classifier::try_new(&problem, solution));
+        let [Ok(loose), Ok(tight)] = both else { return Ok(()) };
+        for s in &samples {
+            let [p, q] = [&loose, &tight].map(|f| f.probability(&s.point, s.class).unwrap());
+            prop_assert!((p - q).abs() < 0.05, "{p} and {q}");
+        }
+    }
+
+    /// Nor is reading refused where it need not be: these are leaf problems of default settings.
+    #[test]
+    fn ordinary_problems_determine_probabilities(seed in 0..10_000_u64) {
+        let difficulty = if seed.is_multiple_of(2) { Difficulty::Easy } else { Difficulty::Contact };
+        let (samples, gamma) = cell(difficulty, 8 + (seed % 13) as usize, seed);
+        let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
+        let solution = problem.solve(&Settings::default());
+        prop_assert!(solution.determines_probabilities(), "{solution:?}");
+    }
+
     /// Metres outside the box, box lengths inside: the gradient outside has to be per metre.
     #[test]
     fn gradients_outside_the_unit_box_are_per_metre(seed in 0..10_000_u64, exponent in -3..4_i32) {

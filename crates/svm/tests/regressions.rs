@@ -5,9 +5,9 @@ mod support;
 
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal};
 use cloudtouch_svm::{
-    Class, Classifier, ClassifierError, Kernel, Problem, Sample, Settings, Status, UnitBox,
+    Class, Classifier, ClassifierError, Kernel, Problem, Rung, Sample, Settings, Status, UnitBox,
 };
-use support::{Difficulty, cell};
+use support::{Difficulty, Scene, Shape, Stream, cell};
 
 fn sample(x: f64, y: f64, class: Class, covariance: Covariance, radius: f64) -> Sample {
     let point = UncertainPoint { mean: Point3::new(x, y, 0.0), covariance };
@@ -118,4 +118,46 @@ fn nan_ended_as_probability_zero() {
         Classifier::try_new(&problem, &unfinished),
         Err(ClassifierError::Undetermined { status: Status::StepLimit, .. })
     ));
+}
+
+/// Points of A that cross a densely sampled exact surface, as of a mesh that is trusted.
+fn through_a_mesh(per_mesh: usize, penalty: f64) -> Vec<Sample> {
+    let scene = Scene {
+        shape: Shape::CrossingSheet,
+        count_a: 20,
+        count_b: per_mesh,
+        gap: -0.2,
+        noise: 0.03,
+        anisotropic: false,
+        radius: 1.0,
+        penalty,
+    };
+    let mut samples = scene.samples(&mut Stream::new(11));
+    for sample in samples.iter_mut().filter(|s| s.class == Class::B) {
+        sample.point = UncertainPoint::exact(sample.point.mean);
+    }
+    samples
+}
+
+#[test]
+fn the_interior_point_method_crept_up_to_large_penalties() {
+    let problem =
+        Problem::try_new(&through_a_mesh(600, 1e7), Kernel::Gaussian { gamma: 27.0 }).unwrap();
+    let solution = problem.solve(&Settings::default());
+    assert_eq!((solution.status, solution.rung), (Status::Converged, Rung::InteriorPoint));
+    assert_eq!(solution.effort.clarabel_iterations, 0);
+    // From a start of 10 it takes 22.
+    assert!(solution.effort.interior_iterations <= 20, "{:?}", solution.effort);
+}
+
+#[test]
+fn a_large_problem_was_worked_on_for_minutes() {
+    // Beyond what is worth a dense matrix, and far from what SMO can finish.
+    let problem =
+        Problem::try_new(&through_a_mesh(1800, 1e7), Kernel::Gaussian { gamma: 5.0 }).unwrap();
+    let solution = problem.solve(&tight());
+    assert_eq!(solution.status, Status::StepLimit);
+    let effort = solution.effort;
+    assert_eq!((effort.interior_iterations, effort.clarabel_iterations), (0, 0));
+    assert!(effort.smo_steps * problem.len() <= 300_000_000, "{effort:?}");
 }

@@ -1,5 +1,6 @@
 //! What the cleaning pipeline is asked to do.
 
+use cloudtouch_geom::message::number;
 use cloudtouch_noise::{NoiseError, SensorModel};
 
 use super::SelfMesh;
@@ -123,7 +124,7 @@ pub enum FilterError {
         points: usize,
     },
     /// The range limits are not 0 ≤ min < max.
-    #[error("range limits {min} m to {max} m: need 0 <= min < max")]
+    #[error("range limits {} m to {} m: need 0 <= min < max", number(*min), number(*max))]
     Range {
         /// Lower limit, m.
         min: f64,
@@ -131,20 +132,21 @@ pub enum FilterError {
         max: f64,
     },
     /// The padding of a robot link is negative or not finite.
-    #[error("robot padding {value} m: give a finite value of 0 or more")]
+    #[error("robot padding {} m: give a finite value of 0 or more", number(*value))]
     Padding {
         /// What was given, m.
         value: f64,
     },
     /// The veil angle is not between 0 and 90 degrees.
-    #[error("veil angle {value} rad: give one between 0 and pi/2")]
+    #[error("veil angle {} rad: give one between 0 and pi/2", number(*value))]
     VeilAngle {
         /// What was given, rad.
         value: f64,
     },
     /// The outlier settings make no sense.
     #[error(
-        "outliers by {neighbors} neighbours and {deviations} deviations: need at least one neighbour and a number"
+        "outliers by {neighbors} neighbours and {} deviations: need at least one neighbour and a number",
+        number(*deviations)
     )]
     Outliers {
         /// Neighbours asked for.
@@ -169,7 +171,7 @@ pub enum FilterError {
     #[error(transparent)]
     CollisionMap(#[from] NoiseError),
     /// The collision map resolution is not positive.
-    #[error("collision map resolution {value} m: give a positive value such as 0.01")]
+    #[error("collision map resolution {} m: give a positive value such as 0.01", number(*value))]
     Resolution {
         /// What was given, m.
         value: f64,

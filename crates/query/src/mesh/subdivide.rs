@@ -8,8 +8,9 @@ use crate::error::SubdivisionError;
 /// Outside the core an edge may be this long for each metre it is away: the farther a sample, the
 /// less its exact place matters to a surface near the cloud leaf.
 const GRADING: f64 = 0.5;
-/// Deepest subdivision of one triangle: 4¹⁰ parts, a millionth of its area each.
-const MAX_DEPTH: usize = 10;
+/// Deepest subdivision of one triangle, a billionth of its edges: only parts that come near the leaf
+/// are split again, so that depth is cheap. It ends what rounding keeps from becoming smaller.
+const MAX_DEPTH: usize = 30;
 
 /// Where and how densely a mesh is sampled, in the mesh's local frame.
 #[derive(Debug, Clone, Copy)]
@@ -119,6 +120,16 @@ mod tests {
         let mut unique = points.clone();
         unique.dedup();
         assert_eq!(unique.len(), points.len());
+    }
+
+    #[test]
+    fn a_triangle_of_kilometres_was_sampled_no_finer_than_metres() {
+        let corners = [Point3::origin(), Point3::new(1e4, 0.0, 0.0), Point3::new(0.0, 1e4, 0.0)];
+        let center = Point3::new(3000.0, 3000.0, 0.0);
+        let region = SampleRegion { center, core: 0.1, radius: 0.2, spacing: 0.02 };
+        let points = sample_region([corners], &region, 20_000).unwrap();
+        let nearest = points.iter().map(|p| (p - center).norm()).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 0.02 && points.len() > 50, "{} points, {nearest} m off", points.len());
     }
 
     #[test]

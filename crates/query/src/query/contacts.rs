@@ -47,10 +47,11 @@ const TIE: f64 = 1e-3;
 /// A contact is not farther from the samples it stands for than this many spacings and their noise.
 const KNOWN_SPACINGS: f64 = 2.0;
 
-/// Where the middle of the equally probable points projects to on the surface, and the normal there.
+/// Where the equally probable points project to on the surface, and the normal there: their middle,
+/// or the one of them next to it that can.
 ///
-/// Where the surface is not near, the middle itself is the contact, and the normal is the direction
-/// from one leaf to the other.
+/// Where the surface is near none, the middle itself is the contact, and the normal is the
+/// direction from one leaf to the other.
 fn foot_of_the_tied(
     points: &PairPoints,
     (a, b): (&[f64], &[f64]),
@@ -65,7 +66,11 @@ fn foot_of_the_tied(
     // The surface is known near the samples; where it bulges away from them it means nothing.
     let known = |p: &PairPoint| KNOWN_SPACINGS * p.spacing + 3.0 * p.point.covariance.std_bound();
     let nearby = tied.iter().map(known).fold(0.0, f64::max).min(reach);
-    surface.project(&middle, nearby).unwrap_or_else(|| {
+    // In deep overlap points all around may be equally certain, and their middle far from the surface.
+    let mut starts: Vec<Point3> = tied.iter().map(|p| p.point.mean).collect();
+    starts.sort_by(|p, q| (p - middle).norm().total_cmp(&(q - middle).norm()));
+    starts.insert(0, middle);
+    starts.iter().find_map(|start| surface.project(start, nearby)).unwrap_or_else(|| {
         let across = centroid(&points.b) - centroid(&points.a);
         (middle, across.try_normalize(0.0).unwrap_or_else(Vector3::z))
     })
@@ -112,4 +117,104 @@ fn extent(points: &PairPoints) -> f64 {
     let middle = nalgebra::center(&centroid(&points.a), &centroid(&points.b));
     let all = points.a.iter().chain(&points.b);
     all.map(|p| (p.point.mean - middle).norm()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Covariance, Pose, UncertainPoint, seed};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::query::classify::classify;
+    use crate::query::settings::{Mode, QuerySettings};
+    use crate::query::train::by_kernel;
+    use crate::report::Stats;
+
+    const SPACING: f64 = 0.02;
+
+    /// A patch of floor and a bowl `gap` above it, turned and moved; A is the bowl.
+    fn bowl_on_floor(gap: f64, bend: f64, noise: f64, draw: u64) -> PairPoints {
+        let pose = Pose::from_translation_rpy(Vector3::new(1.0, 2.0, 3.0), [0.3, -0.8, 1.1]);
+        let side = |class: u64| {
+            let place = |i: u64| {
+                let random = |k: u64| seed::unit(seed::derive(draw, class, 10 * i + k)) - 0.5;
+                let (x, y) = (0.1 * random(0), 0.1 * random(1));
+                let z = if class == 0 { gap + bend * (x * x + y * y) } else { 0.0 };
+                let at = Point3::new(x, y, z + noise * 2.0 * random(2));
+                let covariance = Covariance::diagonal([noise, noise, 2.0 * noise].map(|s| s * s));
+                let point = UncertainPoint { mean: at, covariance }.transformed(&pose);
+                PairPoint { index: Some(i as u32), point, spacing: SPACING }
+            };
+            (0..25).map(place).collect()
+        };
+        PairPoints { a: side(0), b: side(1), ..PairPoints::default() }
+    }
+
+    fn swapped(points: &PairPoints) -> PairPoints {
+        PairPoints { a: points.b.clone(), b: points.a.clone(), ..PairPoints::default() }
+    }
+
+    /// The answer as the calibrated mode trains it for a contact patch, or the paper's mode for a
+    /// pair of leaves, so tightly that what is compared does not hang on the tolerance.
+    fn answer(points: &PairPoints, mode: Mode) -> PairAnswer {
+        let settings = QuerySettings { relative_gap: 1e-6, ..QuerySettings::new(mode) };
+        let stats = &mut Stats::default();
+        match mode {
+            Mode::Calibrated => by_kernel(points, &settings, 0.0, stats),
+            Mode::Paper => classify(points, &settings, 0.0, stats),
+        }
+    }
+
+    fn scenes() -> impl Strategy<Value = (PairPoints, Mode)> {
+        let mode = prop_oneof![Just(Mode::Calibrated), Just(Mode::Paper)];
+        (-0.01..0.03_f64, 0.0..8.0_f64, 0.0005..0.004_f64, any::<u64>(), mode).prop_map(
+            |(gap, bend, noise, draw, mode)| (bowl_on_floor(gap, bend, noise, draw), mode),
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn contacts_lie_on_the_surface_and_normals_lead_down_it((points, mode) in scenes()) {
+            let answer = answer(&points, mode);
+            let place = most_probable_place(&points, &answer);
+            let PairAnswer::Separated { surface, .. } = &answer else {
+                prop_assert!(place.is_none());
+                return Ok(());
+            };
+            let contact = place.expect("a surface has a nearest place").contact;
+            let (value, gradient) = surface.value_and_gradient(&contact.point);
+            let distance = value.abs() / gradient.norm();
+            prop_assert!((contact.normal_a_to_b.norm() - 1.0).abs() < 1e-12);
+            if distance > 1e-2 * SPACING {
+                // Only where f = 0 passes none of the points that the contact stands for.
+                let PairAnswer::Separated { a, b, .. } = &answer else { return Ok(()) };
+                let all = points.a.iter().zip(a).chain(points.b.iter().zip(b));
+                for (point, _) in all.filter(|(_, p)| **p >= contact.probability) {
+                    let foot = surface.project(&point.point.mean, SPACING);
+                    prop_assert!(foot.is_none(), "{distance} m off a surface at {foot:?}");
+                }
+                return Ok(());
+            }
+            // f is positive on the side of A.
+            let cosine = -contact.normal_a_to_b.dot(&gradient.normalize());
+            prop_assert!(cosine > 1.0 - 1e-12, "cosine {cosine}");
+        }
+
+        #[test]
+        fn the_other_way_round_the_contact_is_the_same((points, mode) in scenes()) {
+            let forth = most_probable_place(&points, &answer(&points, mode));
+            let other = swapped(&points);
+            let back = most_probable_place(&other, &answer(&other, mode));
+            prop_assert_eq!(forth.is_some(), back.is_some());
+            let (Some(forth), Some(back)) = (forth, back) else { return Ok(()) };
+            prop_assert!((forth.probability - back.probability).abs() < 1e-2);
+            let (forth, back) = (forth.contact, back.contact);
+            let apart = (forth.point - back.point).norm();
+            prop_assert!(apart < 0.1 * SPACING, "{apart} m apart: {forth:?} {back:?}");
+            let cosine = -forth.normal_a_to_b.dot(&back.normal_a_to_b);
+            prop_assert!(cosine > 0.999, "cosine {cosine}: {forth:?} {back:?}");
+        }
+    }
 }
