@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use cloudtouch::bvh::{Flow, Outcome, Primitive, TraversalSettings, Tree, TreeSettings, traverse};
-use cloudtouch_geom::{Covariance, Matrix3, Point3, Pose, UncertainPoint, normal};
+use cloudtouch_geom::{normal, Covariance, Matrix3, Point3, Pose, UncertainPoint, normal};
 use cloudtouch_testkit::hard_cases::{HardCase, hard_cases};
 
 use super::sheet::{Sheet, milliseconds, small};
@@ -46,7 +46,7 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
                 sheet.fault(format!("{name}: {all} was culled at {}", row.outcome.culled_bound));
             }
         }
-        let allowed = TraversalSettings::default().cull_probability;
+        let allowed = normal::upper_tail(TraversalSettings::default().cull_deviations);
         if row.outcome.culled_bound.is_nan() || row.outcome.culled_bound > allowed {
             sheet.fault(format!("{name}: culled at {}", row.outcome.culled_bound));
         }

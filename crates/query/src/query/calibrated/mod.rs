@@ -35,6 +35,9 @@ pub use recalibration::{ContactEvidence, Recalibration};
 use recalibration::{MOST_CERTAIN, MOST_DEVIATIONS};
 use search::{Found, search};
 
+/// A sum over a patch is known well enough as it is: no point of it is worth solving it again.
+const SOLVED_ONCE: f64 = 1.0;
+
 /// Estimates how probable a collision of two clouds is; points, contacts and clearance go to
 /// `evidence`.
 pub(super) fn estimate(
@@ -160,7 +163,7 @@ fn ask_classifier(
             all = all.map(|known| known.or_more(left)).or(Some(Misclassified::unknown(count)));
             continue;
         }
-        let answer = by_kernel(&points, settings, 0.0, &mut evidence.stats);
+        let answer = by_kernel(&points, settings, SOLVED_ONCE, &mut evidence.stats);
         let of_patch = match &answer {
             PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(b).sum()),
             PairAnswer::Undecided => Misclassified::unknown(count),

@@ -11,9 +11,9 @@ use super::search::{Finding, Found};
 /// More patches than this add little: the first is the least apart.
 const MOST_PATCHES: usize = 3;
 /// Points of one cloud in a patch, at most.
-const MOST_POINTS: usize = 30;
+const MOST_POINTS: usize = 20;
 /// What these are chosen from: the points nearest as measured.
-const GATHERED_POINTS: usize = 40;
+const GATHERED_POINTS: usize = 30;
 /// A patch reaches so many spacings ...
 const REACH_SPACINGS: f64 = 3.0;
 /// ... and so many standard deviations of the position noise.
