@@ -20,7 +20,7 @@ use super::{
     target::Target,
     timing::{median, p95, ratio, three_digits, time, timed},
 };
-use crate::common::table::Table;
+use crate::common::{statistics::auc, table::Table};
 
 /// How often something is built; the least counts.
 const BUILDS: usize = 3;
@@ -33,6 +33,8 @@ const BASE: f64 = 20e6;
 pub(super) struct Grown {
     pub(super) points: usize,
     pub(super) asked: Vec<Asked>,
+    /// Of ours on the poses asked.
+    auc: f64,
     /// Least time of the tree alone, s.
     tree: f64,
     /// Least time of the whole preparation, s.
@@ -60,7 +62,8 @@ impl Grown {
 /// What is said before the tables.
 const INTRODUCTION: &str = "The room in more and more points, the piano in 10,000, 2 mm of noise. \
 *Query* is a prepared one, over the same poses, as above; *to 10k* compares its median with that of \
-the room of 10,000 points, asked in turn in the same minutes. *Tree* is `Tree::build` alone, \
+the room of 10,000 points, asked in turn in the same minutes; of the smallest room itself it shows \
+how far times of equal work differ. *Tree* is `Tree::build` alone, \
 *prepare* all of `Cloud::prepare`; of three the fastest. Meshes have as many triangles as the cloud \
 has points.";
 
@@ -88,7 +91,7 @@ pub(super) fn measure(run: &Run<'_>) -> Result<Section> {
         write!(
             text,
             "\nErrors on these poses, {} points:\n\n{}",
-            largest.points,
+            short(largest.points),
             errors(&largest.asked, poses)
         )?;
     }
@@ -113,7 +116,9 @@ fn of_size(run: &Run<'_>, points: usize, poses: &[Posed]) -> Result<Grown> {
         method::distance([&room, &piano])?,
     ];
     let asked = ask_in_turn(&methods, poses, run.plan.repeats)?;
-    Ok(Grown { points, asked, tree, prepare: prepared, memory })
+    let ours = asked.iter().find(|a| a.name == OURS);
+    let auc = ours.map_or(f64::NAN, |a| auc(&a.scored(poses, None)));
+    Ok(Grown { points, asked, auc, tree, prepare: prepared, memory })
 }
 
 fn least(mut build: impl FnMut() -> Result<()>) -> Result<f64> {
@@ -147,6 +152,7 @@ fn table(grown: &[Grown]) -> Table {
         "query, median",
         "p95",
         "to 10k",
+        "AUC",
         "kiddo, median",
         "parry3d, median",
         "tree, points/s",
@@ -162,10 +168,11 @@ fn table(grown: &[Grown]) -> Table {
         let memory = |of: fn(&Memory) -> f64| g.memory.as_ref().map(of);
         let held = memory(|m| m.held);
         table.row([
-            g.points.to_string(),
+            short(g.points),
             time(median(g.of(OURS))),
             time(p95(g.of(OURS))),
             ratio(g.growth()),
+            format!("{:.3}", g.auc),
             time(median(g.of(DISTANCE))),
             time(median(g.of(MESHES))),
             rate(g.points, g.tree),
@@ -178,6 +185,15 @@ fn table(grown: &[Grown]) -> Table {
     table
 }
 
+/// A number of points in thousands or millions.
+fn short(points: usize) -> String {
+    if points.is_multiple_of(1_000_000) {
+        format!("{}M", points / 1_000_000)
+    } else {
+        format!("{}k", points / 1000)
+    }
+}
+
 /// Each is judged by the size that does worst.
 fn targets(grown: &[Grown]) -> Vec<Target> {
     let over = |of: &dyn Fn(&Grown) -> f64, worse: fn(f64, f64) -> f64| {
@@ -187,7 +203,7 @@ fn targets(grown: &[Grown]) -> Vec<Target> {
         |seconds: &dyn Fn(&Grown) -> f64| over(&|g| g.points as f64 / seconds(g), f64::min);
     let rate = |points: f64| format!("{} M points/s", three_digits(points / 1e6));
     let largest = grown.last().map_or(0, |g| g.points);
-    let to = format!("room of 10k to {largest} points");
+    let to = format!("room of 10k to {} points", short(largest));
     let small = "memory: ≤ 200 bytes a point and 20 MB";
     let bytes = |b: f64| format!("{b:.0} bytes a point beyond 20 MB");
     vec![
@@ -219,7 +235,7 @@ mod tests {
 
     fn grown(points: usize, tree: f64, held: f64) -> Grown {
         let memory = Some(Memory { held, peak: 2.0 * held });
-        Grown { points, asked: Vec::new(), tree, prepare: 2.0 * tree, memory }
+        Grown { points, asked: Vec::new(), auc: 1.0, tree, prepare: 2.0 * tree, memory }
     }
 
     #[test]

@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn all_tell_apart_boxes_that_cross_and_boxes_far_apart() {
-        let mesh = cuboid(Vector3::repeat(0.4));
+        let mesh = cuboid([0.4; 3]);
         let cloud = |seed| PointCloud::from_points(positions(&sample_surface(&mesh, 3000, seed)));
         let clouds = [&cloud(1), &cloud(2)];
         let methods = [
@@ -165,7 +165,9 @@ mod tests {
         for method in methods {
             let method = method.unwrap();
             let ask = |x: f64| {
-                let pose = Pose::from_translation(Vector3::new(x, 0.11, 0.07));
+                // Turned: nothing lies along the sides of the voxels.
+                let offset = Vector3::new(x, 0.11, 0.07);
+                let pose = Pose::from_translation_rpy(offset, [0.2, 0.3, 0.4]);
                 (method.ask)(&pose).unwrap()
             };
             let (apart, crossing) = (ask(1.0), ask(0.23));

@@ -8,6 +8,8 @@ const TRIAL_BELOW: usize = 30;
 pub(super) struct Plan {
     /// How often each query is timed; the least counts.
     pub(super) repeats: usize,
+    /// How often each small leaf problem is solved; the least time counts.
+    pub(super) solves: usize,
     /// Depth frames of each kind.
     pub(super) frames: usize,
     /// Points of a side and the number of robust problems of each cell.
@@ -28,6 +30,7 @@ impl Plan {
         if poses < TRIAL_BELOW {
             return Self {
                 repeats: 2,
+                solves: 2,
                 frames: 3,
                 robust: &[(20, 3), (40, 2)],
                 exact: &[(40, 3)],
@@ -37,7 +40,8 @@ impl Plan {
             };
         }
         Self {
-            repeats: 3,
+            repeats: 7,
+            solves: 3,
             frames: 20,
             // Clarabel takes a second for 2 × 100 points and many for 2 × 200.
             robust: &[(20, 30), (40, 30), (100, 6), (200, 3)],

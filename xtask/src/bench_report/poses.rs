@@ -48,11 +48,11 @@ pub(super) struct Posed {
 }
 
 /// Poses drawn at once; what does not fit a class is dropped.
-const BATCH: usize = 32;
+const BATCH: usize = 8;
 /// More draws than this mean that a class cannot be had.
-const MOST_BATCHES: u64 = 500;
+const MOST_BATCHES: u64 = 2000;
 
-/// So many poses, the classes in turn, far first.
+/// So many poses, the classes in turn, far first; every second near one collides.
 ///
 /// # Errors
 /// When there is no pose of some class in very many draws.
@@ -66,21 +66,44 @@ pub(super) fn draw(
 }
 
 fn pick(count: usize, mut drawn: impl FnMut(u64) -> Vec<LabelledPose>) -> Result<Vec<Posed>> {
-    let wanted = |class: usize| (count + 2 - class) / 3;
-    let mut found: [Vec<LabelledPose>; 3] = Default::default();
+    let mut found = [const { Vec::new() }; KINDS.len()];
+    let mut wanted = [0; KINDS.len()];
+    (0..count).for_each(|i| wanted[kind_of(i)] += 1);
     for batch in 0.. {
-        if (0..3).all(|class| found[class].len() >= wanted(class)) {
+        if (0..KINDS.len()).all(|kind| found[kind].len() >= wanted[kind]) {
             break;
         }
         ensure!(batch < MOST_BATCHES, "too few far, near or deep poses in {batch} draws");
         for pose in drawn(batch) {
-            if let Some(class) = Class::of(pose.signed_distance) {
-                found[class as usize].push(pose);
+            let collides = |kind: &(Class, Option<bool>)| {
+                kind.1.is_none_or(|collides| collides == pose.in_collision)
+            };
+            let class = Class::of(pose.signed_distance);
+            let kind = KINDS.iter().position(|k| Some(k.0) == class && collides(k));
+            if let Some(kind) = kind {
+                found[kind].push(pose);
             }
         }
     }
-    let in_turn = (0..count).map(|i| Posed { class: Class::ALL[i % 3], pose: found[i % 3][i / 3] });
+    let mut found = found.map(Vec::into_iter);
+    let in_turn = (0..count).filter_map(|i| {
+        let kind = kind_of(i);
+        Some(Posed { class: KINDS[kind].0, pose: found[kind].next()? })
+    });
     Ok(in_turn.collect())
+}
+
+/// What is wanted, and whether it collides where the class alone does not say.
+const KINDS: [(Class, Option<bool>); 4] = [
+    (Class::Far, None),
+    (Class::Near, Some(false)),
+    (Class::Near, Some(true)),
+    (Class::Deep, None),
+];
+
+/// The kind of the pose with this number.
+fn kind_of(number: usize) -> usize {
+    [0, 1, 3, 0, 2, 3][number % 6]
 }
 
 #[cfg(test)]
@@ -105,13 +128,15 @@ mod tests {
 
     #[test]
     fn every_third_pose_is_of_a_class() {
-        // A far pose in four.
-        let batch = |_| [0.3, 0.0, 0.05, -0.2].map(at).to_vec();
+        let batch = |_| [0.3, 0.01, 0.01, 0.05, -0.01, -0.2].map(at).to_vec();
         for count in 0..8 {
             let posed = pick(count, batch).unwrap();
             assert_eq!(posed.len(), count);
             for (i, posed) in posed.iter().enumerate() {
                 assert_eq!(posed.class, Class::ALL[i % 3]);
+                if posed.class == Class::Near {
+                    assert_eq!(posed.pose.in_collision, i % 6 == 4);
+                }
                 assert_eq!(Class::of(posed.pose.signed_distance), Some(posed.class));
             }
         }

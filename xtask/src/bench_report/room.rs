@@ -33,6 +33,13 @@ impl Asked {
         let is_of = |posed: &Posed| class.is_none_or(|class| posed.class == class);
         poses.iter().zip(&self.seconds).filter(|(p, _)| is_of(p)).map(|(_, &s)| s).collect()
     }
+
+    /// Scores with the truth, of one class or of all.
+    pub(super) fn scored(&self, poses: &[Posed], class: Option<Class>) -> Vec<(f64, bool)> {
+        let is_of = |posed: &Posed| class.is_none_or(|class| posed.class == class);
+        let pairs = poses.iter().zip(&self.said).filter(|(p, _)| is_of(p));
+        pairs.map(|(p, said)| (said.score, p.pose.in_collision)).collect()
+    }
 }
 
 /// Asks every method about each pose once, which is not timed, and then so often in turn.
@@ -70,7 +77,7 @@ pub(super) fn ask_in_turn(
 /// What is said before the tables.
 const INTRODUCTION: &str = "Room and piano, 10,000 points each, two clouds in the calibrated mode \
 with default settings. A third of the poses is far (at least 10 cm apart), a third near (exact \
-surfaces within 2 cm of one another, free or in overlap), a third deep (at least 5 cm of overlap). \
+surfaces within 2 cm of one another, half free and half in overlap), a third deep (at least 5 cm of overlap). \
 The methods take turns at each pose. The first answer is not timed: it fills what is computed once \
 for all poses. Of the others the least time counts, for every method alike.";
 
@@ -192,11 +199,6 @@ fn times(asked: &[Asked], poses: &[Posed]) -> Table {
 pub(super) fn errors(asked: &[Asked], poses: &[Posed]) -> Table {
     let mut table = Table::new(&["method", "AUC", "AUC, near", "false stops", "misses"]);
     for a in asked {
-        let scored = |class: Option<Class>| -> Vec<(f64, bool)> {
-            let pairs = poses.iter().zip(&a.said);
-            let wanted = pairs.filter(|(p, _)| class.is_none_or(|class| p.class == class));
-            wanted.map(|(p, said)| (said.score, p.pose.in_collision)).collect()
-        };
         let wrong = |collides: bool| {
             let of = poses.iter().zip(&a.said).filter(|(p, _)| p.pose.in_collision == collides);
             let verdicts: Option<Vec<bool>> = of.map(|(_, said)| said.verdict).collect();
@@ -205,7 +207,8 @@ pub(super) fn errors(asked: &[Asked], poses: &[Posed]) -> Table {
             })
         };
         let three = |value: f64| if value.is_nan() { "-".into() } else { format!("{value:.3}") };
-        let [all, near] = [None, Some(Class::Near)].map(|class| three(auc(&scored(class))));
+        let [all, near] =
+            [None, Some(Class::Near)].map(|class| three(auc(&a.scored(poses, class))));
         table.row([a.name.into(), all, near, wrong(false), wrong(true)]);
     }
     table
