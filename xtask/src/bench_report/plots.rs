@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
+use plotters::style::BLACK;
 
 use super::{
     growth::Grown,
@@ -57,7 +58,7 @@ fn strip(number: usize, row: f64, seconds: &[f64]) -> [Series; 2] {
     [
         // Drawn last, so that it stays visible.
         Series {
-            style: Style { marker: None, ..style },
+            style: Style { color: BLACK, marker: None, line: false },
             points: if middle.is_nan() { Vec::new() } else { vec![bar] },
         },
         Series { style, points: seconds.iter().enumerate().map(mark).collect() },

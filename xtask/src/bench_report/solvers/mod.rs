@@ -105,6 +105,7 @@ fn each(
     for cell in &CELLS {
         for &(per_side, count) in sizes {
             all.push(compare(cell, per_side, count)?);
+            eprintln!("bench-report: {} leaf problems of 2 × {per_side} points done", cell.name);
         }
     }
     Ok(all)
