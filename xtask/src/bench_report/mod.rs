@@ -81,7 +81,11 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     }
     let folder = root.join(if arguments.update_docs { "docs" } else { "target/bench-report" });
     let figures = folder.join("figures");
-    fs::create_dir_all(&figures).with_context(|| format!("make {}", figures.display()))?;
+    // What is there of a document that is being made, or of one whose run was broken off.
+    let draft = root.join("target/bench-report");
+    for place in [&figures, &draft] {
+        fs::create_dir_all(place).with_context(|| format!("make {}", place.display()))?;
+    }
     let plan = Plan::of(arguments.poses);
     let start = Instant::now();
     let done = |what: &str| {
@@ -97,6 +101,7 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
             continue;
         }
         sections.push(part.measure(&run).with_context(|| format!("measure {}", part.name()))?);
+        document::write(&draft, &document::text(&run, arguments, &sections)?)?;
         done(part.name());
     }
     let text = document::text(&run, arguments, &sections)?;
