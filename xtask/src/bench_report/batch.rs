@@ -99,7 +99,7 @@ fn answer(report: &Report) -> Report {
 /// So many poses, each near one of those given.
 fn jittered(base: &[Pose], count: usize, from: u64) -> Vec<Pose> {
     let jitter = |i: usize| {
-        let draw = |k| 2.0 * seed::unit(seed::derive(from, 5 + i as u64, k)) - 1.0;
+        let draw = |k| 2.0 * seed::unit(seed::derive(seed::derive(from, 5, i as u64), k, 0)) - 1.0;
         let offset = Vector3::new(draw(0), draw(1), draw(2)) * MOVED;
         Pose::from_translation_rpy(offset, [draw(3), draw(4), draw(5)].map(|d| d * TURNED))
     };

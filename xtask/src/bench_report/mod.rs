@@ -26,6 +26,7 @@ use std::{
 
 use anyhow::{Context, Result};
 use clap::Args;
+use rayon::ThreadPoolBuilder;
 
 use parts::Part;
 use plan::Plan;
@@ -95,12 +96,15 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     done("poses");
     let data = root.join(&arguments.data);
     let run = Run { root, data, figures, seed: arguments.seed, plan, scene };
+    // Whatever uses rayon gets one thread; the batch brings pools of its own.
+    let alone = ThreadPoolBuilder::new().num_threads(1).build().context("start a thread")?;
     let mut sections = Vec::new();
     for part in Part::ALL {
         if !arguments.only.is_empty() && !arguments.only.contains(&part) {
             continue;
         }
-        sections.push(part.measure(&run).with_context(|| format!("measure {}", part.name()))?);
+        let measured = alone.install(|| part.measure(&run));
+        sections.push(measured.with_context(|| format!("measure {}", part.name()))?);
         document::write(&draft, &document::text(&run, arguments, &sections)?)?;
         done(part.name());
     }

@@ -1,11 +1,12 @@
 //! Poses of the piano in the room: far from it, near contact, deep in it.
 
 use anyhow::{Result, ensure};
-use cloudtouch_geom::seed;
+use cloudtouch_geom::seed::derive;
 use cloudtouch_testkit::{
     exact::ExactMesh,
     poses::{LabelledPose, poses_near_contact},
 };
+use rayon::prelude::*;
 
 /// How close the exact surfaces are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,8 +48,8 @@ pub(super) struct Posed {
     pub(super) pose: LabelledPose,
 }
 
-/// Poses drawn at once; what does not fit a class is dropped.
-const BATCH: usize = 8;
+/// Poses drawn at once on all threads, so many by each; what does not fit a class is dropped.
+const BATCH: [usize; 2] = [4, 4];
 /// More draws than this mean that a class cannot be had.
 const MOST_BATCHES: u64 = 2000;
 
@@ -62,7 +63,12 @@ pub(super) fn draw(
     count: usize,
     from: u64,
 ) -> Result<Vec<Posed>> {
-    pick(count, |batch| poses_near_contact(scene, object, BATCH, seed::derive(from, 1, batch)))
+    let drawn = |batch, part| {
+        poses_near_contact(scene, object, BATCH[1], derive(derive(from, 1, batch), part as u64, 0))
+    };
+    pick(count, |batch| {
+        (0..BATCH[0]).into_par_iter().flat_map_iter(|part| drawn(batch, part)).collect()
+    })
 }
 
 fn pick(count: usize, mut drawn: impl FnMut(u64) -> Vec<LabelledPose>) -> Result<Vec<Posed>> {
