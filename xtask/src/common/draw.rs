@@ -72,6 +72,8 @@ enum Labels {
     Values(usize),
     /// Powers of ten whose exponents are the values.
     Powers,
+    /// Nothing: the places along it have no value.
+    None,
 }
 
 impl Axis {
@@ -84,6 +86,11 @@ impl Axis {
         Self { name: name.to_owned(), range, labels: Labels::Powers }
     }
 
+    /// An axis along which places have no value.
+    pub(crate) fn unlabelled(name: &str, range: Range<f64>) -> Self {
+        Self { name: name.to_owned(), range, labels: Labels::None }
+    }
+
     /// The axis of a share or probability.
     pub(crate) fn unit(name: &str) -> Self {
         Self::new(name, -0.03..1.03, 1)
@@ -91,6 +98,7 @@ impl Axis {
 
     fn label(&self, value: f64) -> String {
         match self.labels {
+            Labels::None => String::new(),
             Labels::Values(digits) => format!("{value:.digits$}"),
             Labels::Powers => {
                 // Two digits that mean something.
@@ -107,6 +115,7 @@ impl Axis {
         match self.labels {
             Labels::Values(_) => 11,
             Labels::Powers => 5,
+            Labels::None => 2,
         }
     }
 }

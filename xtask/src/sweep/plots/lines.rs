@@ -93,14 +93,14 @@ pub(crate) fn range_of(values: impl IntoIterator<Item = f64>) -> std::ops::Range
 }
 
 #[cfg(test)]
-pub(in crate::sweep) mod tests {
+pub(crate) mod tests {
     use std::path::PathBuf;
 
     use super::*;
 
     /// Draws into a file of its own and gives its text; the file is kept where
     /// `XTASK_SAMPLE_FIGURES` names a folder, to be looked at.
-    pub(in crate::sweep) fn drawn(name: &str, draw: impl FnOnce(&Path) -> Result<()>) -> String {
+    pub(crate) fn drawn(name: &str, draw: impl FnOnce(&Path) -> Result<()>) -> String {
         let kept = std::env::var_os("XTASK_SAMPLE_FIGURES").map(PathBuf::from);
         let folder = kept.clone().unwrap_or_else(std::env::temp_dir);
         let id = if kept.is_some() { 0 } else { std::process::id() };

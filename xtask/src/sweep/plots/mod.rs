@@ -2,7 +2,7 @@
 
 mod distance;
 pub(super) mod labels;
-pub(super) mod lines;
+pub(crate) mod lines;
 mod noise;
 pub(super) mod pareto;
 mod reliability;

@@ -12,21 +12,21 @@ const SLACK: f64 = 1.0 + 1e-9;
 
 /// Which points are near a place.
 #[derive(Debug)]
-pub(super) struct Index {
+pub(crate) struct Index {
     points: Vec<Point3>,
     tree: ImmutableKdTree<f64, 3>,
 }
 
 /// A point found, by its index in the cloud.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Found {
+pub(crate) struct Found {
     pub index: usize,
     pub distance: f64,
 }
 
 impl Index {
     /// Builds the tree over finite points. Points that coincide count once, under the lowest index.
-    pub(super) fn try_new(points: &[Point3]) -> Result<Self, RivalError> {
+    pub(crate) fn try_new(points: &[Point3]) -> Result<Self, RivalError> {
         let failed = |reason: String| RivalError::Index { reason };
         let count = u32::try_from(points.len()).map_err(|error| failed(error.to_string()))?;
         let mut entries: Vec<(u32, [f64; 3])> =
@@ -42,7 +42,7 @@ impl Index {
     }
 
     /// The nearest point, when it is no farther than `limit` metres.
-    pub(super) fn nearest_within(&self, to: &Point3, limit: f64) -> Option<Found> {
+    pub(crate) fn nearest_within(&self, to: &Point3, limit: f64) -> Option<Found> {
         let within = squared(limit);
         let hits = self
             .tree

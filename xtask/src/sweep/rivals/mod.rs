@@ -20,7 +20,8 @@ use std::time::Instant;
 pub(crate) use boxes::{BoxMap, ObjectMesh};
 pub(crate) use distance::{CloudDistance, Distances};
 pub(crate) use error::{RivalError, Side};
-pub(crate) use observed::Observed;
+pub(crate) use index::Index;
+pub(crate) use observed::{Observed, spread};
 pub(crate) use plain_svm::PlainSvm;
 pub(crate) use smoothed::SmoothedDistance;
 

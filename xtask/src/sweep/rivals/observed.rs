@@ -75,7 +75,7 @@ impl<'a> Observed<'a> {
 
 /// All indices below `count`, coarse steps first: what comes early is spread over the whole, so
 /// that a running bound is soon tight.
-pub(super) fn spread(count: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn spread(count: usize) -> impl Iterator<Item = usize> {
     const STEP: usize = 64;
     (0..STEP).flat_map(move |start| (start..count).step_by(STEP))
 }
