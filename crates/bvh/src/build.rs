@@ -77,7 +77,7 @@ impl Tree {
     pub(crate) fn subdivide(&mut self, leaf: u32) {
         let mut stack = vec![leaf];
         while let Some(id) = stack.pop() {
-            if self.should_split(id) {
+            if self.should_split(id, self.fitted_variation(id)) {
                 let children = self.split(id);
                 self.fit_children(id, children);
                 stack.extend(children);
@@ -91,12 +91,20 @@ impl Tree {
         self.update_bounds(Some(leaf));
     }
 
-    pub(crate) fn should_split(&self, id: u32) -> bool {
-        let node = &self.nodes[id as usize];
-        let count = node.count as usize;
+    pub(crate) fn should_split(&self, id: u32, variation: f64) -> bool {
+        let count = self.nodes[id as usize].count as usize;
         count > self.settings.max_leaf_points
             || (count / 2 >= self.settings.min_leaf_points
-                && node.moments.variation() > self.settings.max_variation)
+                && variation > self.settings.max_variation)
+    }
+
+    /// The variation of a node whose box was just fitted: its last axis is that of the smallest
+    /// eigenvalue, which need not be computed again.
+    fn fitted_variation(&self, id: u32) -> f64 {
+        let NodeData { moments, obb, .. } = &self.nodes[id as usize];
+        let total = moments.covariance.std_bound().powi(2);
+        let smallest = moments.covariance.variance_along(&obb.axes.column(2).into_owned());
+        if total > 0.0 { smallest / total } else { 0.0 }
     }
 
     /// Halves the range of a node (of at least two primitives) at the median along the first box

@@ -1,10 +1,11 @@
 //! The test of one pair of nodes: gap, bound, urgency, and whether to descend.
 
-use cloudtouch_geom::{Matrix3, Point3, Pose, Vector3, seed};
+use cloudtouch_geom::{Motion, Pose, Vector3, seed};
 
-use crate::leakage::{Side, gap_aware_probability, paper_probability, plane_deviations};
+use crate::gap::signed_gap_up_to;
+use crate::leakage::{Side, gap_aware_probability, gap_of, paper_probability, plane_deviations};
 use crate::node::NodeData;
-use crate::{Obb, Traversal, TraversalSettings, Tree, signed_gap};
+use crate::{Obb, Traversal, TraversalSettings, Tree};
 
 /// What is known of a pair of nodes.
 #[derive(Debug, Clone, Copy)]
@@ -32,9 +33,7 @@ impl Examined {
 pub(crate) struct Examiner<'a> {
     a: &'a Tree,
     b: &'a Tree,
-    /// The rotation and translation of A from B.
-    rotation: Matrix3,
-    translation: Vector3,
+    a_from_b: Motion,
     settings: TraversalSettings,
     seed: u64,
     /// How far the pose can misplace a box by rounding, m.
@@ -56,58 +55,58 @@ impl<'a> Examiner<'a> {
             + reach(&b.nodes[root_b as usize])
             + a_from_b.translation().norm();
         let rounding = 16.0 * f64::EPSILON * size;
-        let rotation = a_from_b.rotation().to_rotation_matrix().into_inner();
-        Self { a, b, rotation, translation: a_from_b.translation(), settings, seed, rounding }
+        Self { a, b, a_from_b: Motion::from(&a_from_b), settings, seed, rounding }
     }
 
-    /// The gap and bound of a pair, how urgent it is, and whether to descend it.
-    pub(crate) fn examine(&self, (id_a, id_b): (u32, u32)) -> Examined {
+    /// The gap and bound of a pair, how urgent it is, and whether to descend it: a pair with `within`
+    /// or more deviations is not wanted.
+    pub(crate) fn examine(&self, (id_a, id_b): (u32, u32), within: f64) -> Examined {
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
-        let between = signed_gap(&self.shape(a), &self.moved(&self.shape(b)));
-        let apart = between.signed - a.bounds.shift - b.bounds.shift - self.rounding;
-        let reach = |node: &NodeData| node.obb.radius() + node.bounds.shift;
-        let size = reach(a).min(reach(b));
-        let relative = |gap: f64| if gap < 0.0 && size > 0.0 { gap / size } else { gap };
-        let (axis, overlap) = (between.axis, f64::NEG_INFINITY);
-        if apart < 0.0 && !self.settings.crossings {
-            let urgency = relative(apart);
-            return Examined {
-                a: id_a,
-                b: id_b,
-                gap: apart,
-                axis,
-                deviations: overlap,
-                urgency,
-                descend: true,
-            };
-        }
-        let axis_in_b = self.rotation.tr_mul(&axis);
+        let slack = a.bounds.shift + b.bounds.shift + self.rounding;
+        let enough = match self.settings.kind {
+            Traversal::Certified => {
+                let deviations = within.min(self.settings.cull_deviations);
+                gap_of(deviations, a.bounds.max_std.max(b.bounds.max_std)) + slack
+            }
+            // What is drawn depends on the gap.
+            Traversal::Paper | Traversal::GapAware => f64::INFINITY,
+        };
+        let between = signed_gap_up_to(&self.shape(a), &self.moved(&self.shape(b)), enough);
+        let apart = between.signed - slack;
+        let axis = between.axis;
+        let axis_in_b = self.a_from_b.vector_back(&axis);
         // Along the axis that parts the surfaces most the points are farther apart by their reach.
         let gap = apart + self.reach(a, &axis) + self.reach(b, &axis_in_b);
         let std_a = a.bounds.std_along(&a.obb.axes, &axis);
         let std_b = b.bounds.std_along(&b.obb.axes, &axis_in_b);
         let deviations =
-            if apart < 0.0 { overlap } else { plane_deviations(gap, std_a.max(std_b)) };
+            if apart < 0.0 { f64::NEG_INFINITY } else { plane_deviations(gap, std_a.max(std_b)) };
+        let reach = |node: &NodeData| node.obb.radius() + node.bounds.shift;
+        let size = reach(a).min(reach(b));
+        let urgency = if gap < 0.0 && size > 0.0 { gap / size } else { gap };
         // Coverages take a pass over all points, so only the rules that need them ask.
         let sides = || {
             let outside_a = self.a.fraction_outside(id_a);
             let outside_b = self.b.fraction_outside(id_b);
             [Side { outside: outside_a, std: std_a }, Side { outside: outside_b, std: std_b }]
         };
-        let descend = gap <= 0.0
-            || match self.settings.kind {
-                Traversal::Certified => deviations < self.settings.cull_deviations,
-                Traversal::Paper => self.draw(paper_probability(sides()), id_a, id_b),
-                Traversal::GapAware => self.draw(gap_aware_probability(gap, sides()), id_a, id_b),
-            };
-        Examined { a: id_a, b: id_b, gap, axis, deviations, urgency: relative(gap), descend }
+        let descend = deviations < within
+            && (gap <= 0.0
+                || match self.settings.kind {
+                    Traversal::Certified => deviations < self.settings.cull_deviations,
+                    Traversal::Paper => self.draw(paper_probability(sides()), id_a, id_b),
+                    Traversal::GapAware => {
+                        self.draw(gap_aware_probability(gap, sides()), id_a, id_b)
+                    }
+                });
+        Examined { a: id_a, b: id_b, gap, axis, deviations, urgency, descend }
     }
 
     /// A box of B in the frame of A.
     fn moved(&self, of_b: &Obb) -> Obb {
         Obb {
-            centre: Point3::from(self.rotation * of_b.centre.coords + self.translation),
-            axes: self.rotation * of_b.axes,
+            centre: self.a_from_b.point(&of_b.centre),
+            axes: self.a_from_b.rotation() * of_b.axes,
             half_extents: of_b.half_extents,
         }
     }
@@ -137,10 +136,11 @@ impl<'a> Examiner<'a> {
         let (id_a, id_b) = (pair.a, pair.b);
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
         let a_is_larger = a.obb.radius() >= b.obb.radius();
-        let below = |node: &NodeData| {
-            node.children.filter(|_| node.count as usize > self.settings.leaf_points)
+        let [leaf_a, leaf_b] = self.settings.leaf_points;
+        let below = |node: &NodeData, leaf_points: usize| {
+            node.children.filter(|_| node.count as usize > leaf_points)
         };
-        match (below(a), below(b)) {
+        match (below(a, leaf_a), below(b, leaf_b)) {
             (Some(children), None) => Some(children.map(|child| (child, id_b))),
             (None, Some(children)) => Some(children.map(|child| (id_a, child))),
             (Some(children), Some(_)) if a_is_larger => Some(children.map(|child| (child, id_b))),

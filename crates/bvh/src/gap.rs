@@ -1,6 +1,6 @@
 //! How far apart two oriented boxes are, by separating axes.
 
-use cloudtouch_geom::Vector3;
+use cloudtouch_geom::{Matrix3, Vector3};
 
 use crate::Obb;
 
@@ -31,70 +31,101 @@ const PARALLEL: f64 = 1e-12;
 /// true distance in floating point too. Degenerate boxes (a point, a segment, a rectangle) and
 /// parallel edges are ordinary input.
 pub fn signed_gap(a: &Obb, b: &Obb) -> Gap {
-    // Everything along the axes of a: b's axes are the columns of `r`, its centre is `t`.
-    let r = a.axes.tr_mul(&b.axes);
-    let t = a.to_local(&b.centre);
-    let abs_r = r.abs();
-    let (ha, hb) = (&a.half_extents, &b.half_extents);
-    let rounding = 8.0 * f64::EPSILON * (t.lp_norm(1) + ha.sum() + hb.sum());
-    let reach_b = abs_r * hb;
-    let reach_a = abs_r.tr_mul(ha);
-    let t_along_b = r.tr_mul(&t);
+    signed_gap_up_to(a, b, f64::INFINITY)
+}
 
-    let mut best = f64::NEG_INFINITY;
-    let mut best_axis = Vector3::x();
+/// The same, but an axis with a gap of `enough` ends the search for a wider one; what is found is a
+/// lower bound of the true distance all the same.
+pub(crate) fn signed_gap_up_to(a: &Obb, b: &Obb, enough: f64) -> Gap {
+    // Everything along the axes of a: b's axes are the columns of `r`, its centre is `t`. Plain
+    // arrays: this is the innermost loop of every search.
+    let columns = |m: &Matrix3| [0, 1, 2].map(|k| [m[(0, k)], m[(1, k)], m[(2, k)]]);
+    let (axes_a, axes_b) = (columns(&a.axes), columns(&b.axes));
+    let r = axes_a.map(|of_a| axes_b.map(|of_b| dot(&of_a, &of_b)));
+    let abs_r = r.map(|row| row.map(f64::abs));
+    let offset: [f64; 3] = (b.centre - a.centre).into();
+    let t = axes_a.map(|of_a| dot(&of_a, &offset));
+    let t_along_b = axes_b.map(|of_b| dot(&of_b, &offset));
+    let (ha, hb): ([f64; 3], [f64; 3]) = (a.half_extents.into(), b.half_extents.into());
+    let size = |v: &[f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
+    let rounding = 8.0 * f64::EPSILON * (size(&t) + size(&ha) + size(&hb));
+
+    let mut best = (f64::NEG_INFINITY, [1.0, 0.0, 0.0]);
     for i in 0..3 {
-        let separation = t[i].abs() - ha[i] - reach_b[i];
-        if separation > best {
-            best = separation;
-            best_axis = Vector3::ith(i, 1.0);
+        let separation = t[i].abs() - ha[i] - dot(&abs_r[i], &hb);
+        if separation > best.0 {
+            let mut axis = [0.0; 3];
+            axis[i] = 1.0;
+            best = (separation, axis);
         }
     }
-    for j in 0..3 {
-        let separation = t_along_b[j].abs() - hb[j] - reach_a[j];
-        if separation > best {
-            best = separation;
-            best_axis = r.column(j).into_owned();
+    if best.0 - rounding < enough {
+        for j in 0..3 {
+            let reach_a = abs_r[0][j] * ha[0] + abs_r[1][j] * ha[1] + abs_r[2][j] * ha[2];
+            let separation = t_along_b[j].abs() - hb[j] - reach_a;
+            if separation > best.0 {
+                best = (separation, [r[0][j], r[1][j], r[2][j]]);
+            }
         }
     }
-    best -= rounding;
+    best.0 -= rounding;
+    if best.0 < enough {
+        best = across_edges(best, (&r, &abs_r), &t, (&ha, &hb), rounding);
+    }
+    let (signed, axis) = best;
+    let axis = Vector3::from(axis);
+    let toward_b = if axis.dot(&Vector3::from(t)) < 0.0 { -axis } else { axis };
+    Gap { signed, axis: (a.axes * toward_b).normalize() }
+}
+
+/// The better of an axis already found and the nine across an edge of each box.
+fn across_edges(
+    mut best: (f64, [f64; 3]),
+    (r, abs_r): (&[[f64; 3]; 3], &[[f64; 3]; 3]),
+    t: &[f64; 3],
+    (ha, hb): (&[f64; 3], &[f64; 3]),
+    rounding: f64,
+) -> (f64, [f64; 3]) {
     for i in 0..3 {
         let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
         for j in 0..3 {
             let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
             // e_i × r_j has the components −r[i2] at i1 and r[i1] at i2.
-            let sine_squared = r[(i1, j)] * r[(i1, j)] + r[(i2, j)] * r[(i2, j)];
+            let sine_squared = r[i1][j] * r[i1][j] + r[i2][j] * r[i2][j];
             if sine_squared < PARALLEL {
                 continue;
             }
-            let distance = (t[i2] * r[(i1, j)] - t[i1] * r[(i2, j)]).abs();
-            let reach = ha[i1] * abs_r[(i2, j)]
-                + ha[i2] * abs_r[(i1, j)]
-                + hb[j1] * abs_r[(i, j2)]
-                + hb[j2] * abs_r[(i, j1)];
+            let distance = (t[i2] * r[i1][j] - t[i1] * r[i2][j]).abs();
+            let reach = ha[i1] * abs_r[i2][j]
+                + ha[i2] * abs_r[i1][j]
+                + hb[j1] * abs_r[i][j2]
+                + hb[j2] * abs_r[i][j1];
             let numerator = distance - reach - rounding;
             // Most axes lose by far: compare before paying for the root.
-            if best > 0.0
-                && (numerator <= 0.0 || numerator * numerator <= best * best * sine_squared)
+            if best.0 > 0.0
+                && (numerator <= 0.0 || numerator * numerator <= best.0 * best.0 * sine_squared)
             {
                 continue;
             }
             let sine = sine_squared.sqrt();
-            if numerator / sine > best {
-                best = numerator / sine;
-                best_axis = Vector3::zeros();
-                best_axis[i1] = -r[(i2, j)] / sine;
-                best_axis[i2] = r[(i1, j)] / sine;
+            if numerator / sine > best.0 {
+                let mut axis = [0.0; 3];
+                axis[i1] = -r[i2][j] / sine;
+                axis[i2] = r[i1][j] / sine;
+                best = (numerator / sine, axis);
             }
         }
     }
-    let toward_b = if best_axis.dot(&t) < 0.0 { -best_axis } else { best_axis };
-    Gap { signed: best, axis: (a.axes * toward_b).normalize() }
+    best
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{Matrix3, Point3, Pose, seed};
+    use cloudtouch_geom::{Point3, Pose, seed};
     use proptest::prelude::*;
 
     use super::*;

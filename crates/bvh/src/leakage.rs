@@ -9,6 +9,15 @@ pub(crate) fn plane_deviations(gap: f64, std: f64) -> f64 {
     if gap <= 0.0 { 0.0 } else { 0.5 * gap / std }
 }
 
+/// The gap from which on there are at least so many deviations to its mid-plane; infinite where no
+/// gap is enough.
+pub(crate) fn gap_of(deviations: f64, std: f64) -> f64 {
+    const ROUNDING: f64 = 1e-12;
+    let gap = 2.0 * std * deviations * (1.0 + ROUNDING);
+    // Nothing known and nothing wanted multiply to NaN.
+    if gap.is_nan() { f64::INFINITY } else { gap }
+}
+
 /// The largest probability to be beyond a plane so many deviations away; 1 for minus infinity, which
 /// stands for no plane at all.
 pub(crate) fn bound_at(deviations: f64) -> f64 {

@@ -85,8 +85,9 @@ pub struct TraversalSettings {
     /// Whether pairs whose surfaces may cross ([`crate::LeafPair::may_cross`]) are told apart; if not,
     /// how far surfaces reach beyond their points is left out of account.
     pub crossings: bool,
-    /// Nodes of at most so many primitives are taken for leaves; those of the tree always are.
-    pub leaf_points: usize,
+    /// Nodes of the first and of the second tree with at most so many primitives are taken for leaves;
+    /// those that are leaves always are.
+    pub leaf_points: [usize; 2],
 }
 
 impl Default for TraversalSettings {
@@ -96,7 +97,7 @@ impl Default for TraversalSettings {
             // Below one in a million.
             cull_deviations: 4.76,
             crossings: false,
-            leaf_points: 0,
+            leaf_points: [0; 2],
         }
     }
 }

@@ -141,9 +141,9 @@ fn walk(
     let mut wanted_within = f64::INFINITY;
     loop {
         for ids in found.drain(..) {
-            let pair = examiner.examine(ids);
+            let pair = examiner.examine(ids, wanted_within);
             outcome.nodes_visited += 1;
-            if pair.descend && pair.deviations < wanted_within {
+            if pair.descend {
                 queue.push(Candidate(pair));
             } else {
                 cull(&pair, &mut outcome);

@@ -4,6 +4,7 @@ mod cloud;
 mod covariance;
 mod mesh;
 pub mod message;
+mod motion;
 pub mod normal;
 mod pose;
 pub mod seed;
@@ -12,6 +13,7 @@ mod uncertain;
 pub use cloud::PointCloud;
 pub use covariance::{Covariance, CovarianceError};
 pub use mesh::{MeshError, TriangleMesh};
+pub use motion::Motion;
 pub use pose::{Pose, PoseError};
 pub use uncertain::UncertainPoint;
 

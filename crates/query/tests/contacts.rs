@@ -34,7 +34,7 @@ fn clouds_of(mode: Mode) -> &'static [Cloud; 2] {
 fn thorough(mode: Mode) -> Query {
     Query::new(QuerySettings {
         doubt: [0.0, 1.0],
-        relative_gap: 1e-5,
+        relative_gap: 1e-7,
         stop_above: 1.0,
         traversal: Traversal::Certified,
         ..QuerySettings::new(mode)

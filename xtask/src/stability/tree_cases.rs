@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use cloudtouch::bvh::{Flow, Outcome, Primitive, TraversalSettings, Tree, TreeSettings, traverse};
-use cloudtouch_geom::{normal, Covariance, Matrix3, Point3, Pose, UncertainPoint, normal};
+use cloudtouch_geom::{Covariance, Matrix3, Point3, Pose, UncertainPoint, normal};
 use cloudtouch_testkit::hard_cases::{HardCase, hard_cases};
 
 use super::sheet::{Sheet, milliseconds, small};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cloudtouch_geom::{Point3, Pose};
+use cloudtouch_geom::{Motion, Point3};
 use cloudtouch_noise::Scratch;
 
 use super::{Cloud, Surfel};
@@ -32,8 +32,8 @@ pub(crate) struct Edge {
 
 impl Edge {
     /// The same edge in another frame.
-    pub(crate) fn transformed(&self, pose: &Pose) -> Self {
-        Self { ends: self.ends.map(|end| pose.transform_point(&end)), ..*self }
+    pub(crate) fn moved(&self, motion: &Motion) -> Self {
+        Self { ends: self.ends.map(|end| motion.point(&end)), ..*self }
     }
 }
 

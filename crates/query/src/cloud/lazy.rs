@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use cloudtouch_bvh::{Node, NodeId, Tree};
-use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3};
+use cloudtouch_geom::{Motion, Point3, UncertainPoint, Vector3};
 use cloudtouch_noise::Scratch;
 
 use super::Cloud;
@@ -26,10 +26,10 @@ pub(crate) struct Surfel {
 
 impl Surfel {
     /// The same piece in another frame.
-    pub(crate) fn transformed(&self, pose: &Pose) -> Self {
+    pub(crate) fn moved(&self, motion: &Motion) -> Self {
         Self {
-            point: self.point.transformed(pose),
-            normal: self.normal.map(|normal| pose.transform_vector(&normal)),
+            point: motion.uncertain_point(&self.point),
+            normal: self.normal.map(|normal| motion.vector(&normal)),
             ..*self
         }
     }

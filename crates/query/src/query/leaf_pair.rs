@@ -1,7 +1,7 @@
 //! The points of two leaves, brought into one frame.
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3, normal};
+use cloudtouch_geom::{Motion, Point3, Pose, UncertainPoint, Vector3, normal};
 
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
@@ -65,7 +65,8 @@ fn cloud_points(
 ) -> Vec<PairPoint> {
     let (points, computed) = cloud.leaf(leaf);
     stats.leaves_prepared += usize::from(computed);
-    points.iter().map(|s| PairPoint::from(&s.transformed(a_from_cloud))).collect()
+    let motion = Motion::from(a_from_cloud);
+    points.iter().map(|s| PairPoint::from(&s.moved(&motion))).collect()
 }
 
 /// Samples the triangles of a mesh leaf where they come near points of a cloud, as densely.

@@ -21,8 +21,12 @@ const LEAF_POINTS: usize = 40;
 
 impl Query {
     /// Clouds of the calibrated mode have smaller leaves than the classifier wants.
-    fn leaf_traversal(&self) -> TraversalSettings {
-        TraversalSettings { leaf_points: LEAF_POINTS, ..self.traversal() }
+    fn leaf_traversal(&self, bodies: [BodyRef<'_>; 2]) -> TraversalSettings {
+        let leaf_points = bodies.map(|body| match body {
+            BodyRef::Cloud(_) => LEAF_POINTS,
+            BodyRef::Mesh(_) => 0,
+        });
+        TraversalSettings { leaf_points, ..self.traversal() }
     }
 
     /// Classifies the leaf pairs that may touch and bounds the others.
@@ -35,7 +39,7 @@ impl Query {
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let settings = self.settings();
-        let traversal = self.leaf_traversal();
+        let traversal = self.leaf_traversal([a, b]);
         let mut looked_at = BTreeSet::new();
         let mut failed = None;
         let outcome = traverse(a.tree(), b.tree(), a_from_b, &traversal, settings.seed, |pair| {
@@ -88,7 +92,8 @@ impl Query {
         looked_at: &BTreeSet<(NodeId, NodeId)>,
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
-        let certified = TraversalSettings { kind: Traversal::Certified, ..self.leaf_traversal() };
+        let certified =
+            TraversalSettings { kind: Traversal::Certified, ..self.leaf_traversal([a, b]) };
         let mut left_out = 0.0_f64;
         let outcome = traverse(a.tree(), b.tree(), a_from_b, &certified, 0, |pair| {
             if !looked_at.contains(&(pair.a, pair.b)) {

@@ -62,7 +62,7 @@ pub struct QuerySettings {
     /// Pairs of boxes are culled when no point in them can be more probable than this.
     pub cull_probability: f64,
     /// The search ends when a collision is this certain; 1 never ends it early. Between two clouds in
-    /// the calibrated mode it ends at 0.97 too, where more of the same changes nothing.
+    /// the calibrated mode it ends at 0.95 too, where more of the same changes nothing.
     pub stop_above: f64,
     /// How long a query may search. What was not looked at by then raises the upper bound, to 1 as a
     /// rule, and is no guess. The clock is looked at before each leaf pair and each classifier: the

@@ -42,10 +42,13 @@ pub(super) fn add_crossings(
     best: &mut Option<Crossing>,
 ) -> f64 {
     let mut total = 0.0;
-    let around = of_discs.ball;
+    let (around, slab) = (of_discs.ball, of_discs.slab);
     // Taken out, for the edges are borrowed while probabilities are raised.
     let mut of_ends = std::mem::take(&mut of_edges.crossing);
     for edge in of_edges.edges() {
+        if !slab.may_hold(&edge.ends) {
+            continue;
+        }
         let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
         if !around.is_within(&middle, edge.half_length + DISC_SPACINGS * around.spacing) {
             continue;

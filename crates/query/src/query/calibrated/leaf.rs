@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::{Point3, Pose, Vector3};
+use cloudtouch_geom::{Motion, Point3, Vector3};
 
-use crate::cloud::{Cloud, Edge, Surfel};
+use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
 use crate::report::Stats;
 
 use super::meeting::probability_at;
@@ -23,6 +23,15 @@ pub(super) struct Leaf<'a> {
     /// For each surfel the probability of its clearest crossing.
     pub crossing: Vec<f64>,
     pub ball: Ball,
+    pub slab: Slab,
+}
+
+/// Between which heights along a direction all discs of a leaf lie, m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slab {
+    direction: Vector3,
+    low: f64,
+    high: f64,
 }
 
 /// What all pieces of a leaf are in.
@@ -38,32 +47,36 @@ pub(super) struct Ball {
 }
 
 impl<'a> Leaf<'a> {
-    /// A leaf of a cloud, moved to the frame of A by `pose`, or of A itself.
+    /// A leaf of a cloud, moved to the frame of A by `motion`, or of A itself.
     pub(super) fn load(
         cloud: &'a Cloud,
         id: NodeId,
-        pose: Option<&Pose>,
+        motion: Option<&Motion>,
         stats: &mut Stats,
     ) -> Self {
         let (surfels, computed) = cloud.leaf(id);
         stats.leaves_prepared += usize::from(computed);
-        let surfels = match pose {
+        let surfels = match motion {
             None => Cow::Borrowed(surfels),
-            Some(pose) => surfels.iter().map(|s| s.transformed(pose)).collect(),
+            Some(motion) => surfels.iter().map(|s| s.moved(motion)).collect(),
         };
         let squared = vec![MOST_DEVIATIONS.powi(2); surfels.len()];
         let crossing = vec![0.0; surfels.len()];
         let ball = Ball::around(&surfels);
-        Self { surfels, edges: None, squared, crossing, ball }
+        // Along the thinnest side of its box a leaf is all but flat.
+        let thin =
+            cloud.tree().node(id).map_or_else(Vector3::z, |leaf| leaf.obb().axes.column(2).into());
+        let slab = Slab::around(&surfels, motion.map_or(thin, |motion| motion.vector(&thin)));
+        Self { surfels, edges: None, squared, crossing, ball, slab }
     }
 
     /// Gets its edges, once.
-    pub(super) fn load_edges(&mut self, cloud: &'a Cloud, id: NodeId, pose: Option<&Pose>) {
+    pub(super) fn load_edges(&mut self, cloud: &'a Cloud, id: NodeId, motion: Option<&Motion>) {
         self.edges.get_or_insert_with(|| {
             let edges = cloud.leaf_edges(id);
-            match pose {
+            match motion {
                 None => Cow::Borrowed(edges),
-                Some(pose) => edges.iter().map(|e| e.transformed(pose)).collect(),
+                Some(motion) => edges.iter().map(|e| e.moved(motion)).collect(),
             }
         });
     }
@@ -87,6 +100,30 @@ impl<'a> Leaf<'a> {
             by_gap.max(crossing)
         };
         self.surfels.iter().zip(self.squared.iter().zip(&self.crossing).map(of))
+    }
+}
+
+impl Slab {
+    fn around(surfels: &[Surfel], direction: Vector3) -> Self {
+        let mut slab = Self { direction, low: f64::INFINITY, high: f64::NEG_INFINITY };
+        for surfel in surfels {
+            let Some(normal) = surfel.normal else { continue };
+            let height = surfel.point.mean.coords.dot(&direction);
+            let tilt = (1.0 - normal.dot(&direction).powi(2)).max(0.0).sqrt() + Self::ROUNDING;
+            let reach = DISC_SPACINGS * surfel.spacing * tilt;
+            slab.low = slab.low.min(height - reach);
+            slab.high = slab.high.max(height + reach);
+        }
+        slab
+    }
+
+    /// A tilt smaller than this is rounding.
+    const ROUNDING: f64 = 1e-6;
+
+    /// Whether some place between two ends may be on a disc.
+    pub(super) fn may_hold(&self, ends: &[Point3; 2]) -> bool {
+        let [from, to] = ends.map(|end| end.coords.dot(&self.direction));
+        from.max(to) >= self.low && from.min(to) <= self.high
     }
 }
 

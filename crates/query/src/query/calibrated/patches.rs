@@ -1,7 +1,7 @@
 //! Contact patches: the surroundings of the places where two clouds are least apart, across the
 //! borders of leaves, for the classifier.
 
-use cloudtouch_geom::{Point3, Pose};
+use cloudtouch_geom::{Motion, Point3, Pose};
 
 use crate::cloud::{Cloud, Surfel};
 use crate::query::classify::{PairPoint, PairPoints};
@@ -32,10 +32,10 @@ pub(super) fn patches(
     a_from_b: &Pose,
     found: &Found<'_>,
 ) -> Vec<PairPoints> {
-    let b_from_a = a_from_b.inverse();
+    let (motion, b_from_a) = (Motion::from(a_from_b), a_from_b.inverse());
     let gather = |seed: Seed| {
         let in_b = Seed { place: b_from_a.transform_point(&seed.place), ..seed };
-        let moved = |surfel: &Surfel| PairPoint::from(&surfel.transformed(a_from_b));
+        let moved = |surfel: &Surfel| PairPoint::from(&surfel.moved(&motion));
         PairPoints {
             a: around(&seed, a).iter().map(PairPoint::from).collect(),
             b: around(&in_b, b).iter().map(moved).collect(),

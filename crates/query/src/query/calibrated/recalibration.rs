@@ -8,7 +8,7 @@ use crate::error::SettingsError;
 pub(crate) const MOST_DEVIATIONS: f64 = 3.0;
 /// Geometry alone is not believed beyond this, so that a search may end there and miss nothing: by
 /// the fits hardly more than one in a hundred such poses is free.
-pub(super) const MOST_CERTAIN: f64 = 0.97;
+pub(super) const MOST_CERTAIN: f64 = 0.95;
 /// Keeps the logarithm of no misclassified point finite.
 const MISCLASSIFIED_FLOOR: f64 = 0.02;
 
@@ -45,7 +45,7 @@ pub struct Recalibration {
 
 impl Default for Recalibration {
     fn default() -> Self {
-        Self { by_geometry: [0.608, 0.47, -1.611], by_all: [-1.039, 0.416, 0.0, 0.939] }
+        Self { by_geometry: [0.668, 0.483, -1.651], by_all: [-0.891, 0.48, 0.0, 0.833] }
     }
 }
 
@@ -137,7 +137,7 @@ mod tests {
     fn nothing_found_is_improbable_and_everything_is_not() {
         let default = Recalibration::default();
         assert!(default.by_geometry(MOST_DEVIATIONS, 0.0) < 0.02);
-        assert!(default.by_geometry(0.0, 6.0) > 0.95);
+        assert_eq!(default.by_geometry(0.0, 6.0), MOST_CERTAIN);
         assert_eq!(default.by_geometry(0.0, 1e3), MOST_CERTAIN);
         assert!(default.by_all(0.0, 6.0, 30.0) > 0.95);
     }

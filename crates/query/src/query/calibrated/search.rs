@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cloudtouch_bvh::{Flow, LeafPair, NodeId, TraversalSettings, traverse};
-use cloudtouch_geom::{Pose, Vector3};
+use cloudtouch_geom::{Motion, Pose, Vector3};
 
 use crate::cloud::Cloud;
 use crate::error::QueryError;
@@ -62,9 +62,10 @@ pub(super) fn search<'a>(
     let mut found = Found { deviations: MOST_DEVIATIONS, ..Found::default() };
     let cull_deviations = settings.cull_deviations.min(found.relevant_half_gap());
     let settings = TraversalSettings { crossings: true, cull_deviations, ..*settings };
+    let motion = Motion::from(a_from_b);
     let outcome = traverse(a.tree(), b.tree(), a_from_b, &settings, seed, |pair| {
         stats.leaf_pairs += 1;
-        found.add((a, b), a_from_b, &pair, stats);
+        found.add((a, b), &motion, &pair, stats);
         if is_enough(found.deviations, found.crossing) {
             return Flow::Stop;
         }
@@ -91,7 +92,7 @@ impl<'a> Found<'a> {
     fn add(
         &mut self,
         (a, b): (&'a Cloud, &'a Cloud),
-        a_from_b: &Pose,
+        a_from_b: &Motion,
         pair: &LeafPair,
         stats: &mut Stats,
     ) {
@@ -150,11 +151,12 @@ mod tests {
     fn whole(cloud: &Cloud, a_from_cloud: &Pose) -> (Vec<Surfel>, Vec<Edge>) {
         let leaves = cloud.tree().leaves().map(|leaf| leaf.id());
         let surfels = leaves.flat_map(|id| cloud.leaf(id).0.to_vec());
+        let motion = Motion::from(a_from_cloud);
         let indices: Vec<u32> = (0..cloud.len() as u32).collect();
         let edges = edges_of(cloud, &indices);
         (
-            surfels.map(|s| s.transformed(a_from_cloud)).collect(),
-            edges.iter().map(|e| e.transformed(a_from_cloud)).collect(),
+            surfels.map(|s| s.moved(&motion)).collect(),
+            edges.iter().map(|e| e.moved(&motion)).collect(),
         )
     }
 

@@ -1,0 +1,71 @@
+//! A refined cloud answers as the same cloud does that computes its surface where it is asked.
+
+mod common;
+
+use cloudtouch::geom::{Pose, Vector3};
+use cloudtouch::{Cloud, Mode, Query, QuerySettings, Verdict};
+use cloudtouch_testkit::scene;
+use common::{mesh, scan};
+use proptest::prelude::*;
+
+/// What surfaces too far apart to tell by how much have at most: for them the bounds of the boxes
+/// are reported, which differ.
+const OUT_OF_REACH: f64 = 0.02;
+
+fn pair(spacing: f64, std: f64, mode: Mode) -> [Cloud; 2] {
+    let floor = scan(&scene::plane_patch(0.2), spacing, std, 1, mode);
+    [floor, scan(&scene::sphere(0.05, 3), spacing, std, 2, mode)]
+}
+
+fn refined(clouds: [Cloud; 2]) -> [Cloud; 2] {
+    clouds.map(|cloud| cloud.refined().expect("an ordinary cloud"))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn refining_changes_no_answer(
+        spacing in 0.008..0.03_f64,
+        std in prop_oneof![Just(0.0), 0.0005..0.01_f64],
+        place in prop::array::uniform2(-0.1..0.1_f64),
+        gap in -0.03..0.06_f64,
+        rpy in prop::array::uniform3(-3.0..3.0_f64),
+    ) {
+        let offset = Vector3::new(place[0], place[1], 0.05 + gap);
+        let pose = Pose::from_translation_rpy(offset, rpy);
+        let query = Query::new(QuerySettings::default()).unwrap();
+        let clouds = pair(spacing, std, Mode::Calibrated);
+        let lazy = query.run(&clouds[0], &clouds[1], &pose).unwrap();
+        let clouds = refined(clouds);
+        let eager = query.run(&clouds[0], &clouds[1], &pose).unwrap();
+        let [p, q] = [&lazy, &eager].map(|report| report.collision_probability);
+        let out_of_reach = p < OUT_OF_REACH && q < OUT_OF_REACH;
+        prop_assert!(out_of_reach || (p - q).abs() < 1e-6, "{lazy:?}\n{eager:?}");
+        prop_assert_eq!(lazy.verdict, eager.verdict);
+        prop_assert_eq!(eager.stats.leaves_prepared, 0, "nothing was left to compute");
+        prop_assert!(eager.stats.nodes_visited <= lazy.stats.nodes_visited);
+    }
+}
+
+#[test]
+fn refined_clouds_meet_meshes_as_before() {
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let ball = mesh(&scene::sphere(0.05, 3));
+    for (gap, verdict) in [(0.03, Verdict::Free), (-0.02, Verdict::InCollision)] {
+        let pose = Pose::from_translation(Vector3::new(0.01, 0.02, 0.05 + gap));
+        let [floor, _] = pair(0.01, 0.001, Mode::Calibrated);
+        let lazy = query.run(&floor, &ball, &pose).unwrap();
+        let eager = query.run(&floor.refined().unwrap(), &ball, &pose).unwrap();
+        assert_eq!((lazy.verdict, eager.verdict), (verdict, verdict));
+        assert!((lazy.collision_probability - eager.collision_probability).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn refining_keeps_the_paper_mode() {
+    let query = Query::new(QuerySettings::new(Mode::Paper)).unwrap();
+    let pose = Pose::from_translation(Vector3::new(0.0, 0.0, 0.04));
+    let [floor, ball] = refined(pair(0.01, 0.001, Mode::Paper));
+    assert_eq!(query.run(&floor, &ball, &pose).unwrap().verdict, Verdict::InCollision);
+}
