@@ -227,7 +227,7 @@ impl Covariance {
 
     /// The largest standard deviation in any direction, m.
     pub fn max_std(&self) -> f64 {
-        self.eigen().0[0].sqrt()
+        self.isotropic_variance().unwrap_or_else(|| self.eigen().0[0]).sqrt()
     }
 
     /// Whether there is no uncertainty at all.

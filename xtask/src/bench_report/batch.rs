@@ -22,8 +22,10 @@ const TURNED: f64 = 0.02;
 
 /// Asks all poses of the batch three times: untimed, on one thread, on two.
 pub(super) fn measure(run: &Run<'_>) -> Result<Section> {
-    let clouds =
-        [prepare(&run.scene.room(POINTS, STD), STD)?, prepare(&run.scene.piano(STD), STD)?];
+    let clouds = [
+        prepare(&run.scene.room(POINTS, STD), STD)?.refined()?,
+        prepare(&run.scene.piano(STD), STD)?.refined()?,
+    ];
     let query = Query::new(QuerySettings::default())?;
     let base: Vec<Pose> = run.scene.poses.iter().map(|p| p.pose.scene_from_object).collect();
     let poses = jittered(&base, run.plan.batch, run.seed);

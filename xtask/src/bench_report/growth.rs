@@ -12,7 +12,7 @@ use cloudtouch_geom::{PointCloud, Pose, UncertainPoint};
 use super::{
     Run, Section,
     memory::{self, Memory},
-    method::{self, DISTANCE, MESHES, OURS},
+    method::{self, DISTANCE, LAZY, MESHES},
     plots,
     poses::Posed,
     room::{Asked, ask_in_turn, errors},
@@ -50,7 +50,7 @@ impl Grown {
 
     /// Median query time over that of the smallest room in the same minutes.
     fn growth(&self) -> f64 {
-        median(self.of(OURS)) / median(self.of(SMALLEST))
+        median(self.of(LAZY)) / median(self.of(SMALLEST))
     }
 
     /// Bytes a point beyond what any cloud may take.
@@ -110,13 +110,13 @@ fn of_size(run: &Run<'_>, points: usize, poses: &[Posed]) -> Result<Grown> {
         None
     };
     let methods = [
-        method::ours([&room, &piano], STD)?,
-        method::Method { name: SMALLEST, ..method::ours([&small, &piano], STD)? },
+        method::lazy([&room, &piano], STD)?,
+        method::Method { name: SMALLEST, ..method::lazy([&small, &piano], STD)? },
         method::meshes([&run.scene.room_mesh(points), &run.scene.piano_mesh()])?,
         method::distance([&room, &piano])?,
     ];
     let asked = ask_in_turn(&methods, poses, run.plan.repeats)?;
-    let ours = asked.iter().find(|a| a.name == OURS);
+    let ours = asked.iter().find(|a| a.name == LAZY);
     let auc = ours.map_or(f64::NAN, |a| auc(&a.scored(poses, None)));
     Ok(Grown { points, asked, auc, tree, prepare: prepared, memory })
 }
@@ -169,8 +169,8 @@ fn table(grown: &[Grown]) -> Table {
         let held = memory(|m| m.held);
         table.row([
             short(g.points),
-            time(median(g.of(OURS))),
-            time(p95(g.of(OURS))),
+            time(median(g.of(LAZY))),
+            time(p95(g.of(LAZY))),
             ratio(g.growth()),
             format!("{:.3}", g.auc),
             time(median(g.of(DISTANCE))),

@@ -42,25 +42,38 @@ pub(super) struct Method {
     pub(super) ask: Ask,
 }
 
-/// What ours is called.
+/// What ours is called, on clouds whose surface was computed beforehand.
 pub(super) const OURS: &str = "ours";
+/// What it is called on clouds that compute it where they are asked.
+pub(super) const LAZY: &str = "ours, not refined";
 /// The peer that targets name.
 pub(super) const MESHES: &str = "parry3d, meshes";
 /// The peer on clouds that takes any number of points.
 pub(super) const DISTANCE: &str = "kiddo, smallest distance";
 
-/// Two clouds in the calibrated mode, all settings at their defaults.
+/// Two refined clouds in the calibrated mode, all settings at their defaults.
 pub(super) fn ours(clouds: [&PointCloud; 2], std: f64) -> Result<Method> {
-    let prepared =
-        || -> Result<[Cloud; 2]> { Ok([prepare(clouds[0], std)?, prepare(clouds[1], std)?]) };
-    let (bodies, prepare) = timed(prepared);
+    prepared(OURS, clouds, |cloud| Ok(prepare(cloud, std)?.refined()?))
+}
+
+/// The same of clouds that are not refined.
+pub(super) fn lazy(clouds: [&PointCloud; 2], std: f64) -> Result<Method> {
+    prepared(LAZY, clouds, |cloud| prepare(cloud, std))
+}
+
+fn prepared(
+    name: &'static str,
+    [room, piano]: [&PointCloud; 2],
+    prepare: impl Fn(&PointCloud) -> Result<Cloud>,
+) -> Result<Method> {
+    let (bodies, prepare) = timed(|| -> Result<_> { Ok([prepare(room)?, prepare(piano)?]) });
     let [room, piano] = bodies?;
     let query = Query::new(QuerySettings::default())?;
     let ask = move |pose: &Pose| {
         let probability = query.run(&room, &piano, pose)?.collision_probability;
         Ok(Said { score: probability, verdict: Some(probability >= 0.5) })
     };
-    Ok(Method { name: OURS, prepare, ask: Box::new(ask) })
+    Ok(Method { name, prepare, ask: Box::new(ask) })
 }
 
 /// The surfaces that the clouds were drawn from, which no sensor knows.

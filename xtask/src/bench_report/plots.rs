@@ -71,7 +71,7 @@ fn marks(number: usize) -> Style {
 
 /// Time of a query over the points of the scene, both logarithmic.
 pub(super) fn growth(path: &Path, grown: &[Grown]) -> Result<()> {
-    let methods = [OURS, DISTANCE, MESHES];
+    let methods = [LAZY, DISTANCE, MESHES];
     let curve = |name: &str| -> Vec<Point> {
         grown.iter().map(|g| point((g.points as f64).log10(), g.of(name))).collect()
     };

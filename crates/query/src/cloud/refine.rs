@@ -18,7 +18,7 @@ impl Cloud {
     ///
     /// A cloud as prepared computes its surface where queries come near it, and until then has to
     /// allow for what it might be; one that is refined is searched several times as fast, from the
-    /// first query on. It takes as long as some tens of first queries, and pays for a scene that many
+    /// first query on. It takes as long as a handful of first queries, and pays for a scene that many
     /// poses are tested in, not for a frame that is looked at a few times. Probabilities stay what
     /// they are, only what is left out of the search and the bounds on it may differ.
     ///

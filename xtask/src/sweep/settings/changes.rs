@@ -46,9 +46,7 @@ impl Setting {
 /// The defaults first.
 pub(super) fn all() -> Vec<Setting> {
     let mut all = vec![Setting::new("default", "")];
-    all.extend(
-        [10, 20, 80, 160].map(|n| Setting::tree("n_max", n, |tree| tree.max_leaf_points = n)),
-    );
+    all.extend([8, 20, 40, 80].map(|n| Setting::tree("n_max", n, |tree| tree.max_leaf_points = n)));
     all.extend(
         [("0.02", 0.02), ("0.05", 0.05), ("0.2", 0.2), ("off", 1.0 / 3.0)]
             .map(|(value, most)| Setting::tree("σ_max", value, |tree| tree.max_variation = most)),
