@@ -56,20 +56,20 @@ impl SpreadBounds {
         if let Some(LeafBounds { std, shift, reach }) = refined {
             return Self { shift, ..own.with_std(std).with_reach(reach) };
         }
-        let along = |of: &Covariance| {
-            let std = |k| of.std_along(&axes.column(k).into_owned());
-            Vector3::new(std(0), std(1), std(2))
-        };
         let own = match primitive.covariance() {
             None => own,
             Some(covariance) => match covariance.isotropic_variance() {
                 Some(variance) => own.with_std(variance.sqrt()),
-                None => Self { max_std: covariance.max_std(), axis_std: along(covariance), ..own },
+                None => {
+                    Self { max_std: covariance.max_std(), axis_std: along(covariance, axes), ..own }
+                }
             },
         };
         match extent {
             None => own,
-            Some(extent) => Self { max_reach: extent.max_std(), axis_reach: along(extent), ..own },
+            Some(extent) => {
+                Self { max_reach: extent.max_std(), axis_reach: along(extent, axes), ..own }
+            }
         }
     }
 
@@ -151,6 +151,8 @@ impl Tree {
     /// carries it upward: along a unit vector n √(nᵀEn), E the extent. Without it no surface reaches
     /// beyond the primitives themselves.
     ///
+    /// From then on every node's bounds are taken from its primitives, O(n log n).
+    ///
     /// Extents stay with the primitives as bounds do, which stand in for them where both are set; a
     /// primitive inserted later has none.
     ///
@@ -180,18 +182,49 @@ impl Tree {
         }
     }
 
-    /// The bounds of a leaf from its primitives, of an inner node from those of its children.
+    /// The bounds of a node from its primitives, or of an inner node from those of its children.
+    ///
+    /// The latter is cheap, and looser at each level where boxes are turned against one another:
+    /// extents, which are set once for many traversals, are worth a pass over all primitives.
     pub(crate) fn bounds_of(&self, id: u32) -> SpreadBounds {
         let node = &self.nodes[id as usize];
         let axes = &node.obb.axes;
         let largest = |all: SpreadBounds, one: SpreadBounds| all.max(&one);
-        match node.children {
-            None => (self.indices_of(id).iter())
+        let Some(children) = node.children else {
+            return (self.indices_of(id).iter())
                 .map(|&index| self.bounds_of_primitive(index, axes))
-                .fold(SpreadBounds::NONE, largest),
-            Some(children) => (children.map(|child| &self.nodes[child as usize]).iter())
-                .map(|child| child.bounds.turned(&child.obb.axes, axes))
-                .fold(SpreadBounds::NONE, largest),
+                .fold(SpreadBounds::NONE, largest);
+        };
+        let from_children = (children.map(|child| &self.nodes[child as usize]).iter())
+            .map(|child| child.bounds.turned(&child.obb.axes, axes))
+            .fold(SpreadBounds::NONE, largest);
+        if self.extents.is_empty() {
+            return from_children;
         }
+        let mut tight = SpreadBounds {
+            axis_std: Vector3::zeros(),
+            axis_reach: Vector3::zeros(),
+            ..from_children
+        };
+        for &index in self.indices_of(id) {
+            let index = index as usize;
+            if self.refined[index].is_some() {
+                // Nothing is known of it but what holds in every direction.
+                return from_children;
+            }
+            if let Some(extent) = self.extents.get(index) {
+                tight.axis_reach = tight.axis_reach.sup(&along(extent, axes));
+            }
+            if let Some(covariance) = self.primitives[index].covariance() {
+                tight.axis_std = tight.axis_std.sup(&along(covariance, axes));
+            }
+        }
+        tight
     }
+}
+
+/// Standard deviations along three axes.
+fn along(covariance: &Covariance, axes: &Matrix3) -> Vector3 {
+    let std = |k| covariance.std_along(&axes.column(k).into_owned());
+    Vector3::new(std(0), std(1), std(2))
 }

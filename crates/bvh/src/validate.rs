@@ -99,7 +99,8 @@ impl Tree {
             let covered = covers(&node.bounds, &self.bounds_of_primitive(index, axes));
             self.require(id, covered, "a primitive exceeds the bounds of its node")?;
         }
-        for child in node.children.into_iter().flatten() {
+        let from_children = node.children.filter(|_| self.extents.is_empty());
+        for child in from_children.into_iter().flatten() {
             let child = &self.nodes[child as usize];
             let turned = child.bounds.turned(&child.obb.axes, axes);
             self.require(id, covers(&node.bounds, &turned), "a child exceeds its parent's bounds")?;

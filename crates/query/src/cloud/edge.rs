@@ -15,7 +15,7 @@ pub(crate) const EDGE_SPACINGS: f64 = 2.2;
 /// farther from its own end to its middle.
 pub(crate) const DISC_SPACINGS: f64 = 1.1;
 /// Edges run along the surface: the sine of their angle to it is at most this.
-const SLOPE: f64 = 0.5;
+pub(crate) const SLOPE: f64 = 0.5;
 
 /// A straight piece of surface between two neighbours of one cloud.
 #[derive(Debug, Clone, Copy, PartialEq)]

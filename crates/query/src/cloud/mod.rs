@@ -19,7 +19,7 @@ use crate::range::check_points;
 
 #[cfg(test)]
 pub(crate) use edge::edges_of;
-pub(crate) use edge::{DISC_SPACINGS, Edge};
+pub(crate) use edge::{DISC_SPACINGS, Edge, SLOPE};
 use lazy::LazySurface;
 pub(crate) use lazy::Surfel;
 pub use settings::CloudSettings;

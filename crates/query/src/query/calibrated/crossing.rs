@@ -8,7 +8,7 @@
 
 use cloudtouch_geom::{Point3, Vector3, normal};
 
-use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
+use crate::cloud::{DISC_SPACINGS, Edge, SLOPE, Surfel};
 
 use super::leaf::Leaf;
 
@@ -32,6 +32,20 @@ pub(super) struct Crossing {
     /// How far the end that is nearer to the disc has come through, m, and its standard deviation.
     pub depth: f64,
     pub std: f64,
+}
+
+/// Whether an edge may cross a disc of another leaf near its end at a piece of the first: that can be
+/// told before the edges are known, for half of one is not longer than a disc reaches, and runs along
+/// the surface.
+pub(super) fn may_reach(of_edges: &Leaf<'_>, of_discs: &Leaf<'_>) -> bool {
+    let Leaf { ball, slab, .. } = of_discs;
+    of_edges.surfels.iter().any(|surfel| {
+        let Some(normal) = surfel.normal else { return false };
+        let half = DISC_SPACINGS * surfel.spacing;
+        let middle = &surfel.point.mean;
+        slab.is_within(middle, half * SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)))
+            && ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
+    })
 }
 
 /// Clearness of all crossings of edges of one leaf with discs of another; the points they join, and

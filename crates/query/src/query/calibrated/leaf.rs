@@ -109,8 +109,7 @@ impl Slab {
         for surfel in surfels {
             let Some(normal) = surfel.normal else { continue };
             let height = surfel.point.mean.coords.dot(&direction);
-            let tilt = (1.0 - normal.dot(&direction).powi(2)).max(0.0).sqrt() + Self::ROUNDING;
-            let reach = DISC_SPACINGS * surfel.spacing * tilt;
+            let reach = DISC_SPACINGS * surfel.spacing * slab.sine(&normal);
             slab.low = slab.low.min(height - reach);
             slab.high = slab.high.max(height + reach);
         }
@@ -119,6 +118,21 @@ impl Slab {
 
     /// A tilt smaller than this is rounding.
     const ROUNDING: f64 = 1e-6;
+
+    /// |cos| and |sin| of the angle between its direction and a unit vector.
+    pub(super) fn cosine(&self, normal: &Vector3) -> f64 {
+        normal.dot(&self.direction).abs()
+    }
+
+    pub(super) fn sine(&self, normal: &Vector3) -> f64 {
+        (1.0 - self.cosine(normal).powi(2)).max(0.0).sqrt() + Self::ROUNDING
+    }
+
+    /// Whether a place is at most so far from the height of some disc.
+    pub(super) fn is_within(&self, place: &Point3, distance: f64) -> bool {
+        let height = place.coords.dot(&self.direction);
+        self.low - distance <= height && height <= self.high + distance
+    }
 
     /// Whether some place between two ends may be on a disc.
     pub(super) fn may_hold(&self, ends: &[Point3; 2]) -> bool {

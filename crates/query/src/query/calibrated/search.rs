@@ -9,7 +9,7 @@ use crate::cloud::Cloud;
 use crate::error::QueryError;
 use crate::report::Stats;
 
-use super::crossing::{Crossing, add_crossings};
+use super::crossing::{Crossing, add_crossings, may_reach};
 use super::leaf::Leaf;
 use super::meeting::Meeting;
 use super::nearest::nearest_pieces;
@@ -103,10 +103,14 @@ impl<'a> Found<'a> {
         let nearest = nearest_pieces(leaf_a, leaf_b);
         let mut best = None;
         if pair.may_cross {
-            leaf_a.load_edges(a, pair.a, None);
-            leaf_b.load_edges(b, pair.b, Some(a_from_b));
-            self.crossing += add_crossings(leaf_a, leaf_b, &mut best);
-            self.crossing += add_crossings(leaf_b, leaf_a, &mut best);
+            if may_reach(leaf_a, leaf_b) {
+                leaf_a.load_edges(a, pair.a, None);
+                self.crossing += add_crossings(leaf_a, leaf_b, &mut best);
+            }
+            if may_reach(leaf_b, leaf_a) {
+                leaf_b.load_edges(b, pair.b, Some(a_from_b));
+                self.crossing += add_crossings(leaf_b, leaf_a, &mut best);
+            }
         }
         let Some((squared, i, j)) = nearest else { return };
         let (on_a, on_b) = (&leaf_a.surfels[i], &leaf_b.surfels[j]);
