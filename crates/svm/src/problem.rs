@@ -12,6 +12,8 @@ pub struct Problem {
     /// Subtracted from every position, so that far-away origins cost no digits.
     pub(crate) centre: Point3,
     pub(crate) points: Vec<PreparedPoint>,
+    /// Whether any point has cone variables.
+    pub(crate) has_uncertain: bool,
 }
 
 /// Why samples do not make a problem.
@@ -133,8 +135,9 @@ impl Problem {
             .iter()
             .enumerate()
             .map(|(index, sample)| prepare(index, sample, &centre))
-            .collect::<Result<_, _>>()?;
-        Ok(Self { kernel, centre, points })
+            .collect::<Result<Vec<PreparedPoint>, _>>()?;
+        let has_uncertain = points.iter().any(PreparedPoint::is_uncertain);
+        Ok(Self { kernel, centre, points, has_uncertain })
     }
 
     /// How many samples there are.

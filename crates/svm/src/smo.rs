@@ -322,11 +322,20 @@ fn move_to(local: &mut Local<'_>, penalty: f64, by: f64, direction: &Vector3) {
 }
 
 /// Writes one or two moved points back and carries their changes to all points.
+///
+/// Where no point is uncertain nothing asks for gradients before the end, when they are computed
+/// anew.
 fn commit(state: &mut State<'_>, rows: &KernelRows, first: &Local<'_>, second: Option<&Local<'_>>) {
     let problem = state.problem;
     for local in [Some(first), second].into_iter().flatten() {
         state.alpha[local.index] = local.alpha;
         state.p[local.index] = local.p;
+        if !problem.has_uncertain {
+            for (f, k) in state.f.iter_mut().zip(rows.row(local.index)) {
+                *f += k * local.change.a;
+            }
+            continue;
+        }
         let source = &problem.points[local.index].x;
         let row = rows.row(local.index);
         for (k, point) in problem.points.iter().enumerate() {
@@ -336,7 +345,9 @@ fn commit(state: &mut State<'_>, rows: &KernelRows, first: &Local<'_>, second: O
             state.gradient[k] += dg;
         }
     }
-    for (k, point) in problem.points.iter().enumerate() {
-        state.norm[k] = scaled_norm(point, &state.gradient[k]);
+    if problem.has_uncertain {
+        for (k, point) in problem.points.iter().enumerate() {
+            state.norm[k] = scaled_norm(point, &state.gradient[k]);
+        }
     }
 }

@@ -46,6 +46,8 @@ pub(super) struct Method {
 pub(super) const OURS: &str = "ours";
 /// What it is called on clouds that compute it where they are asked.
 pub(super) const LAZY: &str = "ours, not refined";
+/// What it is called on refined clouds without the classifier.
+pub(super) const GEOMETRY: &str = "ours, geometry alone";
 /// The peer that targets name.
 pub(super) const MESHES: &str = "parry3d, meshes";
 /// The peer on clouds that takes any number of points.
@@ -53,22 +55,30 @@ pub(super) const DISTANCE: &str = "kiddo, smallest distance";
 
 /// Two refined clouds in the calibrated mode, all settings at their defaults.
 pub(super) fn ours(clouds: [&PointCloud; 2], std: f64) -> Result<Method> {
-    prepared(OURS, clouds, |cloud| Ok(prepare(cloud, std)?.refined()?))
+    let settings = QuerySettings::default();
+    prepared(OURS, clouds, settings, |cloud| Ok(prepare(cloud, std)?.refined()?))
+}
+
+/// The same without the classifier: no probability is in doubt.
+pub(super) fn geometry(clouds: [&PointCloud; 2], std: f64) -> Result<Method> {
+    let settings = QuerySettings { doubt: [0.5; 2], ..QuerySettings::default() };
+    prepared(GEOMETRY, clouds, settings, |cloud| Ok(prepare(cloud, std)?.refined()?))
 }
 
 /// The same of clouds that are not refined.
 pub(super) fn lazy(clouds: [&PointCloud; 2], std: f64) -> Result<Method> {
-    prepared(LAZY, clouds, |cloud| prepare(cloud, std))
+    prepared(LAZY, clouds, QuerySettings::default(), |cloud| prepare(cloud, std))
 }
 
 fn prepared(
     name: &'static str,
     [room, piano]: [&PointCloud; 2],
+    settings: QuerySettings,
     prepare: impl Fn(&PointCloud) -> Result<Cloud>,
 ) -> Result<Method> {
     let (bodies, prepare) = timed(|| -> Result<_> { Ok([prepare(room)?, prepare(piano)?]) });
     let [room, piano] = bodies?;
-    let query = Query::new(QuerySettings::default())?;
+    let query = Query::new(settings)?;
     let ask = move |pose: &Pose| {
         let probability = query.run(&room, &piano, pose)?.collision_probability;
         Ok(Said { score: probability, verdict: Some(probability >= 0.5) })

@@ -7,7 +7,7 @@ use plotters::style::BLACK;
 
 use super::{
     growth::Grown,
-    method::{DISTANCE, MESHES, OURS},
+    method::{DISTANCE, LAZY, MESHES},
     poses::{Class, Posed},
     room::Asked,
     solvers::Compared,

@@ -111,7 +111,8 @@ pub(super) fn measure(run: &Run<'_>) -> Result<Section> {
 fn peers() -> String {
     format!(
         "- `ours`: clouds that were refined (`Cloud::refined`), as for a scene that many poses are \
-         tested in; `not refined`: as prepared for a frame that is looked at a few times.\n\
+         tested in; `not refined`: as prepared for a frame that is looked at a few times; `geometry alone`: refined, \
+         and no classifier is trained, so that the rest is what training costs.\n\
          - `parry3d, meshes`: `intersection_test` on the surfaces that the clouds were drawn from, in \
          about 10,000 triangles each. No sensor knows them: it is told more than the others.\n\
          - `parry3d, voxels`: cubes of {0:.0} cm about the points of the room, against the surface \
@@ -130,6 +131,7 @@ fn methods(scene: &Scene, std: f64) -> Result<Vec<Method>> {
     Ok(vec![
         method::ours([&room, &piano], std)?,
         method::lazy([&room, &piano], std)?,
+        method::geometry([&room, &piano], std)?,
         method::meshes([&room_mesh, &piano_mesh])?,
         method::voxels(&room, &piano_mesh)?,
         method::distance([&room, &piano])?,
