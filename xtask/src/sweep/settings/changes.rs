@@ -1,8 +1,9 @@
 //! The settings that are tried: the defaults, and one change at a time.
 
 use cloudtouch::{
-    Mode, QuerySettings,
+    CloudSettings, Mode, QuerySettings,
     bvh::{Traversal, TreeSettings},
+    noise::SensorModel,
 };
 
 /// Tree and query settings with what is not as it is by default.
@@ -22,8 +23,12 @@ impl Setting {
     }
 
     fn new(changed: &'static str, value: impl ToString) -> Self {
-        let value = value.to_string();
-        Self { changed, value, tree: TreeSettings::default(), query: QuerySettings::default() }
+        Self::of(Mode::Calibrated, changed, value)
+    }
+
+    fn of(mode: Mode, changed: &'static str, value: impl ToString) -> Self {
+        let tree = CloudSettings::new(SensorModel::Exact, mode).tree;
+        Self { changed, value: value.to_string(), tree, query: QuerySettings::new(mode) }
     }
 
     fn tree(changed: &'static str, value: impl ToString, edit: impl Fn(&mut TreeSettings)) -> Self {
@@ -65,11 +70,10 @@ pub(super) fn all() -> Vec<Setting> {
             Setting::query("traversal", value, |query| query.traversal = kind)
         }),
     );
-    all.push(Setting::query("mode", "paper", |query| *query = QuerySettings::new(Mode::Paper)));
-    all.push(Setting::query("mode", "paper, certified traversal", |query| {
-        *query =
-            QuerySettings { traversal: Traversal::Certified, ..QuerySettings::new(Mode::Paper) };
-    }));
+    all.push(Setting::of(Mode::Paper, "mode", "paper"));
+    let mut certified = Setting::of(Mode::Paper, "mode", "paper, certified traversal");
+    certified.query.traversal = Traversal::Certified;
+    all.push(certified);
     all
 }
 
@@ -83,8 +87,8 @@ mod tests {
         for (i, setting) in all.iter().enumerate() {
             cloudtouch::Query::new(setting.query).unwrap();
             setting.tree.validate().unwrap();
-            let is_default = setting.tree == TreeSettings::default()
-                && setting.query == QuerySettings::default();
+            let default = Setting::new("default", "");
+            let is_default = setting.tree == default.tree && setting.query == default.query;
             assert_eq!(is_default, i == 0, "{}", setting.name());
             assert!(all[..i].iter().all(|other| other.name() != setting.name()));
         }

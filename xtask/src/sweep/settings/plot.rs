@@ -120,6 +120,6 @@ mod tests {
         // The first and the sixth of the changed settings are circles.
         assert_eq!(svg.matches("<circle").count(), 2 * (circles("n_max") + circles("C")) + 2);
         assert_eq!(svg.matches("\nγ\n").count(), 1);
-        assert_eq!(svg.matches("\n160\n").count(), 2);
+        assert_eq!(svg.matches("\n80\n").count(), 2);
     }
 }
