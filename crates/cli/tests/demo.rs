@@ -15,9 +15,11 @@ fn shows_twelve_poses_and_one_in_full() {
     for expected in ["29576 points", "9000 points", "in full", "collision probability"] {
         assert!(text.contains(expected), "{text}");
     }
-    // The ends of the series leave no doubt: 25 cm apart, 12 cm of overlap.
+    // 25 cm apart leaves no doubt, and of the four overlaps of 5 to 12 cm at most one does.
     let rows: Vec<&str> = text.lines().filter(row).collect();
-    assert!(rows[0].contains("free") && rows[11].contains("in collision"), "{text}");
+    let certain = rows[8..].iter().filter(|row| row.contains("in collision")).count();
+    assert!(rows[0].contains("free") && certain >= 3, "{text}");
+    assert!(rows[6..].iter().all(|row| !row.contains("free")), "{text}");
     assert_eq!(inputs.names(), before);
 }
 

@@ -44,7 +44,6 @@ proptest! {
         prop_assert!(out_of_reach || (p - q).abs() < 1e-6, "{lazy:?}\n{eager:?}");
         prop_assert_eq!(lazy.verdict, eager.verdict);
         prop_assert_eq!(eager.stats.leaves_prepared, 0, "nothing was left to compute");
-        prop_assert!(eager.stats.nodes_visited <= lazy.stats.nodes_visited);
     }
 }
 
