@@ -137,24 +137,19 @@ impl Tree {
             }
         }
         self.refined = refined;
+        self.extents.clear();
         self.update_bounds(self.root);
         Ok(())
-    }
-
-    /// Forgets what [`Self::set_leaf_bounds`] said: the primitives are what they will stay.
-    pub fn clear_leaf_bounds(&mut self) {
-        self.refined.fill(None);
-        self.update_bounds(self.root);
     }
 
     /// Sets, by index, how far the surface that a primitive stands for reaches from its mean, and
     /// carries it upward: along a unit vector n √(nᵀEn), E the extent. Without it no surface reaches
     /// beyond the primitives themselves.
     ///
-    /// From then on every node's bounds are taken from its primitives, O(n log n).
-    ///
-    /// Extents stay with the primitives as bounds do, which stand in for them where both are set; a
-    /// primitive inserted later has none.
+    /// What [`Self::set_leaf_bounds`] said is forgotten, as extents are when it is called: either the
+    /// primitives are what they will stay or they are not. Every node's bounds are taken from its
+    /// primitives, O(n log n). Extents stay with the primitives as bounds do; a primitive inserted
+    /// later has none.
     ///
     /// # Errors
     /// [`TreeError::Count`] when there is not one for every index; the tree is then unchanged.
@@ -164,6 +159,7 @@ impl Tree {
             return Err(TreeError::Count { expected, found });
         }
         self.extents = extents;
+        self.refined.fill(None);
         self.update_bounds(self.root);
         Ok(())
     }
@@ -208,10 +204,6 @@ impl Tree {
         };
         for &index in self.indices_of(id) {
             let index = index as usize;
-            if self.refined[index].is_some() {
-                // Nothing is known of it but what holds in every direction.
-                return from_children;
-            }
             if let Some(extent) = self.extents.get(index) {
                 tight.axis_reach = tight.axis_reach.sup(&along(extent, axes));
             }

@@ -71,7 +71,8 @@ impl<'a> Examiner<'a> {
             // What is drawn depends on the gap.
             Traversal::Paper | Traversal::GapAware => f64::INFINITY,
         };
-        let between = signed_gap_up_to(&self.shape(a), &self.moved(&self.shape(b)), enough);
+        let between =
+            signed_gap_up_to(&self.shape(a), &self.shape(b).moved(&self.a_from_b), enough);
         let apart = between.signed - slack;
         let axis = between.axis;
         let axis_in_b = self.a_from_b.vector_back(&axis);
@@ -100,15 +101,6 @@ impl<'a> Examiner<'a> {
                     }
                 });
         Examined { a: id_a, b: id_b, gap, axis, deviations, urgency, descend }
-    }
-
-    /// A box of B in the frame of A.
-    fn moved(&self, of_b: &Obb) -> Obb {
-        Obb {
-            centre: self.a_from_b.point(&of_b.centre),
-            axes: self.a_from_b.rotation() * of_b.axes,
-            half_extents: of_b.half_extents,
-        }
     }
 
     /// The box of what may not overlap: of the surfaces where crossings are told apart, else of the

@@ -1,6 +1,6 @@
 //! Oriented boxes: containment, projections, and the ways a box grows.
 
-use cloudtouch_geom::{Matrix3, Point3, Pose, Vector3};
+use cloudtouch_geom::{Matrix3, Motion, Point3, Pose, Vector3};
 
 /// An oriented bounding box; extents may be zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,9 +67,14 @@ impl Obb {
 
     /// The same box seen from another frame.
     pub fn transformed(&self, pose: &Pose) -> Self {
+        self.moved(&Motion::from(pose))
+    }
+
+    /// The same by a motion that moves many boxes.
+    pub fn moved(&self, motion: &Motion) -> Self {
         Self {
-            centre: pose.transform_point(&self.centre),
-            axes: pose.rotation().to_rotation_matrix().matrix() * self.axes,
+            centre: motion.point(&self.centre),
+            axes: motion.rotation() * self.axes,
             half_extents: self.half_extents,
         }
     }

@@ -242,11 +242,15 @@ impl Covariance {
 
     /// R Σ Rᵀ.
     pub fn rotated(&self, rotation: &nalgebra::UnitQuaternion<f64>) -> Self {
+        self.turned(rotation.to_rotation_matrix().matrix())
+    }
+
+    /// The same with R as a matrix.
+    pub(crate) fn turned(&self, rotation: &Matrix3) -> Self {
         if self.is_zero() {
             return *self;
         }
-        let r = rotation.to_rotation_matrix();
-        Self::from_symmetric(&(r.matrix() * self.matrix() * r.matrix().transpose()))
+        Self::from_symmetric(&(rotation * self.matrix() * rotation.transpose()))
     }
 
     /// The covariance of `factor`·x.

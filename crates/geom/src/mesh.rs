@@ -1,9 +1,8 @@
 //! A triangle mesh as read from a file.
 
-use crate::message::number;
 use std::collections::HashMap;
 
-use crate::{Point3, cloud::bounding_box};
+use crate::{Point3, cloud::bounding_box, message::number};
 
 /// Triangles over shared vertices, m. May be open, degenerate or a soup.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -48,12 +48,7 @@ impl Motion {
 
     /// R Σ Rᵀ.
     pub fn covariance(&self, covariance: &Covariance) -> Covariance {
-        if covariance.is_zero() {
-            return *covariance;
-        }
-        Covariance::from_symmetric(
-            &(self.rotation * covariance.matrix() * self.rotation.transpose()),
-        )
+        covariance.turned(&self.rotation)
     }
 
     /// Both of a point.

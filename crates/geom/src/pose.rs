@@ -1,9 +1,8 @@
 //! Rigid motions, checked when they come from outside.
 
-use crate::message::number;
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
-use crate::{Matrix3, Point3, Vector3};
+use crate::{Matrix3, Point3, Vector3, message::number};
 
 /// A rigid motion that maps points of one frame into another: p ↦ R p + t.
 ///

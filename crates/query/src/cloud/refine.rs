@@ -43,7 +43,6 @@ impl Cloud {
         let primitives: Vec<Primitive> = (0..self.len() as u32)
             .map(|index| Primitive::point(self.surfel(index, &mut scratch).point))
             .collect();
-        self.tree.clear_leaf_bounds();
         self.tree.refit(&primitives)?;
         self.tree.set_extents(extents)?;
         self.prepare_time += start.elapsed();
