@@ -12,8 +12,13 @@ use anyhow::{Context, Result, bail};
 use crate::{fixtures, sweep, tidy};
 
 /// Not published, so not packaged.
-const UNPUBLISHED: [&str; 4] =
-    ["cloudtouch-testkit", "cloudtouch-fuzzing", "cloudtouch-benches", "xtask"];
+const UNPUBLISHED: [&str; 5] = [
+    "cloudtouch-testkit",
+    "cloudtouch-evaluation",
+    "cloudtouch-fuzzing",
+    "cloudtouch-benches",
+    "xtask",
+];
 
 /// Runs every step. Tests come last, and the last line sums them up.
 pub(crate) fn run(root: &Path) -> Result<()> {

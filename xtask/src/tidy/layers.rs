@@ -10,6 +10,16 @@ pub(super) const KINDS: [&str; 3] = ["dependencies", "build-dependencies", "dev-
 /// A development dependency of whoever likes, and of nobody otherwise among the published.
 const TESTKIT: &str = "cloudtouch-testkit";
 
+/// What stands on all layers may use any of them.
+const PRODUCT: [&str; 6] = [
+    "cloudtouch-geom",
+    "cloudtouch-noise",
+    "cloudtouch-svm",
+    "cloudtouch-bvh",
+    "cloudtouch",
+    "cloudtouch-io",
+];
+
 /// What of the project a crate may depend on; `None` for one that nobody has placed yet.
 fn may_use(name: &str) -> Option<&'static [&'static str]> {
     Some(match name {
@@ -20,13 +30,18 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
         "cloudtouch" => {
             &["cloudtouch-geom", "cloudtouch-noise", "cloudtouch-svm", "cloudtouch-bvh"]
         }
-        "cloudtouch-cli" | "cloudtouch-benches" | "cloudtouch-fuzzing" | "xtask" => &[
+        "cloudtouch-cli"
+        | "cloudtouch-benches"
+        | "cloudtouch-fuzzing"
+        | "cloudtouch-evaluation" => &PRODUCT,
+        "xtask" => &[
             "cloudtouch-geom",
             "cloudtouch-noise",
             "cloudtouch-svm",
             "cloudtouch-bvh",
             "cloudtouch",
             "cloudtouch-io",
+            "cloudtouch-evaluation",
         ],
         _ => return None,
     })

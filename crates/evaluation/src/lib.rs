@@ -1,0 +1,11 @@
+//! The lab beside the product: what its accuracy, speed and stability are measured with.
+//!
+//! A report measures, fills [`table::Table`]s and [`figure::Figure`]s, and hands them to a
+//! [`page::Page`], which writes `docs/lab/NAME.md` whole. Reports have no drawing code and no date
+//! or commit of their own.
+
+pub mod figure;
+pub mod machine;
+pub mod page;
+pub mod statistics;
+pub mod table;

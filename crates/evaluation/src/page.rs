@@ -1,0 +1,146 @@
+//! Pages of `docs/lab/`, each wholly made by one command.
+
+use std::{
+    fmt::{self, Write as _},
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result};
+use cloudtouch_io::write_atomically;
+
+use crate::{figure::Figure, machine};
+
+/// What a run says, in order; a page is a Markdown file and its figures.
+#[derive(Debug)]
+pub struct Page {
+    name: String,
+    task: String,
+    head: String,
+    sections: Vec<Section>,
+}
+
+/// A heading, text and figures.
+#[derive(Debug)]
+pub struct Section {
+    text: String,
+    /// Name of the file without `.svg`, and what it shows.
+    figures: Vec<(String, Figure)>,
+}
+
+/// Where pages go: `docs/lab` when the docs are to be made anew, else `target/lab`.
+pub fn folder(root: &Path, update_docs: bool) -> PathBuf {
+    root.join(if update_docs { "docs/lab" } else { "target/lab" })
+}
+
+impl Page {
+    /// A page `NAME.md` that says at its top which xtask made it (`task`), with which command
+    /// (arguments included), where, when and from which seed.
+    pub fn new(
+        (name, title): (&str, &str),
+        (task, arguments): (&str, &str),
+        introduction: &str,
+        root: &Path,
+        seed: u64,
+    ) -> Self {
+        let debug = if cfg!(debug_assertions) {
+            "\n**Not a release build: times mean nothing.**\n"
+        } else {
+            ""
+        };
+        let command = format!("cargo run --release -p xtask -- {task} {arguments}");
+        let head = format!(
+            "# {title}\n\n{}\n\n{introduction}\n\n```text\n{}\n```\n{debug}\n{}",
+            format_args!(
+                "<!-- Made by `cargo xtask {task}`; edit crates/evaluation/, not this. -->"
+            ),
+            command.trim_end(),
+            machine::provenance(root, seed)
+        );
+        Self { name: name.to_owned(), task: task.to_owned(), head, sections: Vec::new() }
+    }
+
+    /// Adds a section.
+    pub fn section(&mut self, section: Section) {
+        self.sections.push(section);
+    }
+
+    /// The Markdown.
+    fn text(&self) -> String {
+        let sections = self.sections.iter().map(|section| section.text.trim_end());
+        let mut parts = vec![self.head.trim_end()];
+        parts.extend(sections);
+        parts.join("\n\n") + "\n"
+    }
+
+    /// Writes `NAME.md` and `figures/*.svg` into the folder, each file whole.
+    ///
+    /// # Errors
+    /// When a figure cannot be drawn or a file not be written.
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        let figures = folder.join("figures");
+        fs::create_dir_all(&figures).with_context(|| format!("create {}", figures.display()))?;
+        for (name, figure) in self.sections.iter().flat_map(|section| &section.figures) {
+            figure.write(&figures.join(format!("{name}.svg")))?;
+        }
+        let path = folder.join(format!("{}.md", self.name));
+        write_atomically(&path, |out| out.write_all(self.text().as_bytes()))?;
+        println!("{}: wrote {}", self.task, path.display());
+        Ok(())
+    }
+}
+
+impl Section {
+    /// Starts a section of the second level.
+    pub fn new(title: &str) -> Self {
+        Self { text: format!("## {title}\n\n"), figures: Vec::new() }
+    }
+
+    /// Adds a paragraph, a list, a table or a heading of a lower level.
+    #[must_use]
+    pub fn text(mut self, text: impl fmt::Display) -> Self {
+        let start = self.text.len();
+        // Writing to a string cannot fail.
+        let _ = write!(self.text, "{text}");
+        let end = start + self.text[start..].trim_end().len();
+        self.text.truncate(end);
+        self.text += "\n\n";
+        self
+    }
+
+    /// Adds a figure `figures/NAME.svg`, with what it shows for those who cannot see it.
+    #[must_use]
+    pub fn figure(self, name: &str, shows: &str, figure: Figure) -> Self {
+        let mut section = self.text(format_args!("![{shows}](figures/{name}.svg)"));
+        section.figures.push((name.to_owned(), figure));
+        section
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Axis, Panel, Series};
+
+    #[test]
+    fn a_page_and_its_figures_are_written_in_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let panel = Panel::new(Axis::linear("x (m)"), Axis::linear("y (m)"))
+            .series(Series::points("a", [(0.0, 1.0)]));
+        let names = (("test", "Test"), ("try", "--seed 3"));
+        let mut page = Page::new(names.0, names.1, "Says why.", folder.path(), 3);
+        let section = Section::new("First").text("Before.\n").figure(
+            "one",
+            "One point",
+            Figure::new("One").panel(panel),
+        );
+        page.section(section.text("After."));
+        page.write(folder.path()).unwrap();
+        let text = fs::read_to_string(folder.path().join("test.md")).unwrap();
+        let end = "## First\n\nBefore.\n\n![One point](figures/one.svg)\n\nAfter.\n";
+        assert!(text.starts_with("# Test\n\n<!-- Made by `cargo xtask try`;"), "{text}");
+        assert!(text.contains("\ncargo run --release -p xtask -- try --seed 3\n"), "{text}");
+        assert!(text.contains("\n- seed: 3\n\n") && text.ends_with(end), "{text}");
+        assert!(folder.path().join("figures/one.svg").exists());
+    }
+}
