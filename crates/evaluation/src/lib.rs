@@ -11,6 +11,7 @@ pub mod machine;
 pub mod measures;
 pub mod methods;
 pub mod page;
+pub mod settings;
 pub mod statistics;
 pub mod sweep;
 pub mod table;
