@@ -11,6 +11,8 @@ pub mod machine;
 pub mod measures;
 pub mod methods;
 pub mod page;
+pub mod performance;
+pub mod real_scans;
 pub mod statistics;
 pub mod sweep;
 pub mod table;

@@ -1,0 +1,3 @@
+//! Stand-in until the real scans are here.
+
+pub(crate) mod cases;
