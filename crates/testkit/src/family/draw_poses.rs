@@ -3,7 +3,7 @@
 use cloudtouch_geom::seed;
 use rand_chacha::ChaCha8Rng;
 
-use super::{FamilyScene, observe::Seen};
+use super::{scene::FamilyScene, seeing::Seen, wanted::Wanted};
 use crate::{
     exact::WayOut,
     poses::{Approach, CONTACT_GAP, LabelledPose, NEAR},
@@ -15,50 +15,35 @@ const FARTHEST: f64 = 0.5;
 /// How much closer than what is seen the surfaces may come near contact, m.
 const HIDDEN: f64 = 0.005;
 
-/// What a pose is drawn for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Wanted {
-    NearFree,
-    Free,
-    NearDeep,
-    Deep,
-}
-
-impl Wanted {
-    const ALL: [Self; 4] = [Self::NearFree, Self::Free, Self::NearDeep, Self::Deep];
-
-    pub(super) fn is_near(self) -> bool {
-        matches!(self, Self::NearFree | Self::NearDeep)
-    }
-
-    fn is_free(self) -> bool {
-        matches!(self, Self::NearFree | Self::Free)
-    }
-}
-
 impl FamilyScene {
-    /// `count` poses with exact answers, in an order of no meaning: at least half have a
-    /// |signed distance| up to 3 cm, half collide, and so do about half of the near ones (exactly,
-    /// but for these, when `count` is a multiple of four).
+    /// `count` poses with exact answers; a smaller count with the same seed gives the first of them.
+    ///
+    /// The base rate of collisions is one half at every count: exactly when it is even, within one
+    /// pose when it is odd. Of the free ones and of the colliding ones half are drawn within 3 cm of
+    /// first contact (exactly when `count` is a multiple of four, else within one pose); since an
+    /// overlap may be less deep than the way the body went, at least half have a |signed distance|
+    /// up to 3 cm. Where a stratum stands in the sequence is drawn by the seed.
     ///
     /// The object goes straight to a first contact in a way that suits the family and then back, up
-    /// to 50 cm, or on, up to 20 cm (the gripper 6 cm, a sheet 60 cm). The depth of an overlap is
-    /// bounded from above, see [`ExactMesh::shortest_way_out`](crate::exact::ExactMesh::shortest_way_out).
+    /// to 50 cm, or on, up to 20 cm (hands and tools 5 to 10 cm, a sheet 60 cm). The depth of an
+    /// overlap is bounded from above, see
+    /// [`ExactMesh::shortest_way_out`](crate::exact::ExactMesh::shortest_way_out).
+    ///
+    /// # Panics
+    /// When a thousand paths give no pose of a stratum: the bodies can hardly meet.
     pub fn poses(&self, count: usize, seed: u64) -> Vec<LabelledPose> {
-        let mut order: Vec<u64> = (0..count as u64).collect();
-        order.sort_by_key(|&i| seed::derive(seed, 2, i));
-        order
-            .into_iter()
+        (0..count as u64)
             .map(|i| {
                 let mut rng = seed::generator(seed::derive(seed, 1, i));
-                self.pose(Wanted::ALL[i as usize % 4], &mut rng)
+                self.pose(Wanted::of(i, seed), &mut rng)
             })
             .collect()
     }
 
     fn pose(&self, wanted: Wanted, rng: &mut ChaCha8Rng) -> LabelledPose {
         for _ in 0..1000 {
-            let Some(approach) = self.approach(wanted, rng) else { continue };
+            let path = self.motion.approach(self.pair(), &self.seen[0], wanted, rng);
+            let Some(approach) = path else { continue };
             let deepest = self.motion.deepest();
             let retreat = match wanted {
                 // Not beyond where it came from: that is not known to be free.
