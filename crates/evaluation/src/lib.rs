@@ -13,6 +13,7 @@ pub mod methods;
 pub mod page;
 pub mod performance;
 pub mod real_scans;
+pub mod settings;
 pub mod statistics;
 pub mod sweep;
 pub mod table;

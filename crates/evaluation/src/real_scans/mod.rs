@@ -1,3 +1,0 @@
-//! Stand-in until the real scans are here.
-
-pub(crate) mod cases;
