@@ -5,7 +5,11 @@
 //! or commit of their own.
 
 pub mod figure;
+pub mod growth;
 pub mod machine;
+pub mod measures;
 pub mod page;
+pub mod real_scans;
+pub mod stability;
 pub mod statistics;
 pub mod table;
