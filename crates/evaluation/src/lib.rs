@@ -4,12 +4,16 @@
 //! [`page::Page`], which writes `docs/lab/NAME.md` whole. Reports have no drawing code and no date
 //! or commit of their own.
 
+pub mod answers;
+pub mod calibrate;
 pub mod figure;
 pub mod growth;
 pub mod machine;
 pub mod measures;
+pub mod methods;
 pub mod page;
 pub mod real_scans;
 pub mod stability;
 pub mod statistics;
+pub mod sweep;
 pub mod table;

@@ -19,16 +19,17 @@ use crate::{
     table::Table,
 };
 use answers::{ADDED, Answers, METHODS, OWN_STD};
-use scan::Scan;
+use scan::{SEED, Scan};
 
-/// All randomness of the noise comes from this.
-const SEED: u64 = 2011;
-/// Poses that have come nearer to first contact than this are asked about, m.
-const FARTHEST: f64 = 0.03;
-/// How far past first contact the poses are that the figure shows, m.
-const PICTURED: [f64; 3] = [-0.03, 0.0, 0.02];
+/// Poses that are farther from first contact than this are left out, mm.
+const FARTHEST: f64 = -30.0;
+/// How far past first contact the poses are that the figure shows, mm.
+const PICTURED: [f64; 3] = [-30.0, 0.0, 20.0];
 /// Numbers of the added noises that have columns of their own: 5, 10 and 20 mm.
 const SHOWN: [usize; 3] = [4, 6, 8];
+
+/// The poses with how far past first contact they are, mm.
+type Poses = [(f64, Labelled)];
 
 /// What `cargo xtask growth` is given.
 #[derive(Debug, Args)]
@@ -49,20 +50,13 @@ pub struct Arguments {
 /// # Errors
 /// When files cannot be read or written, or a method has no answer.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
-    let data = root.join(&arguments.data);
-    if !data.join("cases.json").is_file() {
-        println!(
-            "skipped: no real scans at {}; put cases.json, clouds/ and meshes/ there or name their \
-             folder with --data DIR",
-            arguments.data.display()
-        );
-        return Ok(());
-    }
-    let cases = cases::series(&data, -FARTHEST)?;
-    let object = read_mesh(&cases[0].object, LengthUnit::Metres)?;
-    let poses: Vec<Pose> = cases.iter().map(|case| case.scene_from_object).collect();
-    let scan = Scan::read(&cases[0].scene, &scan::reach(&object, &poses))?;
-    let answers = Answers::ask(&scan, &object, &poses, arguments.draws, SEED)?;
+    let Some(data) = cases::folder(root, &arguments.data) else { return Ok(()) };
+    let mut series = cases::series(&data)?;
+    series.retain(|(advance, _)| *advance >= FARTHEST);
+    let object = read_mesh(&series[0].1.object, LengthUnit::Metres)?;
+    let poses: Vec<Pose> = series.iter().map(|(_, case)| case.pose).collect();
+    let scan = Scan::read(&series[0].1.scene, &scan::reach(&object, &poses))?;
+    let answers = Answers::ask(&scan, &object, &poses, arguments.draws)?;
     let introduction = format!(
         "After the paper's figure 5: a gripper, known as a mesh, at {} poses of its approach to a \
          mug in a real scan, while normal noise is added to the {} measured points near it. Each \
@@ -73,7 +67,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
          say yes or no: a 1 cm box around a measured point touches the gripper; a measured point \
          is inside of it (its smallest signed distance is negative); a mesh of the scan (means of \
          4 × 4 pixels, joined where the scan without added noise has no edge) intersects it.",
-        cases.len(),
+        series.len(),
         scan.len(),
         arguments.draws,
         1e3 * OWN_STD,
@@ -88,7 +82,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
                  of a probability. Lower right: how often the verdict on a pose differs from that \
                  of the draw before, over all poses.",
             )
-            .figure("growth", "Answers while noise grows", figure(&cases, &answers)?)
+            .figure("growth", "Answers while noise grows", figure(&series, &answers)?)
             .text(
                 "How often the verdict flips from draw to draw, and how often it is not the \
                  verdict on the scan as it is. Last: collisions stated of poses whose nearest \
@@ -96,7 +90,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
                  more past first contact (label `collision`) of which none is stated; over all \
                  noises.",
             )
-            .text(methods(&cases, &answers)),
+            .text(methods(&series, &answers)),
     );
     page.section(
         Section::new("Mean answers by pose")
@@ -104,97 +98,90 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
                 "Without added noise and with 10 mm of it; the advance is past first contact with \
                  a measured point.",
             )
-            .text(by_pose(&cases, &answers)),
+            .text(by_pose(&series, &answers)),
     );
     page.write(&page::folder(root, arguments.update_docs))
 }
 
 /// How far a pose is past first contact, and the smallest signed distance of a measured point.
-fn place(case: &Labelled) -> String {
-    let [advance, distance] = [case.advance_m(), case.distance].map(|length| 1e3 * length);
-    format!("advance {advance:+.0} mm, nearest point {distance:+.0} mm")
+fn place((advance, case): &(f64, Labelled)) -> String {
+    format!("advance {advance:+.0} mm, nearest point {:+.0} mm", case.distance_mm)
 }
 
-fn figure(cases: &[Labelled], answers: &Answers) -> Result<Figure> {
-    let x = || Axis::linear("std of the added noise (mm)");
+fn figure(poses: &Poses, answers: &Answers) -> Result<Figure> {
+    let panel = |title: &str, y: Axis| {
+        Panel::new(Axis::linear("std of the added noise (mm)"), y).title(title)
+    };
     let mut figure = Figure::new("Answers while noise is added to a real scan");
     for advance in PICTURED {
-        let pose = at_advance(cases, advance)?;
-        let panel = Panel::new(x(), Axis::unit("probability or verdict"));
-        let panel = panel.title(&place(&cases[pose]));
-        figure = figure.panel((0..METHODS.len()).fold(panel, |panel, method| {
-            let said = |level| answers.of(method, pose, level);
-            let levels = ADDED.iter().enumerate().map(|(level, std)| (1e3 * std, said(level)));
-            let levels: Vec<(f64, Vec<f64>)> = levels.collect();
-            let means = levels.iter().map(|(x, said)| (*x, mean(said)));
+        let pose = at_advance(poses, advance)?;
+        let mut panel = panel(&place(&poses[pose]), Axis::unit("probability or verdict"));
+        for (method, name) in METHODS.iter().enumerate() {
+            let levels = || (0..ADDED.len()).map(|level| (level, answers.of(method, pose, level)));
+            let span = |(level, said): (usize, Vec<f64>)| {
+                (ADDED[level], quantile(&said, 0.1), quantile(&said, 0.9))
+            };
             // Verdicts have no spread: their mean says how often they are which.
-            let spread = levels
-                .iter()
-                .filter(|_| method < 2)
-                .map(|(x, said)| (*x, quantile(said, 0.1), quantile(said, 0.9)));
-            let name = METHODS[method];
-            panel.series(Series::whiskers(name, spread)).series(Series::curve(name, means))
-        }));
+            let spread = levels().filter(|_| method < 2).map(span);
+            let means = levels().map(|(level, said)| (ADDED[level], mean(&said)));
+            panel = panel.series(Series::whiskers(name, spread)).series(Series::curve(name, means));
+        }
+        figure = figure.panel(panel);
     }
-    let flips = Panel::new(x(), Axis::linear("share of verdict changes"));
-    Ok(figure.panel((0..METHODS.len()).fold(
-        flips.title("verdicts that flip from draw to draw"),
-        |panel, method| {
-            let share = |level| share(flips_of(cases.len(), answers, method, level));
-            let points = ADDED.iter().enumerate().map(|(level, std)| (1e3 * std, share(level)));
-            panel.series(Series::curve(METHODS[method], points))
-        },
-    )))
+    let mut panel = panel("verdicts that flip from draw to draw", Axis::linear("share of changes"));
+    for (method, name) in METHODS.iter().enumerate() {
+        let share = |level| share(flips(poses.len(), answers, method, level));
+        let points = (0..ADDED.len()).map(|level| (ADDED[level], share(level)));
+        panel = panel.series(Series::curve(name, points));
+    }
+    Ok(figure.panel(panel))
 }
 
-fn methods(cases: &[Labelled], answers: &Answers) -> Table {
-    let mm = |level: usize| format!("{:.0} mm", 1e3 * ADDED[level]);
+fn methods(poses: &Poses, answers: &Answers) -> Table {
+    let of_shown = |what: &str| SHOWN.map(|level| format!("{what} {} mm", ADDED[level]));
     let mut header = vec!["method".to_owned()];
-    header.extend(SHOWN.map(|level| format!("flips at {}", mm(level))));
-    header.extend(SHOWN.map(|level| format!("changed by {}", mm(level))));
+    header.extend(of_shown("flips at").into_iter().chain(of_shown("changed by")));
     header.extend(["false stops", "misses"].map(String::from));
     let mut table = Table::new(header);
     for (method, name) in METHODS.iter().enumerate() {
         let verdicts = |pose, level| answers.verdicts(method, pose, level);
         let changed = |level| {
-            (0..cases.len()).flat_map(move |pose| {
+            (0..poses.len()).flat_map(move |pose| {
                 let plain = verdicts(pose, 0)[0];
                 verdicts(pose, level).into_iter().map(move |verdict| verdict != plain)
             })
         };
-        let wrong = |label: &str, verdict: bool| {
-            let of_label = (0..cases.len()).filter(|&pose| cases[pose].label == label);
-            let said = of_label
-                .flat_map(|pose| (0..ADDED.len()).flat_map(move |level| verdicts(pose, level)));
-            share(said.map(|said| said == verdict).collect::<Vec<_>>())
+        let stated = |label: &str, verdict: bool| {
+            let of_label = (0..poses.len()).filter(|&pose| poses[pose].1.label == label);
+            let all = of_label.flat_map(|pose| (0..ADDED.len()).map(move |level| (pose, level)));
+            share(all.flat_map(|(pose, level)| verdicts(pose, level)).map(|said| said == verdict))
         };
         let mut cells = vec![(*name).to_owned()];
         cells.extend(SHOWN.map(|level| {
-            let flips = flips_of(cases.len(), answers, method, level);
+            let flips = flips(poses.len(), answers, method, level);
             format!("{} of {}", flips.iter().filter(|flip| **flip).count(), flips.len())
         }));
-        cells.extend(SHOWN.map(|level| format!("{:.3}", share(changed(level)))));
-        let wrong = [wrong("near", true), wrong("collision", false)];
-        cells.extend(wrong.map(|share| format!("{share:.3}")));
+        let shares = SHOWN.map(|level| share(changed(level)));
+        let shares = shares.into_iter().chain([stated("near", true), stated("collision", false)]);
+        cells.extend(shares.map(|share| format!("{share:.3}")));
         table.row(cells);
     }
     table
 }
 
-fn by_pose(cases: &[Labelled], answers: &Answers) -> Table {
+fn by_pose(poses: &Poses, answers: &Answers) -> Table {
     let mut table = Table::new(std::iter::once("pose").chain(METHODS));
-    for (pose, case) in cases.iter().enumerate() {
-        let mean = |method, level| mean(&answers.of(method, pose, level));
+    for (number, pose) in poses.iter().enumerate() {
+        let mean = |method, level| mean(&answers.of(method, number, level));
         let cell = |method| format!("{:.2}, {:.2}", mean(method, 0), mean(method, SHOWN[1]));
-        table.row(std::iter::once(place(case)).chain((0..METHODS.len()).map(cell)));
+        table.row(std::iter::once(place(pose)).chain((0..METHODS.len()).map(cell)));
     }
     table
 }
 
 /// Whether each verdict differs from that of the draw before, within the draws of a pose.
-fn flips_of(poses: usize, answers: &Answers, method: usize, level: usize) -> Vec<bool> {
-    let of_pose = |pose| changes(&answers.verdicts(method, pose, level));
-    (0..poses).flat_map(of_pose).collect()
+fn flips(poses: usize, answers: &Answers, method: usize, level: usize) -> Vec<bool> {
+    (0..poses).flat_map(|pose| changes(&answers.verdicts(method, pose, level))).collect()
 }
 
 fn changes(verdicts: &[bool]) -> Vec<bool> {

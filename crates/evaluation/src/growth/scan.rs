@@ -7,6 +7,8 @@ use cloudtouch_geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch_io::read_cloud;
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 
+/// All randomness of the noise comes from this.
+pub(super) const SEED: u64 = 2011;
 /// How far around the gripper the scan is kept, m.
 const MARGIN: f64 = 0.1;
 /// Rows and columns of the pixels whose mean is one vertex of the mesh.
@@ -49,8 +51,8 @@ impl Scan {
 
     /// The image with normal errors of this standard deviation along each axis, m, added; those of
     /// one draw differ in nothing but their size.
-    pub(super) fn with_noise(&self, std: f64, draw: u64, seed: u64) -> PointCloud {
-        let seed = seed::derive(seed, 5, draw);
+    pub(super) fn with_noise(&self, std: f64, draw: u64) -> PointCloud {
+        let seed = seed::derive(SEED, 5, draw);
         let points = add_noise(&self.cloud.points, NoiseKind::Gaussian, std, seed);
         PointCloud { points, ..self.cloud.clone() }
     }
@@ -65,11 +67,6 @@ impl Scan {
         let vertices = self.blocks.iter().map(mean).collect();
         Ok(TriangleMesh::try_new(vertices, self.triangles.clone())?)
     }
-}
-
-/// The points with a return.
-pub(super) fn returns(cloud: &PointCloud) -> Vec<Point3> {
-    cloud.points.iter().filter(|p| is_finite(p)).copied().collect()
 }
 
 /// The corners of a box around the mesh in each of these poses.

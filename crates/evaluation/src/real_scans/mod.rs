@@ -3,11 +3,8 @@
 mod approach;
 pub(crate) mod cases;
 mod labelled;
-
 mod piano;
-mod samples;
 mod side_view;
-mod tool;
 
 use std::path::{Path, PathBuf};
 
@@ -15,10 +12,6 @@ use anyhow::{Result, bail};
 use clap::Args;
 
 use crate::page::{self, Page, Section};
-
-const INTRODUCTION: &str = "Answers on real point clouds with labelled poses, along an approach of \
-a gripper to a mug, and on sampled meshes whose exact answers are known. DIR is the folder of the \
-scans, which are not part of the project.";
 
 /// What `cargo xtask evaluate` is given.
 #[derive(Debug, Args)]
@@ -36,36 +29,27 @@ pub struct Arguments {
 /// # Errors
 /// When a check fails, or files cannot be read or written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
-    let data = root.join(&arguments.data);
-    if !data.join("cases.json").is_file() || !data.join("piano_cases.json").is_file() {
-        println!(
-            "skipped: no real scans at {}; put cases.json, piano_cases.json, clouds/ and meshes/ \
-             there or name their folder with --data DIR",
-            arguments.data.display()
-        );
-        return Ok(());
-    }
-    let command = ("evaluate", "--data DIR --update-docs");
+    let Some(data) = cases::folder(root, &arguments.data) else { return Ok(()) };
     let names = ("real-scans", "Answers on real scans");
-    let mut page = Page::new(names, command, INTRODUCTION, root, piano::SEED);
+    let introduction = "Answers on real point clouds with labelled poses, along an approach of a \
+                        gripper to a mug, and on sampled meshes whose exact answers are known. DIR \
+                        is the folder of the scans, which are not part of the project.";
+    let command = ("evaluate", "--data DIR --update-docs");
+    let mut page = Page::new(names, command, introduction, root, piano::SEED);
     let mut failures = Vec::new();
     let mut sections = Vec::new();
     for part in [labelled::evaluate, approach::evaluate, piano::evaluate] {
-        let (section, failed) = part(root, &data)?;
+        let (section, failed) = part(&data)?;
         sections.push(section);
         failures.extend(failed);
     }
-    let verdict = if failures.is_empty() {
-        "All hold.".to_owned()
-    } else {
-        format!("- failed: {}", failures.join("\n- failed: "))
-    };
+    let failed = format!("Failed:\n\n- {}", failures.join("\n- "));
+    let verdict = if failures.is_empty() { "All hold." } else { &failed };
     page.section(Section::new("Checks").text(verdict));
     sections.into_iter().for_each(|section| page.section(section));
     page.write(&page::folder(root, arguments.update_docs))?;
     if !failures.is_empty() {
         bail!("{} checks failed\n  {}", failures.len(), failures.join("\n  "));
     }
-    println!("evaluate: all checks hold");
     Ok(())
 }

@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
-use cloudtouch::{Cloud, Contact, Report, Verdict};
+use cloudtouch::{Cloud, Contact, Report};
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
 use i_overlay::{core::fill_rule::FillRule, float::simplify::SimplifyShape};
 
+use super::labelled::verdict_name;
 use crate::{
     figure::{Axis, Figure, Panel, Place, RGBColor, Series, palette},
     statistics::quantile,
@@ -90,12 +91,8 @@ pub(super) fn figure(
 }
 
 fn panel(view: &View, cloud: &Cloud, object: &TriangleMesh, pose: &Pose, report: &Report) -> Panel {
-    let answer = match report.verdict {
-        Verdict::Free => "free",
-        Verdict::InContact => "in contact",
-        Verdict::InCollision => "in collision",
-        Verdict::Undecided => "undecided",
-    };
+    let verdict = verdict_name(report.verdict);
+    let title = format!("P = {:.2}: {verdict}", report.collision_probability);
     let (outlines, holes) = outline(view, object, pose);
     let (likely, other) = points(view, cloud, report);
     let panel = Panel::new(
@@ -103,7 +100,7 @@ fn panel(view: &View, cloud: &Cloud, object: &TriangleMesh, pose: &Pose, report:
         Axis::linear("height above the table (cm)").range(HEIGHTS),
     );
     panel
-        .title(&format!("P = {:.2}: {answer}", report.collision_probability))
+        .title(&title)
         .equal_aspect()
         .series(Series::polygons("gripper (known shape)", outlines).color(GRIPPER))
         .series(Series::polygons("", holes).color(RGBColor(255, 255, 255)))

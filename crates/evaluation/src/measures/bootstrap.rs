@@ -1,0 +1,199 @@
+//! Intervals from resampled draws and poses.
+
+use std::{collections::BTreeMap, fmt};
+
+use cloudtouch_geom::seed;
+use rand::RngExt;
+use rayon::prelude::*;
+
+/// Resamples behind an interval.
+const RESAMPLES: u64 = 300;
+
+/// Which answers share a draw of a scene, and which a pose of it: they are not independent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clusters {
+    /// For each answer its pose, counted over all draws.
+    pose_of: Vec<u32>,
+    /// For each pose its draw, counted over all families.
+    draw_of: Vec<u32>,
+    /// For each family the draws it has.
+    draws: Vec<Vec<u32>>,
+}
+
+impl Clusters {
+    /// Family, draw within the family and pose within the draw of each answer.
+    pub fn of<'a>(answers: impl IntoIterator<Item = (&'a str, u32, u32)>) -> Self {
+        let (mut poses, mut draws, mut families) =
+            (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        let mut clusters = Self { pose_of: Vec::new(), draw_of: Vec::new(), draws: Vec::new() };
+        for (family, draw, pose) in answers {
+            let next = poses.len() as u32;
+            let number = *poses.entry((family, draw, pose)).or_insert(next);
+            clusters.pose_of.push(number);
+            if number < next {
+                continue;
+            }
+            let next = draws.len() as u32;
+            let draw = *draws.entry((family, draw)).or_insert(next);
+            clusters.draw_of.push(draw);
+            if draw < next {
+                continue;
+            }
+            let next = families.len();
+            let family: usize = *families.entry(family).or_insert(next);
+            clusters.draws.resize(families.len(), Vec::new());
+            clusters.draws[family].push(draw);
+        }
+        clusters
+    }
+
+    /// For each answer the number of its pose.
+    pub fn poses(&self) -> &[u32] {
+        &self.pose_of
+    }
+
+    /// How many different poses there are.
+    pub fn pose_count(&self) -> usize {
+        self.draw_of.len()
+    }
+
+    /// How often a resample draws each answer: draws of a scene with replacement within each
+    /// family, then the poses of a draw. Families stay: they are chosen and no sample of anything.
+    fn weights(&self, number: u64) -> Vec<f64> {
+        let mut rng = seed::generator(seed::derive(SEED, number, 0));
+        let mut times = vec![0.0; self.draws.iter().map(Vec::len).sum()];
+        for draws in &self.draws {
+            for _ in draws {
+                times[draws[rng.random_range(0..draws.len())] as usize] += 1.0;
+            }
+        }
+        let mut members = vec![Vec::new(); times.len()];
+        for (pose, &draw) in self.draw_of.iter().enumerate() {
+            members[draw as usize].push(pose);
+        }
+        let mut of_pose = vec![0.0; self.draw_of.len()];
+        for (poses, times) in members.iter().zip(times) {
+            for _ in poses {
+                of_pose[poses[rng.random_range(0..poses.len())]] += times;
+            }
+        }
+        self.pose_of.iter().map(|&pose| of_pose[pose as usize]).collect()
+    }
+}
+
+/// All resampling follows from this.
+const SEED: u64 = 2011;
+
+/// A value with its 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Of the answers as they are.
+    pub value: f64,
+    /// 2.5 % of the resamples are below.
+    pub low: f64,
+    /// 2.5 % of the resamples are above.
+    pub high: f64,
+}
+
+impl Estimate {
+    /// Whether the interval lies on one side of zero.
+    pub fn excludes_zero(&self) -> bool {
+        self.low > 0.0 || self.high < 0.0
+    }
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.value.is_nan() {
+            return out.pad("–");
+        }
+        let short = |value: f64| {
+            let text = if out.sign_plus() { format!("{value:+.3}") } else { format!("{value:.3}") };
+            text.replacen("0.", ".", usize::from(value.abs() < 0.9995))
+        };
+        out.pad(&format!("{} [{}, {}]", short(self.value), short(self.low), short(self.high)))
+    }
+}
+
+/// Estimates of several statistics, each a function of the weights of the answers, resampled
+/// together so that their differences are paired.
+pub struct Replicates {
+    /// For the answers as they are, then for each resample: one value of each statistic.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Replicates {
+    /// Resamples the draws and poses behind the answers.
+    pub fn new(clusters: &Clusters, statistics: impl Fn(&[f64]) -> Vec<f64> + Sync) -> Self {
+        let as_they_are = vec![1.0; clusters.pose_of.len()];
+        let resample = |number| statistics(&clusters.weights(number));
+        let mut rows = vec![statistics(&as_they_are)];
+        rows.extend((0..RESAMPLES).into_par_iter().map(resample).collect::<Vec<_>>());
+        Self { rows }
+    }
+
+    /// One statistic.
+    pub fn estimate(&self, statistic: usize) -> Estimate {
+        self.of(|row| row[statistic])
+    }
+
+    /// One statistic minus another.
+    pub fn difference(&self, first: usize, second: usize) -> Estimate {
+        self.of(|row| row[first] - row[second])
+    }
+
+    /// Resamples without the statistic (one kind of truth only) say nothing.
+    fn of(&self, value: impl Fn(&[f64]) -> f64) -> Estimate {
+        let mut values: Vec<f64> = self.rows[1..].iter().map(|row| value(row)).collect();
+        values.retain(|v| !v.is_nan());
+        values.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let rank = (share * values.len() as f64) as usize;
+            values.get(rank.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+        };
+        Estimate { value: value(&self.rows[0]), low: at(0.025), high: at(0.975) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mean(values: &[f64], weights: &[f64]) -> f64 {
+        let sum: f64 = values.iter().zip(weights).map(|(v, w)| v * w).sum();
+        sum / weights.iter().sum::<f64>()
+    }
+
+    #[test]
+    fn the_interval_of_a_mean_is_that_of_theory() {
+        // 400 draws of one pose each, values of variance 1/12: ±1.96 √(1/12/400) = ±.0283.
+        let values: Vec<f64> = (0..400).map(|i| seed::unit(seed::derive(1, i, 0))).collect();
+        let clusters = Clusters::of((0..400).map(|i| ("a", i, 0)));
+        let found = Replicates::new(&clusters, |w| vec![mean(&values, w)]).estimate(0);
+        assert!((found.high - found.low - 2.0 * 0.0283).abs() < 0.009, "{found:?}");
+        assert!(found.low < found.value && found.value < found.high);
+    }
+
+    #[test]
+    fn answers_of_one_draw_are_not_independent() {
+        // The same values, but forty answers to each of ten draws agree.
+        let values: Vec<f64> = (0..400).map(|i| seed::unit(seed::derive(1, i / 40, 0))).collect();
+        let width = |clusters: Clusters| {
+            let found = Replicates::new(&clusters, |w| vec![mean(&values, w)]).estimate(0);
+            found.high - found.low
+        };
+        let together = width(Clusters::of((0..400).map(|i| ("a", i / 40, i % 40))));
+        let apart = width(Clusters::of((0..400).map(|i| ("a", i, 0))));
+        assert!(together > 3.0 * apart, "{together} {apart}");
+    }
+
+    #[test]
+    fn families_are_no_sample() {
+        // Each family agrees with itself, so nothing is left to chance.
+        let families = ["a", "b", "c"];
+        let clusters = Clusters::of((0..30).map(|i| (families[i as usize % 3], i, 0)));
+        let values: Vec<f64> = (0..30).map(|i| f64::from(i % 3)).collect();
+        let found = Replicates::new(&clusters, |w| vec![mean(&values, w)]).estimate(0);
+        assert_eq!((found.low, found.high), (1.0, 1.0));
+    }
+}

@@ -1,0 +1,53 @@
+//! Measures of answers against the truth, each once, with intervals and paired differences.
+
+mod bootstrap;
+mod calibration;
+mod logistic;
+mod rank;
+mod sample;
+
+pub use bootstrap::{Clusters, Estimate, Replicates};
+pub use calibration::{Bin, brier, calibration_error, chance_error, observed_within, reliability};
+pub use logistic::Logistic;
+pub use rank::{auc, false_stops, roc};
+pub use sample::Sample;
+
+/// What a method can be judged by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Measure {
+    /// Area under the ROC curve: how well it ranks.
+    Auc,
+    /// Mean squared error of its probability.
+    Brier,
+    /// Expected calibration error.
+    CalibrationError,
+    /// Free poses stopped while at most this share of the collisions is missed.
+    FalseStops(f64),
+}
+
+impl Measure {
+    /// Its name in tables.
+    pub fn name(self) -> String {
+        match self {
+            Self::Auc => "AUC".into(),
+            Self::Brier => "Brier".into(),
+            Self::CalibrationError => "ECE".into(),
+            Self::FalseStops(rate) => format!("false stops at {} % misses", 100.0 * rate),
+        }
+    }
+
+    /// +1 when more is better, else −1.
+    pub fn sign(self) -> f64 {
+        if self == Self::Auc { 1.0 } else { -1.0 }
+    }
+
+    /// Its value; `weights` say how often each answer counts.
+    pub fn of(self, sample: &Sample, weights: &[f64]) -> f64 {
+        match self {
+            Self::Auc => auc(sample, weights),
+            Self::Brier => brier(sample, weights),
+            Self::CalibrationError => calibration_error(sample, weights),
+            Self::FalseStops(rate) => false_stops(sample, weights, rate),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! How well scores order the poses, and what a yes or no costs.
+
+use super::Sample;
+
+/// Chance that a collision has a higher score than a free pose, ties counting half (area under
+/// the ROC curve); NaN without both kinds.
+pub fn auc(sample: &Sample, weights: &[f64]) -> f64 {
+    let (mut wins, mut free_below, mut hits_below) = (0.0, 0.0, 0.0);
+    sample.score_groups(weights, |_, hits, free| {
+        wins += hits * (free_below + 0.5 * free);
+        free_below += free;
+        hits_below += hits;
+    });
+    wins / (hits_below * free_below)
+}
+
+/// Points (share of free poses stopped, share of collisions found) of all thresholds, from (0, 0)
+/// to (1, 1); not numbers without both kinds.
+pub fn roc(sample: &Sample) -> Vec<(f64, f64)> {
+    let weights = sample.ones();
+    let (all_hits, all_free) = sample.totals(&weights);
+    let mut points = vec![(1.0, 1.0)];
+    let (mut hits_below, mut free_below) = (0.0, 0.0);
+    sample.score_groups(&weights, |_, hits, free| {
+        hits_below += hits;
+        free_below += free;
+        points.push((1.0 - free_below / all_free, 1.0 - hits_below / all_hits));
+    });
+    points.reverse();
+    points
+}
+
+/// Share of the free poses stopped at the highest threshold that misses at most `miss_rate` of the
+/// collisions, a pose being stopped when its score is at or above it; NaN without both kinds.
+pub fn false_stops(sample: &Sample, weights: &[f64], miss_rate: f64) -> f64 {
+    let (all_hits, all_free) = sample.totals(weights);
+    // Room for the rounding of miss_rate · all_hits where it should be a whole number.
+    let allowed = miss_rate * all_hits + 1e-9;
+    let (mut missed, mut free_below, mut passed) = (0.0, 0.0, f64::NAN);
+    sample.score_groups(weights, |_, hits, free| {
+        missed += hits;
+        // The next threshold up would miss this group too.
+        if missed > allowed && passed.is_nan() {
+            passed = free_below;
+        }
+        free_below += free;
+    });
+    1.0 - passed / all_free
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn known() -> Sample {
+        Sample::of_probabilities([
+            (0.9, true),
+            (0.4, true),
+            (0.4, false),
+            (0.1, false),
+            (0.2, true),
+            (0.3, false),
+        ])
+    }
+
+    #[test]
+    fn auc_counts_pairs_and_half_of_ties() {
+        // Of nine pairs: .9 wins three, .4 wins two and ties one, .2 wins one.
+        let sample = known();
+        assert!((auc(&sample, &sample.ones()) - 6.5 / 9.0).abs() < 1e-12);
+        // Twice the first collision, without the last: 2 · 3 + 2.5 of nine.
+        let weights = [2.0, 1.0, 1.0, 1.0, 0.0, 1.0];
+        assert!((auc(&sample, &weights) - 8.5 / 9.0).abs() < 1e-12);
+        assert!(auc(&sample, &[0.0; 6]).is_nan());
+    }
+
+    #[test]
+    fn false_stops_at_the_highest_threshold_allowed() {
+        let sample = known();
+        // No miss: threshold .2, two of three free poses are stopped.
+        assert!((false_stops(&sample, &sample.ones(), 0.0) - 2.0 / 3.0).abs() < 1e-12);
+        // One of three may be missed: threshold .4, with one free pose at it.
+        assert!((false_stops(&sample, &sample.ones(), 0.34) - 1.0 / 3.0).abs() < 1e-12);
+        assert!(false_stops(&sample, &[0.0; 6], 0.0).is_nan());
+    }
+
+    #[test]
+    fn the_curve_of_all_thresholds_has_the_area() {
+        let sample = known();
+        let points = roc(&sample);
+        assert_eq!([points[0], points[points.len() - 1]], [(0.0, 0.0), (1.0, 1.0)]);
+        let area: f64 =
+            points.windows(2).map(|w| (w[1].0 - w[0].0) * 0.5 * (w[0].1 + w[1].1)).sum();
+        assert!((area - auc(&sample, &sample.ones())).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,179 @@
+//! The least distance: between the points of two clouds, or of a cloud from a mesh, as measured or
+//! after our own surface fit, in units of noise and spacing.
+
+use std::{num::NonZeroUsize, time::Instant};
+
+use anyhow::{Result, anyhow};
+use cloudtouch::Mesh;
+use cloudtouch_geom::{Point3, Pose};
+use cloudtouch_noise::{Neighborhoods, NoiseModel, Scratch, typical_spacing};
+use cloudtouch_testkit::family::Observation;
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+
+use super::{Draw, Method, Prepared, cleaned, micros_since, sensor_of};
+use crate::answers::{Pair, Said};
+
+/// Standard deviation of where the surface is along itself between samples, in spacings.
+const DISC_STD: f64 = 0.35;
+/// Points whose spacing stands for that of all.
+const SPACING_SAMPLE: usize = 500;
+/// Points of the second cloud are visited in strides of this, so that a close one comes early.
+const STRIDE: usize = 64;
+
+/// The least distance, negative where a point is inside of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Distance {
+    /// Whether points are first moved to where our noise model expects the surface.
+    pub smoothed: bool,
+}
+
+/// A cloud and its k-d tree.
+pub struct CloudIndex(ImmutableKdTree<f64, 3>);
+
+impl CloudIndex {
+    /// Indexes finite points.
+    ///
+    /// # Errors
+    /// When the tree cannot be built.
+    pub fn new(points: &[Point3]) -> Result<Self> {
+        // −0 and 0 are one place.
+        let entries: Vec<(u32, [f64; 3])> =
+            (0..).zip(points).map(|(i, p)| (i, p.coords.map(|v| v + 0.0).into())).collect();
+        Ok(Self(ImmutableKdTree::new_from_entries(&entries).map_err(|e| anyhow!("index: {e}"))?))
+    }
+
+    /// The least distance of other points, moved by a pose, from the indexed ones, m.
+    pub fn distance(&self, points: &[Point3], pose: &Pose) -> f64 {
+        let mut least = f64::MAX;
+        for i in (0..STRIDE).flat_map(|start| (start..points.len()).step_by(STRIDE)) {
+            let place: [f64; 3] = pose.transform_point(&points[i]).coords.into();
+            let nearest =
+                self.0.query(&place).nearest_n::<SquaredEuclidean<f64>>(NonZeroUsize::MIN);
+            // Each is sought no farther than the nearest so far.
+            if let Some(hit) = nearest.within(least).execute().first() {
+                least = least.min(hit.distance);
+            }
+        }
+        least.sqrt()
+    }
+}
+
+struct Bodies {
+    a: Vec<Point3>,
+    b: Vec<Point3>,
+    index: CloudIndex,
+    mesh: Mesh,
+    /// Lowest and highest corner of the mesh's box, m.
+    mesh_box: [Point3; 2],
+    /// What one unit of distance is for two clouds, and for a cloud and a mesh, m.
+    scales: [f64; 2],
+}
+
+impl Method for Distance {
+    fn name(&self) -> String {
+        if self.smoothed { "smoothed distance".into() } else { "distance".into() }
+    }
+
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+        let [(a, unit_a), (b, unit_b)] =
+            [points(draw.a, self.smoothed)?, points(draw.b, self.smoothed)?];
+        let (low, high) = draw.mesh.bounding_box().ok_or_else(|| anyhow!("a mesh of nothing"))?;
+        Ok(Box::new(Bodies {
+            index: CloudIndex::new(&a)?,
+            a,
+            b,
+            mesh: Mesh::prepare(draw.mesh)?,
+            mesh_box: [low, high],
+            scales: [unit_a.hypot(unit_b), unit_a].map(|scale| scale.max(1e-9)),
+        }))
+    }
+}
+
+/// The points, and a standard deviation of noise and sampling, m.
+fn points(observation: &Observation, smoothed: bool) -> Result<(Vec<Point3>, f64)> {
+    let cloud = cleaned(observation)?;
+    let neighborhoods = Neighborhoods::try_new(cloud.points.clone())?;
+    let unit = observation.std.hypot(DISC_STD * typical_spacing(&neighborhoods, SPACING_SAMPLE));
+    if !smoothed {
+        return Ok((cloud.points, unit));
+    }
+    let sensor = sensor_of(observation).covariances(&cloud)?;
+    let (model, mut scratch) = (NoiseModel::default(), Scratch::default());
+    let mut expected =
+        |i| model.refine(i, &neighborhoods, &sensor, f64::INFINITY, &mut scratch).point.mean;
+    Ok(((0..cloud.points.len()).map(&mut expected).collect(), unit))
+}
+
+impl Bodies {
+    /// The least signed distance of the points of A from the mesh, m.
+    fn to_mesh(&self, a_from_b: &Pose) -> f64 {
+        let b_from_a = a_from_b.inverse();
+        let [low, high] = self.mesh_box;
+        let moved: Vec<Point3> = self.a.iter().map(|p| b_from_a.transform_point(p)).collect();
+        let to_box = |p: &Point3| {
+            (0..3).map(|k| (low[k] - p[k]).max(p[k] - high[k]).max(0.0).powi(2)).sum::<f64>().sqrt()
+        };
+        let mut by_box: Vec<(f64, &Point3)> = moved.iter().map(|p| (to_box(p), p)).collect();
+        by_box.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let mut least = f64::INFINITY;
+        for (at_least, point) in by_box {
+            if at_least >= least && at_least > 0.0 {
+                break;
+            }
+            least = least.min(self.mesh.signed_distance(point));
+        }
+        least
+    }
+}
+
+impl Prepared for Bodies {
+    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
+        let start = Instant::now();
+        let (distance, scale) = match pair {
+            Pair::CloudCloud => (self.index.distance(&self.b, a_from_b), self.scales[0]),
+            Pair::CloudMesh => (self.to_mesh(a_from_b), self.scales[1]),
+        };
+        Ok(Some(Said::score(-distance / scale, micros_since(start))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Vector3, seed};
+    use cloudtouch_testkit::{
+        brute,
+        family::{Family, Side},
+        noise::NoiseKind,
+    };
+
+    use super::*;
+
+    #[test]
+    fn distances_are_those_of_brute_force() {
+        let scene = Family::SphereAndPlane.scene(3);
+        let [a, b] =
+            [Side::A, Side::B].map(|s| scene.observe(s, 300, NoiseKind::Gaussian, 0.002, 1));
+        let draw = Draw { family: "x", a: &a, b: &b, mesh: scene.b.mesh() };
+        let prepared = Distance { smoothed: false }.prepare(&draw).unwrap();
+        for i in 0..10 {
+            let along = |k| 0.4 * seed::unit(seed::derive(9, i, k)) - 0.2;
+            let offset = Vector3::new(along(0), along(1), 0.3 + along(2));
+            let pose = Pose::from_translation_rpy(offset, [along(3), along(4), along(5)]);
+            let said = |pair| prepared.ask(pair, &pose).unwrap().unwrap().score;
+            let moved: Vec<Point3> =
+                b.cloud.points.iter().map(|p| pose.transform_point(p)).collect();
+            let clouds = brute::minimum_distance(&a.cloud.points, &moved);
+            let in_b: Vec<Point3> =
+                a.cloud.points.iter().map(|p| pose.inverse().transform_point(p)).collect();
+            let mesh = Mesh::prepare(scene.b.mesh()).unwrap();
+            let to_mesh =
+                in_b.iter().map(|p| mesh.signed_distance(p)).fold(f64::INFINITY, f64::min);
+            // Both are divided by the same unit in every pose.
+            let unit = -clouds / said(Pair::CloudCloud);
+            assert!(unit > 0.002 && unit < 0.1, "{unit}");
+            assert!((said(Pair::CloudMesh) * to_mesh) < 0.0 || to_mesh.abs() < 1e-12);
+            let unit = -to_mesh / said(Pair::CloudMesh);
+            assert!(unit > 0.002 && unit < 0.1, "{unit}");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Who answers: ours, and what it is compared with.
+//!
+//! A method is prepared once for a draw of a scene and then asked at many poses, as a planner does.
+
+mod boxes;
+mod distance;
+mod fitted;
+mod ours;
+mod plain_svm;
+
+use std::time::Instant;
+
+use anyhow::Result;
+use cloudtouch::{FilterSettings, filter, noise::SensorModel};
+use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
+use cloudtouch_testkit::family::Observation;
+
+pub use boxes::Boxes;
+pub use distance::{CloudIndex, Distance};
+pub use fitted::{Coefficients, Fitted};
+pub use ours::Ours;
+pub use plain_svm::PlainSvm;
+
+use crate::answers::{Pair, Said};
+
+/// What there is to see of the two bodies of a draw.
+#[derive(Clone, Copy)]
+pub struct Draw<'a> {
+    /// Name of the family, so that no method is judged with constants fitted on it.
+    pub family: &'a str,
+    /// The body that stays.
+    pub a: &'a Observation,
+    /// The moving body as it was observed, for [`Pair::CloudCloud`].
+    pub b: &'a Observation,
+    /// The moving body as it is, for [`Pair::CloudMesh`].
+    pub mesh: &'a TriangleMesh,
+}
+
+/// A way to tell whether two bodies collide.
+pub trait Method: Sync {
+    /// Its name in tables.
+    fn name(&self) -> String;
+
+    /// Everything that does not depend on the pose.
+    ///
+    /// # Errors
+    /// When the observations cannot be used.
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>>;
+}
+
+/// A method that knows the two bodies.
+pub trait Prepared {
+    /// What it says of a pose of the moving body; `None` when it does not answer for such a pair.
+    ///
+    /// # Errors
+    /// When it fails, which a sweep does not excuse.
+    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>>;
+}
+
+/// How noisy an observation says it is.
+pub fn sensor_of(observation: &Observation) -> SensorModel {
+    match &observation.cloud.covariances {
+        Some(_) => SensorModel::PerPoint,
+        None => SensorModel::Isotropic { std: observation.std },
+    }
+}
+
+/// The cloud as ours cleans it: rows without a return are left out.
+fn cleaned(observation: &Observation) -> Result<PointCloud> {
+    let settings = FilterSettings::for_sensor(&sensor_of(observation));
+    Ok(filter(&observation.cloud, &settings)?.cloud)
+}
+
+fn micros_since(start: Instant) -> f64 {
+    1e6 * start.elapsed().as_secs_f64()
+}

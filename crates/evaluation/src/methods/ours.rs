@@ -1,0 +1,119 @@
+//! Ours: the default, the paper's mode, either with any setting changed, and the oracle.
+
+use anyhow::Result;
+use cloudtouch::{
+    Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Recalibration, bvh::TreeSettings,
+    noise::SensorModel,
+};
+use cloudtouch_geom::{PointCloud, Pose};
+use cloudtouch_testkit::family::Observation;
+
+use super::{Draw, Fitted, Method, Prepared, sensor_of};
+use crate::answers::{Pair, Said};
+
+/// The query with some settings.
+pub struct Ours {
+    name: String,
+    /// Settings of the query; the recalibration is that fitted without the family asked about.
+    pub query: QuerySettings,
+    /// Settings of the trees of clouds.
+    pub tree: TreeSettings,
+    /// Whether it is given the points without noise and the true normals.
+    sees_truth: bool,
+    fitted: Fitted,
+}
+
+impl Ours {
+    /// The defaults of a mode.
+    ///
+    /// # Errors
+    /// When the stored fit cannot be read.
+    pub fn new(name: &str, mode: Mode) -> Result<Self> {
+        Ok(Self {
+            name: name.to_owned(),
+            query: QuerySettings::new(mode),
+            tree: CloudSettings::new(SensorModel::Exact, mode).tree,
+            sees_truth: false,
+            fitted: Fitted::stored()?,
+        })
+    }
+
+    /// The default, given every sampled point as it truly is: what sampling alone leaves to be known.
+    ///
+    /// # Errors
+    /// When the stored fit cannot be read.
+    pub fn oracle(name: &str) -> Result<Self> {
+        Ok(Self { sees_truth: true, ..Self::new(name, Mode::Calibrated)? })
+    }
+
+    /// The same, gathering all evidence however clear the first of it is.
+    pub fn gathering_everything(mut self) -> Self {
+        self.query.doubt = [0.0, 1.0];
+        self.query.stop_above = 1.0;
+        self
+    }
+
+    fn recalibration(&self, family: &str) -> Result<Recalibration> {
+        if self.sees_truth {
+            self.fitted.oracle_to_judge(family)
+        } else {
+            self.fitted.to_judge(family)
+        }
+    }
+
+    fn cloud(&self, observation: &Observation) -> Result<Cloud> {
+        let exact;
+        let (cloud, sensor) = if self.sees_truth {
+            exact = true_points(observation);
+            (&exact, SensorModel::Isotropic { std: 0.0 })
+        } else {
+            (&observation.cloud, sensor_of(observation))
+        };
+        let settings =
+            CloudSettings { tree: self.tree, ..CloudSettings::new(sensor, self.query.mode) };
+        Ok(Cloud::prepare(cloud, &settings)?)
+    }
+}
+
+/// The sampled points where they truly are, with the normals of the surface there; points that no
+/// surface made are left out.
+fn true_points(observation: &Observation) -> PointCloud {
+    let samples = || observation.truth.iter().flatten();
+    PointCloud {
+        normals: Some(samples().map(|s| s.normal).collect()),
+        ..PointCloud::from_points(samples().map(|s| s.position).collect())
+    }
+}
+
+struct Bodies {
+    query: Query,
+    a: Cloud,
+    b: Cloud,
+    mesh: Mesh,
+}
+
+impl Method for Ours {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+        let recalibration = self.recalibration(draw.family)?;
+        Ok(Box::new(Bodies {
+            query: Query::new(QuerySettings { recalibration, ..self.query })?,
+            a: self.cloud(draw.a)?,
+            b: self.cloud(draw.b)?,
+            mesh: Mesh::prepare(draw.mesh)?,
+        }))
+    }
+}
+
+impl Prepared for Bodies {
+    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
+        let report = match pair {
+            Pair::CloudCloud => self.query.run(&self.a, &self.b, a_from_b)?,
+            Pair::CloudMesh => self.query.run(&self.a, &self.mesh, a_from_b)?,
+        };
+        Ok(Some(Said::from(&report)))
+    }
+}

@@ -1,0 +1,105 @@
+//! A kernel classifier without robust terms: trained on the measured points as if they were exact,
+//! with the sensor's noise only in the probabilities read off it.
+
+use std::time::Instant;
+
+use anyhow::Result;
+use cloudtouch_geom::{Covariance, Point3, Pose, UncertainPoint};
+use cloudtouch_noise::Neighborhoods;
+use cloudtouch_svm::{
+    Class, Classifier, Kernel, Problem, Sample, Settings, UnitBox, balanced_penalties,
+};
+
+use super::{Draw, Method, Prepared, cleaned, micros_since};
+use crate::answers::{Pair, Said};
+
+/// Points of each side nearest to where the clouds are closest.
+const POINTS_A_SIDE: usize = 60;
+/// The settings of ours, so that only the robust terms differ.
+const GAMMA: f64 = 10.0;
+const PENALTY: f64 = 100.0;
+const RELATIVE_GAP: f64 = 1e-4;
+/// What is said where no classifier can be had.
+const UNDETERMINED: f64 = 0.5;
+
+/// Answers for two clouds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlainSvm;
+
+struct Bodies {
+    a: Neighborhoods,
+    b: Neighborhoods,
+    covariances: [Covariance; 2],
+}
+
+impl Method for PlainSvm {
+    fn name(&self) -> String {
+        "plain SVM".into()
+    }
+
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+        Ok(Box::new(Bodies {
+            a: Neighborhoods::try_new(cleaned(draw.a)?.points)?,
+            b: Neighborhoods::try_new(cleaned(draw.b)?.points)?,
+            covariances: [draw.a.std, draw.b.std].map(|std| Covariance::isotropic(std * std)),
+        }))
+    }
+}
+
+impl Prepared for Bodies {
+    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
+        if pair == Pair::CloudMesh {
+            return Ok(None);
+        }
+        let start = Instant::now();
+        let Some(middle) = self.closest(a_from_b) else { return Ok(None) };
+        let [of_a, of_b] = self.covariances;
+        let a: Vec<UncertainPoint> = nearest(&self.a, &middle)
+            .map(|mean| UncertainPoint { mean, covariance: of_a })
+            .collect();
+        let in_b = a_from_b.inverse().transform_point(&middle);
+        let b: Vec<UncertainPoint> = nearest(&self.b, &in_b)
+            .map(|p| UncertainPoint { mean: a_from_b.transform_point(&p), covariance: of_b })
+            .collect();
+        let probability = largest(&a, &b)?;
+        let said = Said::score(probability, micros_since(start));
+        Ok(Some(Said { probability: Some(probability), ..said }))
+    }
+}
+
+impl Bodies {
+    /// The middle between the closest points of the two clouds, in the frame of A.
+    fn closest(&self, a_from_b: &Pose) -> Option<Point3> {
+        let moved = self.b.points().iter().map(|p| a_from_b.transform_point(p));
+        let pairs = moved.filter_map(|p| Some((self.a.nearest_to(&p, 1).first().copied()?, p)));
+        let by_distance = |x: &f64, y: &f64| x.total_cmp(y);
+        let (near, p) =
+            pairs.min_by(|(x, _), (y, _)| by_distance(&x.squared_distance, &y.squared_distance))?;
+        Some(nalgebra::center(&self.a.points()[near.index], &p))
+    }
+}
+
+fn nearest<'a>(cloud: &'a Neighborhoods, to: &Point3) -> impl Iterator<Item = Point3> + use<'a> {
+    cloud.nearest_to(to, POINTS_A_SIDE).into_iter().map(|found| cloud.points()[found.index])
+}
+
+/// The largest probability of a point to be on the wrong side.
+fn largest(a: &[UncertainPoint], b: &[UncertainPoint]) -> Result<f64> {
+    let Some(unit_box) = UnitBox::around(a.iter().chain(b)) else { return Ok(UNDETERMINED) };
+    let (penalty_a, penalty_b) = balanced_penalties(PENALTY, a.len(), b.len());
+    let sample = |point: &UncertainPoint, class, penalty| {
+        unit_box.sample_inside(&Sample { point: *point, class, radius: 0.0, penalty })
+    };
+    let of_a = a.iter().map(|point| sample(point, Class::A, penalty_a));
+    let of_b = b.iter().map(|point| sample(point, Class::B, penalty_b));
+    let samples: Vec<Sample> = of_a.chain(of_b).collect();
+    let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma: GAMMA })?;
+    let solution = problem.solve(&Settings::with_relative_gap(RELATIVE_GAP)?);
+    let Ok(classifier) = Classifier::try_new(&problem, &solution) else { return Ok(UNDETERMINED) };
+    let classifier = classifier.outside(unit_box);
+    let of = |points: &[UncertainPoint], class| {
+        let p = points.iter().map(|p| classifier.probability(p, class).unwrap_or(UNDETERMINED));
+        p.fold(0.0, f64::max)
+    };
+    Ok(f64::max(of(a, Class::A), of(b, Class::B)))
+}

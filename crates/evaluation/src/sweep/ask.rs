@@ -1,0 +1,117 @@
+//! Draws every scene of a plan and asks every method about it.
+
+use anyhow::{Context, Result};
+use cloudtouch_geom::seed;
+use cloudtouch_testkit::{
+    family::{Family, FamilyScene, Kind, Side},
+    poses::LabelledPose,
+};
+use rayon::prelude::*;
+
+use super::plan::{Plan, SEED};
+use crate::{
+    answers::{Answers, Condition, Question, Said},
+    methods::{Draw, Method},
+};
+
+/// A method, and of how many poses it answers one: slow peers answer fewer.
+pub struct Asked {
+    /// Who answers.
+    pub method: Box<dyn Method>,
+    /// 1 for every pose, 3 for a third of them.
+    pub one_of: usize,
+}
+
+impl Asked {
+    /// About every pose.
+    pub fn always(method: impl Method + 'static) -> Self {
+        Self { method: Box::new(method), one_of: 1 }
+    }
+}
+
+/// One draw of a family: its scene and poses.
+struct Scene {
+    family: Family,
+    number: u32,
+    scene: FamilyScene,
+    poses: Vec<LabelledPose>,
+    seed: u64,
+}
+
+/// What a method says of one question.
+type Row = (Question, Vec<(String, Said)>);
+
+/// All answers to a plan; the same for any number of threads.
+///
+/// # Errors
+/// When a method fails or gives what is no answer.
+pub fn ask(plan: &Plan, methods: &[Asked]) -> Result<Answers> {
+    let mut answers = Answers::default();
+    for &family in &plan.families {
+        let scenes: Vec<Scene> =
+            (0..plan.draws).into_par_iter().map(|number| scene(plan, family, number)).collect();
+        let tasks: Vec<(&Scene, &Condition)> =
+            scenes.iter().flat_map(|s| plan.conditions.iter().map(move |c| (s, c))).collect();
+        let rows: Vec<Vec<Row>> = tasks
+            .into_par_iter()
+            .map(|(scene, condition)| {
+                of_draw(plan, scene, condition, methods)
+                    .with_context(|| format!("{}, draw {}", family.name(), scene.number))
+            })
+            .collect::<Result<_>>()?;
+        rows.into_iter().try_for_each(|rows| answers.extend(rows))?;
+        eprintln!("{}: {} answers", family.name(), answers.questions.len());
+    }
+    Ok(answers)
+}
+
+fn scene(plan: &Plan, family: Family, number: u32) -> Scene {
+    let seed = seed::derive(SEED, family as u64, seed::derive(plan.stream, number.into(), 0));
+    let scene = family.scene(seed);
+    let poses = scene.poses(plan.poses, seed::derive(seed, 1, 0));
+    Scene { family, number, scene, poses, seed }
+}
+
+/// The answers about one draw under one condition.
+fn of_draw(
+    plan: &Plan,
+    Scene { family, number, scene, poses, seed }: &Scene,
+    condition: &Condition,
+    methods: &[Asked],
+) -> Result<Vec<Row>> {
+    let Condition { points, noise, std } = *condition;
+    // The same for every standard deviation, so that only the size of the errors differs.
+    let draw = seed::derive(*seed, points as u64, 2 + noise as u64);
+    let [a, b] = [Side::A, Side::B].map(|side| scene.observe(side, points, noise, std, draw));
+    let seen = Draw { family: family.name(), a: &a, b: &b, mesh: scene.b.mesh() };
+    let mut rows: Vec<Row> = Vec::new();
+    for &pair in &plan.pairs {
+        rows.extend(poses.iter().zip(0..).map(|(pose, number_of_pose)| {
+            let question = Question {
+                family: family.name(),
+                ordinary: family.kind() == Kind::Ordinary,
+                pair,
+                condition: *condition,
+                draw: *number,
+                pose: number_of_pose,
+                collides: pose.in_collision,
+                signed_distance: pose.signed_distance,
+            };
+            (question, Vec::new())
+        }));
+    }
+    for Asked { method, one_of } in methods {
+        let prepared = method.prepare(&seen).with_context(|| method.name())?;
+        for (question, said) in &mut rows {
+            let number = question.pose as usize;
+            if number % one_of == 0 {
+                let pose = &poses[number].scene_from_object;
+                let answer = prepared
+                    .ask(question.pair, pose)
+                    .with_context(|| format!("{}, {question:?}", method.name()))?;
+                said.extend(answer.map(|answer| (method.name(), answer)));
+            }
+        }
+    }
+    Ok(rows)
+}

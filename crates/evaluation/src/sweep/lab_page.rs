@@ -1,0 +1,99 @@
+//! docs/lab/accuracy.md: everything that is measured.
+
+use std::path::Path;
+
+use super::{OURS, figures, judged::Judged, plan::SEED, tables::Answered, targets};
+use crate::{
+    answers::{Pair, Question},
+    page::{Page, Section},
+    table::Table,
+};
+
+const INTRODUCTION: &str = "Every method answers the same poses of generated scenes whose exact \
+answer is known from their meshes (parry3d in double precision, checked against a brute-force \
+triangle test). A family is a kind of scene; each of its draws is a scene of its own with fresh \
+clouds, prepared once and asked at many poses. Ordinary families are what users meet: rooms, \
+tables, counters, bins, corridors. Adversarial ones, in brackets, are chosen to be hard: thin, \
+open, nested or linked bodies. Exactly half of the poses of every draw collide, half are within 3 cm \
+of contact (near), whatever the size of the run; out there most poses are free. Contacts at \
+surface that no sensor sees are left out: no method could tell them. The moving body is given \
+as a second cloud or as its exact mesh.
+
+Methods: `calibrated` is what users get by default, its constants fitted on the other families \
+(`cargo xtask calibrate`), `oracle` the same given noise-free points and true normals, `paper` \
+the method as printed. Alternatives: the least distance of the points, as measured or after our own \
+surface fit, in units of noise and spacing; 1 cm boxes around the points (yes or no); a support \
+vector machine without robust terms. `paper` and the plain SVM answer every fourth pose. \
+Alternatives without a probability get one by a logistic function of their score, fitted on the \
+other families.
+
+`a [b, c]` is a value with its 95 % interval: draws are resampled within each family, then the \
+poses of a draw, with all conditions of a pose together. False stops: the share of free poses that \
+a threshold stops which misses at most so many of the collisions. ECE is over 15 bins; in brackets \
+what chance alone gives a perfect forecaster.";
+
+pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>, bounds: Section) -> Page {
+    let names = (("accuracy", "Accuracy, in full"), ("sweep", arguments));
+    let mut page = Page::new(names.0, names.1, INTRODUCTION, root, SEED);
+    page.section(targets::section(answered));
+    for pair in Pair::ALL {
+        let mut section = Section::new(&format!("{}: methods", capitalised(pair)));
+        for (kind, ordinary) in [("Ordinary", true), ("Adversarial", false)] {
+            let keep = Answered::is_of(pair, ordinary);
+            let rate = answered.base_rate(keep);
+            section = section
+                .text(format_args!("{kind} scenes, {rate}; bold: the interval excludes zero."))
+                .text(answered.methods(keep));
+        }
+        page.section(section);
+        let section = Section::new(&format!("{}: families", capitalised(pair)));
+        page.section(section.text(answered.families(pair)));
+        let section = Section::new(&format!("{}: noise, ordinary scenes", capitalised(pair)));
+        page.section(section.text(answered.noises(pair)));
+    }
+    let figures = [
+        (
+            "sweep-reliability",
+            "Stated probability against observed rate",
+            figures::reliability_figure(answered),
+        ),
+        ("sweep-roc", "Collisions found against free poses stopped", figures::roc_figure(answered)),
+        ("sweep-noise", "AUC and Brier score against noise", figures::noise_figure(answered)),
+        ("sweep-distance", "Probability against distance", figures::distance_figure(answered)),
+        ("sweep-speed", "Query time against 1 − AUC", figures::speed_figure(answered)),
+    ];
+    let pictures =
+        figures.into_iter().fold(Section::new("Figures"), |section, (name, shows, figure)| {
+            section.figure(name, shows, figure)
+        });
+    page.section(pictures);
+    page.section(bounds);
+    page.section(times(answered));
+    page
+}
+
+fn capitalised(pair: Pair) -> &'static str {
+    match pair {
+        Pair::CloudCloud => "Two clouds",
+        Pair::CloudMesh => "Cloud and mesh",
+    }
+}
+
+fn times(answered: &Answered<'_>) -> Section {
+    let mut table = Table::new(["method", "pair", "median (ms)", "p95 (ms)"]);
+    for name in answered.answers.names() {
+        for pair in Pair::ALL {
+            let keep = |q: &Question| q.pair == pair && q.condition.points == 10_000;
+            let judged = Judged::pick(answered.answers, &[name], keep);
+            if judged.counts().0 > 0 {
+                let of = |share| format!("{:.2}", judged.query_ms(name, share));
+                table.row([name.to_owned(), pair.name().into(), of(0.5), of(0.95)]);
+            }
+        }
+    }
+    Section::new("Time of a query").text(format_args!(
+        "10,000 points, bodies prepared once for the poses of a draw; the noise model of `{OURS}` is \
+         computed where queries first come near, so early poses pay for later ones. As many queries \
+         at a time as there are cores."
+    )).text(table)
+}

@@ -1,0 +1,94 @@
+//! `cargo xtask sweep`: collision probabilities of many scenes, noises and methods against exact
+//! truth.
+
+mod ask;
+mod bounds;
+mod figures;
+mod grade;
+mod judged;
+mod lab_page;
+mod plan;
+mod short;
+mod tables;
+mod targets;
+mod user_page;
+
+use std::path::Path;
+
+use anyhow::Result;
+use clap::Args;
+use cloudtouch::Mode;
+
+pub use ask::{Asked, ask};
+pub use judged::{Judged, Measured};
+pub use plan::{Plan, SEED};
+pub use short::run as check;
+
+use crate::{
+    methods::{Boxes, Distance, Ours, PlainSvm},
+    page,
+};
+use tables::Answered;
+
+/// What ours is called in tables and files.
+pub const OURS: &str = "calibrated";
+/// ... and ours given every sampled point as it truly is.
+pub const ORACLE: &str = "oracle";
+
+/// What `cargo xtask sweep` is given.
+#[derive(Args)]
+pub struct Arguments {
+    /// Draws of each family: a scene of its own, and fresh clouds under every condition
+    #[arg(long, default_value_t = 10)]
+    draws: u32,
+    /// Poses of each draw, half of them collisions
+    #[arg(long, default_value_t = 28)]
+    poses: usize,
+    /// One condition, compared with recorded bounds; what CI runs
+    #[arg(long)]
+    short: bool,
+    /// Write docs/accuracy.md, docs/lab/accuracy.md and figures; else everything goes to target/
+    #[arg(long, conflicts_with = "short")]
+    update_docs: bool,
+}
+
+/// Runs the sweep, and writes answers, pages and figures.
+///
+/// # Errors
+/// When a method fails, a page cannot be written, or with `--short` when accuracy is worse than
+/// recorded.
+pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
+    let Arguments { draws, poses, short, update_docs } = *arguments;
+    if short {
+        return check();
+    }
+    let mut answers = ask(&Plan::full(draws, poses), &methods()?)?;
+    grade::grade(&mut answers)?;
+    let folder = page::folder(root, update_docs);
+    std::fs::create_dir_all(root.join("target/lab"))?;
+    answers.write_csv(&root.join("target/lab/answers.csv"))?;
+    let answered = Answered::new(&answers);
+    let arguments = format!("--draws {draws} --poses {poses} --update-docs");
+    let bounds = bounds::section()?;
+    lab_page::page(root, &arguments, &answered, bounds).write(&folder)?;
+    user_page::page(root, &arguments, &answered).write(&if update_docs {
+        root.join("docs")
+    } else {
+        folder.join("user")
+    })
+}
+
+/// Ours, the oracle, the paper's mode and the alternatives. What takes long answers every fourth
+/// pose.
+fn methods() -> Result<Vec<Asked>> {
+    let fourth = |method| Asked { method, one_of: 4 };
+    Ok(vec![
+        Asked::always(Ours::new(OURS, Mode::Calibrated)?),
+        Asked::always(Ours::oracle(ORACLE)?),
+        Asked::always(Distance { smoothed: false }),
+        Asked::always(Distance { smoothed: true }),
+        Asked::always(Boxes { side: 0.01 }),
+        fourth(Box::new(Ours::new("paper", Mode::Paper)?)),
+        fourth(Box::new(PlainSvm)),
+    ])
+}

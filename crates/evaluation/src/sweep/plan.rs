@@ -1,0 +1,80 @@
+//! What a sweep consists of: one grid of conditions for every report.
+
+use cloudtouch_testkit::{family::Family, noise::NoiseKind};
+
+use crate::answers::{Condition, Pair};
+
+/// All randomness of the sweeps comes from this.
+pub const SEED: u64 = 2011;
+
+/// Standard deviations of the noise, m.
+pub(super) const STDS: [f64; 4] = [0.0, 0.002, 0.01, 0.02];
+/// Points of each cloud that results are pooled over.
+pub(super) const POINTS: [usize; 2] = [2_500, 10_000];
+/// Clouds as dense as a depth image.
+pub(super) const DENSE: usize = 40_000;
+
+/// Which scenes are asked about, how observed, and at how many poses.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Generators of scenes.
+    pub families: Vec<Family>,
+    /// Draws of each family: a variant of its scene with poses and fresh clouds of its own.
+    pub draws: u32,
+    /// Poses of each draw.
+    pub poses: usize,
+    /// What the moving body is given as.
+    pub pairs: Vec<Pair>,
+    /// How every draw is observed.
+    pub conditions: Vec<Condition>,
+    /// Distinguishes draws of different use: constants are not fitted on what is judged.
+    pub stream: u64,
+}
+
+impl Plan {
+    /// Every family and kind of pair under every noise and density, dense clouds at 2 mm, heavy
+    /// tails at 5 mm.
+    pub fn full(draws: u32, poses: usize) -> Self {
+        Self {
+            families: Family::ALL.to_vec(),
+            draws,
+            poses,
+            pairs: Pair::ALL.to_vec(),
+            conditions: conditions(),
+            stream: 0,
+        }
+    }
+
+    /// Two clouds under every noise and density, drawn apart from [`Self::full`].
+    pub fn evidence(draws: u32, poses: usize) -> Self {
+        let mut conditions = conditions();
+        conditions.retain(is_pooled);
+        Self { pairs: vec![Pair::CloudCloud], conditions, stream: 1, ..Self::full(draws, poses) }
+    }
+
+    /// One condition of some families.
+    pub fn of(families: &[Family], draws: u32, poses: usize, points: usize, std: f64) -> Self {
+        Self {
+            families: families.to_vec(),
+            conditions: vec![gaussian(points, std)],
+            ..Self::full(draws, poses)
+        }
+    }
+}
+
+/// Whether results under this condition are pooled with others.
+pub(super) fn is_pooled(condition: &Condition) -> bool {
+    POINTS.contains(&condition.points) && condition.noise == NoiseKind::Gaussian
+}
+
+fn conditions() -> Vec<Condition> {
+    let mut all: Vec<Condition> =
+        POINTS.iter().flat_map(|&points| STDS.map(|std| gaussian(points, std))).collect();
+    all.push(gaussian(DENSE, 0.002));
+    all.push(Condition { noise: NoiseKind::HeavyTailed, ..gaussian(10_000, 0.005) });
+    all
+}
+
+fn gaussian(points: usize, std: f64) -> Condition {
+    Condition { points, noise: NoiseKind::Gaussian, std }
+}

@@ -1,0 +1,174 @@
+//! The answers by kind of pair, kind of scene, family and noise, as rows of tables.
+
+use cloudtouch_testkit::{noise::NoiseKind, poses::NEAR};
+
+use super::{
+    ORACLE, OURS,
+    judged::Judged,
+    plan::{DENSE, STDS, is_pooled},
+};
+use crate::{
+    answers::{Answers, Condition, Pair, Question},
+    measures::{Estimate, Measure},
+    table::Table,
+};
+
+/// Measured of all poses of a group; AUC also of those near contact.
+const MEASURES: [Measure; 5] = [
+    Measure::Auc,
+    Measure::Brier,
+    Measure::CalibrationError,
+    Measure::FalseStops(0.01),
+    Measure::FalseStops(0.05),
+];
+
+/// All answers of a sweep, with what tables ask of them.
+pub(super) struct Answered<'a> {
+    /// The table of answers.
+    pub answers: &'a Answers,
+    /// Methods other than ours and the oracle.
+    pub alternatives: Vec<&'a str>,
+}
+
+/// Whether a pose is within 3 cm of contact.
+pub(super) fn is_near(question: &Question) -> bool {
+    question.signed_distance.abs() < NEAR
+}
+
+/// An estimate, or a dash.
+pub(super) fn shown(estimate: Option<Estimate>) -> String {
+    estimate.map_or("–".into(), |e| e.to_string())
+}
+
+impl<'a> Answered<'a> {
+    pub(super) fn new(answers: &'a Answers) -> Self {
+        let mut alternatives = answers.names();
+        alternatives.retain(|name| ![OURS, ORACLE].contains(name));
+        Self { answers, alternatives }
+    }
+
+    /// A pair's questions under the pooled conditions, of ordinary or of adversarial scenes.
+    pub(super) fn is_of(pair: Pair, ordinary: bool) -> impl Fn(&Question) -> bool + Copy {
+        move |q: &Question| q.pair == pair && q.ordinary == ordinary && is_pooled(&q.condition)
+    }
+
+    /// How many questions, how many of them collisions: the base rate.
+    pub(super) fn base_rate(&self, keep: impl Fn(&Question) -> bool) -> String {
+        let (count, collisions) = Judged::pick(self.answers, &[OURS], keep).counts();
+        let share = 100.0 * collisions as f64 / count as f64;
+        format!("{count} answers, {share:.0} % of them to collisions")
+    }
+
+    /// A row for every method, and by how much its AUC differs from ours on the same questions.
+    pub(super) fn methods(&self, keep: impl Fn(&Question) -> bool + Copy) -> Table {
+        let mut table = Table::new(header("method").into_iter().chain(["AUC minus ours".into()]));
+        for name in self.answers.names() {
+            let mut row = self.row(name, name, keep);
+            let judged = Judged::pick(self.answers, &[name, OURS], keep);
+            let difference = judged.measure(&[Measure::Auc]).difference(name, OURS, Measure::Auc);
+            row.push(match difference {
+                Some(d) if name != OURS && d.excludes_zero() => format!("**{d:+}**"),
+                Some(d) if name != OURS => format!("{d:+}"),
+                _ => "–".into(),
+            });
+            table.row(row);
+        }
+        table
+    }
+
+    /// Ours on every family, judged with constants fitted on the others, and the oracle's AUC.
+    pub(super) fn families(&self, pair: Pair) -> Table {
+        let header = header("family").into_iter().chain(["AUC of the oracle".into()]);
+        let mut table = Table::new(header);
+        for ordinary in [true, false] {
+            for family in self.answers.families() {
+                let keep = move |q: &Question| q.family == family && Self::is_of(pair, ordinary)(q);
+                if Judged::pick(self.answers, &[OURS], keep).counts().0 == 0 {
+                    continue;
+                }
+                let name = if ordinary { family.to_owned() } else { format!("({family})") };
+                let mut row = self.row(&name, OURS, keep);
+                row.push(self.auc(ORACLE, keep));
+                table.row(row);
+            }
+        }
+        table
+    }
+
+    /// Ours by noise, on ordinary scenes, with the oracle and the best alternative.
+    pub(super) fn noises(&self, pair: Pair) -> Table {
+        let extra = ["AUC of the oracle", "best alternative", "its AUC"].map(String::from);
+        let mut table = Table::new(header("noise").into_iter().chain(extra));
+        for (name, keep) in Self::conditions() {
+            let keep = |q: &Question| q.pair == pair && q.ordinary && keep(&q.condition);
+            let mut row = self.row(&name, OURS, keep);
+            let (best, auc) = self.best_alternative(keep);
+            row.extend([self.auc(ORACLE, keep), best.to_owned(), shown(auc)]);
+            table.row(row);
+        }
+        table
+    }
+
+    /// The alternative with the largest AUC, and that AUC.
+    pub(super) fn best_alternative(
+        &self,
+        keep: impl Fn(&Question) -> bool + Copy,
+    ) -> (&'a str, Option<Estimate>) {
+        let auc = |name: &'a str| {
+            let judged = Judged::pick(self.answers, &[name], keep);
+            (name, judged.measure(&[Measure::Auc]).estimate(name, Measure::Auc))
+        };
+        let value = |e: &Option<Estimate>| e.map_or(f64::NEG_INFINITY, |e| e.value);
+        let all = self.alternatives.iter().map(|name| auc(name));
+        all.filter(|(_, e)| e.is_some_and(|e| !e.value.is_nan()))
+            .max_by(|(_, a), (_, b)| value(a).total_cmp(&value(b)))
+            .unwrap_or(("none", None))
+    }
+
+    /// The noises of the pooled densities, then dense clouds and heavy tails.
+    fn conditions() -> Vec<(String, Box<dyn Fn(&Condition) -> bool>)> {
+        let mut all: Vec<(String, Box<dyn Fn(&Condition) -> bool>)> = Vec::new();
+        for std in STDS {
+            let keep = move |c: &Condition| is_pooled(c) && c.std == std;
+            all.push((format!("{} mm", 1e3 * std), Box::new(keep)));
+        }
+        all.push(("2 mm, 40,000 points".into(), Box::new(|c| c.points == DENSE)));
+        let is_heavy = |c: &Condition| c.noise == NoiseKind::HeavyTailed;
+        all.push(("5 mm, heavy tails, 10,000 points".into(), Box::new(is_heavy)));
+        all
+    }
+
+    fn row(
+        &self,
+        name: &str,
+        method: &'a str,
+        keep: impl Fn(&Question) -> bool + Copy,
+    ) -> Vec<String> {
+        let all = Judged::pick(self.answers, &[method], keep);
+        let measured = all.measure(&MEASURES);
+        let of = |measure| shown(measured.estimate(method, measure));
+        let chance = all.chance_error(method);
+        let error = measured.estimate(method, Measure::CalibrationError);
+        let error = error.filter(|e| !e.value.is_nan());
+        vec![
+            name.to_owned(),
+            of(Measure::Auc),
+            self.auc(method, |q| keep(q) && is_near(q)),
+            of(Measure::Brier),
+            error.map_or("–".into(), |e| format!("{:.3} ({chance:.3})", e.value)),
+            of(Measure::FalseStops(0.01)),
+            of(Measure::FalseStops(0.05)),
+        ]
+    }
+
+    fn auc(&self, method: &'a str, keep: impl Fn(&Question) -> bool) -> String {
+        let judged = Judged::pick(self.answers, &[method], keep);
+        shown(judged.measure(&[Measure::Auc]).estimate(method, Measure::Auc))
+    }
+}
+
+fn header(first: &str) -> Vec<String> {
+    let rest =
+        ["AUC", "AUC near", "Brier", "ECE (by chance)", "false stops at 1 % misses", "at 5 %"];
+    std::iter::once(first).chain(rest).map(String::from).collect()
+}
