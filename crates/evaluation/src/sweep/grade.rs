@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 
 use crate::{
-    answers::{Answers, Pair, Said},
+    answers::{Answers, Pair},
     measures::Logistic,
 };
 

@@ -1,0 +1,147 @@
+//! `cargo xtask settings`: query time against error, one setting changed at a time.
+
+use std::path::Path;
+
+use anyhow::Result;
+use clap::Args;
+use cloudtouch::{Mode, bvh::Traversal};
+use cloudtouch_testkit::family::Family;
+
+use crate::{
+    answers::Pair,
+    figure::{Axis, Figure, Panel, Series},
+    measures::Measure,
+    methods::{Method, Ours},
+    page::{self, Page, Section},
+    sweep::{Asked, Judged, Plan, SEED, ask},
+    table::Table,
+};
+
+const DEFAULT: &str = "default";
+/// Rooms, tables and small things: what users meet.
+const FAMILIES: [Family; 3] = [Family::PianoRoom, Family::Furniture, Family::Tabletop];
+const POINTS: usize = 5_000;
+const STD: f64 = 0.005;
+
+/// What `cargo xtask settings` is given.
+#[derive(Args)]
+pub struct Arguments {
+    /// Draws of each family
+    #[arg(long, default_value_t = 6)]
+    draws: u32,
+    /// Poses of each draw
+    #[arg(long, default_value_t = 28)]
+    poses: usize,
+    /// Write docs/lab/settings.md and its figure; else everything goes to target/lab/
+    #[arg(long)]
+    update_docs: bool,
+}
+
+/// Asks the defaults and every change, and writes the page.
+///
+/// # Errors
+/// When a query fails or the page cannot be written.
+pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
+    let Arguments { draws, poses, update_docs } = *arguments;
+    let settings = changes()?;
+    let names: Vec<String> = settings.iter().map(Method::name).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let asked: Vec<Asked> = settings.into_iter().map(Asked::always).collect();
+    let plan =
+        Plan { pairs: vec![Pair::CloudCloud], ..Plan::of(&FAMILIES, draws, poses, POINTS, STD) };
+    let answers = ask(&plan, &asked)?;
+    let judged = Judged::pick(&answers, &names, |_| true);
+    let (count, collisions) = judged.counts();
+    let introduction = format!(
+        "Each row changes one setting of the default: the largest leaf (n_max), the probability \
+         below which pairs of boxes are culled (ε), the relative gap at which a kernel problem \
+         counts as solved (tolerance), the kernel's width γ and penalty C, the traversal, and the \
+         mode. Families {}; {POINTS} points a cloud, {} mm of noise; {count} poses, {collisions} of \
+         them collisions, the same clouds for all. Differences are paired, in bold where the 95 % \
+         interval excludes zero; as many queries run at a time as there are cores.",
+        FAMILIES.map(Family::name).join(", "),
+        1e3 * STD
+    );
+    let command = format!("--draws {draws} --poses {poses} --update-docs");
+    let title = ("settings", "Speed and error over settings");
+    let mut page = Page::new(title, ("settings", &command), &introduction, root, SEED);
+    let section = Section::new("One change at a time").text(table(&judged, &names));
+    page.section(section.figure("settings", "Speed against error", figure(&judged, &names)));
+    page.write(&page::folder(root, update_docs))
+}
+
+/// The defaults first, then one change at a time.
+fn changes() -> Result<Vec<Ours>> {
+    let mut all = vec![Ours::new(DEFAULT, Mode::Calibrated)?];
+    let mut change = |name: String, edit: &dyn Fn(&mut Ours)| -> Result<()> {
+        let mut ours = Ours::new(&name, Mode::Calibrated)?;
+        edit(&mut ours);
+        all.push(ours);
+        Ok(())
+    };
+    for points in [20, 40] {
+        change(format!("n_max {points}"), &|ours| ours.tree.max_leaf_points = points)?;
+    }
+    change("ε 1e-3".into(), &|ours| ours.query.cull_probability = 1e-3)?;
+    for gap in [1e-1, 1e-2] {
+        change(format!("tolerance {gap:.0e}"), &|ours| ours.query.relative_gap = gap)?;
+    }
+    for gamma in [1.0, 3.0, 20.0, 40.0] {
+        change(format!("γ {gamma}"), &|ours| ours.query.gamma = gamma)?;
+    }
+    for penalty in [1.0, 10.0, 1000.0] {
+        change(format!("C {penalty}"), &|ours| ours.query.penalty = penalty)?;
+    }
+    change("γ 1, C 1".into(), &|ours| (ours.query.gamma, ours.query.penalty) = (1.0, 1.0))?;
+    change("traversal gap-aware".into(), &|ours| ours.query.traversal = Traversal::GapAware)?;
+    all.push(Ours::new("mode paper", Mode::Paper)?);
+    Ok(all)
+}
+
+fn table(judged: &Judged<'_>, names: &[&str]) -> Table {
+    let measures = [Measure::Brier, Measure::Auc];
+    let measured = judged.measure(&measures);
+    let mut table = Table::new([
+        "setting",
+        "median (ms)",
+        "p95 (ms)",
+        "Brier",
+        "minus default",
+        "AUC",
+        "minus default",
+    ]);
+    for name in names {
+        let mut row = vec![(*name).to_owned()];
+        row.extend([0.5, 0.95].map(|share| format!("{:.2}", judged.query_ms(name, share))));
+        for measure in measures {
+            row.push(measured.estimate(name, measure).map_or("–".into(), |e| e.to_string()));
+            row.push(match measured.difference(name, DEFAULT, measure) {
+                Some(d) if *name != DEFAULT && d.excludes_zero() => format!("**{d:+}**"),
+                Some(d) if *name != DEFAULT => format!("{d:+}"),
+                _ => "–".into(),
+            });
+        }
+        table.row(row);
+    }
+    table
+}
+
+fn figure(judged: &Judged<'_>, names: &[&str]) -> Figure {
+    let panel = |measure: Measure, error: &dyn Fn(f64) -> f64, title: &str| {
+        let place = |name: &str| {
+            let value = judged.sample(name).map_or(f64::NAN, |s| measure.of(s, &s.ones()));
+            (judged.query_ms(name, 0.5), error(value))
+        };
+        let places: Vec<(f64, f64)> = names.iter().map(|name| place(name)).collect();
+        let notes = places.iter().zip(names).map(|(at, name)| (*at, (*name).to_owned()));
+        Panel::new(Axis::log("median query (ms)"), Axis::linear(title))
+            .series(Series::points("one setting changed", places[1..].to_vec()))
+            .series(Series::points(DEFAULT, [places[0]]).size(7))
+            .series(Series::notes(notes))
+    };
+    Figure::new("Speed against error")
+        .columns(1)
+        .panel_size(800, 420)
+        .panel(panel(Measure::Brier, &|v| v, "Brier score"))
+        .panel(panel(Measure::Auc, &|v| 1.0 - v, "1 − AUC"))
+}
