@@ -7,6 +7,7 @@
 pub mod answers;
 pub mod calibrate;
 pub mod figure;
+pub mod growth;
 pub mod machine;
 pub mod measures;
 pub mod methods;
@@ -14,6 +15,7 @@ pub mod page;
 pub mod performance;
 pub mod real_scans;
 pub mod settings;
+pub mod stability;
 pub mod statistics;
 pub mod sweep;
 pub mod table;
