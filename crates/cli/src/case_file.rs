@@ -10,22 +10,32 @@ use serde::Deserialize;
 use serde_json::Value;
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.
-pub(crate) struct CaseFile {
+#[derive(Debug)]
+pub struct CaseFile {
+    /// Each by its id, of which a case without one gets its number.
     pub cases: Vec<(String, Result<Case>)>,
 }
 
 /// One object in one scene at one pose.
 #[derive(Debug, Clone)]
-pub(crate) struct Case {
+pub struct Case {
+    /// A cloud or mesh, m.
     pub scene: PathBuf,
+    /// A cloud or mesh, m.
     pub object: PathBuf,
+    /// Maps the object into the scene.
     pub scene_from_object: Pose,
+    /// What measured the scene, where the file says so.
     pub scene_sensor: Option<SensorModel>,
+    /// What measured the object, where the file says so.
     pub object_sensor: Option<SensorModel>,
     /// What the file says the answer is, shown beside ours; never used.
     pub label: Option<String>,
     /// The true distance that the file claims, m; negative in overlap; never used either.
     pub signed_distance: Option<f64>,
+    /// The case as it is written, with the fields that the tool passes over: what a label rests on,
+    /// or to which series the case belongs.
+    pub written: Value,
 }
 
 #[derive(Deserialize)]
@@ -52,7 +62,7 @@ struct RawCase {
 ///
 /// # Errors
 /// When the file is larger, or as a whole not a case file. A bad case does not spoil the others.
-pub(crate) fn read(path: &Path, max_bytes: u64) -> Result<CaseFile> {
+pub fn read(path: &Path, max_bytes: u64) -> Result<CaseFile> {
     let named = || path.display().to_string();
     let text = cloudtouch_io::read_bytes(path, max_bytes)?;
     parse(&text, path.parent().unwrap_or(Path::new(""))).with_context(named)
@@ -62,7 +72,7 @@ pub(crate) fn read(path: &Path, max_bytes: u64) -> Result<CaseFile> {
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn parse(text: &[u8], folder: &Path) -> Result<CaseFile> {
+pub fn parse(text: &[u8], folder: &Path) -> Result<CaseFile> {
     parse_whole(text, folder).map_err(shortened)
 }
 
@@ -96,7 +106,7 @@ fn parse_case(value: Value, folder: &Path) -> Result<Case> {
     if !value.is_object() {
         bail!("the case is not a JSON object but {}", kind(&value));
     }
-    let raw: RawCase = serde_json::from_value(value)?;
+    let raw = RawCase::deserialize(&value)?;
     let rows: Vec<[f64; 4]> = serde_json::from_value(raw.pose)
         .context("the pose is not a list of four rows of four numbers")?;
     if rows.len() != 4 {
@@ -116,6 +126,7 @@ fn parse_case(value: Value, folder: &Path) -> Result<Case> {
             raw.in_collision.map(|hit| if hit { "collision" } else { "apart" }.to_owned())
         }),
         signed_distance: raw.signed_distance_m,
+        written: value,
     })
 }
 

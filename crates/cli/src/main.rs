@@ -1,7 +1,6 @@
 //! The `cloudtouch` command: queries, batches, file information and a demo.
 
 mod args;
-mod case_file;
 mod commands;
 mod load;
 mod picture;
@@ -12,6 +11,7 @@ use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use clap::Parser;
+use cloudtouch_cli::case_file;
 
 use args::{Arguments, Command};
 

@@ -7,11 +7,15 @@
 pub mod answers;
 pub mod calibrate;
 pub mod figure;
+pub mod growth;
 pub mod machine;
 pub mod measures;
 pub mod methods;
 pub mod page;
+pub mod performance;
+pub mod real_scans;
 pub mod settings;
+pub mod stability;
 pub mod statistics;
 pub mod sweep;
 pub mod table;

@@ -8,13 +8,14 @@ use super::manifest::{KINDS, Manifest};
 const TESTKIT: &str = "cloudtouch-testkit";
 
 /// What stands on all layers may use any of them.
-const PRODUCT: [&str; 6] = [
+const PRODUCT: [&str; 7] = [
     "cloudtouch-geom",
     "cloudtouch-noise",
     "cloudtouch-svm",
     "cloudtouch-bvh",
     "cloudtouch",
     "cloudtouch-io",
+    "cloudtouch-cli",
 ];
 
 /// What of the project a crate may depend on; `None` for one that nobody has placed yet.

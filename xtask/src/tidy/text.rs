@@ -58,9 +58,12 @@ fn names_folder(line: &str, folder: &str) -> bool {
     })
 }
 
-/// The sources of what others link: not of the tool, the tasks, benches, tests or examples.
+/// The sources of what others link: not of the tool, the lab, the tasks, benches, tests, examples.
 fn is_library(path: &str) -> bool {
-    path.starts_with("crates/") && path.contains("/src/") && !path.starts_with("crates/cli/")
+    let talks = ["crates/cli/", "crates/evaluation/"];
+    path.starts_with("crates/")
+        && path.contains("/src/")
+        && !talks.iter().any(|folder| path.starts_with(folder))
 }
 
 fn check_blanks(path: &str, text: &str) -> Vec<String> {

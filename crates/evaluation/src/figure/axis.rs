@@ -76,7 +76,7 @@ impl Axis {
             finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
         match high - low {
             width if width > 0.0 => low - 0.05 * width..high + 0.05 * width,
-            width if width == 0.0 => low - 0.5..high + 0.5,
+            0.0 => low - 0.5..high + 0.5,
             _ => 0.0..1.0,
         }
     }

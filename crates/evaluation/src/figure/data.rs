@@ -49,25 +49,29 @@ pub struct Panel {
 #[derive(Debug, Clone)]
 pub struct Series {
     pub(super) name: String,
-    pub(super) marks: Marks,
+    pub(super) kind: Kind,
+    /// What each mark goes through.
+    pub(super) marks: Vec<Vec<Place>>,
+    /// What is written at each mark.
+    pub(super) words: Vec<String>,
     pub(super) color: Option<RGBColor>,
     pub(super) opacity: f64,
     pub(super) size: u32,
 }
 
-/// What is drawn for the numbers of a series.
-#[derive(Debug, Clone)]
-pub(super) enum Marks {
-    Line(Vec<Place>),
-    Dashes(Vec<Place>),
-    Points(Vec<Place>),
-    Curve(Vec<Place>),
-    Whiskers(Vec<(f64, f64, f64)>),
-    Band(Vec<(f64, f64, f64)>),
-    Bars(Vec<Place>),
-    Polygons(Vec<Vec<Place>>),
-    Arrows(Vec<[Place; 2]>),
-    Notes(Vec<(Place, String)>),
+/// How the places of a mark are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Line,
+    Dashes,
+    Points,
+    /// A line with points.
+    Curve,
+    /// From 0 to each place.
+    Bars,
+    Area,
+    Arrow,
+    Words,
 }
 
 impl Figure {
@@ -123,58 +127,64 @@ impl Panel {
 }
 
 impl Series {
-    fn new(name: &str, marks: Marks) -> Self {
-        Self { name: name.to_owned(), marks, color: None, opacity: 1.0, size: 4 }
+    fn new(name: &str, kind: Kind, marks: impl IntoIterator<Item = Vec<Place>>) -> Self {
+        let (name, marks) = (name.to_owned(), marks.into_iter().collect());
+        Self { name, kind, marks, words: Vec::new(), color: None, opacity: 1.0, size: 4 }
     }
 
     /// A line through the places in order.
     pub fn line(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
-        Self::new(name, Marks::Line(places.into_iter().collect()))
+        Self::new(name, Kind::Line, [places.into_iter().collect()])
     }
 
     /// A dashed line through the places in order, grey and without a name: a bound, a diagonal.
     pub fn guide(places: impl IntoIterator<Item = Place>) -> Self {
-        Self::new("", Marks::Dashes(places.into_iter().collect())).color(palette::GREY)
+        Self::new("", Kind::Dashes, [places.into_iter().collect()])
     }
 
     /// A marker at each place.
     pub fn points(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
-        Self::new(name, Marks::Points(places.into_iter().collect()))
+        Self::new(name, Kind::Points, [places.into_iter().collect()])
     }
 
     /// A line through the places in order with a marker at each.
     pub fn curve(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
-        Self::new(name, Marks::Curve(places.into_iter().collect()))
+        Self::new(name, Kind::Curve, [places.into_iter().collect()])
     }
 
     /// Upright bars of error: x, and y from and to.
     pub fn whiskers(name: &str, spans: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
-        Self::new(name, Marks::Whiskers(spans.into_iter().collect()))
+        let ends = spans.into_iter().map(|(x, low, high)| vec![(x, low), (x, high)]);
+        Self::new(name, Kind::Line, ends)
     }
 
     /// The area between two curves: x, and y from and to.
     pub fn band(name: &str, spans: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
-        Self::new(name, Marks::Band(spans.into_iter().collect())).opacity(0.25)
+        let spans: Vec<_> = spans.into_iter().collect();
+        let back = spans.iter().rev().map(|&(x, _, high)| (x, high));
+        let edge = spans.iter().map(|&(x, low, _)| (x, low)).chain(back).collect();
+        Self::polygons(name, [edge]).opacity(0.25)
     }
 
-    /// Bars from the bottom to the places, [`size`](Self::size) pixels wide.
+    /// Bars from 0 to the places, [`size`](Self::size) pixels wide.
     pub fn bars(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
-        Self::new(name, Marks::Bars(places.into_iter().collect())).size(14)
+        Self::new(name, Kind::Bars, [places.into_iter().collect()]).size(14)
     }
 
     /// Filled polygons.
     pub fn polygons(name: &str, polygons: impl IntoIterator<Item = Vec<Place>>) -> Self {
-        Self::new(name, Marks::Polygons(polygons.into_iter().collect()))
+        Self::new(name, Kind::Area, polygons)
     }
 
     /// Arrows from the first place to the second.
     pub fn arrows(name: &str, arrows: impl IntoIterator<Item = [Place; 2]>) -> Self {
-        Self::new(name, Marks::Arrows(arrows.into_iter().collect()))
+        Self::new(name, Kind::Arrow, arrows.into_iter().map(Vec::from))
     }
 
     /// Words that start at their place.
     pub fn notes(notes: impl IntoIterator<Item = (Place, String)>) -> Self {
-        Self::new("", Marks::Notes(notes.into_iter().collect())).color(palette::BLACK)
+        let (marks, words): (Vec<_>, _) = notes.into_iter().map(|(at, w)| (vec![at], w)).unzip();
+        Self { words, ..Self::new("", Kind::Words, marks) }.color(palette::BLACK)
     }
 
     /// Another colour than the next of the palette.
@@ -193,22 +203,5 @@ impl Series {
     #[must_use]
     pub fn size(self, size: u32) -> Self {
         Self { size, ..self }
-    }
-}
-
-impl Marks {
-    /// The places that have to be in sight.
-    pub(super) fn places(&self) -> Vec<Place> {
-        match self {
-            Self::Line(places) | Self::Dashes(places) | Self::Points(places) => places.clone(),
-            Self::Curve(places) => places.clone(),
-            Self::Whiskers(spans) | Self::Band(spans) => {
-                spans.iter().flat_map(|&(x, low, high)| [(x, low), (x, high)]).collect()
-            }
-            Self::Bars(places) => places.iter().flat_map(|&(x, y)| [(x, y), (x, 0.0)]).collect(),
-            Self::Polygons(polygons) => polygons.concat(),
-            Self::Arrows(arrows) => arrows.concat(),
-            Self::Notes(notes) => notes.iter().map(|(place, _)| *place).collect(),
-        }
     }
 }

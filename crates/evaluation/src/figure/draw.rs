@@ -6,18 +6,17 @@ use anyhow::{Result, anyhow};
 use cloudtouch_io::write_atomically;
 use plotters::{
     coord::{Shift, types::RangedCoordf64},
-    drawing::DrawingAreaErrorKind,
+    element::{Drawable, PointCollection},
     prelude::*,
 };
 
 use super::{
     axis::text_width,
-    data::{Figure, Marks, Panel, Place, Series, palette},
+    data::{Figure, Kind, Panel, Place, Series, palette},
 };
 
 type Svg<'a> = SVGBackend<'a>;
 type Area<'a> = DrawingArea<Svg<'a>, Shift>;
-type DrawingError = DrawingAreaErrorKind<std::io::Error>;
 type Chart<'a, 'b> = ChartContext<'a, Svg<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 const TITLE_HEIGHT: u32 = 34;
@@ -87,8 +86,8 @@ fn looks(figure: &Figure) -> Vec<Look<'_>> {
         });
         let look = &mut looks[at];
         look.color = series.color.unwrap_or(look.color);
-        look.points |= matches!(series.marks, Marks::Points(_) | Marks::Curve(_));
-        look.line |= !matches!(series.marks, Marks::Points(_));
+        look.points |= matches!(series.kind, Kind::Points | Kind::Curve);
+        look.line |= series.kind != Kind::Points;
     }
     looks
 }
@@ -98,9 +97,11 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         "" => area.clone(),
         title => area.titled(title, ("sans-serif", 15)).map_err(failed)?,
     };
-    let places: Vec<Place> = panel.series.iter().flat_map(|series| series.marks.places()).collect();
-    let mut x = panel.x.reach(places.iter().map(|place| place.0));
-    let mut y = panel.y.reach(places.iter().map(|place| place.1));
+    let places = || panel.series.iter().flat_map(|series| series.marks.iter().flatten());
+    let is_bars = |series: &Series| series.kind == Kind::Bars;
+    let bottom = panel.series.iter().any(is_bars).then_some(0.0);
+    let mut x = panel.x.reach(places().map(|place| place.0));
+    let mut y = panel.y.reach(places().map(|place| place.1).chain(bottom));
     if panel.equal_aspect {
         let (width, height) = axes(&area, panel, &x, &y)?.plotting_area().dim_in_pixel();
         let [width, height] = [width, height].map(f64::from);
@@ -160,61 +161,53 @@ fn draw_series(
     let color = series.color.or(look.map(|look| look.color)).unwrap_or(palette::GREY);
     let number = look.map_or(0, |look| look.number);
     let color = color.mix(series.opacity);
-    let (filled, stroke) = (color.filled(), color.stroke_width(2));
-    let at = |&(x, y): &Place| (panel.x.place(x), panel.y.place(y));
-    let shown = |place: &Place| place.0.is_finite() && place.1.is_finite();
-    let all = |places: &[Place]| places.iter().map(at).filter(shown).collect::<Vec<_>>();
-    let size = series.size as i32;
-    match &series.marks {
-        Marks::Line(places) => chart.draw_series(LineSeries::new(all(places), stroke)).map(drop),
-        Marks::Dashes(places) => {
-            let thin = color.stroke_width(1);
-            chart.draw_series(DashedLineSeries::new(all(places), 5, 4, thin)).map(drop)
-        }
-        Marks::Points(places) => draw_markers(chart, all(places), number, size, filled),
-        Marks::Curve(places) => chart
-            .draw_series(LineSeries::new(all(places), stroke))
-            .map(drop)
-            .and_then(|()| draw_markers(chart, all(places), number, size, filled)),
-        Marks::Whiskers(spans) => {
-            let ends = spans.iter().map(|&(x, low, high)| all(&[(x, low), (x, high)]));
-            let bar = |ends| PathElement::new(ends, stroke);
-            chart.draw_series(ends.map(bar)).map(drop)
-        }
-        Marks::Band(spans) => {
-            let there = spans.iter().map(|&(x, low, _)| (x, low));
-            let back = spans.iter().rev().map(|&(x, _, high)| (x, high));
-            let edge = all(&there.chain(back).collect::<Vec<_>>());
-            chart.draw_series([Polygon::new(edge, filled)]).map(drop)
-        }
-        Marks::Bars(places) => {
-            let bottom = chart.as_coord_spec().get_y_range().start;
-            // Upright lines as wide as a bar keep its width apart from the units of x.
-            let wide = color.stroke_width(series.size);
-            let bar = |(x, y)| PathElement::new([(x, bottom), (x, y)], wide);
-            chart.draw_series(all(places).into_iter().map(bar)).map(drop)
-        }
-        Marks::Polygons(polygons) => {
-            let polygon = |places: &Vec<Place>| Polygon::new(all(places), filled);
-            chart.draw_series(polygons.iter().map(polygon)).map(drop)
-        }
-        Marks::Arrows(arrows) => arrows.iter().try_for_each(|ends| {
-            let ends = all(ends);
-            let [from, to] = ends[..] else { return Ok(()) };
-            let [tail, head] = [from, to].map(|place| chart.backend_coord(&place));
-            let tip = Polygon::new(tip(tail, head, 2.0 * f64::from(size)), filled);
-            let tip = std::iter::once(EmptyElement::at(to) + tip);
-            chart.draw_series([PathElement::new(ends, stroke)])?;
-            chart.draw_series(tip).map(drop)
-        }),
-        Marks::Notes(notes) => {
-            let font = FONT.into_font().color(&color);
-            let note =
-                |(place, text): &(Place, String)| Text::new(text.clone(), at(place), font.clone());
-            chart.draw_series(notes.iter().map(note)).map(drop)
-        }
+    let (filled, size) = (color.filled(), series.size);
+    let stroke = match series.kind {
+        // Upright lines as wide as a bar keep its width apart from the units of x.
+        Kind::Bars => color.stroke_width(size),
+        Kind::Dashes => color.stroke_width(1),
+        _ => color.stroke_width(2),
+    };
+    let bottom = chart.as_coord_spec().get_y_range().start.max(panel.y.place(0.0));
+    for (number_of_mark, mark) in series.marks.iter().enumerate() {
+        let places = mark.iter().map(|&(x, y)| (panel.x.place(x), panel.y.place(y)));
+        let places: Vec<Place> =
+            places.filter(|place| place.0.is_finite() && place.1.is_finite()).collect();
+        match (series.kind, &places[..]) {
+            (Kind::Line, _) => draw(chart, [PathElement::new(places, stroke)]),
+            (Kind::Dashes, _) => draw(chart, DashedLineSeries::new(places, 5, 4, stroke)),
+            (Kind::Points, _) => draw_markers(chart, places, number, size, filled),
+            (Kind::Curve, _) => draw(chart, [PathElement::new(places.clone(), stroke)])
+                .and_then(|()| draw_markers(chart, places, number, size, filled)),
+            (Kind::Bars, _) => {
+                let bar = |(x, y)| PathElement::new([(x, bottom), (x, y)], stroke);
+                draw(chart, places.into_iter().map(bar))
+            }
+            (Kind::Area, _) => draw(chart, [Polygon::new(places, filled)]),
+            (Kind::Arrow, &[from, to]) => {
+                let [tail, head] = [from, to].map(|place| chart.backend_coord(&place));
+                let tip = Polygon::new(tip(tail, head, 2.0 * f64::from(size)), filled);
+                draw(chart, [PathElement::new(places, stroke)])
+                    .and_then(|()| draw(chart, std::iter::once(EmptyElement::at(to) + tip)))
+            }
+            (Kind::Words, &[at]) => {
+                let font = FONT.into_font().color(&color);
+                draw(chart, [Text::new(series.words[number_of_mark].clone(), at, font)])
+            }
+            // Its place is not in sight.
+            (Kind::Arrow | Kind::Words, _) => Ok(()),
+        }?;
     }
-    .map_err(failed)
+    Ok(())
+}
+
+fn draw<'a, 'b, E, R>(chart: &mut Chart<'a, 'b>, elements: E) -> Result<()>
+where
+    E: IntoIterator<Item = R>,
+    for<'c> &'c R: PointCollection<'c, Place>,
+    R: Drawable<Svg<'b>>,
+{
+    chart.draw_series(elements).map(drop).map_err(failed)
 }
 
 /// Corners of an arrow's tip about its head, pixels.
@@ -231,21 +224,20 @@ fn draw_markers(
     chart: &mut Chart<'_, '_>,
     places: Vec<Place>,
     number: usize,
-    size: i32,
+    size: u32,
     style: ShapeStyle,
-) -> Result<(), DrawingError> {
+) -> Result<()> {
     match corners(number, size) {
-        None => chart.draw_series(places.into_iter().map(|at| Circle::new(at, size, style))),
+        None => draw(chart, places.into_iter().map(|at| Circle::new(at, size, style))),
         Some(corners) => {
             let polygon = |at| EmptyElement::at(at) + Polygon::new(corners.clone(), style);
-            chart.draw_series(places.into_iter().map(polygon))
+            draw(chart, places.into_iter().map(polygon))
         }
     }
-    .map(drop)
 }
 
 /// Corners of a marker about its place, pixels; none of a circle.
-fn corners(number: usize, size: i32) -> Option<Vec<(i32, i32)>> {
+fn corners(number: usize, size: u32) -> Option<Vec<(i32, i32)>> {
     let corners: &[(i32, i32)] = match number % 5 {
         0 => return None,
         1 => &[(-5, -5), (5, -5), (5, 5), (-5, 5)],
@@ -253,7 +245,7 @@ fn corners(number: usize, size: i32) -> Option<Vec<(i32, i32)>> {
         3 => &[(0, -7), (7, 0), (0, 7), (-7, 0)],
         _ => &[(0, 7), (7, -5), (-7, -5)],
     };
-    Some(corners.iter().map(|(x, y)| (x * size / 5, y * size / 5)).collect())
+    Some(corners.iter().map(|(x, y)| (x * size as i32 / 5, y * size as i32 / 5)).collect())
 }
 
 /// Names beside the look of their series, from the top of the area.

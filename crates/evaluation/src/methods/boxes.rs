@@ -64,7 +64,7 @@ impl Prepared for Shapes {
 }
 
 /// A mesh as parry keeps it.
-fn parry_mesh(mesh: &TriangleMesh) -> Result<TriMesh> {
+pub(crate) fn parry_mesh(mesh: &TriangleMesh) -> Result<TriMesh> {
     let vertices = mesh.vertices().iter().map(vector).collect();
     TriMesh::new(vertices, mesh.triangles().to_vec()).map_err(|error| anyhow!("{error}"))
 }

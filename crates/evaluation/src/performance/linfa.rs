@@ -1,65 +1,55 @@
 //! The classifier without ellipsoids by linfa-svm, at the gap that ours is asked for.
 
-use anyhow::{Result, anyhow};
+use anyhow::{Context, Error, Result};
 use cloudtouch_svm::{Class, Sample};
 use linfa::{Dataset, ParamGuard, traits::Fit};
 use linfa_svm::Svm;
 use ndarray::{Array1, Array2};
 
-use super::super::timing::timed;
+use super::timing::least_of;
 
 /// How much tighter linfa's tolerance gets from one try to the next.
 const TIGHTER: f64 = 0.3;
 /// The tightest tolerance tried.
 const TIGHTEST: f64 = 1e-8;
 
-/// Where a solver got to and how long that took.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Solved {
-    /// s.
-    pub(super) seconds: f64,
-    /// (primal − dual) / primal.
-    pub(super) gap: f64,
-}
-
-/// Solves with the loosest of linfa's tolerances that reaches the gap, and times that one alone.
+/// Solves with the loosest of linfa's tolerances that reaches the gap wanted, and times that one
+/// alone: the relative gap reached, and the least of several times, s.
 ///
 /// Its tolerance is on gradients, so it has to be found; the search is not timed.
-pub(super) fn linfa(samples: &[Sample], gamma: f64, wanted: f64, repeats: usize) -> Result<Solved> {
+pub(super) fn solve(
+    samples: &[Sample],
+    gamma: f64,
+    wanted: f64,
+    repeats: usize,
+) -> Result<(f64, f64)> {
     let mut tolerance = 1.0;
-    let mut solved = fit(samples, gamma, tolerance)?;
-    while solved.gap > wanted && tolerance > TIGHTEST {
+    let gap_at =
+        |tolerance| Ok::<_, Error>(relative_gap(samples, gamma, &fit(samples, gamma, tolerance)?));
+    while gap_at(tolerance)? > wanted && tolerance > TIGHTEST {
         tolerance *= TIGHTER;
-        solved = fit(samples, gamma, tolerance)?;
     }
-    for _ in 1..repeats {
-        solved.seconds = solved.seconds.min(fit(samples, gamma, tolerance)?.seconds);
-    }
-    Ok(solved)
+    let (signed, seconds) = least_of(repeats, || fit(samples, gamma, tolerance))?;
+    Ok((relative_gap(samples, gamma, &signed), seconds))
 }
 
-fn fit(samples: &[Sample], gamma: f64, tolerance: f64) -> Result<Solved> {
-    let Some(penalty) = samples.first().map(|s| s.penalty) else {
-        return Err(anyhow!("linfa-svm: no samples"));
-    };
-    // Its kernel is exp(−|x − y|² / width); every point here has the same penalty.
+/// Multipliers that carry the sign of their class.
+fn fit(samples: &[Sample], gamma: f64, tolerance: f64) -> Result<Vec<f64>> {
+    // Every point here has the same penalty.
+    let penalty = samples.first().context("linfa-svm: no samples")?.penalty;
+    // Its kernel is exp(−|x − y|² / width).
     let parameters = Svm::<f64, bool>::params()
         .gaussian_kernel(gamma.recip())
         .pos_neg_weights(penalty, penalty)
         .eps(tolerance)
         .check()?;
-    let train = || {
-        let places =
-            Array2::from(samples.iter().map(|s| s.point.mean.into()).collect::<Vec<[f64; 3]>>());
-        let sides = Array1::from_iter(samples.iter().map(|s| s.class == Class::A));
-        parameters.fit(&Dataset::new(places, sides))
-    };
-    let (model, seconds) = timed(train);
-    Ok(Solved { seconds, gap: relative_gap(samples, gamma, &model?.alpha) })
+    let places: Vec<[f64; 3]> = samples.iter().map(|s| s.point.mean.into()).collect();
+    let sides = Array1::from_iter(samples.iter().map(|s| s.class == Class::A));
+    Ok(parameters.fit(&Dataset::new(Array2::from(places), sides))?.alpha)
 }
 
 /// (primal − dual) / primal at multipliers that carry the sign of their class, with the best bias.
-pub(super) fn relative_gap(samples: &[Sample], gamma: f64, signed: &[f64]) -> f64 {
+fn relative_gap(samples: &[Sample], gamma: f64, signed: &[f64]) -> f64 {
     let kernel =
         |a: &Sample, b: &Sample| (-gamma * (a.point.mean - b.point.mean).norm_squared()).exp();
     let terms = || samples.iter().zip(signed).filter(|(_, alpha)| **alpha != 0.0);
@@ -83,15 +73,15 @@ pub(super) fn relative_gap(samples: &[Sample], gamma: f64, signed: &[f64]) -> f6
 mod tests {
     use cloudtouch_svm::{Kernel, Problem, Settings};
 
-    use super::{super::cells::CELLS, *};
+    use super::{super::leaf_problems::CELLS, *};
 
     #[test]
     fn both_reach_the_gap_and_the_gap_is_that_of_the_library() {
         for (cell, from) in CELLS.into_iter().zip(1..) {
             let mut samples = cell.problem(20, from);
             samples.iter_mut().for_each(|s| s.radius = 0.0);
-            let theirs = linfa(&samples, cell.gamma, 1e-4, 1).unwrap();
-            assert!(theirs.gap <= 1e-4 && theirs.gap > -1e-12, "{}: {theirs:?}", cell.name);
+            let (theirs, _) = solve(&samples, cell.gamma, 1e-4, 1).unwrap();
+            assert!(theirs <= 1e-4 && theirs > -1e-12, "{}: {theirs}", cell.name);
 
             let kernel = Kernel::Gaussian { gamma: cell.gamma };
             let settings = Settings::with_relative_gap(1e-4).unwrap();

@@ -1,0 +1,211 @@
+//! `cargo xtask growth`: answers to fixed poses in a real scan while noise is added to it, after
+//! the paper's figure 5.
+
+mod answers;
+mod scan;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use clap::Args;
+use cloudtouch_geom::Pose;
+use cloudtouch_io::{LengthUnit, read_mesh};
+
+use crate::{
+    figure::{Axis, Figure, Panel, Series},
+    page::{self, Page, Section},
+    real_scans::cases::{self, Labelled, at_advance},
+    statistics::quantile,
+    table::Table,
+};
+use answers::{ADDED, Answers, METHODS, OWN_STD};
+use scan::{SEED, Scan};
+
+/// Poses that are farther from first contact than this are left out, mm.
+const FARTHEST: f64 = -30.0;
+/// How far past first contact the poses are that the figure shows, mm.
+const PICTURED: [f64; 3] = [-30.0, 0.0, 20.0];
+/// Numbers of the added noises that have columns of their own: 5, 10 and 20 mm.
+const SHOWN: [usize; 3] = [4, 6, 8];
+
+/// The poses with how far past first contact they are, mm.
+type Poses = [(f64, Labelled)];
+
+/// What `cargo xtask growth` is given.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Folder with cases.json, clouds/ and meshes/, relative to the workspace
+    #[arg(long, value_name = "DIR", default_value = "../shared/data")]
+    data: PathBuf,
+    /// How often noise of each size is drawn
+    #[arg(long, default_value_t = 12)]
+    draws: u64,
+    /// Write docs/lab/growth.md and its figure; else they go to target/lab/
+    #[arg(long)]
+    update_docs: bool,
+}
+
+/// Asks all methods and writes the page.
+///
+/// # Errors
+/// When files cannot be read or written, or a method has no answer.
+pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
+    let Some(data) = cases::folder(root, &arguments.data) else { return Ok(()) };
+    let mut series = cases::series(&data)?;
+    series.retain(|(advance, _)| *advance >= FARTHEST);
+    let object = read_mesh(&series[0].1.object, LengthUnit::Metres)?;
+    let poses: Vec<Pose> = series.iter().map(|(_, case)| case.pose).collect();
+    let scan = Scan::read(&series[0].1.scene, &scan::reach(&object, &poses))?;
+    let answers = Answers::ask(&scan, &object, &poses, arguments.draws)?;
+    let introduction = format!(
+        "After the paper's figure 5: a gripper, known as a mesh, at {} poses of its approach to a \
+         mug in a real scan, while normal noise is added to the {} measured points near it. Each \
+         size of noise is drawn {} times. The sensor model is told of it ({:.0} mm for the scan \
+         itself, plus what is added). DIR is the folder of the scans, which are not part of the \
+         project.\n\n\
+         `calibrated` and `paper` answer with a probability, in collision from ½ on. The others \
+         say yes or no: a 1 cm box around a measured point touches the gripper; a measured point \
+         is inside of it (its smallest signed distance is negative); a mesh of the scan (means of \
+         4 × 4 pixels, joined where the scan without added noise has no edge) intersects it.",
+        series.len(),
+        scan.len(),
+        arguments.draws,
+        1e3 * OWN_STD,
+    );
+    let names = ("growth", "Answers while noise grows");
+    let command = ("growth", "--data DIR --update-docs");
+    let mut page = Page::new(names, command, &introduction, root, SEED);
+    page.section(
+        Section::new("Answers by noise")
+            .text(
+                "Lines are means over the draws, bars reach from the 10th to the 90th percentile \
+                 of a probability. Lower right: how often the verdict on a pose differs from that \
+                 of the draw before, over all poses.",
+            )
+            .figure("growth", "Answers while noise grows", figure(&series, &answers)?)
+            .text(
+                "How often the verdict flips from draw to draw, and how often it is not the \
+                 verdict on the scan as it is. Last: collisions stated of poses whose nearest \
+                 measured point is more than 5 mm away (label `near`), and poses pushed 2 cm and \
+                 more past first contact (label `collision`) of which none is stated; over all \
+                 noises.",
+            )
+            .text(methods(&series, &answers)),
+    );
+    page.section(
+        Section::new("Mean answers by pose")
+            .text(
+                "Without added noise and with 10 mm of it; the advance is past first contact with \
+                 a measured point.",
+            )
+            .text(by_pose(&series, &answers)),
+    );
+    page.write(&page::folder(root, arguments.update_docs))
+}
+
+/// How far a pose is past first contact, and the smallest signed distance of a measured point.
+fn place((advance, case): &(f64, Labelled)) -> String {
+    format!("advance {advance:+.0} mm, nearest point {:+.0} mm", case.distance_mm)
+}
+
+fn figure(poses: &Poses, answers: &Answers) -> Result<Figure> {
+    let panel = |title: &str, y: Axis| {
+        Panel::new(Axis::linear("std of the added noise (mm)"), y).title(title)
+    };
+    let mut figure = Figure::new("Answers while noise is added to a real scan");
+    for advance in PICTURED {
+        let pose = at_advance(poses, advance)?;
+        let mut panel = panel(&place(&poses[pose]), Axis::unit("probability or verdict"));
+        for (method, name) in METHODS.iter().enumerate() {
+            let levels = || (0..ADDED.len()).map(|level| (level, answers.of(method, pose, level)));
+            let span = |(level, said): (usize, Vec<f64>)| {
+                (ADDED[level], quantile(&said, 0.1), quantile(&said, 0.9))
+            };
+            // Verdicts have no spread: their mean says how often they are which.
+            let spread = levels().filter(|_| method < 2).map(span);
+            let means = levels().map(|(level, said)| (ADDED[level], mean(&said)));
+            panel = panel.series(Series::whiskers(name, spread)).series(Series::curve(name, means));
+        }
+        figure = figure.panel(panel);
+    }
+    let mut panel = panel("verdicts that flip from draw to draw", Axis::linear("share of changes"));
+    for (method, name) in METHODS.iter().enumerate() {
+        let share = |level| share(flips(poses.len(), answers, method, level));
+        let points = (0..ADDED.len()).map(|level| (ADDED[level], share(level)));
+        panel = panel.series(Series::curve(name, points));
+    }
+    Ok(figure.panel(panel))
+}
+
+fn methods(poses: &Poses, answers: &Answers) -> Table {
+    let of_shown = |what: &str| SHOWN.map(|level| format!("{what} {} mm", ADDED[level]));
+    let mut header = vec!["method".to_owned()];
+    header.extend(of_shown("flips at").into_iter().chain(of_shown("changed by")));
+    header.extend(["false stops", "misses"].map(String::from));
+    let mut table = Table::new(header);
+    for (method, name) in METHODS.iter().enumerate() {
+        let verdicts = |pose, level| answers.verdicts(method, pose, level);
+        let changed = |level| {
+            (0..poses.len()).flat_map(move |pose| {
+                let plain = verdicts(pose, 0)[0];
+                verdicts(pose, level).into_iter().map(move |verdict| verdict != plain)
+            })
+        };
+        let stated = |label: &str, verdict: bool| {
+            let of_label = (0..poses.len()).filter(|&pose| poses[pose].1.label == label);
+            let all = of_label.flat_map(|pose| (0..ADDED.len()).map(move |level| (pose, level)));
+            share(all.flat_map(|(pose, level)| verdicts(pose, level)).map(|said| said == verdict))
+        };
+        let mut cells = vec![(*name).to_owned()];
+        cells.extend(SHOWN.map(|level| {
+            let flips = flips(poses.len(), answers, method, level);
+            format!("{} of {}", flips.iter().filter(|flip| **flip).count(), flips.len())
+        }));
+        let shares = SHOWN.map(|level| share(changed(level)));
+        let shares = shares.into_iter().chain([stated("near", true), stated("collision", false)]);
+        cells.extend(shares.map(|share| format!("{share:.3}")));
+        table.row(cells);
+    }
+    table
+}
+
+fn by_pose(poses: &Poses, answers: &Answers) -> Table {
+    let mut table = Table::new(std::iter::once("pose").chain(METHODS));
+    for (number, pose) in poses.iter().enumerate() {
+        let mean = |method, level| mean(&answers.of(method, number, level));
+        let cell = |method| format!("{:.2}, {:.2}", mean(method, 0), mean(method, SHOWN[1]));
+        table.row(std::iter::once(place(pose)).chain((0..METHODS.len()).map(cell)));
+    }
+    table
+}
+
+/// Whether each verdict differs from that of the draw before, within the draws of a pose.
+fn flips(poses: usize, answers: &Answers, method: usize, level: usize) -> Vec<bool> {
+    (0..poses).flat_map(|pose| changes(&answers.verdicts(method, pose, level))).collect()
+}
+
+fn changes(verdicts: &[bool]) -> Vec<bool> {
+    verdicts.windows(2).map(|pair| pair[0] != pair[1]).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn share(of: impl IntoIterator<Item = bool>) -> f64 {
+    let each: Vec<f64> = of.into_iter().map(|is| f64::from(u8::from(is))).collect();
+    mean(&each)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_are_counted_between_neighbours() {
+        assert_eq!(changes(&[true, true, false, true]), [false, true, true]);
+        assert!(changes(&[true]).is_empty() && changes(&[]).is_empty());
+        assert_eq!(share(changes(&[true, true, false, true])), 2.0 / 3.0);
+        assert!(share(changes(&[true])).is_nan());
+    }
+}

@@ -1,0 +1,210 @@
+//! Forty labelled poses in real scans: clear cases must be answered clearly.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result};
+use cloudtouch::{
+    Body, Cloud, CloudSettings, Mesh, Mode, Query, QueryError, QuerySettings, Report, Verdict,
+    noise::SensorModel,
+};
+use cloudtouch_io::{Geometry, LengthUnit, read_geometry};
+
+use super::cases::{self, Labelled};
+use crate::{
+    page::Section,
+    statistics::quantile,
+    table::{Table, bounds, probability},
+};
+
+/// The sensor of each scan, by a part of its file name.
+const SENSORS: [(&str, &str); 5] = [
+    ("mug", "iso:0.005"),
+    ("mosd", "kinect"),
+    ("template", "kinect"),
+    ("samp11", "axes:0.3,0.3,0.15"),
+    ("room_scan", "lidar:0.02,0.003"),
+];
+const LABELS: [&str; 5] = ["free", "near", "contact", "shallow", "collision"];
+const VERDICTS: [(Verdict, &str); 4] = [
+    (Verdict::Free, "free"),
+    (Verdict::InContact, "in contact"),
+    (Verdict::InCollision, "in collision"),
+    (Verdict::Undecided, "undecided"),
+];
+/// A free case must stay below, a deep one above.
+const FREE_BELOW: f64 = 0.1;
+const COLLISION_ABOVE: f64 = 0.9;
+
+type Answer = Result<Report, QueryError>;
+
+pub(super) fn evaluate(data: &Path) -> Result<(Section, Vec<String>)> {
+    let cases = cases::read(&data.join("cases.json"))?;
+    let mut bodies: BTreeMap<&PathBuf, Body> = BTreeMap::new();
+    for path in cases.iter().flat_map(|case| [&case.scene, &case.object]) {
+        if !bodies.contains_key(path) {
+            bodies.insert(path, body(path)?);
+        }
+    }
+    let query = Query::new(QuerySettings::default())?;
+    let ask = |case: &Labelled| query.run(&bodies[&case.scene], &bodies[&case.object], &case.pose);
+    let answers: Vec<Answer> = cases.iter().map(ask).collect();
+    let both = || cases.iter().zip(&answers);
+    let failures: Vec<String> = both().filter_map(|(case, answer)| failure(case, answer)).collect();
+    let checked = cases.iter().filter(|case| wanted(case).is_some()).count();
+    let sensors = SENSORS.map(|(part, spec)| format!("{part} {spec}")).join(", ");
+    let text = format!(
+        "{} cases, default settings, sensors by file: {sensors}. Checked: every case has an answer \
+         within its bounds, every `free` case has P < {FREE_BELOW}, every `collision` case that is \
+         deep (basis `depth`) has P > {COLLISION_ABOVE} ({checked} cases). The other labels are \
+         not checked: they describe the measured points, not the surface behind them. The smallest \
+         distance is that of the single worst raw point. Times are those of one thread; the first \
+         query at a place of a scan also pays for its noise model there.",
+        cases.len(),
+    );
+    let section = Section::new("Labelled poses in real scans")
+        .text(text)
+        .text(by_label(&cases, &answers))
+        .text(each(&cases, &answers));
+    Ok((section, failures))
+}
+
+fn body(path: &Path) -> Result<Body> {
+    let name = file_name(path);
+    Ok(match read_geometry(path, LengthUnit::Metres)? {
+        Geometry::Mesh(mesh) => Body::Mesh(Mesh::prepare(&mesh)?),
+        Geometry::Cloud(cloud) => {
+            let found = SENSORS.iter().find(|(part, _)| name.contains(part));
+            let (_, spec) = found.with_context(|| format!("{name}: no sensor is known"))?;
+            let sensor: SensorModel = spec.parse()?;
+            Body::Cloud(Cloud::prepare(&cloud, &CloudSettings::new(sensor, Mode::Calibrated))?)
+        }
+    })
+}
+
+/// The probabilities between which the answer to a clear case must lie.
+fn wanted(case: &Labelled) -> Option<[f64; 2]> {
+    match (case.label.as_str(), case.basis.as_str()) {
+        ("free", _) => Some([f64::NEG_INFINITY, FREE_BELOW]),
+        ("collision", "depth") => Some([COLLISION_ABOVE, f64::INFINITY]),
+        _ => None,
+    }
+}
+
+/// What is wrong with the answer: of any case that it is missing or contradicts its bounds, of a
+/// clear one also that it is not clear.
+fn failure(case: &Labelled, answer: &Answer) -> Option<String> {
+    let id = &case.id;
+    let (p, [low, high]) = match answer {
+        Ok(report) => (report.collision_probability, report.bounds),
+        Err(error) => return Some(format!("{id}: no answer: {error}")),
+    };
+    if !(low <= p && p <= high) {
+        return Some(format!("{id}: P {p} is not within its bounds {low} .. {high}"));
+    }
+    let [least, most] = wanted(case)?;
+    // Strictly inside; NaN is not.
+    (!(least < p && p < most)).then(|| format!("{id}: P {p} of a {} case", case.label))
+}
+
+fn by_label(cases: &[Labelled], answers: &[Answer]) -> Table {
+    let mut header = vec!["label", "cases", "P min", "P median", "P max"];
+    header.extend(VERDICTS.map(|(_, name)| name));
+    header.extend(["query median (ms)", "query p95 (ms)"]);
+    let mut table = Table::new(header);
+    for label in LABELS {
+        let of_label = cases.iter().zip(answers).filter(|(case, _)| case.label == label);
+        let reports: Vec<&Report> =
+            of_label.filter_map(|(_, answer)| answer.as_ref().ok()).collect();
+        let p: Vec<f64> = reports.iter().map(|report| report.collision_probability).collect();
+        let time: Vec<f64> = reports.iter().map(|report| query_ms(report)).collect();
+        let mut cells = vec![label.to_owned(), reports.len().to_string()];
+        cells.extend([0.0, 0.5, 1.0].map(|q| probability(quantile(&p, q))));
+        let count = |verdict| reports.iter().filter(|r| r.verdict == verdict).count();
+        cells.extend(VERDICTS.map(|(verdict, _)| count(verdict).to_string()));
+        cells.extend([0.5, 0.95].map(|q| format!("{:.1}", quantile(&time, q))));
+        table.row(cells);
+    }
+    table
+}
+
+fn each(cases: &[Labelled], answers: &[Answer]) -> Table {
+    const HEADER: &str = "case, label (basis), scene / object, smallest distance (mm), P, bounds, \
+                          verdict, clearance (mm), query (ms)";
+    let mut table = Table::new(HEADER.split(", "));
+    for (case, answer) in cases.iter().zip(answers) {
+        let mut cells = vec![
+            case.id.clone(),
+            format!("{} ({})", case.label, case.basis),
+            format!("{} / {}", file_name(&case.scene), file_name(&case.object)),
+            format!("{:+.1}", case.distance_mm),
+        ];
+        cells.extend(match answer {
+            Err(_) => ["no answer", "-", "-", "-", "-"].map(String::from),
+            Ok(report) => [
+                probability(report.collision_probability),
+                bounds(report.bounds),
+                verdict_name(report.verdict).to_owned(),
+                report.clearance_m.map_or("-".to_owned(), |c| {
+                    format!("{:+.1} ± {:.1}", 1e3 * c.mean, 1e3 * c.std)
+                }),
+                format!("{:.1}", query_ms(report)),
+            ],
+        });
+        table.row(cells);
+    }
+    table
+}
+
+fn query_ms(report: &Report) -> f64 {
+    1e-3 * report.stats.query_us as f64
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// A verdict in words.
+pub(super) fn verdict_name(verdict: Verdict) -> &'static str {
+    VERDICTS.iter().find(|(other, _)| *other == verdict).map_or("unknown", |(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Point3, PointCloud, Pose};
+
+    use super::*;
+
+    #[test]
+    fn clear_cases_need_clear_answers_and_all_need_sound_ones() {
+        let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.01 }, Mode::Calibrated);
+        let points = PointCloud::from_points(vec![Point3::origin()]);
+        let cloud = Cloud::prepare(&points, &settings).unwrap();
+        let query = Query::new(QuerySettings::default()).unwrap();
+        let report = query.run(&cloud, &cloud, &Pose::identity()).unwrap();
+        let fails = |label: &str, basis: &str, p: f64, bounds: [f64; 2]| {
+            let case = Labelled {
+                id: "x".to_owned(),
+                scene: "s".into(),
+                object: "o".into(),
+                pose: Pose::identity(),
+                label: label.to_owned(),
+                basis: basis.to_owned(),
+                distance_mm: 0.0,
+                advance_mm: None,
+            };
+            let answer = Report { collision_probability: p, bounds, ..report.clone() };
+            failure(&case, &Ok(answer)).is_some()
+        };
+        assert!(!fails("free", "distance", 0.0, [0.0, 0.1]));
+        assert!(!fails("collision", "depth", 1.0, [0.9, 1.0]));
+        assert!(!fails("collision", "advance", 0.3, [0.0, 1.0]));
+        assert!(fails("free", "distance", 0.1, [0.0, 0.1]));
+        assert!(fails("collision", "depth", 0.9, [0.9, 1.0]));
+        // Whatever the label.
+        assert!(fails("contact", "distance", 0.5, [0.6, 0.7]));
+        assert!(fails("contact", "distance", f64::NAN, [0.0, 1.0]));
+    }
+}
