@@ -1,6 +1,6 @@
 //! What was asked, what is true, and what each method said: one table for every sweep.
 
-use std::path::Path;
+use std::{path::Path, time::Instant};
 
 use anyhow::{Context, Result, ensure};
 use cloudtouch::{ContactEvidence, Report};
@@ -105,6 +105,11 @@ impl Said {
     /// A score alone.
     pub fn score(score: f64, micros: f64) -> Self {
         Self { score, probability: None, bounds: None, evidence: None, micros }
+    }
+
+    /// Touching or not.
+    pub fn yes_or_no(touch: bool, start: Instant) -> Self {
+        Self::score(f64::from(u8::from(touch)), 1e6 * start.elapsed().as_secs_f64())
     }
 
     fn check(&self) -> Result<()> {

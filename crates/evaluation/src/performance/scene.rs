@@ -1,9 +1,10 @@
 //! The piano and the room: meshes, noisy clouds, and poses far from contact, near and deep.
 
 use anyhow::{Context, Result};
-use cloudtouch_geom::{PointCloud, Pose, TriangleMesh, seed::derive};
+use cloudtouch_geom::{Pose, TriangleMesh, seed::derive};
 use cloudtouch_testkit::{
     exact::ExactMesh,
+    family::Observation,
     noise::{NoiseKind, add_noise},
     poses::{LabelledPose, poses_near_contact},
     scene,
@@ -15,10 +16,10 @@ use rayon::prelude::*;
 pub(super) const POINTS: usize = 10_000;
 /// Standard deviation of the noise where nothing else is said, m.
 pub(super) const STD: f64 = 0.002;
-
 /// The edges that leave so many triangles, m: the room at 10,000 and the piano.
-const ROOM_EDGE: f64 = 0.42;
-const PIANO_EDGE: f64 = 0.13;
+const EDGES: [f64; 2] = [0.42, 0.13];
+/// Poses drawn at once; what does not fit a class is dropped.
+const BATCH: usize = 4;
 
 /// How close the exact surfaces are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,8 +44,8 @@ pub(super) struct Posed {
 /// What is measured on.
 pub(super) struct Scene {
     room: TriangleMesh,
-    piano: TriangleMesh,
-    /// The classes in turn, every second near one a collision.
+    pub(super) piano: TriangleMesh,
+    /// The kinds of [`TURN`] in turn.
     pub(super) poses: Vec<Posed>,
     /// Everything random comes from this.
     pub(super) seed: u64,
@@ -59,10 +60,6 @@ const TURN: [(Class, bool); 6] = [
     (Class::Near, true),
     (Class::Deep, true),
 ];
-/// Poses drawn at once on all threads, so many by each; what does not fit a class is dropped.
-const BATCH: [u64; 2] = [4, 4];
-/// More draws than this mean that a class cannot be had.
-const MOST_BATCHES: u64 = 2000;
 
 impl Class {
     pub(super) const ALL: [Self; 3] = [Self::Far, Self::Near, Self::Deep];
@@ -87,74 +84,69 @@ impl Scene {
     ///
     /// # Errors
     /// When a class of poses cannot be had.
-    pub(super) fn draw(poses: usize, seed: u64) -> Result<Self> {
+    pub(super) fn draw(count: usize, seed: u64) -> Result<Self> {
         let (room, piano) = (scene::room(), scene::piano());
         let exact = [&room, &piano].map(ExactMesh::new);
-        let drawn = |batch| {
-            let part = |part| {
-                let from = derive(derive(seed, 1, batch), part, 0);
-                poses_near_contact(&exact[0], &exact[1], BATCH[1] as usize, from)
-            };
-            (0..BATCH[0]).into_par_iter().flat_map_iter(part).collect()
+        let batch = |number: u64| {
+            let drawn =
+                |part| poses_near_contact(&exact[0], &exact[1], BATCH, derive(seed, 1, part));
+            (4 * number..4 * number + 4).into_par_iter().flat_map_iter(drawn).collect::<Vec<_>>()
         };
-        let poses = pick(poses, drawn)?;
+        let mut kinds: [Vec<Posed>; TURN.len()] = Default::default();
+        let wanted = count.div_ceil(TURN.len());
+        for LabelledPose { scene_from_object: pose, in_collision: collides, signed_distance } in
+            (0..2000).flat_map(batch)
+        {
+            let class = Class::of(signed_distance);
+            let fits = |i: &usize| class == Some(TURN[*i].0) && collides == TURN[*i].1;
+            let open = (0..TURN.len()).filter(fits).find(|&i| kinds[i].len() < wanted);
+            if let (Some(class), Some(kind)) = (class, open) {
+                kinds[kind].push(Posed { class, collides, pose });
+            }
+            if kinds.iter().all(|kind| kind.len() == wanted) {
+                break;
+            }
+        }
+        let in_turn = |i: usize| kinds[i % TURN.len()].get(i / TURN.len()).copied();
+        let poses: Option<Vec<Posed>> = (0..count).map(in_turn).collect();
+        let poses = poses.context("too few far, near or deep poses")?;
         Ok(Self { room, piano, poses, seed })
     }
 
-    /// The room, with noise of this standard deviation (m).
-    pub(super) fn room(&self, points: usize, std: f64) -> PointCloud {
-        noisy(&self.room, points, std, derive(self.seed, 2, 0))
+    /// The poses of one class.
+    pub(super) fn of(&self, class: Class) -> impl Iterator<Item = &Posed> {
+        self.poses.iter().filter(move |posed| posed.class == class)
     }
 
-    /// The piano, with noise of this standard deviation (m).
-    pub(super) fn piano(&self, std: f64) -> PointCloud {
-        noisy(&self.piano, POINTS, std, derive(self.seed, 2, 1))
+    /// The room in so many points, with noise of this standard deviation (m).
+    pub(super) fn room(&self, points: usize, std: f64) -> Observation {
+        observed(&self.room, points, std, derive(self.seed, 2, 0))
+    }
+
+    /// The piano in [`POINTS`] points.
+    pub(super) fn piano(&self, std: f64) -> Observation {
+        observed(&self.piano, POINTS, std, derive(self.seed, 2, 1))
     }
 
     /// The room's surface in about so many triangles, and the piano's in ten thousand.
     pub(super) fn meshes(&self, triangles: usize) -> [TriangleMesh; 2] {
-        let edge = ROOM_EDGE * (POINTS as f64 / triangles as f64).sqrt();
-        [(&self.room, edge), (&self.piano, PIANO_EDGE)]
+        let edge = EDGES[0] * (POINTS as f64 / triangles as f64).sqrt();
+        [(&self.room, edge), (&self.piano, EDGES[1])]
             .map(|(mesh, edge)| scene::subdivide_to_max_edge(mesh, edge))
     }
 }
 
-fn noisy(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> PointCloud {
-    let exact = positions(&sample_surface(mesh, points, stream));
+fn observed(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
+    let samples = sample_surface(mesh, points, stream);
     let errors = derive(stream, 1, 0);
-    PointCloud::from_points(add_noise(&exact, NoiseKind::Gaussian, std, errors))
-}
-
-/// So many poses in turn, each the first drawn of its kind that is not taken.
-fn pick(count: usize, mut drawn: impl FnMut(u64) -> Vec<LabelledPose>) -> Result<Vec<Posed>> {
-    let mut places: Vec<Option<Posed>> = vec![None; count];
-    for batch in 0..MOST_BATCHES {
-        if places.iter().all(Option::is_some) {
-            break;
-        }
-        for LabelledPose { scene_from_object: pose, in_collision: collides, signed_distance } in
-            drawn(batch)
-        {
-            let Some(class) = Class::of(signed_distance) else { continue };
-            let kind = |i: usize| TURN[i % TURN.len()];
-            let is_open = |i: &usize| places[*i].is_none() && kind(*i) == (class, collides);
-            if let Some(place) = (0..count).find(is_open) {
-                places[place] = Some(Posed { class, collides, pose });
-            }
-        }
-    }
-    let all: Option<Vec<Posed>> = places.into_iter().collect();
-    all.with_context(|| format!("too few far, near or deep poses in {MOST_BATCHES} draws"))
+    let noisy = add_noise(&positions(&samples), NoiseKind::Gaussian, std, errors);
+    let cloud = cloudtouch_geom::PointCloud::from_points(noisy);
+    Observation { cloud, truth: samples.into_iter().map(Some).collect(), std }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn at(signed_distance: f64) -> LabelledPose {
-        let scene_from_object = Pose::identity();
-        LabelledPose { scene_from_object, in_collision: signed_distance < 0.0, signed_distance }
-    }
 
     #[test]
     fn classes_have_gaps_between_them() {
@@ -165,15 +157,12 @@ mod tests {
     }
 
     #[test]
-    fn every_third_pose_is_of_a_class_and_one_that_cannot_be_had_is_an_error() {
-        let batch = |_| [0.3, 0.01, 0.01, 0.05, -0.01, -0.2].map(at).to_vec();
-        for count in 0..8 {
-            let posed = pick(count, batch).unwrap();
-            assert_eq!(posed.len(), count);
-            for (i, posed) in posed.iter().enumerate() {
-                assert_eq!((posed.class, posed.collides), TURN[i % 6]);
-            }
+    fn poses_are_what_they_are_drawn_for() {
+        let scene = Scene::draw(7, 3).unwrap();
+        let exact = [&scene.room, &scene.piano].map(ExactMesh::new);
+        for (posed, kind) in scene.poses.iter().zip(TURN.into_iter().cycle()) {
+            assert_eq!((posed.class, posed.collides), kind);
+            assert_eq!(exact[0].solids_overlap(&exact[1], &posed.pose), posed.collides);
         }
-        assert!(pick(3, |_| vec![at(0.3), at(0.0)]).is_err());
     }
 }
