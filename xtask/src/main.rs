@@ -1,6 +1,5 @@
 //! Project tasks: `cargo xtask TASK`, one file per task.
 
-mod bench_report;
 mod calibrate;
 mod ci;
 mod common;
@@ -30,7 +29,7 @@ enum Task {
     /// Hard cases, maps of the solver and motions that must change nothing, with figures.
     Stability(stability::Arguments),
     /// Times of ours and of its peers on the same scenes, against the targets, with figures.
-    BenchReport(bench_report::Arguments),
+    BenchReport(cloudtouch_evaluation::performance::Arguments),
     /// Answers to fixed poses in a real scan while noise is added to it.
     Growth(sweep::GrowthArguments),
     /// Query time against error, one setting changed at a time.
@@ -54,7 +53,7 @@ fn main() -> anyhow::Result<()> {
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Calibrate(arguments) => calibrate::run(&root, &arguments),
         Task::Stability(arguments) => stability::run(&root, &arguments),
-        Task::BenchReport(arguments) => bench_report::run(&root, &arguments),
+        Task::BenchReport(arguments) => cloudtouch_evaluation::performance::run(&root, &arguments),
         Task::Growth(arguments) => sweep::growth(&root, &arguments),
         Task::Settings(arguments) => sweep::settings(&root, &arguments),
         Task::Scene(arguments) => fixtures::write_scene(&root, &arguments),

@@ -79,22 +79,22 @@ impl Frames {
 }
 
 /// Measures simulated and, where there are some, real frames.
-pub(super) fn measure(scene: &Scene, data: &Path) -> Findings {
+pub(super) fn measure(scene: &Scene, data: Option<&Path>) -> Findings {
     let mut table =
         Table::new(["frames", "number", "prepare", "ten poses", "both", "both, p95", "error"]);
     let mut targets = Vec::new();
     for name in ["simulated", "stereo scan"] {
         let what =
             format!("40k-point depth frame ({name}), prepared, and 10 gripper poses ≤ 25 ms");
-        let (frames, error) = if name == "simulated" {
-            simulated(scene.seed)?
-        } else if data.join("cases.json").is_file() {
-            real(data)?
-        } else {
-            println!("no real scans at {}: that frame is skipped", data.display());
-            targets.push(Target::skipped(what, "no real scans here"));
-            continue;
+        let measured = match data {
+            _ if name == "simulated" => simulated(scene.seed)?,
+            Some(data) => real(data)?,
+            None => {
+                targets.push(Target::skipped(what, "no real scans here"));
+                continue;
+            }
         };
+        let (frames, error) = measured;
         table.row(frames.row(name, error));
         targets.push(Target::at_most(what, median(&frames.total), LIMIT, time));
     }
@@ -144,7 +144,7 @@ fn real(data: &Path) -> Result<(Frames, String)> {
     let cases = series(data)?;
     let frame = thinned(&read_cloud(&cases[0].scene)?, RETURNS)?;
     let gripper = Mesh::prepare(&read_mesh(&cases[0].object, LengthUnit::Metres)?)?;
-    let poses: Vec<Pose> = cases.iter().map(|case| case.scene_from_object).collect();
+    let poses: Vec<Pose> = cases.iter().map(|case| case.pose).collect();
     let mut frames = Frames::default();
     let mut said = Vec::new();
     for _ in 0..FRAMES {
@@ -167,10 +167,10 @@ fn real(data: &Path) -> Result<(Frames, String)> {
 /// # Errors
 /// When there are fewer: times of fewer poses would look better than they are.
 fn series(data: &Path) -> Result<Vec<Labelled>> {
-    let mut cases = cases::read(&data.join("cases.json"))?;
-    cases.retain(|case| case.in_series);
-    let every = cases.len().div_ceil(POSES).max(1);
-    let cases: Vec<Labelled> = cases.into_iter().skip(every - 1).step_by(every).collect();
+    let all = cases::series(data)?;
+    let every = all.len().div_ceil(POSES);
+    let spread = all.into_iter().skip(every - 1).step_by(every);
+    let cases: Vec<Labelled> = spread.map(|(_, case)| case).collect();
     ensure!(cases.len() == POSES, "cases.json: {} poses of a series, not {POSES}", cases.len());
     Ok(cases)
 }

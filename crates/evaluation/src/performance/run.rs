@@ -15,7 +15,10 @@ use super::{
     solvers,
     target::{self, Findings},
 };
-use crate::page::{self, Page, Section};
+use crate::{
+    page::{self, Page, Section},
+    real_scans::cases,
+};
 
 /// What `cargo xtask bench-report` is given.
 #[derive(Debug, Args)]
@@ -58,7 +61,7 @@ enum Part {
 }
 
 impl Part {
-    fn measure(self, scene: &Scene, data: &Path) -> Findings {
+    fn measure(self, scene: &Scene, data: Option<&Path>) -> Findings {
         match self {
             Self::Prepared => prepared::measure(scene),
             Self::FirstQuery => first_query::measure(scene),
@@ -107,6 +110,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     done("poses");
     // Whatever uses rayon gets one thread; the batch brings pools of its own.
     let alone = ThreadPoolBuilder::new().num_threads(1).build().context("start a thread")?;
+    let data = cases::folder(root, &arguments.data);
     let (mut sections, mut targets) = (Vec::new(), Vec::new());
     let mut command = format!("--poses {poses} --seed {seed} --update-docs");
     for &part in Part::value_variants() {
@@ -114,7 +118,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
             command = format!("--poses {poses} --seed {seed} --only ...");
             continue;
         }
-        let measured = alone.install(|| part.measure(&scene, &root.join(&arguments.data)));
+        let measured = alone.install(|| part.measure(&scene, data.as_deref()));
         let (section, judged) = measured.with_context(|| format!("measure {part:?}"))?;
         sections.push(section);
         targets.extend(judged);

@@ -53,6 +53,7 @@ pub(super) fn grade(answers: &mut Answers) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::answers::Said;
     use crate::answers::tests::question;
 
     #[test]
