@@ -3,8 +3,6 @@
 //! Coordinates are rounded to 0.1 mm and answers to 0.01 mm, so that the last bits in which
 //! platforms differ do not reach the files; answers hold for the files as rounded.
 
-mod scenes;
-
 use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path};
 
 use anyhow::{Context, Result, bail};
@@ -18,8 +16,6 @@ use cloudtouch_testkit::{
 };
 use serde::Serialize;
 use sha2::{Digest, Sha256};
-
-pub(crate) use scenes::{Arguments as SceneArguments, write_scene};
 
 const SEED: u64 = 2011;
 const COMMAND: &str = "cargo xtask fixtures";
@@ -122,7 +118,6 @@ fn generate() -> Result<Files> {
     add("room.pcd", pcd(&noisy(&room, 54_000, 1, inside)));
     add("piano.pcd", pcd(&noisy(&piano, 9_000, 2, |_| true)));
     add("cases.json", json(&cases(&room, &piano)?)?);
-    files.insert(scenes::LIST.into(), scenes::list()?);
     let manifest = Manifest::of(&files);
     files.insert("manifest.json".into(), json(&manifest)?);
     Ok(files)
