@@ -4,15 +4,14 @@ mod bench_report;
 mod calibrate;
 mod ci;
 mod common;
-mod evaluate;
 mod fixtures;
-mod stability;
 mod sweep;
 mod tidy;
 
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
+use cloudtouch_evaluation::{growth, real_scans, stability};
 
 /// Project tasks.
 #[derive(Parser)]
@@ -21,18 +20,18 @@ enum Task {
     Ci,
     /// Rules on manifests, layers and text that no compiler checks.
     Tidy,
-    /// Answers of the tool on real scans and exact poses, with figures.
-    Evaluate(evaluate::Arguments),
+    /// Answers on real scans and exact poses, with figures.
+    Evaluate(real_scans::Arguments),
     /// Every method against exact truth on generated scenes, with tables and figures.
     Sweep(sweep::Arguments),
     /// Fits the constants that turn evidence into a probability.
     Calibrate(calibrate::Arguments),
-    /// Hard cases, maps of the solver and motions that must change nothing, with figures.
+    /// Hard cases, the solver over its settings, and motions that must change nothing.
     Stability(stability::Arguments),
     /// Times of ours and of its peers on the same scenes, against the targets, with figures.
     BenchReport(bench_report::Arguments),
     /// Answers to fixed poses in a real scan while noise is added to it.
-    Growth(sweep::GrowthArguments),
+    Growth(growth::Arguments),
     /// Query time against error, one setting changed at a time.
     Settings(sweep::SettingsArguments),
     /// Writes one of the sweep's large scenes to target/scenes/.
@@ -50,12 +49,12 @@ fn main() -> anyhow::Result<()> {
     match Task::parse() {
         Task::Ci => ci::run(&root),
         Task::Tidy => tidy::run(&root),
-        Task::Evaluate(arguments) => evaluate::run(&root, &arguments),
+        Task::Evaluate(arguments) => real_scans::run(&root, &arguments),
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Calibrate(arguments) => calibrate::run(&root, &arguments),
         Task::Stability(arguments) => stability::run(&root, &arguments),
         Task::BenchReport(arguments) => bench_report::run(&root, &arguments),
-        Task::Growth(arguments) => sweep::growth(&root, &arguments),
+        Task::Growth(arguments) => growth::run(&root, &arguments),
         Task::Settings(arguments) => sweep::settings(&root, &arguments),
         Task::Scene(arguments) => fixtures::write_scene(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),

@@ -5,7 +5,6 @@ pub(crate) mod answer;
 mod coverage;
 mod document;
 mod figures;
-mod growth;
 pub(crate) mod measures;
 mod ours;
 pub(crate) mod plan;
@@ -24,7 +23,6 @@ use std::{fs, path::Path};
 use anyhow::{Context, Result};
 use clap::Args;
 
-pub(crate) use growth::{Arguments as GrowthArguments, run as growth};
 use measures::calibrate_scores;
 use plan::Plan;
 pub(crate) use settings::{Arguments as SettingsArguments, run as settings};
