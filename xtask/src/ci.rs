@@ -9,7 +9,9 @@ use std::{
 
 use anyhow::{Context, Result, bail};
 
-use crate::{fixtures, sweep, tidy};
+use cloudtouch_evaluation::sweep;
+
+use crate::{fixtures, tidy};
 
 /// Not published, so not packaged.
 const UNPUBLISHED: [&str; 5] = [

@@ -1,17 +1,15 @@
-//! Project tasks: `cargo xtask TASK`, one file per task.
+//! Project tasks: `cargo xtask TASK`. What measures is in crates/evaluation.
 
-mod bench_report;
-mod calibrate;
 mod ci;
-mod common;
 mod fixtures;
-mod sweep;
 mod tidy;
 
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use cloudtouch_evaluation::{growth, real_scans, stability};
+use cloudtouch_evaluation::{
+    calibrate, growth, performance, real_scans, settings, stability, sweep,
+};
 
 /// Project tasks.
 #[derive(Parser)]
@@ -20,22 +18,20 @@ enum Task {
     Ci,
     /// Rules on manifests, layers and text that no compiler checks.
     Tidy,
-    /// Answers on real scans and exact poses, with figures.
+    /// Answers of the tool on real scans and exact poses, with figures.
     Evaluate(real_scans::Arguments),
     /// Every method against exact truth on generated scenes, with tables and figures.
     Sweep(sweep::Arguments),
     /// Fits the constants that turn evidence into a probability.
     Calibrate(calibrate::Arguments),
-    /// Hard cases, the solver over its settings, and motions that must change nothing.
+    /// Hard cases, and motions that must change nothing.
     Stability(stability::Arguments),
     /// Times of ours and of its peers on the same scenes, against the targets, with figures.
-    BenchReport(bench_report::Arguments),
+    BenchReport(performance::Arguments),
     /// Answers to fixed poses in a real scan while noise is added to it.
     Growth(growth::Arguments),
     /// Query time against error, one setting changed at a time.
-    Settings(sweep::SettingsArguments),
-    /// Writes one of the sweep's large scenes to target/scenes/.
-    Scene(fixtures::SceneArguments),
+    Settings(settings::Arguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -53,10 +49,9 @@ fn main() -> anyhow::Result<()> {
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Calibrate(arguments) => calibrate::run(&root, &arguments),
         Task::Stability(arguments) => stability::run(&root, &arguments),
-        Task::BenchReport(arguments) => bench_report::run(&root, &arguments),
+        Task::BenchReport(arguments) => performance::run(&root, &arguments),
         Task::Growth(arguments) => growth::run(&root, &arguments),
-        Task::Settings(arguments) => sweep::settings(&root, &arguments),
-        Task::Scene(arguments) => fixtures::write_scene(&root, &arguments),
+        Task::Settings(arguments) => settings::run(&root, &arguments),
         Task::Fixtures { check: true } => fixtures::check(&root),
         Task::Fixtures { check: false } => fixtures::write(&root),
     }

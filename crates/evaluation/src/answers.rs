@@ -1,6 +1,6 @@
 //! What was asked, what is true, and what each method said: one table for every sweep.
 
-use std::path::Path;
+use std::{path::Path, time::Instant};
 
 use anyhow::{Context, Result, ensure};
 use cloudtouch::{ContactEvidence, Report};
@@ -30,6 +30,18 @@ impl Pair {
     }
 }
 
+/// What a family of scenes is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// What users meet.
+    Ordinary,
+    /// Chosen to be hard.
+    Adversarial,
+    /// With meshes of real things, where their files are.
+    Real,
+}
+
 /// How a scene was observed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Condition {
@@ -46,8 +58,8 @@ pub struct Condition {
 pub struct Question {
     /// Generator of the scene.
     pub family: &'static str,
-    /// Whether users meet such scenes every day; the others are chosen to be hard.
-    pub ordinary: bool,
+    /// What that family is for.
+    pub kind: Kind,
     /// What the moving body is given as.
     pub pair: Pair,
     /// How the scene was observed.
@@ -93,6 +105,11 @@ impl Said {
     /// A score alone.
     pub fn score(score: f64, micros: f64) -> Self {
         Self { score, probability: None, bounds: None, evidence: None, micros }
+    }
+
+    /// Touching or not.
+    pub fn yes_or_no(touch: bool, start: Instant) -> Self {
+        Self::score(f64::from(u8::from(touch)), 1e6 * start.elapsed().as_secs_f64())
     }
 
     fn check(&self) -> Result<()> {
@@ -184,7 +201,7 @@ impl Answers {
 #[derive(Serialize)]
 struct Row<'a> {
     family: &'static str,
-    ordinary: bool,
+    kind: Kind,
     pair: Pair,
     points: usize,
     noise: &'static str,
@@ -208,7 +225,7 @@ impl<'a> Row<'a> {
     fn new(question: &Question, method: &'a str, said: &Said) -> Self {
         Self {
             family: question.family,
-            ordinary: question.ordinary,
+            kind: question.kind,
             pair: question.pair,
             points: question.condition.points,
             noise: match question.condition.noise {
@@ -241,7 +258,7 @@ pub(crate) mod tests {
     pub(crate) fn question(family: &'static str, draw: u32, pose: u32, collides: bool) -> Question {
         Question {
             family,
-            ordinary: true,
+            kind: Kind::Ordinary,
             pair: Pair::CloudCloud,
             condition: Condition { points: 5_000, noise: NoiseKind::Gaussian, std: 0.005 },
             draw,

@@ -12,6 +12,7 @@ pub mod machine;
 pub mod measures;
 pub mod methods;
 pub mod page;
+pub mod performance;
 pub mod real_scans;
 pub mod settings;
 pub mod stability;

@@ -47,8 +47,10 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let names: Vec<String> = settings.iter().map(Method::name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let asked: Vec<Asked> = settings.into_iter().map(Asked::always).collect();
-    let plan =
-        Plan { pairs: vec![Pair::CloudCloud], ..Plan::of(&FAMILIES, draws, poses, POINTS, STD) };
+    let plan = Plan {
+        pairs: vec![Pair::CloudCloud],
+        ..Plan::of(FAMILIES.map(Into::into).to_vec(), draws, poses, POINTS, STD)
+    };
     let answers = ask(&plan, &asked)?;
     let judged = Judged::pick(&answers, &names, |_| true);
     let (count, collisions) = judged.counts();

@@ -114,8 +114,10 @@ impl Approach {
             if scene.touches(object, &approach.pose(0.0), touch) {
                 continue;
             }
-            approach.advance(scene, object);
-            return approach;
+            // Rounding apart, the contact is there at the latest.
+            if approach.advance(scene, object, path.norm() + CONTACT_GAP) {
+                return approach;
+            }
         }
         panic!("no free place for the object in or around the scene's box");
     }
@@ -125,17 +127,17 @@ impl Approach {
         Pose::from_isometry(Isometry3::from_parts(offset, self.rotation))
     }
 
-    /// Moves on by the exact distance, which cannot jump over a contact, until that is small.
-    ///
-    /// It must be known that there is a contact ahead.
-    pub(crate) fn advance(&mut self, scene: &ExactMesh, object: &ExactMesh) {
-        loop {
+    /// Moves on by the exact distance, which cannot jump over a contact, until that is small;
+    /// whether it was before `limit` metres.
+    pub(crate) fn advance(&mut self, scene: &ExactMesh, object: &ExactMesh, limit: f64) -> bool {
+        while self.contact <= limit {
             let gap = scene.distance(object, &self.pose(self.contact));
             if gap < CONTACT_GAP {
-                return;
+                return true;
             }
             self.contact += gap;
         }
+        false
     }
 
     fn labelled(&self, scene: &ExactMesh, object: &ExactMesh, along: f64) -> LabelledPose {

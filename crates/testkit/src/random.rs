@@ -36,3 +36,8 @@ pub(crate) fn small_rotation(angle: f64, rng: &mut impl Rng) -> UnitQuaternion<f
 pub(crate) fn between(low: f64, high: f64, rng: &mut impl Rng) -> f64 {
     low + (high - low) * rng.random::<f64>()
 }
+
+/// A number at most `half` from zero.
+pub(crate) fn within(half: f64, rng: &mut impl Rng) -> f64 {
+    between(-half, half, rng)
+}

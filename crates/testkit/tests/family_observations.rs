@@ -5,7 +5,8 @@ use cloudtouch_testkit::{
     exact::{Touch, brute},
     family::{Family, Observation, Side},
     noise::NoiseKind,
-    surface::SurfaceSample,
+    poses::NEAR,
+    surface::{SurfaceSample, sample_surface},
 };
 
 const SIDES: [Side; 2] = [Side::A, Side::B];
@@ -24,6 +25,53 @@ fn solids_are_closed() {
             for mesh in [scene.a.mesh(), scene.b.mesh()] {
                 assert_eq!(mesh.open_edges() == 0, scene.touch == Touch::Solids, "{family:?}");
                 assert!(mesh.triangles().len() < 2000, "truth would be slow");
+            }
+        }
+    }
+}
+
+#[test]
+fn parts_of_a_moving_body_keep_out_of_one_another() {
+    for &family in Family::ALL {
+        for seed in [1, 2, 3] {
+            let scene = family.scene(seed);
+            if scene.touch == Touch::Surfaces {
+                continue;
+            }
+            for sample in sample_surface(scene.b.mesh(), 300, seed) {
+                let wound = |step: f64| {
+                    scene.b.winding_number(&(sample.position + sample.normal * step)).round()
+                };
+                assert_eq!([wound(-1e-5), wound(1e-5)], [1.0, 0.0], "{family:?} {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_seen_shows_what_is_true() {
+    for &family in Family::ALL {
+        let scene = family.scene(1);
+        let cloud = scene.observe(Side::A, 20_000, NoiseKind::Gaussian, 0.0, 1).cloud;
+        let spacing = scene.spacing(Side::A, 20_000);
+        for pose in scene.poses(4, 1) {
+            let object_from_scene = pose.scene_from_object.inverse();
+            let (low, high) = scene.b.mesh().bounding_box().unwrap();
+            let points = cloud.points.iter().map(|p| object_from_scene.transform_point(p));
+            let reach = pose.signed_distance.max(0.0) + 3.0 * spacing;
+            let nearest = points
+                .filter(|p| (0..3).all(|k| p[k] > low[k] - reach && p[k] < high[k] + reach))
+                .map(|p| brute::point_distance(scene.b.mesh(), &p))
+                .fold(f64::INFINITY, f64::min);
+            if pose.in_collision {
+                assert!(nearest < 3.0 * spacing, "{family:?}: {nearest} in collision");
+            } else {
+                assert!(nearest > pose.signed_distance - 1e-9, "{family:?}: {nearest}");
+                assert!(
+                    pose.signed_distance > NEAR || nearest < reach + 0.005,
+                    "{family:?}: {nearest} for {}",
+                    pose.signed_distance
+                );
             }
         }
     }
@@ -67,7 +115,7 @@ fn places_depend_on_the_seed_alone_and_errors_have_the_standard_deviation_asked_
             // As text, in which missing returns are equal.
             assert_eq!(format!("{seen:?}"), format!("{:?}", observe(0.01, 7)), "{family:?}");
             // The noise of a depth image has a test of its own.
-            if family == Family::Tabletop {
+            if family == Family::Tabletop && side == Side::A {
                 continue;
             }
             let errors: Vec<Vector3> = on_surface(&seen).map(|(p, t)| p - t.position).collect();
@@ -91,6 +139,12 @@ fn ten_thousand_points_are_as_far_apart_as_promised() {
                 Family::PianoRoom => [0.032..0.042, 0.015..0.019],
                 Family::Tabletop => [0.005..0.01, 0.001..0.003],
                 Family::Furniture => [0.025..0.055, 0.015..0.035],
+                Family::LivingRoom | Family::Doorway | Family::Staircase => {
+                    [0.02..0.035, 0.002..0.015]
+                }
+                Family::Desk | Family::Kitchen | Family::Workbench | Family::BoxesInBin => {
+                    [0.012..0.03, 0.001..0.007]
+                }
                 _ => [0.012..0.032, 0.01..0.025],
             };
             assert!(expected_a.contains(&a) && expected_b.contains(&b), "{family:?}: {a}, {b}");
@@ -158,7 +212,5 @@ fn a_depth_image_has_the_points_asked_for_and_the_noise_it_states() {
         assert!((f64::sqrt(squares / count) - 1.0).abs() < tolerance, "{}", squares / count);
         let veils = returns as f64 - count;
         assert!(veils > 5.0 && veils < 0.03 * count, "{veils} veil points");
-        let gripper = scene.observe(Side::B, 500, NoiseKind::Gaussian, std, 9);
-        assert!(on_surface(&gripper).all(|(p, t)| p == t.position) && gripper.std == 0.0);
     }
 }

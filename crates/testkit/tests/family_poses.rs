@@ -1,9 +1,10 @@
-//! The poses of every family: labels are true, half are near contact, half collide.
+//! The poses of every family: labels are true, half are near contact, exactly half collide.
 
 use std::sync::OnceLock;
 
 use cloudtouch_geom::{Point3, TriangleMesh, Vector3};
 use cloudtouch_testkit::{
+    exact::brute,
     family::{Family, FamilyScene},
     poses::{LabelledPose, NEAR},
 };
@@ -39,14 +40,27 @@ fn near(poses: &[LabelledPose]) -> Vec<&LabelledPose> {
 }
 
 #[test]
-fn half_are_near_and_both_answers_are_common() {
+fn half_are_near_and_half_collide() {
     for Variant { family, seed, poses, .. } in variants() {
         let near = near(poses);
         assert!(near.len() >= COUNT / 2, "{family:?} {seed}: {} near", near.len());
         assert!(near.len() <= COUNT - 2, "{family:?} {seed}: hardly any is not near");
-        for all in [poses.iter().collect(), near] {
-            let share = all.iter().filter(|p| p.in_collision).count() as f64 / all.len() as f64;
-            assert!((0.25..=0.75).contains(&share), "{family:?} {seed}: {share} collide");
+        let colliding = |poses: &[&LabelledPose]| poses.iter().filter(|p| p.in_collision).count();
+        assert_eq!(colliding(&poses.iter().collect::<Vec<_>>()), COUNT / 2, "{family:?} {seed}");
+        let share = colliding(&near) as f64 / near.len() as f64;
+        assert!((0.25..=0.75).contains(&share), "{family:?} {seed}: {share} of the near collide");
+    }
+}
+
+#[test]
+fn fewer_poses_are_the_first_of_more_and_half_of_them_collide() {
+    for family in [Family::WedgeAndPlane, Family::Desk, Family::BoxesInBin] {
+        let v = of_family(family).next().unwrap();
+        for count in [1, 6, 9, 15] {
+            let fewer = v.scene.poses(count, v.seed);
+            assert_eq!(fewer, v.poses[..count]);
+            let colliding = fewer.iter().filter(|p| p.in_collision).count();
+            assert!(colliding == count / 2 || colliding == count.div_ceil(2), "{colliding}");
         }
     }
 }
@@ -67,8 +81,25 @@ fn labels_are_true() {
 }
 
 #[test]
+fn labels_of_the_ordinary_are_those_of_trying_every_pair() {
+    for family in [Family::LivingRoom, Family::Kitchen, Family::BoxesInBin, Family::Staircase] {
+        let v = of_family(family).next().unwrap();
+        let (a, b) = (v.scene.a.mesh(), v.scene.b.mesh());
+        for pose in &v.poses[..4] {
+            let slow = brute::distance(a, b, &pose.scene_from_object);
+            if pose.in_collision {
+                // Or one is inside the other.
+                assert!(slow == 0.0 || !v.scene.a.intersects(&v.scene.b, &pose.scene_from_object));
+            } else {
+                assert!((slow - pose.signed_distance).abs() < 1e-9, "{family:?}: {slow}");
+            }
+        }
+    }
+}
+
+#[test]
 fn the_seed_decides() {
-    for family in [Family::Tabletop, Family::PegInHole, Family::CrossingSheets] {
+    for family in [Family::Tabletop, Family::PegInHole, Family::CrossingSheets, Family::Workbench] {
         let v = of_family(family).next().unwrap();
         let again = family.scene(v.seed);
         assert_eq!(v.poses, again.poses(COUNT, v.seed));
@@ -111,6 +142,18 @@ fn most_near_tori_are_linked() {
             through.count() % 2 == 1
         });
         assert!(2 * linked.count() > near.len(), "variant {}", v.seed);
+    }
+}
+
+#[test]
+fn the_robot_drives_upright_just_above_the_floor() {
+    for v in of_family(Family::Doorway) {
+        for pose in &v.poses {
+            let up = pose.scene_from_object.transform_vector(&Vector3::z());
+            assert!((up - Vector3::z()).norm() < 1e-9);
+            let clearance = pose.scene_from_object.translation().z;
+            assert!((0.035..0.06).contains(&clearance), "{clearance}");
+        }
     }
 }
 

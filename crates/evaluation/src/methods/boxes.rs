@@ -12,7 +12,7 @@ use parry3d_f64::{
     shape::{Shape, TriMesh, Voxels},
 };
 
-use super::{Draw, Method, Prepared, cleaned, micros_since};
+use super::{Draw, Method, Prepared, cleaned};
 use crate::answers::{Pair, Said};
 
 /// Boxes of this side around the points, m.
@@ -58,13 +58,12 @@ impl Prepared for Shapes {
         };
         let pose = DPose3::from(*a_from_b.isometry());
         let touch = intersection_test(&DPose3::IDENTITY, &self.a, &pose, other)?.intersecting;
-        let score = f64::from(u8::from(touch));
-        Ok(Some(Said::score(score, micros_since(start))))
+        Ok(Some(Said::yes_or_no(touch, start)))
     }
 }
 
 /// A mesh as parry keeps it.
-fn parry_mesh(mesh: &TriangleMesh) -> Result<TriMesh> {
+pub(crate) fn parry_mesh(mesh: &TriangleMesh) -> Result<TriMesh> {
     let vertices = mesh.vertices().iter().map(vector).collect();
     TriMesh::new(vertices, mesh.triangles().to_vec()).map_err(|error| anyhow!("{error}"))
 }

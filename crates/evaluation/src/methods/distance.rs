@@ -45,8 +45,8 @@ impl CloudIndex {
     /// The least distance of other points, moved by a pose, from the indexed ones, m.
     pub fn distance(&self, points: &[Point3], pose: &Pose) -> f64 {
         let mut least = f64::MAX;
-        for i in (0..STRIDE).flat_map(|start| (start..points.len()).step_by(STRIDE)) {
-            let place: [f64; 3] = pose.transform_point(&points[i]).coords.into();
+        for point in spread(points) {
+            let place: [f64; 3] = pose.transform_point(point).coords.into();
             let nearest =
                 self.0.query(&place).nearest_n::<SquaredEuclidean<f64>>(NonZeroUsize::MIN);
             // Each is sought no farther than the nearest so far.
@@ -56,6 +56,11 @@ impl CloudIndex {
         }
         least.sqrt()
     }
+}
+
+/// All points in strides.
+pub(crate) fn spread(points: &[Point3]) -> impl Iterator<Item = &Point3> {
+    (0..STRIDE).flat_map(move |start| points.iter().skip(start).step_by(STRIDE))
 }
 
 struct Bodies {

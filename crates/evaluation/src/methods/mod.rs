@@ -16,6 +16,8 @@ use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::Observation;
 
 pub use boxes::Boxes;
+pub(crate) use boxes::parry_mesh;
+pub(crate) use distance::spread;
 pub use distance::{CloudIndex, Distance};
 pub use fitted::{Coefficients, Fitted};
 pub use ours::Ours;

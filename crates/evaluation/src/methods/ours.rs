@@ -18,6 +18,8 @@ pub struct Ours {
     pub query: QuerySettings,
     /// Settings of the trees of clouds.
     pub tree: TreeSettings,
+    /// Whether the surface is computed everywhere beforehand.
+    is_refined: bool,
     /// Whether it is given the points without noise and the true normals.
     sees_truth: bool,
     fitted: Fitted,
@@ -33,6 +35,7 @@ impl Ours {
             name: name.to_owned(),
             query: QuerySettings::new(mode),
             tree: CloudSettings::new(SensorModel::Exact, mode).tree,
+            is_refined: false,
             sees_truth: false,
             fitted: Fitted::stored()?,
         })
@@ -53,6 +56,11 @@ impl Ours {
         self
     }
 
+    /// The same, computing the surface of both clouds beforehand.
+    pub fn refined(self) -> Self {
+        Self { is_refined: true, ..self }
+    }
+
     fn recalibration(&self, family: &str) -> Result<Recalibration> {
         if self.sees_truth {
             self.fitted.oracle_to_judge(family)
@@ -71,7 +79,8 @@ impl Ours {
         };
         let settings =
             CloudSettings { tree: self.tree, ..CloudSettings::new(sensor, self.query.mode) };
-        Ok(Cloud::prepare(cloud, &settings)?)
+        let cloud = Cloud::prepare(cloud, &settings)?;
+        if self.is_refined { Ok(cloud.refined()?) } else { Ok(cloud) }
     }
 }
 

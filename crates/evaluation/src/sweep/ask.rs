@@ -3,14 +3,17 @@
 use anyhow::{Context, Result};
 use cloudtouch_geom::seed;
 use cloudtouch_testkit::{
-    family::{Family, FamilyScene, Kind, Side},
+    family::{FamilyScene, Side},
     poses::LabelledPose,
 };
 use rayon::prelude::*;
 
-use super::plan::{Plan, SEED};
+use super::{
+    plan::{Plan, SEED},
+    scenes::Scenes,
+};
 use crate::{
-    answers::{Answers, Condition, Question, Said},
+    answers::{Answers, Condition, Pair, Question, Said},
     methods::{Draw, Method},
 };
 
@@ -30,13 +33,16 @@ impl Asked {
 }
 
 /// One draw of a family: its scene and poses.
-struct Scene {
-    family: Family,
+struct Scene<'a> {
+    family: &'a Scenes,
     number: u32,
     scene: FamilyScene,
     poses: Vec<LabelledPose>,
     seed: u64,
 }
+
+/// Of how many poses one is asked of an open mesh: leaf by leaf, that takes a hundred times as long.
+const OPEN_MESH_ONE_OF: usize = 4;
 
 /// What a method says of one question.
 type Row = (Question, Vec<(String, Said)>);
@@ -47,26 +53,26 @@ type Row = (Question, Vec<(String, Said)>);
 /// When a method fails or gives what is no answer.
 pub fn ask(plan: &Plan, methods: &[Asked]) -> Result<Answers> {
     let mut answers = Answers::default();
-    for &family in &plan.families {
+    for family in &plan.families {
         let scenes: Vec<Scene> =
             (0..plan.draws).into_par_iter().map(|number| scene(plan, family, number)).collect();
-        let tasks: Vec<(&Scene, &Condition)> =
+        let tasks: Vec<(&Scene<'_>, &Condition)> =
             scenes.iter().flat_map(|s| plan.conditions.iter().map(move |c| (s, c))).collect();
         let rows: Vec<Vec<Row>> = tasks
             .into_par_iter()
             .map(|(scene, condition)| {
                 of_draw(plan, scene, condition, methods)
-                    .with_context(|| format!("{}, draw {}", family.name(), scene.number))
+                    .with_context(|| format!("{}, draw {}", family.name, scene.number))
             })
             .collect::<Result<_>>()?;
         rows.into_iter().try_for_each(|rows| answers.extend(rows))?;
-        eprintln!("{}: {} answers", family.name(), answers.questions.len());
+        eprintln!("{}: {} answers", family.name, answers.questions.len());
     }
     Ok(answers)
 }
 
-fn scene(plan: &Plan, family: Family, number: u32) -> Scene {
-    let seed = seed::derive(SEED, family as u64, seed::derive(plan.stream, number.into(), 0));
+fn scene<'a>(plan: &Plan, family: &'a Scenes, number: u32) -> Scene<'a> {
+    let seed = seed::derive(SEED, family.number(), seed::derive(plan.stream, number.into(), 0));
     let scene = family.scene(seed);
     let poses = scene.poses(plan.poses, seed::derive(seed, 1, 0));
     Scene { family, number, scene, poses, seed }
@@ -75,7 +81,7 @@ fn scene(plan: &Plan, family: Family, number: u32) -> Scene {
 /// The answers about one draw under one condition.
 fn of_draw(
     plan: &Plan,
-    Scene { family, number, scene, poses, seed }: &Scene,
+    Scene { family, number, scene, poses, seed }: &Scene<'_>,
     condition: &Condition,
     methods: &[Asked],
 ) -> Result<Vec<Row>> {
@@ -83,13 +89,15 @@ fn of_draw(
     // The same for every standard deviation, so that only the size of the errors differs.
     let draw = seed::derive(*seed, points as u64, 2 + noise as u64);
     let [a, b] = [Side::A, Side::B].map(|side| scene.observe(side, points, noise, std, draw));
-    let seen = Draw { family: family.name(), a: &a, b: &b, mesh: scene.b.mesh() };
+    let seen = Draw { family: family.name, a: &a, b: &b, mesh: scene.b.mesh() };
     let mut rows: Vec<Row> = Vec::new();
+    let is_open = scene.b.mesh().merged().open_edges() > 0;
     for &pair in &plan.pairs {
-        rows.extend(poses.iter().zip(0..).map(|(pose, number_of_pose)| {
+        let one_of = if is_open && pair == Pair::CloudMesh { OPEN_MESH_ONE_OF } else { 1 };
+        rows.extend(poses.iter().zip(0..).step_by(one_of).map(|(pose, number_of_pose)| {
             let question = Question {
-                family: family.name(),
-                ordinary: family.kind() == Kind::Ordinary,
+                family: family.name,
+                kind: family.kind,
                 pair,
                 condition: *condition,
                 draw: *number,

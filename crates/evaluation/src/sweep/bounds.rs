@@ -2,13 +2,13 @@
 
 use anyhow::Result;
 use cloudtouch::Mode;
-use cloudtouch_testkit::family::Family;
 
 use super::{
     OURS,
     ask::{Asked, ask},
     judged::Judged,
     plan::Plan,
+    scenes::Scenes,
 };
 use crate::{answers::Pair, methods::Ours, page::Section, table::Table};
 
@@ -24,7 +24,7 @@ pub(super) fn section() -> Result<Section> {
     everything.query.cull_probability = 1e-12;
     everything.query.stop_above = 1.0;
     let methods = [Asked::always(Ours::new(OURS, Mode::Calibrated)?), Asked::always(everything)];
-    let answers = ask(&Plan::of(Family::ALL, 1, 12, POINTS, STD), &methods)?;
+    let answers = ask(&Plan::of(Scenes::generated(), 1, 12, POINTS, STD), &methods)?;
     let mut table =
         Table::new(["pair", "answers", "outside of the bounds", "largest miss", "mean width"]);
     for pair in Pair::ALL {

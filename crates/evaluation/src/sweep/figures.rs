@@ -7,7 +7,7 @@ use super::{
     tables::Answered,
 };
 use crate::{
-    answers::{Pair, Question},
+    answers::{Kind, Pair, Question},
     figure::{Axis, Figure, Panel, Series},
     measures::{Measure, reliability, roc},
 };
@@ -22,8 +22,10 @@ pub(super) fn reliability_figure(answered: &Answered<'_>) -> Figure {
         let mut panel = Panel::new(axes.0, axes.1)
             .title(pair.name())
             .series(Series::guide([(0.0, 0.0), (1.0, 1.0)]));
-        for (name, ordinary) in [("ordinary scenes", true), ("adversarial scenes", false)] {
-            let judged = Judged::pick(answered.answers, &[OURS], Answered::is_of(pair, ordinary));
+        let kinds =
+            [("ordinary scenes", Kind::Ordinary), ("adversarial scenes", Kind::Adversarial)];
+        for (name, kind) in kinds {
+            let judged = Judged::pick(answered.answers, &[OURS], Answered::is_of(pair, kind));
             let bins = judged.sample(OURS).map(reliability).unwrap_or_default();
             panel = panel.series(Series::curve(name, bins.iter().map(|b| (b.mean, b.observed))));
         }
@@ -39,7 +41,8 @@ pub(super) fn roc_figure(answered: &Answered<'_>) -> Figure {
         let axes = (Axis::unit("free poses stopped"), Axis::unit("collisions found"));
         let mut panel = Panel::new(axes.0, axes.1).title(pair.name());
         for name in answered.answers.names() {
-            let judged = Judged::pick(answered.answers, &[name], Answered::is_of(pair, true));
+            let judged =
+                Judged::pick(answered.answers, &[name], Answered::is_of(pair, Kind::Ordinary));
             if let Some(sample) = judged.sample(name).filter(|_| judged.counts().1 > 0) {
                 panel = panel.series(Series::line(name, thinned(&roc(sample))));
             }
@@ -66,8 +69,9 @@ pub(super) fn noise_figure(answered: &Answered<'_>) -> Figure {
             let mut panel = Panel::new(axes.0, axes.1).title(pair.name());
             for name in answered.answers.names() {
                 let at = |std: f64| {
-                    let keep =
-                        |q: &Question| Answered::is_of(pair, true)(q) && q.condition.std == std;
+                    let keep = |q: &Question| {
+                        Answered::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std
+                    };
                     let judged = Judged::pick(answered.answers, &[name], keep);
                     let sample = judged.sample(name)?;
                     Some((1e3 * std, measure.of(sample, &sample.ones())))
@@ -90,8 +94,9 @@ pub(super) fn speed_figure(answered: &Answered<'_>) -> Figure {
         let axes = (Axis::log("median query (ms)"), Axis::linear("1 − AUC"));
         let mut panel = Panel::new(axes.0, axes.1).title(pair.name());
         for name in answered.answers.names() {
-            let keep =
-                |q: &Question| Answered::is_of(pair, true)(q) && q.condition.points == 10_000;
+            let keep = |q: &Question| {
+                Answered::is_of(pair, Kind::Ordinary)(q) && q.condition.points == 10_000
+            };
             let judged = Judged::pick(answered.answers, &[name], keep);
             let Some(sample) = judged.sample(name).filter(|_| judged.counts().0 > 0) else {
                 continue;
@@ -110,7 +115,7 @@ pub(super) fn distance_figure(answered: &Answered<'_>) -> Figure {
     let mut figure = Figure::new("Probability against distance, ordinary scenes, two clouds");
     for std in [0.002, 0.01] {
         let keep = |q: &Question| {
-            Answered::is_of(Pair::CloudCloud, true)(q)
+            Answered::is_of(Pair::CloudCloud, Kind::Ordinary)(q)
                 && is_pooled(&q.condition)
                 && q.condition.points == 10_000
                 && q.condition.std == std

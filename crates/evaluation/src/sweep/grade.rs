@@ -53,7 +53,7 @@ pub(super) fn grade(answers: &mut Answers) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::answers::tests::question;
+    use crate::answers::{Said, tests::question};
 
     #[test]
     fn a_family_does_not_change_its_own_fit() {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{OURS, figures, judged::Judged, plan::SEED, tables::Answered, targets};
 use crate::{
-    answers::{Pair, Question},
+    answers::{Kind, Pair, Question},
     page::{Page, Section},
     table::Table,
 };
@@ -14,7 +14,8 @@ answer is known from their meshes (parry3d in double precision, checked against 
 triangle test). A family is a kind of scene; each of its draws is a scene of its own with fresh \
 clouds, prepared once and asked at many poses. Ordinary families are what users meet: rooms, \
 tables, counters, bins, corridors. Adversarial ones, in brackets, are chosen to be hard: thin, \
-open, nested or linked bodies. Exactly half of the poses of every draw collide, half are within 3 cm \
+open, nested or linked bodies. Families whose name begins with real have meshes of real things and \
+are pooled with none. Exactly half of the poses of every draw collide, half are within 3 cm \
 of contact (near), whatever the size of the run; out there most poses are free. Contacts at \
 surface that no sensor sees are left out: no method could tell them. The moving body is given \
 as a second cloud or as its exact mesh.
@@ -38,11 +39,11 @@ pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>, bounds
     page.section(targets::section(answered));
     for pair in Pair::ALL {
         let mut section = Section::new(&format!("{}: methods", capitalised(pair)));
-        for (kind, ordinary) in [("Ordinary", true), ("Adversarial", false)] {
-            let keep = Answered::is_of(pair, ordinary);
+        for (name, kind) in [("Ordinary", Kind::Ordinary), ("Adversarial", Kind::Adversarial)] {
+            let keep = Answered::is_of(pair, kind);
             let rate = answered.base_rate(keep);
             section = section
-                .text(format_args!("{kind} scenes, {rate}; bold: the interval excludes zero."))
+                .text(format_args!("{name} scenes, {rate}; bold: the interval excludes zero."))
                 .text(answered.methods(keep));
         }
         page.section(section);

@@ -8,12 +8,13 @@ mod grade;
 mod judged;
 mod lab_page;
 mod plan;
+mod scenes;
 mod short;
 mod tables;
 mod targets;
 mod user_page;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
@@ -22,6 +23,7 @@ use cloudtouch::Mode;
 pub use ask::{Asked, ask};
 pub use judged::{Judged, Measured};
 pub use plan::{Plan, SEED};
+pub use scenes::Scenes;
 pub use short::run as check;
 
 use crate::{
@@ -47,6 +49,9 @@ pub struct Arguments {
     /// One condition, compared with recorded bounds; what CI runs
     #[arg(long)]
     short: bool,
+    /// Folder with real meshes, from the project's root
+    #[arg(long, value_name = "DIR", default_value = "../shared/data")]
+    data: PathBuf,
     /// Write docs/accuracy.md, docs/lab/accuracy.md and figures; else everything goes to target/
     #[arg(long, conflicts_with = "short")]
     update_docs: bool,
@@ -58,11 +63,13 @@ pub struct Arguments {
 /// When a method fails, a page cannot be written, or with `--short` when accuracy is worse than
 /// recorded.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
-    let Arguments { draws, poses, short, update_docs } = *arguments;
+    let Arguments { draws, poses, short, ref data, update_docs } = *arguments;
     if short {
         return check();
     }
-    let mut answers = ask(&Plan::full(draws, poses), &methods()?)?;
+    let mut plan = Plan::full(draws, poses);
+    plan.families.extend(Scenes::real(&root.join(data))?);
+    let mut answers = ask(&plan, &methods()?)?;
     grade::grade(&mut answers)?;
     let folder = page::folder(root, update_docs);
     std::fs::create_dir_all(root.join("target/lab"))?;

@@ -1,7 +1,8 @@
 //! What a sweep consists of: one grid of conditions for every report.
 
-use cloudtouch_testkit::{family::Family, noise::NoiseKind};
+use cloudtouch_testkit::noise::NoiseKind;
 
+use super::scenes::Scenes;
 use crate::answers::{Condition, Pair};
 
 /// All randomness of the sweeps comes from this.
@@ -18,7 +19,7 @@ pub(super) const DENSE: usize = 40_000;
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// Generators of scenes.
-    pub families: Vec<Family>,
+    pub families: Vec<Scenes>,
     /// Draws of each family: a variant of its scene with poses and fresh clouds of its own.
     pub draws: u32,
     /// Poses of each draw.
@@ -32,11 +33,11 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Every family and kind of pair under every noise and density, dense clouds at 2 mm, heavy
+    /// Every generated family and kind of pair under every noise and density, dense clouds at 2 mm, heavy
     /// tails at 5 mm.
     pub fn full(draws: u32, poses: usize) -> Self {
         Self {
-            families: Family::ALL.to_vec(),
+            families: Scenes::generated(),
             draws,
             poses,
             pairs: Pair::ALL.to_vec(),
@@ -53,12 +54,8 @@ impl Plan {
     }
 
     /// One condition of some families.
-    pub fn of(families: &[Family], draws: u32, poses: usize, points: usize, std: f64) -> Self {
-        Self {
-            families: families.to_vec(),
-            conditions: vec![gaussian(points, std)],
-            ..Self::full(draws, poses)
-        }
+    pub fn of(families: Vec<Scenes>, draws: u32, poses: usize, points: usize, std: f64) -> Self {
+        Self { families, conditions: vec![gaussian(points, std)], ..Self::full(draws, poses) }
     }
 }
 

@@ -32,9 +32,9 @@ const RECORDED: [(Family, [[f64; 2]; 2]); 0] = [];
 /// # Errors
 /// When a method fails, or a family is answered worse than recorded.
 pub fn run() -> Result<()> {
-    let families = RECORDED.map(|(family, _)| family);
+    let families = RECORDED.map(|(family, _)| family.into()).to_vec();
     let methods = [Asked::always(Ours::new(OURS, Mode::Calibrated)?)];
-    let answers = ask(&Plan::of(&families, DRAWS, POSES, POINTS, STD), &methods)?;
+    let answers = ask(&Plan::of(families, DRAWS, POSES, POINTS, STD), &methods)?;
     let mut worse = Vec::new();
     for (family, recorded) in RECORDED {
         for (pair, [least_auc, largest_brier]) in Pair::ALL.into_iter().zip(recorded) {

@@ -8,7 +8,7 @@ use super::{
     plan::{DENSE, STDS, is_pooled},
 };
 use crate::{
-    answers::{Answers, Condition, Pair, Question},
+    answers::{Answers, Condition, Kind, Pair, Question},
     measures::{Estimate, Measure},
     table::Table,
 };
@@ -47,9 +47,9 @@ impl<'a> Answered<'a> {
         Self { answers, alternatives }
     }
 
-    /// A pair's questions under the pooled conditions, of ordinary or of adversarial scenes.
-    pub(super) fn is_of(pair: Pair, ordinary: bool) -> impl Fn(&Question) -> bool + Copy {
-        move |q: &Question| q.pair == pair && q.ordinary == ordinary && is_pooled(&q.condition)
+    /// A pair's questions under the pooled conditions, of one kind of scenes.
+    pub(super) fn is_of(pair: Pair, kind: Kind) -> impl Fn(&Question) -> bool + Copy {
+        move |q: &Question| q.pair == pair && q.kind == kind && is_pooled(&q.condition)
     }
 
     /// How many questions, how many of them collisions: the base rate.
@@ -80,13 +80,14 @@ impl<'a> Answered<'a> {
     pub(super) fn families(&self, pair: Pair) -> Table {
         let header = header("family").into_iter().chain(["AUC of the oracle".into()]);
         let mut table = Table::new(header);
-        for ordinary in [true, false] {
+        for kind in [Kind::Ordinary, Kind::Adversarial, Kind::Real] {
             for family in self.answers.families() {
-                let keep = move |q: &Question| q.family == family && Self::is_of(pair, ordinary)(q);
+                let keep = move |q: &Question| q.family == family && Self::is_of(pair, kind)(q);
                 if Judged::pick(self.answers, &[OURS], keep).counts().0 == 0 {
                     continue;
                 }
-                let name = if ordinary { family.to_owned() } else { format!("({family})") };
+                let is_hard = kind == Kind::Adversarial;
+                let name = if is_hard { format!("({family})") } else { family.to_owned() };
                 let mut row = self.row(&name, OURS, keep);
                 row.push(self.auc(ORACLE, keep));
                 table.row(row);
@@ -100,7 +101,8 @@ impl<'a> Answered<'a> {
         let extra = ["AUC of the oracle", "best alternative", "its AUC"].map(String::from);
         let mut table = Table::new(header("noise").into_iter().chain(extra));
         for (name, keep) in Self::conditions() {
-            let keep = |q: &Question| q.pair == pair && q.ordinary && keep(&q.condition);
+            let keep =
+                |q: &Question| q.pair == pair && q.kind == Kind::Ordinary && keep(&q.condition);
             let mut row = self.row(&name, OURS, keep);
             let (best, auc) = self.best_alternative(keep);
             row.extend([self.auc(ORACLE, keep), best.to_owned(), shown(auc)]);

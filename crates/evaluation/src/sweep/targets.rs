@@ -7,7 +7,7 @@ use super::{
     tables::{Answered, is_near, shown},
 };
 use crate::{
-    answers::{Pair, Question},
+    answers::{Kind, Pair, Question},
     measures::{Measure, observed_within},
     page::Section,
     table::Table,
@@ -81,7 +81,9 @@ pub(super) fn section(answered: &Answered<'_>) -> Section {
 fn limited(answered: &Answered<'_>, target: &Target, rows: &mut Rows) {
     let Target { pair, near, measure, limit, up_to } = *target;
     let keep = |q: &Question| {
-        Answered::is_of(pair, true)(q) && q.condition.std <= up_to && (!near || is_near(q))
+        Answered::is_of(pair, Kind::Ordinary)(q)
+            && q.condition.std <= up_to
+            && (!near || is_near(q))
     };
     let measured = Judged::pick(answered.answers, &[OURS, ORACLE], keep).measure(&[measure]);
     let [ours, oracle] = [OURS, ORACLE].map(|method| measured.estimate(method, measure));
@@ -98,7 +100,7 @@ fn limited(answered: &Answered<'_>, target: &Target, rows: &mut Rows) {
 /// The family that is calibrated worst.
 fn families(answered: &Answered<'_>, pair: Pair, rows: &mut Rows) {
     let error = |family: &'static str| {
-        let keep = |q: &Question| q.family == family && Answered::is_of(pair, true)(q);
+        let keep = |q: &Question| q.family == family && Answered::is_of(pair, Kind::Ordinary)(q);
         let judged = Judged::pick(answered.answers, &[OURS], keep);
         let error =
             judged.sample(OURS).map_or(f64::NAN, |s| Measure::CalibrationError.of(s, &s.ones()));
@@ -115,7 +117,8 @@ fn families(answered: &Answered<'_>, pair: Pair, rows: &mut Rows) {
 
 /// What is observed where a probability is stated.
 fn stated(answered: &Answered<'_>, pair: Pair, rows: &mut Rows) {
-    let judged = Judged::pick(answered.answers, &[OURS, ORACLE], Answered::is_of(pair, true));
+    let judged =
+        Judged::pick(answered.answers, &[OURS, ORACLE], Answered::is_of(pair, Kind::Ordinary));
     let [Some(ours), Some(oracle)] = [OURS, ORACLE].map(|m| judged.sample(m)) else { return };
     let within = |range: std::ops::Range<f64>| {
         [ours, oracle].map(|sample| observed_within(sample, range.clone()))
@@ -141,7 +144,9 @@ fn stated(answered: &Answered<'_>, pair: Pair, rows: &mut Rows) {
 /// No alternative ranks significantly better at this noise.
 fn alternatives(answered: &Answered<'_>, pair: Pair, std: f64, rows: &mut Rows) {
     let keep = |q: &Question| {
-        Answered::is_of(pair, true)(q) && is_pooled(&q.condition) && q.condition.std == std
+        Answered::is_of(pair, Kind::Ordinary)(q)
+            && is_pooled(&q.condition)
+            && q.condition.std == std
     };
     let better = |name: &&&str| {
         let judged = Judged::pick(answered.answers, &[name, OURS], keep);

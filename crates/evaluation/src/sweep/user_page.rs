@@ -9,7 +9,7 @@ use super::{
     tables::{Answered, shown},
 };
 use crate::{
-    answers::{Pair, Question},
+    answers::{Kind, Pair, Question},
     measures::{Measure, observed_within},
     page::{Page, Section},
     table::Table,
@@ -65,7 +65,8 @@ fn ranking(answered: &Answered<'_>) -> Table {
     ]);
     for pair in Pair::ALL {
         for std in super::plan::STDS {
-            let keep = |q: &Question| Answered::is_of(pair, true)(q) && q.condition.std == std;
+            let keep =
+                |q: &Question| Answered::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
             let stops = Measure::FalseStops(0.05);
             let measured = Judged::pick(answered.answers, &[OURS], keep).measure(&[
                 Measure::Auc,
@@ -93,7 +94,7 @@ fn stated(answered: &Answered<'_>) -> Table {
     let range = |[low, high]: [f64; 2]| format!("{low:.1} to {:.1}", high.min(1.0));
     let mut table = Table::new(std::iter::once("stated".to_owned()).chain(STATED.map(range)));
     for pair in Pair::ALL {
-        let judged = Judged::pick(answered.answers, &[OURS], Answered::is_of(pair, true));
+        let judged = Judged::pick(answered.answers, &[OURS], Answered::is_of(pair, Kind::Ordinary));
         let cell = |[low, high]: [f64; 2]| {
             let bin = judged.sample(OURS).map(|s| observed_within(s, low..high));
             bin.filter(|b| b.count > 0).map_or("–".into(), |b| {

@@ -38,7 +38,7 @@ pub(crate) fn classify(
         plane => plane,
     };
     if settings.mode == Mode::Paper {
-        let kernel = by_kernel(points, settings, known, stats);
+        let kernel = by_kernel(points, settings, stats);
         return match (plane, kernel) {
             (Some(plane), PairAnswer::Indistinct | PairAnswer::Undecided) => plane,
             (_, kernel) => kernel,
@@ -50,9 +50,9 @@ pub(crate) fn classify(
             plane
         }
         Some(plane) => {
-            let kernel = by_kernel(points, settings, known, stats);
+            let kernel = by_kernel(points, settings, stats);
             if plane.largest() <= kernel.largest() { plane } else { kernel }
         }
-        None => by_kernel(points, settings, known, stats),
+        None => by_kernel(points, settings, stats),
     }
 }

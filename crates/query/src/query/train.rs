@@ -6,7 +6,6 @@ use cloudtouch_svm::{
     balanced_penalties,
 };
 
-use crate::mode::Mode;
 use crate::report::Stats;
 
 use super::pair::{PairAnswer, PairPoints};
@@ -18,21 +17,14 @@ use super::surface::Surface;
 /// deviations, but f can turn within a kernel width (0.22 at the default γ) and be flat at every
 /// point.
 const TRUSTED_STD: f64 = 0.05;
-/// How much tighter a problem is solved when its answer counts: the error of a probability goes
-/// with the root of the gap.
+/// How much tighter a problem is solved that seems to have no normal: a loose tolerance cannot tell
+/// a small w from none.
 const TIGHTER: f64 = 1e-2;
-/// Above this probability a tighter solution would change nothing that matters. Not a setting: how
-/// tightly a pair is solved must not depend on when the search stops.
-const CERTAIN: f64 = 0.999;
 
 /// Trains a classifier and reads the probabilities off it.
-///
-/// In the calibrated mode an answer above `known` is solved again, tighter, from where it is; not
-/// beside a mesh, whose large penalties make that dear and whose exact points pin the surface.
 pub(super) fn by_kernel(
     points: &PairPoints,
     settings: &QuerySettings,
-    known: f64,
     stats: &mut Stats,
 ) -> PairAnswer {
     stats.kernel_solves += 1;
@@ -46,23 +38,13 @@ pub(super) fn by_kernel(
     let (Ok(loose), Ok(tight)) = (loose, tight) else { return PairAnswer::Undecided };
 
     let sides = all.split_at(points.a.len());
-    let first = problem.solve(&loose);
-    let answer = read(&problem, &first, unit_box, sides);
-    let counts = settings.mode == Mode::Calibrated
-        && !(points.a_is_mesh || points.b_is_mesh)
-        && answer.largest() > known
-        && answer.largest() <= CERTAIN;
-    // A loose tolerance cannot tell a small w from none either.
-    let (solution, answer) = if counts || first.status == Status::Collapsed {
-        let second = problem.solve_from(&tight, &first);
-        let answer = read(&problem, &second, unit_box, sides);
-        (second, answer)
-    } else {
-        (first, answer)
-    };
+    let mut solution = problem.solve(&loose);
+    if solution.status == Status::Collapsed {
+        solution = problem.solve_from(&tight, &solution);
+    }
     stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
     stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
-    answer
+    read(&problem, &solution, unit_box, sides)
 }
 
 fn samples(

@@ -4,12 +4,16 @@
 //! which the tests hold them.
 
 pub mod brute;
+mod component;
 mod contains;
+mod distance;
 mod penetration;
 mod touch;
 
-use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
+use cloudtouch_geom::{Pose, TriangleMesh, Vector3};
 use parry3d_f64::{math::Vector, query, shape::TriMesh};
+
+use component::{Component, components};
 
 pub use touch::{Touch, WayOut};
 
@@ -17,7 +21,7 @@ pub use touch::{Touch, WayOut};
 pub struct ExactMesh {
     mesh: TriangleMesh,
     shape: TriMesh,
-    components: Vec<Point3>,
+    components: Vec<Component>,
 }
 
 impl ExactMesh {
@@ -26,7 +30,7 @@ impl ExactMesh {
         let vertices = mesh.vertices().iter().map(|p| parry_vector(&p.coords)).collect();
         let shape = TriMesh::new(vertices, mesh.triangles().to_vec())
             .expect("a triangle mesh has triangles");
-        Self { mesh: mesh.clone(), shape, components: one_vertex_per_component(mesh) }
+        Self { mesh: mesh.clone(), shape, components: components(mesh) }
     }
 
     /// The mesh it was made of.
@@ -49,23 +53,13 @@ impl ExactMesh {
             .intersecting
     }
 
-    /// The distance between the two surfaces, m; zero when they intersect.
-    pub fn distance(&self, other: &Self, self_from_other: &Pose) -> f64 {
-        if self.intersects(other, self_from_other) {
-            return 0.0;
-        }
-        let placed = glamx::DPose3::from(*self_from_other.isometry());
-        query::distance(&glamx::DPose3::IDENTITY, &self.shape, &placed, &other.shape)
-            .expect("parry measures triangle meshes")
-            .distance
-    }
-
     /// Whether the two solids have a point in common: surfaces that intersect, or a component of
     /// one inside the other. Both meshes must be closed for the latter.
     pub fn solids_overlap(&self, other: &Self, self_from_other: &Pose) -> bool {
         // Without a common surface point a component is inside as a whole or not at all.
         let inside = |outer: &Self, inner: &Self, outer_from_inner: &Pose| {
-            inner.components.iter().any(|p| outer.contains(&outer_from_inner.transform_point(p)))
+            let place = |c: &Component| outer_from_inner.transform_point(&c.vertex);
+            inner.components.iter().any(|c| outer.contains(&place(c)))
         };
         self.intersects(other, self_from_other)
             || inside(self, other, self_from_other)
@@ -76,26 +70,4 @@ impl ExactMesh {
 /// The bridge from nalgebra to parry.
 pub(crate) fn parry_vector(v: &Vector3) -> Vector {
     Vector::new(v.x, v.y, v.z)
-}
-
-/// The first vertex of every set of triangles joined by shared vertex indices.
-fn one_vertex_per_component(mesh: &TriangleMesh) -> Vec<Point3> {
-    let mut parent: Vec<usize> = (0..mesh.vertices().len()).collect();
-    fn root(parent: &mut [usize], mut i: usize) -> usize {
-        while parent[i] != i {
-            parent[i] = parent[parent[i]];
-            i = parent[i];
-        }
-        i
-    }
-    for t in mesh.triangles() {
-        for i in [t[1], t[2]] {
-            let (a, b) = (root(&mut parent, t[0] as usize), root(&mut parent, i as usize));
-            // The lower index stays the root.
-            parent[a.max(b)] = a.min(b);
-        }
-    }
-    let mut used = vec![false; parent.len()];
-    mesh.triangles().iter().flatten().for_each(|&i| used[i as usize] = true);
-    (0..parent.len()).filter(|&i| used[i] && parent[i] == i).map(|i| mesh.vertices()[i]).collect()
 }

@@ -7,7 +7,7 @@ use parry3d_f64::{
 };
 use rand::RngExt;
 
-use super::{observe::Observation, seen::in_sight};
+use super::{observation::Observation, seen::in_sight};
 use crate::{
     camera::DepthCamera,
     exact::{ExactMesh, parry_vector},

@@ -1,15 +1,14 @@
 //! A gripper on its way to the objects on a table.
 
 use cloudtouch_geom::{Point3, TriangleMesh, Vector3};
-use nalgebra::UnitQuaternion;
 use parry3d_f64::query::{ClosestPoints, closest_points};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::{FamilyScene, Seen};
+use super::{guided::reaching, pair::Pair, seeing::Seen};
 use crate::{
     poses::{Approach, CONTACT_GAP},
-    random::{direction, direction_near},
+    random::direction_near,
     scene::union_of_boxes,
 };
 
@@ -36,32 +35,34 @@ pub(super) fn gripper() -> TriangleMesh {
 impl Grasp {
     /// Fingers ahead, from above or along the camera's view, half a metre to a point the camera
     /// sees; `None` when the first contact is at a place it does not see.
-    pub(super) fn approach(&self, scene: &FamilyScene, rng: &mut ChaCha8Rng) -> Option<Approach> {
+    pub(super) fn approach(
+        &self,
+        pair: Pair,
+        seen: &Seen,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Approach> {
         let target = self.targets[rng.random_range(0..self.targets.len())].coords;
         let ahead = if rng.random() {
             direction_near(&self.down, 0.6, rng)
         } else {
             direction_near(&target, 0.25, rng)
         };
-        let rotation = UnitQuaternion::face_towards(&ahead, &direction(rng));
-        let grip = rotation * self.grips[rng.random_range(0..self.grips.len())].coords;
-        let start = target - grip - ahead * 0.5;
-        let approach =
-            scene.straight(Approach { rotation, start, direction: ahead, contact: 0.0 })?;
-        first_contact_is_seen(scene, &approach).then_some(approach)
+        let grip = self.grips[rng.random_range(0..self.grips.len())].coords;
+        let approach = pair.straight(reaching(target, grip, ahead, 0.5, rng))?;
+        first_contact_is_seen(pair, seen, &approach).then_some(approach)
     }
 }
 
-fn first_contact_is_seen(scene: &FamilyScene, approach: &Approach) -> bool {
-    let Seen::Image(view) = &scene.seen[0] else { return true };
+fn first_contact_is_seen(pair: Pair, seen: &Seen, approach: &Approach) -> bool {
+    let Seen::Image(view) = seen else { return true };
     let placed = glamx::DPose3::from(*approach.pose(approach.contact).isometry());
     let here = glamx::DPose3::IDENTITY;
     let nearest =
-        closest_points(&here, scene.a.shape(), &placed, scene.b.shape(), 10.0 * CONTACT_GAP)
+        closest_points(&here, pair.a.shape(), &placed, pair.b.shape(), 10.0 * CONTACT_GAP)
             .expect("parry finds closest points of triangle meshes");
     match nearest {
         ClosestPoints::WithinMargin(on_a, _) => {
-            view.sees(&scene.a, &Point3::new(on_a.x, on_a.y, on_a.z))
+            view.sees(pair.a, &Point3::new(on_a.x, on_a.y, on_a.z))
         }
         ClosestPoints::Intersecting | ClosestPoints::Disjoint => false,
     }

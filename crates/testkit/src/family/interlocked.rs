@@ -2,11 +2,7 @@
 
 use cloudtouch_geom::seed;
 
-use super::{
-    FamilyScene,
-    motion::{Ends, Motion},
-    primitives::wholly_seen,
-};
+use super::{ends::Ends, motion::Motion, scene::FamilyScene};
 use crate::{exact::Touch, random::between, scene};
 
 /// A block of side 1.2 to 1.5 m, 25 to 45 cm thick, with a hole of radius 25 to 35 cm along z, and
@@ -19,7 +15,7 @@ pub(super) fn peg_in_hole(seed: u64) -> FamilyScene {
     let peg = scene::peg(radius - clearance, peg_length);
     let ends = Ends::of(&block, &peg, seed);
     let motion = Motion::InHole { ends, depth, peg_length, clearance };
-    wholly_seen(block, peg, Touch::Solids, motion)
+    FamilyScene::wholly_seen(&block, &peg, Touch::Solids, motion)
 }
 
 /// Two tori with circles of radius 45 to 55 cm and tubes of 10 to 14 cm.
@@ -29,5 +25,5 @@ pub(super) fn tori(seed: u64) -> FamilyScene {
     let fixed = scene::torus(major, between(0.1, 0.14, rng), 32);
     let moving = scene::torus(between(0.45, 0.55, rng), between(0.1, 0.14, rng), 32);
     let motion = Motion::Linked { ends: Ends::of(&fixed, &moving, seed), major };
-    wholly_seen(fixed, moving, Touch::Solids, motion)
+    FamilyScene::wholly_seen(&fixed, &moving, Touch::Solids, motion)
 }

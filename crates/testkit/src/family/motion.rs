@@ -1,19 +1,24 @@
 //! How the moving body comes to a first contact.
 
-use cloudtouch_geom::{Point3, TriangleMesh, Vector3, seed};
+use cloudtouch_geom::Vector3;
 use nalgebra::UnitQuaternion;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::{FamilyScene, grasp::Grasp, labels::Wanted};
+use super::{
+    ends::Ends,
+    grasp::Grasp,
+    guided::{Reach, Upright},
+    pair::Pair,
+    seeing::Seen,
+    wanted::Wanted,
+};
 use crate::{
-    exact::{ExactMesh, Touch},
     poses::Approach,
     random::{between, direction, direction_near, small_rotation},
-    surface::{SurfaceSample, sample_surface},
 };
 
-/// The kind of path to contact, besides the one from anywhere that all but two families have.
+/// The kind of path to contact.
 pub(super) enum Motion {
     /// Turned at random, from anywhere in or around the scene's box to a point of its surface.
     Open { ends: Ends, deepest: f64 },
@@ -26,80 +31,57 @@ pub(super) enum Motion {
     Linked { ends: Ends, major: f64 },
     /// A gripper, from above or from where the camera is.
     Grasp(Grasp),
-}
-
-/// Points of the two surfaces between which paths lead.
-pub(super) struct Ends {
-    targets: Vec<SurfaceSample>,
-    grips: Vec<SurfaceSample>,
-}
-
-impl Ends {
-    /// A thousand points of each surface that sensors see.
-    pub(super) fn of(scene: &TriangleMesh, object: &TriangleMesh, seed: u64) -> Self {
-        let points = |mesh, stream| sample_surface(mesh, 1000, seed::derive(seed, 100, stream));
-        Self { targets: points(scene, 0), grips: points(object, 1) }
-    }
-
-    fn approach(
-        &self,
-        a: &ExactMesh,
-        b: &ExactMesh,
-        touch: Touch,
-        rng: &mut ChaCha8Rng,
-    ) -> Approach {
-        Approach::draw(a, b, touch, &self.targets, &self.grips, rng)
-    }
+    /// A hand or tool, ahead.
+    Reach { reach: Reach, deepest: f64 },
+    /// Upright, as a robot drives or a box is carried.
+    Upright(Upright),
 }
 
 impl Motion {
     /// How far into contact poses go, m.
     pub(super) fn deepest(&self) -> f64 {
         match self {
-            Self::Open { deepest, .. } => *deepest,
-            Self::EdgeFirst { .. } | Self::InHole { .. } | Self::Linked { .. } => 0.2,
+            Self::Open { deepest, .. } | Self::Reach { deepest, .. } => *deepest,
+            Self::EdgeFirst { .. }
+            | Self::InHole { .. }
+            | Self::Linked { .. }
+            | Self::Upright { .. } => 0.2,
             Self::Grasp(_) => 0.06,
         }
     }
-}
 
-impl FamilyScene {
-    /// A path to contact; `None` when this draw gave none.
-    pub(super) fn approach(&self, wanted: Wanted, rng: &mut ChaCha8Rng) -> Option<Approach> {
-        let open =
-            |ends: &Ends, rng: &mut ChaCha8Rng| ends.approach(&self.a, &self.b, self.touch, rng);
+    /// A path to contact with what is `seen` of the body that stays; `None` when this draw gave
+    /// none.
+    pub(super) fn approach(
+        &self,
+        pair: Pair,
+        seen: &Seen,
+        wanted: Wanted,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Approach> {
         let inside_share = if wanted.is_near() { 0.8 } else { 0.5 };
-        match &self.motion {
-            Motion::Open { ends, .. } => Some(open(ends, rng)),
-            Motion::EdgeFirst { top, size, length } => {
-                self.straight(edge_first(*top, *size, *length, rng))
+        match self {
+            Self::Open { ends, .. } => Some(ends.approach(pair, rng)),
+            Self::EdgeFirst { top, size, length } => {
+                pair.straight(edge_first(*top, *size, *length, rng))
             }
-            Motion::InHole { ends, depth, peg_length, clearance } => {
+            Self::InHole { ends, depth, peg_length, clearance } => {
                 // A near pose out of the hole is an easy one.
                 if wanted == Wanted::Free || rng.random::<f64>() > inside_share {
-                    return Some(open(ends, rng));
+                    return Some(ends.approach(pair, rng));
                 }
-                self.straight(in_hole(*depth, *peg_length, *clearance, rng))
+                pair.straight(in_hole(*depth, *peg_length, *clearance, rng))
             }
-            Motion::Linked { ends, major } => {
+            Self::Linked { ends, major } => {
                 if rng.random::<f64>() > inside_share {
-                    return Some(open(ends, rng));
+                    return Some(ends.approach(pair, rng));
                 }
-                self.straight(linked(*major, rng))
+                pair.straight(linked(*major, rng))
             }
-            Motion::Grasp(grasp) => grasp.approach(self, rng),
+            Self::Grasp(grasp) => grasp.approach(pair, seen, rng),
+            Self::Reach { reach, .. } => reach.approach(pair, rng),
+            Self::Upright(upright) => upright.approach(pair, rng),
         }
-    }
-
-    /// The path from a start on to contact; `None` when the start is not free.
-    ///
-    /// There must be a contact ahead.
-    pub(super) fn straight(&self, mut approach: Approach) -> Option<Approach> {
-        if self.a.touches(&self.b, &approach.pose(0.0), self.touch) {
-            return None;
-        }
-        approach.advance(&self.a, &self.b);
-        Some(approach)
     }
 }
 
@@ -150,9 +132,4 @@ fn linked(major: f64, rng: &mut ChaCha8Rng) -> Approach {
         direction: direction(rng),
         contact: 0.0,
     }
-}
-
-/// The points of samples.
-pub(super) fn points(samples: &[SurfaceSample]) -> Vec<Point3> {
-    samples.iter().map(|s| s.position).collect()
 }

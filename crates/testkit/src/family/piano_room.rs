@@ -2,17 +2,8 @@
 
 use cloudtouch_geom::{Point3, seed};
 
-use super::{
-    FamilyScene,
-    motion::{Ends, Motion},
-    observe::Seen,
-    seen::{all_around, seen_from},
-};
-use crate::{
-    exact::{ExactMesh, Touch},
-    random::between,
-    scene,
-};
+use super::{motion::Motion, scene::FamilyScene};
+use crate::{random::between, scene};
 
 /// Where sensors stand in the room at full size, m: low and high around the furniture, and raised
 /// above the walls, whose tops they see.
@@ -37,21 +28,12 @@ const PLACES: [[f64; 3]; 14] = [
 /// 4 cm apart in the room and 1.6 to 1.9 cm on the piano.
 pub(super) fn scene(seed: u64) -> FamilyScene {
     let rng = &mut seed::generator(seed);
-    let room_scale = between(0.38, 0.46, rng);
-    let room = ExactMesh::new(&scene::room().scaled(room_scale));
-    let piano = ExactMesh::new(&scene::piano().scaled(between(0.45, 0.55, rng)));
-    let places = PLACES.map(|p| Point3::from(p) * room_scale);
-    let seen_room = seen_from(&room, &places, 0.06);
-    let seen_piano = seen_from(&piano, &all_around(&piano), 0.03);
-    let ends = Ends::of(&seen_room, &seen_piano, seed);
-    FamilyScene {
-        a: room,
-        b: piano,
-        touch: Touch::Solids,
-        seen: [
-            Seen::Surface(Box::new(ExactMesh::new(&seen_room))),
-            Seen::Surface(Box::new(ExactMesh::new(&seen_piano))),
-        ],
-        motion: Motion::Open { ends, deepest: 0.2 },
-    }
+    let scale = between(0.38, 0.46, rng);
+    let room = scene::room().scaled(scale);
+    let piano = scene::piano().scaled(between(0.45, 0.55, rng));
+    let places = PLACES.map(|p| Point3::from(p) * scale);
+    FamilyScene::surveyed([&room, &piano], &places, [0.06, 0.03], seed, |ends| Motion::Open {
+        ends,
+        deepest: 0.2,
+    })
 }

@@ -39,8 +39,8 @@ pub(super) fn in_sight(body: &ExactMesh, from: &Point3, point: &Point3) -> bool 
 }
 
 /// Forty-two places evenly around a body, twice its diagonal from the middle of its box.
-pub(super) fn all_around(body: &ExactMesh) -> Vec<Point3> {
-    let (low, high) = body.mesh().bounding_box().expect("a mesh has vertices");
+pub(super) fn all_around(body: &TriangleMesh) -> Vec<Point3> {
+    let (low, high) = body.bounding_box().expect("a mesh has vertices");
     let middle: Vector3 = nalgebra::center(&low, &high).coords;
     let sides = sphere(2.0 * (high - low).norm(), 1);
     sides.vertices().iter().map(|p| p + middle).collect()

@@ -6,26 +6,25 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    FamilyScene, Seen,
     depth_view::DepthView,
     grasp::{Grasp, gripper},
-    motion::{Motion, points},
+    motion::Motion,
+    place::SUNK,
+    scene::FamilyScene,
+    seeing::Seen,
 };
 use crate::{
     exact::{ExactMesh, Touch},
     random::between,
     scene::{assemble, cuboid, cylinder, moved, sphere, union_of_boxes},
-    surface::sample_surface,
+    surface::{positions, sample_surface},
 };
 
 /// Half the sides of the table top, m.
 const HALF_TABLE: [f64; 2] = [0.5, 0.35];
 
-/// Objects sink this far into the table, so that nothing merely touches, m.
-const SUNK: f64 = 0.001;
-
 /// The table and four to six objects in the frame of a camera 0.8 to 1.5 m away that looks down at
-/// 30° to 55°; the gripper is known exactly.
+/// 30° to 55°; the whole surface of the gripper is seen.
 pub(super) fn scene(seed: u64) -> FamilyScene {
     let rng = &mut seed::generator(seed);
     let world = table_with_objects(rng);
@@ -34,17 +33,14 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
     let a = ExactMesh::new(&moved(&world, &camera_from_world));
     // Most of the table, whatever the distance.
     let view = DepthView::new(&a, 0.5 / distance, distance);
-    let targets = points(&view.surface(&a, 2000, seed::derive(seed, 100, 0)));
+    let targets = positions(&view.surface(&a, 2000, seed::derive(seed, 100, 0)));
     let b = gripper();
-    let grips = points(&sample_surface(&b, 1000, seed::derive(seed, 100, 1)));
+    let grips = positions(&sample_surface(&b, 1000, seed::derive(seed, 100, 1)));
     let down = camera_from_world.transform_vector(&-Vector3::z());
-    FamilyScene {
-        a,
-        b: ExactMesh::new(&b),
-        touch: Touch::Solids,
-        seen: [Seen::Image(view), Seen::Known(b)],
-        motion: Motion::Grasp(Grasp { down, targets, grips }),
-    }
+    let b = ExactMesh::new(&b);
+    let seen_b = Seen::Surface(Box::new(ExactMesh::new(b.mesh())));
+    let motion = Motion::Grasp(Grasp { down, targets, grips });
+    FamilyScene { a, b, touch: Touch::Solids, seen: [Seen::Image(view), seen_b], motion }
 }
 
 /// The camera's optical frame: z toward a point 5 cm above the table's middle, y down.

@@ -10,6 +10,7 @@ mod polygon;
 mod primitives;
 mod refine;
 mod room;
+mod round;
 mod union;
 
 pub use assemble::{assemble, moved};
@@ -20,4 +21,5 @@ pub use primitives::{
 };
 pub use refine::subdivide_to_max_edge;
 pub use room::room;
+pub use round::{arc, revolved, revolved_ring, rounded, tube};
 pub use union::union_of_boxes;

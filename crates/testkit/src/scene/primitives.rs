@@ -153,7 +153,7 @@ pub fn cylinder(radius: f64, length: f64, sides: usize) -> TriangleMesh {
 
 /// The closed surface through a ring of closed sections, each anticlockwise in the half plane of
 /// (distance from the z axis, z), taken anticlockwise about z.
-fn ring(sections: impl Iterator<Item = Vec<Point3>>) -> TriangleMesh {
+pub(super) fn ring(sections: impl Iterator<Item = Vec<Point3>>) -> TriangleMesh {
     let sections: Vec<_> = sections.collect();
     let (n, m) = (sections.len(), sections[0].len());
     let index = |i: usize, j: usize| ((i % n) * m + j % m) as u32;
@@ -172,7 +172,7 @@ fn ring(sections: impl Iterator<Item = Vec<Point3>>) -> TriangleMesh {
 /// The corners of a regular polygon on the unit circle, anticlockwise from (1, 0).
 ///
 /// Rounded to 12 decimals: the sine differs in its last bits between platforms.
-fn unit_circle(corners: usize) -> Vec<[f64; 2]> {
+pub(super) fn unit_circle(corners: usize) -> Vec<[f64; 2]> {
     let round = |v: f64| (v * 1e12).round() / 1e12;
     (0..corners)
         .map(|i| {

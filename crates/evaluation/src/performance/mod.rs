@@ -1,0 +1,98 @@
+//! `cargo xtask bench-report`: times of ours and of its peers on the same scenes, with the errors
+//! on the same poses.
+
+mod batch;
+mod fresh;
+mod growth;
+mod leaf_problems;
+mod peers;
+mod room;
+mod scene;
+mod solvers;
+mod target;
+mod timing;
+mod turns;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use rayon::ThreadPoolBuilder;
+
+use crate::{
+    page::{self, Page, Section},
+    real_scans::cases,
+};
+use scene::Scene;
+use target::Findings;
+
+/// What `cargo xtask bench-report` is given.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Poses of the piano in the room
+    #[arg(long, default_value_t = 100)]
+    poses: usize,
+    /// Write docs/lab/performance.md and its figures; else everything goes to target/lab/
+    #[arg(long)]
+    update_docs: bool,
+    /// Folder of the real scans, from the project's root
+    #[arg(long, value_name = "DIR", default_value = "../shared/data")]
+    data: PathBuf,
+}
+
+/// Everything random comes from this.
+const SEED: u64 = 2011;
+
+const INTRODUCTION: &str = "How long queries, preparation and the solver take, beside other \
+libraries on the same scenes in the same run. Times are wall times of single calls on one thread, \
+but for the batch. Methods that are compared take turns, so that a slow minute of the machine slows \
+all of them. No speed without its error: each table of times of methods says what they get wrong on \
+the same poses. Speed against error over the settings is in [settings.md](settings.md), over methods \
+and noises in [accuracy.md](accuracy.md).";
+
+/// Why targets are missed, where they are.
+const MISSED: &str = "Where targets are missed, it is for these reasons. *Exact meshes*: parry3d is \
+told the surfaces and stops at the first triangles that cut; a probability needs every place within \
+three standard deviations, and samples 10 cm apart stand for discs that reach as far. *Fresh clouds \
+and frames*: the noise model, a robust fit over up to 60 neighbours for every point a query comes \
+near, takes most of the first query. Index and tree take most of preparation. *Hard leaf problems*: \
+SMO gives up on all of them, and the interior point method that takes over is cubic in the points. \
+*Memory*: positions, covariances, boxes and what queries have computed are all kept, in double \
+precision.";
+
+/// A part of a run.
+type Part = fn(&Scene, Option<&Path>) -> Findings;
+
+/// Measures and writes the page with its figures.
+///
+/// # Errors
+/// When a part cannot be measured or the page not be written.
+pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
+    let Arguments { poses, update_docs, ref data } = *arguments;
+    let scene = Scene::draw(poses, SEED)?;
+    let data = cases::folder(root, data);
+    // Whatever uses rayon gets one thread; the batch brings pools of its own.
+    let alone = ThreadPoolBuilder::new().num_threads(1).build().context("start a thread")?;
+    let parts: [(&str, Part); 6] = [
+        ("prepared queries", |scene, _| room::measure(scene)),
+        ("first query", |scene, _| fresh::first_query(scene)),
+        ("depth frames", fresh::frames),
+        ("leaf problems", |scene, _| solvers::measure(scene.seed)),
+        ("larger scenes", |scene, _| growth::measure(scene)),
+        ("batch", |scene, _| batch::measure(scene)),
+    ];
+    let (mut sections, mut targets) = (Vec::new(), Vec::new());
+    for (name, part) in parts {
+        let measured = alone.install(|| part(&scene, data.as_deref()));
+        let (section, judged) = measured.with_context(|| format!("measure {name}"))?;
+        eprintln!("bench-report: {name} done");
+        sections.push(section);
+        targets.extend(judged);
+    }
+    let command = format!("--poses {poses} --update-docs");
+    let names = ("performance", "Performance");
+    let mut page = Page::new(names, ("bench-report", &command), INTRODUCTION, root, SEED);
+    page.section(Section::new("Targets").text(target::table(&targets)).text(MISSED));
+    sections.into_iter().for_each(|section| page.section(section));
+    page.write(&page::folder(root, update_docs))
+}

@@ -1,0 +1,119 @@
+//! The piano in the room, prepared: every method asked about every pose in turn.
+
+use anyhow::Result;
+use cloudtouch::Mode;
+
+use super::{
+    peers::{ExactMeshes, Spheres},
+    scene::{Class, POINTS, STD, Scene},
+    target::{Findings, Target},
+    timing::{p95, ratio, time},
+    turns::{Timed, table, take_turns},
+};
+use crate::{
+    answers::Pair,
+    figure::{Axis, Figure, Panel, Series, palette},
+    methods::{Boxes, Distance, Draw, Method, Ours},
+    page::Section,
+    statistics::median,
+};
+
+/// The larger of the two noises, m.
+const LARGE_STD: f64 = 0.01;
+
+const INTRODUCTION: &str = "Room and piano, 10,000 points each, two clouds with default settings. A \
+third of the poses is far (at least 10 cm apart), a third near (exact surfaces within 2 cm of one \
+another, half free and half in overlap), a third deep (at least 5 cm of overlap). The methods take \
+turns at each pose. The first answer is not timed: it fills what is computed once for all poses. Of \
+seven others the least time counts.
+
+- `ours`: clouds that were refined (`Cloud::refined`), as for a scene that many poses are tested in; \
+`not refined`: as prepared for a frame that is looked at a few times; `geometry alone`: refined, and \
+no classifier is trained, so that the rest is what training costs.
+- `parry3d, exact meshes`: `intersection_test` on the surfaces that the clouds were drawn from, in \
+about 10,000 triangles each. No sensor knows them: it is told more than the others.
+- `1 cm boxes`: parry3d's voxels about the points of both clouds.
+- `distance`: the nearest point of the room for every point of the piano by kiddo, sought no farther \
+than the smallest distance so far.
+- `capt, spheres`: balls of 1 cm about the points of the piano against the points of the room.
+
+False stops and misses: free poses called collisions, and collisions called free; ours calls from ½ \
+on, a distance has no threshold. AUC of a method that says only yes or no is what ties leave.";
+
+/// Measures at both noises.
+pub(super) fn measure(scene: &Scene) -> Findings {
+    let mut section = Section::new("Prepared queries").text(INTRODUCTION);
+    let mut targets = Vec::new();
+    for std in [STD, LARGE_STD] {
+        let timed = ask(scene, std)?;
+        targets.extend(judged(&timed, std));
+        section =
+            section.text(format_args!("### Noise of {:.0} mm", 1e3 * std)).text(table(&timed));
+        if std == STD {
+            section = section.text("A mark is a pose, the bar is the median.").figure(
+                "performance-room",
+                "Times of queries by class of pose",
+                strips(&timed),
+            );
+        }
+    }
+    Ok((section, targets))
+}
+
+fn ask(scene: &Scene, std: f64) -> Result<Vec<Timed>> {
+    let (room, piano) = (scene.room(POINTS, std), scene.piano(std));
+    let draw = Draw { family: "", a: &room, b: &piano, mesh: &scene.piano };
+    let refined = Ours::new("ours", Mode::Calibrated)?.refined();
+    let mut geometry = Ours::new("ours, geometry alone", Mode::Calibrated)?.refined();
+    geometry.query.doubt = [0.5; 2];
+    let methods: [&dyn Method; 7] = [
+        &refined,
+        &Ours::new("ours, not refined", Mode::Calibrated)?,
+        &geometry,
+        &ExactMeshes(scene.meshes(POINTS)),
+        &Boxes { side: 0.01 },
+        &Distance { smoothed: false },
+        &Spheres,
+    ];
+    take_turns(&methods, &draw, Pair::CloudCloud, &scene.poses)
+}
+
+fn judged(timed: &[Timed], std: f64) -> Vec<Target> {
+    let near = p95(&timed[0].seconds(Some(Class::Near)));
+    let at = format!("10k × 10k points, {:.0} mm of noise", 1e3 * std);
+    if std == LARGE_STD {
+        return vec![Target::at_most(format!("{at}: near, p95 ≤ 10 ms"), near, 0.01, time)];
+    }
+    let [ours, theirs] = [0, 3].map(|i| median(&timed[i].seconds(None)));
+    let compared = |r: f64| format!("{} ({} to {})", ratio(r), time(ours), time(theirs));
+    let [far, deep] = [Class::Far, Class::Deep].map(|c| median(&timed[0].seconds(Some(c))));
+    let meshes = format!("{at}: median ≤ 1.0 × parry3d on exact meshes");
+    vec![
+        Target::at_most(meshes, ours / theirs, 1.0, compared),
+        Target::at_most(format!("{at}: far, median ≤ 10 µs"), far, 1e-5, time),
+        Target::at_most(format!("{at}: deep, median ≤ 0.5 ms"), deep, 5e-4, time),
+        Target::at_most(format!("{at}: near, p95 ≤ 3 ms"), near, 3e-3, time),
+    ]
+}
+
+/// A panel for each class of pose, a row for each method, a mark for each pose.
+fn strips(timed: &[Timed]) -> Figure {
+    let rows = || timed.iter().rev();
+    let panel = |class: Class| {
+        let names = rows().map(|t| t.name.clone());
+        let mut panel =
+            Panel::new(Axis::log("query (ms)").range(1e-4..1e2), Axis::names("", names));
+        for (row, timed) in rows().enumerate() {
+            let (row, seconds) = (row as f64, timed.seconds(Some(class)));
+            let spread = |i: usize| row + 0.28 * ((i % 7) as f64 / 3.0 - 1.0);
+            let marks = seconds.iter().enumerate().map(|(i, s)| (1e3 * s, spread(i)));
+            let middle = (1e3 * median(&seconds), row - 0.42, row + 0.42);
+            panel = panel
+                .series(Series::points("", marks).color(palette::SKY).size(3))
+                .series(Series::whiskers("", [middle]).color(palette::BLACK));
+        }
+        panel.title(&format!("{} poses", class.name()))
+    };
+    let figure = Figure::new("Prepared queries, 2 mm of noise").columns(1).panel_size(800, 230);
+    Class::ALL.into_iter().map(panel).fold(figure, Figure::panel)
+}

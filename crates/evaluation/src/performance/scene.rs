@@ -1,0 +1,168 @@
+//! The piano and the room: meshes, noisy clouds, and poses far from contact, near and deep.
+
+use anyhow::{Context, Result};
+use cloudtouch_geom::{Pose, TriangleMesh, seed::derive};
+use cloudtouch_testkit::{
+    exact::ExactMesh,
+    family::Observation,
+    noise::{NoiseKind, add_noise},
+    poses::{LabelledPose, poses_near_contact},
+    scene,
+    surface::{positions, sample_surface},
+};
+use rayon::prelude::*;
+
+/// Points of a cloud where nothing else is said.
+pub(super) const POINTS: usize = 10_000;
+/// Standard deviation of the noise where nothing else is said, m.
+pub(super) const STD: f64 = 0.002;
+/// The edges that leave so many triangles, m: the room at 10,000 and the piano.
+const EDGES: [f64; 2] = [0.42, 0.13];
+/// Poses drawn at once; what does not fit a class is dropped.
+const BATCH: usize = 4;
+
+/// How close the exact surfaces are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Class {
+    /// At least 10 cm apart.
+    Far,
+    /// At most 2 cm apart, or that deep in overlap.
+    Near,
+    /// At least 5 cm of overlap.
+    Deep,
+}
+
+/// A pose with its exact label.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Posed {
+    pub(super) class: Class,
+    pub(super) collides: bool,
+    /// Maps the frame of the piano into that of the room.
+    pub(super) pose: Pose,
+}
+
+/// What is measured on.
+pub(super) struct Scene {
+    room: TriangleMesh,
+    pub(super) piano: TriangleMesh,
+    /// The kinds of [`TURN`] in turn.
+    pub(super) poses: Vec<Posed>,
+    /// Everything random comes from this.
+    pub(super) seed: u64,
+}
+
+/// What the poses are, in turn: their class, and whether they collide.
+const TURN: [(Class, bool); 6] = [
+    (Class::Far, false),
+    (Class::Near, false),
+    (Class::Deep, true),
+    (Class::Far, false),
+    (Class::Near, true),
+    (Class::Deep, true),
+];
+
+impl Class {
+    pub(super) const ALL: [Self; 3] = [Self::Far, Self::Near, Self::Deep];
+
+    pub(super) fn name(self) -> &'static str {
+        ["far", "near", "deep"][self as usize]
+    }
+
+    /// None for what lies between the classes.
+    fn of(signed_distance: f64) -> Option<Self> {
+        match signed_distance {
+            d if d >= 0.1 => Some(Self::Far),
+            d if d.abs() <= 0.02 => Some(Self::Near),
+            d if d <= -0.05 => Some(Self::Deep),
+            _ => None,
+        }
+    }
+}
+
+impl Scene {
+    /// Draws so many poses.
+    ///
+    /// # Errors
+    /// When a class of poses cannot be had.
+    pub(super) fn draw(count: usize, seed: u64) -> Result<Self> {
+        let (room, piano) = (scene::room(), scene::piano());
+        let exact = [&room, &piano].map(ExactMesh::new);
+        let batch = |number: u64| {
+            let drawn =
+                |part| poses_near_contact(&exact[0], &exact[1], BATCH, derive(seed, 1, part));
+            (4 * number..4 * number + 4).into_par_iter().flat_map_iter(drawn).collect::<Vec<_>>()
+        };
+        let mut kinds: [Vec<Posed>; TURN.len()] = Default::default();
+        let wanted = count.div_ceil(TURN.len());
+        for LabelledPose { scene_from_object: pose, in_collision: collides, signed_distance } in
+            (0..2000).flat_map(batch)
+        {
+            let class = Class::of(signed_distance);
+            let fits = |i: &usize| class == Some(TURN[*i].0) && collides == TURN[*i].1;
+            let open = (0..TURN.len()).filter(fits).find(|&i| kinds[i].len() < wanted);
+            if let (Some(class), Some(kind)) = (class, open) {
+                kinds[kind].push(Posed { class, collides, pose });
+            }
+            if kinds.iter().all(|kind| kind.len() == wanted) {
+                break;
+            }
+        }
+        let in_turn = |i: usize| kinds[i % TURN.len()].get(i / TURN.len()).copied();
+        let poses: Option<Vec<Posed>> = (0..count).map(in_turn).collect();
+        let poses = poses.context("too few far, near or deep poses")?;
+        Ok(Self { room, piano, poses, seed })
+    }
+
+    /// The poses of one class.
+    pub(super) fn of(&self, class: Class) -> impl Iterator<Item = &Posed> {
+        self.poses.iter().filter(move |posed| posed.class == class)
+    }
+
+    /// The room in so many points, with noise of this standard deviation (m).
+    pub(super) fn room(&self, points: usize, std: f64) -> Observation {
+        observed(&self.room, points, std, derive(self.seed, 2, 0))
+    }
+
+    /// The piano in [`POINTS`] points.
+    pub(super) fn piano(&self, std: f64) -> Observation {
+        observed(&self.piano, POINTS, std, derive(self.seed, 2, 1))
+    }
+
+    /// The room's surface in about so many triangles, and the piano's in ten thousand.
+    pub(super) fn meshes(&self, triangles: usize) -> [TriangleMesh; 2] {
+        let edge = EDGES[0] * (POINTS as f64 / triangles as f64).sqrt();
+        [(&self.room, edge), (&self.piano, EDGES[1])]
+            .map(|(mesh, edge)| scene::subdivide_to_max_edge(mesh, edge))
+    }
+}
+
+fn observed(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
+    let samples = sample_surface(mesh, points, stream);
+    let errors = derive(stream, 1, 0);
+    let noisy = add_noise(&positions(&samples), NoiseKind::Gaussian, std, errors);
+    let cloud = cloudtouch_geom::PointCloud::from_points(noisy);
+    Observation { cloud, truth: samples.into_iter().map(Some).collect(), std }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_have_gaps_between_them() {
+        assert_eq!([0.5, 0.1].map(Class::of), [Some(Class::Far); 2]);
+        assert_eq!([0.02, 0.0, -0.02].map(Class::of), [Some(Class::Near); 3]);
+        assert_eq!([-0.05, f64::NEG_INFINITY].map(Class::of), [Some(Class::Deep); 2]);
+        assert_eq!([0.05, -0.03, f64::NAN].map(Class::of), [None; 3]);
+    }
+
+    #[test]
+    fn poses_are_what_they_are_drawn_for() {
+        let scene = Scene::draw(7, 3).unwrap();
+        let exact = [&scene.room, &scene.piano].map(ExactMesh::new);
+        for (posed, kind) in scene.poses.iter().zip(TURN.into_iter().cycle()) {
+            assert_eq!((posed.class, posed.collides), kind);
+            assert_eq!(exact[0].solids_overlap(&exact[1], &posed.pose), posed.collides);
+        }
+    }
+}

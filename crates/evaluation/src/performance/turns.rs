@@ -1,0 +1,157 @@
+//! Methods that take turns at every pose: what they say, how long that takes, how often it is wrong.
+
+use anyhow::{Context, Result};
+
+use super::{
+    scene::{Class, Posed},
+    timing::{ratio, time, timed, times},
+};
+use crate::{
+    answers::Pair,
+    measures::{Sample, auc},
+    methods::{Draw, Method},
+    statistics::median,
+    table::Table,
+};
+
+/// How often each query is timed; the least counts.
+const REPEATS: usize = 7;
+
+/// What one method said of all poses and how long it took.
+pub(super) struct Timed {
+    pub(super) name: String,
+    /// Time to prepare both bodies, s.
+    pub(super) prepare: f64,
+    answers: Vec<Answer>,
+}
+
+struct Answer {
+    class: Class,
+    collides: bool,
+    score: f64,
+    /// The least of the repeats, s.
+    seconds: f64,
+}
+
+/// Prepares every method, asks each about each pose once, which is not timed, and then in turn.
+pub(super) fn take_turns(
+    methods: &[&dyn Method],
+    draw: &Draw<'_>,
+    pair: Pair,
+    poses: &[Posed],
+) -> Result<Vec<Timed>> {
+    let mut prepared = Vec::new();
+    let mut all = Vec::new();
+    for method in methods {
+        let (ready, prepare) = timed(|| method.prepare(draw)).context(method.name())?;
+        prepared.push(ready);
+        all.push(Timed { name: method.name(), prepare, answers: Vec::new() });
+    }
+    for posed in poses {
+        let mut fastest = vec![(f64::NAN, f64::INFINITY); methods.len()];
+        for repeat in 0..=REPEATS {
+            for (ready, fastest) in prepared.iter().zip(&mut fastest) {
+                let (said, seconds) = timed(|| ready.ask(pair, &posed.pose))?;
+                fastest.0 = said.context("an answer to such a pair")?.score;
+                if repeat > 0 {
+                    fastest.1 = fastest.1.min(seconds);
+                }
+            }
+        }
+        for (timed, (score, seconds)) in all.iter_mut().zip(fastest) {
+            let Posed { class, collides, .. } = *posed;
+            timed.answers.push(Answer { class, collides, score, seconds });
+        }
+    }
+    Ok(all)
+}
+
+impl Timed {
+    fn of(&self, class: Option<Class>) -> impl Iterator<Item = &Answer> {
+        self.answers.iter().filter(move |a| class.is_none_or(|class| a.class == class))
+    }
+
+    /// Its times at the poses of one class or of all, s.
+    pub(super) fn seconds(&self, class: Option<Class>) -> Vec<f64> {
+        self.of(class).map(|answer| answer.seconds).collect()
+    }
+
+    /// Chance that a collision has the higher score.
+    pub(super) fn auc(&self, class: Option<Class>) -> f64 {
+        let sample = Sample::of_probabilities(self.of(class).map(|a| (a.score, a.collides)));
+        auc(&sample, &sample.ones())
+    }
+
+    /// Free poses it calls collisions and collisions it calls free, from a score of ½ on.
+    fn wrong(&self) -> [usize; 2] {
+        [false, true].map(|collides| {
+            let of = self.answers.iter().filter(|a| a.collides == collides);
+            of.filter(|a| (a.score >= 0.5) != collides).count()
+        })
+    }
+}
+
+/// Times by class of pose, and errors on the same poses; the first method is compared with all.
+/// A score below zero is a distance, which has no threshold, so no verdict.
+pub(super) fn table(all: &[Timed]) -> Table {
+    let mut table = Table::new([
+        "method",
+        "prepare",
+        "far, median",
+        "near, median",
+        "near, p95",
+        "deep, median",
+        "all, median",
+        "all, p95",
+        "first to it",
+        "AUC",
+        "AUC near",
+        "false stops",
+        "misses",
+    ]);
+    let first = all.first().map_or(f64::NAN, |first| median(&first.seconds(None)));
+    for timed in all {
+        let of = |class| times(&timed.seconds(Some(class)));
+        let ([far, _], [near, near_p95], [deep, _]) =
+            (of(Class::Far), of(Class::Near), of(Class::Deep));
+        let [middle, p95] = times(&timed.seconds(None));
+        let [auc, auc_near] =
+            [None, Some(Class::Near)].map(|class| format!("{:.3}", timed.auc(class)));
+        let is_verdict = timed.answers.iter().all(|a| a.score >= 0.0);
+        let [stops, misses] =
+            timed.wrong().map(|n| if is_verdict { n.to_string() } else { "-".into() });
+        let compared = ratio(first / median(&timed.seconds(None)));
+        table.row([
+            timed.name.clone(),
+            time(timed.prepare),
+            far,
+            near,
+            near_p95,
+            deep,
+            middle,
+            p95,
+            compared,
+            auc,
+            auc_near,
+            stops,
+            misses,
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn false_stops_and_misses_are_counted_apart() {
+        let answer =
+            |(score, collides)| Answer { class: Class::Near, collides, score, seconds: 1.0 };
+        let answers = [(0.9, false), (0.2, false), (0.6, false), (0.4, true)].map(answer);
+        let timed = Timed { name: "t".into(), prepare: 0.0, answers: answers.into() };
+        assert_eq!(timed.wrong(), [2, 1]);
+        assert!((timed.auc(None) - 1.0 / 3.0).abs() < 1e-12);
+        assert!(timed.auc(Some(Class::Far)).is_nan());
+    }
+}

@@ -1,0 +1,72 @@
+//! Paths of bodies that do not turn at random: hands ahead, upright robots.
+
+use cloudtouch_geom::Vector3;
+use nalgebra::UnitQuaternion;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::{ends::Ends, pair::Pair};
+use crate::{
+    poses::Approach,
+    random::{between, direction, direction_near, small_rotation},
+};
+
+/// A body whose z axis goes ahead, as a gripper's does.
+pub(super) struct Reach {
+    pub(super) ends: Ends,
+    /// Where it may go, each with the angle that it may be off, rad.
+    pub(super) ways: Vec<(Vector3, f64)>,
+    /// How far before what it reaches for it starts, m.
+    pub(super) from: f64,
+}
+
+impl Reach {
+    /// To a point of the scene, rolled at random; `None` when it would start in contact.
+    pub(super) fn approach(&self, pair: Pair, rng: &mut ChaCha8Rng) -> Option<Approach> {
+        let (way, off) = &self.ways[rng.random_range(0..self.ways.len())];
+        let ahead = direction_near(way, *off, rng);
+        let [target, grip] = self.ends.draw(rng);
+        pair.straight(reaching(target, grip, ahead, self.from, rng))
+    }
+}
+
+/// With the z axis ahead, rolled at random, so far before the place where `grip` is at `target`.
+pub(super) fn reaching(
+    target: Vector3,
+    grip: Vector3,
+    ahead: Vector3,
+    from: f64,
+    rng: &mut ChaCha8Rng,
+) -> Approach {
+    let rotation = UnitQuaternion::face_towards(&ahead, &direction(rng));
+    let start = target - rotation * grip - ahead * from;
+    Approach { rotation, start, direction: ahead, contact: 0.0 }
+}
+
+/// A body that stays upright, as what stands on a floor or is carried does.
+pub(super) struct Upright {
+    pub(super) ends: Ends,
+    /// How far it leans at most, rad.
+    pub(super) lean: f64,
+    /// The heights between which its origin keeps on a level path, m; any path when `None`.
+    pub(super) level: Option<[f64; 2]>,
+}
+
+impl Upright {
+    /// Turned about the vertical, from anywhere in the scene's box toward a point of the scene;
+    /// `None` when it would start in contact or pass by.
+    pub(super) fn approach(&self, pair: Pair, rng: &mut ChaCha8Rng) -> Option<Approach> {
+        let about = Vector3::z() * between(0.0, std::f64::consts::TAU, rng);
+        let rotation = small_rotation(self.lean, rng) * UnitQuaternion::from_scaled_axis(about);
+        let (low, high) = pair.a.mesh().bounding_box().expect("a mesh has vertices");
+        let mut start = Vector3::from_fn(|k, _| between(low[k], high[k], rng));
+        let [target, grip] = self.ends.draw(rng);
+        let mut path = target - rotation * grip - start;
+        if let Some([lowest, highest]) = self.level {
+            start.z = between(lowest, highest, rng);
+            path.z = 0.0;
+        }
+        let direction = path.try_normalize(0.05)?;
+        pair.straight(Approach { rotation, start, direction, contact: 0.0 })
+    }
+}
