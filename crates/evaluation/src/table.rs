@@ -3,6 +3,7 @@
 use std::{fmt, io, path::Path};
 
 use anyhow::Result;
+use cloudtouch::Verdict;
 use cloudtouch_io::write_atomically;
 
 /// Rows under a header; [`Display`](fmt::Display) writes Markdown.
@@ -74,6 +75,16 @@ pub fn probability(p: f64) -> String {
 /// Lower and upper bound of a probability.
 pub fn bounds([low, high]: [f64; 2]) -> String {
     format!("{} .. {}", probability(low), probability(high))
+}
+
+/// A verdict in words.
+pub fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Free => "free",
+        Verdict::InContact => "in contact",
+        Verdict::InCollision => "in collision",
+        Verdict::Undecided => "undecided",
+    }
 }
 
 #[cfg(test)]

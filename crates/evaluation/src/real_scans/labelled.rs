@@ -16,7 +16,7 @@ use super::cases::{self, Labelled};
 use crate::{
     page::Section,
     statistics::quantile,
-    table::{Table, bounds, probability},
+    table::{Table, bounds, probability, verdict},
 };
 
 /// The sensor of each scan, by a part of its file name.
@@ -28,12 +28,8 @@ const SENSORS: [(&str, &str); 5] = [
     ("room_scan", "lidar:0.02,0.003"),
 ];
 const LABELS: [&str; 5] = ["free", "near", "contact", "shallow", "collision"];
-const VERDICTS: [(Verdict, &str); 4] = [
-    (Verdict::Free, "free"),
-    (Verdict::InContact, "in contact"),
-    (Verdict::InCollision, "in collision"),
-    (Verdict::Undecided, "undecided"),
-];
+const VERDICTS: [Verdict; 4] =
+    [Verdict::Free, Verdict::InContact, Verdict::InCollision, Verdict::Undecided];
 /// A free case must stay below, a deep one above.
 const FREE_BELOW: f64 = 0.1;
 const COLLISION_ABOVE: f64 = 0.9;
@@ -111,7 +107,7 @@ fn failure(case: &Labelled, answer: &Answer) -> Option<String> {
 
 fn by_label(cases: &[Labelled], answers: &[Answer]) -> Table {
     let mut header = vec!["label", "cases", "P min", "P median", "P max"];
-    header.extend(VERDICTS.map(|(_, name)| name));
+    header.extend(VERDICTS.map(verdict));
     header.extend(["query median (ms)", "query p95 (ms)"]);
     let mut table = Table::new(header);
     for label in LABELS {
@@ -123,7 +119,7 @@ fn by_label(cases: &[Labelled], answers: &[Answer]) -> Table {
         let mut cells = vec![label.to_owned(), reports.len().to_string()];
         cells.extend([0.0, 0.5, 1.0].map(|q| probability(quantile(&p, q))));
         let count = |verdict| reports.iter().filter(|r| r.verdict == verdict).count();
-        cells.extend(VERDICTS.map(|(verdict, _)| count(verdict).to_string()));
+        cells.extend(VERDICTS.map(|verdict| count(verdict).to_string()));
         cells.extend([0.5, 0.95].map(|q| format!("{:.1}", quantile(&time, q))));
         table.row(cells);
     }
@@ -146,7 +142,7 @@ fn each(cases: &[Labelled], answers: &[Answer]) -> Table {
             Ok(report) => [
                 probability(report.collision_probability),
                 bounds(report.bounds),
-                verdict_name(report.verdict).to_owned(),
+                verdict(report.verdict).to_owned(),
                 report.clearance_m.map_or("-".to_owned(), |c| {
                     format!("{:+.1} ± {:.1}", 1e3 * c.mean, 1e3 * c.std)
                 }),
@@ -164,11 +160,6 @@ fn query_ms(report: &Report) -> f64 {
 
 fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-/// A verdict in words.
-pub(super) fn verdict_name(verdict: Verdict) -> &'static str {
-    VERDICTS.iter().find(|(other, _)| *other == verdict).map_or("unknown", |(_, name)| name)
 }
 
 #[cfg(test)]

@@ -6,12 +6,15 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result};
 use cloudtouch::{Cloud, Contact, Report};
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
-use i_overlay::{core::fill_rule::FillRule, float::simplify::SimplifyShape};
+use i_overlay::{
+    core::{fill_rule::FillRule, overlay_rule::OverlayRule},
+    float::single::SingleFloatOverlay,
+};
 
-use super::labelled::verdict_name;
 use crate::{
     figure::{Axis, Figure, Panel, Place, RGBColor, Series, palette},
     statistics::quantile,
+    table::verdict,
 };
 
 /// Into the table, as the camera sees it (x right, y down, z forward).
@@ -19,10 +22,10 @@ const DOWN: [f64; 3] = [0.05, 0.8, 0.6];
 /// Half the thickness of the slice, m: that of a finger.
 const SLICE: f64 = 0.01;
 /// What is shown about the middle, cm: sideways, and from below the table upwards.
-const SIDEWAYS: f64 = 13.0;
-const HEIGHTS: std::ops::Range<f64> = -1.0..33.0;
+const SIDEWAYS: f64 = 9.0;
+const HEIGHTS: std::ops::Range<f64> = -1.0..19.0;
 /// Side of the squares of which no more than one point is drawn, cm.
-const SQUARE: f64 = 0.25;
+const SQUARE: f64 = 0.4;
 /// Points and contacts at least this likely are marked.
 const LIKELY: f64 = 0.3;
 /// Length of a contact's arrow, cm.
@@ -91,8 +94,18 @@ pub(super) fn figure(
 }
 
 fn panel(view: &View, cloud: &Cloud, object: &TriangleMesh, pose: &Pose, report: &Report) -> Panel {
-    let verdict = verdict_name(report.verdict);
-    let title = format!("P = {:.2}: {verdict}", report.collision_probability);
+    let title = format!("P = {:.2}: {}", report.collision_probability, verdict(report.verdict));
+    eprintln!(
+        "DEBUG {} {}",
+        report.collision_probability,
+        report.point_probabilities.a.iter().filter(|(_, p)| *p > 0.3).count()
+    );
+    for (i, p) in &report.point_probabilities.a {
+        let q = cloud.point(*i);
+        if view.is_in_slice(&q) && *p > 0.01 {
+            eprint!("{:?}:{:.2} ", view.place(&q), p);
+        }
+    }
     let (outlines, holes) = outline(view, object, pose);
     let (likely, other) = points(view, cloud, report);
     let panel = Panel::new(
@@ -124,7 +137,11 @@ fn outline(view: &View, mesh: &TriangleMesh, pose: &Pose) -> (Vec<Vec<Place>>, V
         let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         if turn < 0.0 { vec![a, c, b] } else { vec![a, b, c] }
     });
-    let shapes = triangles.collect::<Vec<_>>().simplify_shape(FillRule::NonZero);
+    let (left, right) = (-SIDEWAYS, SIDEWAYS);
+    let (low, high) = (HEIGHTS.start, HEIGHTS.end);
+    let sight = vec![[left, low], [right, low], [right, high], [left, high]];
+    let triangles: Vec<_> = triangles.collect();
+    let shapes = triangles.overlay(&sight, OverlayRule::Intersect, FillRule::NonZero);
     let places = |contour: &Vec<[f64; 2]>| contour.iter().map(|&[x, y]| (x, y)).collect();
     let outer = shapes.iter().filter_map(|shape| shape.first()).map(places);
     (outer.collect(), shapes.iter().flat_map(|shape| &shape[1..]).map(places).collect())

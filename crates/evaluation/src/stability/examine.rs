@@ -1,23 +1,9 @@
 //! Whole queries at their default settings, and what must hold of any answer.
 
-use cloudtouch::{
-    BodyRef, Cloud, CloudSettings, Contact, Mode, PrepareError, Query, QueryError, QuerySettings,
-    Report, Verdict, noise::SensorModel,
-};
-use cloudtouch_geom::{CovarianceError, Point3, PointCloud, Pose};
+use cloudtouch::{BodyRef, Contact, Mode, Query, QueryError, QuerySettings, Report, Verdict};
+use cloudtouch_geom::Pose;
 
 use super::sheet::Sheet;
-
-/// Why there is no report.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum Refused {
-    #[error(transparent)]
-    Covariance(#[from] CovarianceError),
-    #[error(transparent)]
-    Prepare(#[from] PrepareError),
-    #[error(transparent)]
-    Query(#[from] QueryError),
-}
 
 /// How an answer compares with the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,11 +12,6 @@ pub(super) enum Judged {
     Open,
     Wrong,
     Unknown,
-}
-
-pub(super) fn prepare_uniform(points: &[Point3], std: f64) -> Result<Cloud, PrepareError> {
-    let settings = CloudSettings::new(SensorModel::Isotropic { std }, Mode::Calibrated);
-    Cloud::prepare(&PointCloud::from_points(points.to_vec()), &settings)
 }
 
 pub(super) fn default_query(
@@ -104,17 +85,12 @@ fn unsound(report: &Report) -> Option<&'static str> {
     (!report.contacts.iter().all(is_finite)).then_some("a contact is not finite")
 }
 
-pub(super) fn verdict_name(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Free => "free",
-        Verdict::InContact => "in contact",
-        Verdict::InCollision => "in collision",
-        Verdict::Undecided => "undecided",
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use cloudtouch::{Cloud, CloudSettings, Mesh, noise::SensorModel};
+    use cloudtouch_geom::{Point3, PointCloud};
+    use cloudtouch_testkit::scene;
+
     use super::*;
 
     #[test]
@@ -128,11 +104,13 @@ mod tests {
 
     #[test]
     fn a_probability_out_of_its_bounds_is_not_sound() {
-        let points = [Point3::origin(), Point3::new(0.1, 0.0, 0.0)];
-        let cloud = prepare_uniform(&points, 0.01).unwrap();
-        let ask =
-            || default_query(Mode::Calibrated, (&cloud).into(), (&cloud).into(), &Pose::identity());
-        let mut report = ask().unwrap();
+        let mesh = Mesh::prepare(&scene::sphere(0.1, 1)).unwrap();
+        let points = PointCloud::from_points(vec![Point3::new(0.1, 0.0, 0.0)]);
+        let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.01 }, Mode::Calibrated);
+        let cloud = Cloud::prepare(&points, &settings).unwrap();
+        let here = Pose::identity();
+        let asked = default_query(Mode::Calibrated, (&cloud).into(), (&mesh).into(), &here);
+        let mut report = asked.unwrap();
         assert_eq!(unsound(&report), None);
         report.bounds[1] = 0.5 * report.collision_probability;
         assert!(unsound(&report).is_some());

@@ -1,20 +1,18 @@
 //! The solver over its settings, over noise and gap, and over units and offsets.
 
 use anyhow::{Context, Result};
-use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, Vector3, seed};
-use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_geom::{Pose, Vector3};
 use rayon::prelude::*;
 
 use super::{
-    sheet::{SEED, Sheet, small},
+    shapes::{Clouds, KINDS, clouds, placed},
+    sheet::{Sheet, small},
     solver::{GAMMA, PENALTY, Posed, Solved, largest_difference},
 };
 use crate::{page::Section, statistics::median, table::Table};
 
 /// Points of each side, as many as a leaf holds.
 const POINTS: u64 = 40;
-/// Shapes over a plane, each with equal and with lopsided noise.
-const KINDS: u64 = 6;
 /// Gap and noise of harmless problems, box lengths.
 const GAP: f64 = 0.05;
 const STD: f64 = 0.02;
@@ -28,9 +26,6 @@ overlap of 16 % to a gap of 32 %, noise of 0.1 to 50 %; where noise is as large 
 problems collapse: that is an answer. *Scale and offset*: scaled by 1e-6 to 1e6 with the covariances, \
 then moved by up to 1e7 m, unless that rounds coordinates by more than a thousandth of the noise; the \
 change is against the problem that stays where it is.";
-
-/// The points of two leaves, A and B.
-type Leaves = [Vec<UncertainPoint>; 2];
 
 /// A solved problem, with the change of a probability against another one where there is one.
 type Cell = (Solved, Option<f64>);
@@ -59,16 +54,20 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
         "largest change of P",
     ]);
     let of_settings = solve_all(&settings, |kind, (gamma, penalty)| {
-        Some((solve(&leaves(GAP, STD, kind), gamma, penalty)?, None))
+        Some((solve(&clouds(POINTS, GAP, STD, kind), gamma, penalty)?, None))
     })?;
     summarize(sheet, &mut table, "settings", &of_settings, false);
     let of_noise = solve_all(&noise, |kind, (gap, std)| {
-        Some((solve(&leaves(gap, std, kind), GAMMA, PENALTY)?, None))
+        Some((solve(&clouds(POINTS, gap, std, kind), GAMMA, PENALTY)?, None))
     })?;
     summarize(sheet, &mut table, "noise and gap", &of_noise, true);
     let of_units = solve_all(&units, |kind, (scale, offset)| {
-        let still = leaves(GAP, STD, kind);
-        let moved = solve(&placed(&still, scale, offset), GAMMA, PENALTY)?;
+        let still = clouds(POINTS, GAP, STD, kind);
+        let moved = solve(
+            &placed(&still, &Pose::from_translation(Vector3::repeat(offset)), scale),
+            GAMMA,
+            PENALTY,
+        )?;
         let still = solve(&still, GAMMA, PENALTY)?;
         let change = largest_difference(&still.probabilities, &moved.probabilities);
         Some((moved, change))
@@ -118,46 +117,8 @@ fn summarize(sheet: &mut Sheet, table: &mut Table, name: &str, cells: &[Cell], i
     }
 }
 
-fn solve(leaves: &Leaves, gamma: f64, penalty: f64) -> Option<Solved> {
-    let [a, b] = leaves;
+fn solve([a, b]: &Clouds, gamma: f64, penalty: f64) -> Option<Solved> {
     Solved::new(&Posed::of_leaves([a, b], gamma, penalty)?).ok()
-}
-
-/// A cap, a wedge or a slanted sheet over a unit square, `gap` box lengths from it, measured with
-/// noise of `std` box lengths.
-fn leaves(gap: f64, std: f64, kind: u64) -> Leaves {
-    let lopsided = kind >= KINDS / 2;
-    [0, 1].map(|side| {
-        let at = |i| {
-            let draw = |k| seed::unit(seed::derive(seed::derive(SEED, kind, side), i, k)) - 0.5;
-            let (x, y) = (draw(0), draw(1));
-            let z = match (side, kind % 3) {
-                (1, _) => 0.0,
-                (_, 0) => gap + 0.6 * (x * x + y * y),
-                (_, 1) => gap + 0.8 * x.abs(),
-                _ => gap + 0.4 * (x + 0.5),
-            };
-            Point3::new(x, y, z)
-        };
-        let exact: Vec<Point3> = (0..POINTS).map(at).collect();
-        let noisy = add_noise(&exact, NoiseKind::Gaussian, 1.0, seed::derive(SEED, kind, 2 + side));
-        let root = if lopsided { Vector3::new(0.2, 0.5, 1.0) } else { Vector3::repeat(1.0) } * std;
-        let covariance =
-            Covariance::from_symmetric(&Matrix3::from_diagonal(&root.component_mul(&root)));
-        let measured = exact.iter().zip(&noisy).map(|(exact, noisy)| UncertainPoint {
-            mean: exact + (noisy - exact).component_mul(&root),
-            covariance,
-        });
-        measured.collect()
-    })
-}
-
-fn placed(leaves: &Leaves, scale: f64, offset: f64) -> Leaves {
-    let place = |p: &UncertainPoint| UncertainPoint {
-        mean: p.mean * scale + Vector3::repeat(offset),
-        covariance: p.covariance.scaled(scale),
-    };
-    [0, 1].map(|side| leaves[side].iter().map(place).collect())
 }
 
 #[cfg(test)]
@@ -168,7 +129,7 @@ mod tests {
     fn leaves_far_apart_are_free_and_leaves_that_overlap_are_less_so() {
         for kind in 0..KINDS {
             let largest = |gap: f64| {
-                let solved = solve(&leaves(gap, 0.01, kind), GAMMA, PENALTY).unwrap();
+                let solved = solve(&clouds(POINTS, gap, 0.01, kind), GAMMA, PENALTY).unwrap();
                 assert!(!solved.is_undecided());
                 solved.probabilities.unwrap().into_iter().fold(0.0, f64::max)
             };

@@ -1,12 +1,12 @@
 //! `cargo xtask stability`: hard cases, the solver over its settings and over noise and units, and
 //! motions that must change nothing, measured and judged against the goals.
 
-mod bodies;
-mod clouds;
 mod default_queries;
 mod examine;
 mod grids;
 mod motions;
+mod queries;
+mod shapes;
 mod sheet;
 mod solver;
 mod solver_cases;
@@ -33,11 +33,10 @@ pub struct Arguments {
 }
 
 /// Everything in the order of the page.
-const PARTS: [(&str, fn(&mut Sheet) -> Result<()>); 7] = [
+const PARTS: [(&str, fn(&mut Sheet) -> Result<()>); 6] = [
     ("solver cases", solver_cases::run),
     ("hierarchy cases", tree_cases::run),
-    ("cloud cases", clouds::run),
-    ("meshes and poses", bodies::run),
+    ("query cases", queries::run),
     ("grids of problems", grids::run),
     ("default queries", default_queries::run),
     ("motions", motions::run),
@@ -54,15 +53,16 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         part(&mut sheet).with_context(|| format!("stability of {name}"))?;
         eprintln!("stability: {name} done after {:.0} s", start.elapsed().as_secs_f64());
     }
+    sheet.close();
     let names = ("stability", "Numerical stability");
     let mut page = Page::new(names, ("stability", "--update-docs"), INTRODUCTION, root, SEED);
     page.section(Section::new("Goals").text(sheet.goals()));
     if !sheet.faults.is_empty() {
         page.section(Section::new("Faults").text(format!("- {}", sheet.faults.join("\n- "))));
     }
-    let missed = sheet.missed();
     std::mem::take(&mut sheet.sections).into_iter().for_each(|section| page.section(section));
     page.write(&page::folder(root, arguments.update_docs))?;
+    let missed = sheet.missed();
     if !missed.is_empty() {
         bail!("missed: {}\n{}", missed.join("; "), sheet.faults.join("\n"));
     }

@@ -1,13 +1,12 @@
 //! The catalogue through the solver, beside Clarabel.
 
-use std::time::Instant;
-
 use anyhow::{Context, Result};
-use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint};
+use cloudtouch_geom::{Matrix3, Point3, UncertainPoint};
 use cloudtouch_testkit::hard_cases::{HardCase, hard_cases, hard_problems};
 
 use super::{
-    sheet::{Sheet, milliseconds, small},
+    shapes::uncertain,
+    sheet::{Sheet, small},
     solver::{GAMMA, PENALTY, Posed, RELATIVE_GAP, Solved},
 };
 use crate::{page::Section, table::Table};
@@ -37,7 +36,6 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
         "w off",
         "primal, difference",
         "P, difference",
-        "ms",
     ]);
     let clouds = hard_cases();
     let of_clouds = clouds.iter().filter_map(|case| Some((case.name, of_clouds(case)?)));
@@ -48,7 +46,7 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
     for (name, posed) in of_clouds.chain(of_problems) {
         let full = format!("solver, {name}");
         let Some(row) = sheet.guard(&full, || solve(&posed)) else { continue };
-        let (answer, (primal, probability), seconds) = row.with_context(|| full.clone())?;
+        let (answer, primal, probability) = row.with_context(|| full.clone())?;
         answer.faults().iter().for_each(|fault| sheet.fault(format!("{full}: {fault}")));
         // Each may be off by its own gap.
         if primal.is_some_and(|difference| difference > 2.0 * RELATIVE_GAP) {
@@ -68,7 +66,6 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
             small(answer.classifier_error()),
             or_none(primal),
             or_none(probability),
-            milliseconds(seconds),
         ]);
     }
     sheet.sections.push(Section::new("Hard cases: solver").text(INTRODUCTION).text(table));
@@ -86,15 +83,13 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
     Ok(())
 }
 
-/// The solution, how it differs from Clarabel's, and what it took in seconds.
-type Row = (Solved, (Option<f64>, Option<f64>), f64);
+/// The solution, and how primal value and probabilities differ from Clarabel's.
+type Row = (Solved, Option<f64>, Option<f64>);
 
 fn solve(posed: &Posed) -> Result<Row> {
-    let start = Instant::now();
     let solved = Solved::new(posed)?;
-    let seconds = start.elapsed().as_secs_f64();
-    let differences = solved.against_clarabel(posed)?;
-    Ok((solved, differences, seconds))
+    let (primal, probability) = solved.against_clarabel(posed)?;
+    Ok((solved, primal, probability))
 }
 
 /// None for invalid clouds and empty ones, which make no problem.
@@ -102,17 +97,11 @@ fn of_clouds(case: &HardCase) -> Option<Posed> {
     if !case.valid || case.cloud_a.is_empty() || case.cloud_b.is_empty() {
         return None;
     }
+    let thinned = |points: &[Point3], covariances: &[Matrix3]| -> Vec<UncertainPoint> {
+        let every = points.len().div_ceil(MOST);
+        uncertain(points, covariances).into_iter().step_by(every).collect()
+    };
     let a = thinned(&case.cloud_a, &case.covariance_a);
     let b = thinned(&case.cloud_b, &case.covariance_b);
     Posed::of_leaves([&a, &b], GAMMA, PENALTY)
-}
-
-fn thinned(points: &[Point3], covariances: &[Matrix3]) -> Vec<UncertainPoint> {
-    let every = points.len().div_ceil(MOST);
-    let all = points.iter().zip(covariances).step_by(every);
-    all.map(|(&mean, matrix)| UncertainPoint {
-        mean,
-        covariance: Covariance::from_symmetric(matrix),
-    })
-    .collect()
 }

@@ -2,10 +2,13 @@
 
 use anyhow::{Context, Result};
 use cloudtouch::bvh::{Flow, Outcome, Primitive, TraversalSettings, Tree, TreeSettings, traverse};
-use cloudtouch_geom::{Covariance, Matrix3, Point3, Pose, UncertainPoint, Vector3, normal};
+use cloudtouch_geom::{Matrix3, Pose, UncertainPoint, Vector3, normal};
 use cloudtouch_testkit::hard_cases::{HardCase, hard_cases};
 
-use super::sheet::{Sheet, small};
+use super::{
+    shapes::uncertain,
+    sheet::{Sheet, small},
+};
 use crate::page::Section;
 
 /// All pairs of points are tried up to so many.
@@ -67,8 +70,8 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
 }
 
 fn search(case: &HardCase) -> Result<Row> {
-    let points_a = points(&case.cloud_a, &case.covariance_a);
-    let points_b = points(&case.cloud_b, &case.covariance_b);
+    let points_a = uncertain(&case.cloud_a, &case.covariance_a);
+    let points_b = uncertain(&case.cloud_b, &case.covariance_b);
     let [a, b] = [&points_a, &points_b].map(|points| {
         let primitives = points.iter().map(|&point| Primitive::point(point)).collect();
         Tree::build(primitives, &TreeSettings::default())
@@ -96,12 +99,6 @@ fn search(case: &HardCase) -> Result<Row> {
         [largest(&points_a, &points_b), visited.fold(0.0, f64::max)]
     });
     Ok(Row { outcome, flat })
-}
-
-fn points(cloud: &[Point3], covariances: &[Matrix3]) -> Vec<UncertainPoint> {
-    let all = cloud.iter().zip(covariances);
-    all.map(|(&mean, m)| UncertainPoint { mean, covariance: Covariance::from_symmetric(m) })
-        .collect()
 }
 
 /// The largest probability that a plane half way between two points leaves to either; ½ for points
