@@ -1,8 +1,18 @@
 //! Seeded leaf problems shared by the tests and the measuring example.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 #![allow(dead_code, reason = "every test binary uses another part of this module")]
 
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, seed};
-use cloudtouch_svm::{Class, Sample};
+use cloudtouch_svm::{Class, Sample, Settings, Solver};
+
+/// Default settings with another tolerance.
+pub(crate) fn settings(relative_gap: f64) -> Settings {
+    Settings { relative_gap, ..Settings::default() }
+}
+
+pub(crate) fn solver(settings: &Settings) -> Solver {
+    Solver::try_new(*settings).unwrap()
+}
 
 /// A stream of seeded random numbers.
 pub(crate) struct Stream {
