@@ -122,7 +122,7 @@ pub(crate) const LARGEST_GAP: f64 = 3e-2;
 /// w has to be known to this share of its length.
 const LARGEST_WEIGHT_ERROR: f64 = 0.2;
 /// And b so well that no probability moves by more than this.
-const LARGEST_SPREAD: f64 = 0.1;
+const LARGEST_SPREAD: f64 = 0.05;
 
 impl Solution {
     /// Whether probabilities may be read.
@@ -131,7 +131,7 @@ impl Solution {
     ///
     /// # Errors
     /// When the relative gap is above 3e-2, when w is not known to a fifth of its length, or when b
-    /// is open by so much that the probability of a sample moves by more than 0.1.
+    /// is open by so much that the probability of a sample moves by more than 0.05.
     pub fn determined(&self) -> Result<(), Undetermined> {
         let Self { status, relative_gap, bias_interval: [lowest, highest], .. } = *self;
         if status == Status::NotFinite {
