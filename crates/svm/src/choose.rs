@@ -1,6 +1,5 @@
 //! Which points an SMO step moves.
 
-use crate::problem::Problem;
 use crate::rows::KernelRows;
 use crate::state::State;
 
@@ -25,9 +24,8 @@ pub(crate) fn choose_pair(state: &State<'_>, rows: &mut KernelRows) -> Option<Pa
     }
     let (i, highest) = best?;
     rows.ensure(state.problem, i);
-    let floor = curvature_floor(state.problem);
     let row = rows.row(i);
-    let own = rows.diagonal(i);
+    let kernel = state.problem.kernel;
     // In margins, as y is: what is left below this is rounding.
     let threshold = highest - 1e-14 * highest.abs().max(1.0);
     let mut chosen: Option<Pair> = None;
@@ -37,20 +35,14 @@ pub(crate) fn choose_pair(state: &State<'_>, rows: &mut KernelRows) -> Option<Pa
         if !may_fall || value >= threshold {
             continue;
         }
-        let curvature = (own + rows.diagonal(k) - 2.0 * row[k]).max(floor);
-        let gain = (highest - value).powi(2) / curvature;
+        let curvature = kernel.squared_distance(&points[i].x, &point.x, row[k]);
+        // Duplicates have none: the step between them runs to a bound.
+        let gain = (highest - value).powi(2) / curvature.max(f64::MIN_POSITIVE);
         if chosen.as_ref().is_none_or(|best| gain > best.gain) {
             chosen = Some(Pair { i, j: k, gain });
         }
     }
     chosen
-}
-
-/// Duplicates of opposite class have no curvature between them: the step runs to the bound.
-///
-/// A share of what curvatures are measured by, so that a unit of length changes nothing.
-pub(crate) fn curvature_floor(problem: &Problem) -> f64 {
-    (1e-12 * problem.squared_reach).max(f64::MIN_POSITIVE)
 }
 
 /// The point whose cone vector, turned against the gradient, gains most, and how much.

@@ -68,7 +68,8 @@ pub(crate) fn solve<'a>(
     let Some(quadratic) = gram(problem, &variables) else {
         return Reached { state: None, iterations: 0, status: Status::TooLarge };
     };
-    let start = (START / problem.squared_reach).min(f64::MAX);
+    let reaches = problem.points.iter().map(|p| problem.kernel.squared_reach(&p.x));
+    let start = (START / reaches.fold(0.0, f64::max)).min(f64::MAX);
     let mut at = Iterate::start(problem, typical.max(start));
     let mut best: Option<(State<'_>, f64)> = None;
     let mut worse = 0;

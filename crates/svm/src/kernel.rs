@@ -72,12 +72,20 @@ impl Kernel {
         }
     }
 
-    /// |φ(x) − φ(0)|²: 2 − 2k, or |x|² for the linear kernel.
-    pub(crate) fn squared_reach(&self, x: &Vector3) -> f64 {
+    /// |φ(x) − φ(y)|²: 2 − 2k, or |x − y|² for the linear kernel; `reduced` is [`Self::reduced`] of
+    /// the two points.
+    #[inline]
+    pub(crate) fn squared_distance(&self, x: &Vector3, y: &Vector3, reduced: f64) -> f64 {
         match self {
-            Self::Linear => x.norm_squared(),
-            Self::Gaussian { .. } => -2.0 * self.reduced(x, &Vector3::zeros()),
+            Self::Linear => (x - y).norm_squared(),
+            Self::Gaussian { .. } => -2.0 * reduced,
         }
+    }
+
+    /// |φ(x) − φ(0)|².
+    pub(crate) fn squared_reach(&self, x: &Vector3) -> f64 {
+        let zero = Vector3::zeros();
+        self.squared_distance(x, &zero, self.reduced(x, &zero))
     }
 }
 

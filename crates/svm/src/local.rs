@@ -3,7 +3,6 @@
 use cloudtouch_geom::Vector3;
 
 use crate::ball::ball_minimiser;
-use crate::choose::curvature_floor;
 use crate::problem::Problem;
 use crate::state::State;
 
@@ -105,7 +104,10 @@ pub(crate) fn pair_step(first: &mut Local<'_>, second: &mut Local<'_>, k: f64) -
     let (at_i, at_j) = (of(&pj.x, &pi.x, k, -1.0, &sj), of(&pi.x, &pj.x, k, 1.0, &si));
     let (fi, gi) = (own_i.0 + at_i.0, own_i.1 + at_i.1);
     let (fj, gj) = (own_j.0 + at_j.0, own_j.1 + at_j.1);
-    let curvature = (fi + si.dot(&gi) - fj + sj.dot(&gj)).max(curvature_floor(problem));
+    let parts = [fi, si.dot(&gi), -fj, sj.dot(&gj)];
+    // What the parts cancel to within their rounding is none; the step then runs to a bound.
+    let rounding = 4.0 * f64::EPSILON * parts.iter().map(|part| part.abs()).sum::<f64>();
+    let curvature = parts.iter().sum::<f64>().max(rounding).max(f64::MIN_POSITIVE);
     let slope = pi.sign
         - first.f
         - si.dot(&first.gradient)

@@ -160,8 +160,8 @@ impl Pair<'_> {
 fn longest_std(covariance: &Covariance, n: &Vector3) -> f64 {
     let bound = covariance.std_bound();
     let std = covariance.std_along(n);
-    if covariance.isotropic_variance().is_some() {
-        std * (1.0 + ROUNDING)
+    if covariance.isotropic_variance().is_some() || covariance.axis_form().is_some() {
+        std + ROUNDING * bound
     } else {
         std.hypot(ROUNDING.sqrt() * bound)
     }

@@ -15,9 +15,6 @@ pub struct Problem {
     pub(crate) points: Vec<PreparedPoint>,
     /// Whether any point has cone variables.
     pub(crate) has_uncertain: bool,
-    /// The largest |φ(x) − φ(centre)|² of a sample, or |T|² of its ellipsoid in feature space: what
-    /// curvatures and multipliers of this problem are to be measured by.
-    pub(crate) squared_reach: f64,
 }
 
 /// Why samples do not make a problem.
@@ -153,11 +150,7 @@ impl Problem {
             .map(|(index, sample)| prepare(index, sample, &centre))
             .collect::<Result<Vec<PreparedPoint>, _>>()?;
         let has_uncertain = points.iter().any(PreparedPoint::is_uncertain);
-        let squared_reach = points
-            .iter()
-            .map(|p| kernel.squared_reach(&p.x).max(kernel.self_curvature() * p.t[0] * p.t[0]))
-            .fold(0.0, f64::max);
-        Ok(Self { kernel, centre, points, has_uncertain, squared_reach })
+        Ok(Self { kernel, centre, points, has_uncertain })
     }
 
     /// How many samples there are.

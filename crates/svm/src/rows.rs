@@ -11,7 +11,6 @@ pub(crate) struct KernelRows {
     values: Vec<f64>,
     /// Which row of `values` a sample has.
     place: Vec<Option<usize>>,
-    diagonal: Vec<f64>,
     /// The samples that have a row, oldest first.
     kept: VecDeque<usize>,
     computed: usize,
@@ -28,9 +27,6 @@ impl KernelRows {
         self.computed = 0;
         self.place.clear();
         self.place.resize(problem.len(), None);
-        self.diagonal.clear();
-        let own = |x| problem.kernel.reduced(x, x);
-        self.diagonal.extend(problem.points.iter().map(|p| own(&p.x)));
     }
 
     /// Makes row `i` available.
@@ -72,10 +68,6 @@ impl KernelRows {
     pub(crate) fn row(&self, i: usize) -> &[f64] {
         let n = self.place.len();
         self.place[i].map_or(&[], |place| &self.values[place * n..(place + 1) * n])
-    }
-
-    pub(crate) fn diagonal(&self, i: usize) -> f64 {
-        self.diagonal[i]
     }
 
     pub(crate) fn computed(&self) -> usize {

@@ -2,7 +2,7 @@
 
 mod support;
 
-use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, normal};
 use cloudtouch_svm::{Class, DEFAULT_KAPPA_MAX, NoSeparation, separate};
 use support::Stream;
 
@@ -15,7 +15,7 @@ fn clouds(stream: &mut Stream, apart: f64) -> [Vec<UncertainPoint>; 2] {
                     stream.range(-0.5, 0.5),
                     stream.range(0.0, 0.3),
                 );
-                let axis = stream.normal_vector().normalize();
+                let axis = UnitVector3::new_normalize(stream.normal_vector());
                 let along = stream.log_range(1e-3, 0.1);
                 let covariance = match stream.below(3) {
                     0 => Covariance::zero(),

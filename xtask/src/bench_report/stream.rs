@@ -209,7 +209,7 @@ fn thinned(cloud: &PointCloud, returns: usize) -> Result<PointCloud> {
     let points = rows.iter().flat_map(|&row| columns.iter().map(move |&c| pixel(row, c))).collect();
     Ok(PointCloud {
         image_size: Some((columns.len(), rows.len())),
-        sensor_origin: cloud.sensor_origin,
+        sensor_pose: cloud.sensor_pose,
         ..PointCloud::from_points(points)
     })
 }

@@ -4,7 +4,7 @@ use anyhow::Result;
 use cloudtouch::{
     Body, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Recalibration, noise::SensorModel,
 };
-use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
+use cloudtouch_geom::{PointCloud, Pose, TriangleMesh, UnitVector3};
 use cloudtouch_testkit::family::{Family, Observation};
 
 use super::{ORACLE, OURS, plan::Methods, record::Said};
@@ -83,7 +83,7 @@ fn as_seen(observation: &Observation, mode: Mode) -> Result<Cloud> {
 fn exact(observation: &Observation) -> Result<Cloud> {
     let samples = || observation.truth.iter().flatten();
     let cloud = PointCloud {
-        normals: Some(samples().map(|s| s.normal).collect()),
+        normals: Some(samples().map(|s| UnitVector3::new_normalize(s.normal)).collect()),
         ..PointCloud::from_points(samples().map(|s| s.position).collect())
     };
     let sensor = SensorModel::Isotropic { std: 0.0 };

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 #![allow(dead_code, reason = "every test binary uses another part of this module")]
 
-use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, seed};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, seed};
 use cloudtouch_svm::{Class, Sample, Settings, Solver};
 
 /// Default settings with another tolerance.
@@ -109,7 +109,7 @@ impl Scene {
         if self.noise == 0.0 {
             Covariance::zero()
         } else if self.anisotropic {
-            let axis = stream.normal_vector().normalize();
+            let axis = UnitVector3::new_normalize(stream.normal_vector());
             Covariance::from_axis(&axis, self.noise, self.noise * stream.log_range(0.03, 1.0))
         } else {
             Covariance::isotropic(self.noise * self.noise)
