@@ -29,6 +29,9 @@ mod unit_box;
 mod watch;
 mod work;
 
+/// The plain data that samples are made of.
+pub use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, UnitVector3, Vector3};
+
 pub use classifier::{Classifier, ClassifierError};
 pub use kernel::Kernel;
 pub use problem::{Problem, ProblemError};

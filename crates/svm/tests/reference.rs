@@ -201,7 +201,7 @@ fn compare(cases: impl Iterator<Item = Case>) {
     );
 }
 
-/// `cargo test -p cloudtouch-svm --test reference -- --nocapture` prints the shares by cell.
+/// `cargo test -p cloudtouch-svm --features clarabel --test reference -- --nocapture` prints the shares by cell.
 #[test]
 fn ladder_and_clarabel_agree_on_random_problems() {
     let small = (0..470).map(|seed| random_case(seed, 2, 24));
@@ -211,7 +211,7 @@ fn ladder_and_clarabel_agree_on_random_problems() {
     compare(small.chain(larger).chain(large).chain(largest));
 }
 
-/// `cargo test --release -p cloudtouch-svm --test reference -- --ignored --nocapture`: minutes.
+/// `cargo test --release -p cloudtouch-svm --features clarabel --test reference -- --ignored --nocapture`: minutes.
 #[test]
 #[ignore = "Clarabel takes minutes on the large ones"]
 fn ladder_and_clarabel_agree_on_many_and_large_problems() {
