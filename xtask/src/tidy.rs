@@ -1,7 +1,9 @@
 //! `cargo xtask tidy`: rules that no compiler checks, each violation with its file.
 
+mod circles;
 mod layers;
 mod manifest;
+mod modules;
 mod text;
 
 use std::{fs, path::Path};
@@ -22,6 +24,8 @@ fn violations(root: &Path) -> Result<Vec<String>> {
     let manifests = manifest::read_all(root)?;
     let mut found = layers::check(&manifests);
     found.extend(manifest::check(root, &manifests)?);
+    let folders: Vec<&str> = manifests.iter().map(|m| m.folder.as_str()).collect();
+    found.extend(circles::check(root, &folders)?);
     for path in files(root, root)? {
         let read = || fs::read_to_string(root.join(&path)).with_context(|| format!("read {path}"));
         if path.ends_with(".rs") {

@@ -6,19 +6,22 @@ mod cloud;
 mod error;
 mod filter;
 mod mesh;
+mod mode;
 mod query;
 mod range;
+mod recalibration;
 mod report;
 
 pub use body::{Body, BodyRef};
 pub use cloud::{Cloud, CloudSettings};
-pub use error::{PrepareError, QueryError, SettingsError, SubdivisionError};
+pub use error::{FilterError, PrepareError, QueryError, SettingsError, SubdivisionError};
 pub use filter::{
-    FilterError, FilterSettings, Filtered, OutlierSettings, SelfMesh, StageReport, VeilSettings,
-    filter,
+    FilterSettings, Filtered, OutlierSettings, SelfMesh, StageReport, VeilSettings, filter,
 };
 pub use mesh::Mesh;
-pub use query::{ContactEvidence, Mode, Pooling, Query, QuerySettings, Recalibration};
+pub use mode::Mode;
+pub use query::{Pooling, Query, QuerySettings};
+pub use recalibration::{ContactEvidence, Recalibration};
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Verdict};
 
 /// The crates below, for users who need their types: a query takes a [`geom::Pose`], a cloud a

@@ -3,7 +3,8 @@
 use cloudtouch_geom::{Point3, Vector3};
 use serde::Serialize;
 
-use crate::query::{ContactEvidence, Mode};
+use crate::mode::Mode;
+use crate::recalibration::ContactEvidence;
 
 /// The answer to one query. Serialises to the JSON object of the command-line tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]

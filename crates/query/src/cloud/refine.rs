@@ -5,9 +5,11 @@ use cloudtouch_geom::{Covariance, UnitVector3};
 use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
-use super::edge::{DISC_SPACINGS, Edge};
-use super::{Cloud, Surfel};
 use crate::error::PrepareError;
+
+use super::edge::{DISC_SPACINGS, Edge};
+use super::prepare::Cloud;
+use super::surfel::Surfel;
 
 /// The half axes of an ellipsoid, along a disc and across it, that holds everything up to (1, 1): the
 /// sum of their inverse squares is less than one.

@@ -4,7 +4,7 @@ use cloudtouch_bvh::TreeSettings;
 use cloudtouch_noise::{Combination, NoiseSettings, SensorModel};
 
 use crate::filter::FilterSettings;
-use crate::query::Mode;
+use crate::mode::Mode;
 
 /// Sensor, cleaning, noise model and tree of one cloud.
 #[derive(Debug, Clone)]

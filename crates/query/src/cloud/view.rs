@@ -2,10 +2,8 @@
 
 use std::sync::OnceLock;
 
-use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_geom::{Covariance, Point3, Vector3};
 use cloudtouch_noise::{Neighborhoods, typical_spacing};
-
-use super::Cloud;
 
 /// How many times the angle between pixels a ray may miss the nearest measured one.
 const ANGLE_TOLERANCE: f64 = 4.0;
@@ -38,9 +36,14 @@ impl SingleView {
     }
 
     /// Whether the sensor looked along the ray to `point` and met a surface clearly before it
-    /// (by three standard deviations). All in the cloud's local frame.
-    pub(crate) fn is_behind(&self, cloud: &Cloud, point: &Point3) -> bool {
-        let Some(rays) = self.rays.get_or_init(|| self.measure(cloud.points())) else {
+    /// (by three standard deviations of the `noise` of the points `measured`). All in the cloud's
+    /// local frame.
+    pub(crate) fn is_behind(
+        &self,
+        (measured, noise): (&[Point3], &[Covariance]),
+        point: &Point3,
+    ) -> bool {
+        let Some(rays) = self.rays.get_or_init(|| self.measure(measured)) else {
             return false;
         };
         let offset = point - self.sensor_origin;
@@ -50,13 +53,13 @@ impl SingleView {
         }
         let direction = Point3::from(offset / range);
         rays.directions.nearest_to(&direction, 1).first().is_some_and(|n| {
-            let margin = CLEARLY * cloud.sensor[n.index].std_bound();
+            let margin = CLEARLY * noise[n.index].std_bound();
             n.squared_distance.sqrt() <= rays.tolerance && range > rays.ranges[n.index] + margin
         })
     }
 
-    fn measure(&self, cloud: &[Point3]) -> Option<Rays> {
-        let offsets: Vec<Vector3> = cloud.iter().map(|p| p - self.sensor_origin).collect();
+    fn measure(&self, measured: &[Point3]) -> Option<Rays> {
+        let offsets: Vec<Vector3> = measured.iter().map(|p| p - self.sensor_origin).collect();
         let ranges: Vec<f64> = offsets.iter().map(Vector3::norm).collect();
         let directions: Vec<Point3> = offsets
             .iter()

@@ -12,8 +12,10 @@ mod veil;
 use cloudtouch_geom::{Point3, PointCloud};
 use serde::Serialize;
 
+use crate::error::FilterError;
+
 pub use self_points::SelfMesh;
-pub use settings::{FilterError, FilterSettings, OutlierSettings, VeilSettings};
+pub use settings::{FilterSettings, OutlierSettings, VeilSettings};
 
 /// How many points one stage took away.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

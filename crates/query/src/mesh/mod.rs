@@ -1,7 +1,5 @@
 //! Triangle meshes prepared for queries: exact surfaces, with an inside where they are watertight.
 
-mod exact;
-mod signed;
 mod subdivide;
 
 use std::time::{Duration, Instant};
@@ -15,8 +13,6 @@ use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 use crate::error::{PrepareError, SubdivisionError};
 use crate::range::check_points;
 
-pub(crate) use exact::{ExactPair, exact_pair};
-pub(crate) use signed::{SignedPoint, Wanted, signed_points};
 pub(crate) use subdivide::{SampleRegion, sample_region};
 
 /// Triangles in a leaf of a mesh's tree: few, since each may be subdivided many times.

@@ -5,8 +5,7 @@ use cloudtouch_svm::Class;
 
 use crate::report::{Clearance, Contact};
 
-use super::classify::{PairAnswer, PairPoint, PairPoints};
-use super::leaf_pair::centroid;
+use super::pair::{PairAnswer, PairPoint, PairPoints, centroid};
 use super::surface::Surface;
 
 /// What a leaf pair says about its most probable place.
@@ -125,8 +124,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::mode::Mode;
     use crate::query::classify::classify;
-    use crate::query::settings::{Mode, QuerySettings};
+    use crate::query::settings::QuerySettings;
     use crate::query::train::by_kernel;
     use crate::report::Stats;
 

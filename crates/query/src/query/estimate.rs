@@ -1,6 +1,6 @@
 //! What a query says in one number, and between what bounds.
 
-use super::calibrated::ContactEvidence;
+use crate::recalibration::ContactEvidence;
 
 /// A probability with its bounds, and what it rests on.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! The points of two leaves, brought into one frame.
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::{Motion, Point3, Pose, UncertainPoint, Vector3, normal};
+use cloudtouch_geom::{Motion, Pose, UncertainPoint, normal};
 
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
@@ -9,7 +9,7 @@ use crate::error::SubdivisionError;
 use crate::mesh::{Mesh, SampleRegion, sample_region};
 use crate::report::Stats;
 
-use super::classify::{PairPoint, PairPoints};
+use super::pair::{PairPoint, PairPoints, centroid};
 
 /// Around a cloud leaf a mesh is sampled this many spacings farther than the leaf reaches.
 const MARGIN_SPACINGS: f64 = 2.0;
@@ -89,12 +89,6 @@ fn mesh_points(
             spacing: region.spacing,
         })
         .collect())
-}
-
-/// Mean position of some points, of which there must be one.
-pub(super) fn centroid(points: &[PairPoint]) -> Point3 {
-    let sum: Vector3 = points.iter().map(|p| p.point.mean.coords).sum();
-    Point3::from(sum / points.len() as f64)
 }
 
 fn region_around(near: &[PairPoint], mesh_from_a: &Pose) -> Option<SampleRegion> {

@@ -2,20 +2,23 @@
 
 mod calibrated;
 mod classify;
-pub(crate) mod clock;
+mod clock;
 mod contacts;
 mod estimate;
 mod evidence;
+mod exact;
 mod leaf_pair;
 mod leaf_pairs;
+mod pair;
 mod pool;
 mod record;
 mod run;
 mod settings;
+mod signed;
 mod surface;
+mod task;
 mod train;
 mod unseen;
 
-pub use calibrated::{ContactEvidence, Recalibration};
 pub use run::Query;
-pub use settings::{Mode, Pooling, QuerySettings};
+pub use settings::{Pooling, QuerySettings};

@@ -4,13 +4,14 @@ use cloudtouch_geom::Pose;
 
 use crate::CONTACT_FLOOR;
 use crate::body::BodyRef;
-use crate::mesh::{ExactPair, SignedPoint};
 use crate::report::{Clearance, Contact};
 
-use super::classify::{PairAnswer, PairPoint, PairPoints};
 use super::contacts::most_probable_place;
 use super::evidence::Evidence;
+use super::exact::ExactPair;
+use super::pair::{PairAnswer, PairPoint, PairPoints};
 use super::pool::{PointProbability, Side};
+use super::signed::SignedPoint;
 
 /// Points nearer than this many spacings share the samples their position was estimated from.
 pub(super) const CORRELATION_SPACINGS: f64 = 3.0;

@@ -8,7 +8,8 @@ use cloudtouch_geom::{Pose, Vector3, normal};
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
 use crate::error::{QueryError, SettingsError};
-use crate::mesh::{Mesh, Wanted, exact_pair, signed_points};
+use crate::mesh::Mesh;
+use crate::mode::Mode;
 use crate::range::bad_entry;
 use crate::report::{Report, Stats, Verdict};
 
@@ -16,9 +17,13 @@ use super::calibrated;
 use super::clock::Clock;
 use super::estimate::Estimate;
 use super::evidence::Evidence;
+use super::exact::exact_pair;
+use super::leaf_pairs::traverse_leaf_pairs;
 use super::pool::{self, Side};
 use super::record::{add_exact, add_signed_points};
-use super::settings::{Mode, Pooling, QuerySettings};
+use super::settings::{Pooling, QuerySettings};
+use super::signed::{Wanted, signed_points};
+use super::task::Task;
 use super::unseen::is_either_hidden;
 
 /// A checked set of settings that answers queries; cheap to copy, shared by threads.
@@ -44,12 +49,15 @@ impl Query {
         &self.settings
     }
 
-    /// What the traversal of two trees is asked.
-    pub(super) fn traversal(&self) -> TraversalSettings {
-        TraversalSettings {
-            kind: self.settings.traversal,
-            cull_deviations: self.cull_deviations.max(0.0),
-            ..TraversalSettings::default()
+    fn task(&self, start: Instant) -> Task<'_> {
+        Task {
+            settings: &self.settings,
+            traversal: TraversalSettings {
+                kind: self.settings.traversal,
+                cull_deviations: self.cull_deviations.max(0.0),
+                ..TraversalSettings::default()
+            },
+            clock: Clock::new(start, self.settings.deadline),
         }
     }
 
@@ -78,8 +86,7 @@ impl Query {
         }
         let local = a.local_from(&b, a_from_b);
         let mut evidence = Evidence::default();
-        let clock = Clock::new(start, self.settings.deadline);
-        let estimate = self.estimate(a, b, &local, &clock, &mut evidence)?;
+        let estimate = self.estimate(a, b, &local, &self.task(start), &mut evidence)?;
         let mut report = self.report(evidence, estimate, a.origin());
         let micros = |d: std::time::Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
         report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
@@ -98,7 +105,7 @@ impl Query {
         a: BodyRef<'_>,
         b: BodyRef<'_>,
         a_from_b: &Pose,
-        clock: &Clock,
+        task: &Task<'_>,
         evidence: &mut Evidence,
     ) -> Result<Estimate, QueryError> {
         let mut estimate = match (a, b) {
@@ -107,10 +114,10 @@ impl Query {
                 self.pooled(evidence, 0)
             }
             (BodyRef::Cloud(a), BodyRef::Cloud(b)) if self.settings.mode == Mode::Calibrated => {
-                calibrated::estimate((a, b), a_from_b, (self, clock), evidence)?
+                calibrated::estimate((a, b), a_from_b, task, evidence)?
             }
             _ => {
-                self.gather_evidence(a, b, a_from_b, clock, evidence)?;
+                self.gather_evidence(a, b, a_from_b, task, evidence)?;
                 self.pooled(evidence, a.point_count() + b.point_count())
             }
         };
@@ -138,7 +145,7 @@ impl Query {
         a: BodyRef<'_>,
         b: BodyRef<'_>,
         a_from_b: &Pose,
-        clock: &Clock,
+        task: &Task<'_>,
         evidence: &mut Evidence,
     ) -> Result<(), QueryError> {
         let b_from_a = a_from_b.inverse();
@@ -146,16 +153,16 @@ impl Query {
         match (a, b) {
             (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) if mesh.is_watertight() => {
                 let poses = (&b_from_a, &Pose::identity());
-                settled = self.add_signed(cloud, mesh, Side::A, poses, clock, evidence);
+                settled = self.add_signed(cloud, mesh, Side::A, poses, task, evidence);
             }
             (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) if mesh.is_watertight() => {
                 settled =
-                    self.add_signed(cloud, mesh, Side::B, (a_from_b, a_from_b), clock, evidence);
+                    self.add_signed(cloud, mesh, Side::B, (a_from_b, a_from_b), task, evidence);
             }
             _ => {}
         }
         if !settled && evidence.largest() <= self.settings.stop_above {
-            self.traverse_leaf_pairs(a, b, a_from_b, clock, evidence)?;
+            traverse_leaf_pairs((a, b), a_from_b, task, evidence)?;
         }
         Ok(())
     }
@@ -171,7 +178,7 @@ impl Query {
         mesh: &Mesh,
         side: Side,
         (mesh_from_cloud, a_from_cloud): (&Pose, &Pose),
-        clock: &Clock,
+        task: &Task<'_>,
         evidence: &mut Evidence,
     ) -> bool {
         let wanted = match self.settings.mode {
@@ -179,7 +186,7 @@ impl Query {
             Mode::Paper => Wanted::Inside,
         };
         let stop_above = self.settings.stop_above;
-        let found = signed_points(cloud, mesh, mesh_from_cloud, wanted, (stop_above, clock));
+        let found = signed_points(cloud, mesh, mesh_from_cloud, wanted, (stop_above, &task.clock));
         evidence.stats.nodes_visited += found.nodes_visited;
         evidence.stats.leaf_pairs += found.leaves_visited;
         evidence.stats.leaves_prepared += found.leaves_prepared;

@@ -3,23 +3,10 @@
 use std::time::Duration;
 
 use cloudtouch_bvh::Traversal;
-use serde::Serialize;
 
 use crate::error::SettingsError;
-
-use super::calibrated::Recalibration;
-
-/// Which of the two ways of estimating a probability is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Mode {
-    /// Surface posteriors, certified traversal, and the most favourable of the separating
-    /// surfaces tried.
-    #[default]
-    Calibrated,
-    /// As printed in the paper: precisions added, stochastic traversal, the kernel classifier.
-    Paper,
-}
+use crate::mode::Mode;
+use crate::recalibration::Recalibration;
 
 /// How point probabilities become the probability of a pair of clouds (section 4.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -6,10 +6,11 @@ use cloudtouch_svm::{
     balanced_penalties,
 };
 
+use crate::mode::Mode;
 use crate::report::Stats;
 
-use super::classify::{PairAnswer, PairPoints, score};
-use super::settings::{Mode, QuerySettings};
+use super::pair::{PairAnswer, PairPoints};
+use super::settings::QuerySettings;
 use super::surface::Surface;
 
 /// That a pair is apart is not believed of a classifier where the typical standard deviation across
@@ -97,7 +98,7 @@ fn read(
     };
     let surface = Surface::Kernel(classifier.outside(unit_box));
     let std = typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale();
-    match score(surface, a, b) {
+    match PairAnswer::of(surface, a, b) {
         Some(answer) if std > TRUSTED_STD && answer.largest() < 0.5 => PairAnswer::Indistinct,
         Some(answer) => answer,
         None => PairAnswer::Undecided,

@@ -25,7 +25,8 @@ pub(crate) fn is_either_hidden(a: BodyRef<'_>, b: BodyRef<'_>, a_from_b: &Pose) 
 fn is_hidden(cloud: &Cloud, other: BodyRef<'_>, cloud_from_other: &Pose) -> bool {
     let Some(view) = cloud.view() else { return false };
     let samples = coarse_samples(other);
-    let behind = |p: &&Point3| view.is_behind(cloud, &cloud_from_other.transform_point(p));
+    let measured = (cloud.points(), cloud.sensor());
+    let behind = |p: &&Point3| view.is_behind(measured, &cloud_from_other.transform_point(p));
     let hidden = samples.iter().filter(behind).count();
     hidden as f64 >= HIDDEN_SHARE * samples.len() as f64
 }

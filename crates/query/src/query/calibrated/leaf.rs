@@ -6,10 +6,10 @@ use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Point3, Vector3};
 
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
+use crate::recalibration::MOST_DEVIATIONS;
 use crate::report::Stats;
 
 use super::meeting::probability_at;
-use super::recalibration::MOST_DEVIATIONS;
 
 /// A leaf in the local frame of A.
 #[derive(Debug)]

@@ -11,7 +11,6 @@ mod meeting;
 mod nearest;
 mod patches;
 mod places;
-mod recalibration;
 mod search;
 
 use cloudtouch_geom::Pose;
@@ -19,20 +18,18 @@ use cloudtouch_geom::Pose;
 use crate::body::BodyRef;
 use crate::cloud::Cloud;
 use crate::error::QueryError;
+use crate::recalibration::{ContactEvidence, MOST_CERTAIN, MOST_DEVIATIONS, Recalibration};
 
-use super::classify::PairAnswer;
-use super::clock::Clock;
 use super::estimate::Estimate;
 use super::evidence::Evidence;
+use super::pair::PairAnswer;
 use super::record::add_pair;
-use super::run::Query;
 use super::settings::QuerySettings;
+use super::task::Task;
 use super::train::by_kernel;
 
 use patches::patches;
 use places::{add_finding, add_leaves};
-pub use recalibration::{ContactEvidence, Recalibration};
-use recalibration::{MOST_CERTAIN, MOST_DEVIATIONS};
 use search::{Found, search};
 
 /// A sum over a patch is known well enough as it is: no point of it is worth solving it again.
@@ -43,17 +40,17 @@ const SOLVED_ONCE: f64 = 1.0;
 pub(super) fn estimate(
     (a, b): (&Cloud, &Cloud),
     a_from_b: &Pose,
-    (query, clock): (&Query, &Clock),
+    task: &Task<'_>,
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
-    let settings = query.settings();
+    let settings = task.settings;
     let recalibration = &settings.recalibration;
     let is_enough = |deviations: f64, crossing: f64| {
         let probability = recalibration.by_geometry(deviations, crossing.ln_1p());
-        probability > settings.stop_above || is_final(settings, probability) || clock.is_over()
+        probability > settings.stop_above || is_final(settings, probability) || task.clock.is_over()
     };
     let stats = &mut evidence.stats;
-    let found = search((a, b), a_from_b, &query.traversal(), settings.seed, is_enough, stats)?;
+    let found = search((a, b), a_from_b, &task.traversal, settings.seed, is_enough, stats)?;
     let of_geometry = ContactEvidence {
         deviations: found.deviations,
         crossing: found.crossing.ln_1p(),
@@ -62,9 +59,8 @@ pub(super) fn estimate(
     let estimate = by_geometry(settings, &found, of_geometry);
     let [lowest, highest] = settings.doubt;
     let is_doubtful = (lowest..=highest).contains(&estimate.probability) && found.is_complete;
-    let answer = is_doubtful
-        .then(|| ask_classifier((a, b), a_from_b, &found, (settings, clock), evidence))
-        .flatten();
+    let answer =
+        is_doubtful.then(|| ask_classifier((a, b), a_from_b, &found, task, evidence)).flatten();
     if let Some(misclassified) = answer {
         return Ok(by_all(recalibration, of_geometry, &misclassified));
     }
@@ -150,14 +146,15 @@ fn ask_classifier(
     (a, b): (&Cloud, &Cloud),
     a_from_b: &Pose,
     found: &Found<'_>,
-    (settings, clock): (&QuerySettings, &Clock),
+    task: &Task<'_>,
     evidence: &mut Evidence,
 ) -> Option<Misclassified> {
+    let settings = task.settings;
     let (deviations, crossing) = (found.deviations, found.crossing.ln_1p());
     let mut all: Option<Misclassified> = None;
     for points in patches((a, b), a_from_b, found) {
         let count = points.a.len() + points.b.len();
-        if clock.is_over() {
+        if task.clock.is_over() {
             // Of the patches that are left only bounds are known.
             let left = Misclassified { value: 0.0, ..Misclassified::unknown(count) };
             all = all.map(|known| known.or_more(left)).or(Some(Misclassified::unknown(count)));

@@ -1,8 +1,9 @@
 //! The two pieces of surface of two leaves with the least deviations between them.
 
+use crate::recalibration::MOST_DEVIATIONS;
+
 use super::leaf::Leaf;
 use super::meeting::squared_deviations;
-use super::recalibration::MOST_DEVIATIONS;
 
 /// The least squared deviations between two pieces, and which these are; `None` where all have
 /// [`MOST_DEVIATIONS`] or more. Notes for every piece what is its least.

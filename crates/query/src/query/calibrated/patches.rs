@@ -4,7 +4,7 @@
 use cloudtouch_geom::{Motion, Point3, Pose};
 
 use crate::cloud::{Cloud, Surfel};
-use crate::query::classify::{PairPoint, PairPoints};
+use crate::query::pair::{PairPoint, PairPoints};
 
 use super::search::{Finding, Found};
 

@@ -7,13 +7,13 @@ use cloudtouch_geom::{Motion, Pose, Vector3};
 
 use crate::cloud::Cloud;
 use crate::error::QueryError;
+use crate::recalibration::MOST_DEVIATIONS;
 use crate::report::Stats;
 
 use super::crossing::{Crossing, add_crossings, may_reach};
 use super::leaf::Leaf;
 use super::meeting::Meeting;
 use super::nearest::nearest_pieces;
-use super::recalibration::MOST_DEVIATIONS;
 
 /// Places that are more than this many deviations above the least are not looked at.
 const DEVIATIONS_OF_INTEREST: f64 = 1.5;

@@ -4,8 +4,8 @@ use cloudtouch_geom::{Point3, Pose};
 use parry3d_f64::math;
 use parry3d_f64::query::{ClosestPoints, closest_points, intersection_test};
 
-use super::Mesh;
 use crate::error::QueryError;
+use crate::mesh::Mesh;
 
 /// What is known of two exact surfaces.
 #[derive(Debug, Clone, Copy)]

@@ -6,9 +6,10 @@
 use cloudtouch_bvh::{NodeId, Visit};
 use cloudtouch_geom::{Point3, Pose, Vector3, normal};
 
-use super::Mesh;
 use crate::cloud::Cloud;
-use crate::query::clock::Clock;
+use crate::mesh::Mesh;
+
+use super::clock::Clock;
 
 /// Nodes farther outside than this many standard deviations are not looked into.
 const CERTAIN_DEVIATIONS: f64 = 4.75;

@@ -8,7 +8,7 @@ use crate::error::SettingsError;
 pub(crate) const MOST_DEVIATIONS: f64 = 3.0;
 /// Geometry alone is not believed beyond this, so that a search may end there and miss nothing: by
 /// the fits hardly more than one in a hundred such poses is free.
-pub(super) const MOST_CERTAIN: f64 = 0.95;
+pub(crate) const MOST_CERTAIN: f64 = 0.95;
 /// Keeps the logarithm of no misclassified point finite.
 const MISCLASSIFIED_FLOOR: f64 = 0.02;
 
@@ -91,13 +91,13 @@ impl Recalibration {
 
     /// The probability given the geometry alone, at most [`MOST_CERTAIN`]. It grows with every
     /// crossing found and every deviation less.
-    pub(super) fn by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
+    pub(crate) fn by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
         let [intercept, on_crossing, on_deviations] = self.by_geometry;
         logistic(intercept + on_crossing * crossing + on_deviations * deviations).min(MOST_CERTAIN)
     }
 
     /// The probability given the classifier too.
-    pub(super) fn by_all(&self, deviations: f64, crossing: f64, misclassified: f64) -> f64 {
+    pub(crate) fn by_all(&self, deviations: f64, crossing: f64, misclassified: f64) -> f64 {
         let [intercept, on_crossing, on_deviations, on_misclassified] = self.by_all;
         logistic(
             intercept

@@ -1,0 +1,81 @@
+//! Joins neighbouring samples by edges.
+
+use std::collections::BTreeMap;
+
+use cloudtouch_bvh::NodeId;
+use cloudtouch_noise::Scratch;
+
+use super::edge::{EDGE_SPACINGS, Edge, SLOPE};
+use super::prepare::Cloud;
+use super::surfel::Surfel;
+
+/// Neighbours of a point that may be joined to it.
+const NEIGHBORS: usize = 8;
+
+impl Cloud {
+    /// The edges that start or end at a point of a leaf.
+    pub(crate) fn leaf_edges(&self, id: NodeId) -> &[Edge] {
+        self.surface.edges[id.index()].get_or_init(|| {
+            let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
+            edges_of(self, leaf.primitive_indices())
+        })
+    }
+}
+
+/// The edges at the points of a leaf: to each other once, and to points of other leaves, each of
+/// which has the same edge.
+///
+/// Only points that are among each other's nearest are joined, so that both leaves agree.
+pub(crate) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
+    let places: BTreeMap<u32, usize> = indices.iter().copied().zip(0..).collect();
+    let mut scratch = Scratch::default();
+    let mut nearest = Nearest { cloud, known: BTreeMap::new() };
+    let mut edges = Vec::new();
+    for (&p, &place) in &places {
+        for q in nearest.of(p) {
+            let other = places.get(&q).copied();
+            let is_second = other.is_some() && q < p;
+            if q == p || is_second || !nearest.of(q).contains(&p) {
+                continue;
+            }
+            let from = *cloud.surfel(p, &mut scratch);
+            let to = *cloud.surfel(q, &mut scratch);
+            if runs_along(&from, &to) {
+                edges.push(Edge {
+                    ends: [from.point.mean, to.point.mean],
+                    half_length: 0.5 * (to.point.mean - from.point.mean).norm(),
+                    across: [from.variance_across(), to.variance_across()],
+                    own: [Some(place), other],
+                });
+            }
+        }
+    }
+    edges
+}
+
+/// The points nearest to points of a leaf; most are asked for several times.
+struct Nearest<'a> {
+    cloud: &'a Cloud,
+    known: BTreeMap<u32, [u32; NEIGHBORS]>,
+}
+
+impl Nearest<'_> {
+    /// With fewer neighbours the point itself fills the rest, to which no edge leads.
+    fn of(&mut self, index: u32) -> [u32; NEIGHBORS] {
+        *self.known.entry(index).or_insert_with(|| {
+            let mut nearest = [index; NEIGHBORS];
+            let found = self.cloud.neighborhoods.nearest(index as usize, NEIGHBORS);
+            for (slot, neighbor) in nearest.iter_mut().zip(found) {
+                *slot = neighbor.index as u32;
+            }
+            nearest
+        })
+    }
+}
+
+fn runs_along(p: &Surfel, q: &Surfel) -> bool {
+    let step = q.point.mean - p.point.mean;
+    let length = step.norm();
+    let along = |s: &Surfel| s.normal.is_some_and(|n| step.dot(&n).abs() <= SLOPE * length);
+    length <= EDGE_SPACINGS * p.spacing.min(q.spacing) && along(p) && along(q)
+}

@@ -1,0 +1,70 @@
+//! Room for the surface of a cloud, which is computed piece by piece and kept.
+
+use std::sync::OnceLock;
+
+use cloudtouch_bvh::{Node, Tree};
+
+use super::edge::Edge;
+use super::surfel::Surfel;
+
+/// Points that a spacing is told from, at most.
+const REGION_POINTS: usize = 40;
+
+/// One slot per point, and per tree node, of which only those of leaves are ever filled. Each is a
+/// pure function of the cloud, so it does not matter which thread fills it.
+#[derive(Debug)]
+pub(super) struct LazySurface {
+    pub surfels: Vec<OnceLock<Box<Surfel>>>,
+    pub leaves: Vec<OnceLock<Vec<Surfel>>>,
+    pub edges: Vec<OnceLock<Vec<Edge>>>,
+    /// What the spacing of each point is limited to, m.
+    pub spacing_caps: Vec<f64>,
+}
+
+impl LazySurface {
+    pub(super) fn new(tree: &Tree, points: usize) -> Self {
+        let mut spacing_caps = vec![0.0; points];
+        for leaf in tree.leaves() {
+            let cap = spacing_cap(tree, leaf);
+            for &index in leaf.primitive_indices() {
+                spacing_caps[index as usize] = cap;
+            }
+        }
+        Self {
+            surfels: slots(points),
+            leaves: slots(tree.node_slots()),
+            edges: slots(tree.node_slots()),
+            spacing_caps,
+        }
+    }
+
+    /// What the spacing of each point of a leaf is limited to, m.
+    pub(super) fn spacing_cap(&self, leaf: Node<'_>) -> f64 {
+        leaf.primitive_indices().first().map_or(0.0, |&index| self.spacing_caps[index as usize])
+    }
+}
+
+fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
+    (0..count).map(|_| OnceLock::new()).collect()
+}
+
+/// The spacing a point of a leaf may be given at most, on which the tree's bounds rest: half more
+/// than that of as many points spread evenly over the two longest sides of the region's box, or on a
+/// line.
+fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
+    let around = region(tree, leaf);
+    let mut sides: [f64; 3] = (2.0 * around.obb().half_extents).into();
+    sides.sort_by(f64::total_cmp);
+    let [_, middle, longest] = sides;
+    let count = around.primitive_indices().len().max(1) as f64;
+    // On a line the sixth neighbour, which the spacing is measured by, is three steps away.
+    1.5 * (longest * middle / count).sqrt().max(3.0 * longest / count)
+}
+
+/// The largest node around a leaf with few enough points to tell their spacing there.
+fn region<'a>(tree: &'a Tree, leaf: Node<'a>) -> Node<'a> {
+    let parent = |node: &Node<'a>| node.parent().and_then(|id| tree.node(id));
+    let is_small = |node: &Node<'a>| node.primitive_indices().len() <= REGION_POINTS;
+    let around = std::iter::successors(Some(leaf), parent).take_while(is_small).last();
+    around.unwrap_or(leaf)
+}

@@ -1,0 +1,9 @@
+//! What can be wrong with the input, in words.
+
+mod filter;
+mod prepare;
+mod query;
+
+pub use filter::FilterError;
+pub use prepare::PrepareError;
+pub use query::{QueryError, SettingsError, SubdivisionError};

@@ -1,0 +1,72 @@
+//! Why a body could not be prepared.
+
+use cloudtouch_bvh::TreeError;
+use cloudtouch_geom::message::number;
+use cloudtouch_geom::{CovarianceError, MeshError, Vector3};
+use cloudtouch_noise::NoiseError;
+
+use super::filter::FilterError;
+
+/// Why a cloud or a mesh could not be prepared.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PrepareError {
+    /// No point was left after filtering.
+    #[error(
+        "no point is left of {before} after filtering ({stages}): loosen the filter or check the file"
+    )]
+    NothingLeft {
+        /// Points in the input.
+        before: usize,
+        /// What each stage removed.
+        stages: String,
+    },
+    /// A coordinate is so large that squares and volumes leave the range of `f64`.
+    #[error(
+        "point {index} has the coordinate {}, beyond 1e50 m: check the unit, or remove the \
+         point",
+        number(*value)
+    )]
+    CoordinateRange {
+        /// Which point kept by the filter, or vertex of the merged mesh, from 0.
+        index: usize,
+        /// What was found, m.
+        value: f64,
+    },
+    /// A covariance of the input is not one.
+    #[error("point {index}: {source}")]
+    Covariance {
+        /// Which point, from 0.
+        index: usize,
+        /// What is wrong with it.
+        source: CovarianceError,
+    },
+    /// A given normal is not of length one.
+    #[error(
+        "point {index}: normal {normal:?} is not of length one; leave the normals out to have them fitted"
+    )]
+    Normal {
+        /// Which of the points that were kept, from 0.
+        index: usize,
+        /// The normal given.
+        normal: Vector3,
+    },
+    /// The cleaning pipeline was asked for something impossible.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// The sensor model or the noise settings do not fit the cloud.
+    #[error(transparent)]
+    Noise(#[from] NoiseError),
+    /// The tree could not be built.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
+    /// The mesh has nothing to collide with.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The mesh library refused the surface.
+    #[error("the mesh surface cannot be used: {reason}")]
+    Surface {
+        /// What the library said.
+        reason: String,
+    },
+}

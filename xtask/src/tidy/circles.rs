@@ -1,0 +1,193 @@
+//! No two modules of a crate use one another, by whatever way round.
+//!
+//! A parent that declares or re-exports its children uses none of them by that alone; a child that
+//! uses an item of its parent, while the parent uses the child, is in a circle. What a type's methods
+//! call is not seen, only paths and imports are.
+
+use std::{
+    collections::{BTreeMap, BTreeSet, VecDeque},
+    fs,
+    path::Path,
+};
+
+use anyhow::{Context, Result, anyhow};
+
+use super::modules::{Modules, read, uses};
+
+/// One violation for each knot of files in the crates of `folders`.
+pub(super) fn check(root: &Path, folders: &[&str]) -> Result<Vec<String>> {
+    let mut found = Vec::new();
+    for folder in folders {
+        for top in ["lib.rs", "main.rs"] {
+            let source = root.join(folder).join("src");
+            if source.join(top).is_file() {
+                let mut modules = Modules::new();
+                load(&source, &[], top, &mut modules)?;
+                let circles = circles(&uses(&modules));
+                found.extend(circles.into_iter().map(|c| format!("{folder}/src: circle {c}")));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Reads a file, and those of the modules it declares. A module from another folder (`#[path]`) has
+/// no file where it is looked for, and cannot use anything of this crate.
+fn load(source: &Path, name: &[String], file: &str, all: &mut Modules) -> Result<()> {
+    let path = source.join(file);
+    let text = fs::read_to_string(&path).with_context(|| format!("read {}", path.display()))?;
+    let tokens = text.parse().map_err(|e| anyhow!("{}: {e}", path.display()))?;
+    read(name, file, tokens, all);
+    let declared = all.get(name).map(|module| module.declared.clone()).unwrap_or_default();
+    for child in declared {
+        let name = [name, &[child]].concat();
+        let stem = name.join("/");
+        let files = [format!("{stem}.rs"), format!("{stem}/mod.rs")];
+        if let Some(file) = files.iter().find(|file| source.join(file).is_file()) {
+            load(source, &name, file, all)?;
+        }
+    }
+    Ok(())
+}
+
+/// The shortest way round of each knot: files that use one another.
+fn circles(uses: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<String> {
+    let mut shortest: BTreeMap<BTreeSet<&str>, Vec<&str>> = BTreeMap::new();
+    for &file in uses.keys() {
+        let Some(way) = way_back(uses, file) else { continue };
+        let within = |other: &&str| {
+            reached(uses, file).contains_key(other) && reached(uses, other).contains_key(file)
+        };
+        let knot = uses.keys().copied().filter(within).collect();
+        let known = shortest.entry(knot).or_insert_with(|| way.clone());
+        if way.len() < known.len() {
+            *known = way;
+        }
+    }
+    let told = |(knot, way): (BTreeSet<&str>, Vec<&str>)| {
+        format!("{} (in a knot of {} files)", way.join(" -> "), knot.len())
+    };
+    shortest.into_iter().map(told).collect()
+}
+
+/// Every file reached from one, with the file before it on the shortest way.
+fn reached<'a>(
+    uses: &BTreeMap<&'a str, BTreeSet<&'a str>>,
+    from: &'a str,
+) -> BTreeMap<&'a str, &'a str> {
+    let mut before = BTreeMap::new();
+    let mut next = VecDeque::from([from]);
+    while let Some(file) = next.pop_front() {
+        for &used in uses.get(file).into_iter().flatten() {
+            before.entry(used).or_insert_with(|| {
+                next.push_back(used);
+                file
+            });
+        }
+    }
+    before
+}
+
+/// The shortest way from a file back to it.
+fn way_back<'a>(
+    uses: &BTreeMap<&'a str, BTreeSet<&'a str>>,
+    file: &'a str,
+) -> Option<Vec<&'a str>> {
+    let before = reached(uses, file);
+    let mut way = vec![file, before.get(file).copied()?];
+    while way.last() != Some(&file) {
+        way.push(before[way[way.len() - 1]]);
+    }
+    way.reverse();
+    Some(way)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The circles of a crate whose modules are given by file and text.
+    fn of(files: &[(&str, &str)]) -> Vec<String> {
+        let mut modules = Modules::new();
+        for (file, text) in files {
+            let stem = file.trim_end_matches(".rs").trim_end_matches("/mod");
+            let name: Vec<String> = stem.split('/').map(str::to_owned).collect();
+            let name = if stem == "lib" { Vec::new() } else { name };
+            read(&name, file, text.parse().unwrap(), &mut modules);
+        }
+        circles(&uses(&modules))
+    }
+
+    #[test]
+    fn layers_and_re_exports_pass() {
+        let lib = ("lib.rs", "mod a; mod b; pub use b::B; pub const LIMIT: f64 = 1.0;");
+        for (a, b) in [
+            ("pub struct A;", "use crate::a::A; pub struct B(A);"),
+            // Through the parent that only re-exports.
+            ("use crate::B; pub fn a(_: B) {}", "pub struct B;"),
+            ("use super::LIMIT; pub fn a() {}", "pub struct B(f64); fn b() { crate::a::a() }"),
+            // Test code does not count, and neither do words in text.
+            (
+                "pub fn a() {}",
+                "use crate::a::a; pub struct B; #[cfg(test)] mod tests { use super::*; }",
+            ),
+            (
+                "#[cfg(test)] use crate::B; /// [`crate::B`]\npub fn a() { f(\"crate::b::B\") }",
+                "pub struct B; fn b() { crate::a::a() }",
+            ),
+            // Reach is not use.
+            ("pub(in crate::b) fn a() {}", "pub struct B;"),
+        ] {
+            assert_eq!(of(&[lib, ("a.rs", a), ("b.rs", b)]), Vec::<String>::new(), "{a} | {b}");
+        }
+    }
+
+    #[test]
+    fn two_that_use_one_another_are_named_however_they_do_it() {
+        let lib = ("lib.rs", "mod a; mod b; pub use {a::A, b::B};");
+        for (a, b) in [
+            ("use crate::b::B; pub struct A(B);", "use crate::a::A; pub struct B(A);"),
+            ("use crate::{B}; pub struct A;", "use super::A as Other; pub struct B;"),
+            ("pub struct A; fn f() { crate::b::f() }", "pub struct B; pub fn f(_: crate::A) {}"),
+            ("pub struct A; fn f() { x!(a, crate::B) }", "pub struct B(super::a::A);"),
+            ("use super::b; pub struct A(b::B);", "pub struct B; fn f() { use crate::a::A; }"),
+            ("use crate::b::*; pub struct A;", "use crate::*; pub struct B(A);"),
+        ] {
+            let found = of(&[lib, ("a.rs", a), ("b.rs", b)]);
+            assert!(found.len() == 1, "{a} | {b}: {found:?}");
+            assert!(found[0].starts_with("a.rs -> b.rs -> a.rs"), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_child_that_uses_what_its_parent_defines_and_the_parent_uses_it_is_a_circle() {
+        let child = ("p/c.rs", "use super::P; pub fn c(_: P) {}");
+        let lib = ("lib.rs", "mod p;");
+        let declares = "mod c; pub use c::c; pub struct P;";
+        assert!(of(&[lib, ("p/mod.rs", declares), child]).is_empty());
+        for uses in [
+            "mod c; pub struct P; fn p() { c::c(P) }",
+            "mod c; pub use c::c; pub struct P; fn p() { c(P) }",
+        ] {
+            let found = of(&[lib, ("p/mod.rs", uses), child]);
+            assert_eq!(found, ["p/c.rs -> p/mod.rs -> p/c.rs (in a knot of 2 files)"], "{uses}");
+        }
+    }
+
+    #[test]
+    fn the_way_round_is_told_in_full_and_each_knot_once() {
+        let found = of(&[
+            ("lib.rs", "mod a; mod b; mod c; mod d; mod e;"),
+            ("a.rs", "use crate::b::f; pub fn f() {}"),
+            ("b.rs", "use crate::c::f; pub fn f() {}"),
+            ("c.rs", "use crate::a::f; pub fn f() {}"),
+            ("d.rs", "use crate::e::f; use crate::a; pub fn f() { a::f() }"),
+            ("e.rs", "use crate::d::f; pub fn f() {}"),
+        ]);
+        let expected = [
+            "a.rs -> b.rs -> c.rs -> a.rs (in a knot of 3 files)",
+            "d.rs -> e.rs -> d.rs (in a knot of 2 files)",
+        ];
+        assert_eq!(found, expected);
+    }
+}
