@@ -67,7 +67,7 @@ impl Classifier {
     /// When the solution does not belong to the problem, or when it does not
     /// [determine probabilities](Solution::determined), as after a collapse.
     pub fn try_new(problem: &Problem, solution: &Solution) -> Result<Self, ClassifierError> {
-        if solution.alpha.len() != problem.len() || solution.v.len() != problem.len() {
+        if solution.alpha.len() != problem.len() || solution.displacement.len() != problem.len() {
             return Err(ClassifierError::SizeMismatch {
                 solution: solution.alpha.len(),
                 problem: problem.len(),
@@ -77,17 +77,9 @@ impl Classifier {
         let terms: Vec<Term> = problem
             .points
             .iter()
-            .zip(solution.alpha.iter().zip(&solution.v))
+            .zip(solution.alpha.iter().zip(&solution.displacement))
             .filter(|(_, (alpha, _))| **alpha > 0.0)
-            .map(|(point, (alpha, v))| {
-                // v = r E p, so S v = Tᵀp = E diag(√λ) Eᵀ v.
-                let s = if point.is_uncertain() {
-                    point.displacement(&(point.axes.tr_mul(v) / point.radius))
-                } else {
-                    Vector3::zeros()
-                };
-                Term { x: point.x, a: point.sign * alpha, s }
-            })
+            .map(|(point, (alpha, &s))| Term { x: point.x, a: point.sign * alpha, s })
             .collect();
         let expansion = match problem.kernel {
             Kernel::Linear => {

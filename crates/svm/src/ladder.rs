@@ -206,10 +206,11 @@ fn conclude(reached: &Reached<'_>, settings: &Settings, tools: &Tools<'_, '_>) -
     let effort = Effort { kernel_rows: tools.rows.computed(), ..tools.effort };
     tracing::debug!(?status, ?rung, relative_gap, ?effort, "solved");
     let bias_interval = state.bias_interval(certificate);
-    let directions = problem.points.iter().zip(&state.numbers.p);
+    let directions = || problem.points.iter().zip(&state.numbers.p);
     Solution {
         alpha: state.numbers.alpha.clone(),
-        v: directions.map(|(point, p)| point.axes * p * point.radius).collect(),
+        v: directions().map(|(point, p)| point.axes * p * point.radius).collect(),
+        displacement: directions().map(|(point, p)| point.displacement(p)).collect(),
         bias: certificate.bias,
         bias_interval,
         bias_spread: bias_spread(state, bias_interval),

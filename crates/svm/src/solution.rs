@@ -13,6 +13,9 @@ pub struct Solution {
     /// Cone variables v in sample order and in the paper's convention (eq. 13): |v_i| ≤ r_i α_i, in
     /// the axes of the samples, to be multiplied by the symmetric root of the covariance.
     pub v: Vec<Vector3>,
+    /// The displacements S v (eq. 14) in sample order. Where an ellipsoid is much thinner than wide
+    /// these keep digits that v, in the axes of the samples, has not.
+    pub displacement: Vec<Vector3>,
     /// The bias b, for positions relative to [the problem's centre](crate::Problem::centre): one
     /// that minimises the primal value for this w, the middle of them where there are many.
     pub bias: f64,

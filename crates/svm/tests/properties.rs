@@ -185,7 +185,8 @@ proptest! {
                 Sample { point: UncertainPoint { mean, ..s.point }, ..*s }
             })
             .collect();
-        let settings = settings(1e-8);
+        // Two gaps of 1e-8 leave planes apart by more than is asked here, in one of 700.
+        let settings = settings(1e-9);
         let problem = Problem::try_new(&moved, kernel).unwrap();
         let (cold, warm) = (problem.solve(&settings).unwrap(), solver(&settings).solve_from(&problem, &before));
         prop_assert_eq!(cold.status, warm.status);

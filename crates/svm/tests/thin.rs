@@ -31,7 +31,8 @@ fn a_thin_ellipsoid_was_trained_on_as_another_one() {
     let ([a, b], _) = discs();
     for scaled in [false, true] {
         let unit_box = UnitBox::around(&[a, b]).unwrap();
-        let place = |p: &UncertainPoint| if scaled { unit_box.uncertain_point_inside(p) } else { *p };
+        let place =
+            |p: &UncertainPoint| if scaled { unit_box.uncertain_point_inside(p) } else { *p };
         let penalty = if scaled { 1e3 } else { 1e21 };
         let sample = |p, class| Sample { point: place(p), class, radius: 1.0, penalty };
         let samples = [sample(&a, Class::A), sample(&b, Class::B)];

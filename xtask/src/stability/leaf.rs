@@ -77,8 +77,8 @@ pub(super) struct Solved {
 impl Solved {
     pub(super) fn new(samples: &[Sample], gamma: f64) -> Option<Self> {
         let problem = Problem::try_new(samples, Kernel::Gaussian { gamma }).ok()?;
-        let settings = Settings::with_relative_gap(RELATIVE_GAP).ok()?;
-        let solution = problem.solve(&settings);
+        let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
+        let solution = problem.solve(&settings).ok()?;
         let probabilities = probabilities(samples, &problem, &solution);
         Some(Self { problem, solution, probabilities })
     }

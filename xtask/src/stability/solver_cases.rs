@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint};
-use cloudtouch_svm::{Class, Sample, Settings, UnitBox, balanced_penalties};
+use cloudtouch_svm::{Class, Sample, Settings, Solver, UnitBox, balanced_penalties};
 use cloudtouch_testkit::hard_cases::{HardCase, HardProblem, hard_cases, hard_problems};
 
 use super::{
@@ -147,7 +147,9 @@ fn solve(posed: &Posed) -> Result<(Row, Vec<String>)> {
     let start = Instant::now();
     let solved = Solved::new(&posed.samples, posed.gamma).context("not a problem")?;
     let seconds = start.elapsed().as_secs_f64();
-    let reference = solved.problem.solve_with_clarabel(&Settings::with_relative_gap(RELATIVE_GAP)?);
+    let reference =
+        Solver::try_new(Settings { relative_gap: RELATIVE_GAP, ..Settings::default() })?
+            .solve_with_clarabel(&solved.problem);
     let of_reference = probabilities(&posed.samples, &solved.problem, &reference);
     let both = !solved.is_undecided() && reference.relative_gap <= RELATIVE_GAP;
     let primal = both

@@ -5,6 +5,7 @@ use cloudtouch_svm::{DEFAULT_KAPPA_MAX, separate};
 use crate::mode::Mode;
 use crate::report::Stats;
 
+use super::clock::Clock;
 use super::pair::{PairAnswer, PairPoint, PairPoints};
 use super::settings::QuerySettings;
 use super::surface::Surface;
@@ -24,11 +25,13 @@ pub(crate) fn classify(
     points: &PairPoints,
     settings: &QuerySettings,
     known: f64,
+    clock: &Clock,
     stats: &mut Stats,
 ) -> PairAnswer {
     let uncertain = |side: &[PairPoint]| side.iter().map(|p| p.point).collect::<Vec<_>>();
     let (a, b) = (uncertain(&points.a), uncertain(&points.b));
-    let separation = separate(&a, &b, CERTAIN_DEVIATIONS);
+    // Why there is none makes no difference here.
+    let separation = separate(&a, &b, CERTAIN_DEVIATIONS).ok();
     let plane = separation.and_then(|s| PairAnswer::of(Surface::Plane(s), &a, &b));
     let plane = match plane {
         Some(plane) if separation.is_some_and(|s| s.kappa >= CERTAIN_DEVIATIONS) => {
@@ -38,7 +41,7 @@ pub(crate) fn classify(
         plane => plane,
     };
     if settings.mode == Mode::Paper {
-        let kernel = by_kernel(points, settings, known, stats);
+        let kernel = by_kernel(points, settings, known, clock, stats);
         return match (plane, kernel) {
             (Some(plane), PairAnswer::Indistinct | PairAnswer::Undecided) => plane,
             (_, kernel) => kernel,
@@ -50,9 +53,9 @@ pub(crate) fn classify(
             plane
         }
         Some(plane) => {
-            let kernel = by_kernel(points, settings, known, stats);
+            let kernel = by_kernel(points, settings, known, clock, stats);
             if plane.largest() <= kernel.largest() { plane } else { kernel }
         }
-        None => by_kernel(points, settings, known, stats),
+        None => by_kernel(points, settings, known, clock, stats),
     }
 }

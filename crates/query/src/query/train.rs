@@ -1,14 +1,17 @@
 //! The kernel classifier of one leaf pair (eq. 10 to 16 of the paper), trained in the unit box.
 
+use std::ops::ControlFlow;
+
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
-    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status, UnitBox,
-    balanced_penalties,
+    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Solver, Status,
+    Undetermined, UnitBox, balanced_penalties,
 };
 
 use crate::mode::Mode;
 use crate::report::Stats;
 
+use super::clock::Clock;
 use super::pair::{PairAnswer, PairPoints};
 use super::settings::QuerySettings;
 use super::surface::Surface;
@@ -28,11 +31,14 @@ const CERTAIN: f64 = 0.999;
 /// Trains a classifier and reads the probabilities off it.
 ///
 /// In the calibrated mode an answer above `known` is solved again, tighter, from where it is; not
-/// beside a mesh, whose large penalties make that dear and whose exact points pin the surface.
+/// beside a mesh, whose large penalties make that dear and whose exact points pin the surface. An
+/// answer that the first solution leaves open is solved again in any case; left open still, or cut
+/// short by the clock, the pair is undecided.
 pub(super) fn by_kernel(
     points: &PairPoints,
     settings: &QuerySettings,
     known: f64,
+    clock: &Clock,
     stats: &mut Stats,
 ) -> PairAnswer {
     stats.kernel_solves += 1;
@@ -41,20 +47,22 @@ pub(super) fn by_kernel(
     let samples = samples(points, &all, &unit_box, settings);
     let kernel = Kernel::Gaussian { gamma: settings.gamma };
     let Ok(problem) = Problem::try_new(&samples, kernel) else { return PairAnswer::Undecided };
-    let [loose, tight] =
-        [settings.relative_gap, TIGHTER * settings.relative_gap].map(Settings::with_relative_gap);
-    let (Ok(loose), Ok(tight)) = (loose, tight) else { return PairAnswer::Undecided };
+    let solver = |relative_gap| Solver::try_new(Settings { relative_gap, ..Settings::default() });
+    let both = [settings.relative_gap, TIGHTER * settings.relative_gap].map(solver);
+    let [Ok(mut loose), Ok(mut tight)] = both else { return PairAnswer::Undecided };
+    let mut look = |_: &_| {
+        if clock.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
 
     let sides = all.split_at(points.a.len());
-    let first = problem.solve(&loose);
+    let first = loose.solve_watched(&problem, None, &mut look);
     let answer = read(&problem, &first, unit_box, sides);
     let counts = settings.mode == Mode::Calibrated
         && !(points.a_is_mesh || points.b_is_mesh)
         && answer.largest() > known
         && answer.largest() <= CERTAIN;
-    // A loose tolerance cannot tell a small w from none either.
-    let (solution, answer) = if counts || first.status == Status::Collapsed {
-        let second = problem.solve_from(&tight, &first);
+    let (solution, answer) = if counts || is_open(&first) {
+        let second = tight.solve_watched(&problem, Some(&first), &mut look);
         let answer = read(&problem, &second, unit_box, sides);
         (second, answer)
     } else {
@@ -63,6 +71,15 @@ pub(super) fn by_kernel(
     stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
     stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
     answer
+}
+
+/// Whether a loose tolerance may be why nothing is determined: it cannot tell a small w from none, nor
+/// what the bias is where hardly a multiplier is free.
+fn is_open(solution: &Solution) -> bool {
+    matches!(
+        solution.determined(),
+        Err(Undetermined::Collapsed | Undetermined::Weight { .. } | Undetermined::Bias { .. })
+    )
 }
 
 fn samples(
@@ -117,4 +134,53 @@ fn typical_std_across<'a>(
     let mut stds: Vec<f64> = points.map(across).collect();
     stds.sort_by(f64::total_cmp);
     stds[stds.len() / 2]
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use cloudtouch_geom::{Covariance, Point3};
+
+    use super::super::classify::classify;
+    use super::super::pair::PairPoint;
+    use super::*;
+
+    /// Two rows of points along x, A above B by `gap`, m.
+    fn rows(gap: f64) -> PairPoints {
+        let row = |z: f64| -> Vec<PairPoint> {
+            let at = |i: u32| UncertainPoint {
+                mean: Point3::new(0.01 * f64::from(i), 0.0, z),
+                covariance: Covariance::isotropic(0.004 * 0.004),
+            };
+            (0..12).map(|i| PairPoint { index: Some(i), point: at(i), spacing: 0.01 }).collect()
+        };
+        PairPoints { a: row(gap), b: row(0.0), ..PairPoints::default() }
+    }
+
+    #[test]
+    fn an_open_bias_was_read_as_its_middle() {
+        // So small a penalty that no multiplier is free.
+        for mode in [Mode::Calibrated, Mode::Paper] {
+            let settings = QuerySettings { penalty: 1e-4, ..QuerySettings::new(mode) };
+            let clock = Clock::new(Instant::now(), None);
+            let (points, stats) = (rows(0.02), &mut Stats::default());
+            let trained = by_kernel(&points, &settings, 0.0, &clock, stats);
+            assert!(matches!(trained, PairAnswer::Undecided), "{trained:?}");
+            // What the plane says stands.
+            let answer = classify(&points, &settings, 0.0, &clock, stats);
+            let PairAnswer::Separated { surface: Surface::Plane(_), .. } = answer else {
+                panic!("{answer:?}");
+            };
+        }
+    }
+
+    #[test]
+    fn a_solve_ends_with_the_time_of_the_query() {
+        let settings = QuerySettings::new(Mode::Calibrated);
+        let stats = &mut Stats::default();
+        let over = Clock::new(Instant::now(), Some(Duration::ZERO));
+        let cut_short = by_kernel(&rows(0.005), &settings, 0.0, &over, stats);
+        assert!(matches!(cut_short, PairAnswer::Undecided), "{cut_short:?}");
+    }
 }

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use anyhow::{Result, ensure};
 use cloudtouch_geom::seed::derive;
-use cloudtouch_svm::{Kernel, Problem, Rung, Sample, Settings, Solution};
+use cloudtouch_svm::{Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
 
 use super::{
     Run, Section, plots,
@@ -135,12 +135,12 @@ fn compare(
 }
 
 fn ours(samples: &[Sample], gamma: f64, repeats: usize) -> Result<(Solved, Rung)> {
-    let (solved, solution) = solved(samples, gamma, repeats, Problem::solve)?;
+    let (solved, solution) = solved(samples, gamma, repeats, Solver::solve)?;
     Ok((solved, solution.rung))
 }
 
 fn with_clarabel(samples: &[Sample], gamma: f64, repeats: usize) -> Result<Solved> {
-    Ok(solved(samples, gamma, repeats, Problem::solve_with_clarabel)?.0)
+    Ok(solved(samples, gamma, repeats, Solver::solve_with_clarabel)?.0)
 }
 
 fn with_linfa(samples: &[Sample], gamma: f64, repeats: usize) -> Result<Solved> {
@@ -151,15 +151,16 @@ fn solved(
     samples: &[Sample],
     gamma: f64,
     repeats: usize,
-    solve: fn(&Problem, &Settings) -> Solution,
+    solve: fn(&mut Solver, &Problem) -> Solution,
 ) -> Result<(Solved, Solution)> {
     ensure!(repeats > 0, "nothing is to be solved");
-    let settings = Settings::with_relative_gap(GAP)?;
-    let run =
-        || Problem::try_new(samples, Kernel::Gaussian { gamma }).map(|p| solve(&p, &settings));
-    let (solution, mut seconds) = timed(run);
+    let settings = Settings { relative_gap: GAP, ..Settings::default() };
+    let mut solver = Solver::try_new(settings)?;
+    let mut run =
+        || Problem::try_new(samples, Kernel::Gaussian { gamma }).map(|p| solve(&mut solver, &p));
+    let (solution, mut seconds) = timed(&mut run);
     for _ in 1..repeats {
-        seconds = seconds.min(timed(run).1);
+        seconds = seconds.min(timed(&mut run).1);
     }
     let solution = solution?;
     Ok((Solved { seconds, gap: solution.relative_gap }, solution))
@@ -229,8 +230,11 @@ mod tests {
         let samples = CELLS[1].problem(10, 1);
         let kernel = Kernel::Gaussian { gamma: CELLS[1].gamma };
         let problem = Problem::try_new(&samples, kernel).unwrap();
-        let settings = Settings::with_relative_gap(GAP).unwrap();
-        let both = [problem.solve(&settings), problem.solve_with_clarabel(&settings)];
+        let settings = Settings { relative_gap: GAP, ..Settings::default() };
+        let both = {
+            let mut solver = Solver::try_new(settings).unwrap();
+            [solver.solve(&problem), solver.solve_with_clarabel(&problem)]
+        };
         assert!(both.iter().all(|s| s.relative_gap <= GAP));
         assert!((both[0].primal - both[1].primal).abs() <= 2.0 * GAP * both[0].primal);
     }

@@ -94,8 +94,8 @@ mod tests {
             assert!(theirs.gap <= 1e-4 && theirs.gap > -1e-12, "{}: {theirs:?}", cell.name);
 
             let kernel = Kernel::Gaussian { gamma: cell.gamma };
-            let settings = Settings::with_relative_gap(1e-4).unwrap();
-            let ours = Problem::try_new(&samples, kernel).unwrap().solve(&settings);
+            let settings = Settings { relative_gap: 1e-4, ..Settings::default() };
+            let ours = Problem::try_new(&samples, kernel).unwrap().solve(&settings).unwrap();
             let signed: Vec<f64> =
                 ours.alpha.iter().zip(&samples).map(|(alpha, s)| alpha * s.class.sign()).collect();
             let gap = relative_gap(&samples, cell.gamma, &signed);

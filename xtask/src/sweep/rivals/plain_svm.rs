@@ -100,7 +100,8 @@ impl PlainSvm {
             .chain(b.iter().map(|point| sample(point, Class::B, penalty_b)))
             .collect();
         let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma: self.gamma })?;
-        let solution = problem.solve(&Settings::with_relative_gap(RELATIVE_GAP)?);
+        let solution =
+            problem.solve(&Settings { relative_gap: RELATIVE_GAP, ..Settings::default() })?;
         let Ok(classifier) = Classifier::try_new(&problem, &solution) else {
             return Ok(UNDETERMINED);
         };

@@ -160,7 +160,7 @@ fn ask_classifier(
             all = all.map(|known| known.or_more(left)).or(Some(Misclassified::unknown(count)));
             continue;
         }
-        let answer = by_kernel(&points, settings, SOLVED_ONCE, &mut evidence.stats);
+        let answer = by_kernel(&points, settings, SOLVED_ONCE, &task.clock, &mut evidence.stats);
         let of_patch = match &answer {
             PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(b).sum()),
             PairAnswer::Undecided => Misclassified::unknown(count),
