@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     /// Folder with cases.json, piano_cases.json, clouds/ and meshes/, relative to the workspace
     #[arg(long, value_name = "DIR", default_value = "../shared/data")]
     data: PathBuf,
-    /// Write docs/real-scans.md and its figures; else the figures go to target/evaluate/
+    /// Write docs/lab/real-scans.md and its figures; else the figures go to target/evaluate/
     #[arg(long)]
     update_docs: bool,
     /// A built `cloudtouch` to use instead of building it with --release
@@ -68,7 +68,7 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     }
     let work = root.join("target/evaluate");
     let figures =
-        if arguments.update_docs { root.join("docs/figures") } else { work.join("figures") };
+        if arguments.update_docs { root.join("docs/lab/figures") } else { work.join("figures") };
     for folder in [&work, &figures] {
         fs::create_dir_all(folder).with_context(|| format!("make {}", folder.display()))?;
     }

@@ -5,12 +5,7 @@
 
 mod scenes;
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fmt::Write as _,
-    fs,
-    path::Path,
-};
+use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path};
 
 use anyhow::{Context, Result, bail};
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, seed};
@@ -35,8 +30,24 @@ const SENSOR: &str = "iso:0.002";
 const WANTED: [f64; 12] =
     [0.3, 0.2, 0.1, 0.05, 0.025, 0.01, -0.01, -0.025, -0.05, -0.07, -0.09, -0.12];
 
+/// The folders that hold nothing but what this task makes, and pages that describe it.
+const FOLDERS: [&str; 2] = ["fixtures", DEMO_FOLDER];
+/// The tool carries a copy of the files of its demo: a package holds only what is below it.
+const DEMO_FOLDER: &str = "crates/cli/demo";
+const OF_DEMO: [&str; 3] = ["cases.json", "piano.pcd", "room.pcd"];
+
 /// File contents by path below fixtures/.
 type Files = BTreeMap<String, Vec<u8>>;
+
+/// Every file and every copy, with its path in the project.
+fn placed(files: &Files) -> BTreeMap<String, &[u8]> {
+    let copy = |name: &str| {
+        let bytes = files.get(&format!("piano-room/{name}"))?;
+        Some((format!("{DEMO_FOLDER}/{name}"), bytes.as_slice()))
+    };
+    let made = files.iter().map(|(path, bytes)| (format!("fixtures/{path}"), bytes.as_slice()));
+    made.chain(OF_DEMO.into_iter().filter_map(copy)).collect()
+}
 
 /// Writes every file.
 pub(crate) fn write(root: &Path) -> Result<()> {
@@ -49,8 +60,8 @@ pub(crate) fn check(root: &Path) -> Result<()> {
 }
 
 fn store(root: &Path, files: &Files) -> Result<()> {
-    for (path, bytes) in files {
-        let path = root.join("fixtures").join(path);
+    for (path, bytes) in placed(files) {
+        let path = root.join(path);
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder).with_context(|| format!("make {}", folder.display()))?;
         }
@@ -61,26 +72,27 @@ fn store(root: &Path, files: &Files) -> Result<()> {
 }
 
 fn compare(root: &Path, files: &Files) -> Result<()> {
-    let folder = root.join("fixtures");
+    let files = placed(files);
     let mut wrong = Vec::new();
-    for (path, bytes) in files {
-        match fs::read(folder.join(path)) {
+    for (path, bytes) in &files {
+        match fs::read(root.join(path)) {
             Ok(stored) if stored == *bytes => {}
             Ok(_) => wrong.push(format!("{path} differs")),
             Err(error) => wrong.push(format!("{path}: {error}")),
         }
     }
-    let known: BTreeSet<_> = files.keys().map(String::as_str).chain(["README.md"]).collect();
-    for path in list(&folder, "")? {
-        if !known.contains(path.as_str()) {
-            wrong.push(format!("{path} is not made by this task"));
+    for folder in FOLDERS {
+        for path in list(&root.join(folder), &format!("{folder}/"))? {
+            if !files.contains_key(&path) && !path.ends_with("/README.md") {
+                wrong.push(format!("{path} is not made by this task"));
+            }
         }
     }
     if wrong.is_empty() {
         println!("fixtures: {} files as stored", files.len());
         return Ok(());
     }
-    bail!("fixtures/: {}; run `{COMMAND}` and commit the result", wrong.join("; "))
+    bail!("{}; run `{COMMAND}` and commit the result", wrong.join("; "))
 }
 
 /// Paths of all files below a folder, relative to it, with slashes.
@@ -313,9 +325,15 @@ mod tests {
         fs::write(root.join("fixtures/piano-room/room.obj"), "v 0 0 0\n").unwrap();
         fs::remove_file(root.join("fixtures/manifest.json")).unwrap();
         fs::write(root.join("fixtures/notes.txt"), "").unwrap();
+        fs::write(root.join("crates/cli/demo/room.pcd"), "").unwrap();
         let error = compare(&root, files()).unwrap_err().to_string();
         fs::remove_dir_all(&root).unwrap();
-        for part in ["room.obj differs", "manifest.json: ", "notes.txt is not made"] {
+        for part in [
+            "room.obj differs",
+            "manifest.json: ",
+            "notes.txt is not made",
+            "crates/cli/demo/room.pcd differs",
+        ] {
             assert!(error.contains(part), "{error}");
         }
     }

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod bounding;
 mod bounds;
 mod build;
 mod coverage;
@@ -19,16 +20,18 @@ mod settings;
 mod traverse;
 mod tree;
 mod validate;
+mod view;
 mod visit;
 
 pub use bounds::LeafBounds;
 pub use error::TreeError;
 pub use gap::{Gap, signed_gap};
 pub use moments::Moments;
-pub use node::{Node, NodeId};
+pub use node::NodeId;
 pub use obb::Obb;
 pub use primitive::Primitive;
 pub use settings::{Traversal, TraversalSettings, TreeSettings};
 pub use traverse::{Flow, LeafPair, Outcome, traverse};
 pub use tree::Tree;
+pub use view::Node;
 pub use visit::Visit;

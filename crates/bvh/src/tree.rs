@@ -4,7 +4,7 @@ use cloudtouch_geom::Covariance;
 
 use crate::coverage::fraction_outside;
 use crate::node::NodeData;
-use crate::{LeafBounds, Node, NodeId, Primitive, TreeSettings};
+use crate::{LeafBounds, NodeId, Primitive, TreeSettings};
 
 /// An oriented bounding box tree over uncertain points and exact triangles, in one frame.
 ///
@@ -60,26 +60,6 @@ impl Tree {
     /// The leaf that holds this primitive; `None` when there is none or it was removed.
     pub fn leaf_of(&self, index: usize) -> Option<NodeId> {
         self.leaf_of.get(index).copied().flatten().map(NodeId)
-    }
-
-    /// The node over everything; `None` in an empty tree.
-    pub fn root(&self) -> Option<Node<'_>> {
-        self.root.map(|id| Node { tree: self, id })
-    }
-
-    /// A node by name; `None` when it is not, or no longer, in the tree.
-    pub fn node(&self, id: NodeId) -> Option<Node<'_>> {
-        self.nodes.get(id.index()).filter(|node| node.in_use).map(|_| Node { tree: self, id: id.0 })
-    }
-
-    /// A leaf by name; `None` when the name is not, or no longer, that of a leaf.
-    pub fn leaf(&self, id: NodeId) -> Option<Node<'_>> {
-        self.node(id).filter(Node::is_leaf)
-    }
-
-    /// All leaves, in the order of their names.
-    pub fn leaves(&self) -> impl Iterator<Item = Node<'_>> {
-        (0..self.nodes.len() as u32).filter_map(|id| self.leaf(NodeId(id)))
     }
 
     /// A number larger than [`NodeId::index`] of every node.

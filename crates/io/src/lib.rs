@@ -3,6 +3,7 @@
 mod atomic;
 mod builder;
 mod error;
+mod geometry;
 mod limits;
 pub mod obj;
 pub mod pcd;
@@ -16,12 +17,13 @@ pub mod xyz;
 
 pub use atomic::write_atomically;
 pub use error::{Fault, FormatError, Place, ReadError, WriteError};
+pub use geometry::Geometry;
 pub use limits::ReadLimits;
 pub use obj::write_mesh_obj;
 pub use pcd::write_cloud_pcd;
 pub use ply::{write_cloud_ply, write_colored_ply};
 pub use read::{
-    Geometry, read_bytes, read_cloud, read_cloud_within, read_geometry, read_geometry_within,
-    read_mesh, read_mesh_within,
+    read_bytes, read_cloud, read_cloud_within, read_geometry, read_geometry_within, read_mesh,
+    read_mesh_within,
 };
 pub use unit::{LengthUnit, UnknownUnit};

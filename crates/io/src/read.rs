@@ -10,20 +10,12 @@ use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 
 use crate::{
     error::{Fault, FormatError, Place, ReadError},
+    geometry::Geometry,
     limits::ReadLimits,
     obj, pcd, ply, stl,
     unit::LengthUnit,
     xyz,
 };
-
-/// What a file holds.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Geometry {
-    /// Points without faces.
-    Cloud(PointCloud),
-    /// Vertices and at least one face.
-    Mesh(TriangleMesh),
-}
 
 /// Reads a point cloud in metres: `.pcd`, `.ply`, `.xyz`, `.txt` or `.csv`.
 ///

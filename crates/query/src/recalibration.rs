@@ -32,15 +32,16 @@ pub struct ContactEvidence {
 /// Two logistic regressions from [`ContactEvidence`] to a probability: by geometry alone, and with
 /// the classifier.
 ///
-/// The default is fitted on generated scenes (`cargo xtask calibrate`; docs/accuracy.md says how
+/// The default is fitted on generated scenes (`cargo xtask calibrate`; docs/lab/accuracy.md says how
 /// well it fits scenes it was not fitted on). Who has labelled scenes can fit another to the
 /// evidence in their reports.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recalibration {
-    /// Intercept, and slopes of `crossing` and `deviations`.
-    by_geometry: [f64; 3],
-    /// Intercept, and slopes of `crossing`, `deviations` and ln(`misclassified` + 0.02).
-    by_all: [f64; 4],
+    /// Intercept, and slopes of `crossing` (0 or more) and `deviations` (0 or less).
+    pub by_geometry: [f64; 3],
+    /// Intercept, and slopes of `crossing` (0 or more), `deviations` (0 or less) and
+    /// ln(`misclassified` + 0.02) (0 or more).
+    pub by_all: [f64; 4],
 }
 
 impl Default for Recalibration {
@@ -62,16 +63,14 @@ fn ln_above_floor(misclassified: f64) -> f64 {
 }
 
 impl Recalibration {
-    /// Coefficients from a fit of one's own: the intercept first, then the slopes of `crossing`,
-    /// `deviations` (not positive), and in `by_all` of ln(`misclassified` + 0.02).
+    /// Checks every coefficient.
     ///
     /// # Errors
     /// When one is not finite, or its sign is not that of evidence: more crossing, fewer deviations
     /// and more misclassified points must not make a collision less probable. Bounds rest on that.
-    pub fn try_new(by_geometry: [f64; 3], by_all: [f64; 4]) -> Result<Self, SettingsError> {
-        let all = by_geometry.iter().chain(&by_all);
-        let [_, crossing, deviations] = by_geometry;
-        let [_, crossing_too, deviations_too, misclassified] = by_all;
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        let [_, crossing, deviations] = self.by_geometry;
+        let [_, crossing_too, deviations_too, misclassified] = self.by_all;
         for (name, value) in [
             ("crossing", crossing),
             ("crossing", crossing_too),
@@ -83,21 +82,26 @@ impl Recalibration {
                 return Err(SettingsError::Slope { name });
             }
         }
-        match all.copied().find(|value| !value.is_finite()) {
-            Some(value) => Err(SettingsError::NotFinite { name: "recalibration", value }),
-            None => Ok(Self { by_geometry, by_all }),
+        match self.by_geometry.iter().chain(&self.by_all).find(|value| !value.is_finite()) {
+            Some(&value) => Err(SettingsError::NotFinite { name: "recalibration", value }),
+            None => Ok(()),
         }
     }
 
     /// The probability given the geometry alone, at most [`MOST_CERTAIN`]. It grows with every
     /// crossing found and every deviation less.
-    pub(crate) fn by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
+    pub(crate) fn probability_by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
         let [intercept, on_crossing, on_deviations] = self.by_geometry;
         logistic(intercept + on_crossing * crossing + on_deviations * deviations).min(MOST_CERTAIN)
     }
 
     /// The probability given the classifier too.
-    pub(crate) fn by_all(&self, deviations: f64, crossing: f64, misclassified: f64) -> f64 {
+    pub(crate) fn probability_by_all(
+        &self,
+        deviations: f64,
+        crossing: f64,
+        misclassified: f64,
+    ) -> f64 {
         let [intercept, on_crossing, on_deviations, on_misclassified] = self.by_all;
         logistic(
             intercept
@@ -118,27 +122,27 @@ mod tests {
 
     #[test]
     fn the_default_passes_its_own_check() {
-        let Recalibration { by_geometry, by_all } = Recalibration::default();
-        assert_eq!(Recalibration::try_new(by_geometry, by_all), Ok(Recalibration::default()));
+        assert_eq!(Recalibration::default().validate(), Ok(()));
     }
 
     #[test]
     fn slopes_against_the_evidence_and_nan_are_refused() {
-        let (geometry, all) = ([0.0, 1.0, -1.0], [0.0, 1.0, -1.0, 1.0]);
-        assert!(Recalibration::try_new(geometry, all).is_ok());
-        let more_crossing_is_less = [0.0, -1.0, -1.0];
-        let error = Recalibration::try_new(more_crossing_is_less, all).unwrap_err();
+        let good = Recalibration { by_geometry: [0.0, 1.0, -1.0], by_all: [0.0, 1.0, -1.0, 1.0] };
+        assert_eq!(good.validate(), Ok(()));
+        let more_crossing_is_less = Recalibration { by_geometry: [0.0, -1.0, -1.0], ..good };
+        let error = more_crossing_is_less.validate().unwrap_err();
         assert_eq!(error, SettingsError::Slope { name: "crossing" });
-        assert!(Recalibration::try_new(geometry, [0.0, 1.0, 1.0, 1.0]).is_err());
-        assert!(Recalibration::try_new(geometry, [f64::NAN, 1.0, -1.0, 1.0]).is_err());
+        for by_all in [[0.0, 1.0, 1.0, 1.0], [f64::NAN, 1.0, -1.0, 1.0]] {
+            assert!(Recalibration { by_all, ..good }.validate().is_err(), "{by_all:?}");
+        }
     }
 
     #[test]
     fn nothing_found_is_improbable_and_everything_is_not() {
         let default = Recalibration::default();
-        assert!(default.by_geometry(MOST_DEVIATIONS, 0.0) < 0.02);
-        assert_eq!(default.by_geometry(0.0, 6.0), MOST_CERTAIN);
-        assert_eq!(default.by_geometry(0.0, 1e3), MOST_CERTAIN);
-        assert!(default.by_all(0.0, 6.0, 30.0) > 0.95);
+        assert!(default.probability_by_geometry(MOST_DEVIATIONS, 0.0) < 0.02);
+        assert_eq!(default.probability_by_geometry(0.0, 6.0), MOST_CERTAIN);
+        assert_eq!(default.probability_by_geometry(0.0, 1e3), MOST_CERTAIN);
+        assert!(default.probability_by_all(0.0, 6.0, 30.0) > 0.95);
     }
 }

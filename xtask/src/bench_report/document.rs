@@ -1,4 +1,4 @@
-//! The document docs/performance.md, wholly made by a run.
+//! The document docs/lab/performance.md, wholly made by a run.
 
 use std::{fmt::Write as _, path::Path};
 

@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// Everything random comes from this
     #[arg(long, default_value_t = 2011)]
     seed: u64,
-    /// Write docs/performance.md and its figures; else everything goes to target/bench-report/
+    /// Write docs/lab/performance.md and its figures; else everything goes to target/bench-report/
     #[arg(long, conflicts_with = "only")]
     update_docs: bool,
     /// Folder of the real scans, relative to the workspace
@@ -80,7 +80,7 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     if let Some(file) = &arguments.probe_memory {
         return memory::probe(file);
     }
-    let folder = root.join(if arguments.update_docs { "docs" } else { "target/bench-report" });
+    let folder = root.join(if arguments.update_docs { "docs/lab" } else { "target/bench-report" });
     let figures = folder.join("figures");
     // What is there of a document that is being made, or of one whose run was broken off.
     let draft = root.join("target/bench-report");

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sweep::{measures::fit_plainly, record::Block};
 
-/// Coefficients as `Recalibration::try_new` takes them.
+/// Coefficients as `Recalibration` has them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Coefficients {
     pub by_geometry: [f64; 3],

@@ -29,7 +29,10 @@ pub(crate) struct Fitted {
 impl Coefficients {
     /// For a query.
     pub(crate) fn recalibration(&self) -> Result<Recalibration> {
-        Ok(Recalibration::try_new(self.by_geometry, self.by_all)?)
+        let Self { by_geometry, by_all, .. } = *self;
+        let recalibration = Recalibration { by_geometry, by_all };
+        recalibration.validate()?;
+        Ok(recalibration)
     }
 }
 

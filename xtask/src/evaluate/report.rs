@@ -1,4 +1,4 @@
-//! The document docs/real-scans.md, wholly made by a run.
+//! The document docs/lab/real-scans.md, wholly made by a run.
 
 use std::{fmt::Write as _, path::Path};
 
@@ -9,7 +9,7 @@ use crate::common::{files::write_whole, machine};
 
 /// Writes the document; every number in it comes from this run.
 pub(super) fn write(root: &Path, tool: &Tool, sections: &[Section]) -> Result<()> {
-    let path = root.join("docs/real-scans.md");
+    let path = root.join("docs/lab/real-scans.md");
     write_whole(&path, text(root, tool, sections)?)?;
     println!("wrote {}", path.display());
     Ok(())

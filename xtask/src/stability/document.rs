@@ -1,4 +1,4 @@
-//! The document docs/stability.md, wholly made by a run.
+//! The document docs/lab/stability.md, wholly made by a run.
 
 use std::{fmt::Write as _, path::Path};
 
@@ -49,5 +49,5 @@ fn goals(sheet: &Sheet) -> Table {
 
 /// Writes the document.
 pub(super) fn write(root: &Path, text: &str) -> Result<()> {
-    write_whole(&root.join("docs/stability.md"), text)
+    write_whole(&root.join("docs/lab/stability.md"), text)
 }

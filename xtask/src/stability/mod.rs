@@ -28,14 +28,14 @@ const RELATIVE_GAP: f64 = 1e-4;
 /// What `cargo xtask stability` is given.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Write docs/stability.md and its figures; else figures go to target/stability/
+    /// Write docs/lab/stability.md and its figures; else figures go to target/stability/
     #[arg(long)]
     update_docs: bool,
 }
 
 /// Runs everything, prints the document, and fails when an answer is wrong or not sound.
 pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
-    let docs = root.join("docs/figures");
+    let docs = root.join("docs/lab/figures");
     let figures = if arguments.update_docs { docs } else { root.join("target/stability") };
     fs::create_dir_all(&figures).with_context(|| format!("make {}", figures.display()))?;
     let start = Instant::now();

@@ -1,4 +1,4 @@
-//! The document docs/accuracy.md, wholly made by a run.
+//! The document docs/lab/accuracy.md, wholly made by a run.
 
 use std::{fmt::Write as _, path::Path};
 
@@ -74,5 +74,5 @@ pub(super) fn text(root: &Path, poses: usize, sections: &[Section]) -> Result<St
 
 /// Writes the document.
 pub(super) fn write(root: &Path, text: &str) -> Result<()> {
-    write_whole(&root.join("docs/accuracy.md"), text)
+    write_whole(&root.join("docs/lab/accuracy.md"), text)
 }

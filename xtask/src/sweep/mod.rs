@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     /// A few conditions only, compared with recorded bounds; what CI runs
     #[arg(long)]
     short: bool,
-    /// Write docs/accuracy.md and its figures; else everything goes to target/sweep/
+    /// Write docs/lab/accuracy.md and its figures; else everything goes to target/sweep/
     #[arg(long, conflicts_with = "short")]
     update_docs: bool,
 }
@@ -72,7 +72,8 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         return Ok(());
     }
     let folder = root.join("target/sweep");
-    let figures = if arguments.update_docs { root.join("docs/figures") } else { folder.clone() };
+    let figures =
+        if arguments.update_docs { root.join("docs/lab/figures") } else { folder.clone() };
     for place in [&folder, &figures] {
         fs::create_dir_all(place).with_context(|| format!("make {}", place.display()))?;
     }

@@ -2,10 +2,7 @@
 
 use toml::Value;
 
-use super::manifest::Manifest;
-
-/// The kinds of dependency a manifest has.
-pub(super) const KINDS: [&str; 3] = ["dependencies", "build-dependencies", "dev-dependencies"];
+use super::manifest::{KINDS, Manifest};
 
 /// A development dependency of whoever likes, and of nobody otherwise among the published.
 const TESTKIT: &str = "cloudtouch-testkit";

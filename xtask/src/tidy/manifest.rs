@@ -5,6 +5,9 @@ use std::{fs, path::Path};
 use anyhow::{Context, Result};
 use toml::{Table, Value};
 
+/// The kinds of dependency a manifest has.
+pub(super) const KINDS: [&str; 3] = ["dependencies", "build-dependencies", "dev-dependencies"];
+
 /// One member's Cargo.toml.
 pub(super) struct Manifest {
     /// Its folder, relative to the project.
@@ -85,7 +88,7 @@ fn check_fields(manifest: &Manifest) -> Vec<String> {
     let inherits = |value: Option<&Value>| {
         value.and_then(|v| v.get("workspace")).and_then(Value::as_bool) == Some(true)
     };
-    for key in ["version", "edition", "rust-version", "license", "repository"] {
+    for key in ["version", "edition", "rust-version", "license"] {
         if !inherits(manifest.package(key)) {
             complain(format!("`{key}.workspace = true` is missing"));
         }
@@ -102,7 +105,7 @@ fn check_fields(manifest: &Manifest) -> Vec<String> {
             complain(format!("`{key}` is missing"));
         }
     }
-    for kind in super::layers::KINDS {
+    for kind in KINDS {
         for (name, value) in manifest.dependencies(kind) {
             if !inherits(Some(value)) {
                 complain(format!("`{name}` is not inherited from the workspace's dependencies"));
@@ -122,7 +125,7 @@ mod tests {
 
     const GOOD: &str = "[package]\nname = 'x'\ndescription = 'd'\nreadme = 'README.md'\n\
         version.workspace = true\nedition.workspace = true\nrust-version.workspace = true\n\
-        license.workspace = true\nrepository.workspace = true\n[lints]\nworkspace = true\n\
+        license.workspace = true\n[lints]\nworkspace = true\n\
         [dependencies]\nserde.workspace = true\n";
 
     #[test]

@@ -13,9 +13,9 @@ use cloudtouch_io::pcd;
 use crate::args::DemoArguments;
 use crate::{case_file, picture, print};
 
-const ROOM: &[u8] = include_bytes!("../../fixtures/piano-room/room.pcd");
-const PIANO: &[u8] = include_bytes!("../../fixtures/piano-room/piano.pcd");
-const CASES: &[u8] = include_bytes!("../../fixtures/piano-room/cases.json");
+const ROOM: &[u8] = include_bytes!("../../demo/room.pcd");
+const PIANO: &[u8] = include_bytes!("../../demo/piano.pcd");
+const CASES: &[u8] = include_bytes!("../../demo/cases.json");
 
 /// Noise of both clouds per axis, m: what they were made with.
 const NOISE: f64 = 0.002;

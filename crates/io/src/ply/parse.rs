@@ -9,8 +9,8 @@ use super::{
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
     error::{Fault, FormatError, Place},
+    geometry::Geometry,
     limits::ReadLimits,
-    read::Geometry,
     scalar::Scalar,
     text::{Lines, is_padding},
 };

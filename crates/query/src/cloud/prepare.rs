@@ -45,6 +45,7 @@ impl Cloud {
         let start = Instant::now();
         let span = tracing::debug_span!("prepare_cloud", points = cloud.len());
         let _entered = span.enter();
+        settings.validate()?;
         let filtered = filter(cloud, &settings.filter)?;
         let stages = filtered.stages;
         let kept = filtered.cloud;

@@ -3,6 +3,7 @@
 use cloudtouch_bvh::TreeSettings;
 use cloudtouch_noise::{Combination, NoiseSettings, SensorModel};
 
+use crate::error::PrepareError;
 use crate::filter::FilterSettings;
 use crate::mode::Mode;
 
@@ -41,5 +42,16 @@ impl CloudSettings {
                 },
             },
         }
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// Names the setting that is out of range, and its value.
+    pub fn validate(&self) -> Result<(), PrepareError> {
+        self.sensor.validate()?;
+        self.filter.validate()?;
+        self.noise.validate()?;
+        Ok(self.tree.validate()?)
     }
 }

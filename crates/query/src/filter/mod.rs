@@ -51,7 +51,7 @@ pub struct Filtered {
 /// When a setting is out of range, or the cloud does not have a covariance for each point or a point
 /// for each pixel; see [`FilterError`].
 pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered, FilterError> {
-    settings.check()?;
+    settings.validate()?;
     check_lengths(cloud)?;
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
     let finite = |p: &Point3| p.iter().all(|v| v.is_finite());

@@ -52,7 +52,11 @@ impl FilterSettings {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), FilterError> {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// Names the setting that is out of range, and its value.
+    pub fn validate(&self) -> Result<(), FilterError> {
         if !(self.min_range >= 0.0 && self.max_range > self.min_range) {
             return Err(FilterError::Range { min: self.min_range, max: self.max_range });
         }

@@ -41,7 +41,7 @@ pub(crate) fn classify(
         plane => plane,
     };
     if settings.mode == Mode::Paper {
-        let kernel = by_kernel(points, settings, known, clock, stats);
+        let kernel = by_kernel(points, settings, clock, stats);
         return match (plane, kernel) {
             (Some(plane), PairAnswer::Indistinct | PairAnswer::Undecided) => plane,
             (_, kernel) => kernel,
@@ -53,10 +53,10 @@ pub(crate) fn classify(
             plane
         }
         Some(plane) => {
-            let kernel = by_kernel(points, settings, known, clock, stats);
+            let kernel = by_kernel(points, settings, clock, stats);
             if plane.largest() <= kernel.largest() { plane } else { kernel }
         }
-        None => by_kernel(points, settings, known, clock, stats),
+        None => by_kernel(points, settings, clock, stats),
     }
 }
 
@@ -87,7 +87,7 @@ mod tests {
             let settings = QuerySettings { penalty: 1e-4, ..QuerySettings::new(mode) };
             let clock = Clock::new(Instant::now(), None);
             let (points, stats) = (rows(0.02), &mut Stats::default());
-            let trained = by_kernel(&points, &settings, 0.0, &clock, stats);
+            let trained = by_kernel(&points, &settings, &clock, stats);
             assert!(matches!(trained, PairAnswer::Undecided), "{trained:?}");
             // What the plane says stands.
             let answer = classify(&points, &settings, 0.0, &clock, stats);
@@ -102,7 +102,7 @@ mod tests {
         let settings = QuerySettings::new(Mode::Calibrated);
         let stats = &mut Stats::default();
         let over = Clock::new(Instant::now(), Some(Duration::ZERO));
-        let cut_short = by_kernel(&rows(0.005), &settings, 0.0, &over, stats);
+        let cut_short = by_kernel(&rows(0.005), &settings, &over, stats);
         assert!(matches!(cut_short, PairAnswer::Undecided), "{cut_short:?}");
     }
 }

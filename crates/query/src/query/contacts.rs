@@ -160,11 +160,11 @@ mod tests {
     /// The answer as the calibrated mode trains it for a contact patch, or the paper's mode for a
     /// pair of leaves, so tightly that what is compared does not hang on the tolerance.
     fn answer(points: &PairPoints, mode: Mode) -> PairAnswer {
-        let settings = QuerySettings { relative_gap: 1e-6, ..QuerySettings::new(mode) };
+        let settings = QuerySettings { relative_gap: 1e-8, ..QuerySettings::new(mode) };
         let stats = &mut Stats::default();
         let clock = Clock::new(Instant::now(), None);
         match mode {
-            Mode::Calibrated => by_kernel(points, &settings, 0.0, &clock, stats),
+            Mode::Calibrated => by_kernel(points, &settings, &clock, stats),
             Mode::Paper => classify(points, &settings, 0.0, &clock, stats),
         }
     }

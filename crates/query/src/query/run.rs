@@ -40,7 +40,7 @@ impl Query {
     /// # Errors
     /// Names the setting that is out of range, and its value.
     pub fn new(settings: QuerySettings) -> Result<Self, SettingsError> {
-        settings.check()?;
+        settings.validate()?;
         Ok(Self { settings, cull_deviations: -normal::quantile(settings.cull_probability) })
     }
 

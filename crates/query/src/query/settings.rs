@@ -102,7 +102,12 @@ impl QuerySettings {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), SettingsError> {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// Names the setting that is out of range, and its value.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        self.recalibration.validate()?;
         let (accept, reject) = (self.accept, self.reject);
         if !((0.0..=0.5).contains(&reject) && (0.5..=1.0).contains(&accept)) {
             return Err(SettingsError::Thresholds { accept, reject });

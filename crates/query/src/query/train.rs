@@ -8,7 +8,6 @@ use cloudtouch_svm::{
     Undetermined, UnitBox, balanced_penalties,
 };
 
-use crate::mode::Mode;
 use crate::report::Stats;
 
 use super::clock::Clock;
@@ -21,23 +20,16 @@ use super::surface::Surface;
 /// deviations, but f can turn within a kernel width (0.22 at the default γ) and be flat at every
 /// point.
 const TRUSTED_STD: f64 = 0.05;
-/// How much tighter a problem is solved when its answer counts: the error of a probability goes
-/// with the root of the gap.
+/// How much tighter a problem is solved that leaves open whether there is a surface, or where.
 const TIGHTER: f64 = 1e-2;
-/// Above this probability a tighter solution would change nothing that matters. Not a setting: how
-/// tightly a pair is solved must not depend on when the search stops.
-const CERTAIN: f64 = 0.999;
 
 /// Trains a classifier and reads the probabilities off it.
 ///
-/// In the calibrated mode an answer above `known` is solved again, tighter, from where it is; not
-/// beside a mesh, whose large penalties make that dear and whose exact points pin the surface. An
-/// answer that the first solution leaves open is solved again in any case; left open still, or cut
+/// An answer that the first solution leaves open is solved again, tighter; left open still, or cut
 /// short by the clock, the pair is undecided.
 pub(super) fn by_kernel(
     points: &PairPoints,
     settings: &QuerySettings,
-    known: f64,
     clock: &Clock,
     stats: &mut Stats,
 ) -> PairAnswer {
@@ -55,22 +47,13 @@ pub(super) fn by_kernel(
     };
 
     let sides = all.split_at(points.a.len());
-    let first = loose.solve_watched(&problem, None, &mut look);
-    let answer = read(&problem, &first, unit_box, sides);
-    let counts = settings.mode == Mode::Calibrated
-        && !(points.a_is_mesh || points.b_is_mesh)
-        && answer.largest() > known
-        && answer.largest() <= CERTAIN;
-    let (solution, answer) = if counts || is_open(&first) {
-        let second = tight.solve_watched(&problem, Some(&first), &mut look);
-        let answer = read(&problem, &second, unit_box, sides);
-        (second, answer)
-    } else {
-        (first, answer)
-    };
+    let mut solution = loose.solve_watched(&problem, None, &mut look);
+    if is_open(&solution) {
+        solution = tight.solve_watched(&problem, Some(&solution), &mut look);
+    }
     stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
     stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
-    answer
+    read(&problem, &solution, unit_box, sides)
 }
 
 /// Whether a loose tolerance may be why nothing is determined: it cannot tell a small w from none, nor

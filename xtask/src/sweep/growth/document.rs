@@ -1,4 +1,4 @@
-//! The document docs/growth.md, wholly made by a run.
+//! The document docs/lab/growth.md, wholly made by a run.
 
 use std::{fmt::Write as _, path::Path};
 

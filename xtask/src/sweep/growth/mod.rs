@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// How often noise of each size is drawn
     #[arg(long, default_value_t = 12)]
     draws: u64,
-    /// Write docs/growth.md and its figure; else everything goes to target/growth/
+    /// Write docs/lab/growth.md and its figure; else everything goes to target/growth/
     #[arg(long)]
     update_docs: bool,
 }
@@ -69,12 +69,13 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let scan = Scan::read(Path::new(&first.scene), &reach(&object, &poses))?;
     let table = Table::ask(&scan, &object, &poses, arguments.draws)?;
 
-    let figures = root.join(if arguments.update_docs { "docs/figures" } else { "target/growth" });
+    let figures =
+        root.join(if arguments.update_docs { "docs/lab/figures" } else { "target/growth" });
     fs::create_dir_all(&figures).with_context(|| format!("make {}", figures.display()))?;
     draw(&figures.join("growth.svg"), &cases, &table)?;
     let text = document::text(root, (scan.len(), arguments.draws), &cases, &table)?;
     print!("{text}");
-    let folder = if arguments.update_docs { root.join("docs") } else { figures };
+    let folder = if arguments.update_docs { root.join("docs/lab") } else { figures };
     write_whole(&folder.join("growth.md"), text)
 }
 

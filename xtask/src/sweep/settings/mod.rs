@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     /// Poses of each family
     #[arg(long, default_value_t = 64)]
     poses: usize,
-    /// Write docs/settings.md and its figure; else everything goes to target/settings/
+    /// Write docs/lab/settings.md and its figure; else everything goes to target/settings/
     #[arg(long)]
     update_docs: bool,
 }
@@ -43,13 +43,13 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let tradeoffs = tradeoffs(&settings, &judged, &measured)?;
 
     let update = arguments.update_docs;
-    let figures = root.join(if update { "docs/figures" } else { "target/settings" });
+    let figures = root.join(if update { "docs/lab/figures" } else { "target/settings" });
     fs::create_dir_all(&figures).with_context(|| format!("make {}", figures.display()))?;
     plot::draw(&figures.join("settings.svg"), &settings, &tradeoffs)?;
     let table = table(&settings, &tradeoffs, &judged, &measured);
     let text = text(root, arguments.poses, &judged, &table)?;
     print!("{text}");
-    let folder = if update { root.join("docs") } else { figures };
+    let folder = if update { root.join("docs/lab") } else { figures };
     write_whole(&folder.join("settings.md"), text)
 }
 

@@ -32,9 +32,6 @@ use patches::patches;
 use places::{add_finding, add_leaves};
 use search::{Found, search};
 
-/// A sum over a patch is known well enough as it is: no point of it is worth solving it again.
-const SOLVED_ONCE: f64 = 1.0;
-
 /// Estimates how probable a collision of two clouds is; points, contacts and clearance go to
 /// `evidence`.
 pub(super) fn estimate(
@@ -46,7 +43,7 @@ pub(super) fn estimate(
     let settings = task.settings;
     let recalibration = &settings.recalibration;
     let is_enough = |deviations: f64, crossing: f64| {
-        let probability = recalibration.by_geometry(deviations, crossing.ln_1p());
+        let probability = recalibration.probability_by_geometry(deviations, crossing.ln_1p());
         probability > settings.stop_above || is_final(settings, probability) || task.clock.is_over()
     };
     let stats = &mut evidence.stats;
@@ -78,7 +75,7 @@ pub(super) fn estimate(
 /// of what both say now, or above that of geometry where the classifier would not be asked.
 fn by_geometry(settings: &QuerySettings, found: &Found<'_>, evidence: ContactEvidence) -> Estimate {
     let ContactEvidence { deviations, crossing, .. } = evidence;
-    let by_geometry = settings.recalibration.by_geometry(deviations, crossing);
+    let by_geometry = settings.recalibration.probability_by_geometry(deviations, crossing);
     let probability = if found.is_complete && deviations >= MOST_DEVIATIONS && crossing == 0.0 {
         by_geometry.min(found.culled_bound)
     } else {
@@ -89,7 +86,7 @@ fn by_geometry(settings: &QuerySettings, found: &Found<'_>, evidence: ContactEvi
     } else if probability > settings.doubt[1] {
         [probability, 1.0]
     } else {
-        [probability.min(settings.recalibration.by_all(deviations, crossing, 0.0)), 1.0]
+        [probability.min(settings.recalibration.probability_by_all(deviations, crossing, 0.0)), 1.0]
     };
     Estimate { probability, bounds, evidence: Some(evidence) }
 }
@@ -104,7 +101,9 @@ fn by_all(
     of_geometry: ContactEvidence,
     misclassified: &Misclassified,
 ) -> Estimate {
-    let of = |count| recalibration.by_all(of_geometry.deviations, of_geometry.crossing, count);
+    let of = |count| {
+        recalibration.probability_by_all(of_geometry.deviations, of_geometry.crossing, count)
+    };
     let evidence = ContactEvidence { misclassified: Some(misclassified.value), ..of_geometry };
     Estimate {
         probability: of(misclassified.value),
@@ -160,7 +159,7 @@ fn ask_classifier(
             all = all.map(|known| known.or_more(left)).or(Some(Misclassified::unknown(count)));
             continue;
         }
-        let answer = by_kernel(&points, settings, SOLVED_ONCE, &task.clock, &mut evidence.stats);
+        let answer = by_kernel(&points, settings, &task.clock, &mut evidence.stats);
         let of_patch = match &answer {
             PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(b).sum()),
             PairAnswer::Undecided => Misclassified::unknown(count),
@@ -169,7 +168,8 @@ fn ask_classifier(
         let misclassified = all.unwrap_or_default().or_more(of_patch);
         all = Some(misclassified);
         add_pair((BodyRef::Cloud(a), BodyRef::Cloud(b), a_from_b), &points, &answer, evidence);
-        let so_far = settings.recalibration.by_all(deviations, crossing, misclassified.value);
+        let so_far =
+            settings.recalibration.probability_by_all(deviations, crossing, misclassified.value);
         if so_far > settings.doubt[1] {
             // No doubt is left, and further patches could only say more of the same.
             break;

@@ -1,0 +1,112 @@
+//! How bounds on the points of a tree are set, and climb it.
+
+use cloudtouch_geom::{Covariance, Matrix3, Vector3};
+
+use crate::bounds::{SpreadBounds, along};
+use crate::{LeafBounds, Node, Tree, TreeError};
+
+impl Tree {
+    /// Sets, for every leaf, what a later refinement may do to its points, and carries it upward.
+    ///
+    /// From then on these bounds stand for the covariances of the points wherever a bound is
+    /// wanted (not in the coverage, which describes the points as given). They stay with the
+    /// primitives through [`Self::refit`], splits and [`Self::rebuild`]; a primitive inserted
+    /// later has its own covariance and no shift until they are set again.
+    ///
+    /// # Errors
+    /// [`TreeError::LeafBounds`] when a bound is negative or NaN, or a shift infinite; the tree is
+    /// then unchanged.
+    pub fn set_leaf_bounds(
+        &mut self,
+        mut bounds_of: impl FnMut(Node<'_>) -> LeafBounds,
+    ) -> Result<(), TreeError> {
+        let mut refined = self.refined.clone();
+        for leaf in self.leaves() {
+            let bounds = bounds_of(leaf);
+            let is_length = |value: f64| value >= 0.0 && value.is_finite();
+            if !(bounds.std >= 0.0 && is_length(bounds.shift) && is_length(bounds.reach)) {
+                let LeafBounds { std, shift, reach } = bounds;
+                return Err(TreeError::LeafBounds { leaf: leaf.id().index(), std, shift, reach });
+            }
+            for &index in leaf.primitive_indices() {
+                refined[index as usize] = Some(bounds);
+            }
+        }
+        self.refined = refined;
+        self.extents.clear();
+        self.update_bounds(self.root);
+        Ok(())
+    }
+
+    /// Sets, by index, how far the surface that a primitive stands for reaches from its mean, and
+    /// carries it upward: along a unit vector n √(nᵀEn), E the extent. Without it no surface reaches
+    /// beyond the primitives themselves.
+    ///
+    /// What [`Self::set_leaf_bounds`] said is forgotten, as extents are when it is called: either the
+    /// primitives are what they will stay or they are not. Every node's bounds are taken from its
+    /// primitives, O(n log n). Extents stay with the primitives as bounds do; a primitive inserted
+    /// later has none.
+    ///
+    /// # Errors
+    /// [`TreeError::Count`] when there is not one for every index; the tree is then unchanged.
+    pub fn set_extents(&mut self, extents: Vec<Covariance>) -> Result<(), TreeError> {
+        if extents.len() != self.primitives.len() {
+            let (expected, found) = (self.primitives.len(), extents.len());
+            return Err(TreeError::Count { expected, found });
+        }
+        self.extents = extents;
+        self.refined.fill(None);
+        self.update_bounds(self.root);
+        Ok(())
+    }
+
+    /// The bounds of one primitive seen along `axes`.
+    pub(crate) fn bounds_of_primitive(&self, index: u32, axes: &Matrix3) -> SpreadBounds {
+        let index = index as usize;
+        let extent = self.extents.get(index);
+        SpreadBounds::of(&self.primitives[index], self.refined[index], extent, axes)
+    }
+
+    /// Recomputes the bounds of everything below `from` and of itself, children before parents.
+    pub(crate) fn update_bounds(&mut self, from: Option<u32>) {
+        for &id in self.preorder(from).iter().rev() {
+            self.nodes[id as usize].bounds = self.bounds_of(id);
+        }
+    }
+
+    /// The bounds of a node from its primitives, or of an inner node from those of its children.
+    ///
+    /// The latter is cheap, and looser at each level where boxes are turned against one another:
+    /// extents, which are set once for many traversals, are worth a pass over all primitives.
+    pub(crate) fn bounds_of(&self, id: u32) -> SpreadBounds {
+        let node = &self.nodes[id as usize];
+        let axes = &node.obb.axes;
+        let largest = |all: SpreadBounds, one: SpreadBounds| all.max(&one);
+        let Some(children) = node.children else {
+            return (self.indices_of(id).iter())
+                .map(|&index| self.bounds_of_primitive(index, axes))
+                .fold(SpreadBounds::NONE, largest);
+        };
+        let from_children = (children.map(|child| &self.nodes[child as usize]).iter())
+            .map(|child| child.bounds.turned(&child.obb.axes, axes))
+            .fold(SpreadBounds::NONE, largest);
+        if self.extents.is_empty() {
+            return from_children;
+        }
+        let mut tight = SpreadBounds {
+            axis_std: Vector3::zeros(),
+            axis_reach: Vector3::zeros(),
+            ..from_children
+        };
+        for &index in self.indices_of(id) {
+            let index = index as usize;
+            if let Some(extent) = self.extents.get(index) {
+                tight.axis_reach = tight.axis_reach.sup(&along(extent, axes));
+            }
+            if let Some(covariance) = self.primitives[index].covariance() {
+                tight.axis_std = tight.axis_std.sup(&along(covariance, axes));
+            }
+        }
+        tight
+    }
+}
