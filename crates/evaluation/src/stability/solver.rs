@@ -1,9 +1,9 @@
 //! The solver as a query uses it; no other file of this report knows its interface.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
-    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status, UnitBox,
+    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Solver, Status, UnitBox,
     balanced_penalties,
 };
 use cloudtouch_testkit::hard_cases::HardProblem;
@@ -65,7 +65,8 @@ pub(super) struct Solved {
 impl Solved {
     pub(super) fn new(posed: &Posed) -> Result<Self> {
         let problem = Problem::try_new(&posed.samples, Kernel::Gaussian { gamma: posed.gamma })?;
-        let solution = problem.solve(&Settings::with_relative_gap(RELATIVE_GAP)?);
+        let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
+        let solution = problem.solve(&settings)?;
         let probabilities = probabilities(posed, &problem, &solution);
         Ok(Self { problem, solution, probabilities })
     }
@@ -73,8 +74,8 @@ impl Solved {
     /// The same problem by Clarabel alone: the relative difference of the primal values and the
     /// largest one of a probability, where both solvers reach the gap and determine them.
     pub(super) fn against_clarabel(&self, posed: &Posed) -> Result<(Option<f64>, Option<f64>)> {
-        let settings = Settings::with_relative_gap(RELATIVE_GAP).context("settings")?;
-        let reference = self.problem.solve_with_clarabel(&settings);
+        let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
+        let reference = Solver::try_new(settings)?.solve_with_clarabel(&self.problem);
         if self.is_undecided() || reference.relative_gap > RELATIVE_GAP {
             return Ok((None, None));
         }
