@@ -103,7 +103,7 @@ mod tests {
                 mean: Point3::new(f64::from(k), f64::from(k * k), 0.3 * f64::from(k % 3)),
                 covariance: Covariance::diagonal([0.1, 0.2, 0.3]),
             },
-            class: if k % 2 == 0 { Class::A } else { Class::B },
+            class: if k.is_multiple_of(2) { Class::A } else { Class::B },
             radius: 1.0,
             penalty: 1.0,
         };

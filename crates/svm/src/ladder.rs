@@ -41,6 +41,7 @@ pub(crate) fn climb(
     let mut reached = climb_to(tolerance, start, &rungs, settings, tools);
     let mut solution = conclude(&reached, settings, tools);
     while settings.max_steps.is_none()
+        && !tools.watch.is_cancelled()
         && tolerance > TIGHTEST
         && tools.effort.smo_steps < work::step_budget(problem.len())
         && is_open(&solution, tolerance)

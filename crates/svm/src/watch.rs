@@ -24,9 +24,12 @@ pub struct Progress {
     pub violation: f64,
 }
 
+/// What a caller looks on with.
+pub(crate) type Look<'w> = dyn FnMut(&Progress) -> ControlFlow<()> + 'w;
+
 /// The caller's closure, and whether it has said to stop.
 pub(crate) struct Watch<'w> {
-    look: Option<&'w mut dyn FnMut(&Progress) -> ControlFlow<()>>,
+    look: Option<&'w mut Look<'w>>,
     cancelled: bool,
 }
 
@@ -36,7 +39,7 @@ impl<'w> Watch<'w> {
         Self { look: None, cancelled: false }
     }
 
-    pub(crate) fn new(look: &'w mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Self {
+    pub(crate) fn new(look: &'w mut Look<'w>) -> Self {
         Self { look: Some(look), cancelled: false }
     }
 
