@@ -133,7 +133,7 @@ fn least(mut build: impl FnMut() -> Result<()>) -> Result<f64> {
 
 fn tree_time(cloud: &PointCloud) -> Result<f64> {
     let covariances = SensorModel::Isotropic { std: STD }.covariances(cloud)?;
-    let points = cloud.points.iter().zip(&covariances);
+    let points = cloud.points.iter().zip(covariances.iter());
     let point = |(&mean, &covariance)| Primitive::point(UncertainPoint { mean, covariance });
     let primitives: Vec<Primitive> = points.map(point).collect();
     let mut least = f64::INFINITY;

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use cloudtouch_bvh::{Node, NodeId, Tree};
-use cloudtouch_geom::{Motion, Point3, UncertainPoint, Vector3};
+use cloudtouch_geom::{Motion, Point3, UncertainPoint, UnitVector3, Vector3};
 use cloudtouch_noise::Scratch;
 
 use super::Cloud;
@@ -148,7 +148,8 @@ impl Cloud {
                 }
                 None => self.noise.refine(place, near, &self.sensor, cap, scratch),
             };
-            let (point, spacing, normal) = (refined.point, refined.spacing, refined.normal);
+            let (point, spacing) = (refined.point, refined.spacing);
+            let normal = refined.normal.map(UnitVector3::into_inner);
             let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
             Box::new(Surfel { index, point, spacing, most_variance, normal })
         })

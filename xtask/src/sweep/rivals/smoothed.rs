@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use cloudtouch_geom::{Covariance, Point3};
-use cloudtouch_noise::{Neighborhoods, NoiseModel, Scratch, typical_spacing};
+use cloudtouch_noise::{Neighborhoods, NoiseModel, Scratch, SensorNoise, typical_spacing};
 
 use super::index::Index;
 use super::observed::spread;
@@ -109,7 +109,7 @@ impl SmoothedDistance {
 /// A cloud whose points are smoothed when they are first asked for.
 struct SmoothedCloud {
     neighborhoods: Neighborhoods,
-    sensor: Vec<Covariance>,
+    sensor: SensorNoise,
     model: NoiseModel,
     scratch: Scratch,
     known: Vec<Option<Point3>>,
@@ -123,7 +123,7 @@ impl SmoothedCloud {
         let model = NoiseModel::default();
         Ok(Self {
             neighborhoods: Neighborhoods::try_new(points.to_vec())?,
-            sensor: vec![covariance; points.len()],
+            sensor: SensorNoise::uniform(covariance, points.len()),
             model,
             scratch: Scratch::default(),
             known: vec![None; points.len()],
