@@ -3,6 +3,8 @@
 use cloudtouch_geom::Point3;
 use cloudtouch_geom::message::{number, position};
 
+use crate::settings_error::SettingsError;
+
 /// Why uncertain points could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -61,14 +63,14 @@ pub enum NoiseError {
         /// Where it is.
         point: Point3,
     },
-    /// The sensor origin is not finite.
+    /// The sensor pose is not finite.
     #[error(
-        "the sensor origin {} is not finite: give the position the cloud was seen from",
-        position(origin)
+        "the sensor pose has the entry {}: give the pose the cloud was seen from",
+        number(*value)
     )]
-    SensorOrigin {
-        /// What was given.
-        origin: Point3,
+    SensorPose {
+        /// What was found.
+        value: f64,
     },
     /// A cloud is too large for the index.
     #[error("the cloud has {points} points, more than the 4294967295 an index can hold: split it")]
@@ -96,15 +98,8 @@ pub enum NoiseError {
         reason: String,
     },
     /// A setting is out of range.
-    #[error("setting `{name}` is {}: it must be finite and {requirement}", number(*value))]
-    Setting {
-        /// Which setting.
-        name: &'static str,
-        /// What was given.
-        value: f64,
-        /// The range it must be in.
-        requirement: &'static str,
-    },
+    #[error(transparent)]
+    Setting(#[from] SettingsError),
     /// The probability mass of the ellipsoids is out of range.
     #[error("kappa is {}: the {rule} radius needs a value in {range}", number(*kappa))]
     Kappa {
@@ -128,6 +123,20 @@ pub enum NoiseError {
         /// Edge length of a cell, m.
         resolution: f64,
     },
+}
+
+pub(crate) fn check_value_positive(name: &'static str, value: f64) -> Result<(), NoiseError> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(NoiseError::SensorValue { name, value, requirement: "positive" })
+}
+
+pub(crate) fn check_value_not_negative(name: &'static str, value: f64) -> Result<(), NoiseError> {
+    if value.is_finite() && value >= 0.0 {
+        return Ok(());
+    }
+    Err(NoiseError::SensorValue { name, value, requirement: "not negative" })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Point3;
 
-use crate::NoiseError;
+use crate::error::{NoiseError, check_value_positive};
 
 /// The centres of the occupied cells of a grid, one for each cell, sorted by x, then y, then z.
 ///
@@ -15,7 +15,7 @@ use crate::NoiseError;
 /// When `resolution` is not positive and finite, or a point is more than 2⁵³ cells from the
 /// origin, where neighbouring cells can no longer be told apart.
 pub fn quantize_to_grid(points: &[Point3], resolution: f64) -> Result<Vec<Point3>, NoiseError> {
-    crate::sensor::check_positive("the grid resolution", resolution)?;
+    check_value_positive("the grid resolution", resolution)?;
     let mut cells = Vec::with_capacity(points.len());
     for (index, point) in points.iter().enumerate() {
         if !point.coords.iter().all(|v| v.is_finite()) {

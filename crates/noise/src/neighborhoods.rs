@@ -1,12 +1,13 @@
 //! The neighbours of a point: a k-d tree over the distinct positions of a cloud.
 
+use std::cmp::Ordering;
 use std::num::NonZeroUsize;
 
 use cloudtouch_geom::Point3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
-use crate::NoiseError;
-use crate::sensor::is_finite;
+use crate::error::NoiseError;
+use crate::finite::is_finite;
 
 /// Squares of differences of such coordinates, and sums of three, are still finite.
 const LARGEST_COORDINATE: f64 = 1e150;
@@ -92,6 +93,36 @@ impl Neighborhoods {
         self.search(&self.points[index], k, true, found);
     }
 
+    /// Every position within a distance of point `index` other than its own, in order of distance,
+    /// then index.
+    pub(crate) fn within(&self, index: usize, squared_distance: f64) -> Vec<Neighbor> {
+        let place = self.points[index];
+        if !is_finite(&place) {
+            return Vec::new();
+        }
+        let mut found = self.hits_within(&place, squared_distance);
+        found.retain(|near| self.points[near.index] != place);
+        found.sort_unstable_by(in_order);
+        found
+    }
+
+    /// The positions within a distance of a place, in no order.
+    fn hits_within(&self, place: &Point3, squared_distance: f64) -> Vec<Neighbor> {
+        let query: [f64; 3] = place.coords.into();
+        // The slack keeps the tree's box tests, which round, from losing one.
+        let within = self
+            .tree
+            .query(&query)
+            .within::<SquaredEuclidean<f64>>(squared_distance * (1.0 + 1e-9))
+            .unsorted()
+            .execute();
+        within
+            .iter()
+            .filter(|hit| hit.distance <= squared_distance)
+            .map(|hit| Neighbor { index: hit.item as usize, squared_distance: hit.distance })
+            .collect()
+    }
+
     fn search(&self, place: &Point3, k: usize, leave_out_place: bool, found: &mut Vec<Neighbor>) {
         found.clear();
         // One more than asked for shows whether a tie was cut, and one more makes up for `place`.
@@ -111,27 +142,20 @@ impl Neighborhoods {
             && last.squared_distance == next.squared_distance
         {
             // Which of the tied ones the tree returned is its own affair, so all of them are
-            // fetched; the slack keeps its box tests, which round, from losing one.
-            let limit = last.squared_distance;
-            let within = self
-                .tree
-                .query(&query)
-                .within::<SquaredEuclidean<f64>>(limit * (1.0 + 1e-9))
-                .unsorted()
-                .execute();
+            // fetched.
+            let all = self.hits_within(place, last.squared_distance);
             found.clear();
             found.extend(
-                within
-                    .iter()
-                    .filter(|hit| hit.distance <= limit)
-                    .filter_map(|hit| take(hit.item, hit.distance)),
+                all.iter().filter_map(|near| take(near.index as u32, near.squared_distance)),
             );
         }
-        found.sort_unstable_by(|a, b| {
-            a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
-        });
+        found.sort_unstable_by(in_order);
         found.truncate(k);
     }
+}
+
+fn in_order(a: &Neighbor, b: &Neighbor) -> Ordering {
+    a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
 }
 
 /// Every finite position once, with the lowest index that has it, in the order of these indices.

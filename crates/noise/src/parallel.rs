@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Covariance;
 
-use crate::discretization::limited;
+use crate::limited::limited;
 
 /// (Σ⁻¹ + Ψ⁻¹)⁻¹ for a sensor noise Σ and a sampling error Ψ, defined for singular ones too and
 /// never above Σ.

@@ -8,11 +8,28 @@ pub(crate) struct Patch<'a> {
     /// xⱼ − xᵢ, m.
     pub(crate) offsets: &'a [Vector3],
     /// Σⱼ of each of them.
-    noise: &'a [Covariance],
+    noise: PatchNoise<'a>,
     /// Σᵢ of the point itself.
     own_noise: &'a Covariance,
     /// The least variance a residual is judged by, m².
     floor: f64,
+}
+
+/// Σⱼ of each neighbour.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum PatchNoise<'a> {
+    /// The same for all.
+    Uniform(&'a Covariance),
+    Each(&'a [Covariance]),
+}
+
+impl PatchNoise<'_> {
+    fn nearest(&self, count: usize) -> Self {
+        match self {
+            Self::Uniform(covariance) => Self::Uniform(covariance),
+            Self::Each(all) => Self::Each(&all[..count]),
+        }
+    }
 }
 
 /// A plane n·y = height in coordinates relative to the point.
@@ -32,7 +49,7 @@ impl<'a> Patch<'a> {
     /// Neighbours about a point whose local spacing is `spacing`, m.
     pub(crate) fn new(
         offsets: &'a [Vector3],
-        noise: &'a [Covariance],
+        noise: PatchNoise<'a>,
         own_noise: &'a Covariance,
         spacing: f64,
     ) -> Self {
@@ -41,7 +58,7 @@ impl<'a> Patch<'a> {
 
     /// The first `count` neighbours only.
     pub(crate) fn nearest(&self, count: usize) -> Self {
-        Self { offsets: &self.offsets[..count], noise: &self.noise[..count], ..*self }
+        Self { offsets: &self.offsets[..count], noise: self.noise.nearest(count), ..*self }
     }
 
     /// Offsets of the neighbours with the variances their residuals along a unit normal are
@@ -50,35 +67,23 @@ impl<'a> Patch<'a> {
         &self,
         normal: &Vector3,
     ) -> impl Iterator<Item = (&'a Vector3, f64)> {
-        let (along, floor) = (Along::new(normal), self.floor);
-        let variance = move |noise| along.variance(noise).max(floor);
-        self.offsets.iter().zip(self.noise.iter().map(variance))
+        let (normal, floor) = (*normal, self.floor);
+        let along = move |noise: &Covariance| noise.variance_along(&normal).max(floor);
+        let (same, each) = match self.noise {
+            PatchNoise::Uniform(covariance) => (along(covariance), None),
+            PatchNoise::Each(all) => (floor, Some(all)),
+        };
+        let variance = move |i: usize| each.map_or(same, |all| along(&all[i]));
+        self.offsets.iter().enumerate().map(move |(i, offset)| (offset, variance(i)))
     }
 
     /// The variance of the point itself along a unit normal, by the same measure.
     pub(crate) fn own_variance(&self, normal: &Vector3) -> f64 {
-        Along::new(normal).variance(self.own_noise).max(self.floor)
+        self.own_noise.variance_along(normal).max(self.floor)
     }
 
     /// An upper bound of [`Self::own_variance`] over all normals.
     pub(crate) fn largest_own_variance(&self) -> f64 {
         self.own_noise.std_bound().powi(2).max(self.floor)
-    }
-}
-
-/// The products of a direction that turn the six entries of a covariance into its variance along
-/// it: prepared once, they take a third of the time of a matrix product.
-#[derive(Clone, Copy)]
-struct Along([f64; 6]);
-
-impl Along {
-    fn new(n: &Vector3) -> Self {
-        let (x, y, z) = (n.x, n.y, n.z);
-        Self([x * x, 2.0 * x * y, 2.0 * x * z, y * y, 2.0 * y * z, z * z])
-    }
-
-    fn variance(&self, covariance: &Covariance) -> f64 {
-        let entries = covariance.upper_triangle();
-        self.0.iter().zip(entries).map(|(product, entry)| product * entry).sum()
     }
 }

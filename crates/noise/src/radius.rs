@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::normal;
 
-use crate::NoiseError;
+use crate::error::NoiseError;
 
 /// The ellipsoid radius for Gaussian points: r = Φ⁻¹(κ) (eq. 11), in standard deviations.
 ///

@@ -1,188 +1,119 @@
-//! Sensor models: how far a measured point may be from the surface point it saw.
+//! What a sensor model has to say, and how it becomes the noise of a cloud.
 
-use cloudtouch_geom::{Covariance, Point3, PointCloud, Vector3, unit};
+use cloudtouch_geom::{Covariance, Point3, PointCloud, Pose, Vector3, unit};
 
-use crate::NoiseError;
+use crate::error::NoiseError;
+use crate::finite::is_finite;
+use crate::sensor_noise::SensorNoise;
 
-/// How a sensor errs: the position noise Σᵢ of a point (§3.2 of the paper).
+/// A sensor whose error depends on where a point is as it sees it.
 ///
-/// The text forms that [`FromStr`](std::str::FromStr) reads and [`Display`](std::fmt::Display)
-/// writes are given with each variant. Where a viewing ray matters, it runs from
-/// [`PointCloud::sensor_origin`] to the point, and the depth of a camera is measured along the z
-/// axis of the cloud's frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SensorModel {
-    /// `exact`: no position noise.
-    Exact,
-    /// `iso:STD`: the same standard deviation in every direction.
-    Isotropic {
-        /// Standard deviation, m.
-        std: f64,
-    },
-    /// `axes:SX,SY,SZ`: a standard deviation for each axis of the cloud's frame, as airborne laser
-    /// scanning has.
-    Axes {
-        /// Standard deviations along x, y and z, m.
-        stds: [f64; 3],
-    },
-    /// `stereo:BASELINE,FOCAL_PX,DISPARITY_STD`: a stereo camera in its optical frame.
-    ///
-    /// A disparity error moves the point along its viewing ray, with a depth component of standard
-    /// deviation z²/(f·b)·σ_d. Across the ray the standard deviation is half a pixel, z/(2f): the
-    /// matched pixel is known, the place in it is not.
-    Stereo {
-        /// Distance between the two cameras, m.
-        baseline: f64,
-        /// Focal length, pixels.
-        focal_px: f64,
-        /// Standard deviation of the disparity, pixels.
-        disparity_std: f64,
-    },
-    /// `kinect`: the structured-light camera measured by Nguyen, Izadi and Lovell (2012), in its
-    /// optical frame.
-    ///
-    /// The depth component has the standard deviation 0.0012 + 0.0019 (z − 0.4)² m and errs along
-    /// the viewing ray; across it 0.8 pixels, which are 0.0014 z. The fit was made for z from 0.5
-    /// to 3 m, and surfaces seen at less than 60°; a steeper view is noisier than stated.
-    Kinect,
-    /// `lidar:RANGE_STD,BEAM_RAD`: a laser scanner.
-    ///
-    /// `range_std` acts along the ray. The return may come from anywhere in the footprint, a disc
-    /// of diameter range · `beam_rad`; a uniform disc has a quarter of its diameter as standard
-    /// deviation on each axis across the ray.
-    Lidar {
-        /// Standard deviation of the range, m.
-        range_std: f64,
-        /// Full divergence angle of the beam, rad.
-        beam_rad: f64,
-    },
-    /// `grid:RESOLUTION`: centres of the occupied cells of a collision map, uniform over a cell:
-    /// resolution²/12 on each axis. See [`quantize_to_grid`](crate::quantize_to_grid).
-    Grid {
-        /// Edge length of a cell, m.
-        resolution: f64,
-    },
-    /// `per-point`: the covariances the cloud brings.
-    PerPoint,
-}
-
-impl SensorModel {
+/// [`StereoCamera`](crate::StereoCamera), [`Kinect`](crate::Kinect) and [`Lidar`](crate::Lidar) are
+/// three; implement it for another one. [`SensorModel`](crate::SensorModel) gathers the known ones
+/// under their text forms; a cloud whose noise comes from elsewhere brings it as
+/// [`PointCloud::covariances`] and is read with [`SensorModel::PerPoint`](crate::SensorModel::PerPoint).
+///
+/// ```
+/// use cloudtouch_geom::{Covariance, Point3, PointCloud};
+/// use cloudtouch_noise::{NoiseError, Sensor, SensorModel, along_ray, position_noise};
+///
+/// /// One per cent of the range along the ray, a milliradian across it.
+/// struct Sonar;
+///
+/// impl Sensor for Sonar {
+///     fn validate(&self) -> Result<(), NoiseError> {
+///         Ok(())
+///     }
+///
+///     fn covariance(&self, place: &Point3) -> Covariance {
+///         let range = place.coords.norm();
+///         along_ray(place, 0.01 * range, 0.001 * range)
+///     }
+/// }
+///
+/// let mut cloud = PointCloud::from_points(vec![Point3::new(0.0, 0.0, 2.0)]);
+/// let noise = position_noise(&Sonar, &cloud)?;
+/// assert_eq!(noise[0].max_std(), 0.02);
+///
+/// // For a query: the cloud brings its noise along.
+/// cloud.covariances = Some(noise.iter().copied().collect());
+/// assert_eq!(SensorModel::PerPoint.covariances(&cloud)?[0], noise[0]);
+/// # Ok::<(), NoiseError>(())
+/// ```
+pub trait Sensor {
     /// Checks the values of the model.
     ///
     /// # Errors
-    /// When a standard deviation or angle is negative, a baseline, focal length or resolution is
-    /// not positive, or any of them is not finite.
-    pub fn validate(&self) -> Result<(), NoiseError> {
-        match *self {
-            Self::Exact | Self::Kinect | Self::PerPoint => Ok(()),
-            Self::Isotropic { std } => check_not_negative("the standard deviation", std),
-            Self::Axes { stds: [x, y, z] } => {
-                check_not_negative("the standard deviation along x", x)?;
-                check_not_negative("the standard deviation along y", y)?;
-                check_not_negative("the standard deviation along z", z)
-            }
-            Self::Stereo { baseline, focal_px, disparity_std } => {
-                check_positive("the baseline", baseline)?;
-                check_positive("the focal length", focal_px)?;
-                check_not_negative("the standard deviation of the disparity", disparity_std)
-            }
-            Self::Lidar { range_std, beam_rad } => {
-                check_not_negative("the standard deviation of the range", range_std)?;
-                check_not_negative("the beam divergence", beam_rad)
-            }
-            Self::Grid { resolution } => check_positive("the grid resolution", resolution),
-        }
-    }
+    /// When one of them is out of range.
+    fn validate(&self) -> Result<(), NoiseError>;
 
-    /// The position noise Σᵢ of every point of a cloud, in its frame, m².
-    ///
-    /// A missing return (a point that is not finite) gets the zero covariance, to keep rows in
-    /// step. A camera sees less than 60° off its axis, so a point farther off, or behind it, counts
-    /// as |z| deep but never as less than half its range. A point at the sensor itself has no ray;
-    /// it gets the larger of its two standard deviations in every direction.
-    ///
-    /// # Errors
-    /// When [`validate`](Self::validate) objects, the sensor origin is not finite, a covariance
-    /// leaves the range of `f64`, or per-point covariances are asked for and missing, too few or
-    /// not finite.
-    pub fn covariances(&self, cloud: &PointCloud) -> Result<Vec<Covariance>, NoiseError> {
-        self.validate()?;
-        let origin = cloud.sensor_origin();
-        if !is_finite(&origin) {
-            return Err(NoiseError::SensorOrigin { origin });
-        }
-        let given = cloud.covariances.as_deref();
-        if matches!(self, Self::PerPoint) {
-            let covariances = given.ok_or(NoiseError::NoCovariances)?.len();
-            if covariances != cloud.len() {
-                return Err(NoiseError::CovarianceCount { points: cloud.len(), covariances });
-            }
-        }
-        let one = |(index, point): (usize, &Point3)| {
-            if !is_finite(point) {
-                return Ok(Covariance::zero());
-            }
-            let covariance = match (self, given) {
-                (Self::PerPoint, Some(all)) => all[index],
-                _ => self.covariance_at(&(point - origin)),
-            };
-            if covariance.is_finite() {
-                Ok(covariance)
-            } else {
-                Err(NoiseError::CovarianceNotFinite { index, point: *point })
-            }
-        };
-        cloud.points.iter().enumerate().map(one).collect()
-    }
+    /// The position noise Σ of a point at `place`, m and m², both in the frame of the sensor.
+    fn covariance(&self, place: &Point3) -> Covariance;
 
-    /// Σ of the point at `from_sensor`, for every model but `PerPoint`, which has none of its own.
-    fn covariance_at(&self, from_sensor: &Vector3) -> Covariance {
-        let range = from_sensor.norm();
-        let depth = from_sensor.z.abs().max(0.5 * range);
-        // A depth error moves the point along its ray, so it is longer than its depth component.
-        let stretch = if depth > 0.0 { range / depth } else { 1.0 };
-        match *self {
-            Self::Exact | Self::PerPoint => Covariance::zero(),
-            Self::Isotropic { std } => Covariance::isotropic(std * std),
-            Self::Axes { stds } => Covariance::diagonal(stds.map(|s| s * s)),
-            Self::Stereo { baseline, focal_px, disparity_std } => {
-                let depth_std = depth * depth / (focal_px * baseline) * disparity_std;
-                along_ray(from_sensor, depth_std * stretch, 0.5 * depth / focal_px)
-            }
-            Self::Kinect => {
-                let depth_std = 0.0012 + 0.0019 * (depth - 0.4).powi(2);
-                along_ray(from_sensor, depth_std * stretch, 0.0014 * depth)
-            }
-            Self::Lidar { range_std, beam_rad } => {
-                along_ray(from_sensor, range_std, 0.25 * range * beam_rad)
-            }
-            Self::Grid { resolution } => Covariance::isotropic(resolution * resolution / 12.0),
-        }
+    /// Whether it sees only what is before it, along the z axis of its own frame, as cameras do.
+    fn is_camera(&self) -> bool {
+        false
     }
 }
 
-/// Standard deviation `along` a ray and `across` it; the larger of them where there is no ray.
-fn along_ray(ray: &Vector3, along: f64, across: f64) -> Covariance {
-    match unit(ray) {
+/// The position noise of every point of a cloud as `sensor` saw it, in the frame of the cloud.
+///
+/// The sensor stands at the origin of [`PointCloud::sensor_pose`] and is turned as this says. The
+/// turn of a camera is believed only where it puts at least half of the points before the camera:
+/// files state turns that their points are not in. Otherwise the camera is taken to look along the z
+/// axis of the cloud's frame, as clouds in an optical frame have it. A missing return (a point that
+/// is not finite) gets the zero covariance, to keep rows in step.
+///
+/// # Errors
+/// When [`Sensor::validate`] objects, the sensor pose is not finite, or a covariance leaves the range
+/// of `f64`.
+pub fn position_noise(sensor: &impl Sensor, cloud: &PointCloud) -> Result<SensorNoise, NoiseError> {
+    sensor.validate()?;
+    let pose = plausible_pose(sensor, cloud)?;
+    let cloud_to_sensor = pose.inverse();
+    let one = |(index, point): (usize, &Point3)| {
+        if !is_finite(point) {
+            return Ok(Covariance::zero());
+        }
+        let covariance = sensor.covariance(&cloud_to_sensor.transform_point(point));
+        if covariance.is_finite() {
+            Ok(covariance.rotated(pose.rotation()))
+        } else {
+            Err(NoiseError::CovarianceNotFinite { index, point: *point })
+        }
+    };
+    let all: Result<Vec<Covariance>, NoiseError> =
+        cloud.points.iter().enumerate().map(one).collect();
+    Ok(all?.into())
+}
+
+/// The pose of the sensor, without a turn that a camera cannot have had.
+fn plausible_pose(sensor: &impl Sensor, cloud: &PointCloud) -> Result<Pose, NoiseError> {
+    let stated = cloud.sensor_pose;
+    checked_pose(&stated)?;
+    let axis = stated.transform_vector(&Vector3::z());
+    let origin = cloud.sensor_origin();
+    let finite = || cloud.points.iter().filter(|point| is_finite(point));
+    let seen = finite().filter(|&point| (point - origin).dot(&axis) > 0.0).count();
+    if sensor.is_camera() && 2 * seen < finite().count() {
+        return Ok(Pose::from_translation(stated.translation()));
+    }
+    Ok(stated)
+}
+
+/// Whether a pose can be computed with.
+pub(crate) fn checked_pose(pose: &Pose) -> Result<(), NoiseError> {
+    match pose.non_finite_entry() {
+        Some(value) => Err(NoiseError::SensorPose { value }),
+        None => Ok(()),
+    }
+}
+
+/// The standard deviation `along` the ray to a place in the frame of the sensor, and `across` it, m;
+/// the larger of them in every direction for a place at the sensor itself, which has no ray.
+pub fn along_ray(place: &Point3, along: f64, across: f64) -> Covariance {
+    match unit(&place.coords) {
         Ok(direction) => Covariance::from_axis(&direction, along, across),
         Err(_) => Covariance::isotropic(along.max(across).powi(2)),
     }
-}
-
-pub(crate) fn is_finite(point: &Point3) -> bool {
-    point.coords.iter().all(|v| v.is_finite())
-}
-
-pub(crate) fn check_positive(name: &'static str, value: f64) -> Result<(), NoiseError> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(NoiseError::SensorValue { name, value, requirement: "positive" })
-}
-
-fn check_not_negative(name: &'static str, value: f64) -> Result<(), NoiseError> {
-    if value.is_finite() && value >= 0.0 {
-        return Ok(());
-    }
-    Err(NoiseError::SensorValue { name, value, requirement: "not negative" })
 }

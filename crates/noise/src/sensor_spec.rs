@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::{NoiseError, SensorModel};
+use crate::error::NoiseError;
+use crate::sensor_model::SensorModel;
 
 impl FromStr for SensorModel {
     type Err = NoiseError;

@@ -1,6 +1,8 @@
-//! Which noise model to use, and its checked settings.
+//! Which noise model to use, and its settings.
 
-use crate::{Discretization, NoiseError};
+use crate::discretization::Discretization;
+use crate::posterior_settings::PosteriorSettings;
+use crate::settings_error::SettingsError;
 
 /// How position noise Σᵢ and sampling become the mean and covariance of a surface point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,60 +26,24 @@ pub enum Combination {
 }
 
 /// Settings of a [`NoiseModel`](crate::NoiseModel).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct NoiseSettings {
     /// How sensor and sampling errors are put together; the surface posterior by default.
     pub combination: Combination,
-    /// The neighbourhood of eq. 17, for `Precision` and `Convolution`.
+    /// Eq. 17, for `Precision` and `Convolution`.
     pub discretization: Discretization,
-    /// Standard deviation of the disc of `SurfacePosterior` across the normal, in local spacings.
-    /// 0.35 by default, a little more than the 1/√12 of a uniform square of side one.
-    pub disc_std: f64,
-}
-
-impl Default for NoiseSettings {
-    fn default() -> Self {
-        Self {
-            combination: Combination::default(),
-            discretization: Discretization::default(),
-            disc_std: 0.35,
-        }
-    }
+    /// For `SurfacePosterior`.
+    pub posterior: PosteriorSettings,
 }
 
 impl NoiseSettings {
     /// Checks the settings.
     ///
     /// # Errors
-    /// When the neighbourhood is empty, its width is not positive, the disc is negative, or a
-    /// value is not finite.
-    pub fn validate(&self) -> Result<(), NoiseError> {
+    /// When the neighbourhood is empty, its width is not positive, a parameter of the posterior is
+    /// negative, or a value is not finite.
+    pub fn validate(&self) -> Result<(), SettingsError> {
         self.discretization.validate()?;
-        if self.disc_std.is_finite() && self.disc_std >= 0.0 {
-            return Ok(());
-        }
-        Err(NoiseError::Setting {
-            name: "disc_std",
-            value: self.disc_std,
-            requirement: "not negative",
-        })
+        self.posterior.validate()
     }
-}
-
-pub(crate) fn check_positive(name: &'static str, value: f64) -> Result<(), NoiseError> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(NoiseError::Setting { name, value, requirement: "positive" })
-}
-
-pub(crate) fn check_at_least(
-    name: &'static str,
-    value: usize,
-    least: usize,
-) -> Result<(), NoiseError> {
-    if value >= least {
-        return Ok(());
-    }
-    Err(NoiseError::Setting { name, value: value as f64, requirement: "at least 1" })
 }

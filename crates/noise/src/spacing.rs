@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::{Neighbor, Neighborhoods};
+use crate::neighborhoods::{Neighbor, Neighborhoods};
 
 /// The neighbour whose distance gives the spacing: enough to average over direction, few enough
 /// to stay local.

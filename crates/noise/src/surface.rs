@@ -1,7 +1,7 @@
 //! The surface near a point: a robust local fit over a neighbourhood that grows while it explains
 //! the residuals.
 
-use cloudtouch_geom::{Matrix3, Vector3};
+use cloudtouch_geom::{Matrix3, UnitVector3, Vector3};
 
 use crate::candidates::best_candidate;
 use crate::patch::{Patch, Plane};
@@ -17,18 +17,33 @@ const LEAST_NEIGHBORS: usize = 4;
 const CUTS: [f64; 4] = [3.5, 3.5, 3.0, 3.0];
 /// The cut of the weights an answer is measured with.
 const FINAL_CUT: f64 = 3.0;
+/// The variance of standard normal residuals weighted by Tukey factors that end at
+/// [`FINAL_CUT`]: ∫ t x² φ / ∫ t φ with t = (1 − x²/9)².
+const TUKEY_VARIANCE: f64 = 0.632;
 /// The largest variance of the normal that still says where the surface faces: about 20°.
 const MOST_TILT_VARIANCE: f64 = 0.125;
 
 /// The surface near a point, in coordinates relative to it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Surface {
-    /// Unit normal of the surface nearest the point, of either sign.
-    pub(crate) normal: Vector3,
+    /// Normal of the surface nearest the point, of either sign.
+    pub(crate) normal: UnitVector3,
     /// Height of the surface above the point along the normal, m.
     pub(crate) height: f64,
-    /// Variance of that height, misfit included, m².
-    pub(crate) variance: f64,
+    /// What noise and misfit were expected to leave of error when the neighbourhood was chosen, m².
+    pub(crate) expected_error: f64,
+    /// The variance that the noise of the neighbours gives that height, m².
+    pub(crate) leverage: f64,
+    /// The variance of a misfit that residuals may hide, m².
+    pub(crate) hidden: f64,
+    /// The squared difference in height of a curved surface through the same neighbours, m².
+    pub(crate) bend: f64,
+    /// What the noise does not explain of the variance of the residuals, m².
+    pub(crate) misfit: f64,
+    /// How far the heights of fits to other neighbourhoods differ beyond their errors, squared, m².
+    pub(crate) disagreement: f64,
+    /// The mean squared sine between the normals of these fits and this one.
+    pub(crate) tilt: f64,
     /// The frame of the fit, in which `coefficients` holds.
     frame: Frame,
     /// Height above the point's tangential position: c₀ + c₁a + c₂b + c₃(a²+b²).
@@ -50,8 +65,8 @@ impl Surface {
 ///
 /// From the best supported plane of a few, each neighbourhood size is refined by Tukey weights;
 /// the size and the model (plane, or plane with mean curvature) with the least expected squared
-/// error s²·leverage + 2τ² are kept, τ² being what noise does not explain of the residuals; what
-/// the other sizes say about the height adds to it. `None` when no size determines a plane: too
+/// error s²·leverage + 2τ² are kept, τ² being what noise does not explain of the residuals. What the
+/// other sizes say about height and normal comes with it. `None` when no size determines a plane: too
 /// few neighbours, or all about one line.
 pub(crate) fn fit_surface(patch: &Patch) -> Option<Surface> {
     let available = patch.offsets.len();
@@ -70,7 +85,7 @@ pub(crate) fn fit_surface(patch: &Patch) -> Option<Surface> {
         {
             plane = refined;
             *trial = Some(surface);
-            if best.is_none_or(|b| surface.variance < b.variance) {
+            if best.is_none_or(|b| surface.expected_error < b.expected_error) {
                 best = Some(surface);
             }
         }
@@ -78,22 +93,26 @@ pub(crate) fn fit_surface(patch: &Patch) -> Option<Surface> {
             break;
         }
     }
-    best.map(|best| Surface { variance: best.variance + disagreement(&best, &tried), ..best })
+    let best = best?;
+    let (disagreement, tilt) = disagreement(&best, &tried);
+    Some(Surface { disagreement, tilt, ..best })
 }
 
-/// What the sizes disagree about the height beyond their own errors, on average, m².
+/// What the sizes disagree about the height beyond their own errors, m², and about the normal, as the
+/// squared sine; both on average.
 ///
 /// Next to a crease each size rounds it off differently and none of the fits notices.
-fn disagreement(best: &Surface, tried: &[Option<Surface>]) -> f64 {
-    let here = best.normal * best.height;
+fn disagreement(best: &Surface, tried: &[Option<Surface>]) -> (f64, f64) {
+    let normal = best.normal.into_inner();
     let mut count = 0.0;
-    let mut total = 0.0;
+    let (mut apart, mut tilt) = (0.0, 0.0);
     for other in tried.iter().flatten() {
-        let between = (other.normal * other.height - here).dot(&best.normal);
-        total += (between * between - other.variance).max(0.0);
+        let between = other.normal.dot(&normal) * other.height - best.height;
+        apart += (between * between - other.expected_error).max(0.0);
+        tilt += other.normal.cross(&normal).norm_squared();
         count += 1.0;
     }
-    total / count
+    (apart / count, tilt / count)
 }
 
 /// One pass of Tukey weights: the plane through the neighbours weighted by how well they agree
@@ -230,8 +249,9 @@ impl Moments {
         let curvature = if determined { curve_product / curve_squares } else { 0.0 };
         let flat_height = z - slope[0] * a - slope[1] * b;
         let flat_squares = (zz - slope[0] * az - slope[1] * bz).max(0.0);
-        let allowed = s2 * (1.0 + 2.0 * (2.0 / degrees).sqrt());
-        let unexplained = |squares: f64| 2.0 * (squares / self.agreement - allowed).max(0.0);
+        // What the residuals vary by beyond the noise, and how far that is by chance.
+        let beyond = |squares: f64| squares / (TUKEY_VARIANCE * self.agreement) - s2;
+        let chance = s2 * (2.0 / degrees).sqrt();
         let leverage = 1.0 / self.weight + centre[0] * a + centre[1] * b;
         let curved_squares = (flat_squares - curvature * curve_product).max(0.0);
         Some(Regression {
@@ -242,24 +262,47 @@ impl Moments {
                 slope[1] - curvature * bend[1],
                 curvature,
             ],
-            flat_error: s2 * leverage.min(1.0)
-                + (curvature * curve_here).powi(2)
-                + unexplained(flat_squares),
-            curved_error: determined.then(|| {
-                s2 * (leverage + curve_here.powi(2) / curve_squares).min(1.0)
-                    + unexplained(curved_squares)
+            flat_error: HeightError {
+                leverage: s2 * leverage.min(1.0),
+                bend: (curvature * curve_here).powi(2),
+                beyond: beyond(flat_squares),
+                chance,
+            },
+            curved_error: determined.then(|| HeightError {
+                leverage: s2 * (leverage + curve_here.powi(2) / curve_squares).min(1.0),
+                bend: 0.0,
+                beyond: beyond(curved_squares),
+                chance,
             }),
         })
     }
 }
 
-/// Two surfaces through the same neighbours, and the expected squared error of their heights at
-/// the point, m².
+/// Two surfaces through the same neighbours, and what is known of the errors of their heights at the
+/// point.
 struct Regression {
     flat: [f64; 4],
     curved: [f64; 4],
-    flat_error: f64,
-    curved_error: Option<f64>,
+    flat_error: HeightError,
+    curved_error: Option<HeightError>,
+}
+
+/// What the error of a height is made of, m².
+#[derive(Clone, Copy)]
+struct HeightError {
+    leverage: f64,
+    bend: f64,
+    /// What the residuals vary by beyond the noise; less than nothing by chance.
+    beyond: f64,
+    /// The standard deviation of that.
+    chance: f64,
+}
+
+impl HeightError {
+    /// The error to be expected, by which neighbourhoods and models are chosen.
+    fn expected(&self) -> f64 {
+        self.leverage + self.bend + 2.0 * (self.beyond - self.chance).max(0.0)
+    }
 }
 
 /// Height and expected squared error of the surface at the point.
@@ -273,17 +316,24 @@ fn measured(patch: &Patch, plane: &Plane) -> Option<Surface> {
     let mut best = (first.flat, first.flat_error);
     if let Some(second) = second
         && let Some(error) = second.curved_error
-        && error < best.1
+        && error.expected() < best.1.expected()
     {
         best = (second.curved, error);
     }
-    let (coefficients, variance) = best;
+    let (coefficients, error) = best;
     let [height, on_a, on_b, _] = coefficients;
-    let normal = (frame.normal - frame.tangents[0] * on_a - frame.tangents[1] * on_b).normalize();
+    let across = frame.normal - frame.tangents[0] * on_a - frame.tangents[1] * on_b;
+    let normal = UnitVector3::new_normalize(across);
     Some(Surface {
         normal,
         height: height * normal.dot(&frame.normal),
-        variance,
+        expected_error: error.expected(),
+        leverage: error.leverage,
+        hidden: error.chance,
+        bend: error.bend,
+        misfit: error.beyond.max(0.0),
+        disagreement: 0.0,
+        tilt: 0.0,
         frame,
         coefficients,
     })

@@ -3,7 +3,7 @@
 mod common;
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3};
-use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch};
+use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 use proptest::prelude::*;
 
 use common::model;
@@ -49,6 +49,7 @@ proptest! {
     #[test]
     fn refined_points_keep_their_bounds(cloud in any_cloud(), cap in any_cap()) {
         let (points, sensor): (Vec<_>, Vec<_>) = cloud.into_iter().unzip();
+        let sensor = SensorNoise::from(sensor);
         let index = Neighborhoods::try_new(points.clone()).unwrap();
         let mut scratch = Scratch::default();
         for combination in ALL {
@@ -79,6 +80,7 @@ proptest! {
     #[test]
     fn refinement_depends_on_its_arguments_alone(cloud in any_cloud()) {
         let (points, sensor): (Vec<_>, Vec<_>) = cloud.into_iter().unzip();
+        let sensor = SensorNoise::from(sensor);
         let index = Neighborhoods::try_new(points.clone()).unwrap();
         let mut scratch = Scratch::default();
         for combination in ALL {

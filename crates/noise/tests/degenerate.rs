@@ -4,16 +4,17 @@ mod common;
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, Vector3};
 use cloudtouch_noise::{
-    Combination, Discretization, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, Scratch,
+    Combination, Discretization, Neighborhoods, NoiseError, NoiseModel, NoiseSettings,
+    PosteriorSettings, Scratch, SensorNoise,
 };
 
-use common::{model, plane, refine_all};
+use common::{isotropic, model, plane, refine_all};
 
 const NOISE: f64 = 0.01;
 
 /// The posterior of every point, and that each is finite and where it was measured.
 fn stays_put(points: &[Point3], noise: f64) -> Vec<Covariance> {
-    let sensor = vec![Covariance::isotropic(noise * noise); points.len()];
+    let sensor = isotropic(noise, points);
     refine_all(&model(Combination::SurfacePosterior), points, &sensor)
         .into_iter()
         .zip(points)
@@ -39,7 +40,7 @@ fn a_point_alone_keeps_its_sensor_noise() {
 #[test]
 fn a_point_alone_is_uncertain_by_the_cap_under_convolution() {
     let index = Neighborhoods::try_new(vec![Point3::origin()]).unwrap();
-    let sensor = [Covariance::isotropic(NOISE * NOISE)];
+    let sensor = SensorNoise::from(vec![Covariance::isotropic(NOISE * NOISE)]);
     let refine = |combination, cap| {
         let mut scratch = Scratch::default();
         model(combination).refine(0, &index, &sensor, cap, &mut scratch).point.covariance
@@ -73,7 +74,7 @@ fn three_points_fit_any_plane_and_none_is_fitted() {
 #[test]
 fn an_exact_coplanar_cloud_has_exact_normals_and_does_not_move() {
     let surface = plane(0.4, 0.02, 3);
-    let sensor = vec![Covariance::zero(); surface.points.len()];
+    let sensor = isotropic(0.0, &surface.points);
     for (refined, point) in
         refine_all(&model(Combination::SurfacePosterior), &surface.points, &sensor)
             .iter()
@@ -81,21 +82,20 @@ fn an_exact_coplanar_cloud_has_exact_normals_and_does_not_move() {
     {
         assert_eq!(refined.point.mean, *point);
         assert!(refined.normal.unwrap().z.abs() > 1.0 - 1e-12);
-        // (0.02 h)² is all that is left along the normal.
+        // (0.01 h)² is all that is left along the normal.
         let along = refined.point.covariance.std_along(&refined.normal.unwrap());
-        assert!((along - 0.02 * refined.spacing).abs() < 1e-12);
+        assert!((along - 0.01 * refined.spacing).abs() < 1e-12);
     }
 }
 
 #[test]
 fn missing_returns_change_nothing_for_the_others() {
     let surface = plane(0.2, 0.02, 3);
-    let sensor = vec![Covariance::isotropic(1e-6); surface.points.len() + 1];
     let model = model(Combination::SurfacePosterior);
     let mut points = surface.points.clone();
     points.push(Point3::new(f64::NAN, 0.0, 0.0));
-    let with = refine_all(&model, &points, &sensor);
-    let without = refine_all(&model, &surface.points, &sensor[1..]);
+    let with = refine_all(&model, &points, &isotropic(1e-3, &points));
+    let without = refine_all(&model, &surface.points, &isotropic(1e-3, &surface.points));
     assert_eq!(with[..without.len()], without[..]);
     assert_eq!(with[without.len()].normal, None);
 }
@@ -105,8 +105,8 @@ fn a_cloud_stored_twice_is_the_cloud() {
     let surface = plane(0.2, 0.02, 3);
     let sensor = vec![Covariance::isotropic(1e-6); surface.points.len()];
     let model = model(Combination::SurfacePosterior);
-    let once = refine_all(&model, &surface.points, &sensor);
-    let twice = refine_all(&model, &surface.points.repeat(2), &sensor.repeat(2));
+    let once = refine_all(&model, &surface.points, &sensor.clone().into());
+    let twice = refine_all(&model, &surface.points.repeat(2), &sensor.repeat(2).into());
     assert_eq!(twice[..once.len()], once[..]);
     assert_eq!(twice[once.len()..], once[..]);
 }
@@ -118,8 +118,7 @@ fn scenes_of_any_size_are_refined_alike() {
     let model = model(Combination::SurfacePosterior);
     let refine = |scale: f64| {
         let scaled: Vec<_> = points.iter().map(|p| Point3::from(p.coords * scale)).collect();
-        let variance = (0.002 * scale).powi(2);
-        refine_all(&model, &scaled, &vec![Covariance::isotropic(variance); points.len()])
+        refine_all(&model, &scaled, &isotropic(0.002 * scale, &scaled))
     };
     let unit = refine(1.0);
     for scale in [1e-6, 1e6] {
@@ -134,12 +133,16 @@ fn scenes_of_any_size_are_refined_alike() {
 fn settings_out_of_range_are_refused() {
     let fine = NoiseSettings::default();
     let discretization = Discretization { neighbors: 0, ..fine.discretization };
+    let disc = |disc_std| NoiseSettings {
+        posterior: PosteriorSettings { disc_std, ..fine.posterior },
+        ..fine
+    };
     for (settings, name) in [
-        (NoiseSettings { disc_std: -0.1, ..fine }, "disc_std"),
-        (NoiseSettings { disc_std: f64::NAN, ..fine }, "disc_std"),
+        (disc(-0.1), "posterior.disc_std"),
+        (disc(f64::NAN), "posterior.disc_std"),
         (NoiseSettings { discretization, ..fine }, "discretization.neighbors"),
     ] {
         let error = NoiseModel::try_new(settings).unwrap_err();
-        assert!(matches!(error, NoiseError::Setting { name: n, .. } if n == name), "{error}");
+        assert!(matches!(error, NoiseError::Setting(found) if found.name == name), "{error}");
     }
 }

@@ -9,13 +9,12 @@ use cloudtouch_geom::{Covariance, Point3, PointCloud, Pose, UnitVector3, Vector3
 use cloudtouch_noise::{Combination, Neighborhoods, Refined, Scratch, SensorModel};
 
 use common::{
-    Surface, cuboid, distance_to_cuboid, gaussian, model, noisy, plane, refine_all,
+    Surface, cuboid, distance_to_cuboid, gaussian, isotropic, model, noisy, plane, refine_all,
     root_mean_square, sphere,
 };
 
 fn posterior(points: &[Point3], std: f64) -> Vec<Refined> {
-    let sensor = vec![Covariance::isotropic(std * std); points.len()];
-    refine_all(&model(Combination::SurfacePosterior), points, &sensor)
+    refine_all(&model(Combination::SurfacePosterior), points, &isotropic(std, points))
 }
 
 /// Whether a point of [`plane`] is far enough from its rim to have neighbours all round.
@@ -43,7 +42,7 @@ fn samples_much_denser_than_the_noise_are_averaged_over_a_wider_neighbourhood() 
     for (spacing, std) in [(0.002, 0.015), (0.004, 0.015)] {
         let measured = noisy(&plane(0.3, spacing, 1).points, std, 7);
         let hoods = Neighborhoods::try_new(measured.clone()).unwrap();
-        let sensor = vec![Covariance::isotropic(std * std); measured.len()];
+        let sensor = isotropic(std, &measured);
         let model = model(Combination::SurfacePosterior);
         let mut scratch = Scratch::default();
         let well_inside = |p: &Point3| p.x.abs() < 0.1 && p.y.abs() < 0.1;
@@ -98,9 +97,8 @@ fn stated_standard_deviations_are_honest() {
             let refined = posterior(&noisy(&flat.points, std, 7), std);
             let on_planes = standardised(&flat, &refined, |p| p.z);
             let spread = root_mean_square(on_planes.iter().copied());
-            // Below 0.5, that is too careful: the share kept for what bends between samples is
-            // not needed on a plane.
-            assert!((0.38..0.7).contains(&spread), "plane, {std}, {spacing}: {spread}");
+            // A little too careful: what residuals may hide is not there on a plane.
+            assert!((0.65..1.1).contains(&spread), "plane, {std}, {spacing}: {spread}");
             pooled.extend(on_planes);
             for radius in [0.1, 0.2] {
                 let round = sphere(radius, spacing, 2);
@@ -166,7 +164,7 @@ fn an_outlier_is_not_trusted_to_lie_on_the_surface() {
     let outlier = points[points.len() - 1];
     let refined = posterior(&points, std)[points.len() - 1];
     assert!((refined.point.mean - outlier).norm() < std);
-    let along = refined.point.covariance.std_along(&refined.normal.unwrap_or(Vector3::z()));
+    let along = refined.point.covariance.std_along(&refined.normal.unwrap_or(Vector3::z_axis()));
     assert!(along > 0.8 * std, "{along}");
 }
 
@@ -208,8 +206,8 @@ fn a_rigid_motion_moves_the_answer() {
         [Combination::Precision, Combination::Convolution, Combination::SurfacePosterior]
     {
         let model = model(combination);
-        let here = refine_all(&model, &points, &sensor);
-        let there = refine_all(&model, &moved, &turned);
+        let here = refine_all(&model, &points, &sensor.clone().into());
+        let there = refine_all(&model, &moved, &turned.clone().into());
         for (a, b) in here.iter().zip(&there) {
             let expected = a.point.transformed(&pose);
             assert!((expected.mean - b.point.mean).norm() < 1e-9, "{combination:?}");
@@ -223,7 +221,7 @@ fn a_rigid_motion_moves_the_answer() {
 #[test]
 fn the_cap_limits_the_spacing_and_the_disc() {
     let points = plane(0.4, 0.02, 1).points;
-    let sensor = vec![Covariance::isotropic(1e-6); points.len()];
+    let sensor = isotropic(1e-3, &points);
     let index = Neighborhoods::try_new(points).unwrap();
     let model = model(Combination::SurfacePosterior);
     let refined = model.refine(200, &index, &sensor, 0.005, &mut Scratch::default());

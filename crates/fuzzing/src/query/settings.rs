@@ -59,7 +59,7 @@ pub(super) fn cloud_settings(u: &mut Unstructured<'_>, mode: Mode) -> Result<Clo
     noise.combination = *u.choose(&combinations)?;
     noise.discretization.neighbors = count(u, noise.discretization.neighbors)?;
     noise.discretization.width = setting(u, noise.discretization.width, 0.0, 10.0)?;
-    noise.disc_std = setting(u, noise.disc_std, 0.0, 2.0)?;
+    noise.posterior.disc_std = setting(u, noise.posterior.disc_std, 0.0, 2.0)?;
     let usual = TreeSettings::default();
     settings.tree = TreeSettings {
         max_leaf_points: count(u, usual.max_leaf_points)?,

@@ -1,8 +1,11 @@
 //! Seeded clouds sampled from known surfaces.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
+pub(crate) mod sigma;
 use cloudtouch_geom::{Covariance, Point3, Vector3, seed};
-use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, NoiseSettings, Refined, Scratch};
+use cloudtouch_noise::{
+    Combination, Neighborhoods, NoiseModel, NoiseSettings, Refined, SensorNoise,
+};
 
 /// A number in [0, 1) that depends on `stream` and `index` alone.
 pub(crate) fn uniform(stream: u64, index: usize) -> f64 {
@@ -55,17 +58,19 @@ pub(crate) fn model(combination: Combination) -> NoiseModel {
     NoiseModel::try_new(NoiseSettings { combination, ..NoiseSettings::default() }).expect("valid")
 }
 
+/// The same noise in every direction at every point.
+pub(crate) fn isotropic(std: f64, points: &[Point3]) -> SensorNoise {
+    SensorNoise::uniform(Covariance::isotropic(std * std), points.len())
+}
+
 /// Every point refined, without a cap.
 pub(crate) fn refine_all(
     model: &NoiseModel,
     points: &[Point3],
-    sensor: &[Covariance],
+    sensor: &SensorNoise,
 ) -> Vec<Refined> {
     let index = Neighborhoods::try_new(points.to_vec()).expect("an index");
-    let mut scratch = Scratch::default();
-    (0..points.len())
-        .map(|i| model.refine(i, &index, sensor, f64::INFINITY, &mut scratch))
-        .collect()
+    model.refine_all(&index, sensor, f64::INFINITY)
 }
 
 pub(crate) fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {

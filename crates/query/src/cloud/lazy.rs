@@ -1,7 +1,7 @@
 //! The surface of a cloud: its noise model is computed when a query first comes near, and kept.
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::{Point3, UnitVector3};
 use cloudtouch_noise::Scratch;
 
 use super::prepare::Cloud;
@@ -44,7 +44,8 @@ impl Cloud {
                 }
                 None => self.noise.refine(place, near, &self.sensor, cap, scratch),
             };
-            let (point, spacing, normal) = (refined.point, refined.spacing, refined.normal);
+            let (point, spacing) = (refined.point, refined.spacing);
+            let normal = refined.normal.map(UnitVector3::into_inner);
             let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
             Box::new(Surfel { index, point, spacing, most_variance, normal })
         })

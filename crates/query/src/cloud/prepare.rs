@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use cloudtouch_bvh::{LeafBounds, Primitive, Tree};
-use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
-use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel};
+use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
+use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, SensorNoise};
 
 use crate::error::PrepareError;
 use crate::filter::{StageReport, filter};
@@ -21,9 +21,9 @@ pub struct Cloud {
     /// What was subtracted from file coordinates, m: far offsets keep their millimetres.
     origin: Vector3,
     /// Position noise of each point (Σ of the paper).
-    pub(super) sensor: Vec<Covariance>,
+    pub(super) sensor: SensorNoise,
     /// Unit normals, where the surface is known.
-    pub(super) normals: Option<Vec<Vector3>>,
+    pub(super) normals: Option<Vec<UnitVector3>>,
     rows: Vec<usize>,
     stages: Vec<StageReport>,
     /// The points kept by the filter, in the local frame, and which are near which.
@@ -59,11 +59,6 @@ impl Cloud {
         };
         check_points(&kept.points)?;
         let sensor = settings.sensor.covariances(&kept)?;
-        if let Some(index) = sensor.iter().position(|c| !c.is_finite()) {
-            let source =
-                cloudtouch_geom::CovarianceError::NotFinite { row: 0, column: 0, value: f64::NAN };
-            return Err(PrepareError::Covariance { index, source });
-        }
         let normals = match (&kept.normals, settings.noise.combination) {
             (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),
             _ => None,
@@ -72,7 +67,7 @@ impl Cloud {
         let points: Vec<Point3> = kept.points.iter().map(|p| p - origin).collect();
         let primitives = points
             .iter()
-            .zip(&sensor)
+            .zip(sensor.iter())
             .map(|(&mean, &covariance)| Primitive::Point {
                 point: UncertainPoint { mean, covariance },
                 weight: 1.0,
@@ -176,11 +171,14 @@ impl Cloud {
 }
 
 /// Normals as they are, after a look at them: a `Unit` can be made without a check.
-fn checked(normals: &[UnitVector3]) -> Result<Vec<Vector3>, PrepareError> {
+fn checked(normals: &[UnitVector3]) -> Result<Vec<UnitVector3>, PrepareError> {
     let checked = |(index, normal): (usize, &UnitVector3)| {
         let is_unit = (normal.norm() - 1.0).abs() < 1e-6;
-        let normal = normal.into_inner();
-        if is_unit { Ok(normal) } else { Err(PrepareError::Normal { index, normal }) }
+        if is_unit {
+            Ok(*normal)
+        } else {
+            Err(PrepareError::Normal { index, normal: normal.into_inner() })
+        }
     };
     normals.iter().enumerate().map(checked).collect()
 }

@@ -2,7 +2,7 @@
 
 use cloudtouch_bvh::TreeError;
 use cloudtouch_geom::message::number;
-use cloudtouch_geom::{CovarianceError, MeshError, Vector3};
+use cloudtouch_geom::{MeshError, Vector3};
 use cloudtouch_noise::NoiseError;
 
 use super::filter::FilterError;
@@ -32,14 +32,6 @@ pub enum PrepareError {
         index: usize,
         /// What was found, m.
         value: f64,
-    },
-    /// A covariance of the input is not one.
-    #[error("point {index}: {source}")]
-    Covariance {
-        /// Which point, from 0.
-        index: usize,
-        /// What is wrong with it.
-        source: CovarianceError,
     },
     /// A given normal is not of length one.
     #[error(

@@ -1,0 +1,114 @@
+//! The point given its measurement and a surface fitted to its neighbours.
+
+use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
+
+use crate::neighborhoods::Neighborhoods;
+use crate::patch::Patch;
+use crate::posterior_settings::PosteriorSettings;
+use crate::refined::Refined;
+use crate::scratch::Scratch;
+use crate::sensor_noise::SensorNoise;
+use crate::spacing::{SPACING_NEIGHBORS, spacing_around, spacing_of_rank};
+use crate::surface::{Surface, fit_surface};
+use crate::wide::wide_surface;
+
+/// Where the noise is more than this many spacings the nearest neighbours are all noise.
+const NOISY_SPACINGS: f64 = 1.35;
+/// A neighbour so many standard deviations off the surface is not a sample of it.
+const SAMPLE_OFFSET: f64 = 3.5;
+
+/// The point given its measurement and the surface of its neighbours, which are in `scratch`; `None`
+/// where there is no surface to be fitted.
+///
+/// With s² the variance of the noise along the normal, V that of the surface, h its height above the
+/// point and d the doubt, the point moves by w h, w = s²/(s² + d V), and has the variance
+/// w² V + u (o + (1 − o) u³) s² along the normal, u = (1 − w)², o the part of its own noise, never more
+/// than s². Across it the disc of the spacing is
+/// widened by the noise where fits to other neighbourhoods face elsewhere: what is along the normal
+/// of the one is across that of the other.
+pub(crate) fn posterior(
+    index: usize,
+    neighborhoods: &Neighborhoods,
+    sensor: &SensorNoise,
+    spacing_cap: f64,
+    settings: &PosteriorSettings,
+    scratch: &mut Scratch,
+) -> Option<Refined> {
+    let points = neighborhoods.points();
+    let around = spacing_around(&scratch.neighbors)?;
+    let is_noisy = sensor[index].max_std() > NOISY_SPACINGS * around;
+    let wide =
+        is_noisy.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
+    let Scratch { neighbors, patch, .. } = scratch;
+    let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
+    let surface = wide.or_else(|| fit_surface(&patch))?;
+    let spacing = tangential_spacing(&patch, &surface)?.min(spacing_cap);
+
+    let error = &settings.surface_error;
+    let noise = sensor[index].variance_along(&surface.normal);
+    let mut prior = error.leverage * surface.leverage
+        + error.hidden * surface.hidden
+        + error.bend * surface.bend
+        + error.misfit * surface.misfit
+        + error.disagreement * surface.disagreement
+        + error.tilt * surface.tilt * noise;
+    if surface.height.powi(2)
+        > settings.trusted_offset.powi(2) * patch.own_variance(&surface.normal)
+    {
+        prior += surface.height.powi(2);
+    }
+    let weight = share(noise, error.doubt * prior);
+    let most = settings.most_shift * noise.sqrt();
+    let shift = (weight * surface.height).clamp(-most, most);
+    let stays = (1.0 - weight).powi(2);
+    let own = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
+    let along = (weight * weight * prior + own).min(noise);
+    let turned = (error.turn * surface.tilt).min(1.0) * sensor[index].max_std();
+    let across = (settings.disc_std * spacing).hypot(turned);
+    let point = UncertainPoint {
+        mean: points[index] + surface.normal.into_inner() * shift,
+        covariance: disc(&surface.normal, along, across, spacing, settings),
+    };
+    Some(Refined { point, spacing, normal: Some(surface.normal) })
+}
+
+/// `variance` (m²) and what bends between samples along the normal, the standard deviation `across`
+/// (m) across it.
+pub(crate) fn disc(
+    normal: &UnitVector3,
+    variance: f64,
+    across: f64,
+    spacing: f64,
+    settings: &PosteriorSettings,
+) -> Covariance {
+    let along = variance.sqrt().hypot(settings.sampling_std * spacing);
+    Covariance::from_axis(normal, along, across)
+}
+
+/// a/(a + b), and nothing of nothing.
+fn share(a: f64, b: f64) -> f64 {
+    if a == 0.0 { 0.0 } else { a / (a + b) }
+}
+
+/// The spacing of the samples on the surface, noise across it left out: the sixth least distance
+/// across the normal among the neighbours near the surface; `None` when there is none.
+fn tangential_spacing(patch: &Patch, surface: &Surface) -> Option<f64> {
+    let mut nearest = [f64::INFINITY; SPACING_NEIGHBORS];
+    let mut count = 0;
+    for (offset, variance) in patch.with_variances(&surface.normal) {
+        let (residual, reach) = surface.residual_and_reach(offset);
+        let allowed = SAMPLE_OFFSET.powi(2) * (variance + surface.expected_error);
+        if residual * residual <= allowed {
+            count += 1;
+            let last = SPACING_NEIGHBORS - 1;
+            if reach < nearest[last] {
+                let place = nearest.partition_point(|&r| r <= reach);
+                nearest[place..].rotate_right(1);
+                nearest[place] = reach;
+            }
+        }
+    }
+    let rank = count.min(SPACING_NEIGHBORS);
+    let reach = *nearest.get(rank.checked_sub(1)?)?;
+    Some(spacing_of_rank(reach, rank))
+}

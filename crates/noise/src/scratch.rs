@@ -1,0 +1,47 @@
+//! Memory that refinement works in.
+
+use cloudtouch_geom::{Covariance, Point3, Vector3};
+
+use crate::neighborhoods::Neighbor;
+use crate::patch::{Patch, PatchNoise};
+use crate::sensor_noise::SensorNoise;
+
+/// Buffers reused from one refinement to the next; holds no results.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    pub(crate) neighbors: Vec<Neighbor>,
+    pub(crate) patch: Buffers,
+    /// The same of a wider neighbourhood.
+    pub(crate) wide_neighbors: Vec<Neighbor>,
+    pub(crate) wide_patch: Buffers,
+}
+
+#[derive(Debug, Default)]
+pub(crate) struct Buffers {
+    offsets: Vec<Vector3>,
+    /// Empty where it is the same for all.
+    noise: Vec<Covariance>,
+}
+
+impl Buffers {
+    /// The neighbours as a patch about point `index`.
+    pub(crate) fn patch<'a>(
+        &'a mut self,
+        index: usize,
+        neighbors: impl Iterator<Item = &'a Neighbor> + Clone,
+        points: &[Point3],
+        sensor: &'a SensorNoise,
+        spacing: f64,
+    ) -> Patch<'a> {
+        self.offsets.clear();
+        self.offsets.extend(neighbors.clone().map(|n| points[n.index] - points[index]));
+        let noise = if let Some(covariance) = sensor.as_uniform() {
+            PatchNoise::Uniform(covariance)
+        } else {
+            self.noise.clear();
+            self.noise.extend(neighbors.map(|n| sensor[n.index]));
+            PatchNoise::Each(&self.noise)
+        };
+        Patch::new(&self.offsets, noise, &sensor[index], spacing)
+    }
+}
