@@ -27,6 +27,8 @@ mod spacing;
 mod surface;
 mod wide;
 
+/// Points, covariances, clouds and poses.
+pub use cloudtouch_geom as geom;
 pub use discretization::{Discretization, Summed, discretization};
 pub use error::NoiseError;
 pub use grid::quantize_to_grid;
