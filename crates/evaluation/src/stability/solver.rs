@@ -1,6 +1,6 @@
 //! The solver as a query uses it; no other file of this report knows its interface.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
     Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status, UnitBox,
@@ -66,21 +66,21 @@ impl Solved {
     pub(super) fn new(posed: &Posed) -> Result<Self> {
         let problem = Problem::try_new(&posed.samples, Kernel::Gaussian { gamma: posed.gamma })?;
         let solution = problem.solve(&Settings::with_relative_gap(RELATIVE_GAP)?);
-        let probabilities = probabilities(posed, &problem, &solution);
+        let classifier = Classifier::try_new(&problem, &solution).ok();
+        let of = |f: Classifier| -> Option<Vec<f64>> {
+            posed.samples.iter().map(|s| f.probability(&s.point, s.class)).collect()
+        };
+        let probabilities = classifier.and_then(of);
         Ok(Self { problem, solution, probabilities })
     }
 
-    /// The same problem by Clarabel alone: the relative difference of the primal values and the
-    /// largest one of a probability, where both solvers reach the gap and determine them.
-    pub(super) fn against_clarabel(&self, posed: &Posed) -> Result<(Option<f64>, Option<f64>)> {
-        let settings = Settings::with_relative_gap(RELATIVE_GAP).context("settings")?;
+    /// The relative difference of the primal value from Clarabel's, where both reach the gap.
+    pub(super) fn against_clarabel(&self) -> Result<Option<f64>> {
+        let settings = Settings::with_relative_gap(RELATIVE_GAP)?;
         let reference = self.problem.solve_with_clarabel(&settings);
-        if self.is_undecided() || reference.relative_gap > RELATIVE_GAP {
-            return Ok((None, None));
-        }
-        let primal = (self.solution.primal - reference.primal).abs() / self.solution.primal.abs();
-        let of_reference = probabilities(posed, &self.problem, &reference);
-        Ok((Some(primal), largest_difference(&self.probabilities, &of_reference)))
+        let both = !self.is_undecided() && reference.relative_gap <= RELATIVE_GAP;
+        let difference = (self.solution.primal - reference.primal).abs();
+        Ok(both.then(|| difference / self.solution.primal.abs()))
     }
 
     pub(super) fn status(&self) -> String {
@@ -115,13 +115,6 @@ impl Solved {
         self.solution.rung == Rung::Clarabel
     }
 
-    /// At most how far the classifier is from the optimum, as a part of its own size: the objective
-    /// is strongly convex in w, so |w − w*|² is at most twice the gap.
-    pub(super) fn classifier_error(&self) -> f64 {
-        let gap = self.solution.relative_gap * self.solution.primal;
-        if gap == 0.0 { 0.0 } else { (2.0 * gap / self.solution.squared_norm).sqrt() }
-    }
-
     /// What must hold of any solution and does not.
     pub(super) fn faults(&self) -> Vec<String> {
         let solution = &self.solution;
@@ -142,11 +135,6 @@ impl Solved {
         }
         faults
     }
-}
-
-fn probabilities(posed: &Posed, problem: &Problem, solution: &Solution) -> Option<Vec<f64>> {
-    let f = Classifier::try_new(problem, solution).ok()?;
-    posed.samples.iter().map(|s| f.probability(&s.point, s.class)).collect()
 }
 
 /// The largest difference of two lists of probabilities; none unless both are known.
