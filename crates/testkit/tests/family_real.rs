@@ -1,6 +1,6 @@
 //! Families of real meshes, where the files are at hand.
 
-use std::{fs::File, io::BufReader, path::Path};
+use std::{error::Error, fs::File, io::BufReader, path::Path};
 
 use cloudtouch_geom::{Point3, TriangleMesh};
 use cloudtouch_testkit::{
@@ -8,34 +8,28 @@ use cloudtouch_testkit::{
     family::{Family, Real, RealMeshes},
 };
 
-fn stl(path: &Path) -> TriangleMesh {
-    let mut file = BufReader::new(File::open(path).unwrap());
-    let mesh = stl_io::read_stl(&mut file).unwrap();
+fn stl(path: &Path) -> Result<TriangleMesh, Box<dyn Error>> {
+    let mesh = stl_io::read_stl(&mut BufReader::new(File::open(path)?))?;
     let vertices = mesh.vertices.iter().map(|v| Point3::from(v.0.map(f64::from))).collect();
     let triangles = mesh.faces.iter().map(|f| f.vertices.map(|i| i as u32)).collect();
-    TriangleMesh::try_new(vertices, triangles).unwrap()
+    Ok(TriangleMesh::try_new(vertices, triangles)?)
 }
 
-fn obj(path: &Path) -> TriangleMesh {
-    let (models, _) = tobj::load_obj(path, &tobj::GPU_LOAD_OPTIONS).unwrap();
-    let [model] = models.as_slice() else { panic!("one model, not {}", models.len()) };
+fn obj(path: &Path) -> Result<TriangleMesh, Box<dyn Error>> {
+    let (models, _) = tobj::load_obj(path, &tobj::GPU_LOAD_OPTIONS)?;
+    let [model] = models.as_slice() else { return Err("more models than one".into()) };
     let corners = model.mesh.positions.chunks(3);
     let vertices = corners.map(|v| Point3::from([v[0], v[1], v[2]].map(f64::from))).collect();
-    let triangles = model.mesh.indices.chunks(3).map(|t| [t[0], t[1], t[2]]);
-    TriangleMesh::try_new(vertices, triangles.collect()).unwrap().merged()
+    let triangles = model.mesh.indices.chunks(3).map(|t| [t[0], t[1], t[2]]).collect();
+    Ok(TriangleMesh::try_new(vertices, triangles)?.merged())
 }
 
-fn meshes() -> Option<RealMeshes> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/meshes");
-    if !folder.is_dir() {
-        println!("skipped: there are no real meshes in {}", folder.display());
-        return None;
-    }
-    Some(RealMeshes {
-        piano: stl(&folder.join("piano_m.stl")),
-        room: stl(&folder.join("room_m.stl")),
-        pr2_gripper: stl(&folder.join("pr2_gripper_lowres.stl")),
-        panda_hand: obj(&folder.join("panda_hand.obj")),
+fn meshes(folder: &Path) -> Result<RealMeshes, Box<dyn Error>> {
+    Ok(RealMeshes {
+        piano: stl(&folder.join("piano_m.stl"))?,
+        room: stl(&folder.join("room_m.stl"))?,
+        pr2_gripper: stl(&folder.join("pr2_gripper_lowres.stl"))?,
+        panda_hand: obj(&folder.join("panda_hand.obj"))?,
     })
 }
 
@@ -51,7 +45,12 @@ fn names_are_unlike_one_another() {
 
 #[test]
 fn real_bodies_meet_ours_and_one_another() {
-    let Some(meshes) = meshes() else { return };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/meshes");
+    if !folder.is_dir() {
+        println!("skipped: there are no real meshes in {}", folder.display());
+        return;
+    }
+    let meshes = meshes(&folder).unwrap();
     for &real in Real::ALL {
         let scene = real.scene(&meshes, 1);
         let closed = [&scene.a, &scene.b].map(|body| body.mesh().open_edges() == 0);

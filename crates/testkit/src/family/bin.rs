@@ -40,9 +40,11 @@ pub(super) fn with_hand(hand: &TriangleMesh, seed: u64) -> FamilyScene {
     let half = [between(0.3, 0.4, rng), between(0.2, 0.3, rng)];
     let a = filled(half, between(0.25, 0.35, rng), rng);
     let ways = vec![(-Vector3::z(), 0.5)];
+    // Within the smallest bin.
+    let things = [[-0.28, -0.18, 0.02], [0.28, 0.18, 0.5]];
     let places = PLACES.map(Point3::from);
     FamilyScene::surveyed([&a, hand], &places, [0.03, 0.02], seed, |ends| Motion::Reach {
-        reach: Reach { ends, ways, from: 0.6 },
+        reach: Reach { ends, ways, things, from: 0.6 },
         deepest: 0.08,
     })
 }

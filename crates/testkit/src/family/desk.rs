@@ -47,9 +47,11 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
 pub(super) fn with_hand(hand: &TriangleMesh, seed: u64) -> FamilyScene {
     let a = desk(&mut seed::generator(seed::derive(seed, 101, 0)));
     let ways = vec![(-Vector3::z(), 0.8), (Vector3::y(), 0.6)];
+    // Above the top, before the wall.
+    let things = [[-0.8, -0.4, 0.003], [0.8, 0.34, 0.5]];
     let places = PLACES.map(Point3::from);
     FamilyScene::surveyed([&a, hand], &places, [0.04, 0.02], seed, |ends| Motion::Reach {
-        reach: Reach { ends, ways, from: 0.6 },
+        reach: Reach { ends, ways, things, from: 0.6 },
         deepest: 0.08,
     })
 }

@@ -25,7 +25,7 @@ impl FamilyScene {
     /// up to 3 cm. Where a stratum stands in the sequence is drawn by the seed.
     ///
     /// The object goes straight to a first contact in a way that suits the family and then back, up
-    /// to 50 cm, or on, up to 20 cm (hands and tools 5 to 10 cm, a sheet 60 cm). The depth of an
+    /// to 50 cm, or on, up to 20 cm (hands and tools 6 to 10 cm, a sheet 60 cm). The depth of an
     /// overlap is bounded from above, see
     /// [`ExactMesh::shortest_way_out`](crate::exact::ExactMesh::shortest_way_out).
     ///

@@ -16,6 +16,9 @@ pub(super) struct Reach {
     pub(super) ends: Ends,
     /// Where it may go, each with the angle that it may be off, rad.
     pub(super) ways: Vec<(Vector3, f64)>,
+    /// The box, by its corners, of the things that it reaches for three times in four, m; else for
+    /// any place that is seen.
+    pub(super) things: [[f64; 3]; 2],
     /// How far before what it reaches for it starts, m.
     pub(super) from: f64,
 }
@@ -25,7 +28,15 @@ impl Reach {
     pub(super) fn approach(&self, pair: Pair, rng: &mut ChaCha8Rng) -> Option<Approach> {
         let (way, off) = &self.ways[rng.random_range(0..self.ways.len())];
         let ahead = direction_near(way, *off, rng);
-        let [target, grip] = self.ends.draw(rng);
+        let is_thing = |p: &Vector3| {
+            let [low, high] = self.things;
+            (0..3).all(|k| low[k] < p[k] && p[k] < high[k])
+        };
+        let [mut target, grip] = self.ends.draw(rng);
+        if rng.random::<f64>() < 0.75 {
+            let mut others = (0..200).map(|_| self.ends.draw(rng)[0]);
+            target = others.find(is_thing).unwrap_or(target);
+        }
         pair.straight(reaching(target, grip, ahead, self.from, rng))
     }
 }

@@ -42,9 +42,11 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
 pub(super) fn with_hand(hand: &TriangleMesh, seed: u64) -> FamilyScene {
     let a = counter(&mut seed::generator(seed::derive(seed, 101, 0)));
     let ways = vec![(-Vector3::z(), 0.8), (Vector3::y(), 0.6)];
+    // Above the top, before the wall.
+    let things = [[-1.0, -0.3, 0.003], [1.0, 0.28, 0.5]];
     let places = PLACES.map(Point3::from);
     FamilyScene::surveyed([&a, hand], &places, [0.04, 0.02], seed, |ends| Motion::Reach {
-        reach: Reach { ends, ways, from: 0.6 },
+        reach: Reach { ends, ways, things, from: 0.6 },
         deepest: 0.08,
     })
 }
@@ -68,10 +70,12 @@ fn counter(rng: &mut ChaCha8Rng) -> TriangleMesh {
         ]),
         at(&tap(rng), [x, 0.22, -SUNK]),
     ];
-    let board = [0.02, between(0.2, 0.28, rng), between(0.3, 0.4, rng)];
-    // Its lower edge stands a hand's width before the wall, its upper one close to it.
-    let leaning = [between(-0.9, -0.6, rng) * w, 0.22, 0.47 * board[2]];
-    parts.push(placed(&cuboid([board[1], 0.02, board[2]]), leaning, [-0.2, 0.0, 0.0]));
+    // A board leans at the wall.
+    let (width, length, lean) = (between(0.2, 0.28, rng), between(0.3, 0.4, rng), 0.2_f64);
+    let back = d + SUNK - 0.5 * (length * lean.sin() + 0.02 * lean.cos());
+    let up = 0.5 * (length * lean.cos() + 0.02 * lean.sin()) - SUNK;
+    let leaning = [between(-0.9, -0.6, rng) * w, back, up];
+    parts.push(placed(&cuboid([width, 0.02, length]), leaning, [-lean, 0.0, 0.0]));
     let vessels = [pot(rng), pan(rng), bowl(rng), bottle(rng), mug(rng), bottle(rng)];
     parts.extend(standing_apart(vessels, [-w, left], [-d, 0.16], rng));
     // One stands in the sink.

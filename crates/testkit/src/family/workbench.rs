@@ -36,8 +36,10 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
     let a = bench(rng);
     let b = if rng.random() { drill(rng) } else { bent_bar(rng) };
     let ways = vec![(-Vector3::z(), 1.0), (Vector3::y(), 0.8)];
+    // Above the top, before the panel.
+    let things = [[-0.9, -0.35, 0.003], [0.9, 0.315, 0.6]];
     FamilyScene::surveyed([&a, &b], &PLACES.map(Point3::from), [0.04, 0.02], seed, |ends| {
-        Motion::Reach { reach: Reach { ends, ways, from: 0.7 }, deepest: 0.1 }
+        Motion::Reach { reach: Reach { ends, ways, things, from: 0.7 }, deepest: 0.1 }
     })
 }
 
