@@ -22,7 +22,9 @@ const SLICE: f64 = 0.01;
 const SIDEWAYS: f64 = 10.0;
 const HEIGHTS: std::ops::Range<f64> = -1.5..30.0;
 /// Side of the squares of which no more than one point is drawn, cm.
-const SQUARE: f64 = 0.5;
+const SQUARE: f64 = 0.4;
+/// Holes between triangles that are smaller than this are not seen, cm².
+const SPECK: f64 = 0.05;
 /// Points and contacts at least this likely are marked.
 const LIKELY: f64 = 0.3;
 /// Length of a contact's arrow, cm.
@@ -112,9 +114,17 @@ fn outline(view: &View, mesh: &TriangleMesh, pose: &Pose) -> (Vec<Vec<Place>>, V
         if turn < 0.0 { vec![a, c, b] } else { vec![a, b, c] }
     });
     let shapes = triangles.collect::<Vec<_>>().simplify_shape(FillRule::NonZero);
+    let visible = |contour: &&Vec<[f64; 2]>| area(contour) > SPECK;
     let places = |contour: &Vec<[f64; 2]>| contour.iter().map(|&[x, y]| (x, y)).collect();
-    let outer = shapes.iter().filter_map(|shape| shape.first()).map(places);
-    (outer.collect(), shapes.iter().flat_map(|shape| &shape[1..]).map(places).collect())
+    let outer = shapes.iter().filter_map(|shape| shape.first()).filter(visible).map(places);
+    let holes = shapes.iter().flat_map(|shape| &shape[1..]).filter(visible).map(places);
+    (outer.collect(), holes.collect())
+}
+
+/// Area of a polygon.
+fn area(contour: &[[f64; 2]]) -> f64 {
+    let next = contour.iter().cycle().skip(1);
+    0.5 * contour.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
 }
 
 /// The points likely in contact or measured inside of the mesh, and the others, thinned.
