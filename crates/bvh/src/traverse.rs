@@ -211,7 +211,7 @@ impl Eq for Candidate {}
 mod tests {
     use std::collections::BTreeSet;
 
-    use cloudtouch_geom::{Covariance, Point3, UncertainPoint, normal, seed};
+    use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, normal, seed};
     use proptest::prelude::*;
 
     use super::*;
@@ -230,7 +230,8 @@ mod tests {
                         |k| mean + 0.1 * Vector3::new(draw(k), draw(k + 1), 0.1 * draw(k + 2));
                     return Primitive::Triangle([mean, corner(10), corner(20)]);
                 }
-                let ray = Vector3::new(draw(3) - 0.5, draw(4) - 0.5, 1.0).normalize();
+                let ray =
+                    UnitVector3::new_normalize(Vector3::new(draw(3) - 0.5, draw(4) - 0.5, 1.0));
                 let covariance = Covariance::from_axis(&ray, noise * (0.5 + draw(5)), 0.2 * noise);
                 Primitive::Point { point: UncertainPoint { mean, covariance }, weight: draw(6) }
             })

@@ -3,7 +3,7 @@
 mod common;
 
 use cloudtouch_bvh::{Primitive, Tree, TreeError, TreeSettings, Visit};
-use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3};
 use common::{bumpy_sheet, degenerate_clouds, noisy};
 use proptest::prelude::*;
 
@@ -128,7 +128,11 @@ fn coverage_falls_with_the_noise_and_is_one_without() {
 
 #[test]
 fn bounds_cover_every_point_in_every_direction() {
-    let needle = Covariance::from_axis(&Vector3::new(0.6, 0.0, 0.8), 0.05, 0.001);
+    let needle = Covariance::from_axis(
+        &UnitVector3::new_unchecked(Vector3::new(0.6, 0.0, 0.8)),
+        0.05,
+        0.001,
+    );
     let cloud: Vec<_> = (0..300)
         .map(|i| {
             let mean = Point3::new((i % 20) as f64 * 0.1, (i / 20) as f64 * 0.1, 0.0);

@@ -64,7 +64,7 @@ fn check(bytes: &[u8], points_per_byte: usize, result: Result<Geometry, FormatEr
                     "one point for each pixel"
                 );
             }
-            assert!(cloud.sensor_origin.iter().all(|v| v.is_finite()), "the sensor is somewhere");
+            assert!(cloud.sensor_pose.non_finite_entry().is_none(), "the sensor is somewhere");
         }
         Ok(Geometry::Mesh(mesh)) => {
             let (vertices, triangles) = (mesh.vertices().len(), mesh.triangles().len());

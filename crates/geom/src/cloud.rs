@@ -1,6 +1,9 @@
 //! A point cloud as read from a sensor or a file.
 
-use crate::{Covariance, Point3, Vector3};
+use crate::bounding_box::bounding_box;
+use crate::covariance::Covariance;
+use crate::pose::Pose;
+use crate::vectors::{Point3, UnitVector3};
 
 /// Points in one frame, in file order, NaN rows included.
 ///
@@ -11,19 +14,26 @@ pub struct PointCloud {
     pub points: Vec<Point3>,
     /// One covariance per point, when the file has them.
     pub covariances: Option<Vec<Covariance>>,
-    /// One unit normal per point, of either sign, when the surface is known: the cloud was sampled
+    /// One normal per point, of either sign, when the surface is known: the cloud was sampled
     /// from a model, for instance. They are believed, so leave out what was fitted to noisy points.
-    pub normals: Option<Vec<Vector3>>,
-    /// Where the sensor was, in the frame of the points, m.
-    pub sensor_origin: Point3,
+    /// [`unit`](crate::unit()) makes them of plain vectors.
+    pub normals: Option<Vec<UnitVector3>>,
+    /// Where the sensor was and which way it looked: from its frame (for a camera x right, y down,
+    /// z forward) into that of the points. The identity where nothing else is known.
+    pub sensor_pose: Pose,
     /// Width and height when the cloud is an image, row by row.
     pub image_size: Option<(usize, usize)>,
 }
 
 impl PointCloud {
-    /// A cloud of points seen from the origin.
+    /// A cloud of points in the frame of the sensor.
     pub fn from_points(points: Vec<Point3>) -> Self {
         Self { points, ..Self::default() }
+    }
+
+    /// Where the sensor was, in the frame of the points, m.
+    pub fn sensor_origin(&self) -> Point3 {
+        Point3::from(self.sensor_pose.translation())
     }
 
     /// How many rows there are, NaN ones included.
@@ -45,7 +55,7 @@ impl PointCloud {
             points: pick(&self.points, indices),
             covariances: self.covariances.as_ref().map(|all| pick(all, indices)),
             normals: self.normals.as_ref().map(|all| pick(all, indices)),
-            sensor_origin: self.sensor_origin,
+            sensor_pose: self.sensor_pose,
             image_size: None,
         }
     }
@@ -58,15 +68,6 @@ impl PointCloud {
 
 fn pick<T: Copy>(all: &[T], indices: &[usize]) -> Vec<T> {
     indices.iter().map(|&i| all[i]).collect()
-}
-
-/// Lowest and highest corner of some points; `None` when there is none.
-pub(crate) fn bounding_box<'a>(
-    points: impl IntoIterator<Item = &'a Point3>,
-) -> Option<(Point3, Point3)> {
-    let mut points = points.into_iter();
-    let first = *points.next()?;
-    Some(points.fold((first, first), |(low, high), p| (low.inf(p), high.sup(p))))
 }
 
 #[cfg(test)]

@@ -1,106 +1,61 @@
 //! Symmetric positive semidefinite 3×3 matrices: zero and singular ones are ordinary values.
 
-use crate::message::number;
-use crate::{Matrix3, Vector3};
+use nalgebra::UnitQuaternion;
 
-/// A covariance in square metres; symmetric and positive semidefinite by construction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Covariance {
-    xx: f64,
-    xy: f64,
-    xz: f64,
-    yy: f64,
-    yz: f64,
-    zz: f64,
-}
+use crate::axis_form::AxisForm;
+use crate::covariance_error::CovarianceError;
+use crate::symmetric::Symmetric;
+use crate::vectors::{Matrix3, UnitVector3, Vector3};
 
-/// Why a matrix is not a covariance.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CovarianceError {
-    /// An entry is NaN or infinite.
-    #[error("covariance entry ({row}, {column}) is {}: every entry must be finite", number(*value))]
-    NotFinite {
-        /// Row of the entry, from 0.
-        row: usize,
-        /// Column of the entry, from 0.
-        column: usize,
-        /// What was found.
-        value: f64,
-    },
-    /// An entry is so large that sums of it overflow.
-    #[error("covariance entry ({row}, {column}) is {value:e} m²: entries go up to 1e200 m²")]
-    TooLarge {
-        /// Row of the entry, from 0.
-        row: usize,
-        /// Column of the entry, from 0.
-        column: usize,
-        /// What was found.
-        value: f64,
-    },
-    /// The matrix differs from its transpose by more than rounding.
-    #[error(
-        "covariance is not symmetric: entry ({row}, {column}) differs from its mirror by {}",
-        number(*difference)
-    )]
-    NotSymmetric {
-        /// Row of the worst entry.
-        row: usize,
-        /// Column of the worst entry.
-        column: usize,
-        /// Difference from the mirrored entry.
-        difference: f64,
-    },
-    /// The matrix has a negative eigenvalue beyond rounding.
-    #[error(
-        "covariance has the negative eigenvalue {}: variances cannot be negative",
-        number(*eigenvalue)
-    )]
-    Negative {
-        /// The smallest eigenvalue.
-        eigenvalue: f64,
-    },
+/// A covariance in square metres; symmetric and positive semidefinite by construction, up to
+/// rounding of its largest entry.
+///
+/// What is known of its shape is kept: a ball is one number, and a disc or needle is an axis with a
+/// standard deviation along it and one across. So a spread of a nanometre across a disc of a metre is
+/// that, of which a matrix in double precision would leave nothing, also after turning and scaling.
+/// Two covariances are equal when all entries of their matrices are.
+#[derive(Debug, Clone, Copy)]
+pub struct Covariance(Form);
+
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    /// The variance in every direction, m².
+    Isotropic(f64),
+    Axis(AxisForm),
+    Full(Symmetric),
 }
 
 /// Relative size of what counts as rounding when a matrix is checked.
 const ROUNDING: f64 = 1e-9;
-/// Jacobi sweeps at most; more than six have not been seen.
-const MOST_SWEEPS: usize = 20;
 /// Larger entries could overflow when a few are added or a pair is multiplied.
 const LARGEST: f64 = 1e200;
 
 impl Covariance {
     /// No uncertainty at all.
     pub const fn zero() -> Self {
-        Self { xx: 0.0, xy: 0.0, xz: 0.0, yy: 0.0, yz: 0.0, zz: 0.0 }
+        Self(Form::Isotropic(0.0))
     }
 
     /// The same variance (m²) in every direction; a negative one counts as zero.
     pub fn isotropic(variance: f64) -> Self {
-        Self::diagonal([variance; 3])
-    }
-
-    /// The variance (m²) where it is the same in every direction, else `None`.
-    pub fn isotropic_variance(&self) -> Option<f64> {
-        let is_round = self.xx == self.yy && self.yy == self.zz;
-        let is_diagonal = self.xy == 0.0 && self.xz == 0.0 && self.yz == 0.0;
-        (is_round && is_diagonal).then_some(self.xx)
+        Self(Form::Isotropic(not_negative(variance)))
     }
 
     /// Independent variances (m²) along x, y and z; negative ones count as zero.
     pub fn diagonal(variances: [f64; 3]) -> Self {
         let [xx, yy, zz] = variances.map(not_negative);
-        Self { xx, yy, zz, ..Self::zero() }
+        Self::full(Symmetric { xx, xy: 0.0, xz: 0.0, yy, yz: 0.0, zz })
     }
 
-    /// `along`² in the direction `axis` (unit length) and `across`² in the plane across it.
+    /// `along`² in the direction `axis` and `across`² in the plane across it.
     ///
-    /// Both are standard deviations in metres.
-    pub fn from_axis(axis: &Vector3, along: f64, across: f64) -> Self {
-        let extra = along * along - across * across;
-        Self::from_symmetric(
-            &(Matrix3::identity() * (across * across) + axis * axis.transpose() * extra),
-        )
+    /// Both are standard deviations in metres, of which the sign does not matter.
+    pub fn from_axis(axis: &UnitVector3, along: f64, across: f64) -> Self {
+        let (along, across) = (along.abs(), across.abs());
+        if along == across {
+            return Self::isotropic(along * along);
+        }
+        Self(Form::Axis(AxisForm { axis: *axis, along, across }))
     }
 
     /// Checks a matrix and takes it; a negative eigenvalue within rounding becomes zero.
@@ -127,90 +82,116 @@ impl Covariance {
                 return Err(CovarianceError::NotSymmetric { row, column, difference });
             }
         }
-        let symmetric = Self::symmetrized(matrix);
-        let (eigenvalues, axes) = symmetric.raw_eigen();
-        let eigenvalue = eigenvalues.min();
+        let symmetric = Symmetric::average(matrix);
+        let eigenvalue = symmetric.eigen().0.min();
         if eigenvalue < -ROUNDING * scale {
             return Err(CovarianceError::Negative { eigenvalue });
         }
-        if eigenvalue < 0.0 {
-            return Ok(Self::from_eigen(&eigenvalues, &axes));
-        }
-        Ok(symmetric)
+        Ok(Self::full(symmetric.semidefinite()))
     }
 
-    /// Takes a matrix known to be positive semidefinite up to rounding, such as a sum or a
-    /// congruence of covariances; averages it with its transpose.
+    /// The covariance nearest to a matrix: its average with its transpose, negative eigenvalues made
+    /// zero. One that is not finite stays so, see [`Self::is_finite`].
     ///
-    /// Not checked: use [`Self::try_from_matrix`] for anything a user supplied.
+    /// For what is a covariance but for rounding, such as a sum of outer products. Use
+    /// [`Self::try_from_matrix`] for anything a user supplied.
     pub fn from_symmetric(matrix: &Matrix3) -> Self {
-        let mut symmetric = Self::symmetrized(matrix);
-        for variance in [&mut symmetric.xx, &mut symmetric.yy, &mut symmetric.zz] {
-            *variance = not_negative(*variance);
-        }
-        symmetric
-    }
-
-    fn symmetrized(m: &Matrix3) -> Self {
-        Self {
-            xx: m[(0, 0)],
-            xy: 0.5 * (m[(0, 1)] + m[(1, 0)]),
-            xz: 0.5 * (m[(0, 2)] + m[(2, 0)]),
-            yy: m[(1, 1)],
-            yz: 0.5 * (m[(1, 2)] + m[(2, 1)]),
-            zz: m[(2, 2)],
-        }
+        Self::full(Symmetric::average(matrix).semidefinite())
     }
 
     /// Rebuilds from variances along orthonormal axes (columns); negative variances become zero.
     pub fn from_eigen(eigenvalues: &Vector3, axes: &Matrix3) -> Self {
         let clamped = eigenvalues.map(not_negative);
-        Self::from_symmetric(&(axes * Matrix3::from_diagonal(&clamped) * axes.transpose()))
+        Self::congruent(axes, &Matrix3::from_diagonal(&clamped))
+    }
+
+    /// T M Tᵀ for a semidefinite M, which it then is itself up to rounding.
+    fn congruent(by: &Matrix3, semidefinite: &Matrix3) -> Self {
+        let mut symmetric = Symmetric::average(&(by * semidefinite * by.transpose()));
+        for variance in [&mut symmetric.xx, &mut symmetric.yy, &mut symmetric.zz] {
+            *variance = not_negative(*variance);
+        }
+        Self::full(symmetric)
+    }
+
+    /// A semidefinite matrix in the form that suits it.
+    fn full(symmetric: Symmetric) -> Self {
+        let Symmetric { xx, xy, xz, yy, yz, zz } = symmetric;
+        let is_ball = xx == yy && yy == zz && [xy, xz, yz] == [0.0; 3];
+        Self(if is_ball { Form::Isotropic(xx) } else { Form::Full(symmetric) })
+    }
+
+    /// The variance (m²) where it is the same in every direction, else `None`.
+    pub fn isotropic_variance(&self) -> Option<f64> {
+        match self.0 {
+            Form::Isotropic(variance) => Some(variance),
+            _ => None,
+        }
+    }
+
+    /// The axis with the standard deviations along and across it, where it was made of these.
+    pub fn axis_form(&self) -> Option<AxisForm> {
+        match self.0 {
+            Form::Axis(axis) => Some(axis),
+            _ => None,
+        }
+    }
+
+    fn symmetric(&self) -> Symmetric {
+        match &self.0 {
+            &Form::Isotropic(v) => Symmetric { xx: v, xy: 0.0, xz: 0.0, yy: v, yz: 0.0, zz: v },
+            Form::Axis(axis) => axis.symmetric(),
+            Form::Full(symmetric) => *symmetric,
+        }
     }
 
     /// The full matrix, m².
     pub fn matrix(&self) -> Matrix3 {
-        Matrix3::new(
-            self.xx, self.xy, self.xz, self.xy, self.yy, self.yz, self.xz, self.yz, self.zz,
-        )
+        self.symmetric().matrix()
     }
 
     /// The six distinct entries xx, xy, xz, yy, yz, zz.
     pub fn upper_triangle(&self) -> [f64; 6] {
-        [self.xx, self.xy, self.xz, self.yy, self.yz, self.zz]
+        self.symmetric().entries()
     }
 
     /// Variances in descending order and the unit axes (columns, right-handed or not) they
     /// belong to.
     pub fn eigen(&self) -> (Vector3, Matrix3) {
-        let (values, axes) = self.raw_eigen();
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| values[j].total_cmp(&values[i]));
-        (
-            Vector3::from_fn(|k, _| values[order[k]].max(0.0)),
-            Matrix3::from_fn(|row, k| axes[(row, order[k])]),
-        )
-    }
-
-    fn raw_eigen(&self) -> (Vector3, Matrix3) {
-        let scale = self.matrix().amax();
-        if scale == 0.0 || !scale.is_finite() {
-            return (Vector3::repeat(scale), Matrix3::identity());
+        match &self.0 {
+            Form::Isotropic(variance) => (Vector3::repeat(*variance), Matrix3::identity()),
+            Form::Axis(axis) => axis.eigen(),
+            Form::Full(symmetric) => {
+                let (values, axes) = symmetric.eigen();
+                let mut order = [0, 1, 2];
+                order.sort_by(|&i, &j| values[j].total_cmp(&values[i]));
+                (
+                    Vector3::from_fn(|k, _| values[order[k]].max(0.0)),
+                    Matrix3::from_fn(|row, k| axes[(row, order[k])]),
+                )
+            }
         }
-        // Scaled to unit size: the iteration squares entries, and 1e-160² underflows.
-        let (values, axes) = jacobi(self.matrix() / scale);
-        (values * scale, axes)
     }
 
     /// The symmetric root S with S S = Σ, in metres.
     pub fn sqrt(&self) -> Matrix3 {
-        let (values, axes) = self.eigen();
-        axes * Matrix3::from_diagonal(&values.map(f64::sqrt)) * axes.transpose()
+        match &self.0 {
+            Form::Isotropic(variance) => Matrix3::identity() * variance.sqrt(),
+            Form::Axis(axis) => axis.root(),
+            Form::Full(_) => {
+                let (values, axes) = self.eigen();
+                axes * Matrix3::from_diagonal(&values.map(f64::sqrt)) * axes.transpose()
+            }
+        }
     }
 
     /// Variance (m²) of the component along `direction`, which need not have unit length.
     pub fn variance_along(&self, direction: &Vector3) -> f64 {
-        direction.dot(&(self.matrix() * direction)).max(0.0)
+        match &self.0 {
+            Form::Isotropic(variance) => variance * direction.norm_squared(),
+            Form::Axis(axis) => axis.variance_along(direction),
+            Form::Full(symmetric) => symmetric.quadratic(direction).max(0.0),
+        }
     }
 
     /// Standard deviation (m) of the component along `direction`.
@@ -222,12 +203,22 @@ impl Covariance {
     ///
     /// At most √3 too large, and much cheaper than the eigenvalue; see [`Self::max_std`].
     pub fn std_bound(&self) -> f64 {
-        (self.xx + self.yy + self.zz).sqrt()
+        match &self.0 {
+            Form::Isotropic(variance) => (3.0 * variance).sqrt(),
+            Form::Axis(AxisForm { along, across, .. }) => {
+                (along * along + 2.0 * across * across).sqrt()
+            }
+            Form::Full(symmetric) => (symmetric.xx + symmetric.yy + symmetric.zz).sqrt(),
+        }
     }
 
     /// The largest standard deviation in any direction, m.
     pub fn max_std(&self) -> f64 {
-        self.isotropic_variance().unwrap_or_else(|| self.eigen().0[0]).sqrt()
+        match &self.0 {
+            Form::Isotropic(variance) => variance.sqrt(),
+            Form::Axis(AxisForm { along, across, .. }) => along.max(*across),
+            Form::Full(_) => self.eigen().0[0].sqrt(),
+        }
     }
 
     /// Whether there is no uncertainty at all.
@@ -241,72 +232,55 @@ impl Covariance {
     }
 
     /// R Σ Rᵀ.
-    pub fn rotated(&self, rotation: &nalgebra::UnitQuaternion<f64>) -> Self {
-        self.turned(rotation.to_rotation_matrix().matrix())
+    pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Self {
+        match &self.0 {
+            // Else the matrix of the rotation is formed for nothing.
+            Form::Isotropic(_) => *self,
+            _ => self.turned(rotation.to_rotation_matrix().matrix()),
+        }
     }
 
     /// The same with R as a matrix.
     pub(crate) fn turned(&self, rotation: &Matrix3) -> Self {
-        if self.is_zero() {
-            return *self;
+        match &self.0 {
+            Form::Isotropic(_) => *self,
+            Form::Axis(axis) => Self(Form::Axis(axis.turned(rotation))),
+            Form::Full(symmetric) => Self::congruent(rotation, &symmetric.matrix()),
         }
-        Self::from_symmetric(&(rotation * self.matrix() * rotation.transpose()))
     }
 
     /// The covariance of `factor`·x.
     pub fn scaled(&self, factor: f64) -> Self {
-        let f = factor * factor;
-        let [xx, xy, xz, yy, yz, zz] = self.upper_triangle().map(|v| v * f);
-        Self { xx, xy, xz, yy, yz, zz }
+        let squared = factor * factor;
+        Self(match &self.0 {
+            Form::Isotropic(variance) => Form::Isotropic(variance * squared),
+            Form::Axis(axis) => Form::Axis(axis.scaled(factor.abs())),
+            Form::Full(symmetric) => Form::Full(symmetric.scaled(squared)),
+        })
     }
 
     /// Σ + Ψ: the covariance of a sum of independent errors.
     pub fn sum(&self, other: &Self) -> Self {
-        Self {
-            xx: self.xx + other.xx,
-            xy: self.xy + other.xy,
-            xz: self.xz + other.xz,
-            yy: self.yy + other.yy,
-            yz: self.yz + other.yz,
-            zz: self.zz + other.zz,
+        match (&self.0, &other.0) {
+            (Form::Isotropic(a), Form::Isotropic(b)) => Self(Form::Isotropic(a + b)),
+            (Form::Isotropic(0.0), _) => *other,
+            (_, Form::Isotropic(0.0)) => *self,
+            (Form::Axis(axis), Form::Isotropic(variance))
+            | (Form::Isotropic(variance), Form::Axis(axis)) => {
+                Self(Form::Axis(axis.widened(variance.sqrt(), variance.sqrt())))
+            }
+            (Form::Axis(a), Form::Axis(b)) if a.axis == b.axis => {
+                Self(Form::Axis(a.widened(b.along, b.across)))
+            }
+            _ => Self::full(self.symmetric().plus(&other.symmetric())),
         }
     }
 }
 
-/// Eigenvalues and axes (columns) of a symmetric matrix by cyclic Jacobi rotations: for 3×3 several
-/// times as fast as a tridiagonal decomposition, and more accurate for small eigenvalues.
-fn jacobi(mut m: Matrix3) -> (Vector3, Matrix3) {
-    let mut axes = Matrix3::identity();
-    // Four are usual: from then on the error is squared each time.
-    for _ in 0..MOST_SWEEPS {
-        if [(0, 1), (0, 2), (1, 2)].iter().all(|&at| m[at] == 0.0) {
-            break;
-        }
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            let off = m[(p, q)];
-            // What rounds away beside both of its diagonal entries is done with.
-            if m[(p, p)] + off == m[(p, p)] && m[(q, q)] + off == m[(q, q)] {
-                (m[(p, q)], m[(q, p)]) = (0.0, 0.0);
-                continue;
-            }
-            let ratio = (m[(q, q)] - m[(p, p)]) / (2.0 * off);
-            let tangent = ratio.signum() / (ratio.abs() + (1.0 + ratio * ratio).sqrt());
-            let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
-            let sine = tangent * cosine;
-            let r = 3 - p - q;
-            let (rp, rq) = (m[(r, p)], m[(r, q)]);
-            m[(p, p)] -= tangent * off;
-            m[(q, q)] += tangent * off;
-            (m[(p, q)], m[(q, p)]) = (0.0, 0.0);
-            m[(r, p)] = cosine * rp - sine * rq;
-            m[(r, q)] = sine * rp + cosine * rq;
-            (m[(p, r)], m[(q, r)]) = (m[(r, p)], m[(r, q)]);
-            let (of_p, of_q) = (axes.column(p).into_owned(), axes.column(q).into_owned());
-            axes.set_column(p, &(of_p * cosine - of_q * sine));
-            axes.set_column(q, &(of_p * sine + of_q * cosine));
-        }
+impl PartialEq for Covariance {
+    fn eq(&self, other: &Self) -> bool {
+        self.symmetric() == other.symmetric()
     }
-    (m.diagonal(), axes)
 }
 
 /// Zero for a negative number; NaN stays NaN, so that it cannot pass for an exact point.
@@ -319,12 +293,29 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::unit::unit;
 
     fn any_covariance() -> impl Strategy<Value = Covariance> {
-        (prop::array::uniform9(-1.0..1.0_f64), -6..3_i32).prop_map(|(entries, exponent)| {
-            let root = Matrix3::from_row_slice(&entries) * 10_f64.powi(exponent);
-            Covariance::from_symmetric(&(root * root.transpose()))
-        })
+        let full =
+            (prop::array::uniform9(-1.0..1.0_f64), -6..3_i32).prop_map(|(entries, exponent)| {
+                let root = Matrix3::from_row_slice(&entries) * 10_f64.powi(exponent);
+                Covariance::from_symmetric(&(root * root.transpose()))
+            });
+        let std =
+            || (0.1..1.0_f64, -6..3_i32).prop_map(|(std, exponent)| std * 10_f64.powi(exponent));
+        let axis = (any_direction(), std(), std())
+            .prop_map(|(axis, along, across)| Covariance::from_axis(&axis, along, across));
+        prop_oneof![full, axis, std().prop_map(Covariance::isotropic)]
+    }
+
+    fn any_direction() -> impl Strategy<Value = UnitVector3> {
+        prop::array::uniform3(-1.0..1.0_f64)
+            .prop_filter_map("a direction", |v| unit(&Vector3::from(v)).ok())
+    }
+
+    fn any_rotation() -> impl Strategy<Value = UnitQuaternion<f64>> {
+        prop::array::uniform3(-3.0..3.0_f64)
+            .prop_map(|[roll, pitch, yaw]| UnitQuaternion::from_euler_angles(roll, pitch, yaw))
     }
 
     proptest! {
@@ -335,19 +326,81 @@ mod tests {
         }
 
         #[test]
-        fn bounds_are_in_order(a in any_covariance(), d in prop::array::uniform3(-1.0..1.0_f64)) {
-            let direction = Vector3::from(d);
-            prop_assume!(direction.norm() > 1e-3);
-            let along = a.std_along(&direction.normalize());
+        fn bounds_are_in_order(a in any_covariance(), direction in any_direction()) {
+            let along = a.std_along(&direction);
             prop_assert!(along <= a.max_std() * (1.0 + 1e-9));
             prop_assert!(a.max_std() <= a.std_bound() * (1.0 + 1e-9));
         }
+
+        /// What each form answers is what its matrix does.
+        #[test]
+        fn every_form_agrees_with_its_matrix(
+            a in any_covariance(),
+            b in any_covariance(),
+            direction in any_direction(),
+            rotation in any_rotation(),
+            factor in -3.0..3.0_f64,
+        ) {
+            let (m, scale) = (a.matrix(), a.matrix().amax());
+            let expected = direction.dot(&(m * *direction));
+            prop_assert!((a.variance_along(&direction) - expected).abs() <= 1e-14 * scale);
+            let (values, axes) = a.eigen();
+            let back = axes * Matrix3::from_diagonal(&values) * axes.transpose();
+            prop_assert!((back - m).amax() <= 1e-14 * scale);
+            prop_assert!(values[0] >= values[1] && values[1] >= values[2]);
+            let r = rotation.to_rotation_matrix().into_inner();
+            let turned = a.rotated(&rotation).matrix();
+            prop_assert!((turned - r * m * r.transpose()).amax() <= 1e-14 * scale);
+            prop_assert!((a.scaled(factor).matrix() - m * factor * factor).amax() <= 1e-14 * 9.0 * scale);
+            let total = m + b.matrix();
+            prop_assert!((a.sum(&b).matrix() - total).amax() <= 1e-14 * total.amax());
+            prop_assert!((a.max_std().powi(2) - values[0]).abs() <= 1e-14 * scale);
+            prop_assert!(Covariance::try_from_matrix(&m).is_ok());
+        }
+
+        /// The classifier scales to the unit box and asks across a plane: a thin disc stays thin.
+        #[test]
+        fn a_disc_keeps_its_thickness_when_turned_and_scaled(
+            axis in any_direction(),
+            rotation in any_rotation(),
+            factor in 1e-3..1e3_f64,
+        ) {
+            let disc = Covariance::from_axis(&axis, 1e-9, 1.0);
+            prop_assert!((disc.std_along(&axis) / 1e-9 - 1.0).abs() < 1e-15);
+            let moved = disc.rotated(&rotation).scaled(factor);
+            let thickness = moved.std_along(&(rotation * axis));
+            prop_assert!((thickness / (1e-9 * factor) - 1.0).abs() < 1e-9, "{thickness}");
+            let twice = disc.sum(&disc).std_along(&axis);
+            prop_assert!((twice / (2_f64.sqrt() * 1e-9) - 1.0).abs() < 1e-12, "{twice}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_covariance_becomes_the_nearest_one() {
+        // Eigenvalues 3 and -1: only the diagonal was looked at, and all of it is positive.
+        let indefinite = Matrix3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        let mended = Covariance::from_symmetric(&indefinite);
+        let expected = Matrix3::new(1.5, 1.5, 0.0, 1.5, 1.5, 0.0, 0.0, 0.0, 1.0);
+        assert!((mended.matrix() - expected).amax() < 1e-15, "{mended:?}");
+    }
+
+    /// It read back as zero: 1 − (1 − 1e-18) in double precision.
+    #[test]
+    fn a_small_spread_across_a_wide_disc_is_kept() {
+        let normal = unit(&Vector3::new(1.0, 2.0, -2.0)).unwrap();
+        assert_eq!(Covariance::from_axis(&normal, 1e-9, 1.0).std_along(&normal), 1e-9);
     }
 
     #[test]
     fn nan_does_not_become_an_exact_point() {
         assert!(!Covariance::isotropic(f64::NAN).is_finite());
         assert!(!Covariance::from_symmetric(&Matrix3::repeat(f64::NAN)).is_finite());
+        assert!(!Covariance::from_axis(&Vector3::z_axis(), f64::NAN, 1.0).is_finite());
+        assert!(
+            Covariance::from_axis(&Vector3::z_axis(), 1.0, f64::NAN)
+                .std_along(&Vector3::x())
+                .is_nan()
+        );
         assert_eq!(Covariance::isotropic(-1.0), Covariance::zero());
     }
 
@@ -380,30 +433,6 @@ mod tests {
             Covariance::try_from_matrix(&m),
             Err(CovarianceError::TooLarge { row: 1, column: 2, .. })
         ));
-    }
-
-    proptest::proptest! {
-        #[test]
-        fn jacobi_agrees_with_a_tridiagonal_decomposition(
-            entries in proptest::array::uniform9(-1.0..1.0_f64),
-            stretch in -8..1_i32,
-        ) {
-            let root = Matrix3::from_row_slice(&entries)
-                * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 10_f64.powi(stretch)));
-            let matrix = root * root.transpose();
-            let (values, axes) = jacobi(matrix);
-            let back = axes * Matrix3::from_diagonal(&values) * axes.transpose();
-            proptest::prop_assert!((back - matrix).amax() < 1e-14);
-            proptest::prop_assert!((axes.transpose() * axes - Matrix3::identity()).amax() < 1e-14);
-            let mut expected: Vec<f64> =
-                nalgebra::SymmetricEigen::new(matrix).eigenvalues.iter().copied().collect();
-            let mut found: Vec<f64> = values.iter().copied().collect();
-            expected.sort_by(f64::total_cmp);
-            found.sort_by(f64::total_cmp);
-            for (expected, found) in expected.iter().zip(&found) {
-                proptest::prop_assert!((expected - found).abs() < 1e-13);
-            }
-        }
     }
 
     #[test]

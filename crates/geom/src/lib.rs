@@ -1,25 +1,32 @@
 #![doc = include_str!("../README.md")]
 
+mod axis_form;
+mod bounding_box;
 mod cloud;
 mod covariance;
+mod covariance_error;
+mod jacobi;
+#[cfg(feature = "mesh")]
 mod mesh;
 pub mod message;
 mod motion;
 pub mod normal;
 mod pose;
+#[cfg(feature = "seed")]
 pub mod seed;
+mod symmetric;
 mod uncertain;
+mod unit;
+mod vectors;
 
+pub use axis_form::AxisForm;
 pub use cloud::PointCloud;
-pub use covariance::{Covariance, CovarianceError};
+pub use covariance::Covariance;
+pub use covariance_error::CovarianceError;
+#[cfg(feature = "mesh")]
 pub use mesh::{MeshError, TriangleMesh};
 pub use motion::Motion;
 pub use pose::{Pose, PoseError};
 pub use uncertain::UncertainPoint;
-
-/// A point in metres; which frame it is in is said where it is used.
-pub type Point3 = nalgebra::Point3<f64>;
-/// A direction or displacement in metres.
-pub type Vector3 = nalgebra::Vector3<f64>;
-/// A 3×3 matrix.
-pub type Matrix3 = nalgebra::Matrix3<f64>;
+pub use unit::{UnitError, unit};
+pub use vectors::{Matrix3, Point3, UnitVector3, Vector3};

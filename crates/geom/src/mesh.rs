@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::{Point3, cloud::bounding_box, message::number};
+use crate::bounding_box::bounding_box;
+use crate::message::number;
+use crate::vectors::Point3;
 
 /// Triangles over shared vertices, m. May be open, degenerate or a soup.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -125,8 +127,9 @@ impl TriangleMesh {
 
     /// How many edges do not join exactly two triangles that run along it in opposite directions.
     ///
-    /// Zero means watertight and consistently oriented: inside and outside are defined. Call it on
-    /// a [`merged`](Self::merged) mesh.
+    /// Zero means watertight and consistently oriented: inside and outside are defined. An edge that
+    /// four triangles share counts, though it may close two bodies that touch there. Call it on a
+    /// [`merged`](Self::merged) mesh.
     pub fn open_edges(&self) -> usize {
         let mut balance: HashMap<(u32, u32), (i32, u32)> = HashMap::new();
         for &[a, b, c] in &self.triangles {
@@ -136,7 +139,7 @@ impl TriangleMesh {
                 entry.1 += 1;
             }
         }
-        balance.values().filter(|&&(sum, count)| sum != 0 || count % 2 != 0).count()
+        balance.values().filter(|&&(sum, count)| sum != 0 || count != 2).count()
     }
 }
 
@@ -163,6 +166,23 @@ mod tests {
         assert_eq!(soup.open_edges(), 12);
         let merged = soup.merged();
         assert_eq!((merged.vertices().len(), merged.open_edges()), (4, 0));
+    }
+
+    /// Two tetrahedra that share an edge: four triangles meet there, two along it each way. They
+    /// were taken for watertight.
+    #[test]
+    fn an_edge_of_four_triangles_counts_as_open() {
+        let [a, b] = [Point3::origin(), Point3::new(0.0, 0.0, 1.0)];
+        let mut vertices = vec![a, b];
+        let mut triangles = Vec::new();
+        for side in [1.0, -1.0] {
+            let [c, d] = [vertices.len() as u32, vertices.len() as u32 + 1];
+            vertices.push(Point3::new(side, 0.0, 0.5));
+            vertices.push(Point3::new(side, side, 0.5));
+            triangles.extend([[0, 1, c], [1, 0, d], [c, 1, d], [0, c, d]]);
+        }
+        let touching = TriangleMesh::try_new(vertices, triangles).unwrap();
+        assert_eq!(touching.open_edges(), 1);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Numbers as error messages spell them.
 
-use crate::Point3;
+use crate::vectors::Point3;
 
 /// A number, plainly where that is short and with an exponent where it would take hundreds of
 /// digits: `0.25`, `5012345`, `1e300`, `NaN`.

@@ -1,6 +1,9 @@
 //! A pose made ready to move many points.
 
-use crate::{Covariance, Matrix3, Point3, Pose, UncertainPoint, Vector3};
+use crate::covariance::Covariance;
+use crate::pose::Pose;
+use crate::uncertain::UncertainPoint;
+use crate::vectors::{Matrix3, Point3, UnitVector3, Vector3};
 
 /// A rigid motion p ↦ R p + t with R as a matrix: what a [`Pose`] does, several times as fast once
 /// there are more than a few points to move.
@@ -39,6 +42,13 @@ impl Motion {
     /// R v.
     pub fn vector(&self, vector: &Vector3) -> Vector3 {
         self.rotation * vector
+    }
+
+    /// R n, of length one like n.
+    pub fn unit_vector(&self, unit: &UnitVector3) -> UnitVector3 {
+        let mut turned = UnitVector3::new_unchecked(self.rotation * unit.into_inner());
+        turned.renormalize_fast();
+        turned
     }
 
     /// R⁻¹ v.

@@ -1,13 +1,14 @@
 //! Rigid motions, checked when they come from outside.
 
-use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix4, Quaternion, Rotation3, Translation3, UnitQuaternion};
 
-use crate::{Matrix3, Point3, Vector3, message::number};
+use crate::message::number;
+use crate::vectors::{Matrix3, Point3, Vector3};
 
 /// A rigid motion that maps points of one frame into another: p ↦ R p + t.
 ///
 /// Named for what it does, as in `scene_from_object`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose(Isometry3<f64>);
 
 /// Why a matrix is not a rigid motion.
@@ -39,6 +40,12 @@ pub enum PoseError {
         /// Largest entry of |R Rᵀ − I|.
         error: f64,
     },
+    /// The quaternion is not of length one.
+    #[error("the quaternion of the pose has the length {}: it must be 1", number(*length))]
+    QuaternionLength {
+        /// What was found.
+        length: f64,
+    },
     /// The 3×3 part mirrors.
     #[error("the 3x3 part of the pose mirrors (determinant {determinant:.3}): swap two axes back")]
     Mirrored {
@@ -47,6 +54,8 @@ pub enum PoseError {
     },
 }
 
+/// How far from one the length of a quaternion may be.
+const QUATERNION_ROUNDING: f64 = 1e-3;
 /// What counts as rounding in R Rᵀ = I: files often hold six to nine digits.
 const ROUNDING: f64 = 1e-4;
 
@@ -68,6 +77,31 @@ impl Pose {
             Translation3::from(offset),
             UnitQuaternion::from_euler_angles(roll, pitch, yaw),
         ))
+    }
+
+    /// Turns by a unit quaternion, then moves by `offset` metres.
+    pub fn from_translation_rotation(offset: Vector3, rotation: UnitQuaternion<f64>) -> Self {
+        Self(Isometry3::from_parts(Translation3::from(offset), rotation))
+    }
+
+    /// Turns by the quaternion w + x i + y j + z k, then moves by `offset` metres.
+    ///
+    /// # Errors
+    /// When its length differs from one by more than the rounding of a text file (1e-3).
+    pub fn try_from_quaternion(offset: Vector3, wxyz: [f64; 4]) -> Result<Self, PoseError> {
+        let [w, x, y, z] = wxyz;
+        let quaternion = Quaternion::new(w, x, y, z);
+        let length = quaternion.norm();
+        let off = (length - 1.0).abs();
+        let rotation = if off < 4.0 * f64::EPSILON {
+            // Of length one already: its bits are kept.
+            UnitQuaternion::new_unchecked(quaternion)
+        } else if off < QUATERNION_ROUNDING {
+            UnitQuaternion::new_normalize(quaternion)
+        } else {
+            return Err(PoseError::QuaternionLength { length });
+        };
+        Ok(Self::from_translation_rotation(offset, rotation))
     }
 
     /// Wraps an isometry of nalgebra, whose type already says that it is rigid.
@@ -173,6 +207,16 @@ mod tests {
             Pose::try_from_matrix(&m),
             Err(PoseError::NotFinite { row: 0, column: 3, .. })
         ));
+    }
+
+    #[test]
+    fn quaternions_are_of_length_one() {
+        let half_turn = Pose::try_from_quaternion(Vector3::zeros(), [0.0, 1.0, 0.0, 0.0]).unwrap();
+        assert!((half_turn.transform_vector(&Vector3::z()) + Vector3::z()).norm() < 1e-15);
+        for bad in [[0.0; 4], [1.0, 1.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0, 1.0]] {
+            let pose = Pose::try_from_quaternion(Vector3::zeros(), bad);
+            assert!(matches!(pose, Err(PoseError::QuaternionLength { .. })), "{bad:?}");
+        }
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! A point known up to a normal distribution.
 
-use crate::{Covariance, Point3, Pose};
+use crate::covariance::Covariance;
+use crate::pose::Pose;
+use crate::vectors::Point3;
 
 /// An unknown surface point x' ~ N(`mean`, `covariance`), in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -99,8 +99,8 @@ pub(crate) fn check_cloud(path: &Path, cloud: &PointCloud) -> Result<(), WriteEr
     {
         return Err(length("image pixels", width.saturating_mul(height)));
     }
-    match cloud.sensor_origin.iter().find(|v| !v.is_finite()) {
-        Some(&value) => Err(WriteError::SensorOrigin { path: path.to_owned(), value }),
+    match cloud.sensor_pose.non_finite_entry() {
+        Some(value) => Err(WriteError::SensorPose { path: path.to_owned(), value }),
         None => Ok(()),
     }
 }

@@ -82,12 +82,12 @@ pub enum WriteError {
         /// How many points there are.
         points: usize,
     },
-    /// The sensor origin is NaN or infinite, which no reader would take back.
+    /// The sensor pose has a NaN or an infinity, which no reader would take back.
     #[error(
-        "{}: the sensor origin has the coordinate {}: it must be finite",
+        "{}: the sensor pose has the entry {}: it must be finite",
         path.display(), number(*value)
     )]
-    SensorOrigin {
+    SensorPose {
         /// The file.
         path: PathBuf,
         /// What was found.

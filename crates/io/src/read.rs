@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use cloudtouch_geom::{PointCloud, TriangleMesh};
+use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 
 use crate::{
     error::{Fault, FormatError, Place, ReadError},
@@ -162,7 +162,8 @@ fn unsupported(path: &Path, supported: &'static str) -> ReadError {
 
 fn scaled(mut cloud: PointCloud, factor: f64) -> PointCloud {
     cloud.points.iter_mut().for_each(|p| p.coords *= factor);
-    cloud.sensor_origin.coords *= factor;
+    let origin = cloud.sensor_pose.translation() * factor;
+    cloud.sensor_pose = Pose::from_translation_rotation(origin, *cloud.sensor_pose.rotation());
     for covariance in cloud.covariances.iter_mut().flatten() {
         *covariance = covariance.scaled(factor);
     }

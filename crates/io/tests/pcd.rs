@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-use cloudtouch_geom::{Covariance, Point3};
+use cloudtouch_geom::{Covariance, Point3, Vector3};
 use cloudtouch_io::{Fault, FormatError, Place, pcd};
 
 /// A header for fields of one value each.
@@ -127,10 +127,30 @@ fn doubles_keep_the_millimetres_of_map_coordinates() {
 }
 
 #[test]
-fn viewpoint_gives_the_origin_and_its_rotation_is_left_alone() {
-    let cloud = pcd::parse(&with_line("VIEWPOINT", "VIEWPOINT 1 2.5 -3 0 1 0 0")).unwrap();
-    assert_eq!(cloud.sensor_origin, Point3::new(1.0, 2.5, -3.0));
+fn viewpoint_gives_the_pose_of_the_sensor_and_points_stay() {
+    let read = |line| pcd::parse(&with_line("VIEWPOINT", line)).unwrap();
+    let cloud = read("VIEWPOINT 1 2.5 -3 0 1 0 0");
+    assert_eq!(cloud.sensor_origin(), Point3::new(1.0, 2.5, -3.0));
     assert_eq!(cloud.points, [Point3::new(1.0, 2.0, 3.0)]);
+    // Half a turn about x: the rotation was dropped.
+    let looks = cloud.sensor_pose.transform_vector(&Vector3::z());
+    assert!((looks + Vector3::z()).norm() < 1e-15, "{looks}");
+    assert_eq!(read("VIEWPOINT 1 2.5 -3").sensor_pose.rotation().angle(), 0.0);
+    let quarter = read("VIEWPOINT 0 0 0 0.70711 0 0.70711 0").sensor_pose;
+    assert!((quarter.transform_vector(&Vector3::z()) - Vector3::x()).norm() < 1e-12);
+    for (line, fault) in [
+        ("VIEWPOINT 0 0 0 1 0", Fault::RowLength { expected: 7, found: 5 }),
+        (
+            "VIEWPOINT 0 0 0 0 0 0 0",
+            Fault::BadEntry {
+                entry: "VIEWPOINT",
+                found: "0 0 0 0 0 0 0".into(),
+                expected: "a position and a quaternion w x y z of length one",
+            },
+        ),
+    ] {
+        assert_eq!(error(&with_line("VIEWPOINT", line)), (Place::Line(8), fault));
+    }
     assert_eq!(
         error(&with_line("VIEWPOINT", "VIEWPOINT 1 2 x")),
         (Place::Column { line: 8, column: 3 }, Fault::NotANumber { found: "x".into() })

@@ -49,7 +49,7 @@ fn content_decides_and_units_count() {
     let Geometry::Cloud(cloud) = read_geometry(&pcd, LengthUnit::Inches).unwrap() else {
         panic!("a mesh")
     };
-    assert_eq!(cloud.sensor_origin, Point3::new(2.54, 0.0, 0.0));
+    assert_eq!(cloud.sensor_origin(), Point3::new(2.54, 0.0, 0.0));
 }
 
 #[test]

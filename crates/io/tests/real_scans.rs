@@ -69,7 +69,7 @@ fn clouds_hold_what_is_known_of_them() {
         let half = if name == "samp11-utm" { 0.005 } else { 0.0005 };
         assert_box(name, cloud.bounding_box(), corners, half);
         assert_eq!(cloud.image_size, (missing > 0).then_some((640, 480)), "{name}");
-        assert_eq!(cloud.sensor_origin, Point3::origin(), "{name}");
+        assert_eq!(cloud.sensor_origin(), Point3::origin(), "{name}");
         assert!(cloud.covariances.is_none(), "{name}");
     }
 }

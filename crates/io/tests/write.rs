@@ -4,7 +4,7 @@
 
 use std::{fs, io};
 
-use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, TriangleMesh};
+use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch_io::{
     LengthUnit, WriteError, read_cloud, read_mesh, write_atomically, write_cloud_pcd,
     write_cloud_ply, write_colored_ply, write_mesh_obj,
@@ -27,8 +27,10 @@ fn any_covariance() -> impl Strategy<Value = Covariance> {
 fn any_cloud() -> impl Strategy<Value = PointCloud> {
     let size =
         prop_oneof![Just((0, 1)), (1..40_usize).prop_map(|w| (w, 1)), (2..7_usize, 2..7_usize)];
-    (size, any::<bool>(), prop::array::uniform3(-1e6..1e6_f64)).prop_flat_map(
-        |((width, height), with_covariances, origin)| {
+    let origin = prop::array::uniform3(-1e6..1e6_f64);
+    let turn = prop::array::uniform3(-3.0..3.0_f64);
+    (size, any::<bool>(), origin, turn).prop_flat_map(
+        |((width, height), with_covariances, origin, turn)| {
             let rows = prop::collection::vec(
                 (prop::array::uniform3(any_value()), any_covariance()),
                 width * height,
@@ -37,7 +39,7 @@ fn any_cloud() -> impl Strategy<Value = PointCloud> {
                 points: rows.iter().map(|(p, _)| Point3::from(*p)).collect(),
                 covariances: with_covariances.then(|| rows.iter().map(|(_, c)| *c).collect()),
                 normals: None,
-                sensor_origin: origin.into(),
+                sensor_pose: Pose::from_translation_rpy(origin.into(), turn),
                 image_size: (height > 1).then_some((width, height)),
             })
         },
@@ -63,7 +65,7 @@ proptest! {
             prop_assert_eq!(bits(&back.points), bits(&cloud.points));
             prop_assert_eq!(&back.covariances, &cloud.covariances);
         }
-        prop_assert_eq!(from_pcd.sensor_origin, cloud.sensor_origin);
+        prop_assert_eq!(from_pcd.sensor_pose, cloud.sensor_pose);
         prop_assert_eq!(from_pcd.image_size, cloud.image_size);
         let first = fs::read(&pcd).unwrap();
         write_cloud_pcd(&pcd, &from_pcd).unwrap();
@@ -123,8 +125,8 @@ fn lists_of_different_length_are_refused_and_write_nothing() {
     cloud.image_size = Some((2, 3));
     assert_eq!(length(write_cloud_pcd(&path, &cloud)), ("image pixels", 6));
     cloud.image_size = None;
-    cloud.sensor_origin.y = f64::NAN;
-    assert!(matches!(write_cloud_pcd(&path, &cloud), Err(WriteError::SensorOrigin { .. })));
+    cloud.sensor_pose = Pose::from_translation(Vector3::new(0.0, f64::NAN, 0.0));
+    assert!(matches!(write_cloud_pcd(&path, &cloud), Err(WriteError::SensorPose { .. })));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 

@@ -1,6 +1,6 @@
 //! Sensor models: how far a measured point may be from the surface point it saw.
 
-use cloudtouch_geom::{Covariance, Point3, PointCloud, Vector3};
+use cloudtouch_geom::{Covariance, Point3, PointCloud, Vector3, unit};
 
 use crate::NoiseError;
 
@@ -107,7 +107,7 @@ impl SensorModel {
     /// not finite.
     pub fn covariances(&self, cloud: &PointCloud) -> Result<Vec<Covariance>, NoiseError> {
         self.validate()?;
-        let origin = cloud.sensor_origin;
+        let origin = cloud.sensor_origin();
         if !is_finite(&origin) {
             return Err(NoiseError::SensorOrigin { origin });
         }
@@ -163,9 +163,9 @@ impl SensorModel {
 
 /// Standard deviation `along` a ray and `across` it; the larger of them where there is no ray.
 fn along_ray(ray: &Vector3, along: f64, across: f64) -> Covariance {
-    match ray.try_normalize(0.0) {
-        Some(direction) => Covariance::from_axis(&direction, along, across),
-        None => Covariance::isotropic(along.max(across).powi(2)),
+    match unit(ray) {
+        Ok(direction) => Covariance::from_axis(&direction, along, across),
+        Err(_) => Covariance::isotropic(along.max(across).powi(2)),
     }
 }
 

@@ -5,7 +5,7 @@
 
 mod common;
 
-use cloudtouch_geom::{Covariance, Point3, PointCloud, Pose, Vector3};
+use cloudtouch_geom::{Covariance, Point3, PointCloud, Pose, UnitVector3, Vector3};
 use cloudtouch_noise::{Combination, Neighborhoods, Refined, Scratch, SensorModel};
 
 use common::{
@@ -199,7 +199,7 @@ fn a_rigid_motion_moves_the_answer() {
     let surface = cuboid([0.3, 0.2, 0.1], 0.015, 3);
     let points = noisy(&surface.points, 0.003, 7);
     let sensor: Vec<_> = (0..points.len())
-        .map(|i| Covariance::from_axis(&gaussian(9, i).normalize(), 0.004, 0.002))
+        .map(|i| Covariance::from_axis(&UnitVector3::new_normalize(gaussian(9, i)), 0.004, 0.002))
         .collect();
     let pose = Pose::from_translation_rpy(Vector3::new(0.3, -0.8, 1.1), [0.4, -1.0, 2.0]);
     let moved: Vec<_> = points.iter().map(|p| pose.transform_point(p)).collect();

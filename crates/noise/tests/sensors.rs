@@ -73,7 +73,7 @@ fn a_point_at_the_sensor_has_finite_noise() {
 #[test]
 fn rays_start_at_the_sensor_origin() {
     let cloud = PointCloud {
-        sensor_origin: Point3::new(5.0, 0.0, 0.0),
+        sensor_pose: Pose::from_translation(Vector3::new(5.0, 0.0, 0.0)),
         ..PointCloud::from_points(vec![Point3::new(5.0, 3.0, 0.0)])
     };
     let sensor = SensorModel::Lidar { range_std: 0.02, beam_rad: 0.0 };
@@ -117,7 +117,7 @@ fn what_cannot_be_represented_is_refused() {
         SensorModel::Kinect.covariances(&cloud),
         Err(NoiseError::CovarianceNotFinite { index: 0, .. })
     ));
-    cloud.sensor_origin.y = f64::NAN;
+    cloud.sensor_pose = Pose::from_translation(Vector3::new(0.0, f64::NAN, 0.0));
     assert!(matches!(SensorModel::Exact.covariances(&cloud), Err(NoiseError::SensorOrigin { .. })));
     assert!(matches!(
         SensorModel::Isotropic { std: -1.0 }.covariances(&cloud),

@@ -49,8 +49,10 @@ fn rows_that_are_not_finite_always_go() {
 #[test]
 fn the_range_is_measured_from_the_sensor_and_includes_its_ends() {
     let points: Vec<Point3> = (0..10).map(|i| Point3::new(5.0, 0.0, f64::from(i))).collect();
-    let cloud =
-        PointCloud { sensor_origin: Point3::new(5.0, 0.0, 0.0), ..PointCloud::from_points(points) };
+    let cloud = PointCloud {
+        sensor_pose: Pose::from_translation(Vector3::new(5.0, 0.0, 0.0)),
+        ..PointCloud::from_points(points)
+    };
     let settings = FilterSettings { min_range: 2.0, max_range: 7.0, ..off() };
     let filtered = filter(&cloud, &settings).unwrap();
     assert_eq!(filtered.rows, [2, 3, 4, 5, 6, 7]);

@@ -2,13 +2,13 @@
 
 mod common;
 
-use cloudtouch::geom::{Point3, PointCloud, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, UnitVector3, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, FilterError, Mode, PrepareError};
 use common::{ask, at};
 
 /// A square of 40 cm, a point every 2 cm, with these normals.
-fn sheet(normal: Vector3) -> PointCloud {
+fn sheet(normal: UnitVector3) -> PointCloud {
     let place = |i: usize| Point3::new(0.02 * (i % 20) as f64, 0.02 * (i / 20) as f64, 0.0);
     let points: Vec<Point3> = (0..400).map(place).collect();
     PointCloud { normals: Some(vec![normal; points.len()]), ..PointCloud::from_points(points) }
@@ -27,21 +27,21 @@ fn discs_lie_across_the_normals_given() {
         let cloud = prepare(&sheet(normal)).unwrap();
         ask(Mode::Calibrated, &cloud, &cloud, &at(0.0, 0.0, 0.01)).evidence.unwrap().deviations
     };
-    let (flat, upright) = (deviations(Vector3::z()), deviations(Vector3::x()));
+    let (flat, upright) = (deviations(Vector3::z_axis()), deviations(Vector3::x_axis()));
     // Three is as far as is told.
     assert!(flat == 3.0 && upright < 1.5, "flat {flat}, upright {upright}");
-    // Length does not matter.
-    assert_eq!(flat, deviations(Vector3::z() * 2.0));
+    // The side it points to does not matter.
+    assert_eq!(flat, deviations(-Vector3::z_axis()));
 }
 
 #[test]
 fn normals_that_are_none_are_refused() {
-    for bad in [Vector3::zeros(), Vector3::new(f64::NAN, 0.0, 1.0)] {
-        let error = prepare(&sheet(bad)).unwrap_err();
+    for bad in [Vector3::zeros(), Vector3::new(f64::NAN, 0.0, 1.0), Vector3::z() * 2.0] {
+        let error = prepare(&sheet(UnitVector3::new_unchecked(bad))).unwrap_err();
         assert!(matches!(error, PrepareError::Normal { index: 0, .. }), "{error}");
     }
-    let mut short = sheet(Vector3::z());
-    short.normals = Some(vec![Vector3::z(); 399]);
+    let mut short = sheet(Vector3::z_axis());
+    short.normals = Some(vec![Vector3::z_axis(); 399]);
     let error = prepare(&short).unwrap_err();
     let wanted = FilterError::Count { what: "normals", count: 399, points: 400 };
     assert_eq!(error, PrepareError::Filter(wanted));

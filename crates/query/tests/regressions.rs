@@ -2,7 +2,9 @@
 
 mod common;
 
-use cloudtouch::geom::{Covariance, Matrix3, Point3, PointCloud, Pose, PoseError, Vector3};
+use cloudtouch::geom::{
+    Covariance, Matrix3, Point3, PointCloud, Pose, PoseError, UnitVector3, Vector3,
+};
 use cloudtouch::noise::{Combination, SensorModel};
 use cloudtouch::{Cloud, CloudSettings, Mode, PrepareError, Query, QueryError, Verdict};
 use cloudtouch_testkit::scene;
@@ -89,8 +91,10 @@ fn covariances_were_left_unscaled() {
 fn partial_gradient_sums_made_noise_along_the_surface_count() {
     let std = 0.006;
     // A disc in the tangent plane of the dome: no noise toward the other dome.
-    let tangential = |p: &Point3| Covariance::from_axis(&p.coords.normalize(), 0.0, std);
-    let radial = |p: &Point3| Covariance::from_axis(&p.coords.normalize(), std, 0.0);
+    let tangential =
+        |p: &Point3| Covariance::from_axis(&UnitVector3::new_normalize(p.coords), 0.0, std);
+    let radial =
+        |p: &Point3| Covariance::from_axis(&UnitVector3::new_normalize(p.coords), std, 0.0);
     let none = kernel_probability(|_| Covariance::zero());
     let (along, toward) = (kernel_probability(tangential), kernel_probability(radial));
     // The gap of 2 cm is 1.7 deviations of radial noise for each side: Φ(−1.7) = 0.05 at best.
@@ -157,8 +161,10 @@ fn nan_ended_as_probability_zero() {
     let prepared = Cloud::prepare(&PointCloud::from_points(holed), &good).unwrap();
     assert_eq!(prepared.filter_stages()[0].removed, 1);
     // In the sensor's place: an error where the place matters.
-    let lost =
-        PointCloud { sensor_origin: Point3::new(0.0, nan, 0.0), ..PointCloud::from_points(points) };
+    let lost = PointCloud {
+        sensor_pose: Pose::from_translation(Vector3::new(0.0, nan, 0.0)),
+        ..PointCloud::from_points(points)
+    };
     let kinect = CloudSettings::new(SensorModel::Kinect, Mode::Calibrated);
     assert!(Cloud::prepare(&lost, &kinect).is_err());
 }

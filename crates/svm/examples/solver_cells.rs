@@ -11,11 +11,11 @@ use cloudtouch_svm::{
 
 #[path = "../tests/support/mod.rs"]
 mod support;
-use support::{Difficulty, cell};
+use support::{Difficulty, cell, settings};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gap = std::env::args().nth(1).map_or(Ok(1e-4), |text| text.parse())?;
-    let settings = Settings::with_relative_gap(gap)?;
+    let settings = settings(gap);
     println!("relative gap {gap:e}; times in microseconds");
     println!(
         "cell             median      p90  steps  smo only  interior  clarabel  unsolved  collapsed"
@@ -31,15 +31,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let (samples, gamma) = cell(difficulty, per_side, seed);
                 let start = Instant::now();
                 let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma })?;
-                let solution = problem.solve(&settings);
+                let solution = problem.solve(&settings)?;
                 times.push(start.elapsed().as_secs_f64() * 1e6);
                 let start = Instant::now();
-                let smo = problem.solve(&settings.fallback(false));
+                let smo = problem.solve(&Settings { fallback: false, ..settings })?;
                 smo_times.push(start.elapsed().as_secs_f64() * 1e6);
                 steps.push(smo.effort.smo_steps);
                 dense += usize::from(solution.rung == Rung::InteriorPoint);
                 clarabel += usize::from(solution.rung == Rung::Clarabel);
-                unsolved += usize::from(solution.status == Status::StepLimit);
+                let ended = matches!(solution.status, Status::Converged | Status::Collapsed);
+                unsolved += usize::from(!ended);
                 collapsed += usize::from(solution.status == Status::Collapsed);
             }
             times.sort_by(f64::total_cmp);

@@ -36,7 +36,13 @@ pub(crate) fn ball_minimiser(m: &Vector3, h: &Vector3, radius: f64) -> Vector3 {
         mu += step;
     }
     // The last rounding: never leave the ball.
-    crate::state::clip_to_ball(&at(mu), radius)
+    clip_to_ball(&at(mu), radius)
+}
+
+/// `p`, shortened to `radius` when it is longer.
+pub(crate) fn clip_to_ball(p: &Vector3, radius: f64) -> Vector3 {
+    let norm = p.norm();
+    if norm > radius { p * (radius / norm) } else { *p }
 }
 
 #[cfg(test)]

@@ -3,13 +3,14 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT,
-    SupportedConeT, ZeroConeT,
+    SolverStatus, SupportedConeT, ZeroConeT,
 };
 use cloudtouch_geom::Vector3;
 use faer::Mat;
 
 use crate::gram::{Variable, gram, variables};
 use crate::problem::Problem;
+use crate::status::Status;
 
 /// What Clarabel found: α and p in sample order, and its iterations. Not necessarily feasible to
 /// the last digit, and not necessarily optimal: the caller certifies it.
@@ -17,16 +18,22 @@ pub(crate) struct ClarabelDual {
     pub(crate) alpha: Vec<f64>,
     pub(crate) p: Vec<Vector3>,
     pub(crate) iterations: usize,
+    /// How it ended, by its own account.
+    pub(crate) status: Status,
 }
 
-/// Solves the dual with Clarabel; `None` when the problem is too large or Clarabel refuses it.
+/// Solves the dual with Clarabel.
+///
+/// # Errors
+/// [`Status::TooLarge`] where the dense matrix is not built, [`Status::Refused`] where Clarabel does
+/// not take the numbers.
 pub(crate) fn solve(
     problem: &Problem,
     relative_gap: f64,
     max_iterations: usize,
-) -> Option<ClarabelDual> {
+) -> Result<ClarabelDual, Status> {
     let variables = variables(problem);
-    let quadratic = upper_triangle(&gram(problem, &variables)?);
+    let quadratic = upper_triangle(&gram(problem, &variables).ok_or(Status::TooLarge)?);
     let linear: Vec<f64> =
         variables.iter().map(|v| if v.axis.is_none() { -1.0 } else { 0.0 }).collect();
     let (constraints, bounds, cones) = constraints(problem, &variables);
@@ -39,9 +46,10 @@ pub(crate) fn solve(
         .tol_gap_rel(tolerance)
         .tol_feas(tolerance)
         .build()
-        .ok()?;
+        .map_err(|_| Status::Refused)?;
     let mut solver =
-        DefaultSolver::new(&quadratic, &linear, &constraints, &bounds, &cones, settings).ok()?;
+        DefaultSolver::new(&quadratic, &linear, &constraints, &bounds, &cones, settings)
+            .map_err(|_| Status::Refused)?;
     solver.solve();
     let mut alpha = vec![0.0; problem.len()];
     let mut p = vec![Vector3::zeros(); problem.len()];
@@ -51,7 +59,12 @@ pub(crate) fn solve(
             Some(axis) => p[variable.point][axis] = value,
         }
     }
-    Some(ClarabelDual { alpha, p, iterations: solver.solution.iterations as usize })
+    let status = match solver.solution.status {
+        SolverStatus::Solved => Status::Converged,
+        SolverStatus::MaxIterations => Status::IterationLimit,
+        _ => Status::Stalled,
+    };
+    Ok(ClarabelDual { alpha, p, iterations: solver.solution.iterations as usize, status })
 }
 
 fn upper_triangle(matrix: &Mat<f64>) -> CscMatrix<f64> {

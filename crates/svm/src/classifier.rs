@@ -2,26 +2,37 @@
 
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3, normal};
 
-use crate::{Class, Kernel, Problem, Solution, Status, UnitBox};
+use crate::bounds::{Range, Reference};
+use crate::kernel::Kernel;
+use crate::problem::Problem;
+use crate::sample::Class;
+use crate::solution::{ErrorBounds, Solution, Undetermined};
+use crate::unit_box::UnitBox;
 
 /// A trained decision function f: positive on the side of class A, negative on that of B.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Classifier {
     expansion: Expansion,
     bias: f64,
+    error: ErrorBounds,
+    /// What the error of f is measured from.
+    reference: Reference,
     /// Origin of the coordinates of the expansion.
     centre: Point3,
     /// Maps points handed in into the frame the problem was posed in.
     frame: UnitBox,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Expansion {
     Plane { normal: Vector3 },
     Gaussian { gamma: f64, terms: Vec<Term> },
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Term {
     x: Vector3,
     /// cα.
@@ -44,17 +55,9 @@ pub enum ClassifierError {
         /// Samples in the problem.
         problem: usize,
     },
-    /// The solve ended in a way that leaves probabilities undetermined.
-    #[error(
-        "the solve ended as {status:?} with a relative gap of {relative_gap:.1e}, which determines no \
-         probability: report the pair as undecided, or solve further"
-    )]
-    Undetermined {
-        /// How the solve ended.
-        status: Status,
-        /// How far it got.
-        relative_gap: f64,
-    },
+    /// The solution determines no probability.
+    #[error("no probability is determined: report the pair as undecided")]
+    Undetermined(#[from] Undetermined),
 }
 
 impl Classifier {
@@ -62,34 +65,21 @@ impl Classifier {
     ///
     /// # Errors
     /// When the solution does not belong to the problem, or when it does not
-    /// [determine probabilities](Solution::determines_probabilities), as after a collapse.
+    /// [determine probabilities](Solution::determined), as after a collapse.
     pub fn try_new(problem: &Problem, solution: &Solution) -> Result<Self, ClassifierError> {
-        if solution.alpha.len() != problem.len() || solution.v.len() != problem.len() {
+        if solution.alpha.len() != problem.len() || solution.displacement.len() != problem.len() {
             return Err(ClassifierError::SizeMismatch {
                 solution: solution.alpha.len(),
                 problem: problem.len(),
             });
         }
-        if !solution.determines_probabilities() {
-            return Err(ClassifierError::Undetermined {
-                status: solution.status,
-                relative_gap: solution.relative_gap,
-            });
-        }
+        solution.determined()?;
         let terms: Vec<Term> = problem
             .points
             .iter()
-            .zip(solution.alpha.iter().zip(&solution.v))
+            .zip(solution.alpha.iter().zip(&solution.displacement))
             .filter(|(_, (alpha, _))| **alpha > 0.0)
-            .map(|(point, (alpha, v))| {
-                // v = r E p, so S v = Tᵀp = E diag(√λ) Eᵀ v.
-                let s = if point.is_uncertain() {
-                    point.displacement(&(point.axes.tr_mul(v) / point.radius))
-                } else {
-                    Vector3::zeros()
-                };
-                Term { x: point.x, a: point.sign * alpha, s }
-            })
+            .map(|(point, (alpha, &s))| Term { x: point.x, a: point.sign * alpha, s })
             .collect();
         let expansion = match problem.kernel {
             Kernel::Linear => {
@@ -100,6 +90,8 @@ impl Classifier {
         Ok(Self {
             expansion,
             bias: solution.bias,
+            error: solution.error,
+            reference: Reference::of(problem),
             centre: problem.centre,
             frame: UnitBox::identity(),
         })
@@ -111,6 +103,16 @@ impl Classifier {
     #[must_use]
     pub fn outside(self, unit_box: UnitBox) -> Self {
         Self { frame: unit_box, ..self }
+    }
+
+    /// b, of f₀ + b with f₀ taken relative to [`Self::centre`].
+    pub fn bias(&self) -> f64 {
+        self.bias
+    }
+
+    /// The point that positions are taken relative to, in the frame the problem was posed in.
+    pub fn centre(&self) -> Point3 {
+        self.centre
     }
 
     /// How many support vectors the function has; 1 for a plane.
@@ -128,14 +130,14 @@ impl Classifier {
 
     /// f and ∇f at a point; the gradient is per unit of length of the point's frame.
     pub fn value_and_gradient(&self, point: &Point3) -> (f64, Vector3) {
-        let x = self.frame.point_inside(point) - self.centre;
+        let x = self.relative(point);
         let (value, gradient) = match &self.expansion {
             Expansion::Plane { normal } => (normal.dot(&x), *normal),
             Expansion::Gaussian { gamma, terms } => {
                 let kernel = Kernel::Gaussian { gamma: *gamma };
                 terms.iter().fold((0.0, Vector3::zeros()), |(value, gradient), term| {
-                    let k = kernel.value(&term.x, &x);
-                    let (df, dg) = kernel.influence(&term.x, &x, k, term.a, &term.s);
+                    let reduced = kernel.reduced(&term.x, &x);
+                    let (df, dg) = kernel.influence(&term.x, &x, reduced, term.a, &term.s);
                     (value + df, gradient + dg)
                 })
             }
@@ -153,18 +155,49 @@ impl Classifier {
     /// `None` when the result is not a number, as for a point that is not finite; it must never be
     /// read as "free".
     pub fn probability(&self, point: &UncertainPoint, class: Class) -> Option<f64> {
+        let (value, deviation) = self.value_and_deviation(point)?;
+        let probability = normal::below_zero(class.sign() * value, deviation);
+        (!probability.is_nan()).then_some(probability)
+    }
+
+    /// f at a point for the optimal w and any optimal b: the least and the largest value that the
+    /// duality gap of the solution allows.
+    ///
+    /// A guarantee ([`ErrorBounds`]); infinite or NaN for a point that is not finite.
+    pub fn value_bounds(&self, point: &Point3) -> [f64; 2] {
+        let base = self.value(point) - self.bias;
+        let off = self.error.weight * self.reference.distance(&self.relative(point));
+        [base + self.error.bias[0] - off, base + self.error.bias[1] + off]
+    }
+
+    /// The least and the largest value that [`Self::probability`] could have at the optimum.
+    ///
+    /// A guarantee on the optimisation, not on the model; `None` as [`Self::probability`].
+    pub fn probability_bounds(&self, point: &UncertainPoint, class: Class) -> Option<[f64; 2]> {
+        let (_, deviation) = self.value_and_deviation(point)?;
+        let [low, high] = self.value_bounds(&point.mean);
+        let value = if class == Class::A { [low, high] } else { [-high, -low] };
+        let slope = self.reference.slope() * self.frame.scale();
+        let off = self.error.weight * slope * point.covariance.max_std();
+        let range = Range { value, deviation: [(deviation - off).max(0.0), deviation + off] };
+        let bounds = range.probabilities();
+        bounds.iter().all(|p| !p.is_nan()).then_some(bounds)
+    }
+
+    /// Position in the coordinates of the expansion.
+    fn relative(&self, point: &Point3) -> Vector3 {
+        self.frame.point_inside(point) - self.centre
+    }
+
+    /// f and |S∇f|; `None` when one of them is not finite.
+    fn value_and_deviation(&self, point: &UncertainPoint) -> Option<(f64, f64)> {
         let (value, gradient) = self.value_and_gradient(&point.mean);
-        let std =
-            if point.covariance.is_zero() { 0.0 } else { point.covariance.std_along(&gradient) };
+        let deviation = point.covariance.std_along(&gradient);
         // `std_along` clamps at zero, which would turn a NaN covariance into an exact point.
         let finite = value.is_finite()
             && gradient.iter().all(|v| v.is_finite())
-            && std.is_finite()
+            && deviation.is_finite()
             && point.covariance.is_finite();
-        if !finite {
-            return None;
-        }
-        let probability = normal::below_zero(class.sign() * value, std);
-        (!probability.is_nan()).then_some(probability)
+        finite.then_some((value, deviation))
     }
 }

@@ -4,7 +4,6 @@
 //! cone with multiplier s_i, u_i = C_i − α_i ≥ 0 with multiplier ξ_i, and the bias b for Σcα = 0:
 //! Q z − e − s + ξ + b c = 0. Every iterate is feasible, so its gap can be certified.
 
-use cloudtouch_geom::Vector3;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use nalgebra::Vector4;
@@ -12,7 +11,9 @@ use nalgebra::Vector4;
 use crate::cone::{Scaling, longest_step, product, quotient};
 use crate::gram::{Variable, gram, variables};
 use crate::problem::Problem;
-use crate::state::State;
+use crate::state::{Numbers, State};
+use crate::status::{Rung, Status};
+use crate::watch::Watch;
 
 /// Seven to twelve iterations are usual at 1e-4; past this rounding has stopped the progress.
 const MAX_ITERATIONS: usize = 60;
@@ -24,7 +25,8 @@ const MAX_STALLED: usize = 5;
 /// Share of the way to the boundary that a step goes.
 const STEP: f64 = 0.99;
 
-/// Multipliers start from at least this, where penalties allow it.
+/// Multipliers start from at least this over the squared reach of the samples in feature space, where
+/// penalties allow it: two classes so far apart take multipliers of 2 over their squared distance.
 const START: f64 = 10.0;
 
 /// The iterate: one cone pair and one bound pair for each point.
@@ -43,26 +45,42 @@ struct Direction {
     bias: f64,
 }
 
-/// Solves the dual to `relative_gap`, or as far as rounding and `allowed` iterations let it; the best
-/// state found, and the iterations. `None` when the problem is too large for a dense matrix or leaves
-/// the range of f64.
+/// How far the method came.
+pub(crate) struct Reached<'a> {
+    /// The best state found; none where not even the first was finite.
+    pub(crate) state: Option<State<'a>>,
+    pub(crate) iterations: usize,
+    pub(crate) status: Status,
+}
+
+/// Solves the dual to `relative_gap`, or as far as rounding and `allowed` iterations let it.
 ///
 /// `typical` is a guess at the mean of the multipliers: each iteration changes them by a bounded
 /// factor, so that large penalties take many iterations from a small start.
-pub(crate) fn solve(
-    problem: &Problem,
+pub(crate) fn solve<'a>(
+    problem: &'a Problem,
     relative_gap: f64,
     typical: f64,
     allowed: usize,
-) -> Option<(State<'_>, usize)> {
+    watch: &mut Watch<'_>,
+) -> Reached<'a> {
     let variables = variables(problem);
-    let quadratic = gram(problem, &variables)?;
-    let mut at = Iterate::start(problem, typical.max(START));
+    let Some(quadratic) = gram(problem, &variables) else {
+        return Reached { state: None, iterations: 0, status: Status::TooLarge };
+    };
+    let reaches = problem.points.iter().map(|p| problem.kernel.squared_reach(&p.x));
+    let start = (START / reaches.fold(0.0, f64::max)).min(f64::MAX);
+    let mut at = Iterate::start(problem, typical.max(start));
     let mut best: Option<(State<'_>, f64)> = None;
     let mut worse = 0;
     let allowed = allowed.min(MAX_ITERATIONS);
-    for iteration in 0..allowed {
-        let (state, gap) = at.certify(problem);
+    let mut status = Status::IterationLimit;
+    let mut iterations = 0;
+    while iterations < allowed {
+        let mut state = at.state(problem);
+        let certificate = state.certificate();
+        let gap = certificate.relative_gap();
+        let stop = watch.shows_stop(Rung::InteriorPoint, iterations, &state, &certificate);
         if gap.is_finite() && best.as_ref().is_none_or(|(_, least)| gap < *least) {
             best = Some((state, gap));
             worse = 0;
@@ -70,12 +88,26 @@ pub(crate) fn solve(
             worse += 1;
         }
         let least = best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
-        let stalled = worse >= MAX_STALLED && least <= NEAR;
-        if least <= relative_gap || stalled || at.step(problem, &variables, &quadratic).is_none() {
-            return best.map(|(state, _)| (state, iteration));
+        let end = if least <= relative_gap {
+            Some(Status::Converged)
+        } else if stop {
+            Some(Status::Cancelled)
+        } else if worse >= MAX_STALLED && least <= NEAR {
+            Some(Status::Stalled)
+        } else {
+            // A scaling or a factor that fails is rounding too.
+            at.step(problem, &variables, &quadratic).is_none().then_some(Status::Stalled)
+        };
+        if let Some(end) = end {
+            status = end;
+            break;
         }
+        iterations += 1;
     }
-    best.map(|(state, _)| (state, allowed))
+    let state = best.map(|(state, _)| state);
+    let status =
+        if state.is_none() && status == Status::Stalled { Status::NotFinite } else { status };
+    Reached { state, iterations, status }
 }
 
 impl Iterate {
@@ -102,12 +134,9 @@ impl Iterate {
         }
     }
 
-    fn certify<'a>(&self, problem: &'a Problem) -> (State<'a>, f64) {
-        let alpha: Vec<f64> = self.z.iter().map(|z| z[0]).collect();
-        let p: Vec<Vector3> = self.z.iter().map(|z| z.fixed_rows::<3>(1).into_owned()).collect();
-        let state = State::from_duals(problem, &alpha, &p);
-        let gap = state.certificate().relative_gap();
-        (state, gap)
+    fn state<'a>(&self, problem: &'a Problem) -> State<'a> {
+        let p = self.z.iter().map(|z| z.fixed_rows::<3>(1).into_owned());
+        State::from_duals(problem, Numbers::default(), self.z.iter().map(|z| z[0]), p)
     }
 
     /// One predictor-corrector step; `None` when rounding stops it.

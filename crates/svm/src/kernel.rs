@@ -1,9 +1,10 @@
 //! The two kernels, and what one expansion term adds to the decision function.
 
-use cloudtouch_geom::Vector3;
+use cloudtouch_geom::{Point3, Vector3};
 
 /// The kernel k(x, y) of the classifier.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Kernel {
     /// k = x·y: the surface is a plane.
     Linear,
@@ -15,23 +16,35 @@ pub enum Kernel {
 }
 
 impl Kernel {
-    /// k(x, y).
-    #[inline]
-    pub(crate) fn value(&self, x: &Vector3, y: &Vector3) -> f64 {
+    /// k(x, y). A problem takes positions [relative to its centre](crate::Problem::centre), which
+    /// matters for the linear kernel alone.
+    pub fn value(&self, x: &Point3, y: &Point3) -> f64 {
         match *self {
-            Self::Linear => x.dot(y),
+            Self::Linear => x.coords.dot(&y.coords),
             Self::Gaussian { gamma } => (-gamma * (x - y).norm_squared()).exp(),
         }
     }
 
+    /// k less its constant: k − 1 for the Gaussian kernel, k for the linear one.
+    ///
+    /// With Σ cα = 0 a constant adds nothing to the decision function, but it would take its digits
+    /// away where γ|x−y|² is small: k is 1 there up to rounding, and 2 − 2k nothing but rounding.
+    #[inline]
+    pub(crate) fn reduced(&self, x: &Vector3, y: &Vector3) -> f64 {
+        match *self {
+            Self::Linear => x.dot(y),
+            Self::Gaussian { gamma } => (-gamma * (x - y).norm_squared()).exp_m1(),
+        }
+    }
+
     /// Value and gradient at `to` of the term with weight `a` (cα) and displacement `s` (S v) at
-    /// `from` (eq. 14); `k` is the kernel value of the two points.
+    /// `from` (eq. 14), its constant left out; `reduced` is [`Self::reduced`] of the two points.
     #[inline]
     pub(crate) fn influence(
         &self,
         from: &Vector3,
         to: &Vector3,
-        k: f64,
+        reduced: f64,
         a: f64,
         s: &Vector3,
     ) -> (f64, Vector3) {
@@ -41,9 +54,10 @@ impl Kernel {
                 (w.dot(to), w)
             }
             Self::Gaussian { gamma } => {
+                let k = 1.0 + reduced;
                 let d = from - to;
-                let t = a - 2.0 * gamma * s.dot(&d);
-                (k * t, (d * t + s) * (2.0 * gamma * k))
+                let pull = -2.0 * gamma * s.dot(&d);
+                (a * reduced + k * pull, (d * (a + pull) + s) * (2.0 * gamma * k))
             }
         }
     }
@@ -56,6 +70,22 @@ impl Kernel {
             Self::Linear => 1.0,
             Self::Gaussian { gamma } => 2.0 * gamma,
         }
+    }
+
+    /// |φ(x) − φ(y)|²: 2 − 2k, or |x − y|² for the linear kernel; `reduced` is [`Self::reduced`] of
+    /// the two points.
+    #[inline]
+    pub(crate) fn squared_distance(&self, x: &Vector3, y: &Vector3, reduced: f64) -> f64 {
+        match self {
+            Self::Linear => (x - y).norm_squared(),
+            Self::Gaussian { .. } => -2.0 * reduced,
+        }
+    }
+
+    /// |φ(x) − φ(0)|².
+    pub(crate) fn squared_reach(&self, x: &Vector3) -> f64 {
+        let zero = Vector3::zeros();
+        self.squared_distance(x, &zero, self.reduced(x, &zero))
     }
 }
 
@@ -71,11 +101,11 @@ mod tests {
         for kernel in [Kernel::Linear, Kernel::Gaussian { gamma: 1.7 }] {
             let term = |to: &Vector3| {
                 let h = 1e-5;
-                let slope =
-                    (kernel.value(&(x + s * h), to) - kernel.value(&(x - s * h), to)) / (2.0 * h);
-                a * kernel.value(&x, to) + slope
+                let slope = (kernel.reduced(&(x + s * h), to) - kernel.reduced(&(x - s * h), to))
+                    / (2.0 * h);
+                a * kernel.reduced(&x, to) + slope
             };
-            let (value, gradient) = kernel.influence(&x, &y, kernel.value(&x, &y), a, &s);
+            let (value, gradient) = kernel.influence(&x, &y, kernel.reduced(&x, &y), a, &s);
             assert!((value - term(&y)).abs() < 1e-9);
             for axis in 0..3 {
                 let mut step = Vector3::zeros();
@@ -84,5 +114,20 @@ mod tests {
                 assert!((gradient[axis] - slope).abs() < 1e-5, "{kernel:?} axis {axis}");
             }
         }
+    }
+
+    #[test]
+    fn the_reduced_kernel_is_the_kernel_less_one_and_keeps_its_digits() {
+        let (x, y) = (Vector3::new(0.3, -0.2, 0.5), Vector3::new(-0.1, 0.4, 0.2));
+        let squared = (x - y).norm_squared();
+        for gamma in [1e-300, 1e-20, 1e-8, 0.1, 3.0] {
+            let kernel = Kernel::Gaussian { gamma };
+            let reduced = kernel.reduced(&x, &y);
+            assert!((kernel.value(&x.into(), &y.into()) - (1.0 + reduced)).abs() < 1e-15);
+            if gamma < 1e-7 {
+                assert!((reduced / (-gamma * squared) - 1.0).abs() < 1e-7);
+            }
+        }
+        assert_eq!(Kernel::Linear.value(&x.into(), &y.into()), Kernel::Linear.reduced(&x, &y));
     }
 }

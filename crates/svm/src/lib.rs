@@ -1,6 +1,10 @@
 #![doc = include_str!("../README.md")]
 
 mod ball;
+mod bias;
+mod bounds;
+mod choose;
+#[cfg(feature = "clarabel")]
 mod clarabel_dual;
 mod classifier;
 mod cone;
@@ -8,6 +12,9 @@ mod gjk;
 mod gram;
 mod interior;
 mod kernel;
+mod ladder;
+mod local;
+mod plane_search;
 mod problem;
 mod rows;
 mod sample;
@@ -15,16 +22,24 @@ mod separation;
 mod settings;
 mod smo;
 mod solution;
-mod solve;
+mod solver;
 mod state;
+mod status;
 mod unit_box;
+mod watch;
 mod work;
+
+/// The plain data that samples are made of.
+pub use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, UnitVector3, Vector3};
 
 pub use classifier::{Classifier, ClassifierError};
 pub use kernel::Kernel;
 pub use problem::{Problem, ProblemError};
 pub use sample::{Class, Sample, balanced_penalties};
-pub use separation::{DEFAULT_KAPPA_MAX, Separation, separate};
+pub use separation::{DEFAULT_KAPPA_MAX, NoSeparation, Separation, separate};
 pub use settings::{Settings, SettingsError};
-pub use solution::{Effort, Rung, Solution, Status};
+pub use solution::{Effort, ErrorBounds, Solution, Undetermined};
+pub use solver::Solver;
+pub use status::{Ends, Rung, Status};
 pub use unit_box::UnitBox;
+pub use watch::Progress;

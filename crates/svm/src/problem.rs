@@ -3,7 +3,8 @@
 use cloudtouch_geom::message::number;
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
-use crate::{Class, Kernel, Sample};
+use crate::kernel::Kernel;
+use crate::sample::{Class, Sample};
 
 /// A robust classification problem (eq. 10) that has been checked and prepared.
 #[derive(Debug, Clone)]
@@ -80,7 +81,9 @@ pub(crate) struct PreparedPoint {
     pub(crate) radius: f64,
     /// Eigenvectors E of the covariance, as columns.
     pub(crate) axes: Matrix3,
-    /// r√λ in descending order; an axis without variance has exactly 0.
+    /// √λ in descending order: what probabilities are read with, whatever the radius.
+    pub(crate) std: Vector3,
+    /// r√λ; an axis without variance has exactly 0.
     pub(crate) t: Vector3,
     /// T = diag(t)·Eᵀ.
     pub(crate) factor: Matrix3,
@@ -98,13 +101,23 @@ impl PreparedPoint {
     pub(crate) fn displacement(&self, p: &Vector3) -> Vector3 {
         self.factor.tr_mul(p)
     }
+
+    /// |S g|: the standard deviation along a gradient.
+    pub(crate) fn deviation(&self, gradient: &Vector3) -> f64 {
+        self.axes.tr_mul(gradient).component_mul(&self.std).norm()
+    }
+
+    /// Whether cα may rise and may fall from here.
+    #[inline]
+    pub(crate) fn may_move(&self, alpha: f64) -> [bool; 2] {
+        let (up, down) = (alpha < self.penalty, alpha > 0.0);
+        if self.sign > 0.0 { [up, down] } else { [down, up] }
+    }
 }
 
-/// Variances below this share of the largest one are rounding of the eigen-decomposition.
-const VARIANCE_ROUNDING: f64 = 1e-15;
-
 impl Problem {
-    /// Checks the samples and prepares them: one 3×3 eigen-decomposition for each uncertain point.
+    /// Checks the samples and prepares them: one 3×3 eigen-decomposition for each point whose
+    /// covariance does not know its own axes.
     ///
     /// Points with radius 0 or covariance 0 get no cone variables. Positions are taken relative to
     /// the middle of their box. Order and mixture of classes are free.
@@ -154,6 +167,12 @@ impl Problem {
     pub fn kernel(&self) -> Kernel {
         self.kernel
     }
+
+    /// The middle of the box of the means: what positions, and with them
+    /// [the bias](crate::Solution::bias), are relative to.
+    pub fn centre(&self) -> Point3 {
+        self.centre
+    }
 }
 
 fn check(index: usize, sample: &Sample) -> Result<(), ProblemError> {
@@ -175,14 +194,9 @@ fn check(index: usize, sample: &Sample) -> Result<(), ProblemError> {
 
 fn prepare(index: usize, sample: &Sample, centre: &Point3) -> Result<PreparedPoint, ProblemError> {
     let covariance = &sample.point.covariance;
-    let (axes, t) = if sample.radius == 0.0 || covariance.is_zero() {
-        (Matrix3::identity(), Vector3::zeros())
-    } else {
-        let (variances, axes) = covariance.eigen();
-        let floor = variances[0] * VARIANCE_ROUNDING;
-        let std = variances.map(|v| if v > floor { v.sqrt() } else { 0.0 });
-        (axes, std * sample.radius)
-    };
+    let (variances, axes) = covariance.eigen();
+    let std = variances.map(f64::sqrt);
+    let t = std * sample.radius;
     if !t.iter().chain(axes.iter()).all(|v| v.is_finite()) {
         return Err(ProblemError::EllipsoidNotFinite { index });
     }
@@ -192,6 +206,7 @@ fn prepare(index: usize, sample: &Sample, centre: &Point3) -> Result<PreparedPoi
         penalty: sample.penalty,
         radius: sample.radius,
         axes,
+        std,
         t,
         factor: Matrix3::from_diagonal(&t) * axes.transpose(),
     })

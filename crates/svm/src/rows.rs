@@ -4,12 +4,15 @@ use std::collections::VecDeque;
 
 use crate::problem::Problem;
 
-/// Rows of the scalar kernel matrix; the oldest row goes when memory is full.
+/// Rows of the reduced scalar kernel matrix; the oldest row goes when memory is full.
+#[derive(Debug, Default)]
 pub(crate) struct KernelRows {
-    rows: Vec<Option<Box<[f64]>>>,
-    diagonal: Vec<f64>,
+    /// Rows one after another, as long as there are samples.
+    values: Vec<f64>,
+    /// Which row of `values` a sample has.
+    place: Vec<Option<usize>>,
+    /// The samples that have a row, oldest first.
     kept: VecDeque<usize>,
-    capacity: usize,
     computed: usize,
 }
 
@@ -17,15 +20,13 @@ pub(crate) struct KernelRows {
 const BUDGET: usize = 8 << 20;
 
 impl KernelRows {
-    pub(crate) fn new(problem: &Problem) -> Self {
-        let n = problem.len();
-        Self {
-            rows: vec![None; n],
-            diagonal: problem.points.iter().map(|p| problem.kernel.value(&p.x, &p.x)).collect(),
-            kept: VecDeque::new(),
-            capacity: (BUDGET / n).max(2),
-            computed: 0,
-        }
+    /// Forgets everything but the memory, for another problem.
+    pub(crate) fn reset(&mut self, problem: &Problem) {
+        self.values.clear();
+        self.kept.clear();
+        self.computed = 0;
+        self.place.clear();
+        self.place.resize(problem.len(), None);
     }
 
     /// Makes row `i` available.
@@ -35,29 +36,38 @@ impl KernelRows {
 
     /// Makes row `i` available without dropping row `other`.
     pub(crate) fn ensure_beside(&mut self, problem: &Problem, i: usize, other: usize) {
-        if self.rows[i].is_some() {
+        if self.place[i].is_some() {
             return;
         }
-        while self.kept.len() >= self.capacity {
-            match self.kept.pop_front() {
-                Some(oldest) if oldest == other => self.kept.push_back(oldest),
-                Some(oldest) => self.rows[oldest] = None,
-                None => break,
-            }
+        let n = problem.len();
+        let place = self.free_place((BUDGET / n).max(2), other);
+        if self.values.len() < (place + 1) * n {
+            self.values.resize((place + 1) * n, 0.0);
         }
         let x = &problem.points[i].x;
-        self.rows[i] = Some(problem.points.iter().map(|p| problem.kernel.value(x, &p.x)).collect());
+        let row = &mut self.values[place * n..(place + 1) * n];
+        for (value, point) in row.iter_mut().zip(&problem.points) {
+            *value = problem.kernel.reduced(x, &point.x);
+        }
+        self.place[i] = Some(place);
         self.kept.push_back(i);
         self.computed += 1;
     }
 
-    /// Row `i`; empty unless it has been ensured.
-    pub(crate) fn row(&self, i: usize) -> &[f64] {
-        self.rows[i].as_deref().unwrap_or(&[])
+    fn free_place(&mut self, capacity: usize, spare: usize) -> usize {
+        if self.kept.len() >= capacity {
+            let oldest = usize::from(self.kept.front() == Some(&spare));
+            if let Some(place) = self.kept.remove(oldest).and_then(|row| self.place[row].take()) {
+                return place;
+            }
+        }
+        self.kept.len()
     }
 
-    pub(crate) fn diagonal(&self, i: usize) -> f64 {
-        self.diagonal[i]
+    /// Row `i`; empty unless it has been ensured.
+    pub(crate) fn row(&self, i: usize) -> &[f64] {
+        let n = self.place.len();
+        self.place[i].map_or(&[], |place| &self.values[place * n..(place + 1) * n])
     }
 
     pub(crate) fn computed(&self) -> usize {

@@ -4,6 +4,7 @@ use cloudtouch_geom::UncertainPoint;
 
 /// Which of the two clouds a point belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Class {
     /// Label +1: the decision function is meant to be positive here.
     A,

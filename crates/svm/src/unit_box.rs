@@ -4,7 +4,7 @@ use std::f64::consts::SQRT_2;
 
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 
-use crate::Sample;
+use crate::sample::Sample;
 
 /// A translation and one scale factor for all axes that bring some points to the size of a unit box;
 /// a kernel width then means the same for every pair.
@@ -13,6 +13,7 @@ use crate::Sample;
 /// the ball around a unit square: a square patch of surface gets side 1 however it is turned. The
 /// sides of an axis-aligned box would change with the frame, and the answer with them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct UnitBox {
     centre: Point3,
     scale: f64,

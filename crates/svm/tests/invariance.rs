@@ -4,9 +4,9 @@
 mod support;
 
 use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3};
-use cloudtouch_svm::{Classifier, Kernel, Problem, Sample, Settings, Solution, Status};
+use cloudtouch_svm::{Classifier, Kernel, Problem, Sample, Solution, Status};
 use proptest::prelude::*;
-use support::{Difficulty, Stream, cell};
+use support::{Difficulty, Stream, cell, settings, solver};
 
 fn leaf(seed: u64) -> (Vec<Sample>, f64) {
     let difficulty = if seed.is_multiple_of(2) { Difficulty::Easy } else { Difficulty::Contact };
@@ -19,7 +19,7 @@ fn kernel(gamma: f64, seed: u64) -> Kernel {
 
 fn solve(samples: &[Sample], kernel: Kernel) -> (Problem, Solution) {
     let problem = Problem::try_new(samples, kernel).unwrap();
-    let solution = problem.solve(&Settings::with_relative_gap(1e-8).unwrap());
+    let solution = problem.solve(&settings(1e-8)).unwrap();
     (problem, solution)
 }
 
@@ -133,8 +133,8 @@ proptest! {
     fn starting_warm(seed in 0..10_000_u64, shift in -0.03..0.03_f64) {
         let (samples, gamma) = leaf(seed);
         let kernel = kernel(gamma, seed);
-        let settings = Settings::with_relative_gap(1e-7).unwrap();
-        let before = Problem::try_new(&samples, kernel).unwrap().solve(&settings);
+        let settings = settings(1e-7);
+        let before = Problem::try_new(&samples, kernel).unwrap().solve(&settings).unwrap();
         let moved: Vec<Sample> = samples
             .iter()
             .map(|s| {
@@ -145,7 +145,7 @@ proptest! {
             })
             .collect();
         let problem = Problem::try_new(&moved, kernel).unwrap();
-        let (cold, warm) = (problem.solve(&settings), problem.solve_from(&settings, &before));
+        let (cold, warm) = (problem.solve(&settings).unwrap(), solver(&settings).solve_from(&problem, &before));
         prop_assert_eq!(cold.status, warm.status);
         prop_assert!((cold.primal - warm.primal).abs() <= 1e-6 * cold.primal);
     }
@@ -153,12 +153,12 @@ proptest! {
 
 #[test]
 fn a_warm_start_pays_and_a_foreign_one_counts_as_cold() {
-    let settings = Settings::with_relative_gap(1e-4).unwrap();
+    let settings = settings(1e-4);
     let (mut cold_steps, mut warm_steps) = (0, 0);
     for seed in 0..20 {
         let (samples, gamma) = cell(Difficulty::Easy, 20, seed);
         let kernel = Kernel::Gaussian { gamma };
-        let before = Problem::try_new(&samples, kernel).unwrap().solve(&settings);
+        let before = Problem::try_new(&samples, kernel).unwrap().solve(&settings).unwrap();
         let moved: Vec<Sample> = mapped(&samples, |p| *p)
             .into_iter()
             .map(|mut s| {
@@ -169,15 +169,19 @@ fn a_warm_start_pays_and_a_foreign_one_counts_as_cold() {
             })
             .collect();
         let problem = Problem::try_new(&moved, kernel).unwrap();
-        let (cold, warm) = (problem.solve(&settings), problem.solve_from(&settings, &before));
+        let (cold, warm) =
+            (problem.solve(&settings).unwrap(), solver(&settings).solve_from(&problem, &before));
         assert_eq!(warm.status, Status::Converged);
         cold_steps += cold.effort.smo_steps;
         warm_steps += warm.effort.smo_steps;
         let foreign = Problem::try_new(&moved[1..], kernel).unwrap();
-        assert_eq!(foreign.solve_from(&settings, &before), foreign.solve(&settings));
+        assert_eq!(
+            solver(&settings).solve_from(&foreign, &before),
+            foreign.solve(&settings).unwrap()
+        );
         let mut broken = before.clone();
         broken.alpha.fill(f64::NAN);
-        assert_eq!(problem.solve_from(&settings, &broken).alpha, cold.alpha);
+        assert_eq!(solver(&settings).solve_from(&problem, &broken).alpha, cold.alpha);
     }
     assert!(warm_steps < cold_steps, "{warm_steps} {cold_steps}");
 }

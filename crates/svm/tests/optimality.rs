@@ -4,7 +4,7 @@ mod support;
 
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal};
 use cloudtouch_svm::{Class, Classifier, Kernel, Problem, Sample, Settings, Status};
-use support::{Difficulty, cell, middle};
+use support::{Difficulty, cell, middle, settings};
 
 fn kernels(gamma: f64) -> [Kernel; 2] {
     [Kernel::Linear, Kernel::Gaussian { gamma }]
@@ -21,7 +21,7 @@ fn optimality_conditions_hold() {
         );
         for kernel in kernels(gamma) {
             let problem = Problem::try_new(&samples, kernel).unwrap();
-            let solution = problem.solve(&Settings::with_relative_gap(1e-9).unwrap());
+            let solution = problem.solve(&settings(1e-9)).unwrap();
             if solution.status != Status::Converged {
                 continue;
             }
@@ -73,7 +73,7 @@ fn the_gradient_is_the_derivative_of_the_value() {
         let (samples, gamma) = cell(Difficulty::Contact, 15, seed);
         for kernel in kernels(gamma) {
             let problem = Problem::try_new(&samples, kernel).unwrap();
-            let solution = problem.solve(&Settings::default());
+            let solution = problem.solve(&Settings::default()).unwrap();
             let Ok(f) = Classifier::try_new(&problem, &solution) else { continue };
             for s in &samples {
                 let at = s.point.mean + Vector3::new(0.01, -0.02, 0.03);
@@ -105,9 +105,10 @@ fn all_radii_zero_is_the_plain_svm() {
                 .iter()
                 .map(|s| Sample { point: UncertainPoint::exact(s.point.mean), ..*s })
                 .collect();
-            let settings = Settings::with_relative_gap(1e-8).unwrap();
-            let first = Problem::try_new(&exact, kernel).unwrap().solve(&settings);
-            let second = Problem::try_new(&no_covariance, kernel).unwrap().solve(&settings);
+            let settings = settings(1e-8);
+            let first = Problem::try_new(&exact, kernel).unwrap().solve(&settings).unwrap();
+            let second =
+                Problem::try_new(&no_covariance, kernel).unwrap().solve(&settings).unwrap();
             assert!(first.v.iter().all(|v| *v == Vector3::zeros()));
             assert_eq!(first.alpha, second.alpha);
             // The textbook dual: Σα − ½ Σ c_i c_j α_i α_j k(x_i, x_j).
@@ -139,7 +140,7 @@ fn probabilities_are_the_normal_law_of_the_linearised_function() {
     };
     let problem =
         Problem::try_new(&[at(-0.5, Class::A), at(0.5, Class::B)], Kernel::Linear).unwrap();
-    let solution = problem.solve(&Settings::with_relative_gap(1e-9).unwrap());
+    let solution = problem.solve(&settings(1e-9)).unwrap();
     let f = Classifier::try_new(&problem, &solution).unwrap();
     let uncertain = |x: f64| UncertainPoint {
         mean: Point3::new(x, 0.3, -0.2),

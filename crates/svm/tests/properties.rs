@@ -9,11 +9,11 @@ use cloudtouch_svm::{
     Class, Classifier, Kernel, Problem, Sample, Settings, Solution, Status, UnitBox, separate,
 };
 use proptest::prelude::*;
-use support::{Difficulty, Stream, cell};
+use support::{Difficulty, Stream, cell, settings, solver};
 
 fn solve(samples: &[Sample], kernel: Kernel) -> (Problem, Solution) {
     let problem = Problem::try_new(samples, kernel).unwrap();
-    let solution = problem.solve(&Settings::with_relative_gap(1e-8).unwrap());
+    let solution = problem.solve(&settings(1e-8)).unwrap();
     (problem, solution)
 }
 
@@ -57,8 +57,8 @@ proptest! {
         samples.iter_mut().for_each(|s| s.penalty = 10_f64.powf(log_penalty));
         let kernel = Kernel::Gaussian { gamma: 10_f64.powf(log_gamma) };
         let problem = Problem::try_new(&samples, kernel).unwrap();
-        let loose = problem.solve(&Settings::with_relative_gap(1e-3).unwrap());
-        let tight = problem.solve(&Settings::with_relative_gap(1e-8).unwrap());
+        let loose = problem.solve(&settings(1e-3)).unwrap();
+        let tight = problem.solve(&settings(1e-8)).unwrap();
         let both = [&loose, &tight].map(|solution| Classifier::try_new(&problem, solution));
         let [Ok(loose), Ok(tight)] = both else { return Ok(()) };
         for s in &samples {
@@ -73,8 +73,8 @@ proptest! {
         let difficulty = if seed.is_multiple_of(2) { Difficulty::Easy } else { Difficulty::Contact };
         let (samples, gamma) = cell(difficulty, 8 + (seed % 13) as usize, seed);
         let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
-        let solution = problem.solve(&Settings::default());
-        prop_assert!(solution.determines_probabilities(), "{solution:?}");
+        let solution = problem.solve(&Settings::default()).unwrap();
+        prop_assert_eq!(solution.determined(), Ok(()), "{:?}", solution);
     }
 
     /// Metres outside the box, box lengths inside: the gradient outside has to be per metre.
@@ -185,9 +185,10 @@ proptest! {
                 Sample { point: UncertainPoint { mean, ..s.point }, ..*s }
             })
             .collect();
-        let settings = Settings::with_relative_gap(1e-8).unwrap();
+        // Two gaps of 1e-8 leave planes apart by more than is asked here, in one of 700.
+        let settings = settings(1e-9);
         let problem = Problem::try_new(&moved, kernel).unwrap();
-        let (cold, warm) = (problem.solve(&settings), problem.solve_from(&settings, &before));
+        let (cold, warm) = (problem.solve(&settings).unwrap(), solver(&settings).solve_from(&problem, &before));
         prop_assert_eq!(cold.status, warm.status);
         if cold.status == Status::Converged {
             let [f, g] = [cold, warm].map(|s| Classifier::try_new(&problem, &s).unwrap());
@@ -205,8 +206,8 @@ proptest! {
         let [mut a, b] = sides(&samples);
         a.iter_mut().for_each(|p| p.mean.z += up);
         // κ is found to about one part in a thousand whichever way round.
-        let (Some(forth), Some(back)) = (separate(&a, &b, 50.0), separate(&b, &a, 50.0)) else {
-            prop_assert_eq!(separate(&a, &b, 50.0).is_some(), separate(&b, &a, 50.0).is_some());
+        let (Ok(forth), Ok(back)) = (separate(&a, &b, 50.0), separate(&b, &a, 50.0)) else {
+            prop_assert_eq!(separate(&a, &b, 50.0).is_ok(), separate(&b, &a, 50.0).is_ok());
             return Ok(());
         };
         prop_assert!((forth.kappa - back.kappa).abs() <= 5e-3 * forth.kappa);
@@ -228,7 +229,7 @@ proptest! {
     fn a_plane_under_more_noise_and_far_points(seed in 0..10_000_u64, factor in 1.0..10.0_f64) {
         let (samples, _) = cell(Difficulty::Easy, 15, seed);
         let [a, b] = sides(&samples);
-        let Some(plane) = separate(&a, &b, 50.0) else { return Ok(()) };
+        let Ok(plane) = separate(&a, &b, 50.0) else { return Ok(()) };
         let wider = |cloud: &[UncertainPoint]| -> Vec<UncertainPoint> {
             let grown = |p: &UncertainPoint| p.covariance.scaled(factor);
             cloud.iter().map(|p| UncertainPoint { covariance: grown(p), ..*p }).collect()

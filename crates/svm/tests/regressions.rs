@@ -5,9 +5,10 @@ mod support;
 
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal};
 use cloudtouch_svm::{
-    Class, Classifier, ClassifierError, Kernel, Problem, Rung, Sample, Settings, Status, UnitBox,
+    Class, Classifier, ClassifierError, Kernel, Problem, Rung, Sample, Settings, Status,
+    Undetermined, UnitBox,
 };
-use support::{Difficulty, Scene, Shape, Stream, cell};
+use support::{Difficulty, Scene, Shape, Stream, cell, settings};
 
 fn sample(x: f64, y: f64, class: Class, covariance: Covariance, radius: f64) -> Sample {
     let point = UncertainPoint { mean: Point3::new(x, y, 0.0), covariance };
@@ -15,12 +16,12 @@ fn sample(x: f64, y: f64, class: Class, covariance: Covariance, radius: f64) -> 
 }
 
 fn tight() -> Settings {
-    Settings::with_relative_gap(1e-8).unwrap()
+    settings(1e-8)
 }
 
 fn classifier(samples: &[Sample], kernel: Kernel) -> Classifier {
     let problem = Problem::try_new(samples, kernel).unwrap();
-    let solution = problem.solve(&tight());
+    let solution = problem.solve(&tight()).unwrap();
     assert_eq!(solution.status, Status::Converged);
     Classifier::try_new(&problem, &solution).unwrap()
 }
@@ -41,7 +42,7 @@ fn a_plain_svm_was_trained_instead_of_a_robust_one() {
     let (samples, gamma) = cell(Difficulty::Contact, 15, 3);
     let plain: Vec<Sample> = samples.iter().map(|s| Sample { radius: 0.0, ..*s }).collect();
     let solve = |samples: &[Sample]| {
-        Problem::try_new(samples, Kernel::Gaussian { gamma }).unwrap().solve(&tight())
+        Problem::try_new(samples, Kernel::Gaussian { gamma }).unwrap().solve(&tight()).unwrap()
     };
     assert!(solve(&samples).primal > 1.01 * solve(&plain).primal);
     assert!(solve(&samples).v.iter().any(|v| v.norm() > 1e-3));
@@ -112,11 +113,12 @@ fn nan_ended_as_probability_zero() {
     }
     // A solve that has not come near the optimum gives no classifier at all.
     let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
-    let unfinished = problem.solve(&tight().max_steps(1).fallback(false));
+    let unfinished =
+        problem.solve(&Settings { max_steps: Some(1), fallback: false, ..tight() }).unwrap();
     assert_eq!(unfinished.status, Status::StepLimit);
     assert!(matches!(
         Classifier::try_new(&problem, &unfinished),
-        Err(ClassifierError::Undetermined { status: Status::StepLimit, .. })
+        Err(ClassifierError::Undetermined(Undetermined::Gap { status: Status::StepLimit, .. }))
     ));
 }
 
@@ -143,7 +145,7 @@ fn through_a_mesh(per_mesh: usize, penalty: f64) -> Vec<Sample> {
 fn the_interior_point_method_crept_up_to_large_penalties() {
     let problem =
         Problem::try_new(&through_a_mesh(600, 1e7), Kernel::Gaussian { gamma: 27.0 }).unwrap();
-    let solution = problem.solve(&Settings::default());
+    let solution = problem.solve(&Settings::default()).unwrap();
     assert_eq!((solution.status, solution.rung), (Status::Converged, Rung::InteriorPoint));
     assert_eq!(solution.effort.clarabel_iterations, 0);
     // From a start of 10 it takes 22.
@@ -155,8 +157,8 @@ fn a_large_problem_was_worked_on_for_minutes() {
     // Beyond what is worth a dense matrix, and far from what SMO can finish.
     let problem =
         Problem::try_new(&through_a_mesh(1800, 1e7), Kernel::Gaussian { gamma: 5.0 }).unwrap();
-    let solution = problem.solve(&tight());
-    assert_eq!(solution.status, Status::StepLimit);
+    let solution = problem.solve(&tight()).unwrap();
+    assert_eq!(solution.status, Status::TooLarge);
     let effort = solution.effort;
     assert_eq!((effort.interior_iterations, effort.clarabel_iterations), (0, 0));
     assert!(effort.smo_steps * problem.len() <= 300_000_000, "{effort:?}");

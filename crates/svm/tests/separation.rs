@@ -2,8 +2,8 @@
 
 mod support;
 
-use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal};
-use cloudtouch_svm::{DEFAULT_KAPPA_MAX, separate};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, normal};
+use cloudtouch_svm::{Class, DEFAULT_KAPPA_MAX, NoSeparation, separate};
 use support::Stream;
 
 fn clouds(stream: &mut Stream, apart: f64) -> [Vec<UncertainPoint>; 2] {
@@ -15,7 +15,7 @@ fn clouds(stream: &mut Stream, apart: f64) -> [Vec<UncertainPoint>; 2] {
                     stream.range(-0.5, 0.5),
                     stream.range(0.0, 0.3),
                 );
-                let axis = stream.normal_vector().normalize();
+                let axis = UnitVector3::new_normalize(stream.normal_vector());
                 let along = stream.log_range(1e-3, 0.1);
                 let covariance = match stream.below(3) {
                     0 => Covariance::zero(),
@@ -75,7 +75,7 @@ fn kappa_holds_for_every_point_and_is_near_the_best() {
         // Without a cap the best value itself is compared, with the usual one its truncation.
         let cap = if case % 2 == 0 { 50.0 } else { DEFAULT_KAPPA_MAX };
         let reference = best_kappa(&mut stream, &a, &b).min(cap);
-        let Some(plane) = separate(&a, &b, cap) else {
+        let Ok(plane) = separate(&a, &b, cap) else {
             assert!(reference < 1e-3, "case {case}: missed a plane with kappa {reference}");
             continue;
         };
@@ -126,14 +126,21 @@ fn translation_far_away_and_scale_change_nothing() {
 #[test]
 fn degenerate_clouds_end_without_a_plane_or_with_an_honest_one() {
     let at = |x: f64| UncertainPoint::exact(Point3::new(x, 0.0, 0.0));
-    assert!(separate(&[], &[at(0.0)], 4.75).is_none());
-    assert!(separate(&[at(0.0)], &[], 4.75).is_none());
-    assert!(separate(&[at(1.0)], &[at(1.0)], 4.75).is_none());
-    assert!(separate(&[at(f64::NAN)], &[at(1.0)], 4.75).is_none());
-    assert!(separate(&[at(0.0)], &[at(f64::INFINITY)], 4.75).is_none());
-    assert!(separate(&[at(0.0)], &[at(1.0)], f64::NAN).is_none());
+    let none =
+        |a: &[UncertainPoint], b: &[UncertainPoint], kappa| separate(a, b, kappa).unwrap_err();
+    let empty = |class| NoSeparation::Empty { class };
+    let not_finite = |class, index| NoSeparation::NotFinite { class, index };
+    assert_eq!(none(&[], &[at(0.0)], 4.75), empty(Class::A));
+    assert_eq!(none(&[at(0.0)], &[], 4.75), empty(Class::B));
+    assert_eq!(none(&[at(1.0)], &[at(1.0)], 4.75), NoSeparation::WithinRounding);
+    assert_eq!(none(&[at(0.0), at(f64::NAN)], &[at(1.0)], 4.75), not_finite(Class::A, 1));
+    assert_eq!(none(&[at(0.0)], &[at(f64::INFINITY)], 4.75), not_finite(Class::B, 0));
+    for value in [f64::NAN, 0.0, -1.0] {
+        let error = none(&[at(0.0)], &[at(1.0)], value);
+        assert!(matches!(error, NoSeparation::KappaMax { .. }), "{error}");
+    }
     // Collinear and interleaved: no plane has all of A on one side.
-    assert!(separate(&[at(0.0), at(2.0)], &[at(1.0)], 4.75).is_none());
+    assert_eq!(none(&[at(0.0), at(2.0)], &[at(1.0)], 4.75), NoSeparation::NotFound);
     // Exact points are infinitely many standard deviations away: the cap is what is left.
     let plane = separate(&[at(0.0), at(-1.0), at(0.0)], &[at(1.0)], 4.75).unwrap();
     assert_eq!(plane.kappa, 4.75);

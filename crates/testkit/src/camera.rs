@@ -86,7 +86,7 @@ impl DepthCamera {
             points,
             covariances: None,
             normals: None,
-            sensor_origin: Point3::origin(),
+            sensor_pose: Pose::identity(),
             image_size: Some((self.width, self.height)),
         }
     }

@@ -41,7 +41,7 @@ fn describe_cloud(cloud: &PointCloud) -> Result<String> {
             cleaned.cloud.points.iter().map(|p| Point3::from(p - center)).collect();
         let near = local
             .iter()
-            .filter(|p| (**p + center.coords - cloud.sensor_origin).norm() < 0.1)
+            .filter(|p| (**p + center.coords - cloud.sensor_origin()).norm() < 0.1)
             .count();
         let spacing = typical_spacing(&Neighborhoods::try_new(local)?, SPACING_SAMPLE);
         lines.push(format!("spacing     {:.1} mm (median)", 1e3 * spacing));

@@ -5,7 +5,7 @@ use cloudtouch::{
     Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Recalibration, bvh::TreeSettings,
     noise::SensorModel,
 };
-use cloudtouch_geom::{PointCloud, Pose};
+use cloudtouch_geom::{PointCloud, Pose, UnitVector3};
 use cloudtouch_testkit::family::Observation;
 
 use super::{Draw, Fitted, Method, Prepared, sensor_of};
@@ -89,7 +89,7 @@ impl Ours {
 fn true_points(observation: &Observation) -> PointCloud {
     let samples = || observation.truth.iter().flatten();
     PointCloud {
-        normals: Some(samples().map(|s| s.normal).collect()),
+        normals: Some(samples().map(|s| UnitVector3::new_normalize(s.normal)).collect()),
         ..PointCloud::from_points(samples().map(|s| s.position).collect())
     }
 }

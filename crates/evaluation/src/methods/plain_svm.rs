@@ -94,7 +94,8 @@ fn largest(a: &[UncertainPoint], b: &[UncertainPoint]) -> Result<f64> {
     let of_b = b.iter().map(|point| sample(point, Class::B, penalty_b));
     let samples: Vec<Sample> = of_a.chain(of_b).collect();
     let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma: GAMMA })?;
-    let solution = problem.solve(&Settings::with_relative_gap(RELATIVE_GAP)?);
+    let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
+    let solution = problem.solve(&settings)?;
     let Ok(classifier) = Classifier::try_new(&problem, &solution) else { return Ok(UNDETERMINED) };
     let classifier = classifier.outside(unit_box);
     let of = |points: &[UncertainPoint], class| {

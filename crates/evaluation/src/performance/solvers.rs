@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use cloudtouch_geom::seed::derive;
-use cloudtouch_svm::{Kernel, Problem, Rung, Settings, Solution};
+use cloudtouch_svm::{Kernel, Problem, Rung, Settings, Solution, Solver};
 
 use super::{
     leaf_problems::{CELLS, Cell},
@@ -92,7 +92,7 @@ impl Compared {
         for number in 0..count {
             let from = derive(derive(seed, 6, per_side as u64), number as u64, 0);
             for (which, with) in
-                [Problem::solve, Problem::solve_with_clarabel].into_iter().enumerate()
+                [Solver::solve, Solver::solve_with_clarabel].into_iter().enumerate()
             {
                 let (solution, seconds) = least_of(repeats, || solve(cell, per_side, from, with))?;
                 all.seconds[which].push(seconds);
@@ -113,11 +113,12 @@ fn solve(
     cell: &Cell,
     per_side: usize,
     from: u64,
-    with: fn(&Problem, &Settings) -> Solution,
+    with: fn(&mut Solver, &Problem) -> Solution,
 ) -> Result<Solution> {
     let samples = cell.problem(per_side, from);
     let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma: cell.gamma })?;
-    Ok(with(&problem, &Settings::with_relative_gap(GAP)?))
+    let settings = Settings { relative_gap: GAP, ..Settings::default() };
+    Ok(with(&mut Solver::try_new(settings)?, &problem))
 }
 
 /// Times over the points of a side, a panel for each cell.
@@ -141,7 +142,7 @@ mod tests {
 
     #[test]
     fn solvers_of_a_problem_agree() {
-        let [ours, theirs] = [Problem::solve, Problem::solve_with_clarabel]
+        let [ours, theirs] = [Solver::solve, Solver::solve_with_clarabel]
             .map(|with| solve(&CELLS[1], 10, 1, with).unwrap());
         assert!(ours.relative_gap <= GAP && theirs.relative_gap <= GAP);
         assert!((ours.primal - theirs.primal).abs() <= 2.0 * GAP * ours.primal);

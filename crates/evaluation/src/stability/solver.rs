@@ -3,7 +3,7 @@
 use anyhow::Result;
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
-    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status, UnitBox,
+    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Solver, Status, UnitBox,
     balanced_penalties,
 };
 use cloudtouch_testkit::hard_cases::HardProblem;
@@ -65,7 +65,8 @@ pub(super) struct Solved {
 impl Solved {
     pub(super) fn new(posed: &Posed) -> Result<Self> {
         let problem = Problem::try_new(&posed.samples, Kernel::Gaussian { gamma: posed.gamma })?;
-        let solution = problem.solve(&Settings::with_relative_gap(RELATIVE_GAP)?);
+        let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
+        let solution = problem.solve(&settings)?;
         let classifier = Classifier::try_new(&problem, &solution).ok();
         let of = |f: Classifier| -> Option<Vec<f64>> {
             posed.samples.iter().map(|s| f.probability(&s.point, s.class)).collect()
@@ -76,8 +77,8 @@ impl Solved {
 
     /// The relative difference of the primal value from Clarabel's, where both reach the gap.
     pub(super) fn against_clarabel(&self) -> Result<Option<f64>> {
-        let settings = Settings::with_relative_gap(RELATIVE_GAP)?;
-        let reference = self.problem.solve_with_clarabel(&settings);
+        let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
+        let reference = Solver::try_new(settings)?.solve_with_clarabel(&self.problem);
         let both = !self.is_undecided() && reference.relative_gap <= RELATIVE_GAP;
         let difference = (self.solution.primal - reference.primal).abs();
         Ok(both.then(|| difference / self.solution.primal.abs()))

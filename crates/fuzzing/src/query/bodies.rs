@@ -1,7 +1,7 @@
 //! Small clouds and meshes: points anywhere, patches of a surface, boxes and triangles.
 
 use arbitrary::{Result, Unstructured};
-use cloudtouch::geom::{Point3, PointCloud, TriangleMesh};
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh};
 use cloudtouch::{Body, Cloud, Mesh, Mode};
 
 use super::numbers::{count, covariance, number, point};
@@ -43,7 +43,7 @@ fn cloud(u: &mut Unstructured<'_>) -> Result<PointCloud> {
         250..=255 => cloud.covariances = Some(vec![covariance(u)?; count(u, 1)?.min(MOST_POINTS)]),
     }
     if u.arbitrary()? {
-        cloud.sensor_origin = point(u)?;
+        cloud.sensor_pose = Pose::from_translation(point(u)?.coords);
     }
     if u.arbitrary()? {
         let width = count(u, 8)?;

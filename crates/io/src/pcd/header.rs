@@ -2,12 +2,12 @@
 
 use std::str::FromStr;
 
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::{Pose, Vector3};
 
 use crate::{
     error::{Fault, FormatError, Place},
     scalar::Scalar,
-    text::{Lines, excerpt, finite_triple, parse, words},
+    text::{Lines, excerpt, finite_number, finite_triple, parse, words},
 };
 
 /// What the header says.
@@ -20,7 +20,7 @@ pub(super) struct Header {
     /// Where their number is, for errors about it.
     pub(super) points_place: Place,
     pub(super) image_size: Option<(usize, usize)>,
-    pub(super) sensor_origin: Point3,
+    pub(super) sensor_pose: Pose,
     pub(super) data: Data,
 }
 
@@ -149,10 +149,7 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<Header, FormatError> {
             .or(entries.get("WIDTH"))
             .map_or(entries.end, Entry::place),
         image_size,
-        sensor_origin: match entries.get("VIEWPOINT") {
-            Some(entry) => finite_triple(words(entry.text), entry.line)?.into(),
-            None => Point3::origin(),
-        },
+        sensor_pose: entries.get("VIEWPOINT").map_or(Ok(Pose::identity()), sensor_pose)?,
         data: match data.text {
             b"ascii" => Data::Ascii,
             b"binary" => Data::Binary,
@@ -160,6 +157,25 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<Header, FormatError> {
             other => return Err(data.bad(other, "ascii, binary or binary_compressed")),
         },
     })
+}
+
+/// The position of the sensor and, as a rule, its rotation as a quaternion w x y z.
+fn sensor_pose(viewpoint: &Entry<'_>) -> Result<Pose, FormatError> {
+    let origin = Vector3::from(finite_triple(words(viewpoint.text), viewpoint.line)?);
+    let turn: Vec<f64> = (4..)
+        .zip(words(viewpoint.text).skip(3))
+        .map(|(column, word)| finite_number(word, viewpoint.line, column))
+        .collect::<Result<_, _>>()?;
+    let expected = "a position and a quaternion w x y z of length one";
+    match turn[..] {
+        [] => Ok(Pose::from_translation(origin)),
+        [w, x, y, z] => Pose::try_from_quaternion(origin, [w, x, y, z])
+            .map_err(|_| viewpoint.bad(viewpoint.text, expected)),
+        _ => {
+            let fault = Fault::RowLength { expected: 7, found: 3 + turn.len() };
+            Err(viewpoint.place().error(fault))
+        }
+    }
 }
 
 fn collect<'a>(lines: &mut Lines<'a>) -> Result<Entries<'a>, FormatError> {

@@ -53,7 +53,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
         Data::Binary => parse_binary(&header, &columns, lines, limits),
         Data::BinaryCompressed => parse_compressed(&header, &columns, lines, limits),
     }?;
-    Ok(PointCloud { image_size: header.image_size, sensor_origin: header.sensor_origin, ..cloud })
+    Ok(PointCloud { image_size: header.image_size, sensor_pose: header.sensor_pose, ..cloud })
 }
 
 fn parse_ascii(

@@ -21,7 +21,7 @@ use crate::{
 /// coordinates.
 ///
 /// # Errors
-/// When covariances or image size do not fit the points, the sensor origin is not finite, or the
+/// When covariances or image size do not fit the points, the sensor pose is not finite, or the
 /// file cannot be written.
 pub fn write_cloud_pcd(path: impl AsRef<Path>, cloud: &PointCloud) -> Result<(), WriteError> {
     let path = path.as_ref();
@@ -34,7 +34,7 @@ fn encode(cloud: &PointCloud, writer: &mut dyn Write) -> io::Result<()> {
     let columns = if cloud.covariances.is_some() { COLUMN_NAMES.len() } else { 3 };
     let per_column = |value: &str| [value].repeat(columns).join(" ");
     let (width, height) = cloud.image_size.unwrap_or((cloud.len(), 1));
-    let origin = cloud.sensor_origin;
+    let (origin, turn) = (cloud.sensor_origin(), cloud.sensor_pose.rotation());
     writeln!(writer, "# .PCD v0.7 - Point Cloud Data file format")?;
     writeln!(writer, "VERSION 0.7")?;
     writeln!(writer, "FIELDS {}", COLUMN_NAMES[..columns].join(" "))?;
@@ -42,7 +42,8 @@ fn encode(cloud: &PointCloud, writer: &mut dyn Write) -> io::Result<()> {
     writeln!(writer, "TYPE {}", per_column("F"))?;
     writeln!(writer, "COUNT {}", per_column("1"))?;
     writeln!(writer, "WIDTH {width}\nHEIGHT {height}")?;
-    writeln!(writer, "VIEWPOINT {} {} {} 1 0 0 0", origin.x, origin.y, origin.z)?;
+    write!(writer, "VIEWPOINT {} {} {} ", origin.x, origin.y, origin.z)?;
+    writeln!(writer, "{} {} {} {}", turn.w, turn.i, turn.j, turn.k)?;
     writeln!(writer, "POINTS {}\nDATA binary", cloud.len())?;
     for (row, point) in cloud.points.iter().enumerate() {
         let covariance = cloud.covariances.as_ref().map(|all| all[row].upper_triangle());

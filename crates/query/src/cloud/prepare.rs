@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use cloudtouch_bvh::{LeafBounds, Primitive, Tree};
-use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, Vector3};
+use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
 use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel};
 
 use crate::error::PrepareError;
@@ -65,7 +65,7 @@ impl Cloud {
             return Err(PrepareError::Covariance { index, source });
         }
         let normals = match (&kept.normals, settings.noise.combination) {
-            (Some(normals), Combination::SurfacePosterior) => Some(unit(normals)?),
+            (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),
             _ => None,
         };
         let origin = nalgebra::center(&low, &high).coords;
@@ -97,7 +97,7 @@ impl Cloud {
         let view = cloud
             .image_size
             .filter(|&(width, height)| width > 1 && height > 1)
-            .map(|_| SingleView::new(kept.sensor_origin - origin));
+            .map(|_| SingleView::new(kept.sensor_origin() - origin));
         let prepare_time = start.elapsed();
         Ok(Self {
             origin,
@@ -175,11 +175,12 @@ impl Cloud {
     }
 }
 
-/// Normals scaled to length one.
-fn unit(normals: &[Vector3]) -> Result<Vec<Vector3>, PrepareError> {
-    let unit = |(index, normal): (usize, &Vector3)| {
-        let scaled = normal.try_normalize(0.0).filter(|n| n.iter().all(|c| c.is_finite()));
-        scaled.ok_or(PrepareError::Normal { index, normal: *normal })
+/// Normals as they are, after a look at them: a `Unit` can be made without a check.
+fn checked(normals: &[UnitVector3]) -> Result<Vec<Vector3>, PrepareError> {
+    let checked = |(index, normal): (usize, &UnitVector3)| {
+        let is_unit = (normal.norm() - 1.0).abs() < 1e-6;
+        let normal = normal.into_inner();
+        if is_unit { Ok(normal) } else { Err(PrepareError::Normal { index, normal }) }
     };
-    normals.iter().enumerate().map(unit).collect()
+    normals.iter().enumerate().map(checked).collect()
 }

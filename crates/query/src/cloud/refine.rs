@@ -1,7 +1,7 @@
 //! The surface everywhere at once, and the tree fitted to it: for bodies that are queried often.
 
 use cloudtouch_bvh::{NodeId, Primitive};
-use cloudtouch_geom::{Covariance, Matrix3};
+use cloudtouch_geom::{Covariance, UnitVector3};
 use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
@@ -76,8 +76,5 @@ fn extent(surfel: &Surfel, [edges_along, edges_across]: [f64; 2]) -> Covariance 
     let [by_along, by_across] = HOLDS_BOTH;
     let along = (DISC_SPACINGS * surfel.spacing).max(by_along * edges_along);
     let across = by_across * edges_across;
-    let outer = normal * normal.transpose();
-    Covariance::from_symmetric(
-        &((Matrix3::identity() - outer) * along.powi(2) + outer * across.powi(2)),
-    )
+    Covariance::from_axis(&UnitVector3::new_unchecked(normal), across, along)
 }

@@ -41,9 +41,9 @@ pub enum PrepareError {
         /// What is wrong with it.
         source: CovarianceError,
     },
-    /// A given normal has no direction.
+    /// A given normal is not of length one.
     #[error(
-        "point {index}: normal {normal:?} has no direction; leave the normals out to have them fitted"
+        "point {index}: normal {normal:?} is not of length one; leave the normals out to have them fitted"
     )]
     Normal {
         /// Which of the points that were kept, from 0.

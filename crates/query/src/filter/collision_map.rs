@@ -5,5 +5,5 @@ use cloudtouch_noise::{NoiseError, quantize_to_grid};
 
 pub(super) fn cell_centers(cloud: &PointCloud, resolution: f64) -> Result<PointCloud, NoiseError> {
     let points = quantize_to_grid(&cloud.points, resolution)?;
-    Ok(PointCloud { sensor_origin: cloud.sensor_origin, ..PointCloud::from_points(points) })
+    Ok(PointCloud { sensor_pose: cloud.sensor_pose, ..PointCloud::from_points(points) })
 }

@@ -40,7 +40,7 @@ fn is_veil_in_image(
     let point = &cloud.points[index];
     [horizontal, vertical].into_iter().flatten().any(|(before, after)| {
         let (Some(before), Some(after)) = (before, after) else { return false };
-        let ray = point - cloud.sensor_origin;
+        let ray = point - cloud.sensor_origin();
         // NaN neighbours compare false, so a pixel beside a missing return is not veil.
         let forward = along_ray(&ray, point, after, settings.max_angle);
         let backward = along_ray(&ray, point, before, settings.max_angle);
@@ -69,7 +69,7 @@ fn drop_veil_lines(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSet
             let offsets = neighbors.iter().map(|n| points[n.index] - points[i]);
             let scatter: Matrix3 = offsets.map(|d| d * d.transpose()).sum();
             let (variances, axes) = Covariance::from_symmetric(&scatter).eigen();
-            let ray = points[i] - cloud.sensor_origin;
+            let ray = points[i] - cloud.sensor_origin();
             let cosine = axes.column(0).dot(&ray).abs() / ray.norm();
             variances[0] > LINE_RATIO * variances[1] && cosine > settings.max_angle.cos()
         })

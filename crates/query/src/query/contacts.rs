@@ -120,12 +120,15 @@ fn extent(points: &PairPoints) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Instant;
+
     use cloudtouch_geom::{Covariance, Pose, UncertainPoint, seed};
     use proptest::prelude::*;
 
     use super::*;
     use crate::mode::Mode;
     use crate::query::classify::classify;
+    use crate::query::clock::Clock;
     use crate::query::settings::QuerySettings;
     use crate::query::train::by_kernel;
     use crate::report::Stats;
@@ -159,9 +162,10 @@ mod tests {
     fn answer(points: &PairPoints, mode: Mode) -> PairAnswer {
         let settings = QuerySettings { relative_gap: 1e-8, ..QuerySettings::new(mode) };
         let stats = &mut Stats::default();
+        let clock = Clock::new(Instant::now(), None);
         match mode {
-            Mode::Calibrated => by_kernel(points, &settings, stats),
-            Mode::Paper => classify(points, &settings, 0.0, stats),
+            Mode::Calibrated => by_kernel(points, &settings, &clock, stats),
+            Mode::Paper => classify(points, &settings, 0.0, &clock, stats),
         }
     }
 

@@ -60,7 +60,7 @@ pub(super) fn traverse_leaf_pairs(
             }
         };
         stats.leaf_pairs += 1;
-        let answer = classify(&points, settings, relevant, stats);
+        let answer = classify(&points, settings, relevant, &task.clock, stats);
         add_pair((a, b, a_from_b), &points, &answer, evidence);
         let is_enough = evidence.largest() > settings.stop_above || task.clock.is_over();
         if is_enough { Flow::Stop } else { next }

@@ -52,10 +52,11 @@ pub struct QuerySettings {
     /// the calibrated mode it ends at 0.95 too, where more of the same changes nothing.
     pub stop_above: f64,
     /// How long a query may search. What was not looked at by then raises the upper bound, to 1 as a
-    /// rule, and is no guess. The clock is looked at before each leaf pair and each classifier: the
-    /// limit is exceeded by at most one of them, milliseconds as a rule. What one takes is bounded for
-    /// any settings, by the work a solve may do (some seconds) and by `max_mesh_parts`. With a limit
-    /// answers depend on the speed of the machine.
+    /// rule, and is no guess. The clock is looked at before each leaf pair and each classifier,
+    /// and while one is trained: the limit is exceeded by milliseconds as a rule. What a leaf pair takes
+    /// beyond that is bounded for any settings, by the work that Clarabel, which is not interrupted, may
+    /// do (some seconds) and by `max_mesh_parts`. With a limit answers depend on the speed of the
+    /// machine.
     pub deadline: Option<Duration>,
     /// How many contacts are reported at most.
     pub max_contacts: usize,

@@ -1,13 +1,16 @@
 //! The kernel classifier of one leaf pair (eq. 10 to 16 of the paper), trained in the unit box.
 
+use std::ops::ControlFlow;
+
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
-    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status, UnitBox,
-    balanced_penalties,
+    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Solver, Status,
+    Undetermined, UnitBox, balanced_penalties,
 };
 
 use crate::report::Stats;
 
+use super::clock::Clock;
 use super::pair::{PairAnswer, PairPoints};
 use super::settings::QuerySettings;
 use super::surface::Surface;
@@ -17,14 +20,17 @@ use super::surface::Surface;
 /// deviations, but f can turn within a kernel width (0.22 at the default γ) and be flat at every
 /// point.
 const TRUSTED_STD: f64 = 0.05;
-/// How much tighter a problem is solved that seems to have no normal: a loose tolerance cannot tell
-/// a small w from none.
+/// How much tighter a problem is solved that leaves open whether there is a surface, or where.
 const TIGHTER: f64 = 1e-2;
 
 /// Trains a classifier and reads the probabilities off it.
+///
+/// An answer that the first solution leaves open is solved again, tighter; left open still, or cut
+/// short by the clock, the pair is undecided.
 pub(super) fn by_kernel(
     points: &PairPoints,
     settings: &QuerySettings,
+    clock: &Clock,
     stats: &mut Stats,
 ) -> PairAnswer {
     stats.kernel_solves += 1;
@@ -33,18 +39,30 @@ pub(super) fn by_kernel(
     let samples = samples(points, &all, &unit_box, settings);
     let kernel = Kernel::Gaussian { gamma: settings.gamma };
     let Ok(problem) = Problem::try_new(&samples, kernel) else { return PairAnswer::Undecided };
-    let [loose, tight] =
-        [settings.relative_gap, TIGHTER * settings.relative_gap].map(Settings::with_relative_gap);
-    let (Ok(loose), Ok(tight)) = (loose, tight) else { return PairAnswer::Undecided };
+    let solver = |relative_gap| Solver::try_new(Settings { relative_gap, ..Settings::default() });
+    let both = [settings.relative_gap, TIGHTER * settings.relative_gap].map(solver);
+    let [Ok(mut loose), Ok(mut tight)] = both else { return PairAnswer::Undecided };
+    let mut look = |_: &_| {
+        if clock.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
 
     let sides = all.split_at(points.a.len());
-    let mut solution = problem.solve(&loose);
-    if solution.status == Status::Collapsed {
-        solution = problem.solve_from(&tight, &solution);
+    let mut solution = loose.solve_watched(&problem, None, &mut look);
+    if is_open(&solution) {
+        solution = tight.solve_watched(&problem, Some(&solution), &mut look);
     }
     stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
     stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
     read(&problem, &solution, unit_box, sides)
+}
+
+/// Whether a loose tolerance may be why nothing is determined: it cannot tell a small w from none, nor
+/// what the bias is where hardly a multiplier is free.
+fn is_open(solution: &Solution) -> bool {
+    matches!(
+        solution.determined(),
+        Err(Undetermined::Collapsed | Undetermined::Weight { .. } | Undetermined::Bias { .. })
+    )
 }
 
 fn samples(

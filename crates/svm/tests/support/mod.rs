@@ -1,8 +1,18 @@
 //! Seeded leaf problems shared by the tests and the measuring example.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 #![allow(dead_code, reason = "every test binary uses another part of this module")]
 
-use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, seed};
-use cloudtouch_svm::{Class, Sample};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, seed};
+use cloudtouch_svm::{Class, Sample, Settings, Solver};
+
+/// Default settings with another tolerance.
+pub(crate) fn settings(relative_gap: f64) -> Settings {
+    Settings { relative_gap, ..Settings::default() }
+}
+
+pub(crate) fn solver(settings: &Settings) -> Solver {
+    Solver::try_new(*settings).unwrap()
+}
 
 /// A stream of seeded random numbers.
 pub(crate) struct Stream {
@@ -99,7 +109,7 @@ impl Scene {
         if self.noise == 0.0 {
             Covariance::zero()
         } else if self.anisotropic {
-            let axis = stream.normal_vector().normalize();
+            let axis = UnitVector3::new_normalize(stream.normal_vector());
             Covariance::from_axis(&axis, self.noise, self.noise * stream.log_range(0.03, 1.0))
         } else {
             Covariance::isotropic(self.noise * self.noise)

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     fn disc(std: f64) -> Surfel {
-        let covariance = Covariance::from_axis(&Vector3::z(), std, 0.35);
+        let covariance = Covariance::from_axis(&Vector3::z_axis(), std, 0.35);
         Surfel {
             index: 0,
             point: UncertainPoint { mean: Point3::origin(), covariance },

@@ -67,12 +67,13 @@ fn solve(sigma: &Matrix3, v: &Vector3) -> Option<Vector3> {
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{Covariance, UncertainPoint};
+    use cloudtouch_geom::{Covariance, UncertainPoint, unit};
 
     use super::*;
 
     fn disc(mean: Point3, normal: Vector3, across: f64, along: f64) -> Surfel {
-        let covariance = Covariance::from_axis(&normal, across, along);
+        let axis = unit(&normal).unwrap();
+        let covariance = Covariance::from_axis(&axis, across, along);
         Surfel {
             index: 0,
             point: UncertainPoint { mean, covariance },
