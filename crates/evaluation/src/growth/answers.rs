@@ -81,12 +81,13 @@ fn answers(
     let prepared: Vec<Box<dyn Prepared>> =
         methods.into_iter().map(|method| method.prepare(&draw)).collect::<Result<_>>()?;
     let all = |pose: &Pose| -> Result<Vec<f64>> {
-        let said = |method: &Box<dyn Prepared>| -> Result<f64> {
+        let said = |method: &dyn Prepared| -> Result<f64> {
             let said = method.ask(Pair::CloudMesh, pose)?.context("no answer about a mesh")?;
             // A score above 0: a box that touches, a point inside.
             Ok(said.probability.unwrap_or(f64::from(u8::from(said.score > 0.0))))
         };
-        let mut said = prepared.iter().map(said).collect::<Result<Vec<f64>>>()?;
+        let mut said =
+            prepared.iter().map(|method| said(method.as_ref())).collect::<Result<Vec<f64>>>()?;
         said.push(f64::from(u8::from(surface.intersects(&exact, pose))));
         Ok(said)
     };

@@ -84,21 +84,12 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
             )
             .figure("growth", "Answers while noise grows", figure(&series, &answers)?)
             .text(
-                "How often the verdict flips from draw to draw, and how often it is not the \
-                 verdict on the scan as it is. Last: collisions stated of poses whose nearest \
+                "How often the verdict flips from draw to draw; then collisions stated of poses whose nearest \
                  measured point is more than 5 mm away (label `near`), and poses pushed 2 cm and \
                  more past first contact (label `collision`) of which none is stated; over all \
                  noises.",
             )
             .text(methods(&series, &answers)),
-    );
-    page.section(
-        Section::new("Mean answers by pose")
-            .text(
-                "Without added noise and with 10 mm of it; the advance is past first contact with \
-                 a measured point.",
-            )
-            .text(by_pose(&series, &answers)),
     );
     page.write(&page::folder(root, arguments.update_docs))
 }
@@ -138,19 +129,12 @@ fn figure(poses: &Poses, answers: &Answers) -> Result<Figure> {
 }
 
 fn methods(poses: &Poses, answers: &Answers) -> Table {
-    let of_shown = |what: &str| SHOWN.map(|level| format!("{what} {} mm", ADDED[level]));
     let mut header = vec!["method".to_owned()];
-    header.extend(of_shown("flips at").into_iter().chain(of_shown("changed by")));
+    header.extend(SHOWN.map(|level| format!("flips at {} mm", ADDED[level])));
     header.extend(["false stops", "misses"].map(String::from));
     let mut table = Table::new(header);
     for (method, name) in METHODS.iter().enumerate() {
         let verdicts = |pose, level| answers.verdicts(method, pose, level);
-        let changed = |level| {
-            (0..poses.len()).flat_map(move |pose| {
-                let plain = verdicts(pose, 0)[0];
-                verdicts(pose, level).into_iter().map(move |verdict| verdict != plain)
-            })
-        };
         let stated = |label: &str, verdict: bool| {
             let of_label = (0..poses.len()).filter(|&pose| poses[pose].1.label == label);
             let all = of_label.flat_map(|pose| (0..ADDED.len()).map(move |level| (pose, level)));
@@ -161,20 +145,9 @@ fn methods(poses: &Poses, answers: &Answers) -> Table {
             let flips = flips(poses.len(), answers, method, level);
             format!("{} of {}", flips.iter().filter(|flip| **flip).count(), flips.len())
         }));
-        let shares = SHOWN.map(|level| share(changed(level)));
-        let shares = shares.into_iter().chain([stated("near", true), stated("collision", false)]);
+        let shares = [stated("near", true), stated("collision", false)];
         cells.extend(shares.map(|share| format!("{share:.3}")));
         table.row(cells);
-    }
-    table
-}
-
-fn by_pose(poses: &Poses, answers: &Answers) -> Table {
-    let mut table = Table::new(std::iter::once("pose").chain(METHODS));
-    for (number, pose) in poses.iter().enumerate() {
-        let mean = |method, level| mean(&answers.of(method, number, level));
-        let cell = |method| format!("{:.2}, {:.2}", mean(method, 0), mean(method, SHOWN[1]));
-        table.row(std::iter::once(place(pose)).chain((0..METHODS.len()).map(cell)));
     }
     table
 }

@@ -94,10 +94,10 @@ pub(super) fn evaluate(data: &Path) -> Result<(Section, Vec<String>)> {
 fn failures(drop: f64, distances: &[f64]) -> Vec<String> {
     let mut failures = Vec::new();
     // NaN is no small fall and not near.
-    if !(drop <= NOISE_OF_PROBABILITY) {
+    if !(0.0..=NOISE_OF_PROBABILITY).contains(&drop) {
         failures.push(format!("approach: P falls by {drop:.3} below its running maximum"));
     }
-    let stray = distances.iter().filter(|distance| !(**distance <= CONTACT_REACH));
+    let stray = distances.iter().filter(|distance| !(0.0..=CONTACT_REACH).contains(*distance));
     failures.extend(stray.map(|d| format!("approach: a contact is {d:.3} m from any scene point")));
     if distances.is_empty() {
         failures.push("approach: no contact was reported".into());

@@ -1,15 +1,12 @@
 //! The scene and the object from the side: a slice through both, so that what looks like an overlap
 //! is one.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use anyhow::{Context, Result};
-use cloudtouch::{Cloud, Contact, Report};
+use anyhow::{Context, Result, ensure};
+use cloudtouch::{Cloud, Mesh, Report};
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
-use i_overlay::{
-    core::{fill_rule::FillRule, overlay_rule::OverlayRule},
-    float::single::SingleFloatOverlay,
-};
+use i_overlay::{core::fill_rule::FillRule, float::simplify::SimplifyShape};
 
 use crate::{
     figure::{Axis, Figure, Panel, Place, RGBColor, Series, palette},
@@ -21,16 +18,19 @@ use crate::{
 const DOWN: [f64; 3] = [0.05, 0.8, 0.6];
 /// Half the thickness of the slice, m: that of a finger.
 const SLICE: f64 = 0.01;
-/// What is shown about the middle, cm: sideways, and from below the table upwards.
-const SIDEWAYS: f64 = 9.0;
-const HEIGHTS: std::ops::Range<f64> = -1.0..19.0;
+/// What is shown, cm: to either side of the first contact, and from below the table upwards.
+const SIDEWAYS: f64 = 10.0;
+const HEIGHTS: std::ops::Range<f64> = -1.5..30.0;
 /// Side of the squares of which no more than one point is drawn, cm.
 const SQUARE: f64 = 0.4;
+/// Holes between triangles that are smaller than this are not seen, cm².
+const SPECK: f64 = 0.05;
 /// Points and contacts at least this likely are marked.
 const LIKELY: f64 = 0.3;
 /// Length of a contact's arrow, cm.
-const ARROW: f64 = 4.0;
+const ARROW: f64 = 5.0;
 
+const POINTS: &str = "measured points of the scene";
 const GRIPPER: RGBColor = RGBColor(150, 195, 235);
 const RED: RGBColor = RGBColor(215, 25, 28);
 
@@ -50,10 +50,11 @@ impl View {
         let towards_eye = -scene_from_object.transform_vector(&Vector3::z());
         let down = Vector3::from(DOWN);
         let up = -(down - towards_eye * down.dot(&towards_eye)).normalize();
-        let mut view = Self { middle, right: up.cross(&towards_eye), up, towards_eye, table: 0.0 };
+        let right = up.cross(&towards_eye);
+        let view = Self { middle, right, up, towards_eye, table: 0.0 };
         let heights: Vec<f64> = view.slice(cloud).map(|(_, (_, height))| height).collect();
-        view.table = quantile(&heights, 0.05);
-        (!heights.is_empty()).then_some(view).context("no measured point in the slice")
+        ensure!(!heights.is_empty(), "no measured point is in the slice");
+        Ok(Self { table: quantile(&heights, 0.1), ..view })
     }
 
     /// Sideways from the middle and above the table, cm.
@@ -62,16 +63,12 @@ impl View {
         (offset.dot(&self.right), offset.dot(&self.up) - self.table)
     }
 
-    fn is_in_slice(&self, point: &Point3) -> bool {
-        (point - self.middle).dot(&self.towards_eye).abs() < SLICE
-    }
-
     /// The points of the slice that are in sight, by their index.
     fn slice<'a>(&'a self, cloud: &'a Cloud) -> impl Iterator<Item = (usize, Place)> + 'a {
-        let in_slice = (0..cloud.len()).filter(|&i| self.is_in_slice(&cloud.point(i)));
-        in_slice.map(|i| (i, self.place(&cloud.point(i)))).filter(|(_, (x, y))| {
-            x.abs() < SIDEWAYS && (*y + self.table).abs() < HEIGHTS.end && *y < HEIGHTS.end
-        })
+        let depth = |i: usize| (cloud.point(i) - self.middle).dot(&self.towards_eye).abs();
+        let in_slice = (0..cloud.len()).filter(move |&i| depth(i) < SLICE);
+        let placed = in_slice.map(|i| (i, self.place(&cloud.point(i))));
+        placed.filter(|(_, (x, y))| x.abs() < SIDEWAYS && y.abs() < HEIGHTS.end)
     }
 }
 
@@ -84,95 +81,80 @@ pub(super) fn figure(
     let touching = shown.iter().find_map(|(pose, report)| Some((pose, report.contacts.first()?)));
     let (pose, first) = touching.context("no pose has a contact")?;
     let view = View::of(cloud, first.point, pose)?;
-    let figure =
-        Figure::new("How likely does the gripper hit the mug? Three poses, seen from the side")
-            .columns(3)
-            .panel_size(310, 410);
+    let mesh = Mesh::prepare(object)?;
+    let title = "How likely does the gripper hit the mug? Three poses, seen from the side";
+    let figure = Figure::new(title).columns(3).panel_size(290, 440);
     Ok(shown.iter().fold(figure, |figure, (pose, report)| {
-        figure.panel(panel(&view, cloud, object, pose, report))
+        let (outlines, holes) = outline(&view, object, pose);
+        let (likely, other) = points(&view, cloud, &mesh, pose, report);
+        let x = Axis::linear("sideways (cm)").range(-SIDEWAYS..SIDEWAYS);
+        let y = Axis::linear("height above the table (cm)").range(HEIGHTS);
+        let p = report.collision_probability;
+        let panel = Panel::new(x, y)
+            .title(&format!("P = {p:.2}: {}", verdict(report.verdict)))
+            .equal_aspect()
+            // First in the legend, and drawn as circles.
+            .series(Series::points(POINTS, []).color(palette::GREY))
+            .series(Series::polygons("gripper, known exactly", outlines).color(GRIPPER))
+            .series(Series::polygons("", holes).color(RGBColor(255, 255, 255)))
+            .series(Series::points(POINTS, other).color(palette::GREY).size(2))
+            .series(Series::points("points in contact or inside", likely).color(RED).size(3));
+        let arrows = Series::arrows("contact: place and direction", arrow(&view, report));
+        figure.panel(panel.series(arrows.color(palette::BLACK)))
     }))
-}
-
-fn panel(view: &View, cloud: &Cloud, object: &TriangleMesh, pose: &Pose, report: &Report) -> Panel {
-    let title = format!("P = {:.2}: {}", report.collision_probability, verdict(report.verdict));
-    eprintln!(
-        "DEBUG {} {}",
-        report.collision_probability,
-        report.point_probabilities.a.iter().filter(|(_, p)| *p > 0.3).count()
-    );
-    for (i, p) in &report.point_probabilities.a {
-        let q = cloud.point(*i);
-        if view.is_in_slice(&q) && *p > 0.01 {
-            eprint!("{:?}:{:.2} ", view.place(&q), p);
-        }
-    }
-    let (outlines, holes) = outline(view, object, pose);
-    let (likely, other) = points(view, cloud, report);
-    let panel = Panel::new(
-        Axis::linear("sideways (cm)").range(-SIDEWAYS..SIDEWAYS),
-        Axis::linear("height above the table (cm)").range(HEIGHTS),
-    );
-    panel
-        .title(&title)
-        .equal_aspect()
-        .series(Series::polygons("gripper (known shape)", outlines).color(GRIPPER))
-        .series(Series::polygons("", holes).color(RGBColor(255, 255, 255)))
-        .series(Series::points("measured points of the scene", other).color(palette::GREY).size(2))
-        .series(Series::points("points likely in contact", likely).color(RED).size(3))
-        .series(
-            Series::arrows("contact: place and direction", arrow(view, &report.contacts))
-                .color(palette::BLACK),
-        )
 }
 
 /// What the mesh covers, and the holes in it.
 fn outline(view: &View, mesh: &TriangleMesh, pose: &Pose) -> (Vec<Vec<Place>>, Vec<Vec<Place>>) {
-    let project = |corner: Point3| {
-        let (x, y) = view.place(&pose.transform_point(&corner));
-        [x, y]
-    };
+    let project = |corner: Point3| <[f64; 2]>::from(view.place(&pose.transform_point(&corner)));
     let triangles = (0..mesh.triangles().len()).map(|triangle| {
         let [a, b, c] = mesh.corners(triangle).map(project);
         // All turned alike, so that the rule counts covered places.
         let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         if turn < 0.0 { vec![a, c, b] } else { vec![a, b, c] }
     });
-    let (left, right) = (-SIDEWAYS, SIDEWAYS);
-    let (low, high) = (HEIGHTS.start, HEIGHTS.end);
-    let sight = vec![[left, low], [right, low], [right, high], [left, high]];
-    let triangles: Vec<_> = triangles.collect();
-    let shapes = triangles.overlay(&sight, OverlayRule::Intersect, FillRule::NonZero);
+    let shapes = triangles.collect::<Vec<_>>().simplify_shape(FillRule::NonZero);
+    let visible = |contour: &&Vec<[f64; 2]>| area(contour) > SPECK;
     let places = |contour: &Vec<[f64; 2]>| contour.iter().map(|&[x, y]| (x, y)).collect();
-    let outer = shapes.iter().filter_map(|shape| shape.first()).map(places);
-    (outer.collect(), shapes.iter().flat_map(|shape| &shape[1..]).map(places).collect())
+    let outer = shapes.iter().filter_map(|shape| shape.first()).filter(visible).map(places);
+    let holes = shapes.iter().flat_map(|shape| &shape[1..]).filter(visible).map(places);
+    (outer.collect(), holes.collect())
 }
 
-/// The likely points and the others, thinned.
-fn points(view: &View, cloud: &Cloud, report: &Report) -> (Vec<Place>, Vec<Place>) {
-    let probabilities: BTreeMap<usize, f64> =
-        report.point_probabilities.a.iter().copied().collect();
-    let mut squares: BTreeMap<[i64; 2], (bool, Place)> = BTreeMap::new();
+/// Area of a polygon.
+fn area(contour: &[[f64; 2]]) -> f64 {
+    let next = contour.iter().cycle().skip(1);
+    0.5 * contour.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
+}
+
+/// The points likely in contact or measured inside of the mesh, and the others, thinned.
+fn points(
+    view: &View,
+    cloud: &Cloud,
+    mesh: &Mesh,
+    pose: &Pose,
+    report: &Report,
+) -> (Vec<Place>, Vec<Place>) {
+    let likely = report.point_probabilities.a.iter().filter(|(_, p)| *p >= LIKELY);
+    let likely: BTreeSet<usize> = likely.map(|(index, _)| *index).collect();
+    let object_from_scene = pose.inverse();
+    let mut squares: [BTreeMap<[i64; 2], Place>; 2] = Default::default();
     for (index, place) in view.slice(cloud) {
-        let is_likely = probabilities.get(&index).is_some_and(|&p| p >= LIKELY);
+        let in_object = object_from_scene.transform_point(&cloud.point(index));
+        let marked = likely.contains(&index) || mesh.signed_distance(&in_object) < 0.0;
         let square = [place.0, place.1].map(|v| (v / SQUARE).floor() as i64);
-        let held = squares.entry(square).or_insert((is_likely, place));
-        if is_likely && !held.0 {
-            *held = (true, place);
-        }
+        squares[usize::from(!marked)].entry(square).or_insert(place);
     }
-    let (likely, other): (Vec<_>, Vec<_>) = squares.into_values().partition(|held| held.0);
-    let places = |held: Vec<(bool, Place)>| held.into_iter().map(|(_, place)| place).collect();
-    (places(likely), places(other))
+    let [marked, other] = squares.map(|of| of.into_values().collect());
+    (marked, other)
 }
 
 /// The likeliest contact whose normal lies in the picture.
-fn arrow(view: &View, contacts: &[Contact]) -> Option<[Place; 2]> {
-    let lies_in_picture = |contact: &&Contact| {
-        contact.probability >= LIKELY
-            && view.is_in_slice(&contact.point)
-            && contact.normal_a_to_b.dot(&view.towards_eye).abs() < 0.5
-    };
-    contacts.iter().find(lies_in_picture).map(|contact| {
+fn arrow(view: &View, report: &Report) -> Option<[Place; 2]> {
+    let found = report.contacts.iter().find(|contact| {
+        contact.probability >= LIKELY && contact.normal_a_to_b.dot(&view.towards_eye).abs() < 0.5
+    });
+    found.map(|contact| {
         let end = contact.point + contact.normal_a_to_b * (0.01 * ARROW);
         [view.place(&contact.point), view.place(&end)]
     })

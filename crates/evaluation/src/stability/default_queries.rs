@@ -1,7 +1,7 @@
 //! How often default queries on generated scenes fall back or stay undecided.
 
 use anyhow::{Context, Result};
-use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Mode, Report, noise::SensorModel};
+use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Mode, Report};
 use cloudtouch_geom::seed;
 use cloudtouch_testkit::{
     family::{Family, FamilyScene, Side},
@@ -14,7 +14,7 @@ use super::{
     examine::{default_query, examine},
     sheet::{SEED, Sheet, small},
 };
-use crate::page::Section;
+use crate::{methods::sensor_of, page::Section};
 
 /// Poses of each family.
 const POSES: usize = 16;
@@ -82,11 +82,7 @@ fn ask(
     let draw = seed::derive(SEED, family as u64, 1 + number as u64);
     let cloud = |side| -> Result<Body> {
         let seen = scene.observe(side, POINTS, NoiseKind::Gaussian, std, draw);
-        let sensor = match &seen.cloud.covariances {
-            Some(_) => SensorModel::PerPoint,
-            None => SensorModel::Isotropic { std: seen.std },
-        };
-        let settings = CloudSettings::new(sensor, Mode::default());
+        let settings = CloudSettings::new(sensor_of(&seen), Mode::default());
         Ok(Body::Cloud(Cloud::prepare(&seen.cloud, &settings)?))
     };
     let a = cloud(Side::A)?;

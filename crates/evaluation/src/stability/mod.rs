@@ -32,8 +32,11 @@ pub struct Arguments {
     update_docs: bool,
 }
 
+/// Adds its sections and goals.
+type Part = fn(&mut Sheet) -> Result<()>;
+
 /// Everything in the order of the page.
-const PARTS: [(&str, fn(&mut Sheet) -> Result<()>); 6] = [
+const PARTS: [(&str, Part); 6] = [
     ("solver cases", solver_cases::run),
     ("hierarchy cases", tree_cases::run),
     ("query cases", queries::run),

@@ -67,21 +67,21 @@ impl Solved {
         let problem = Problem::try_new(&posed.samples, Kernel::Gaussian { gamma: posed.gamma })?;
         let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
         let solution = problem.solve(&settings)?;
-        let probabilities = probabilities(posed, &problem, &solution);
+        let classifier = Classifier::try_new(&problem, &solution).ok();
+        let of = |f: Classifier| -> Option<Vec<f64>> {
+            posed.samples.iter().map(|s| f.probability(&s.point, s.class)).collect()
+        };
+        let probabilities = classifier.and_then(of);
         Ok(Self { problem, solution, probabilities })
     }
 
-    /// The same problem by Clarabel alone: the relative difference of the primal values and the
-    /// largest one of a probability, where both solvers reach the gap and determine them.
-    pub(super) fn against_clarabel(&self, posed: &Posed) -> Result<(Option<f64>, Option<f64>)> {
+    /// The relative difference of the primal value from Clarabel's, where both reach the gap.
+    pub(super) fn against_clarabel(&self) -> Result<Option<f64>> {
         let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
         let reference = Solver::try_new(settings)?.solve_with_clarabel(&self.problem);
-        if self.is_undecided() || reference.relative_gap > RELATIVE_GAP {
-            return Ok((None, None));
-        }
-        let primal = (self.solution.primal - reference.primal).abs() / self.solution.primal.abs();
-        let of_reference = probabilities(posed, &self.problem, &reference);
-        Ok((Some(primal), largest_difference(&self.probabilities, &of_reference)))
+        let both = !self.is_undecided() && reference.relative_gap <= RELATIVE_GAP;
+        let difference = (self.solution.primal - reference.primal).abs();
+        Ok(both.then(|| difference / self.solution.primal.abs()))
     }
 
     pub(super) fn status(&self) -> String {
@@ -116,13 +116,6 @@ impl Solved {
         self.solution.rung == Rung::Clarabel
     }
 
-    /// At most how far the classifier is from the optimum, as a part of its own size: the objective
-    /// is strongly convex in w, so |w − w*|² is at most twice the gap.
-    pub(super) fn classifier_error(&self) -> f64 {
-        let gap = self.solution.relative_gap * self.solution.primal;
-        if gap == 0.0 { 0.0 } else { (2.0 * gap / self.solution.squared_norm).sqrt() }
-    }
-
     /// What must hold of any solution and does not.
     pub(super) fn faults(&self) -> Vec<String> {
         let solution = &self.solution;
@@ -143,11 +136,6 @@ impl Solved {
         }
         faults
     }
-}
-
-fn probabilities(posed: &Posed, problem: &Problem, solution: &Solution) -> Option<Vec<f64>> {
-    let f = Classifier::try_new(problem, solution).ok()?;
-    posed.samples.iter().map(|s| f.probability(&s.point, s.class)).collect()
 }
 
 /// The largest difference of two lists of probabilities; none unless both are known.

@@ -18,25 +18,13 @@ const MOST: usize = 40;
 const INTRODUCTION: &str = "Clouds thinned to 40 points a side, in the unit box, with the settings \
 of a default query; then settings of the solver out of the ordinary on harmless clouds. *Gap* is the \
 relative gap between primal and dual, recomputed from the multipliers; 1e-4 is asked for. *Solver* \
-says who answered: SMO, the dense interior point method, or Clarabel as the fallback. *w off* bounds \
-the error of the classifier that this gap leaves, as a part of its own size, √(2·gap)/|w|: where it \
-is not small, neither are errors of probabilities. The next two columns compare with Clarabel alone: \
-relative difference of the primal values, largest difference of a point's probability. `none` there \
-means that Clarabel did not reach the tolerance, or that nothing is determined. `Collapsed` is an \
-answer: no surface separates the pair.";
+says who answered: SMO, the dense interior point method, or Clarabel as the fallback. *Difference* is \
+that of the primal value from that of Clarabel alone, relative; `none` where Clarabel does not reach \
+the tolerance. `Collapsed` is an answer: no surface separates the pair.";
 
 /// Solves everything and adds the section.
 pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
-    let mut table = Table::new([
-        "case",
-        "status",
-        "solver",
-        "steps",
-        "gap",
-        "w off",
-        "primal, difference",
-        "P, difference",
-    ]);
+    let mut table = Table::new(["case", "status", "solver", "steps", "gap", "difference"]);
     let clouds = hard_cases();
     let of_clouds = clouds.iter().filter_map(|case| Some((case.name, of_clouds(case)?)));
     let problems = hard_problems();
@@ -46,7 +34,7 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
     for (name, posed) in of_clouds.chain(of_problems) {
         let full = format!("solver, {name}");
         let Some(row) = sheet.guard(&full, || solve(&posed)) else { continue };
-        let (answer, primal, probability) = row.with_context(|| full.clone())?;
+        let (answer, primal) = row.with_context(|| full.clone())?;
         answer.faults().iter().for_each(|fault| sheet.fault(format!("{full}: {fault}")));
         // Each may be off by its own gap.
         if primal.is_some_and(|difference| difference > 2.0 * RELATIVE_GAP) {
@@ -56,16 +44,13 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
         converged += usize::from(!answer.is_undecided());
         fell_back += usize::from(answer.fell_back());
         differences.extend(primal);
-        let or_none = |value: Option<f64>| value.map_or("none".into(), small);
         table.row([
             name.to_owned(),
             answer.status(),
             answer.rung(),
             answer.steps().to_string(),
             small(answer.gap()),
-            small(answer.classifier_error()),
-            or_none(primal),
-            or_none(probability),
+            primal.map_or("none".into(), small),
         ]);
     }
     sheet.sections.push(Section::new("Hard cases: solver").text(INTRODUCTION).text(table));
@@ -83,13 +68,11 @@ pub(super) fn run(sheet: &mut Sheet) -> Result<()> {
     Ok(())
 }
 
-/// The solution, and how primal value and probabilities differ from Clarabel's.
-type Row = (Solved, Option<f64>, Option<f64>);
-
-fn solve(posed: &Posed) -> Result<Row> {
+/// The solution, and how its primal value differs from Clarabel's.
+fn solve(posed: &Posed) -> Result<(Solved, Option<f64>)> {
     let solved = Solved::new(posed)?;
-    let (primal, probability) = solved.against_clarabel(posed)?;
-    Ok((solved, primal, probability))
+    let difference = solved.against_clarabel()?;
+    Ok((solved, difference))
 }
 
 /// None for invalid clouds and empty ones, which make no problem.
