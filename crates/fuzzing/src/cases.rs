@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-// The tool is a program, so that its reader cannot be linked.
-#[allow(dead_code, reason = "only the parser is run, not the part that opens the file")]
-#[path = "../../cli/src/case_file.rs"]
-mod case_file;
+use cloudtouch_cli::case_file;
 
 /// No message is longer: it holds an excerpt of the file, never the file.
 const LONGEST_MESSAGE: usize = 450;

@@ -113,7 +113,7 @@ impl Grown {
 /// Least time of the tree alone, s.
 fn tree_time(cloud: &PointCloud) -> Result<f64> {
     let covariances = SensorModel::Isotropic { std: STD }.covariances(cloud)?;
-    let points = cloud.points.iter().zip(&covariances);
+    let points = cloud.points.iter().zip(covariances.iter());
     let point = |(&mean, &covariance)| Primitive::point(UncertainPoint { mean, covariance });
     let primitives: Vec<Primitive> = points.map(point).collect();
     let mut copies = vec![primitives; BUILDS];

@@ -152,7 +152,7 @@ impl Cloud {
     }
 
     /// Position noise of the points kept by the filter.
-    pub(crate) fn sensor(&self) -> &[Covariance] {
+    pub(crate) fn sensor(&self) -> &SensorNoise {
         &self.sensor
     }
 

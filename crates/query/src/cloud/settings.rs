@@ -1,7 +1,7 @@
 //! How a cloud is prepared.
 
 use cloudtouch_bvh::TreeSettings;
-use cloudtouch_noise::{Combination, NoiseSettings, SensorModel};
+use cloudtouch_noise::{Combination, NoiseError, NoiseSettings, SensorModel};
 
 use crate::error::PrepareError;
 use crate::filter::FilterSettings;
@@ -51,7 +51,7 @@ impl CloudSettings {
     pub fn validate(&self) -> Result<(), PrepareError> {
         self.sensor.validate()?;
         self.filter.validate()?;
-        self.noise.validate()?;
+        self.noise.validate().map_err(NoiseError::from)?;
         Ok(self.tree.validate()?)
     }
 }

@@ -2,8 +2,8 @@
 
 use std::sync::OnceLock;
 
-use cloudtouch_geom::{Covariance, Point3, Vector3};
-use cloudtouch_noise::{Neighborhoods, typical_spacing};
+use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_noise::{Neighborhoods, SensorNoise, typical_spacing};
 
 /// How many times the angle between pixels a ray may miss the nearest measured one.
 const ANGLE_TOLERANCE: f64 = 4.0;
@@ -40,7 +40,7 @@ impl SingleView {
     /// local frame.
     pub(crate) fn is_behind(
         &self,
-        (measured, noise): (&[Point3], &[Covariance]),
+        (measured, noise): (&[Point3], &SensorNoise),
         point: &Point3,
     ) -> bool {
         let Some(rays) = self.rays.get_or_init(|| self.measure(measured)) else {
