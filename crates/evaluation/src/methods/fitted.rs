@@ -63,7 +63,7 @@ impl Fitted {
     /// When the file cannot be written.
     pub fn write(&self, root: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(self)? + "\n";
-        Ok(write_atomically(&root.join(PLACE), |out| out.write_all(text.as_bytes()))?)
+        Ok(write_atomically(root.join(PLACE), |out| out.write_all(text.as_bytes()))?)
     }
 }
 

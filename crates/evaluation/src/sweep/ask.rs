@@ -112,7 +112,7 @@ fn of_draw(
         let prepared = method.prepare(&seen).with_context(|| method.name())?;
         for (question, said) in &mut rows {
             let number = question.pose as usize;
-            if number % one_of == 0 {
+            if number.is_multiple_of(*one_of) {
                 let pose = &poses[number].scene_from_object;
                 let answer = prepared
                     .ask(question.pair, pose)

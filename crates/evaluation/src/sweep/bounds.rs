@@ -35,7 +35,7 @@ pub(super) fn section() -> Result<Section> {
             let [low, high] = said.bounds.unwrap_or([f64::NAN; 2]);
             let miss = (low - all.score).max(all.score - high);
             // Not a number is a miss.
-            outside += usize::from(!(miss <= ROUNDING));
+            outside += usize::from(miss.is_nan() || miss > ROUNDING);
             largest = largest.max(miss);
             width += high - low;
         }

@@ -22,7 +22,7 @@ use cloudtouch::Mode;
 
 pub use ask::{Asked, ask};
 pub use judged::{Judged, Measured};
-pub use plan::{Plan, SEED};
+pub use plan::{ORACLE, OURS, Plan, SEED};
 pub use scenes::Scenes;
 pub use short::run as check;
 
@@ -31,11 +31,6 @@ use crate::{
     page,
 };
 use tables::Answered;
-
-/// What ours is called in tables and files.
-pub const OURS: &str = "calibrated";
-/// ... and ours given every sampled point as it truly is.
-pub const ORACLE: &str = "oracle";
 
 /// What `cargo xtask sweep` is given.
 #[derive(Args)]

@@ -5,6 +5,11 @@ use cloudtouch_testkit::noise::NoiseKind;
 use super::scenes::Scenes;
 use crate::answers::{Condition, Pair};
 
+/// What ours is called in tables and files.
+pub const OURS: &str = "calibrated";
+/// ... and ours given every sampled point as it truly is.
+pub const ORACLE: &str = "oracle";
+
 /// All randomness of the sweeps comes from this.
 pub const SEED: u64 = 2011;
 

@@ -56,7 +56,7 @@ impl Scenes {
             return Ok(Vec::new());
         }
         let read = |name: &str| -> Result<TriangleMesh> {
-            Ok(read_mesh(&folder.join(name), LengthUnit::Metres)?)
+            Ok(read_mesh(folder.join(name), LengthUnit::Metres)?)
         };
         let meshes = Arc::new(RealMeshes {
             piano: read("piano_m.stl")?,

@@ -13,6 +13,9 @@ use crate::{
     table::Table,
 };
 
+/// Whether a condition belongs to a row of a table.
+type Wanted = Box<dyn Fn(&Condition) -> bool>;
+
 /// Measured of all poses of a group; AUC also of those near contact.
 const MEASURES: [Measure; 5] = [
     Measure::Auc,
@@ -128,8 +131,8 @@ impl<'a> Answered<'a> {
     }
 
     /// The noises of the pooled densities, then dense clouds and heavy tails.
-    fn conditions() -> Vec<(String, Box<dyn Fn(&Condition) -> bool>)> {
-        let mut all: Vec<(String, Box<dyn Fn(&Condition) -> bool>)> = Vec::new();
+    fn conditions() -> Vec<(String, Wanted)> {
+        let mut all: Vec<(String, Wanted)> = Vec::new();
         for std in STDS {
             let keep = move |c: &Condition| is_pooled(c) && c.std == std;
             all.push((format!("{} mm", 1e3 * std), Box::new(keep)));
