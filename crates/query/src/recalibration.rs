@@ -46,7 +46,7 @@ pub struct Recalibration {
 
 impl Default for Recalibration {
     fn default() -> Self {
-        Self { by_geometry: [0.668, 0.483, -1.651], by_all: [-0.891, 0.48, 0.0, 0.833] }
+        Self { by_geometry: [0.173, 0.613, -1.868], by_all: [-0.98, 0.608, -0.398, 0.734] }
     }
 }
 
