@@ -4,18 +4,11 @@
 
 use std::time::Duration;
 
-use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode, Query, QuerySettings, Verdict};
-use cloudtouch_benches::piano_room::{NOISE, classes, piano, room};
-use cloudtouch_geom::PointCloud;
+use cloudtouch::{Cloud, Mode, Query, QuerySettings, Verdict};
+use cloudtouch_benches::piano_room::{classes, piano, prepared, room};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 
 const POINTS: usize = 10_000;
-
-fn prepared(cloud: &PointCloud, mode: Mode) -> Cloud {
-    let sensor = SensorModel::Isotropic { std: NOISE };
-    Cloud::prepare(cloud, &CloudSettings::new(sensor, mode)).expect("a usable cloud")
-}
 
 fn queries(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("query_10000x10000");

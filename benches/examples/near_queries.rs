@@ -1,24 +1,18 @@
 //! Queries near contact and nothing else, for a profiler:
 //! `valgrind --tool=callgrind target/release/examples/near_queries`.
 
-use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode, Query, QuerySettings};
-use cloudtouch_benches::piano_room::{NOISE, classes, piano, room};
-use cloudtouch_geom::{PointCloud, Pose, Vector3, seed};
+use cloudtouch::{Mode, Query, QuerySettings};
+use cloudtouch_benches::piano_room::{classes, piano, prepared, room};
+use cloudtouch_geom::{Pose, Vector3, seed};
 
 const POINTS: usize = 10_000;
 const POSES: u64 = 100;
 /// How far each pose is moved along every axis at most, m.
 const MOVED: f64 = 0.02;
 
-fn refined(cloud: &PointCloud) -> Cloud {
-    let settings = CloudSettings::new(SensorModel::Isotropic { std: NOISE }, Mode::Calibrated);
-    let prepared = Cloud::prepare(cloud, &settings).expect("a usable cloud");
-    prepared.refined().expect("ordinary noise")
-}
-
 fn main() {
-    let (room, piano) = (refined(&room(POINTS)), refined(&piano(POINTS)));
+    let [room, piano] = [room(POINTS), piano(POINTS)]
+        .map(|cloud| prepared(&cloud, Mode::Calibrated).refined().expect("ordinary noise"));
     let query = Query::new(QuerySettings::default()).expect("default settings");
     let [_, near, _] = classes();
     let (mut probabilities, mut solves) = (0.0, 0);

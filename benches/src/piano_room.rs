@@ -1,5 +1,7 @@
 //! The piano in the room of the test kit, as noisy clouds, in poses of three classes.
 
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Mode};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
@@ -24,6 +26,15 @@ fn cloud(mesh: &TriangleMesh, count: usize, seed: u64) -> PointCloud {
     let samples = surface::sample_surface(mesh, count, seed);
     let points = surface::positions(&samples);
     PointCloud::from_points(add_noise(&points, NoiseKind::Gaussian, NOISE, seed))
+}
+
+/// A cloud of [`NOISE`] prepared for a mode.
+///
+/// # Panics
+/// When it is no usable cloud.
+pub fn prepared(cloud: &PointCloud, mode: Mode) -> Cloud {
+    let sensor = SensorModel::Isotropic { std: NOISE };
+    Cloud::prepare(cloud, &CloudSettings::new(sensor, mode)).expect("a usable cloud")
 }
 
 /// A pose of the piano in the room, with what is true of the meshes there.

@@ -164,7 +164,7 @@ mod tests {
         };
         let mut on_a = a.centre;
         let mut on_b = clamp(b, &on_a);
-        for _ in 0..2000 {
+        for _ in 0..20_000 {
             on_a = clamp(a, &on_b);
             on_b = clamp(b, &on_a);
         }

@@ -85,8 +85,9 @@ const HAND: [[f64; 3]; 2] = [[-0.032, -0.104, -0.026], [0.032, 0.100, 0.112]];
 const MESHES: [MeshFacts; 11] = [
     ("panda_hand.obj", LengthUnit::Metres, 324, 0, HAND),
     ("piano_closed_m.stl", LengthUnit::Metres, 278, 0, PIANO),
-    ("piano_m.stl", LengthUnit::Metres, 216, 96, PIANO),
-    ("piano_mm.obj", LengthUnit::Millimetres, 216, 96, PIANO),
+    // 96 edges of one triangle, and 27 at which four or eight meet.
+    ("piano_m.stl", LengthUnit::Metres, 216, 123, PIANO),
+    ("piano_mm.obj", LengthUnit::Millimetres, 216, 123, PIANO),
     ("pr2_gripper.obj", LengthUnit::Metres, 7_240, 0, GRIPPER),
     ("pr2_gripper.ply", LengthUnit::Metres, 7_240, 0, GRIPPER),
     ("pr2_gripper.stl", LengthUnit::Metres, 7_240, 0, GRIPPER),

@@ -36,7 +36,7 @@ use tables::Answered;
 #[derive(Args)]
 pub struct Arguments {
     /// Draws of each family: a scene of its own, and fresh clouds under every condition
-    #[arg(long, default_value_t = 10)]
+    #[arg(long, default_value_t = 8)]
     draws: u32,
     /// Poses of each draw, half of them collisions
     #[arg(long, default_value_t = 28)]

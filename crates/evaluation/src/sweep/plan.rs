@@ -17,8 +17,6 @@ pub const SEED: u64 = 2011;
 pub(super) const STDS: [f64; 4] = [0.0, 0.002, 0.01, 0.02];
 /// Points of each cloud that results are pooled over.
 pub(super) const POINTS: [usize; 2] = [2_500, 10_000];
-/// Clouds as dense as a depth image.
-pub(super) const DENSE: usize = 40_000;
 
 /// Which scenes are asked about, how observed, and at how many poses.
 #[derive(Debug, Clone)]
@@ -38,8 +36,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Every generated family and kind of pair under every noise and density, dense clouds at 2 mm, heavy
-    /// tails at 5 mm.
+    /// Every generated family and kind of pair under every noise and density, heavy tails at 5 mm.
     pub fn full(draws: u32, poses: usize) -> Self {
         Self {
             families: Scenes::generated(),
@@ -72,7 +69,6 @@ pub(super) fn is_pooled(condition: &Condition) -> bool {
 fn conditions() -> Vec<Condition> {
     let mut all: Vec<Condition> =
         POINTS.iter().flat_map(|&points| STDS.map(|std| gaussian(points, std))).collect();
-    all.push(gaussian(DENSE, 0.002));
     all.push(Condition { noise: NoiseKind::HeavyTailed, ..gaussian(10_000, 0.005) });
     all
 }

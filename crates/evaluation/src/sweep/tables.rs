@@ -5,7 +5,7 @@ use cloudtouch_testkit::{noise::NoiseKind, poses::NEAR};
 use super::{
     ORACLE, OURS,
     judged::Judged,
-    plan::{DENSE, STDS, is_pooled},
+    plan::{STDS, is_pooled},
 };
 use crate::{
     answers::{Answers, Condition, Kind, Pair, Question},
@@ -130,14 +130,13 @@ impl<'a> Answered<'a> {
             .unwrap_or(("none", None))
     }
 
-    /// The noises of the pooled densities, then dense clouds and heavy tails.
+    /// The noises of the pooled densities, then heavy tails.
     fn conditions() -> Vec<(String, Wanted)> {
         let mut all: Vec<(String, Wanted)> = Vec::new();
         for std in STDS {
             let keep = move |c: &Condition| is_pooled(c) && c.std == std;
             all.push((format!("{} mm", 1e3 * std), Box::new(keep)));
         }
-        all.push(("2 mm, 40,000 points".into(), Box::new(|c| c.points == DENSE)));
         let is_heavy = |c: &Condition| c.noise == NoiseKind::HeavyTailed;
         all.push(("5 mm, heavy tails, 10,000 points".into(), Box::new(is_heavy)));
         all
