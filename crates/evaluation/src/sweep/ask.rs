@@ -17,18 +17,20 @@ use crate::{
     methods::{Draw, Method},
 };
 
-/// A method, and of how many poses it answers one: slow peers answer fewer.
+/// A method, and how often it is asked: slow peers answer less.
 pub struct Asked {
     /// Who answers.
     pub method: Box<dyn Method>,
+    /// 1 for every draw, 2 for every second one.
+    pub draw_of: u32,
     /// 1 for every pose, 3 for a third of them.
-    pub one_of: usize,
+    pub pose_of: usize,
 }
 
 impl Asked {
-    /// About every pose.
+    /// About every pose of every draw.
     pub fn always(method: impl Method + 'static) -> Self {
-        Self { method: Box::new(method), one_of: 1 }
+        Self { method: Box::new(method), draw_of: 1, pose_of: 1 }
     }
 }
 
@@ -42,7 +44,7 @@ struct Scene<'a> {
 }
 
 /// Of how many poses one is asked of an open mesh: leaf by leaf, that takes a hundred times as long.
-const OPEN_MESH_ONE_OF: usize = 4;
+const OPEN_MESH_ONE_OF: usize = 13;
 
 /// What a method says of one question.
 type Row = (Question, Vec<(String, Said)>);
@@ -108,11 +110,14 @@ fn of_draw(
             (question, Vec::new())
         }));
     }
-    for Asked { method, one_of } in methods {
+    for Asked { method, draw_of, pose_of } in methods {
+        if !number.is_multiple_of(*draw_of) {
+            continue;
+        }
         let prepared = method.prepare(&seen).with_context(|| method.name())?;
         for (question, said) in &mut rows {
             let number = question.pose as usize;
-            if number.is_multiple_of(*one_of) {
+            if number.is_multiple_of(*pose_of) {
                 let pose = &poses[number].scene_from_object;
                 let answer = prepared
                     .ask(question.pair, pose)

@@ -1,11 +1,6 @@
 //! The figures of the pages.
 
-use super::{
-    ORACLE, OURS,
-    judged::Judged,
-    plan::{STDS, is_pooled},
-    tables::Answered,
-};
+use super::{ORACLE, OURS, judged::Judged, plan::STDS, tables::Answered};
 use crate::{
     answers::{Kind, Pair, Question},
     figure::{Axis, Figure, Panel, Series},
@@ -116,7 +111,6 @@ pub(super) fn distance_figure(answered: &Answered<'_>) -> Figure {
     for std in [0.002, 0.01] {
         let keep = |q: &Question| {
             Answered::is_of(Pair::CloudCloud, Kind::Ordinary)(q)
-                && is_pooled(&q.condition)
                 && q.condition.points == 10_000
                 && q.condition.std == std
                 && q.signed_distance.abs() < 0.1

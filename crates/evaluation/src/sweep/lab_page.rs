@@ -24,7 +24,8 @@ Methods: `calibrated` is what users get by default, its constants fitted on the 
 (`cargo xtask calibrate`), `oracle` the same given noise-free points and true normals, `paper` \
 the method as printed. Alternatives: the least distance of the points, as measured or after our own \
 surface fit, in units of noise and spacing; 1 cm boxes around the points (yes or no); a support \
-vector machine without robust terms. `paper` and the plain SVM answer every fourth pose. \
+vector machine without robust terms. `paper` and the plain SVM answer every seventh \
+pose, the smoothed distance every second draw, and open meshes are asked at every thirteenth pose. \
 Alternatives without a probability get one by a logistic function of their score, fitted on the \
 other families.
 

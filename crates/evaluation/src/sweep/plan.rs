@@ -36,7 +36,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Every generated family and kind of pair under every noise and density, heavy tails at 5 mm.
+    /// Every generated family and kind of pair under every noise and density.
     pub fn full(draws: u32, poses: usize) -> Self {
         Self {
             families: Scenes::generated(),
@@ -50,9 +50,7 @@ impl Plan {
 
     /// Two clouds under every noise and density, drawn apart from [`Self::full`].
     pub fn evidence(draws: u32, poses: usize) -> Self {
-        let mut conditions = conditions();
-        conditions.retain(is_pooled);
-        Self { pairs: vec![Pair::CloudCloud], conditions, stream: 1, ..Self::full(draws, poses) }
+        Self { pairs: vec![Pair::CloudCloud], stream: 1, ..Self::full(draws, poses) }
     }
 
     /// One condition of some families.
@@ -61,16 +59,8 @@ impl Plan {
     }
 }
 
-/// Whether results under this condition are pooled with others.
-pub(super) fn is_pooled(condition: &Condition) -> bool {
-    POINTS.contains(&condition.points) && condition.noise == NoiseKind::Gaussian
-}
-
 fn conditions() -> Vec<Condition> {
-    let mut all: Vec<Condition> =
-        POINTS.iter().flat_map(|&points| STDS.map(|std| gaussian(points, std))).collect();
-    all.push(Condition { noise: NoiseKind::HeavyTailed, ..gaussian(10_000, 0.005) });
-    all
+    POINTS.iter().flat_map(|&points| STDS.map(|std| gaussian(points, std))).collect()
 }
 
 fn gaussian(points: usize, std: f64) -> Condition {

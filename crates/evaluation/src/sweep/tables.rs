@@ -1,20 +1,13 @@
 //! The answers by kind of pair, kind of scene, family and noise, as rows of tables.
 
-use cloudtouch_testkit::{noise::NoiseKind, poses::NEAR};
+use cloudtouch_testkit::poses::NEAR;
 
-use super::{
-    ORACLE, OURS,
-    judged::Judged,
-    plan::{STDS, is_pooled},
-};
+use super::{ORACLE, OURS, judged::Judged, plan::STDS};
 use crate::{
-    answers::{Answers, Condition, Kind, Pair, Question},
+    answers::{Answers, Kind, Pair, Question},
     measures::{Estimate, Measure},
     table::Table,
 };
-
-/// Whether a condition belongs to a row of a table.
-type Wanted = Box<dyn Fn(&Condition) -> bool>;
 
 /// Measured of all poses of a group; AUC also of those near contact.
 const MEASURES: [Measure; 5] = [
@@ -50,9 +43,9 @@ impl<'a> Answered<'a> {
         Self { answers, alternatives }
     }
 
-    /// A pair's questions under the pooled conditions, of one kind of scenes.
+    /// A pair's questions about one kind of scenes.
     pub(super) fn is_of(pair: Pair, kind: Kind) -> impl Fn(&Question) -> bool + Copy {
-        move |q: &Question| q.pair == pair && q.kind == kind && is_pooled(&q.condition)
+        move |q: &Question| q.pair == pair && q.kind == kind
     }
 
     /// How many questions, how many of them collisions: the base rate.
@@ -103,9 +96,10 @@ impl<'a> Answered<'a> {
     pub(super) fn noises(&self, pair: Pair) -> Table {
         let extra = ["AUC of the oracle", "best alternative", "its AUC"].map(String::from);
         let mut table = Table::new(header("noise").into_iter().chain(extra));
-        for (name, keep) in Self::conditions() {
+        for std in STDS {
             let keep =
-                |q: &Question| q.pair == pair && q.kind == Kind::Ordinary && keep(&q.condition);
+                |q: &Question| Self::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
+            let name = format!("{} mm", 1e3 * std);
             let mut row = self.row(&name, OURS, keep);
             let (best, auc) = self.best_alternative(keep);
             row.extend([self.auc(ORACLE, keep), best.to_owned(), shown(auc)]);
@@ -128,18 +122,6 @@ impl<'a> Answered<'a> {
         all.filter(|(_, e)| e.is_some_and(|e| !e.value.is_nan()))
             .max_by(|(_, a), (_, b)| value(a).total_cmp(&value(b)))
             .unwrap_or(("none", None))
-    }
-
-    /// The noises of the pooled densities, then heavy tails.
-    fn conditions() -> Vec<(String, Wanted)> {
-        let mut all: Vec<(String, Wanted)> = Vec::new();
-        for std in STDS {
-            let keep = move |c: &Condition| is_pooled(c) && c.std == std;
-            all.push((format!("{} mm", 1e3 * std), Box::new(keep)));
-        }
-        let is_heavy = |c: &Condition| c.noise == NoiseKind::HeavyTailed;
-        all.push(("5 mm, heavy tails, 10,000 points".into(), Box::new(is_heavy)));
-        all
     }
 
     fn row(

@@ -3,7 +3,7 @@
 use super::{
     ORACLE, OURS,
     judged::Judged,
-    plan::{STDS, is_pooled},
+    plan::STDS,
     tables::{Answered, is_near, shown},
 };
 use crate::{
@@ -143,11 +143,7 @@ fn stated(answered: &Answered<'_>, pair: Pair, rows: &mut Rows) {
 
 /// No alternative ranks significantly better at this noise.
 fn alternatives(answered: &Answered<'_>, pair: Pair, std: f64, rows: &mut Rows) {
-    let keep = |q: &Question| {
-        Answered::is_of(pair, Kind::Ordinary)(q)
-            && is_pooled(&q.condition)
-            && q.condition.std == std
-    };
+    let keep = |q: &Question| Answered::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
     let better = |name: &&&str| {
         let judged = Judged::pick(answered.answers, &[name, OURS], keep);
         let difference = judged.measure(&[Measure::Auc]).difference(name, OURS, Measure::Auc);
