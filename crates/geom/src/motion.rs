@@ -39,6 +39,11 @@ impl Motion {
         Point3::from(self.rotation * point.coords + self.translation)
     }
 
+    /// R⁻¹ (p − t).
+    pub fn point_back(&self, point: &Point3) -> Point3 {
+        Point3::from(self.rotation.tr_mul(&(point.coords - self.translation)))
+    }
+
     /// R v.
     pub fn vector(&self, vector: &Vector3) -> Vector3 {
         self.rotation * vector

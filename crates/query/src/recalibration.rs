@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::error::SettingsError;
 
 /// Deviations beyond this say no more than these.
-pub(crate) const MOST_DEVIATIONS: f64 = 3.0;
+pub(crate) const MOST_DEVIATIONS: f64 = 6.0;
 /// Geometry alone is not believed beyond this, so that a search may end there and miss nothing: by
 /// the fits hardly more than one in a hundred such poses is free.
 pub(crate) const MOST_CERTAIN: f64 = 0.95;
@@ -27,6 +27,8 @@ pub struct ContactEvidence {
     /// surface that separates it best, largest over the patches; `None` where the other two leave
     /// no doubt and no classifier was trained.
     pub misclassified: Option<f64>,
+    /// X.
+    pub features: [f64; 12],
 }
 
 /// Two logistic regressions from [`ContactEvidence`] to a probability: by geometry alone, and with

@@ -44,6 +44,7 @@ pub(crate) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
                 edges.push(Edge {
                     ends: [from.point.mean, to.point.mean],
                     half_length: 0.5 * (to.point.mean - from.point.mean).norm(),
+                    points: [p, q],
                     across: [from.variance_across(), to.variance_across()],
                     own: [Some(place), other],
                 });

@@ -4,7 +4,7 @@ mod subdivide;
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{Primitive, Tree, TreeSettings};
+use cloudtouch_bvh::{Primitive, Tree, TreeSettings, Visit};
 use cloudtouch_geom::{MeshError, Point3, TriangleMesh, Vector3};
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQueryWithLocation;
@@ -159,6 +159,29 @@ impl Mesh {
 
     pub(crate) fn surface(&self) -> &TriMesh {
         &self.surface
+    }
+
+    /// Calls `visit` for every triangle that may come within `radius` metres of a place in the local
+    /// frame, with its corners; each comes once.
+    pub(crate) fn visit_triangles_near(
+        &self,
+        place: &Point3,
+        radius: f64,
+        mut visit: impl FnMut(u32, [Point3; 3]),
+    ) {
+        self.tree.visit_nodes(|node| {
+            let obb = node.obb();
+            let beyond = (obb.to_local(place).abs() - obb.half_extents).map(|d| d.max(0.0));
+            if beyond.norm() > radius {
+                return Visit::Prune;
+            }
+            if node.is_leaf() {
+                for &triangle in node.primitive_indices() {
+                    visit(triangle, self.corners(triangle as usize));
+                }
+            }
+            Visit::Descend
+        });
     }
 
     /// Corners of a triangle in the local frame.

@@ -10,7 +10,7 @@ use crate::error::SubdivisionError;
 const GRADING: f64 = 0.5;
 /// Deepest subdivision of one triangle, a billionth of its edges: only parts that come near the leaf
 /// are split again, so that depth is cheap. It ends what rounding keeps from becoming smaller.
-const MAX_DEPTH: usize = 30;
+const MAX_DEPTH: usize = 60;
 
 /// Where and how densely a mesh is sampled, in the mesh's local frame.
 #[derive(Debug, Clone, Copy)]
@@ -72,17 +72,19 @@ impl Samples<'_> {
             return;
         }
         let limit = region.spacing.max(GRADING * (away - region.core));
-        let longest =
-            [(a, b), (b, c), (c, a)].map(|(p, q)| (p - q).norm()).into_iter().fold(0.0, f64::max);
-        if longest <= limit || depth == 0 {
+        // Across its longest edge, so that a thin triangle falls into no more parts than it is long.
+        let corner = |k: usize| corners[k % 3];
+        let lengths = [0, 1, 2].map(|k| (corner(k + 1) - corner(k)).norm());
+        let long = (0..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
+        if lengths[long] <= limit || depth == 0 {
             let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
             points.extend([a, b, c, centroid].into_iter().filter(inside));
             return;
         }
-        let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| nalgebra::center(&p, &q));
-        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-            self.split(part, depth - 1);
-        }
+        let (from, to, other) = (corner(long), corner(long + 1), corner(long + 2));
+        let middle = nalgebra::center(&from, &to);
+        self.split([from, middle, other], depth - 1);
+        self.split([middle, to, other], depth - 1);
     }
 }
 

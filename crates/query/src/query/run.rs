@@ -113,7 +113,7 @@ impl Query {
                 add_exact(evidence, &exact_pair(a, b, a_from_b)?);
                 self.pooled(evidence, 0)
             }
-            (BodyRef::Cloud(a), BodyRef::Cloud(b)) if self.settings.mode == Mode::Calibrated => {
+            _ if self.settings.mode == Mode::Calibrated => {
                 calibrated::estimate((a, b), a_from_b, task, evidence)?
             }
             _ => {

@@ -1,44 +1,71 @@
-//! Evidence that two sampled surfaces cross between their samples, where a curved surface could
-//! still separate the samples themselves.
+//! Evidence that two surfaces cross between their samples, where a curved surface could still
+//! separate the samples themselves.
 //!
 //! An edge joins two neighbouring samples of one cloud; it stands for the surface between them. A
 //! disc about a sample of the other cloud, across its normal, stands for the surface around it. An
 //! edge whose ends lie clearly on two sides of a disc, and that passes close to its middle, crosses
-//! it.
+//! it; so does one through a triangle, and a mesh through a disc.
 
 use cloudtouch_geom::{Point3, Vector3, normal};
 
 use crate::cloud::{DISC_SPACINGS, Edge, SLOPE, Surfel};
 
-use super::leaf::Leaf;
+use super::crossings::{Crossings, Witness};
+use super::facet::Facet;
+use super::leaf::{ExactLeaf, NoisyLeaf};
+use super::through_mesh::Outline;
 
 /// The weight of a disc falls off like a normal density with this many spacings.
 const WEIGHT_SPACINGS: f64 = 0.5;
 /// No crossing is clearer than this many standard deviations.
 const CLEAREST: f64 = 6.0;
 
-/// An edge that crosses a disc.
+/// A place where a piece of one surface passes through a piece of the other.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Crossing {
-    /// How clearly, in standard deviations: that of the less clear end, weighted by how near the
-    /// middle of the disc it passes.
-    pub clearness: f64,
+    /// How clearly, in standard deviations: that of the less clear end.
+    pub clear: f64,
+    /// How near the middle of the disc it passes, from 1 to 0.
+    pub weight: f64,
     /// The same as a probability: both ends on their sides, times the weight.
     pub probability: f64,
     /// Where.
     pub place: Point3,
-    /// Unit normal of the disc, of either sign.
+    /// Unit normal of the surface that is passed, of either sign.
     pub axis: Vector3,
-    /// How far the end that is nearer to the disc has come through, m, and its standard deviation.
+    /// How far the end that is nearer to that surface has come through, m, and its standard
+    /// deviation.
     pub depth: f64,
     pub std: f64,
+    /// Distance between samples there, m.
+    pub spacing: f64,
+}
+
+impl Crossing {
+    /// Of two ends at these heights, of unequal sign, known so well.
+    fn of(heights: [f64; 2], stds: [f64; 2], weight: f64) -> Self {
+        let clear_of = |k: usize| heights[k].abs() / stds[k].max(f64::MIN_POSITIVE);
+        let nearer = usize::from(heights[1].abs() < heights[0].abs());
+        // Twice the excess over one half: none on the surface, certain far from it.
+        let sure = |k: usize| 1.0 - 2.0 * normal::below_zero(heights[k].abs(), stds[k]);
+        Self {
+            clear: clear_of(0).min(clear_of(1)).min(CLEAREST),
+            weight,
+            probability: sure(0) * sure(1) * weight,
+            place: Point3::origin(),
+            axis: Vector3::z(),
+            depth: heights[nearer].abs(),
+            std: stds[nearer],
+            spacing: 0.0,
+        }
+    }
 }
 
 /// Whether an edge may cross a disc of another leaf near its end at a piece of the first: that can be
 /// told before the edges are known, for half of one is not longer than a disc reaches, and runs along
 /// the surface.
-pub(super) fn may_reach(of_edges: &Leaf<'_>, of_discs: &Leaf<'_>) -> bool {
-    let Leaf { ball, slab, .. } = of_discs;
+pub(super) fn may_reach(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> bool {
+    let NoisyLeaf { ball, slab, .. } = of_discs;
     of_edges.surfels.iter().any(|surfel| {
         let Some(normal) = surfel.normal else { return false };
         let half = DISC_SPACINGS * surfel.spacing;
@@ -48,14 +75,22 @@ pub(super) fn may_reach(of_edges: &Leaf<'_>, of_discs: &Leaf<'_>) -> bool {
     })
 }
 
-/// Clearness of all crossings of edges of one leaf with discs of another; the points they join, and
-/// those of the discs, are as probable as their clearest crossing.
-pub(super) fn add_crossings(
-    of_edges: &mut Leaf<'_>,
-    of_discs: &mut Leaf<'_>,
-    best: &mut Option<Crossing>,
-) -> f64 {
-    let mut total = 0.0;
+/// Whether a facet may be within reach of a disc or of the near half of an edge.
+pub(super) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> bool {
+    of_edges.surfels.iter().any(|surfel| {
+        surfel.normal.is_some()
+            && facets.ball.is_within(&surfel.point.mean, DISC_SPACINGS * surfel.spacing)
+    })
+}
+
+/// Adds the crossings of edges of one leaf with discs of another; the points they join, and those of
+/// the discs, are as probable as their clearest crossing.
+pub(super) fn add_edges_through_discs(
+    is_a: bool,
+    of_edges: &mut NoisyLeaf<'_>,
+    of_discs: &mut NoisyLeaf<'_>,
+    found: &mut Crossings,
+) {
     let (around, slab) = (of_discs.ball, of_discs.slab);
     // Taken out, for the edges are borrowed while probabilities are raised.
     let mut of_ends = std::mem::take(&mut of_edges.crossing);
@@ -72,32 +107,92 @@ pub(super) fn add_crossings(
             if (disc.point.mean - middle).norm_squared() > reach * reach {
                 continue;
             }
-            let Some(found) = crossing(edge, disc) else { continue };
-            total += found.clearness;
-            *of_disc = of_disc.max(found.probability);
+            let Some(crossing) = through_disc(edge, disc) else { continue };
+            *of_disc = of_disc.max(crossing.probability);
             for place in edge.own.into_iter().flatten() {
-                of_ends[place] = of_ends[place].max(found.probability);
+                of_ends[place] = of_ends[place].max(crossing.probability);
             }
-            if best.is_none_or(|best| found.probability > best.probability) {
-                *best = Some(found);
-            }
+            found.add(Witness::edge(is_a, edge), &crossing);
         }
     }
     of_edges.crossing = of_ends;
-    total
+}
+
+/// Adds the crossings of edges of a leaf with the triangles of another.
+pub(super) fn add_edges_through_facets(
+    is_a: bool,
+    of_edges: &mut NoisyLeaf<'_>,
+    facets: &ExactLeaf,
+    found: &mut Crossings,
+) {
+    let mut of_ends = std::mem::take(&mut of_edges.crossing);
+    for edge in of_edges.edges() {
+        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
+        if !facets.ball.is_within(&middle, edge.half_length) {
+            continue;
+        }
+        for facet in &facets.facets {
+            let Some(crossing) = through_facet(edge, facet) else { continue };
+            for place in edge.own.into_iter().flatten() {
+                of_ends[place] = of_ends[place].max(crossing.probability);
+            }
+            found.add(Witness::edge(is_a, edge), &crossing);
+        }
+    }
+    of_edges.crossing = of_ends;
+}
+
+/// Adds what a mesh does to the discs of a leaf that one of these triangles passes; `around` gives
+/// all triangles of the mesh within a distance of a place.
+pub(super) fn add_mesh_through_discs(
+    is_a: bool,
+    discs: &mut NoisyLeaf<'_>,
+    facets: &ExactLeaf,
+    mut around: impl FnMut(&Point3, f64) -> Vec<Facet>,
+    found: &mut Crossings,
+) {
+    for (k, disc) in discs.surfels.iter().enumerate() {
+        let Some(normal) = disc.normal else { continue };
+        let outline =
+            Outline { middle: disc.point.mean, normal, radius: DISC_SPACINGS * disc.spacing };
+        if discs.is_pierced[k] || !facets.ball.is_within(&outline.middle, outline.radius) {
+            continue;
+        }
+        if outline.through(facets.facets.iter()).off.is_infinite() {
+            continue;
+        }
+        // Once, and by all of the mesh there: however its triangles are shared out to leaves.
+        discs.is_pierced[k] = true;
+        let near = around(&outline.middle, std::f64::consts::SQRT_2 * outline.radius);
+        let through = outline.through(near.iter());
+        let std = disc.variance_across().sqrt();
+        let weight = weight_at(through.off / disc.spacing);
+        let crossing = Crossing {
+            place: through.place,
+            axis: normal,
+            spacing: disc.spacing,
+            ..Crossing::of([through.above, -through.below], [std; 2], weight)
+        };
+        discs.crossing[k] = discs.crossing[k].max(crossing.probability);
+        found.add(Witness::disc(is_a, disc), &crossing);
+    }
+}
+
+fn weight_at(spacings_off: f64) -> f64 {
+    (-0.5 * (spacings_off / WEIGHT_SPACINGS).powi(2)).exp()
 }
 
 /// Whether an edge of a leaf crosses a disc; `None` too where the end nearer to the disc's plane is
 /// not a point of that leaf: the other leaf has the same edge and counts it.
-pub(super) fn crossing(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
+pub(super) fn through_disc(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
     let axis = disc.normal?;
     let middle = disc.point.mean;
-    let [above, below] = edge.ends.map(|end| (end - middle).dot(&axis));
+    let heights = edge.ends.map(|end| (end - middle).dot(&axis));
+    let [above, below] = heights;
     if above * below >= 0.0 {
         return None;
     }
-    let nearer = nearer_end(edge, [above.abs(), below.abs()]);
-    edge.own[nearer]?;
+    edge.own[nearer_end(edge, heights)]?;
     let share = above / (above - below);
     let place = edge.ends[0] + (edge.ends[1] - edge.ends[0]) * share;
     let off = (place - middle).norm() / disc.spacing;
@@ -106,18 +201,19 @@ pub(super) fn crossing(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
     }
     let of_disc = disc.variance_across();
     let stds = edge.across.map(|across| (across + of_disc).sqrt());
-    let clear = (above.abs() / stds[0]).min(below.abs() / stds[1]);
-    let near = (-0.5 * (off / WEIGHT_SPACINGS).powi(2)).exp();
-    // Twice the excess over one half: none on the disc, certain far from it.
-    let sure = |height: f64, std| 1.0 - 2.0 * normal::below_zero(height.abs(), std);
-    Some(Crossing {
-        clearness: clear.min(CLEAREST) * near,
-        probability: sure(above, stds[0]) * sure(below, stds[1]) * near,
-        place,
-        axis,
-        depth: above.abs().min(below.abs()),
-        std: stds[nearer],
-    })
+    let spacing = disc.spacing;
+    Some(Crossing { place, axis, spacing, ..Crossing::of(heights, stds, weight_at(off)) })
+}
+
+/// The same for a triangle.
+pub(super) fn through_facet(edge: &Edge, facet: &Facet) -> Option<Crossing> {
+    let axis = facet.normal?;
+    let pierced = facet.pierced_by(&edge.ends)?;
+    edge.own[nearer_end(edge, pierced.heights)]?;
+    let stds = edge.across.map(f64::sqrt);
+    let spacing = 2.0 * edge.half_length;
+    let place = pierced.place;
+    Some(Crossing { place, axis, spacing, ..Crossing::of(pierced.heights, stds, 1.0) })
 }
 
 /// The end with the smaller height; between equals the one that comes first in space, so that both
@@ -125,7 +221,7 @@ pub(super) fn crossing(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
 fn nearer_end(edge: &Edge, heights: [f64; 2]) -> usize {
     let key = |k: usize| {
         let end = edge.ends[k];
-        (heights[k], end.x, end.y, end.z)
+        (heights[k].abs(), end.x, end.y, end.z)
     };
     usize::from(key(1) < key(0))
 }
@@ -151,6 +247,7 @@ mod tests {
         Edge {
             ends: [Point3::new(x, 0.0, low), Point3::new(x, 0.0, high)],
             half_length: 0.5 * (high - low),
+            points: [0, 1],
             across: [0.0; 2],
             own: [Some(0), None],
         }
@@ -158,27 +255,27 @@ mod tests {
 
     #[test]
     fn an_edge_through_the_middle_crosses_as_clearly_as_its_nearer_end() {
-        let found = crossing(&upright(0.0, -0.2, 0.5), &disc(0.1)).unwrap();
-        assert!((found.clearness - 2.0).abs() < 1e-12, "{found:?}");
+        let found = through_disc(&upright(0.0, -0.2, 0.5), &disc(0.1)).unwrap();
+        assert!((found.clear - 2.0).abs() < 1e-12, "{found:?}");
         assert!((found.depth - 0.2).abs() < 1e-12 && found.place == Point3::origin());
         // One spacing off the middle: two standard deviations of the weight.
-        let aside = crossing(&upright(1.0, -0.2, 0.5), &disc(0.1)).unwrap();
-        assert!((aside.clearness / found.clearness - (-2.0_f64).exp()).abs() < 1e-12);
-        assert!(crossing(&upright(1.6, -0.2, 0.5), &disc(0.1)).is_none());
+        let aside = through_disc(&upright(1.0, -0.2, 0.5), &disc(0.1)).unwrap();
+        assert!((aside.weight - (-2.0_f64).exp()).abs() < 1e-12);
+        assert!(through_disc(&upright(1.6, -0.2, 0.5), &disc(0.1)).is_none());
     }
 
     #[test]
     fn an_edge_on_one_side_does_not_cross() {
-        assert!(crossing(&upright(0.0, 0.001, 0.5), &disc(0.1)).is_none());
+        assert!(through_disc(&upright(0.0, 0.001, 0.5), &disc(0.1)).is_none());
         let mut unknown = disc(0.1);
         unknown.normal = None;
-        assert!(crossing(&upright(0.0, -0.2, 0.5), &unknown).is_none());
+        assert!(through_disc(&upright(0.0, -0.2, 0.5), &unknown).is_none());
     }
 
     #[test]
     fn noise_larger_than_the_crossing_says_little() {
-        let found = crossing(&upright(0.0, -0.2, 0.5), &disc(30.0)).unwrap();
-        assert!(found.clearness < 0.01 && found.probability < 0.001, "{found:?}");
+        let found = through_disc(&upright(0.0, -0.2, 0.5), &disc(30.0)).unwrap();
+        assert!(found.clear < 0.01 && found.probability < 0.001, "{found:?}");
     }
 
     #[test]
@@ -186,7 +283,7 @@ mod tests {
         for (low, high) in [(-0.2, 0.5), (-0.5, 0.2), (-0.3, 0.3)] {
             let here = upright(0.0, low, high);
             let there = Edge { ends: [here.ends[1], here.ends[0]], ..here };
-            let counted = [here, there].iter().filter_map(|e| crossing(e, &disc(0.1))).count();
+            let counted = [here, there].iter().filter_map(|e| through_disc(e, &disc(0.1))).count();
             assert_eq!(counted, 1, "{low} {high}");
         }
     }

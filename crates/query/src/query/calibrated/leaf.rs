@@ -5,23 +5,44 @@ use std::borrow::Cow;
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Point3, Vector3};
 
+use crate::body::BodyRef;
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
+use crate::mesh::Mesh;
 use crate::recalibration::MOST_DEVIATIONS;
 use crate::report::Stats;
 
+use super::facet::{Facet, Whitening};
 use super::meeting::probability_at;
 
-/// A leaf in the local frame of A.
+/// A leaf in the local frame of A: noisy pieces of surface, or exact ones.
 #[derive(Debug)]
-pub(super) struct Leaf<'a> {
+pub(super) enum Leaf<'a> {
+    Noisy(NoisyLeaf<'a>),
+    Exact(ExactLeaf),
+}
+
+/// A leaf of a mesh.
+#[derive(Debug)]
+pub(super) struct ExactLeaf {
+    pub facets: Vec<Facet>,
+    pub ball: Ball,
+}
+
+/// A leaf of a cloud.
+#[derive(Debug)]
+pub(super) struct NoisyLeaf<'a> {
     pub surfels: Cow<'a, [Surfel]>,
     /// `None` until they are needed.
     edges: Option<Cow<'a, [Edge]>>,
-    /// For each surfel the squared deviations to the nearest piece of the other cloud, at most those
+    /// For each surfel lengths in its standard deviations; empty until they are needed.
+    whitenings: Vec<Whitening>,
+    /// For each surfel the squared deviations to the nearest piece of the other body, at most those
     /// of [`MOST_DEVIATIONS`].
     pub squared: Vec<f64>,
     /// For each surfel the probability of its clearest crossing.
     pub crossing: Vec<f64>,
+    /// For each surfel whether a mesh was looked at that passes through its disc.
+    pub is_pierced: Vec<bool>,
     pub ball: Ball,
     pub slab: Slab,
 }
@@ -47,8 +68,45 @@ pub(super) struct Ball {
 }
 
 impl<'a> Leaf<'a> {
-    /// A leaf of a cloud, moved to the frame of A by `motion`, or of A itself.
+    /// A leaf of a body, moved to the frame of A by `motion`, or of A itself.
     pub(super) fn load(
+        body: BodyRef<'a>,
+        id: NodeId,
+        motion: Option<&Motion>,
+        stats: &mut Stats,
+    ) -> Self {
+        match body {
+            BodyRef::Cloud(cloud) => Self::Noisy(NoisyLeaf::load(cloud, id, motion, stats)),
+            BodyRef::Mesh(mesh) => Self::Exact(ExactLeaf::load(mesh, id, motion)),
+        }
+    }
+
+    pub(super) fn middle(&self) -> Point3 {
+        match self {
+            Self::Noisy(leaf) => leaf.ball.middle,
+            Self::Exact(leaf) => leaf.ball.middle,
+        }
+    }
+}
+
+impl ExactLeaf {
+    fn load(mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> Self {
+        let indices = mesh.tree().leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
+        let facets: Vec<Facet> = indices
+            .iter()
+            .map(|&triangle| {
+                let facet = Facet::new(triangle, mesh.corners(triangle as usize));
+                motion.map_or(facet, |motion| facet.moved(motion))
+            })
+            .collect();
+        let ball = Ball::around_points(facets.iter().flat_map(|facet| &facet.corners));
+        Self { facets, ball }
+    }
+}
+
+impl<'a> NoisyLeaf<'a> {
+    /// A leaf of a cloud, moved to the frame of A by `motion`, or of A itself.
+    fn load(
         cloud: &'a Cloud,
         id: NodeId,
         motion: Option<&Motion>,
@@ -62,12 +120,23 @@ impl<'a> Leaf<'a> {
         };
         let squared = vec![MOST_DEVIATIONS.powi(2); surfels.len()];
         let crossing = vec![0.0; surfels.len()];
+        let is_pierced = vec![false; surfels.len()];
         let ball = Ball::around(&surfels);
         // Along the thinnest side of its box a leaf is all but flat.
         let thin =
             cloud.tree().node(id).map_or_else(Vector3::z, |leaf| leaf.obb().axes.column(2).into());
         let slab = Slab::around(&surfels, motion.map_or(thin, |motion| motion.vector(&thin)));
-        Self { surfels, edges: None, squared, crossing, ball, slab }
+        let whitenings = Vec::new();
+        Self { surfels, edges: None, whitenings, squared, crossing, is_pierced, ball, slab }
+    }
+
+    /// Lengths in the standard deviations of each surfel, beside what is changed with them.
+    pub(super) fn whitened(&mut self) -> (&[Surfel], &[Whitening], &mut [f64]) {
+        if self.whitenings.is_empty() {
+            self.whitenings =
+                self.surfels.iter().map(|s| Whitening::of(&s.point.covariance)).collect();
+        }
+        (&self.surfels, &self.whitenings, &mut self.squared)
     }
 
     /// Gets its edges, once.
@@ -84,11 +153,6 @@ impl<'a> Leaf<'a> {
     /// None before they were loaded.
     pub(super) fn edges(&self) -> &[Edge] {
         self.edges.as_deref().unwrap_or_default()
-    }
-
-    /// From its middle to that of another leaf.
-    pub(super) fn toward(&self, other: &Self) -> Vector3 {
-        other.ball.middle - self.ball.middle
     }
 
     /// How likely each piece is to collide, by geometry: halfway between two equally well known
@@ -142,6 +206,14 @@ impl Slab {
 }
 
 impl Ball {
+    fn around_points<'p>(points: impl Iterator<Item = &'p Point3> + Clone) -> Self {
+        let count = points.clone().count().max(1);
+        let sum: Vector3 = points.clone().map(|p| p.coords).sum();
+        let middle = Point3::from(sum / count as f64);
+        let radius = points.map(|p| (p - middle).norm()).fold(0.0, f64::max);
+        Self { middle, radius, variance: 0.0, spacing: 0.0 }
+    }
+
     fn around(surfels: &[Surfel]) -> Self {
         let sum: Vector3 = surfels.iter().map(|s| s.point.mean.coords).sum();
         let middle = Point3::from(sum / surfels.len() as f64);

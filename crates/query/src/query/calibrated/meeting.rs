@@ -1,8 +1,10 @@
 //! Two pieces of surface: how many standard deviations are between them, and where they would meet.
 
-use cloudtouch_geom::{Matrix3, Point3, Vector3, normal};
+use cloudtouch_geom::{Matrix3, Point3, UncertainPoint, Vector3, normal};
 
 use crate::cloud::Surfel;
+
+use super::facet::LEAST_STD;
 
 /// Where two pieces of surface would meet.
 #[derive(Debug, Clone, Copy)]
@@ -29,11 +31,11 @@ pub(super) fn probability_at(deviations: f64) -> f64 {
 }
 
 /// Squared Mahalanobis distance δᵀ(Σa+Σb)⁻¹δ of two pieces; `None` where it is not below `limit`.
-/// Exact pieces that are apart are infinitely far from each other.
+/// Exact pieces are at one place or as good as infinitely far from each other.
 pub(super) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) -> Option<f64> {
     let offset = b.point.mean - a.point.mean;
     // No direction has more variance than this: most pairs end here.
-    if offset.norm_squared() >= limit * (a.most_variance + b.most_variance) {
+    if offset.norm_squared() > limit * (a.most_variance + b.most_variance) {
         return None;
     }
     let joint = a.point.covariance.sum(&b.point.covariance);
@@ -42,13 +44,13 @@ pub(super) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) -> Option<f
 }
 
 impl Meeting {
-    /// The meeting of two pieces, `None` where both are exact.
-    pub(super) fn of(a: &Surfel, b: &Surfel) -> Option<Self> {
-        let offset = b.point.mean - a.point.mean;
-        let joint = a.point.covariance.sum(&b.point.covariance);
+    /// The meeting of two pieces; `None` where numbers end.
+    pub(super) fn of(a: &UncertainPoint, b: &UncertainPoint) -> Option<Self> {
+        let offset = b.mean - a.mean;
+        let joint = a.covariance.sum(&b.covariance);
         let weighted = solve(&joint.matrix(), &offset)?;
         let deviations = offset.dot(&weighted).max(0.0).sqrt();
-        let place = a.point.mean + a.point.covariance.matrix() * weighted;
+        let place = a.mean + a.covariance.matrix() * weighted;
         let normal = weighted.try_normalize(0.0);
         let gap = normal.map_or(0.0, |n| n.dot(&offset));
         let std = normal.map_or_else(|| joint.max_std(), |n| joint.std_along(&n));
@@ -56,8 +58,10 @@ impl Meeting {
     }
 }
 
-/// Σ⁻¹v by cofactors, which round evenly for discs of any size; `None` where Σ is singular.
+/// Σ⁻¹v by cofactors, which round evenly for discs of any size; `None` where numbers end. What is
+/// exact counts as known to [`LEAST_STD`].
 fn solve(sigma: &Matrix3, v: &Vector3) -> Option<Vector3> {
+    let sigma = sigma + Matrix3::identity() * LEAST_STD.powi(2);
     let [x, y, z] = [0, 1, 2].map(|k| sigma.column(k).into_owned());
     let (yz, zx, xy) = (y.cross(&z), z.cross(&x), x.cross(&y));
     let determinant = x.dot(&yz);
@@ -87,7 +91,7 @@ mod tests {
     fn discs_facing_each_other_are_their_gap_over_their_noise_apart() {
         let a = disc(Point3::origin(), Vector3::z(), 0.03, 0.35);
         let b = disc(Point3::new(0.0, 0.0, 0.1), Vector3::z(), 0.04, 0.35);
-        let meeting = Meeting::of(&a, &b).unwrap();
+        let meeting = Meeting::of(&a.point, &b.point).unwrap();
         assert!((meeting.deviations - 0.1 / 0.05).abs() < 1e-12);
         assert!((meeting.gap - 0.1).abs() < 1e-12 && (meeting.std - 0.05).abs() < 1e-12);
         assert_eq!(meeting.normal, Some(Vector3::z()));
@@ -102,9 +106,9 @@ mod tests {
     fn exact_pieces_are_apart_and_never_nan() {
         let exact = |x: f64| disc(Point3::new(x, 0.0, 0.0), Vector3::z(), 0.0, 0.0);
         assert_eq!(squared_deviations(&exact(0.0), &exact(1.0), 1e9), None);
-        assert!(Meeting::of(&exact(0.0), &exact(0.0)).is_none());
+        assert_eq!(squared_deviations(&exact(0.0), &exact(0.0), 9.0), Some(0.0));
         let one_place = disc(Point3::origin(), Vector3::z(), 0.1, 0.1);
-        let meeting = Meeting::of(&one_place, &one_place).unwrap();
+        let meeting = Meeting::of(&one_place.point, &one_place.point).unwrap();
         assert_eq!((meeting.deviations, meeting.gap, meeting.normal), (0.0, 0.0, None));
     }
 }

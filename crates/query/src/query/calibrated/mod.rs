@@ -6,17 +6,20 @@
 //! docs/decisions for what this replaced and why.
 
 mod crossing;
+mod crossings;
+mod facet;
+mod inside;
 mod leaf;
 mod meeting;
 mod nearest;
 mod patches;
 mod places;
 mod search;
+mod through_mesh;
 
 use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
-use crate::cloud::Cloud;
 use crate::error::QueryError;
 use crate::recalibration::{ContactEvidence, MOST_CERTAIN, MOST_DEVIATIONS, Recalibration};
 
@@ -29,13 +32,13 @@ use super::task::Task;
 use super::train::by_kernel;
 
 use patches::patches;
-use places::{add_finding, add_leaves};
+use places::{add_crossing, add_finding, add_leaves};
 use search::{Found, search};
 
 /// Estimates how probable a collision of two clouds is; points, contacts and clearance go to
 /// `evidence`.
 pub(super) fn estimate(
-    (a, b): (&Cloud, &Cloud),
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
     task: &Task<'_>,
     evidence: &mut Evidence,
@@ -47,22 +50,26 @@ pub(super) fn estimate(
         probability > settings.stop_above || is_final(settings, probability) || task.clock.is_over()
     };
     let stats = &mut evidence.stats;
-    let found = search((a, b), a_from_b, &task.traversal, settings.seed, is_enough, stats)?;
+    let found = search((a, b), a_from_b, &task.traversal, is_enough, stats)?;
     let of_geometry = ContactEvidence {
         deviations: found.deviations,
-        crossing: found.crossing.ln_1p(),
+        crossing: found.crossings.total().ln_1p(),
         misclassified: None,
+        features: features(&found, inside::inside((a, b), a_from_b)),
     };
     let estimate = by_geometry(settings, &found, of_geometry);
     let [lowest, highest] = settings.doubt;
     let is_doubtful = (lowest..=highest).contains(&estimate.probability) && found.is_complete;
     let answer =
-        is_doubtful.then(|| ask_classifier((a, b), a_from_b, &found, task, evidence)).flatten();
+        if is_doubtful { ask_classifier((a, b), a_from_b, &found, task, evidence)? } else { None };
     if let Some(misclassified) = answer {
         return Ok(by_all(recalibration, of_geometry, &misclassified));
     }
     for finding in &found.findings {
         add_finding(finding, evidence);
+    }
+    for (crossing, _) in found.crossings.iter() {
+        add_crossing(crossing, evidence);
     }
     add_leaves(&found, evidence);
     Ok(estimate)
@@ -77,7 +84,7 @@ fn by_geometry(settings: &QuerySettings, found: &Found<'_>, evidence: ContactEvi
     let ContactEvidence { deviations, crossing, .. } = evidence;
     let by_geometry = settings.recalibration.probability_by_geometry(deviations, crossing);
     let probability = if found.is_complete && deviations >= MOST_DEVIATIONS && crossing == 0.0 {
-        by_geometry.min(found.culled_bound)
+        by_geometry
     } else {
         by_geometry
     };
@@ -142,16 +149,16 @@ impl Misclassified {
 /// What the classifier says of the patches; `None` where the noise is as large as all of them, so
 /// that geometry has to do.
 fn ask_classifier(
-    (a, b): (&Cloud, &Cloud),
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
     found: &Found<'_>,
     task: &Task<'_>,
     evidence: &mut Evidence,
-) -> Option<Misclassified> {
+) -> Result<Option<Misclassified>, QueryError> {
     let settings = task.settings;
-    let (deviations, crossing) = (found.deviations, found.crossing.ln_1p());
+    let (deviations, crossing) = (found.deviations, found.crossings.total().ln_1p());
     let mut all: Option<Misclassified> = None;
-    for points in patches((a, b), a_from_b, found) {
+    for points in patches((a, b), a_from_b, found, settings.max_mesh_parts)? {
         let count = points.a.len() + points.b.len();
         if task.clock.is_over() {
             // Of the patches that are left only bounds are known.
@@ -167,7 +174,7 @@ fn ask_classifier(
         };
         let misclassified = all.unwrap_or_default().or_more(of_patch);
         all = Some(misclassified);
-        add_pair((BodyRef::Cloud(a), BodyRef::Cloud(b), a_from_b), &points, &answer, evidence);
+        add_pair((a, b, a_from_b), &points, &answer, evidence);
         let so_far =
             settings.recalibration.probability_by_all(deviations, crossing, misclassified.value);
         if so_far > settings.doubt[1] {
@@ -175,5 +182,39 @@ fn ask_classifier(
             break;
         }
     }
-    all
+    Ok(all)
+}
+
+fn features(found: &Found<'_>, inside: [f64; 2]) -> [f64; 12] {
+    let mut all: Vec<(f64, crossing::Crossing)> =
+        found.crossings.iter().map(|(c, s)| (s, *c)).collect();
+    all.sort_by(|p, q| q.0.total_cmp(&p.0));
+    let top = |n: usize| all.iter().take(n).map(|c| c.0).sum::<f64>();
+    let local = |radius: f64| {
+        all.iter().take(400)
+            .map(|(_, at)| {
+                all.iter().take(400)
+                    .filter(|(_, c)| (c.place - at.place).norm() <= radius * at.spacing)
+                    .map(|(s, _)| *s)
+                    .sum::<f64>()
+            })
+            .fold(0.0, f64::max)
+    };
+    let probable: f64 = all.iter().map(|(_, c)| c.probability).sum();
+    let extent = all.iter().take(400).flat_map(|(_, p)| all.iter().take(400).map(move |(_, q)| (p.place - q.place).norm() / p.spacing)).fold(0.0, f64::max);
+    let spacing = all.first().map_or(0.0, |c| c.1.spacing);
+    [
+        found.crossings.total(),
+        all.len() as f64,
+        top(1),
+        top(3),
+        top(8),
+        top(20),
+        local(3.0),
+        probable,
+        extent,
+        spacing,
+        inside[0],
+        inside[1],
+    ]
 }

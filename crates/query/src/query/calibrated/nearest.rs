@@ -1,33 +1,100 @@
 //! The two pieces of surface of two leaves with the least deviations between them.
 
+use cloudtouch_geom::{Point3, UncertainPoint};
+
 use crate::recalibration::MOST_DEVIATIONS;
 
-use super::leaf::Leaf;
+use super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use super::meeting::squared_deviations;
 
-/// The least squared deviations between two pieces, and which these are; `None` where all have
-/// [`MOST_DEVIATIONS`] or more. Notes for every piece what is its least.
-pub(super) fn nearest_pieces(a: &mut Leaf<'_>, b: &mut Leaf<'_>) -> Option<(f64, usize, usize)> {
+/// The two pieces of two leaves with the least deviations between them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Nearest {
+    pub squared: f64,
+    /// The pieces: where on a triangle is part of what is found.
+    pub a: UncertainPoint,
+    pub b: UncertainPoint,
+    /// Which they are: of the points of a cloud, or of the triangles of a mesh.
+    pub between: [u32; 2],
+    /// The larger of their spacings, m; a mesh has none.
+    pub spacing: f64,
+}
+
+impl Nearest {
+    fn swapped(self) -> Self {
+        let [a, b] = self.between;
+        Self { a: self.b, b: self.a, between: [b, a], ..self }
+    }
+}
+
+/// `None` where all have [`MOST_DEVIATIONS`] or more. Notes for every noisy piece what is its least.
+pub(super) fn nearest_pieces(a: &mut Leaf<'_>, b: &mut Leaf<'_>) -> Option<Nearest> {
+    match (a, b) {
+        (Leaf::Noisy(a), Leaf::Noisy(b)) => between_noisy(a, b),
+        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b),
+        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a).map(Nearest::swapped),
+        // Two meshes are tested exactly and never come here.
+        (Leaf::Exact(_), Leaf::Exact(_)) => None,
+    }
+}
+
+fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>) -> Option<Nearest> {
     let mut least = MOST_DEVIATIONS.powi(2);
     let mut nearest = None;
     let mut most_of_b = b.squared.iter().copied().fold(0.0, f64::max);
-    for (i, (on_a, least_of_a)) in a.surfels.iter().zip(&mut a.squared).enumerate() {
+    for (on_a, least_of_a) in a.surfels.iter().zip(&mut a.squared) {
         let limit = least_of_a.max(most_of_b);
         let reach = (limit * (on_a.most_variance + b.ball.variance)).sqrt();
         if !b.ball.is_within(&on_a.point.mean, reach) {
             continue;
         }
-        for (j, (on_b, least_of_b)) in b.surfels.iter().zip(&mut b.squared).enumerate() {
+        for (on_b, least_of_b) in b.surfels.iter().zip(&mut b.squared) {
             let limit = least_of_b.max(*least_of_a);
             let Some(squared) = squared_deviations(on_a, on_b, limit) else { continue };
             *least_of_a = least_of_a.min(squared);
             *least_of_b = least_of_b.min(squared);
             if squared < least {
                 least = squared;
-                nearest = Some((squared, i, j));
+                nearest = Some(Nearest {
+                    squared,
+                    a: on_a.point,
+                    b: on_b.point,
+                    between: [on_a.index, on_b.index],
+                    spacing: on_a.spacing.max(on_b.spacing),
+                });
             }
         }
         most_of_b = b.squared.iter().copied().fold(0.0, f64::max);
+    }
+    nearest
+}
+
+/// From the pieces of a cloud to those of a mesh.
+fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf) -> Option<Nearest> {
+    let mut least = MOST_DEVIATIONS.powi(2);
+    let mut nearest = None;
+    let (surfels, whitenings, squared) = noisy.whitened();
+    for ((surfel, whitening), least_of_it) in surfels.iter().zip(whitenings).zip(squared) {
+        let reach = (*least_of_it * surfel.most_variance).sqrt();
+        if !exact.ball.is_within(&surfel.point.mean, reach) {
+            continue;
+        }
+        for facet in &exact.facets {
+            let found = facet.squared_deviations(surfel, whitening, *least_of_it);
+            let Some((squared, way)) = found else { continue };
+            *least_of_it = squared;
+            if squared < least {
+                least = squared;
+                let on_mesh: Point3 = surfel.point.mean + way;
+                nearest = Some(Nearest {
+                    squared,
+                    a: surfel.point,
+                    b: UncertainPoint::exact(on_mesh),
+                    between: [surfel.index, facet.triangle],
+                    spacing: surfel.spacing,
+                });
+            }
+        }
     }
     nearest
 }

@@ -1,9 +1,12 @@
 //! Contact patches: the surroundings of the places where two clouds are least apart, across the
 //! borders of leaves, for the classifier.
 
-use cloudtouch_geom::{Motion, Point3, Pose};
+use cloudtouch_geom::{Motion, Point3, Pose, UncertainPoint};
 
+use crate::body::BodyRef;
 use crate::cloud::{Cloud, Surfel};
+use crate::error::SubdivisionError;
+use crate::mesh::{Mesh, SampleRegion, sample_region};
 use crate::query::pair::{PairPoint, PairPoints};
 
 use super::search::{Finding, Found};
@@ -24,30 +27,38 @@ const REACH_DEVIATIONS: f64 = 2.0;
 struct Seed {
     place: Point3,
     reach: f64,
+    /// Distance between samples there, m.
+    spacing: f64,
 }
 
 /// The patches of a search, the least apart first, no two of which have their middles within reach.
 pub(super) fn patches(
-    (a, b): (&Cloud, &Cloud),
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
     found: &Found<'_>,
-) -> Vec<PairPoints> {
-    let (motion, b_from_a) = (Motion::from(a_from_b), a_from_b.inverse());
-    let gather = |seed: Seed| {
-        let in_b = Seed { place: b_from_a.transform_point(&seed.place), ..seed };
-        let moved = |surfel: &Surfel| PairPoint::from(&surfel.moved(&motion));
-        PairPoints {
-            a: around(&seed, a).iter().map(PairPoint::from).collect(),
-            b: around(&in_b, b).iter().map(moved).collect(),
-            a_is_mesh: false,
-            b_is_mesh: false,
+    max_parts: usize,
+) -> Result<Vec<PairPoints>, SubdivisionError> {
+    let here = Pose::identity();
+    let mut patches = Vec::new();
+    for seed in seeds((a, b), found) {
+        let patch = PairPoints {
+            a: around(&seed, a, &here, max_parts)?,
+            b: around(&seed, b, a_from_b, max_parts)?,
+            a_is_mesh: matches!(a, BodyRef::Mesh(_)),
+            b_is_mesh: matches!(b, BodyRef::Mesh(_)),
+        };
+        if !patch.a.is_empty() && !patch.b.is_empty() {
+            patches.push(patch);
         }
-    };
-    let is_whole = |patch: &PairPoints| !patch.a.is_empty() && !patch.b.is_empty();
-    seeds((a, b), found).into_iter().map(gather).filter(is_whole).collect()
+    }
+    Ok(patches)
 }
 
-fn seeds((a, b): (&Cloud, &Cloud), found: &Found<'_>) -> Vec<Seed> {
+fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), found: &Found<'_>) -> Vec<Seed> {
+    let std_of = |body: BodyRef<'_>, piece| match body {
+        BodyRef::Cloud(cloud) => cloud.sensor_std(piece),
+        BodyRef::Mesh(_) => 0.0,
+    };
     let most = found.deviations_of_interest();
     let mut findings: Vec<&Finding> =
         found.findings.iter().filter(|f| f.meeting.deviations <= most).collect();
@@ -56,11 +67,11 @@ fn seeds((a, b): (&Cloud, &Cloud), found: &Found<'_>) -> Vec<Seed> {
     let mut seeds: Vec<Seed> = Vec::new();
     for finding in findings {
         let [of_a, of_b] = finding.between;
-        let noise = a.sensor_std(of_a).max(b.sensor_std(of_b));
+        let noise = std_of(a, of_a).max(std_of(b, of_b));
         let reach = REACH_SPACINGS * finding.spacing + REACH_DEVIATIONS * noise;
         let place = finding.meeting.place;
         if seeds.iter().all(|seed| (seed.place - place).norm() > seed.reach.max(reach)) {
-            seeds.push(Seed { place, reach });
+            seeds.push(Seed { place, reach, spacing: finding.spacing });
             if seeds.len() == MOST_PATCHES {
                 break;
             }
@@ -69,12 +80,55 @@ fn seeds((a, b): (&Cloud, &Cloud), found: &Found<'_>) -> Vec<Seed> {
     seeds
 }
 
-/// The pieces of surface of one cloud nearest to a seed in its frame.
-fn around(seed: &Seed, cloud: &Cloud) -> Vec<Surfel> {
-    let distance = |s: &Surfel| (s.point.mean - seed.place).norm();
-    let mut near = cloud.surfels_near(&seed.place, GATHERED_POINTS);
+/// The points of one body nearest to a seed, in the frame of A.
+fn around(
+    seed: &Seed,
+    body: BodyRef<'_>,
+    a_from_body: &Pose,
+    max_parts: usize,
+) -> Result<Vec<PairPoint>, SubdivisionError> {
+    let place = a_from_body.inverse().transform_point(&seed.place);
+    Ok(match body {
+        BodyRef::Cloud(cloud) => {
+            let motion = Motion::from(a_from_body);
+            let moved = |surfel: &Surfel| PairPoint::from(&surfel.moved(&motion));
+            of_cloud(seed, cloud, &place).iter().map(moved).collect()
+        }
+        BodyRef::Mesh(mesh) => of_mesh(seed, mesh, &place, max_parts)?
+            .iter()
+            .map(|point| PairPoint {
+                index: None,
+                point: UncertainPoint::exact(a_from_body.transform_point(point)),
+                spacing: seed.spacing,
+            })
+            .collect(),
+    })
+}
+
+/// The pieces of surface of a cloud nearest to a seed at this place of its frame.
+fn of_cloud(seed: &Seed, cloud: &Cloud, place: &Point3) -> Vec<Surfel> {
+    let distance = |s: &Surfel| (s.point.mean - place).norm();
+    let mut near = cloud.surfels_near(place, GATHERED_POINTS);
     near.retain(|s| distance(s) <= seed.reach);
     near.sort_by(|s, t| distance(s).total_cmp(&distance(t)).then(s.index.cmp(&t.index)));
     near.truncate(MOST_POINTS);
     near
+}
+
+/// The samples of a mesh, as dense as the cloud it faces, nearest to a seed.
+fn of_mesh(
+    seed: &Seed,
+    mesh: &Mesh,
+    place: &Point3,
+    max_parts: usize,
+) -> Result<Vec<Point3>, SubdivisionError> {
+    let mut triangles = Vec::new();
+    mesh.visit_triangles_near(place, seed.reach, |_, corners| triangles.push(corners));
+    let (center, core, radius) = (*place, seed.reach, seed.reach);
+    let region = SampleRegion { center, core, radius, spacing: seed.spacing };
+    let mut points = sample_region(triangles, &region, max_parts)?;
+    let distance = |p: &Point3| (p - place).norm();
+    points.sort_by(|p, q| distance(p).total_cmp(&distance(q)));
+    points.truncate(MOST_POINTS);
+    Ok(points)
 }

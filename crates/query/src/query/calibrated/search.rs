@@ -1,24 +1,29 @@
-//! The search for what two clouds say of a collision by their geometry alone.
+//! The search for what two bodies say of a collision by their geometry alone.
 
 use std::collections::BTreeMap;
 
 use cloudtouch_bvh::{Flow, LeafPair, NodeId, TraversalSettings, traverse};
-use cloudtouch_geom::{Motion, Pose, Vector3};
+use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
 
-use crate::cloud::Cloud;
+use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::recalibration::MOST_DEVIATIONS;
 use crate::report::Stats;
 
-use super::crossing::{Crossing, add_crossings, may_reach};
-use super::leaf::Leaf;
+use super::crossing::{
+    add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach,
+    may_reach_facets,
+};
+use super::crossings::Crossings;
+use super::facet::Facet;
+use super::leaf::{Leaf, NoisyLeaf};
 use super::meeting::Meeting;
 use super::nearest::nearest_pieces;
 
 /// Places that are more than this many deviations above the least are not looked at.
 const DEVIATIONS_OF_INTEREST: f64 = 1.5;
 
-/// What a pair of leaves says.
+/// Where the pieces of two leaves are least apart.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Finding {
     /// Of the two pieces of surface with the least deviations between them.
@@ -27,8 +32,6 @@ pub(super) struct Finding {
     pub between: [u32; 2],
     /// The larger of their spacings, m.
     pub spacing: f64,
-    /// The most probable crossing.
-    pub crossing: Option<Crossing>,
     /// From the middle of the leaf of A to that of B.
     pub toward_b: Vector3,
 }
@@ -41,39 +44,34 @@ pub(super) struct Found<'a> {
     pub findings: Vec<Finding>,
     /// The least deviations between two pieces of surface, at most [`MOST_DEVIATIONS`].
     pub deviations: f64,
-    /// Clearness of all crossings together.
-    pub crossing: f64,
+    pub crossings: Crossings,
     /// Whether what was left out can change neither of these.
     pub is_complete: bool,
-    /// No point of what was culled has a higher probability than this.
-    pub culled_bound: f64,
 }
 
 /// Looks at the pairs of leaves where the surfaces may touch until `is_enough` of the deviations
 /// and the crossing found so far.
 pub(super) fn search<'a>(
-    (a, b): (&'a Cloud, &'a Cloud),
+    (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
     settings: &TraversalSettings,
-    seed: u64,
     is_enough: impl Fn(f64, f64) -> bool,
     stats: &mut Stats,
 ) -> Result<Found<'a>, QueryError> {
     let mut found = Found { deviations: MOST_DEVIATIONS, ..Found::default() };
-    let cull_deviations = settings.cull_deviations.min(found.relevant_half_gap());
+    let cull_deviations = found.relevant_half_gap();
     let settings = TraversalSettings { crossings: true, cull_deviations, ..*settings };
     let motion = Motion::from(a_from_b);
-    let outcome = traverse(a.tree(), b.tree(), a_from_b, &settings, seed, |pair| {
+    let outcome = traverse(a.tree(), b.tree(), a_from_b, &settings, 0, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), &motion, &pair, stats);
-        if is_enough(found.deviations, found.crossing) {
+        if is_enough(found.deviations, found.crossings.total()) {
             return Flow::Stop;
         }
         Flow::Within(found.relevant_half_gap())
     })?;
     stats.nodes_visited += outcome.nodes_visited;
     found.is_complete = !outcome.stopped && outcome.culled_deviations >= found.relevant_half_gap();
-    found.culled_bound = outcome.culled_bound;
     Ok(found)
 }
 
@@ -91,7 +89,7 @@ impl<'a> Found<'a> {
 
     fn add(
         &mut self,
-        (a, b): (&'a Cloud, &'a Cloud),
+        (a, b): (BodyRef<'a>, BodyRef<'a>),
         a_from_b: &Motion,
         pair: &LeafPair,
         stats: &mut Stats,
@@ -101,30 +99,79 @@ impl<'a> Found<'a> {
         let leaf_b = self.leaves_b.entry(pair.b);
         let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(a_from_b), stats));
         let nearest = nearest_pieces(leaf_a, leaf_b);
-        let mut best = None;
         if pair.may_cross {
-            if may_reach(leaf_a, leaf_b) {
-                leaf_a.load_edges(a, pair.a, None);
-                self.crossing += add_crossings(leaf_a, leaf_b, &mut best);
-            }
-            if may_reach(leaf_b, leaf_a) {
-                leaf_b.load_edges(b, pair.b, Some(a_from_b));
-                self.crossing += add_crossings(leaf_b, leaf_a, &mut best);
-            }
+            cross((a, b), a_from_b, pair, (leaf_a, leaf_b), &mut self.crossings);
         }
-        let Some((squared, i, j)) = nearest else { return };
-        let (on_a, on_b) = (&leaf_a.surfels[i], &leaf_b.surfels[j]);
-        self.deviations = self.deviations.min(squared.sqrt());
-        if let Some(meeting) = Meeting::of(on_a, on_b) {
-            self.findings.push(Finding {
-                meeting,
-                between: [on_a.index, on_b.index],
-                spacing: on_a.spacing.max(on_b.spacing),
-                crossing: best,
-                toward_b: leaf_a.toward(leaf_b),
-            });
+        let Some(nearest) = nearest else { return };
+        self.deviations = self.deviations.min(nearest.squared.sqrt());
+        if let Some(meeting) = Meeting::of(&nearest.a, &nearest.b) {
+            let toward_b = leaf_b.middle() - leaf_a.middle();
+            let (between, spacing) = (nearest.between, nearest.spacing);
+            self.findings.push(Finding { meeting, between, spacing, toward_b });
         }
     }
+}
+
+fn cross<'a>(
+    (a, b): (BodyRef<'a>, BodyRef<'a>),
+    a_from_b: &Motion,
+    pair: &LeafPair,
+    leaves: (&mut Leaf<'a>, &mut Leaf<'a>),
+    crossings: &mut Crossings,
+) {
+    match leaves {
+        (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
+            if may_reach(on_a, on_b) {
+                load_edges(on_a, a, pair.a, None);
+                add_edges_through_discs(true, on_a, on_b, crossings);
+            }
+            if may_reach(on_b, on_a) {
+                load_edges(on_b, b, pair.b, Some(a_from_b));
+                add_edges_through_discs(false, on_b, on_a, crossings);
+            }
+        }
+        (Leaf::Noisy(noisy), Leaf::Exact(exact)) if may_reach_facets(noisy, exact) => {
+            load_edges(noisy, a, pair.a, None);
+            add_edges_through_facets(true, noisy, exact, crossings);
+            let around = |place: &Point3, radius| facets_around(b, Some(a_from_b), place, radius);
+            add_mesh_through_discs(true, noisy, exact, around, crossings);
+        }
+        (Leaf::Exact(exact), Leaf::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
+            load_edges(noisy, b, pair.b, Some(a_from_b));
+            add_edges_through_facets(false, noisy, exact, crossings);
+            let around = |place: &Point3, radius| facets_around(a, None, place, radius);
+            add_mesh_through_discs(false, noisy, exact, around, crossings);
+        }
+        _ => {}
+    }
+}
+
+fn load_edges<'a>(
+    leaf: &mut NoisyLeaf<'a>,
+    body: BodyRef<'a>,
+    id: NodeId,
+    motion: Option<&Motion>,
+) {
+    if let BodyRef::Cloud(cloud) = body {
+        leaf.load_edges(cloud, id, motion);
+    }
+}
+
+/// The triangles of a mesh within a distance of a place in the frame of A.
+fn facets_around(
+    body: BodyRef<'_>,
+    a_from_mesh: Option<&Motion>,
+    place: &Point3,
+    radius: f64,
+) -> Vec<Facet> {
+    let BodyRef::Mesh(mesh) = body else { return Vec::new() };
+    let local = a_from_mesh.map_or(*place, |motion| motion.point_back(place));
+    let mut facets = Vec::new();
+    mesh.visit_triangles_near(&local, radius, |triangle, corners| {
+        let facet = Facet::new(triangle, corners);
+        facets.push(a_from_mesh.map_or(facet, |motion| facet.moved(motion)));
+    });
+    facets
 }
 
 #[cfg(test)]
@@ -136,8 +183,10 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::Cloud;
     use crate::cloud::{Edge, Surfel, edges_of};
-    use crate::query::calibrated::crossing::crossing;
+    use crate::query::calibrated::crossing::through_disc;
+    use crate::query::calibrated::crossings::Witness;
     use crate::query::calibrated::meeting::squared_deviations;
     use crate::{CloudSettings, Mode};
 
@@ -174,14 +223,15 @@ mod tests {
                 least = squared_deviations(s, t, least).unwrap_or(least);
             }
         }
-        let through = |edges: &[Edge], discs: &[Surfel]| -> f64 {
-            edges
-                .iter()
-                .flat_map(|edge| discs.iter().filter_map(move |disc| crossing(edge, disc)))
-                .map(|crossing| crossing.clearness)
-                .sum()
-        };
-        (least.sqrt(), through(&edges_a, &surfels_b) + through(&edges_b, &surfels_a))
+        let mut crossings = Crossings::default();
+        for (is_a, edges, discs) in [(true, edges_a, &surfels_b), (false, edges_b, &surfels_a)] {
+            for edge in &edges {
+                for crossing in discs.iter().filter_map(|disc| through_disc(edge, disc)) {
+                    crossings.add(Witness::edge(is_a, edge), &crossing);
+                }
+            }
+        }
+        (least.sqrt(), crossings.total())
     }
 
     proptest! {
@@ -200,12 +250,12 @@ mod tests {
             let pose = Pose::from_translation_rpy(offset, [turn, 0.3, 0.0]);
             let settings = TraversalSettings::default();
             let found =
-                search((&a, &b), &pose, &settings, 0, |_, _| false, &mut Stats::default()).unwrap();
+                search((BodyRef::Cloud(&a), BodyRef::Cloud(&b)), &pose, &settings, |_, _| false, &mut Stats::default()).unwrap();
             prop_assert!(found.is_complete);
             let (deviations, clearness) = brute_force(&a, &b, &pose);
             prop_assert!((found.deviations - deviations).abs() < 1e-9);
             // The sums run in different orders.
-            prop_assert!((found.crossing - clearness).abs() <= 1e-9 * (1.0 + clearness));
+            prop_assert!((found.crossings.total() - clearness).abs() <= 1e-9 * (1.0 + clearness));
         }
     }
 }

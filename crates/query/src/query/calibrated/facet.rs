@@ -1,0 +1,217 @@
+//! A triangle of a mesh: an exact piece of surface.
+
+use cloudtouch_geom::{Covariance, Matrix3, Motion, Point3, Vector3};
+
+use crate::cloud::Surfel;
+
+/// No coordinate is known better than this, m: what keeps exact pieces at one place from dividing
+/// nothing by nothing.
+pub(super) const LEAST_STD: f64 = 1e-12;
+
+/// A triangle in the local frame of A.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Facet {
+    /// Index in the prepared mesh.
+    pub triangle: u32,
+    pub corners: [Point3; 3],
+    /// Unit normal by the turn of its corners; `None` for a degenerate one.
+    pub normal: Option<Vector3>,
+}
+
+/// Where an edge passes through a facet.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pierced {
+    pub place: Point3,
+    /// Heights of the two ends above the facet, m: of unequal sign.
+    pub heights: [f64; 2],
+}
+
+impl Facet {
+    pub(super) fn new(triangle: u32, corners: [Point3; 3]) -> Self {
+        let [p, q, r] = corners;
+        let normal = (q - p).cross(&(r - p)).try_normalize(0.0);
+        Self { triangle, corners, normal }
+    }
+
+    /// The same in another frame.
+    pub(super) fn moved(&self, motion: &Motion) -> Self {
+        Self {
+            corners: self.corners.map(|corner| motion.point(&corner)),
+            normal: self.normal.map(|normal| motion.vector(&normal)),
+            ..*self
+        }
+    }
+
+    /// The height of a place above its plane, m; zero where it has none.
+    pub(super) fn height(&self, place: &Point3) -> f64 {
+        self.normal.map_or(0.0, |normal| normal.dot(&(place - self.corners[0])))
+    }
+
+    /// Where the straight line between two ends passes through it; its border counts.
+    pub(super) fn pierced_by(&self, ends: &[Point3; 2]) -> Option<Pierced> {
+        let normal = self.normal?;
+        let heights = ends.map(|end| self.height(&end));
+        if heights[0] * heights[1] >= 0.0 {
+            return None;
+        }
+        let share = heights[0] / (heights[0] - heights[1]);
+        let place = ends[0] + (ends[1] - ends[0]) * share;
+        let is_inside = |k: usize| {
+            let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
+            (to - from).cross(&(place - from)).dot(&normal) >= 0.0
+        };
+        (0..3).all(is_inside).then_some(Pierced { place, heights })
+    }
+
+    /// Squared Mahalanobis distance from a surfel to the nearest place of the facet and the way
+    /// there, where that is below `limit`.
+    pub(super) fn squared_deviations(
+        &self,
+        surfel: &Surfel,
+        whitening: &Whitening,
+        limit: f64,
+    ) -> Option<(f64, Vector3)> {
+        let mean = surfel.point.mean;
+        let height = self.height(&mean);
+        // No direction has more variance than this: most pairs end here.
+        if height * height > limit * surfel.most_variance {
+            return None;
+        }
+        let corners = self.corners.map(|corner| whitening.apply(&(corner - mean)));
+        let nearest = nearest_to_origin(&corners);
+        let squared = nearest.norm_squared();
+        (squared < limit).then(|| (squared, whitening.undo(&nearest)))
+    }
+}
+
+/// Lengths in standard deviations of a piece of surface, in every direction.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Whitening {
+    /// Symmetric square roots of the covariance and of its inverse.
+    root: Matrix3,
+    inverse: Matrix3,
+}
+
+impl Whitening {
+    pub(super) fn of(covariance: &Covariance) -> Self {
+        let (variances, axes) = covariance.eigen();
+        let stds = variances.map(|v| v.max(0.0).sqrt().max(LEAST_STD));
+        let along = |stds: Vector3| axes * Matrix3::from_diagonal(&stds) * axes.transpose();
+        Self { root: along(stds), inverse: along(stds.map(f64::recip)) }
+    }
+
+    pub(super) fn apply(&self, offset: &Vector3) -> Vector3 {
+        self.inverse * offset
+    }
+
+    fn undo(&self, whitened: &Vector3) -> Vector3 {
+        self.root * whitened
+    }
+}
+
+/// The place of a triangle nearest to the origin, by the regions of its corners, edges and inside
+/// (Ericson, Real-Time Collision Detection, 5.1.5).
+pub(super) fn nearest_to_origin([a, b, c]: &[Vector3; 3]) -> Vector3 {
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (-ab.dot(a), -ac.dot(a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return *a;
+    }
+    let (d3, d4) = (-ab.dot(b), -ac.dot(b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return *b;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let (d5, d6) = (-ab.dot(c), -ac.dot(c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return *c;
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    let sum = va + vb + vc;
+    a + ab * (vb / sum) + ac * (vc / sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{UncertainPoint, unit};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn vector() -> impl Strategy<Value = Vector3> {
+        (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(x, y, z)| Vector3::new(x, y, z))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn no_place_of_a_triangle_is_nearer(
+            a in vector(), b in vector(), c in vector(), u in 0.0..1.0_f64, v in 0.0..1.0_f64,
+        ) {
+            let nearest = nearest_to_origin(&[a, b, c]).norm();
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let other = a + (b - a) * u + (c - a) * v;
+            prop_assert!(nearest <= other.norm() + 1e-12);
+        }
+
+        #[test]
+        fn the_way_to_a_facet_ends_on_it_and_is_as_long_as_said(
+            a in vector(), b in vector(), c in vector(), axis in vector(), mean in vector(),
+        ) {
+            prop_assume!((b - a).cross(&(c - a)).norm() > 1e-3 && axis.norm() > 1e-3);
+            let covariance = Covariance::from_axis(&unit(&axis).unwrap(), 0.1, 0.4);
+            let surfel = Surfel {
+                index: 0,
+                point: UncertainPoint { mean: Point3::from(mean), covariance },
+                spacing: 1.0,
+                most_variance: 0.16,
+                normal: None,
+            };
+            let facet = Facet::new(0, [a, b, c].map(Point3::from));
+            let whitening = Whitening::of(&covariance);
+            let (squared, way) = facet.squared_deviations(&surfel, &whitening, 1e6).unwrap();
+            prop_assert!(facet.height(&(surfel.point.mean + way)).abs() < 1e-9);
+            let back = whitening.apply(&way).norm_squared();
+            prop_assert!((back - squared).abs() < 1e-9 * (1.0 + squared));
+        }
+    }
+
+    #[test]
+    fn an_edge_passes_a_facet_inside_its_border_only() {
+        let facet = Facet::new(0, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0)));
+        let upright = |x: f64, y: f64| [Point3::new(x, y, -1.0), Point3::new(x, y, 2.0)];
+        let pierced = facet.pierced_by(&upright(0.2, 0.3)).unwrap();
+        assert_eq!((pierced.place, pierced.heights), (Point3::new(0.2, 0.3, 0.0), [-1.0, 2.0]));
+        assert!(facet.pierced_by(&upright(0.6, 0.6)).is_none());
+        assert!(facet.pierced_by(&[Point3::new(0.2, 0.3, 1.0), Point3::new(0.2, 0.3, 2.0)]).is_none());
+    }
+
+    #[test]
+    fn exact_pieces_at_one_place_are_no_deviations_apart() {
+        let whitening = Whitening::of(&Covariance::zero());
+        let surfel = Surfel {
+            index: 0,
+            point: UncertainPoint::exact(Point3::new(0.2, 0.3, 0.0)),
+            spacing: 1.0,
+            most_variance: 0.0,
+            normal: None,
+        };
+        let facet = |z: f64| {
+            Facet::new(0, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, z)))
+        };
+        let (squared, _) = facet(0.0).squared_deviations(&surfel, &whitening, 9.0).unwrap();
+        assert!(squared < 1e-6, "{squared}");
+        assert!(facet(1e-6).squared_deviations(&surfel, &whitening, 9.0).is_none());
+    }
+}

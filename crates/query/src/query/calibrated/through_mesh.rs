@@ -1,0 +1,190 @@
+//! How a mesh passes through the disc about a sample, whatever triangles it is made of.
+
+use cloudtouch_geom::{Point3, Vector3};
+
+use super::facet::Facet;
+
+/// What a mesh does near a disc: how far it reaches on either side within the disc's outline, and
+/// how near to the middle it passes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Through {
+    /// The greatest height above and depth below the disc, m; zero or more.
+    pub above: f64,
+    pub below: f64,
+    /// Distance from the middle of the disc to the nearest place where the mesh passes it, m;
+    /// infinite where it does not.
+    pub off: f64,
+    /// That place.
+    pub place: Point3,
+}
+
+/// A disc, seen along its normal.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Outline {
+    pub middle: Point3,
+    pub normal: Vector3,
+    pub radius: f64,
+}
+
+impl Outline {
+    /// Adds up what some facets do; no height counts beyond the radius.
+    pub(super) fn through<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Through {
+        let mut all = Through { above: 0.0, below: 0.0, off: f64::INFINITY, place: self.middle };
+        for facet in facets {
+            let corners = facet.corners.map(|corner| self.local(&corner));
+            if corners.iter().all(|c| c.z > self.radius) || corners.iter().all(|c| c.z < -self.radius) {
+                continue;
+            }
+            let heights = |all: &mut Through, z: f64| {
+                all.above = all.above.max(z.min(self.radius));
+                all.below = all.below.max((-z).min(self.radius));
+            };
+            for k in 0..3 {
+                for z in self.ends_within(&corners[k], &corners[(k + 1) % 3]).into_iter().flatten() {
+                    heights(&mut all, z);
+                }
+            }
+            for z in self.steepest(facet, &corners).into_iter().flatten() {
+                heights(&mut all, z);
+            }
+            if let Some(place) = passes_nearest(&corners) {
+                let off = place.norm();
+                if off < all.off && off <= self.radius {
+                    all.off = off;
+                    all.place = self.middle + self.lateral(&place);
+                }
+            }
+        }
+        all
+    }
+
+    /// Lateral place and height of a point: x and y along two directions across the normal.
+    fn local(&self, point: &Point3) -> Vector3 {
+        let offset = point - self.middle;
+        let [x, y] = self.across();
+        Vector3::new(x.dot(&offset), y.dot(&offset), self.normal.dot(&offset))
+    }
+
+    /// Any two directions will do: only lengths are told from them.
+    fn across(&self) -> [Vector3; 2] {
+        let first = self.normal.cross(&Vector3::ith(self.normal.iamin(), 1.0)).normalize();
+        [first, self.normal.cross(&first)]
+    }
+
+    fn lateral(&self, place: &Vector3) -> Vector3 {
+        let [x, y] = self.across();
+        x * place.x + y * place.y
+    }
+
+    /// Heights where an edge enters and leaves the cylinder over the disc.
+    fn ends_within(&self, from: &Vector3, to: &Vector3) -> [Option<f64>; 2] {
+        let (p, d) = (from.xy(), to.xy() - from.xy());
+        let (a, b, c) = (d.norm_squared(), p.dot(&d), p.norm_squared() - self.radius * self.radius);
+        let [start, end] = if a == 0.0 {
+            if c > 0.0 {
+                return [None; 2];
+            }
+            [0.0, 1.0]
+        } else {
+            let discriminant = b * b - a * c;
+            if discriminant < 0.0 {
+                return [None; 2];
+            }
+            let root = discriminant.sqrt();
+            [((-b - root) / a).max(0.0), ((-b + root) / a).min(1.0)]
+        };
+        if start > end {
+            return [None; 2];
+        }
+        [start, end].map(|t| Some(from.z + (to.z - from.z) * t))
+    }
+
+    /// Heights of a facet's plane on the rim of the disc, uphill and downhill, where these places
+    /// are on the facet.
+    fn steepest(&self, facet: &Facet, corners: &[Vector3; 3]) -> [Option<f64>; 2] {
+        let none = [None; 2];
+        let Some(normal) = facet.normal else { return none };
+        let [x, y] = self.across();
+        let n = Vector3::new(x.dot(&normal), y.dot(&normal), self.normal.dot(&normal));
+        let slope = n.xy().norm();
+        if n.z.abs() < 1e-9 || slope == 0.0 {
+            return none;
+        }
+        let uphill = -n.xy() * (n.z.signum() / slope);
+        [1.0, -1.0].map(|sign| {
+            let at = uphill * (sign * self.radius);
+            let z = corners[0].z - (n.xy().dot(&(at - corners[0].xy()))) / n.z;
+            let side = |k: usize| {
+                let (from, to) = (corners[k].xy(), corners[(k + 1) % 3].xy());
+                (to - from).perp(&(at - from))
+            };
+            let sides = [side(0), side(1), side(2)];
+            let inside = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
+            inside.then_some(z)
+        })
+    }
+}
+
+/// Where a facet passes height zero, nearest to the middle.
+fn passes_nearest(corners: &[Vector3; 3]) -> Option<Vector3> {
+    let mut ends = (0..3).filter_map(|k| {
+        let (from, to) = (corners[k], corners[(k + 1) % 3]);
+        let crosses = (from.z < 0.0) != (to.z < 0.0);
+        crosses.then(|| from + (to - from) * (from.z / (from.z - to.z)))
+    });
+    let (from, to) = (ends.next()?, ends.next()?);
+    let along = to - from;
+    let length = along.norm_squared();
+    let t = if length > 0.0 { (-from.dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    Some(from + along * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DISC: Outline =
+        Outline { middle: Point3::new(0.0, 0.0, 0.0), normal: Vector3::new(0.0, 0.0, 1.0), radius: 0.1 };
+
+    fn facet(corners: [[f64; 3]; 3]) -> Facet {
+        Facet::new(0, corners.map(Point3::from))
+    }
+
+    #[test]
+    fn an_upright_sheet_is_as_high_and_deep_as_the_disc_is_wide() {
+        let sheet = facet([[-9.0, 0.03, -9.0], [9.0, 0.03, -9.0], [0.0, 0.03, 9.0]]);
+        let through = DISC.through([sheet].iter());
+        assert_eq!((through.above, through.below), (0.1, 0.1));
+        assert!((through.off - 0.03).abs() < 1e-12 && through.place.z.abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_slanting_plane_rises_to_the_rim_whatever_its_triangles() {
+        let height = |x: f64| 0.5 * x + 0.01;
+        let corner = |x: f64, y: f64| [x, y, height(x)];
+        let whole = [facet([corner(-9.0, -9.0), corner(9.0, -9.0), corner(0.0, 9.0)])];
+        let grid = |i: i32| 0.013 * f64::from(i);
+        let mut fine = Vec::new();
+        for i in -20..20 {
+            for j in -20..20 {
+                let at = |di: i32, dj: i32| corner(grid(i + di), grid(j + dj));
+                fine.push(facet([at(0, 0), at(1, 0), at(0, 1)]));
+                fine.push(facet([at(1, 0), at(1, 1), at(0, 1)]));
+            }
+        }
+        let (whole, fine) = (DISC.through(whole.iter()), DISC.through(fine.iter()));
+        assert!((whole.above - 0.06).abs() < 1e-12 && (whole.below - 0.04).abs() < 1e-12);
+        assert!((fine.above - whole.above).abs() < 1e-9 && (fine.below - whole.below).abs() < 1e-9);
+        assert!((fine.off - 0.02).abs() < 1e-9 && (whole.off - 0.02).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_thin_rod_between_samples_passes_and_one_beside_the_disc_does_not() {
+        let rod = |x: f64| facet([[x, 0.0, -0.5], [x + 0.002, 0.0, 0.5], [x, 0.002, 0.5]]);
+        let through = DISC.through([rod(0.07)].iter());
+        assert!(through.above > 0.09 && through.below > 0.09 && (through.off - 0.07).abs() < 2e-3);
+        assert_eq!(DISC.through([rod(0.12)].iter()).off, f64::INFINITY);
+        let above = facet([[0.0, 0.0, 0.01], [0.2, 0.0, 0.01], [0.0, 0.2, 0.5]]);
+        assert_eq!(DISC.through([above].iter()).off, f64::INFINITY);
+    }
+}
