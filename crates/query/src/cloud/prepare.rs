@@ -57,7 +57,9 @@ impl Cloud {
                 stages: removed.join(", "),
             });
         };
-        check_points(&kept.points)?;
+        // By their rows in the file; the cells of a collision map have none.
+        let row = |i: usize| filtered.rows.get(i).copied().unwrap_or(i);
+        check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
         let sensor = settings.sensor.covariances(&kept)?;
         let normals = match (&kept.normals, settings.noise.combination) {
             (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),

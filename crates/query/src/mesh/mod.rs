@@ -1,0 +1,11 @@
+//! Triangle meshes prepared for queries: exact surfaces, with an inside where they are closed.
+
+mod parts;
+mod prepare;
+mod project;
+mod side;
+mod subdivide;
+mod winding;
+
+pub use prepare::Mesh;
+pub(crate) use subdivide::{SampleRegion, sample_region};
