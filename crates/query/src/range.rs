@@ -1,11 +1,11 @@
-//! Coordinates that can be reckoned with: beyond, squares and volumes leave the range of `f64`.
+//! Coordinates that can be reckoned with: beyond, doubles do not tell micrometres apart.
 
 use cloudtouch_geom::{Point3, Pose};
 
 use crate::error::PrepareError;
 
-/// Sixth powers of such coordinates, as squared volumes have, are still finite, m.
-pub(crate) const LARGEST_COORDINATE: f64 = 1e50;
+/// The last place of such a coordinate is 2 micrometres, m.
+pub(crate) const LARGEST_COORDINATE: f64 = 1e10;
 
 /// An entry of a pose that cannot be reckoned with.
 pub(crate) fn bad_entry(pose: &Pose) -> Option<f64> {

@@ -38,7 +38,7 @@ impl Mesh {
     /// Merges vertices, looks whether the mesh is watertight, and builds its tree.
     ///
     /// # Errors
-    /// When every triangle is degenerate, a coordinate is beyond 1e50 m, or the tree cannot be built.
+    /// When every triangle is degenerate, a coordinate is beyond 1e10 m, or the tree cannot be built.
     pub fn prepare(mesh: &TriangleMesh) -> Result<Self, PrepareError> {
         let start = Instant::now();
         let merged = mesh.merged();

@@ -69,6 +69,7 @@ impl Mesh {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write;
     use std::time::{Duration, Instant};
 
     use cloudtouch_geom::{TriangleMesh, Vector3, seed};
@@ -167,7 +168,9 @@ mod tests {
                 }
                 let triangles = mesh.triangle_count();
                 let [sides, both] = best;
-                eprintln!("{name}, {triangles} triangles, {reach} m: sides {sides:?} of {both:?}");
+                let line =
+                    format!("{name}, {triangles} triangles, {reach} m: {sides:?} of {both:?}");
+                writeln!(std::io::stderr(), "{line}").unwrap();
             }
         }
     }
