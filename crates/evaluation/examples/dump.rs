@@ -11,7 +11,7 @@ fn main() {
         plan.families.retain(|f| only.contains(f.name));
     }
     let methods = [Asked::always(Ours::new(OURS, Mode::Calibrated).unwrap().gathering_everything())];
-    println!("family,kind,pair,points,std,draw,pose,collides,distance,z,crossing,misclassified,total,count,top1,top3,top8,top20,local,probable,extent,spacing,inside,depth,micros");
+    println!("family,kind,pair,points,std,draw,pose,collides,distance,z,crossing,misclassified,total,local2,local3,local5,sq,sq3,sq5,prob3,strong,spacing,inside,depth,micros");
     for family in plan.families.clone() {
     plan.families = vec![family];
     let answers = ask(&plan, &methods).unwrap();

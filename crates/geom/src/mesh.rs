@@ -17,7 +17,7 @@ pub struct TriangleMesh {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// A vertex has a coordinate that is NaN or infinite.
+    /// A vertex of a triangle has a coordinate that is NaN or infinite.
     #[error(
         "vertex {vertex} has the coordinate {}: every coordinate must be finite",
         number(*value)
@@ -44,18 +44,15 @@ pub enum MeshError {
 }
 
 impl TriangleMesh {
-    /// Checks vertices and triangles and takes them.
+    /// Checks vertices and triangles and takes them. Vertices that no triangle uses may be anything,
+    /// NaN included: nothing looks at them.
     ///
     /// # Errors
-    /// When there are no triangles, a coordinate is not finite, or an index is out of range.
+    /// When there are no triangles, an index is out of range, or a coordinate of a vertex that a
+    /// triangle uses is not finite.
     pub fn try_new(vertices: Vec<Point3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
-        }
-        for (vertex, p) in vertices.iter().enumerate() {
-            if let Some(&value) = p.iter().find(|v| !v.is_finite()) {
-                return Err(MeshError::NotFinite { vertex, value });
-            }
         }
         for (triangle, indices) in triangles.iter().enumerate() {
             if let Some(&index) = indices.iter().find(|&&i| i as usize >= vertices.len()) {
@@ -63,12 +60,25 @@ impl TriangleMesh {
                 return Err(MeshError::MissingVertex { triangle, index, vertices });
             }
         }
-        Ok(Self { vertices, triangles })
+        let mesh = Self { vertices, triangles };
+        for (vertex, p) in mesh.used_vertices() {
+            if let Some(&value) = p.iter().find(|v| !v.is_finite()) {
+                return Err(MeshError::NotFinite { vertex, value });
+            }
+        }
+        Ok(mesh)
     }
 
-    /// The vertices, m.
+    /// The vertices, m; [`Self::used_vertices`] leaves out those that belong to no triangle.
     pub fn vertices(&self) -> &[Point3] {
         &self.vertices
+    }
+
+    /// The vertices that belong to a triangle, m, with their indices, in order.
+    pub fn used_vertices(&self) -> impl Iterator<Item = (usize, &Point3)> {
+        let mut used = vec![false; self.vertices.len()];
+        self.triangles.iter().flatten().for_each(|&i| used[i as usize] = true);
+        self.vertices.iter().enumerate().filter(move |&(i, _)| used[i])
     }
 
     /// Three vertex indices per triangle, anticlockwise seen from outside where that is known.
@@ -91,37 +101,39 @@ impl TriangleMesh {
         self
     }
 
-    /// Lowest and highest corner.
+    /// Lowest and highest corner around the triangles, m.
     pub fn bounding_box(&self) -> Option<(Point3, Point3)> {
-        bounding_box(&self.vertices)
+        bounding_box(self.used_vertices().map(|(_, p)| p))
     }
 
-    /// Merges vertices with identical coordinates and drops triangles that thereby collapse.
+    /// Merges vertices with identical coordinates, drops triangles that thereby collapse, and then
+    /// vertices that no triangle uses.
     ///
     /// STL files repeat every vertex in every triangle; only after merging can one tell whether
     /// the mesh is closed.
     #[must_use]
     pub fn merged(&self) -> Self {
         let mut index_of = HashMap::new();
-        let mut vertices = Vec::new();
-        let merged: Vec<u32> = self
-            .vertices
-            .iter()
-            .map(|p| {
-                // Adding zero makes −0 and 0 one key.
-                let key = [p.x + 0.0, p.y + 0.0, p.z + 0.0].map(f64::to_bits);
-                *index_of.entry(key).or_insert_with(|| {
-                    vertices.push(*p);
-                    (vertices.len() - 1) as u32
-                })
-            })
+        // Of every vertex, the first with the same coordinates; adding zero makes −0 and 0 one key.
+        let first: Vec<usize> = (self.vertices.iter().enumerate())
+            .map(|(i, p)| *index_of.entry(p.coords.map(|v| (v + 0.0).to_bits())).or_insert(i))
             .collect();
-        let triangles = self
+        let kept: Vec<[usize; 3]> = self
             .triangles
             .iter()
-            .map(|t| t.map(|i| merged[i as usize]))
+            .map(|t| t.map(|i| first[i as usize]))
             .filter(|[a, b, c]| a != b && b != c && c != a)
             .collect();
+        let mut place = vec![None; self.vertices.len()];
+        kept.iter().flatten().for_each(|&i| place[i] = Some(0));
+        let mut vertices = Vec::new();
+        for (place, p) in place.iter_mut().zip(&self.vertices) {
+            if place.is_some() {
+                *place = Some(vertices.len() as u32);
+                vertices.push(*p);
+            }
+        }
+        let triangles = kept.iter().map(|t| t.map(|i| place[i].unwrap_or_default())).collect();
         Self { vertices, triangles }
     }
 
@@ -131,6 +143,20 @@ impl TriangleMesh {
     /// four triangles share counts, though it may close two bodies that touch there. Call it on a
     /// [`merged`](Self::merged) mesh.
     pub fn open_edges(&self) -> usize {
+        self.edge_balance().values().filter(|&&(sum, count)| sum != 0 || count != 2).count()
+    }
+
+    /// How many edges are not run along equally often in both directions by the triangles there.
+    ///
+    /// Zero means that the surface has no border: it wraps around every place off it a whole number
+    /// of times. Bodies that share an edge have none, nor has a sheet with its own back face. Call
+    /// it on a [`merged`](Self::merged) mesh.
+    pub fn border_edges(&self) -> usize {
+        self.edge_balance().values().filter(|&&(sum, _)| sum != 0).count()
+    }
+
+    /// For every edge, how many more triangles run along it upwards than downwards, and how many do.
+    fn edge_balance(&self) -> HashMap<(u32, u32), (i32, u32)> {
         let mut balance: HashMap<(u32, u32), (i32, u32)> = HashMap::new();
         for &[a, b, c] in &self.triangles {
             for (from, to) in [(a, b), (b, c), (c, a)] {
@@ -139,7 +165,7 @@ impl TriangleMesh {
                 entry.1 += 1;
             }
         }
-        balance.values().filter(|&&(sum, count)| sum != 0 || count != 2).count()
+        balance
     }
 }
 
@@ -182,7 +208,7 @@ mod tests {
             triangles.extend([[0, 1, c], [1, 0, d], [c, 1, d], [0, c, d]]);
         }
         let touching = TriangleMesh::try_new(vertices, triangles).unwrap();
-        assert_eq!(touching.open_edges(), 1);
+        assert_eq!((touching.open_edges(), touching.border_edges()), (1, 0));
     }
 
     #[test]
@@ -198,5 +224,29 @@ mod tests {
             TriangleMesh::try_new(vec![p, bad], vec![[0, 0, 1]]),
             Err(MeshError::NotFinite { vertex: 1, .. })
         ));
+    }
+
+    /// They stretched the bounding box, and as placeholders refused the mesh.
+    #[test]
+    fn vertices_that_no_face_uses_count_for_nothing() {
+        let tetrahedron = tetrahedron_soup();
+        for astray in [9.0, f64::NAN, f64::NEG_INFINITY] {
+            let mut vertices = vec![Point3::new(0.0, astray, 0.0)];
+            vertices.extend(tetrahedron.vertices());
+            let shifted = tetrahedron.triangles().iter().map(|t| t.map(|i| i + 1)).collect();
+            let mesh = TriangleMesh::try_new(vertices, shifted).unwrap();
+            assert_eq!(mesh.bounding_box(), tetrahedron.bounding_box());
+            assert_eq!(mesh.merged(), tetrahedron.merged());
+        }
+    }
+
+    #[test]
+    fn a_collapsed_triangle_left_its_vertices_behind() {
+        let mut vertices = tetrahedron_soup().vertices().to_vec();
+        let mut triangles = tetrahedron_soup().triangles().to_vec();
+        triangles.push([0, vertices.len() as u32, vertices.len() as u32]);
+        vertices.push(Point3::new(9.0, 0.0, 0.0));
+        let mesh = TriangleMesh::try_new(vertices, triangles).unwrap();
+        assert_eq!(mesh.merged(), tetrahedron_soup().merged());
     }
 }

@@ -26,12 +26,33 @@ fn triangle(size: f64) -> Result<Mesh, PrepareError> {
 
 #[test]
 fn coordinates_beyond_reckoning_are_refused() {
-    for value in [1e51, -1e200, f64::MAX] {
-        let error = cloud(vec![Point3::origin(), Point3::new(0.0, value, 0.0)]).unwrap_err();
-        assert_eq!(error, PrepareError::CoordinateRange { index: 1, value });
+    for value in [1.01e10, 1e17, -1e29] {
+        // The row in the file, though the filter takes the first away.
+        let points = [f64::NAN, 0.0, value].map(|y| Point3::new(0.0, y, 0.0));
+        let error = cloud(points.to_vec()).unwrap_err();
+        assert_eq!(error, PrepareError::CoordinateRange { index: 2, value });
         assert!(error.to_string().len() < 150, "{error}");
+    }
+    for value in [1.01e10, -1e200, f64::MAX] {
         let error = triangle(value).unwrap_err();
         assert!(matches!(error, PrepareError::CoordinateRange { index: 0, .. }), "{error}");
+    }
+}
+
+/// One such row made a pair of clouds half likely to collide at any distance.
+#[test]
+fn the_largest_float_of_a_camera_was_a_point() {
+    for placeholder in [f64::from(f32::MAX), -f64::from(f32::MAX), 1e30, f64::MAX] {
+        let mut points: Vec<Point3> = (0..100)
+            .map(|i| Point3::new(0.01 * f64::from(i % 10), 0.001 * f64::from(i), 0.0))
+            .collect();
+        points.insert(7, Point3::new(0.1, 0.2, placeholder));
+        let a = cloud(points).unwrap();
+        assert_eq!((a.len(), a.filter_stages()[0].removed), (100, 1));
+        let query = Query::new(QuerySettings::default()).unwrap();
+        let pose = Pose::from_translation(Vector3::new(50.0, 0.0, 0.0));
+        let report = query.run(&a, &a, &pose).unwrap();
+        assert!(report.bounds[1] < 0.01, "{placeholder}: {report:?}");
     }
 }
 
@@ -39,13 +60,13 @@ fn coordinates_beyond_reckoning_are_refused() {
 fn poses_beyond_reckoning_are_refused() {
     let (a, b) = (cloud(vec![Point3::origin()]).unwrap(), triangle(1.0).unwrap());
     let query = Query::new(QuerySettings::default()).unwrap();
-    for value in [1e51, -f64::MAX, f64::INFINITY] {
+    for value in [1.01e10, -f64::MAX, f64::INFINITY] {
         let pose = Pose::from_translation(Vector3::new(0.0, value, 0.0));
         let error = query.run(&a, &b, &pose).unwrap_err();
         assert_eq!(error, QueryError::Pose { value });
-        assert!(error.to_string().contains("1e50"), "{error}");
+        assert!(error.to_string().contains("1e10"), "{error}");
     }
-    let far = query.run(&a, &b, &Pose::from_translation(Vector3::new(0.0, 1e50, 0.0))).unwrap();
+    let far = query.run(&a, &b, &Pose::from_translation(Vector3::new(0.0, 1e10, 0.0))).unwrap();
     assert_eq!(far.collision_probability, 0.0);
 }
 

@@ -39,7 +39,7 @@ impl Cloud {
     /// Filters a cloud, models its sensor, and builds its index and tree.
     ///
     /// # Errors
-    /// When nothing is left after filtering, a coordinate is beyond 1e50 m, a covariance is not one,
+    /// When nothing is left after filtering, a coordinate is beyond 1e10 m, a covariance is not one,
     /// or a setting is out of range.
     pub fn prepare(cloud: &PointCloud, settings: &CloudSettings) -> Result<Self, PrepareError> {
         let start = Instant::now();
@@ -57,7 +57,9 @@ impl Cloud {
                 stages: removed.join(", "),
             });
         };
-        check_points(&kept.points)?;
+        // By their rows in the file; the cells of a collision map have none.
+        let row = |i: usize| filtered.rows.get(i).copied().unwrap_or(i);
+        check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
         let sensor = settings.sensor.covariances(&kept)?;
         let normals = match (&kept.normals, settings.noise.combination) {
             (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),

@@ -21,14 +21,14 @@ pub enum PrepareError {
         /// What each stage removed.
         stages: String,
     },
-    /// A coordinate is so large that squares and volumes leave the range of `f64`.
+    /// A coordinate is so large that doubles do not tell micrometres apart there.
     #[error(
-        "point {index} has the coordinate {}, beyond 1e50 m: check the unit, or remove the \
+        "point {index} has the coordinate {}, beyond 1e10 m: check the unit, or remove the \
          point",
         number(*value)
     )]
     CoordinateRange {
-        /// Which point kept by the filter, or vertex of the merged mesh, from 0.
+        /// Which row of the cloud (cell, after a collision map) or vertex of the mesh, from 0.
         index: usize,
         /// What was found, m.
         value: f64,

@@ -84,8 +84,8 @@ pub enum SettingsError {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum QueryError {
-    /// The pose has an entry that is NaN, infinite, or a translation beyond 1e50 m.
-    #[error("the pose contains {}: every entry must be finite, and at most 1e50 m", number(*value))]
+    /// The pose has an entry that is NaN, infinite, or a translation beyond 1e10 m.
+    #[error("the pose contains {}: every entry must be finite, and at most 1e10 m", number(*value))]
     Pose {
         /// What was found.
         value: f64,

@@ -3,16 +3,19 @@
 
 mod collision_map;
 mod duplicates;
+mod missing;
 mod outliers;
 mod range;
 mod self_points;
 mod settings;
 mod veil;
 
-use cloudtouch_geom::{Point3, PointCloud};
+use cloudtouch_geom::PointCloud;
 use serde::Serialize;
 
 use crate::error::FilterError;
+
+use missing::is_missing;
 
 pub use self_points::SelfMesh;
 pub use settings::{FilterSettings, OutlierSettings, VeilSettings};
@@ -43,7 +46,7 @@ pub struct Filtered {
 
 /// Runs the stages that `settings` asks for, cheapest first.
 ///
-/// Rows with a NaN or infinite coordinate always go. A stage that has nothing to work with (no
+/// Rows with a coordinate that is NaN, infinite or beyond ±1e30 m always go: missing returns. A stage that has nothing to work with (no
 /// image layout and no neighbours, for instance) removes nothing. Every stage can only remove
 /// points, so each can hide a true obstacle; the counts tell how many points that concerns.
 ///
@@ -54,8 +57,7 @@ pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered,
     settings.validate()?;
     check_lengths(cloud)?;
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
-    let finite = |p: &Point3| p.iter().all(|v| v.is_finite());
-    run.stage("missing", |cloud, kept| kept.retain(|&i| finite(&cloud.points[i])));
+    run.stage("missing", |cloud, kept| kept.retain(|&i| !is_missing(&cloud.points[i])));
     if settings.min_range > 0.0 || settings.max_range.is_finite() {
         run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
     }

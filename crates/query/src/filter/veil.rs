@@ -10,6 +10,7 @@ use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Vector3};
 use cloudtouch_noise::Neighborhoods;
 
 use super::VeilSettings;
+use super::missing::is_missing;
 
 /// Neighbours that decide whether an unorganised neighbourhood is a line along the ray.
 const LINE_NEIGHBORS: usize = 10;
@@ -41,7 +42,9 @@ fn is_veil_in_image(
     [horizontal, vertical].into_iter().flatten().any(|(before, after)| {
         let (Some(before), Some(after)) = (before, after) else { return false };
         let ray = point - cloud.sensor_origin();
-        // NaN neighbours compare false, so a pixel beside a missing return is not veil.
+        if is_missing(before) || is_missing(after) {
+            return false;
+        }
         let forward = along_ray(&ray, point, after, settings.max_angle);
         let backward = along_ray(&ray, point, before, settings.max_angle);
         forward * backward < 0.0

@@ -8,9 +8,10 @@ use crate::error::SubdivisionError;
 /// Outside the core an edge may be this long for each metre it is away: the farther a sample, the
 /// less its exact place matters to a surface near the cloud leaf.
 const GRADING: f64 = 0.5;
-/// Deepest subdivision of one triangle, a billionth of its edges: only parts that come near the leaf
-/// are split again, so that depth is cheap. It ends what rounding keeps from becoming smaller.
-const MAX_DEPTH: usize = 60;
+/// Deepest subdivision of one triangle: from 1e10 m, the largest, to nanometres. Only parts that
+/// come near the leaf are split again, so that depth is cheap; a triangle of 1e9 m ended in parts of
+/// metres at a quarter of that depth, with no corner near the cloud on it.
+const MAX_DEPTH: usize = 128;
 
 /// Where and how densely a mesh is sampled, in the mesh's local frame.
 #[derive(Debug, Clone, Copy)]
@@ -76,13 +77,15 @@ impl Samples<'_> {
         let corner = |k: usize| corners[k % 3];
         let lengths = [0, 1, 2].map(|k| (corner(k + 1) - corner(k)).norm());
         let long = (0..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
-        if lengths[long] <= limit || depth == 0 {
+        let (from, to, other) = (corner(long), corner(long + 1), corner(long + 2));
+        let middle = nalgebra::center(&from, &to);
+        // Rounding keeps an edge from becoming smaller than the last place of its coordinates.
+        let is_split = middle != from && middle != to;
+        if lengths[long] <= limit || !is_split || depth == 0 {
             let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
             points.extend([a, b, c, centroid].into_iter().filter(inside));
             return;
         }
-        let (from, to, other) = (corner(long), corner(long + 1), corner(long + 2));
-        let middle = nalgebra::center(&from, &to);
         self.split([from, middle, other], depth - 1);
         self.split([middle, to, other], depth - 1);
     }
@@ -132,6 +135,19 @@ mod tests {
         let points = sample_region([corners], &region, 20_000).unwrap();
         let nearest = points.iter().map(|p| (p - center).norm()).fold(f64::INFINITY, f64::min);
         assert!(nearest < 0.02 && points.len() > 50, "{} points, {nearest} m off", points.len());
+    }
+
+    #[test]
+    fn a_triangle_of_the_largest_size_was_sampled_no_finer_than_metres() {
+        let corners = [[-1e10, -1e10], [1e10, -1e10], [1e10, 1e10]];
+        let corners = corners.map(|[x, y]| Point3::new(x, y, 0.0));
+        for (x, y) in [(37.3, -11.9), (1e3, -9.9e9)] {
+            let center = Point3::new(x, y, 0.001);
+            let region = SampleRegion { center, core: 0.1, radius: 0.15, spacing: 0.01 };
+            let points = sample_region([corners], &region, 20_000).unwrap();
+            let nearest = points.iter().map(|p| (p - center).norm()).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 0.01 && points.len() > 300, "{}, {nearest} m off", points.len());
+        }
     }
 
     #[test]

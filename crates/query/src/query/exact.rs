@@ -42,11 +42,11 @@ pub(crate) fn exact_pair(a: &Mesh, b: &Mesh, a_from_b: &Pose) -> Result<ExactPai
 /// Whether `inner` lies inside `outer`, given that their surfaces do not cross: then one vertex
 /// per connected part would do, and testing all of them costs little beside the distance.
 fn contains_a_vertex(outer: &Mesh, inner: &Mesh, outer_from_inner: &Pose) -> bool {
-    outer.is_watertight()
-        && inner.surface().vertices().iter().any(|v| {
-            let local = outer_from_inner.transform_point(&Point3::new(v.x, v.y, v.z));
-            outer.project(&local).signed_distance < 0.0
-        })
+    inner
+        .surface()
+        .vertices()
+        .iter()
+        .any(|v| outer.encloses(&outer_from_inner.transform_point(&Point3::new(v.x, v.y, v.z))))
 }
 
 fn parry_pose(pose: &Pose) -> math::Pose {

@@ -186,34 +186,33 @@ fn ask_classifier(
 }
 
 fn features(found: &Found<'_>, inside: [f64; 2]) -> [f64; 12] {
-    let mut all: Vec<(f64, crossing::Crossing)> =
-        found.crossings.iter().map(|(c, s)| (s, *c)).collect();
+    let mut all: Vec<(f64, f64, crossing::Crossing)> =
+        found.crossings.iter().map(|(c, s)| (s, s * c.clear, *c)).collect();
     all.sort_by(|p, q| q.0.total_cmp(&p.0));
-    let top = |n: usize| all.iter().take(n).map(|c| c.0).sum::<f64>();
-    let local = |radius: f64| {
-        all.iter().take(400)
-            .map(|(_, at)| {
-                all.iter().take(400)
-                    .filter(|(_, c)| (c.place - at.place).norm() <= radius * at.spacing)
-                    .map(|(s, _)| *s)
+    let most = &all[..all.len().min(300)];
+    let local = |radius: f64, of: &dyn Fn(&(f64, f64, crossing::Crossing)) -> f64| {
+        most.iter()
+            .map(|(_, _, at)| {
+                most.iter()
+                    .filter(|(_, _, c)| (c.place - at.place).norm() <= radius * at.spacing)
+                    .map(of)
                     .sum::<f64>()
             })
             .fold(0.0, f64::max)
     };
-    let probable: f64 = all.iter().map(|(_, c)| c.probability).sum();
-    let extent = all.iter().take(400).flat_map(|(_, p)| all.iter().take(400).map(move |(_, q)| (p.place - q.place).norm() / p.spacing)).fold(0.0, f64::max);
-    let spacing = all.first().map_or(0.0, |c| c.1.spacing);
+    let strong = all.iter().filter(|c| c.0 > 2.5).count();
+    let least = found.findings.iter().min_by(|f, g| f.meeting.deviations.total_cmp(&g.meeting.deviations));
     [
         found.crossings.total(),
-        all.len() as f64,
-        top(1),
-        top(3),
-        top(8),
-        top(20),
-        local(3.0),
-        probable,
-        extent,
-        spacing,
+        local(2.0, &|c| c.0),
+        local(3.0, &|c| c.0),
+        local(5.0, &|c| c.0),
+        all.iter().map(|c| c.1).sum(),
+        local(3.0, &|c| c.1),
+        local(5.0, &|c| c.1),
+        local(3.0, &|c| c.2.probability),
+        strong as f64,
+        least.map_or(0.0, |f| f.spacing),
         inside[0],
         inside[1],
     ]

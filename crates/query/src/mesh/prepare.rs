@@ -1,0 +1,161 @@
+//! From the triangles of a file to a mesh that can be asked.
+
+use std::time::{Duration, Instant};
+
+use cloudtouch_bvh::{Primitive, Tree, TreeSettings};
+use cloudtouch_geom::{MeshError, Point3, TriangleMesh, Vector3};
+use parry3d_f64::math::Vector;
+use parry3d_f64::shape::TriMesh;
+
+use crate::error::{PrepareError, SubdivisionError};
+use crate::range::check_points;
+
+use super::parts::{Part, parts};
+use super::subdivide::{SampleRegion, sample_region};
+use super::winding::Winding;
+
+/// Triangles in a leaf of a mesh's tree: few, since each may be subdivided many times.
+const MAX_LEAF_TRIANGLES: usize = 8;
+
+/// A triangle mesh, ready to be queried in any pose.
+///
+/// Its surface is exact: its points have no covariance and count as on the wrong side with
+/// probability 0, ½ or 1. Where the mesh is watertight, points deep inside are found too; an open
+/// mesh is a surface without an inside. Vertices that no triangle uses count for nothing.
+#[derive(Debug)]
+pub struct Mesh {
+    /// What was subtracted from file coordinates, m: far offsets keep their millimetres.
+    origin: Vector3,
+    surface: TriMesh,
+    tree: Tree,
+    pub(super) winding: Winding,
+    watertight: bool,
+    closed: bool,
+    prepare_time: Duration,
+}
+
+impl Mesh {
+    /// Merges vertices, looks whether the mesh is watertight, and builds its tree.
+    ///
+    /// # Errors
+    /// When every triangle is degenerate, a coordinate is beyond 1e10 m, or the tree cannot be built.
+    pub fn prepare(mesh: &TriangleMesh) -> Result<Self, PrepareError> {
+        let start = Instant::now();
+        let merged = mesh.merged();
+        let Some((low, high)) = merged.bounding_box() else {
+            return Err(PrepareError::Mesh(MeshError::Empty));
+        };
+        // Before merging, for an error to name the vertex as the file does.
+        check_points(mesh.used_vertices())?;
+        let origin = nalgebra::center(&low, &high).coords;
+        let vertices = merged.vertices().iter().map(|p| p - origin).collect();
+        let mut merged = TriangleMesh::try_new(vertices, merged.triangles().to_vec())?;
+        let closed = merged.border_edges() == 0;
+        let mut watertight = false;
+        if merged.open_edges() == 0 {
+            let parts = parts(&merged);
+            watertight = parts.iter().all(Part::has_inside);
+            if parts.iter().map(|part| part.volume).sum::<f64>() < 0.0 {
+                // Turned inside out as a whole: a common export slip that leaves no doubt.
+                let turned = merged.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+                merged = TriangleMesh::try_new(merged.vertices().to_vec(), turned)?;
+            }
+        }
+        let surface = TriMesh::new(
+            merged.vertices().iter().map(vector).collect(),
+            merged.triangles().to_vec(),
+        )
+        .map_err(|error| PrepareError::Surface { reason: error.to_string() })?;
+        let triangles: Vec<_> = (0..merged.triangles().len()).map(|t| merged.corners(t)).collect();
+        let primitives = triangles.iter().copied().map(Primitive::Triangle).collect();
+        let settings = TreeSettings {
+            max_leaf_points: MAX_LEAF_TRIANGLES,
+            min_leaf_points: 1,
+            ..TreeSettings::default()
+        };
+        let tree = Tree::build(primitives, &settings)?;
+        let winding = Winding::new(triangles);
+        let prepare_time = start.elapsed();
+        Ok(Self { origin, surface, tree, winding, watertight, closed, prepare_time })
+    }
+
+    /// Whether every edge joins two triangles, consistently turned, and every part encloses a
+    /// volume, as a sheet with its own back face does not.
+    pub fn is_watertight(&self) -> bool {
+        self.watertight
+    }
+
+    /// How many triangles there are after merging.
+    pub fn triangle_count(&self) -> usize {
+        self.surface.indices().len()
+    }
+
+    /// How long preparation took.
+    pub fn prepare_time(&self) -> Duration {
+        self.prepare_time
+    }
+
+    /// Diagonal of the bounding box, m.
+    pub fn size(&self) -> f64 {
+        self.surface.local_aabb().extents().length()
+    }
+
+    /// Points on the surface in the file frame, no farther apart than `spacing` metres along any
+    /// triangle: for pictures.
+    ///
+    /// # Errors
+    /// When that takes more than `max_parts` triangles before and after splitting, each of up to
+    /// four points; [`MAX_MESH_PARTS`](crate::MAX_MESH_PARTS) suits most.
+    pub fn surface_points(
+        &self,
+        spacing: f64,
+        max_parts: usize,
+    ) -> Result<Vec<Point3>, SubdivisionError> {
+        let everywhere = SampleRegion {
+            center: Point3::origin(),
+            core: f64::INFINITY,
+            radius: f64::INFINITY,
+            spacing,
+        };
+        let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
+        let mut points = sample_region(triangles, &everywhere, max_parts)?;
+        points.iter_mut().for_each(|p| *p += self.origin);
+        Ok(points)
+    }
+
+    /// Unit normal of a triangle, outward for a watertight mesh; `None` for a degenerate one.
+    pub(crate) fn normal(&self, triangle: usize) -> Option<Vector3> {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(&(c - a)).try_normalize(0.0)
+    }
+
+    /// Whether the surface has no border, so that every place off it is on one side.
+    pub(super) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    pub(crate) fn origin(&self) -> Vector3 {
+        self.origin
+    }
+
+    pub(crate) fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    pub(crate) fn surface(&self) -> &TriMesh {
+        &self.surface
+    }
+
+    /// Corners of a triangle in the local frame.
+    pub(crate) fn corners(&self, triangle: usize) -> [Point3; 3] {
+        let vertices = self.surface.vertices();
+        self.surface.indices()[triangle].map(|i| {
+            let v = vertices[i as usize];
+            Point3::new(v.x, v.y, v.z)
+        })
+    }
+}
+
+pub(super) fn vector(point: &Point3) -> Vector {
+    Vector::new(point.x, point.y, point.z)
+}

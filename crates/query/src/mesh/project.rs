@@ -1,0 +1,53 @@
+//! The nearest place on a mesh, and how far it is.
+
+use cloudtouch_geom::Point3;
+use parry3d_f64::query::PointQueryWithLocation;
+
+use super::prepare::{Mesh, vector};
+use super::side::Side;
+
+/// Where a point projects to on the surface of a mesh, in the mesh's local frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Projection {
+    /// The nearest point of the surface.
+    pub point: Point3,
+    /// The triangle it lies on; `None` for a point that is not finite.
+    pub triangle: Option<usize>,
+    /// Distance to it, m; negative inside.
+    pub signed_distance: f64,
+}
+
+impl Mesh {
+    /// Distance from a point in the mesh's file frame to the surface, m; negative inside a mesh
+    /// without a border, never negative for an open one. NaN for a point that is not finite.
+    ///
+    /// Where closed parts overlap is inside, a cavity and both sides of a sheet with its own back
+    /// face are outside: see decision 4.
+    pub fn signed_distance(&self, point: &Point3) -> f64 {
+        self.project(&(point - self.origin())).signed_distance
+    }
+
+    /// Whether a point (file frame) is inside or within `padding` metres of the surface.
+    pub(crate) fn is_within(&self, point: &Point3, padding: f64) -> bool {
+        self.signed_distance(point) <= padding
+    }
+
+    /// The nearest surface point to a point in the local frame.
+    pub(crate) fn project(&self, point: &Point3) -> Projection {
+        if !point.iter().all(|v| v.is_finite()) {
+            return Projection { point: *point, triangle: None, signed_distance: f64::NAN };
+        }
+        let (projection, (triangle, _)) =
+            self.surface().project_local_point_and_get_location(vector(point), false);
+        let nearest = Point3::new(projection.point.x, projection.point.y, projection.point.z);
+        let distance = (point - nearest).norm();
+        let signed_distance = if self.encloses(point) { -distance } else { distance };
+        Projection { point: nearest, triangle: Some(triangle as usize), signed_distance }
+    }
+
+    /// Whether a place in the local frame is inside. A bucket surrounds more than three quarters of
+    /// what it holds, and yet that is not inside it: an open mesh encloses nothing.
+    pub(crate) fn encloses(&self, local: &Point3) -> bool {
+        self.is_closed() && self.side(local) == Side::Inside
+    }
+}

@@ -1,0 +1,177 @@
+//! On which side of a mesh a place is.
+
+use cloudtouch_geom::Point3;
+
+use super::prepare::Mesh;
+use super::winding::FarRadii;
+
+/// Wrapped around at least so often a place is inside, and at most so often outside: halfway between
+/// what a closed mesh has there and on its surface.
+const INSIDE: f64 = 0.75;
+const OUTSIDE: f64 = 0.25;
+/// Sums this near to either limit are not relied on: twice their errors.
+const COARSE_DOUBT: f64 = 0.1;
+const FINE_DOUBT: f64 = 0.02;
+
+/// Where a place lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    Inside,
+    Outside,
+    /// On the surface, in the opening of an open mesh, or at no place at all (NaN).
+    Unknown,
+}
+
+impl Side {
+    fn of(winding_number: f64) -> Self {
+        match winding_number.abs() {
+            w if w >= INSIDE => Self::Inside,
+            w if w <= OUTSIDE => Self::Outside,
+            _ => Self::Unknown,
+        }
+    }
+}
+
+impl Mesh {
+    /// How often the surface wraps around a place in the local frame, to within 0.01 off the
+    /// surface: a whole number for a closed mesh, −1 in a part that is turned inside out.
+    pub(crate) fn winding_number(&self, local: &Point3) -> f64 {
+        self.winding.fast(local, FarRadii::FINE)
+    }
+
+    /// On which side of the mesh a place in the local frame is.
+    ///
+    /// Overlapping parts are inside, cavities and both sides of a sheet with a back face outside. An
+    /// open mesh has sides as far as it surrounds a place: far from its opening.
+    pub(crate) fn side(&self, local: &Point3) -> Side {
+        if self.is_closed() && self.is_off_box(local) {
+            return Side::Outside;
+        }
+        let is_near_limit = |number: f64, doubt: f64| {
+            [INSIDE, OUTSIDE].iter().any(|limit| (number.abs() - limit).abs() < doubt)
+        };
+        let mut number = self.winding.fast(local, FarRadii::COARSE);
+        if is_near_limit(number, COARSE_DOUBT) {
+            number = self.winding_number(local);
+        }
+        if is_near_limit(number, FINE_DOUBT) {
+            number = self.winding.plain(local);
+        }
+        Side::of(number)
+    }
+
+    fn is_off_box(&self, local: &Point3) -> bool {
+        let aabb = self.surface().local_aabb();
+        let [low, high] = [aabb.mins, aabb.maxs].map(|v| Point3::new(v.x, v.y, v.z));
+        (0..3).any(|i| local[i] < low[i] || local[i] > high[i])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+    use std::time::{Duration, Instant};
+
+    use cloudtouch_geom::{TriangleMesh, Vector3, seed};
+    use cloudtouch_testkit::scene;
+
+    use super::*;
+
+    fn shell(size: f64, center: [f64; 3], inward: bool) -> TriangleMesh {
+        let [x, y, z] = center;
+        let pose = cloudtouch_geom::Pose::from_translation(Vector3::new(x, y, z));
+        let shell = scene::moved(&scene::cuboid([size; 3]), &pose);
+        if !inward {
+            return shell;
+        }
+        let turned = shell.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+        TriangleMesh::try_new(shell.vertices().to_vec(), turned).unwrap()
+    }
+
+    /// Winding number and side at a place in the file frame.
+    fn at(mesh: &TriangleMesh, place: [f64; 3]) -> (f64, Side) {
+        let mesh = Mesh::prepare(mesh).unwrap();
+        let local = Point3::from(place) - mesh.origin();
+        (mesh.winding_number(&local), mesh.side(&local))
+    }
+
+    fn assert_at(mesh: &TriangleMesh, place: [f64; 3], expected: (f64, Side)) {
+        let (number, side) = at(mesh, place);
+        assert!((number - expected.0).abs() < 1e-2, "{number} at {place:?}");
+        assert_eq!(side, expected.1, "{number} at {place:?}");
+    }
+
+    #[test]
+    fn shells_add_up_and_cavities_take_off() {
+        let overlapping =
+            scene::assemble([shell(1.0, [0.0; 3], false), shell(1.0, [0.4; 3], false)]);
+        assert_at(&overlapping, [0.2; 3], (2.0, Side::Inside));
+        assert_at(&overlapping, [-0.2; 3], (1.0, Side::Inside));
+        assert_at(&overlapping, [-0.3, 0.7, 0.0], (0.0, Side::Outside));
+        let hollow = scene::assemble([shell(1.0, [0.0; 3], false), shell(0.5, [0.0; 3], true)]);
+        assert_at(&hollow, [0.0; 3], (0.0, Side::Outside));
+        assert_at(&hollow, [0.4; 3], (1.0, Side::Inside));
+        let turned = scene::assemble([shell(1.0, [0.0; 3], false), shell(0.5, [2.0; 3], true)]);
+        assert_at(&turned, [2.0; 3], (-1.0, Side::Inside));
+    }
+
+    #[test]
+    fn both_sides_of_a_sheet_with_a_back_face_are_outside() {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let vertices = corners.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
+        let faces = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+        let sheet = TriangleMesh::try_new(vertices, faces).unwrap();
+        for z in [-1.0, -1e-6, 1e-6, 1.0] {
+            assert_at(&sheet, [0.1, 0.2, z], (0.0, Side::Outside));
+        }
+    }
+
+    /// A box of ten triangles: one sixth of what surrounds its middle is open.
+    #[test]
+    fn a_place_in_the_opening_of_an_open_mesh_is_on_no_side() {
+        let whole = scene::cuboid([1.0; 3]);
+        let open =
+            TriangleMesh::try_new(whole.vertices().to_vec(), whole.triangles()[..10].to_vec())
+                .unwrap();
+        let gone = TriangleMesh::try_new(whole.vertices().to_vec(), whole.triangles()[10..].into());
+        let outward = gone.unwrap().corners(0).map(|p| p.coords).iter().sum::<Vector3>();
+        let toward: Vector3 = outward.map(|v| if v.abs() > 1.4 { v.signum() } else { 0.0 });
+        let place = |share: f64| <[f64; 3]>::from(0.5 * share * toward);
+        assert_at(&open, place(0.0), (5.0 / 6.0, Side::Inside));
+        assert_eq!(at(&open, place(0.9)).1, Side::Unknown);
+        assert_eq!(at(&open, place(1.0)).1, Side::Unknown);
+        assert_eq!(at(&open, place(3.0)).1, Side::Outside);
+        assert_eq!(at(&open, [f64::NAN; 3]).1, Side::Unknown);
+    }
+
+    /// Run it for the figures:
+    /// `cargo test -p cloudtouch --lib ten_thousand_sides -- --ignored --nocapture`.
+    #[test]
+    #[ignore = "it only measures"]
+    fn how_long_ten_thousand_sides_take_beside_ten_thousand_distances() {
+        let shapes = [("torus", scene::torus(0.3, 0.1, 71)), ("ball", scene::sphere(0.4, 5))];
+        for (name, shape) in shapes {
+            let mesh = Mesh::prepare(&shape).unwrap();
+            for reach in [0.4, 1.0] {
+                let draw = |i, axis| reach * (2.0 * seed::unit(seed::derive(1, i, axis)) - 1.0);
+                let points: Vec<Point3> =
+                    (0..10_000).map(|i| Point3::new(draw(i, 0), draw(i, 1), draw(i, 2))).collect();
+                let mut best = [Duration::MAX; 2];
+                for _ in 0..9 {
+                    let start = Instant::now();
+                    let sides = points.iter().filter(|p| mesh.side(p) == Side::Inside).count();
+                    let middle = Instant::now();
+                    let signed = points.iter().filter(|p| mesh.project(p).signed_distance < 0.0);
+                    assert_eq!(signed.count(), sides);
+                    best[0] = best[0].min(middle - start);
+                    best[1] = best[1].min(middle.elapsed());
+                }
+                let triangles = mesh.triangle_count();
+                let [sides, both] = best;
+                let line =
+                    format!("{name}, {triangles} triangles, {reach} m: {sides:?} of {both:?}");
+                writeln!(std::io::stderr(), "{line}").unwrap();
+            }
+        }
+    }
+}
