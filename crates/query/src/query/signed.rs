@@ -4,44 +4,15 @@
 //! It also finds points deep inside, which leaf pairs that only see surfaces would miss.
 
 use cloudtouch_bvh::{NodeId, Visit};
-use cloudtouch_geom::{Point3, Pose, Vector3, normal};
+use cloudtouch_geom::{Pose, Vector3, normal};
 
+use crate::classifier::Clock;
 use crate::cloud::Cloud;
 use crate::mesh::Mesh;
-
-use super::clock::Clock;
+use crate::record::SignedPoint;
 
 /// Nodes farther outside than this many standard deviations are not looked into.
 const CERTAIN_DEVIATIONS: f64 = 4.75;
-
-/// Which points are wanted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    /// Those expected inside the mesh: the others are left to the leaf pairs.
-    Inside,
-    /// All that may be inside.
-    Near,
-}
-
-/// A point of the cloud at its signed distance from the mesh.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SignedPoint {
-    /// Index in the prepared cloud.
-    pub index: u32,
-    /// Its expected position, in the cloud's local frame.
-    pub position: Point3,
-    /// Probability that the true point is inside.
-    pub probability: f64,
-    /// The nearest point of the mesh, in the cloud's local frame.
-    pub surface_point: Point3,
-    /// Unit normal of the mesh there, pointing out of the mesh.
-    pub outward: Vector3,
-    /// Signed distance, m, negative inside, and its standard deviation.
-    pub distance: f64,
-    pub std: f64,
-    /// Distance between samples there, m.
-    pub spacing: f64,
-}
 
 /// What a pass over the cloud's tree found.
 #[derive(Debug, Default)]
@@ -64,7 +35,6 @@ pub(crate) fn signed_points(
     cloud: &Cloud,
     mesh: &Mesh,
     mesh_from_cloud: &Pose,
-    wanted: Wanted,
     (stop_above, clock): (f64, &Clock),
 ) -> SignedEvidence {
     let mut evidence = SignedEvidence::default();
@@ -86,7 +56,7 @@ pub(crate) fn signed_points(
         }
         if node.is_leaf() {
             let poses = (mesh_from_cloud, &cloud_from_mesh);
-            look_into_leaf(cloud, node.id(), mesh, poses, wanted, &mut evidence);
+            look_into_leaf(cloud, node.id(), mesh, poses, &mut evidence);
         }
         Visit::Descend
     });
@@ -98,7 +68,6 @@ fn look_into_leaf(
     leaf: NodeId,
     mesh: &Mesh,
     (mesh_from_cloud, cloud_from_mesh): (&Pose, &Pose),
-    wanted: Wanted,
     evidence: &mut SignedEvidence,
 ) {
     let (points, computed) = cloud.leaf(leaf);
@@ -109,9 +78,6 @@ fn look_into_leaf(
         let in_mesh = mesh_from_cloud.transform_point(&position);
         let projection = mesh.project(&in_mesh);
         let distance = projection.signed_distance;
-        if wanted == Wanted::Inside && distance >= 0.0 {
-            continue;
-        }
         // On the surface itself no direction is outward; any one gives the same ½.
         let outward_in_mesh = ((in_mesh - projection.point) * distance.signum()).try_normalize(0.0);
         let outward = cloud_from_mesh.transform_vector(&outward_in_mesh.unwrap_or_else(Vector3::z));

@@ -1,4 +1,4 @@
-//! Two clouds in the calibrated mode: geometry first, the classifier where geometry leaves doubt,
+//! Two clouds: geometry first, the classifier where geometry leaves doubt,
 //! and a probability fitted to scenes whose truth is known.
 //!
 //! The search gathers how far apart the surfaces are in standard deviations and how clearly they
@@ -15,18 +15,15 @@ mod search;
 
 use cloudtouch_geom::Pose;
 
-use crate::body::BodyRef;
+use crate::classifier::{PairAnswer, by_kernel};
 use crate::cloud::Cloud;
 use crate::error::QueryError;
 use crate::recalibration::{ContactEvidence, MOST_CERTAIN, MOST_DEVIATIONS, Recalibration};
+use crate::record::{Estimate, Evidence, add_pair};
+use crate::shape::Shape;
 
-use super::estimate::Estimate;
-use super::evidence::Evidence;
-use super::pair::PairAnswer;
-use super::record::add_pair;
 use super::settings::QuerySettings;
 use super::task::Task;
-use super::train::by_kernel;
 
 use patches::patches;
 use places::{add_finding, add_leaves};
@@ -47,7 +44,7 @@ pub(super) fn estimate(
         probability > settings.stop_above || is_final(settings, probability) || task.clock.is_over()
     };
     let stats = &mut evidence.stats;
-    let found = search((a, b), a_from_b, &task.traversal, settings.seed, is_enough, stats)?;
+    let found = search((a, b), a_from_b, &task.traversal, is_enough, stats)?;
     let of_geometry = ContactEvidence {
         deviations: found.deviations,
         crossing: found.crossing.ln_1p(),
@@ -159,7 +156,7 @@ fn ask_classifier(
             all = all.map(|known| known.or_more(left)).or(Some(Misclassified::unknown(count)));
             continue;
         }
-        let answer = by_kernel(&points, settings, &task.clock, &mut evidence.stats);
+        let answer = by_kernel(&points, &task.classifier, &task.clock, &mut evidence.stats);
         let of_patch = match &answer {
             PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(b).sum()),
             PairAnswer::Undecided => Misclassified::unknown(count),
@@ -167,7 +164,8 @@ fn ask_classifier(
         };
         let misclassified = all.unwrap_or_default().or_more(of_patch);
         all = Some(misclassified);
-        add_pair((BodyRef::Cloud(a), BodyRef::Cloud(b), a_from_b), &points, &answer, evidence);
+        let shapes = (Shape::Cloud(a.prepared()), Shape::Cloud(b.prepared()), a_from_b);
+        add_pair(shapes, &points, &answer, evidence);
         let so_far =
             settings.recalibration.probability_by_all(deviations, crossing, misclassified.value);
         if so_far > settings.doubt[1] {

@@ -3,8 +3,8 @@
 
 use cloudtouch_geom::{Motion, Point3, Pose};
 
+use crate::classifier::{PairPoint, PairPoints};
 use crate::cloud::{Cloud, Surfel};
-use crate::query::pair::{PairPoint, PairPoints};
 
 use super::search::{Finding, Found};
 
