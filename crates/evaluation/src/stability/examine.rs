@@ -75,12 +75,12 @@ fn unsound(report: &Report) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use crate::either::{EitherCloud, EitherQuery};
     use cloudtouch::{Mesh, Mode, noise::SensorModel};
-    use cloudtouch_geom::{Point3, PointCloud};
+    use cloudtouch_geom::{Point3, PointCloud, Pose};
     use cloudtouch_testkit::scene;
 
     use super::*;
+    use crate::either::{EitherCloud, EitherQuery};
 
     #[test]
     fn free_and_collision_can_be_wrong_and_the_rest_is_open() {
