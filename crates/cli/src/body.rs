@@ -8,6 +8,7 @@ use cloudtouch::{
 };
 
 /// A cloud prepared for one of the paths, or a mesh.
+#[allow(clippy::large_enum_variant, reason = "there are a few, each far larger on the heap")]
 pub(crate) enum Body<C> {
     Cloud(C),
     Mesh(Mesh),
