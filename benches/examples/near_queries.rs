@@ -1,7 +1,7 @@
 //! Queries near contact and nothing else, for a profiler:
 //! `valgrind --tool=callgrind target/release/examples/near_queries`.
 
-use cloudtouch::{Mode, Query, QuerySettings};
+use cloudtouch::{Query, QuerySettings};
 use cloudtouch_benches::piano_room::{classes, piano, prepared, room};
 use cloudtouch_geom::{Pose, Vector3, seed};
 
@@ -12,7 +12,7 @@ const MOVED: f64 = 0.02;
 
 fn main() {
     let [room, piano] = [room(POINTS), piano(POINTS)]
-        .map(|cloud| prepared(&cloud, Mode::Calibrated).refined().expect("ordinary noise"));
+        .map(|cloud| prepared(&cloud).refined().expect("ordinary noise"));
     let query = Query::new(QuerySettings::default()).expect("default settings");
     let [_, near, _] = classes();
     let (mut probabilities, mut solves) = (0.0, 0);

@@ -1,7 +1,7 @@
 //! The piano in the room of the test kit, as noisy clouds, in poses of three classes.
 
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode};
+use cloudtouch::{Cloud, CloudSettings, PaperCloud, PaperCloudSettings};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
@@ -28,13 +28,23 @@ fn cloud(mesh: &TriangleMesh, count: usize, seed: u64) -> PointCloud {
     PointCloud::from_points(add_noise(&points, NoiseKind::Gaussian, NOISE, seed))
 }
 
-/// A cloud of [`NOISE`] prepared for a mode.
+/// The sensor that measured either cloud.
+pub const SENSOR: SensorModel = SensorModel::Isotropic { std: NOISE };
+
+/// A cloud of [`NOISE`] prepared for the default path.
 ///
 /// # Panics
 /// When it is no usable cloud.
-pub fn prepared(cloud: &PointCloud, mode: Mode) -> Cloud {
-    let sensor = SensorModel::Isotropic { std: NOISE };
-    Cloud::prepare(cloud, &CloudSettings::new(sensor, mode)).expect("a usable cloud")
+pub fn prepared(cloud: &PointCloud) -> Cloud {
+    Cloud::prepare(cloud, &CloudSettings::new(SENSOR)).expect("a usable cloud")
+}
+
+/// A cloud of [`NOISE`] prepared by the paper.
+///
+/// # Panics
+/// When it is no usable cloud.
+pub fn prepared_by_the_paper(cloud: &PointCloud) -> PaperCloud {
+    PaperCloud::prepare(cloud, &PaperCloudSettings::new(SENSOR)).expect("a usable cloud")
 }
 
 /// A pose of the piano in the room, with what is true of the meshes there.

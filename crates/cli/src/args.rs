@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{CloudSettings, Mode, OutlierSettings, Pooling, QuerySettings};
+use cloudtouch::{FilterSettings, OutlierSettings, PaperSettings, Pooling, QuerySettings};
 use cloudtouch_io::{LengthUnit, ReadLimits};
 
 /// Sensor specs, for the help of the commands that take them.
@@ -40,6 +40,15 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
+    /// Refuses options that contradict one another; the message names them.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        match &self.command {
+            Command::Query(arguments) => arguments.common.check(),
+            Command::Batch(arguments) => arguments.common.check(),
+            Command::Info(_) | Command::Demo(_) => Ok(()),
+        }
+    }
+
     pub(crate) fn log_level(&self) -> tracing::Level {
         match self.verbose {
             0 => tracing::Level::WARN,
@@ -180,12 +189,12 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_name = "B", default_value_t = 0.1, value_parser = parse_reject,
           help_heading = "Estimate")]
     pub reject: f64,
-    /// How point probabilities make one: max, or noisy-or
-    #[arg(long, value_enum, hide_possible_values = true, default_value_t = PoolingName::Max, help_heading = "Estimate")]
-    pub pooling: PoolingName,
-    /// Seed of the paper's stochastic traversal
-    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Estimate")]
-    pub seed: u64,
+    /// Paper: how point probabilities make one: max, or noisy-or [max]
+    #[arg(long, value_enum, hide_possible_values = true, help_heading = "Estimate")]
+    pub pooling: Option<PoolingName>,
+    /// Paper: seed of the stochastic traversal [0]
+    #[arg(long, value_name = "N", help_heading = "Estimate")]
+    pub seed: Option<u64>,
     /// Drop points nearer to the sensor [cameras and lidar: 0.1]
     #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
     pub min_range: Option<f64>,
@@ -214,26 +223,39 @@ pub(crate) struct CommonArguments {
 
 impl CommonArguments {
     pub(crate) fn query_settings(&self) -> QuerySettings {
-        QuerySettings {
+        QuerySettings { accept: self.accept, reject: self.reject, ..QuerySettings::default() }
+    }
+
+    pub(crate) fn paper_settings(&self) -> PaperSettings {
+        let usual = PaperSettings::default();
+        PaperSettings {
             accept: self.accept,
             reject: self.reject,
-            pooling: self.pooling.into(),
-            seed: self.seed,
-            ..QuerySettings::new(self.mode.into())
+            pooling: self.pooling.map_or(usual.pooling, Pooling::from),
+            seed: self.seed.unwrap_or(usual.seed),
+            ..usual
         }
     }
 
-    /// Settings of a cloud seen by `sensor`; the robot and the collision map concern scenes only.
-    pub(crate) fn cloud_settings(&self, sensor: SensorModel) -> CloudSettings {
-        let mut settings = CloudSettings::new(sensor, self.mode.into());
-        let filter = &mut settings.filter;
+    /// Refuses options that the mode has no use for.
+    fn check(&self) -> Result<(), String> {
+        let of_the_paper = [("--pooling", self.pooling.is_some()), ("--seed", self.seed.is_some())];
+        match of_the_paper.into_iter().find(|(_, is_given)| *is_given) {
+            Some((name, _)) if self.mode == ModeName::Calibrated => Err(format!(
+                "{name} has no effect in the calibrated mode: leave it out, or give --mode paper"
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Changes the cleaning that suits a sensor; the robot and the collision map concern scenes only.
+    pub(crate) fn change(&self, filter: &mut FilterSettings) {
         filter.min_range = self.min_range.unwrap_or(filter.min_range);
         filter.max_range = self.max_range.unwrap_or(filter.max_range);
         filter.outliers = self.outliers;
         if self.keep_veil {
             filter.veil = None;
         }
-        settings
     }
 }
 
@@ -242,15 +264,6 @@ impl CommonArguments {
 pub(crate) enum ModeName {
     Calibrated,
     Paper,
-}
-
-impl From<ModeName> for Mode {
-    fn from(name: ModeName) -> Self {
-        match name {
-            ModeName::Calibrated => Self::Calibrated,
-            ModeName::Paper => Self::Paper,
-        }
-    }
 }
 
 /// Name of a way of pooling on the command line.

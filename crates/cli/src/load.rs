@@ -6,10 +6,11 @@ use std::sync::Arc;
 use anyhow::{Context, Result, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Body, Cloud, Mesh, SelfMesh};
+use cloudtouch::{Mesh, SelfMesh};
 use cloudtouch_io::{Geometry, LengthUnit, ReadLimits, read_geometry_within, read_mesh_within};
 
 use crate::args::CommonArguments;
+use crate::body::{Body, PreparedCloud};
 
 /// What a body is used as: only scenes are cleaned of the robot and turned into collision maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,12 +23,12 @@ pub(crate) enum Role {
 pub(crate) const SUSPICIOUS_MESH_SIZE: f64 = 100.0;
 
 /// Reads a file and prepares it; a mesh file has no sensor.
-pub(crate) fn body(
+pub(crate) fn body<C: PreparedCloud>(
     path: &Path,
     role: Role,
     sensor: &SensorModel,
     common: &CommonArguments,
-) -> Result<Body> {
+) -> Result<Body<C>> {
     let prepared = match geometry(path, common.unit, &common.limits.read_limits())? {
         Geometry::Mesh(mesh) => {
             let mesh = Mesh::prepare(&mesh).with_context(|| named(path))?;
@@ -48,15 +49,18 @@ pub(crate) fn body(
                     path.display()
                 );
             }
-            let mut settings = common.cloud_settings(*sensor);
-            if role == Role::Scene {
-                settings.filter.robot = robot(common)?;
-                settings.filter.collision_map = common.collision_map;
-                if let Some(resolution) = common.collision_map {
-                    settings.sensor = SensorModel::Grid { resolution };
+            let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
+            let prepared = C::prepare(&cloud, *sensor, |filter, sensor| {
+                common.change(filter);
+                if role == Role::Scene {
+                    filter.robot = robot;
+                    filter.collision_map = common.collision_map;
+                    if let Some(resolution) = common.collision_map {
+                        *sensor = SensorModel::Grid { resolution };
+                    }
                 }
-            }
-            Body::Cloud(Cloud::prepare(&cloud, &settings).with_context(|| named(path))?)
+            });
+            Body::Cloud(prepared.with_context(|| named(path))?)
         }
     };
     Ok(prepared)

@@ -1,6 +1,7 @@
 //! The `cloudtouch` command: queries, batches, file information and a demo.
 
 mod args;
+mod body;
 mod commands;
 mod load;
 mod picture;
@@ -10,13 +11,18 @@ mod print;
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::error::ErrorKind;
+use clap::{CommandFactory as _, Parser};
 use cloudtouch_cli::case_file;
 
 use args::{Arguments, Command};
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Err(message) = arguments.check() {
+        // As for any other wrong use: to standard error, with code 2.
+        Arguments::command().error(ErrorKind::ArgumentConflict, message).exit();
+    }
     tracing_subscriber::fmt()
         .with_max_level(arguments.log_level())
         .with_writer(std::io::stderr)

@@ -4,8 +4,10 @@ use std::path::Path;
 
 use anyhow::Result;
 use cloudtouch::geom::{Point3, Pose};
-use cloudtouch::{Body, MAX_MESH_PARTS, Report};
+use cloudtouch::{MAX_MESH_PARTS, Report};
 use cloudtouch_io::write_colored_ply;
+
+use crate::body::{Body, PreparedCloud};
 
 type Color = [u8; 3];
 
@@ -23,10 +25,10 @@ const MESH_SPACING_SHARE: f64 = 0.01;
 /// Writes the scene in grey, the object in blue, both towards red by the probability of each
 /// point, and each contact as a green line along its normal; all in the scene's frame, with the
 /// probability as a column too.
-pub(crate) fn write(
+pub(crate) fn write<C: PreparedCloud>(
     path: &Path,
-    scene: &Body,
-    object: &Body,
+    scene: &Body<C>,
+    object: &Body<C>,
     scene_from_object: &Pose,
     report: &Report,
 ) -> Result<()> {
@@ -74,9 +76,9 @@ impl Picture {
     }
 }
 
-fn body_points(body: &Body) -> Result<Vec<Point3>> {
+fn body_points<C: PreparedCloud>(body: &Body<C>) -> Result<Vec<Point3>> {
     Ok(match body {
-        Body::Cloud(cloud) => (0..cloud.len()).map(|i| cloud.point(i)).collect(),
+        Body::Cloud(cloud) => cloud.points(),
         Body::Mesh(mesh) => {
             mesh.surface_points(MESH_SPACING_SHARE * mesh.size(), MAX_MESH_PARTS)?
         }

@@ -4,8 +4,10 @@ use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 
 use anyhow::{Context, Result};
-use cloudtouch::{Body, Clearance, Report, StageReport, Verdict};
+use cloudtouch::{Clearance, Report, StageReport, Verdict};
 use serde::Serialize;
+
+use crate::body::{Body, PreparedCloud};
 
 /// Prints a whole answer.
 ///
@@ -133,10 +135,10 @@ pub(crate) fn report(report: &Report) -> String {
 }
 
 /// What a body is and what the filter did to it, in one line.
-pub(crate) fn body(name: &str, body: &Body) -> String {
+pub(crate) fn body<C: PreparedCloud>(name: &str, body: &Body<C>) -> String {
     match body {
         Body::Cloud(cloud) => {
-            format!("{name}: cloud of {} points ({})", cloud.len(), stages(cloud.filter_stages()))
+            format!("{name}: cloud of {} points ({})", cloud.count(), stages(cloud.stages()))
         }
         Body::Mesh(mesh) => {
             let kind = if mesh.is_watertight() { "watertight" } else { "open" };

@@ -60,6 +60,8 @@ fn wrong_usage_is_2() {
         &["query", "floor.pcd", "box.obj", "--outliers", "0,3"],
         &["query", "floor.pcd", "box.obj", "--min-range=-1"],
         &["query", "floor.pcd", "box.obj", "--collision-map", "0"],
+        &["query", "floor.pcd", "box.obj", "--seed", "3"],
+        &["batch", "cases.json", "--pooling", "noisy-or", "--mode", "calibrated"],
         &["batch", "cases.json", "--sensor-for", "kinect"],
     ] {
         let run = inputs.run(arguments);

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use cloudtouch::{ContactEvidence, Mode};
+use cloudtouch::ContactEvidence;
 
 use crate::{
     answers::Answers,
@@ -34,7 +34,7 @@ pub struct Arguments {
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update } = *arguments;
     let gathering = |ours: Ours| Asked::always(ours.gathering_everything());
-    let methods = [gathering(Ours::new(OURS, Mode::Calibrated)?), gathering(Ours::oracle(ORACLE)?)];
+    let methods = [gathering(Ours::new(OURS)?), gathering(Ours::oracle(ORACLE)?)];
     let answers = ask(&Plan::evidence(draws, poses), &methods)?;
     let folder = root.join("target/sweep");
     fs::create_dir_all(&folder)?;

@@ -6,6 +6,7 @@
 
 pub mod answers;
 pub mod calibrate;
+mod either;
 pub mod figure;
 pub mod growth;
 pub mod machine;

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode, Query, QuerySettings, Verdict};
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Verdict};
 
 /// A square of 40 cm at the height of a wave, with a point every centimetre.
 fn wave(height: f64) -> PointCloud {
@@ -17,7 +17,7 @@ fn wave(height: f64) -> PointCloud {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 }, Mode::Calibrated);
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
     let ground = Cloud::prepare(&wave(0.01), &settings)?;
     let sheet = Cloud::prepare(&wave(0.02), &settings)?;
     let query = Query::new(QuerySettings::default())?;

@@ -5,7 +5,7 @@
 
 use cloudtouch::geom::{MeshError, Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Verdict};
+use cloudtouch::{Cloud, CloudSettings, Mesh, Query, QuerySettings, Verdict};
 
 /// A closed box between two corners, as (vertices, triangles) appended to those there are.
 fn push_box(low: [f64; 3], high: [f64; 3], parts: &mut (Vec<Point3>, Vec<[u32; 3]>)) {
@@ -39,7 +39,7 @@ fn mug() -> PointCloud {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 }, Mode::Calibrated);
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
     let mug = Cloud::prepare(&mug(), &settings)?;
     let gripper = Mesh::prepare(&gripper()?)?;
     assert!(gripper.is_watertight());

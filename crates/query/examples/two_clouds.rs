@@ -4,7 +4,7 @@
 
 use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode, Query, QuerySettings, Verdict};
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Verdict};
 
 /// A square of 40 cm with a point every centimetre, bent up or down by `bend` per metre.
 fn sheet(bend: f64) -> PointCloud {
@@ -17,7 +17,7 @@ fn sheet(bend: f64) -> PointCloud {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Both were measured with errors of 2 mm. Preparing is the costly part, and done once.
-    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 }, Mode::Calibrated);
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
     let floor = Cloud::prepare(&sheet(0.0), &settings)?;
     let bowl = Cloud::prepare(&sheet(2.0), &settings)?;
 

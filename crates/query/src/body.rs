@@ -1,11 +1,10 @@
-//! Anything that can collide: a prepared cloud or a prepared mesh.
+//! Anything that can collide on the default path: a prepared cloud or a prepared mesh.
 
 use std::time::Duration;
 
-use cloudtouch_bvh::Tree;
-use cloudtouch_geom::{Pose, Vector3};
-
-use crate::{Cloud, Mesh};
+use crate::cloud::Cloud;
+use crate::mesh::Mesh;
+use crate::shape::Shape;
 
 /// A prepared cloud or mesh, owned.
 #[derive(Debug)]
@@ -53,39 +52,13 @@ impl<'a> From<&'a Body> for BodyRef<'a> {
 impl<'a> BodyRef<'a> {
     /// How long preparation took.
     pub fn prepare_time(&self) -> Duration {
-        match self {
-            Self::Cloud(cloud) => cloud.prepare_time(),
-            Self::Mesh(mesh) => mesh.prepare_time(),
-        }
+        self.shape().prepare_time()
     }
 
-    /// How many points stand for the body: those of a cloud, the corners of a mesh.
-    pub(crate) fn point_count(&self) -> usize {
-        match self {
-            Self::Cloud(cloud) => cloud.len(),
-            Self::Mesh(mesh) => 3 * mesh.triangle_count(),
+    pub(crate) fn shape(&self) -> Shape<'a> {
+        match *self {
+            Self::Cloud(cloud) => Shape::Cloud(cloud.prepared()),
+            Self::Mesh(mesh) => Shape::Mesh(mesh),
         }
-    }
-
-    pub(crate) fn origin(&self) -> Vector3 {
-        match self {
-            Self::Cloud(cloud) => cloud.origin(),
-            Self::Mesh(mesh) => mesh.origin(),
-        }
-    }
-
-    pub(crate) fn tree(&self) -> &'a Tree {
-        match self {
-            Self::Cloud(cloud) => cloud.tree(),
-            Self::Mesh(mesh) => mesh.tree(),
-        }
-    }
-
-    /// Maps the local frame of `other` into the local frame of `self`, given how their file
-    /// frames relate. Large offsets cancel here, once, in double precision.
-    pub(crate) fn local_from(&self, other: &Self, self_from_other: &Pose) -> Pose {
-        Pose::from_translation(-self.origin())
-            .after(self_from_other)
-            .after(&Pose::from_translation(other.origin()))
     }
 }

@@ -1,16 +1,21 @@
 #![doc = include_str!("../README.md")]
 
-mod batch;
 mod body;
+mod checks;
+mod classifier;
 mod cloud;
 mod error;
 mod filter;
 mod mesh;
 mod mode;
+pub mod paper;
 mod query;
 mod range;
 mod recalibration;
+mod record;
 mod report;
+mod shape;
+mod unseen;
 
 pub use body::{Body, BodyRef};
 pub use cloud::{Cloud, CloudSettings};
@@ -20,7 +25,10 @@ pub use filter::{
 };
 pub use mesh::Mesh;
 pub use mode::Mode;
-pub use query::{Pooling, Query, QuerySettings};
+pub use paper::{
+    PaperBodyRef, PaperCloud, PaperCloudSettings, PaperNoise, PaperQuery, PaperSettings, Pooling,
+};
+pub use query::{Query, QuerySettings};
 pub use recalibration::{ContactEvidence, Recalibration};
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Verdict};
 

@@ -21,13 +21,13 @@ pub struct Report {
     pub clearance_m: Option<Clearance>,
     /// Where the surfaces touch or may touch, most probable first.
     pub contacts: Vec<Contact>,
-    /// What the probability rests on; `None` but for two clouds in the calibrated mode.
+    /// What the probability rests on; `None` but for two clouds on the default path.
     pub evidence: Option<ContactEvidence>,
     /// What the answer cost.
     pub stats: Stats,
-    /// Seed of the stochastic traversals.
+    /// Seed of the stochastic traversals; 0 on the default path, which draws nothing.
     pub seed: u64,
-    /// How probabilities were estimated.
+    /// Which path estimated.
     pub mode: Mode,
     /// The largest probability of any point (section 4.4 of the paper).
     #[serde(skip)]

@@ -8,9 +8,7 @@ mod common;
 use cloudtouch::bvh::TreeSettings;
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{
-    BodyRef, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, Verdict,
-};
+use cloudtouch::{BodyRef, Cloud, CloudSettings, Mesh, Query, QuerySettings, Report, Verdict};
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::{scene, surface};
 use common::{assert_sound, at, mesh};
@@ -27,7 +25,7 @@ fn run(settings: QuerySettings, a: BodyRef<'_>, b: BodyRef<'_>, pose: &Pose) -> 
 }
 
 fn flat() -> QuerySettings {
-    let settings = QuerySettings::new(Mode::Calibrated);
+    let settings = QuerySettings::default();
     QuerySettings { cull_probability: 1e-300, stop_above: 1.0, ..settings }
 }
 
@@ -37,7 +35,7 @@ fn small_cloud(shape: &TriangleMesh, count: usize, std: f64, seed: u64) -> Cloud
     let points = add_noise(&points, NoiseKind::Gaussian, std, seed);
     let settings = CloudSettings {
         tree: TreeSettings { max_leaf_points: 12, min_leaf_points: 4, ..TreeSettings::default() },
-        ..CloudSettings::new(SensorModel::Isotropic { std }, Mode::Calibrated)
+        ..CloudSettings::new(SensorModel::Isotropic { std })
     };
     Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud")
 }

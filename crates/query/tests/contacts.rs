@@ -6,23 +6,23 @@ use std::sync::LazyLock;
 
 use cloudtouch::bvh::Traversal;
 use cloudtouch::geom::{Pose, Vector3};
-use cloudtouch::{Cloud, Contact, Mode, Query, QuerySettings, Report};
+use cloudtouch::{Contact, Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{assert_sound, scan};
+use common::{AnyQuery, Scan, assert_sound, scan};
 use proptest::prelude::*;
 
 const SPACING: f64 = 0.015;
 
 /// A floor and a ball of 5 cm.
-fn clouds(mode: Mode) -> [Cloud; 2] {
+fn clouds(mode: Mode) -> [Scan; 2] {
     let floor = scan(&scene::plane_patch(0.2), SPACING, 0.002, 1, mode);
     [floor, scan(&scene::sphere(0.05, 3), SPACING, 0.002, 2, mode)]
 }
 
-static CALIBRATED: LazyLock<[Cloud; 2]> = LazyLock::new(|| clouds(Mode::Calibrated));
-static PAPER: LazyLock<[Cloud; 2]> = LazyLock::new(|| clouds(Mode::Paper));
+static CALIBRATED: LazyLock<[Scan; 2]> = LazyLock::new(|| clouds(Mode::Calibrated));
+static PAPER: LazyLock<[Scan; 2]> = LazyLock::new(|| clouds(Mode::Paper));
 
-fn clouds_of(mode: Mode) -> &'static [Cloud; 2] {
+fn clouds_of(mode: Mode) -> &'static [Scan; 2] {
     match mode {
         Mode::Calibrated => &CALIBRATED,
         Mode::Paper => &PAPER,
@@ -31,15 +31,12 @@ fn clouds_of(mode: Mode) -> &'static [Cloud; 2] {
 
 /// Classifiers wherever there is something to classify, all of them, and to so tight a tolerance
 /// that what is compared does not hang on it.
-fn thorough(mode: Mode) -> Query {
-    Query::new(QuerySettings {
-        doubt: [0.0, 1.0],
-        relative_gap: 1e-7,
-        stop_above: 1.0,
-        traversal: Traversal::Certified,
-        ..QuerySettings::new(mode)
-    })
-    .expect("good settings")
+fn thorough(mode: Mode) -> AnyQuery {
+    AnyQuery::with(
+        mode,
+        |s| (s.doubt, s.relative_gap, s.stop_above) = ([0.0, 1.0], 1e-7, 1.0),
+        |s| (s.traversal, s.relative_gap, s.stop_above) = (Traversal::Certified, 1e-7, 1.0),
+    )
 }
 
 fn both_ways(mode: Mode, a_from_b: &Pose) -> [Report; 2] {

@@ -4,9 +4,9 @@ mod common;
 
 use std::time::Duration;
 
-use cloudtouch::{BodyRef, Mode, Query, QuerySettings, Verdict};
+use cloudtouch::{Mode, Verdict};
 use cloudtouch_testkit::scene;
-use common::{MODES, assert_sound, at, mesh, scan};
+use common::{AnyQuery, Asked, MODES, assert_sound, at, mesh, scan};
 
 #[test]
 fn without_time_nothing_is_free_and_the_bounds_hold_the_answer() {
@@ -14,15 +14,15 @@ fn without_time_nothing_is_free_and_the_bounds_hold_the_answer() {
         let floor = scan(&scene::plane_patch(0.4), 0.015, 0.002, 1, mode);
         let ball = scan(&scene::sphere(0.1, 3), 0.012, 0.002, 2, mode);
         let (solid, open) = (mesh(&scene::sphere(0.1, 3)), mesh(&scene::plane_patch(0.4)));
-        let pairs: [(BodyRef<'_>, BodyRef<'_>); 3] = [
+        let pairs: [(Asked<'_>, Asked<'_>); 3] = [
             ((&floor).into(), (&ball).into()),
             ((&floor).into(), (&solid).into()),
             ((&open).into(), (&ball).into()),
         ];
         for (a, b) in pairs {
             let ask = |deadline| {
-                let settings = QuerySettings { deadline, ..QuerySettings::new(mode) };
-                let query = Query::new(settings).expect("good settings");
+                let query =
+                    AnyQuery::with(mode, |s| s.deadline = deadline, |s| s.deadline = deadline);
                 // 1 cm of overlap, where there is something to look at.
                 let report = query.run(a, b, &at(0.0, 0.0, 0.09)).expect("a good pose");
                 assert_sound(&report);

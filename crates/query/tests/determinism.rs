@@ -3,11 +3,11 @@
 mod common;
 
 use cloudtouch::geom::{Pose, Vector3};
-use cloudtouch::{Cloud, Mode, Query, Report};
+use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{MODES, mesh, query, scan, timeless};
+use common::{AnyQuery, MODES, Scan, mesh, query, scan, timeless};
 
-fn bodies(mode: Mode) -> (Cloud, Cloud) {
+fn bodies(mode: Mode) -> (Scan, Scan) {
     let floor = scan(&scene::plane_patch(0.4), 0.015, 0.003, 1, mode);
     let ball = scan(&scene::sphere(0.1, 3), 0.012, 0.002, 2, mode);
     (floor, ball)
@@ -24,7 +24,7 @@ fn poses() -> Vec<Pose> {
 }
 
 /// Reports of a batch on a pool of this many threads, with bodies nobody has queried before.
-fn batch(mode: Mode, query: &Query, threads: usize) -> Vec<Report> {
+fn batch(mode: Mode, query: &AnyQuery, threads: usize) -> Vec<Report> {
     let (floor, ball) = bodies(mode);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
     let reports = pool.install(|| query.run_batch(&floor, &ball, &poses()));

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, FilterError, FilterSettings, Mode, OutlierSettings, PrepareError,
-    SelfMesh, StageReport, VeilSettings, filter,
+    Cloud, CloudSettings, FilterError, FilterSettings, OutlierSettings, PrepareError, SelfMesh,
+    StageReport, VeilSettings, filter,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::{ExactMesh, brute};
@@ -252,8 +252,7 @@ fn stages_run_in_order_and_their_counts_add_up() {
     }
     assert_eq!(left, filtered.cloud.len());
     // A prepared cloud tells the same.
-    let settings =
-        CloudSettings { filter: settings, ..CloudSettings::new(SensorModel::Exact, Mode::Paper) };
+    let settings = CloudSettings { filter: settings, ..CloudSettings::new(SensorModel::Exact) };
     let prepared = Cloud::prepare(&cloud, &settings).unwrap();
     assert_eq!(prepared.filter_stages(), filtered.stages);
     assert_eq!(prepared.len(), left);
@@ -263,7 +262,7 @@ fn stages_run_in_order_and_their_counts_add_up() {
 fn nothing_left_is_an_error_that_says_where_the_points_went() {
     let mut points = vec![Point3::from(Vector3::repeat(f64::NAN)); 4];
     points.extend(grid(6));
-    let mut settings = CloudSettings::new(SensorModel::Exact, Mode::Calibrated);
+    let mut settings = CloudSettings::new(SensorModel::Exact);
     settings.filter.min_range = 50.0;
     let error = Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap_err();
     assert!(matches!(error, PrepareError::NothingLeft { before: 10, .. }), "{error:?}");
@@ -344,7 +343,7 @@ fn lists_of_different_lengths_are_refused() {
         cloud.image_size = Some((width, height));
         let error = FilterError::ImageSize { points: 100, width, height };
         assert_eq!(refused(&cloud), error);
-        let settings = CloudSettings::new(SensorModel::Exact, Mode::Calibrated);
+        let settings = CloudSettings::new(SensorModel::Exact);
         assert_eq!(Cloud::prepare(&cloud, &settings).unwrap_err(), PrepareError::Filter(error));
     }
 }

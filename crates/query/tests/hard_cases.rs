@@ -4,9 +4,9 @@ mod common;
 
 use cloudtouch::geom::{Covariance, CovarianceError, Matrix3, Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mesh, Mode, PrepareError, Verdict};
+use cloudtouch::{Mesh, Mode, PrepareError, Verdict};
 use cloudtouch_testkit::hard_cases::{HardCase, hard_cases, hard_meshes};
-use common::{MODES, ask};
+use common::{MODES, Scan, ask};
 
 /// Why a side could not be prepared; every way is typed.
 #[derive(Debug, thiserror::Error)]
@@ -17,12 +17,11 @@ enum Refused {
     Prepare(#[from] PrepareError),
 }
 
-fn prepare(points: &[Point3], matrices: &[Matrix3], mode: Mode) -> Result<Cloud, Refused> {
+fn prepare(points: &[Point3], matrices: &[Matrix3], mode: Mode) -> Result<Scan, Refused> {
     let covariances: Result<Vec<_>, _> = matrices.iter().map(Covariance::try_from_matrix).collect();
     let cloud =
         PointCloud { covariances: Some(covariances?), ..PointCloud::from_points(points.to_vec()) };
-    let settings = CloudSettings::new(SensorModel::PerPoint, mode);
-    Ok(Cloud::prepare(&cloud, &settings)?)
+    Ok(Scan::of(&cloud, SensorModel::PerPoint, mode)?)
 }
 
 /// Checks one case in one mode; what is wrong with the answer, if anything.

@@ -4,11 +4,11 @@ mod common;
 
 use cloudtouch::geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode, Report, Verdict};
+use cloudtouch::{Mode, Report, Verdict};
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
-use common::{MODES, ask, at, mesh, scan};
+use common::{MODES, Scan, ask, at, mesh, scan};
 
 /// A block of half a metre, its front 1.25 m ahead of the camera, before a wall at 3 m.
 fn view() -> PointCloud {
@@ -32,8 +32,8 @@ fn places() -> [(&'static str, Pose, bool); 5] {
     ]
 }
 
-fn prepared(cloud: &PointCloud, mode: Mode) -> Cloud {
-    Cloud::prepare(cloud, &CloudSettings::new(SensorModel::Kinect, mode)).expect("a good image")
+fn prepared(cloud: &PointCloud, mode: Mode) -> Scan {
+    Scan::of(cloud, SensorModel::Kinect, mode).expect("a good image")
 }
 
 /// In the paper's mode random descents leave a wide upper bound, so there only the probability is

@@ -16,7 +16,7 @@ fn sheet(normal: UnitVector3) -> PointCloud {
 
 fn prepare(cloud: &PointCloud) -> Result<Cloud, PrepareError> {
     let sensor = SensorModel::Isotropic { std: 0.0 };
-    Cloud::prepare(cloud, &CloudSettings::new(sensor, Mode::Calibrated))
+    Cloud::prepare(cloud, &CloudSettings::new(sensor))
 }
 
 /// Discs across their normals: sheets 1 cm apart are far from each other, in deviations, when they

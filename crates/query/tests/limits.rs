@@ -6,12 +6,12 @@ use cloudtouch::bvh::Traversal;
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, Mesh, Mode, PrepareError, Query, QueryError, QuerySettings,
-    SubdivisionError,
+    Cloud, CloudSettings, Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings,
+    PrepareError, Query, QueryError, QuerySettings, SubdivisionError,
 };
 
 fn cloud(points: Vec<Point3>) -> Result<Cloud, PrepareError> {
-    let settings = CloudSettings::new(SensorModel::Exact, Mode::Calibrated);
+    let settings = CloudSettings::new(SensorModel::Exact);
     Cloud::prepare(&PointCloud::from_points(points), &settings)
 }
 
@@ -78,12 +78,16 @@ fn a_mesh_that_a_dense_cloud_would_split_millions_of_times_is_an_error() {
         let x = 0.1 * f64::from(bunch) - 0.5;
         (0..10).map(move |i| Point3::new(x, 1e-6 * f64::from(i), 0.001))
     });
-    let (a, b) = (cloud(bunches.collect()).unwrap(), triangle(1.0).unwrap());
-    for mode in [Mode::Calibrated, Mode::Paper] {
-        let settings =
-            QuerySettings { traversal: Traversal::Certified, ..QuerySettings::new(mode) };
-        let query = Query::new(settings).unwrap();
-        let error = query.run(&a, &b, &Pose::identity()).unwrap_err();
+    let (points, b) = (bunches.collect::<Vec<_>>(), triangle(1.0).unwrap());
+    let a = cloud(points.clone()).unwrap();
+    let by_default = Query::new(QuerySettings::default()).unwrap().run(&a, &b, &Pose::identity());
+    let settings = PaperCloudSettings::new(SensorModel::Exact);
+    let a = PaperCloud::prepare(&PointCloud::from_points(points), &settings).unwrap();
+    let certified = PaperSettings { traversal: Traversal::Certified, ..PaperSettings::default() };
+    // In its plane: exact points that are apart from it need no classifier.
+    let within = Pose::from_translation(Vector3::new(0.0, 0.0, 0.001));
+    let by_the_paper = PaperQuery::new(certified).unwrap().run(&a, &b, &within);
+    for error in [by_default.unwrap_err(), by_the_paper.unwrap_err()] {
         assert!(
             matches!(error, QueryError::Subdivision(SubdivisionError { max_parts: 20_000, .. })),
             "{error}"

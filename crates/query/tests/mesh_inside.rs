@@ -3,13 +3,13 @@
 mod common;
 
 use cloudtouch::geom::{Point3, Pose, TriangleMesh, Vector3, seed};
-use cloudtouch::{Cloud, Mode, Report, Verdict};
+use cloudtouch::{Mode, Report, Verdict};
 use cloudtouch_testkit::exact::{ExactMesh, brute};
 use cloudtouch_testkit::{scene, surface};
-use common::{MODES, ask, at, measured, mesh, prepare, uniform};
+use common::{MODES, Scan, ask, at, measured, mesh, prepare, uniform};
 
 /// A ball of 3 cm as a cloud: fits into every solid below.
-fn small_ball(mode: Mode) -> Cloud {
+fn small_ball(mode: Mode) -> Scan {
     prepare(measured(&scene::sphere(0.03, 2), 0.008, 0.001, 1), 0.001, mode)
 }
 

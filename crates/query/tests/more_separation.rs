@@ -9,13 +9,13 @@ use cloudtouch::geom::{Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Mode, Verdict};
 use cloudtouch_testkit::scene;
-use common::{MODES, ask, at, measured, prepare};
+use common::{MODES, Scan, ask, at, measured, prepare};
 
 const RADIUS: f64 = 0.08;
 const DRAWS: u64 = 6;
 
 /// Clouds of a floor and a ball, measured with `std` and said to be measured with `claimed_std`.
-fn draw(std: f64, claimed_std: f64, seed: u64, mode: Mode) -> (Cloud, Cloud) {
+fn draw(std: f64, claimed_std: f64, seed: u64, mode: Mode) -> (Scan, Scan) {
     let floor = measured(&scene::plane_patch(0.25), 0.015, std, 2 * seed);
     let ball = measured(&scene::sphere(RADIUS, 3), 0.012, std, 2 * seed + 1);
     (prepare(floor, claimed_std, mode), prepare(ball, claimed_std, mode))
@@ -92,7 +92,7 @@ fn noise_larger_than_the_gap_does_not_read_as_free() {
     let read = [0.03, 0.05, 0.1].map(|std| {
         let cloud = |points: Vec<Point3>| {
             let sensor = SensorModel::Isotropic { std };
-            let mut settings = CloudSettings::new(sensor, Mode::Calibrated);
+            let mut settings = CloudSettings::new(sensor);
             settings.tree.max_leaf_points = 150;
             settings.tree.min_leaf_points = 150;
             Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud")

@@ -2,19 +2,24 @@
 
 mod common;
 
-use cloudtouch::geom::{Pose, Vector3};
-use cloudtouch::{Cloud, Mode, Query, QuerySettings, Verdict};
+use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Verdict};
 use cloudtouch_testkit::scene;
-use common::{mesh, scan};
+use common::{measured, mesh};
 use proptest::prelude::*;
 
 /// What surfaces too far apart to tell by how much have at most: for them the bounds of the boxes
 /// are reported, which differ.
 const OUT_OF_REACH: f64 = 0.02;
 
-fn pair(spacing: f64, std: f64, mode: Mode) -> [Cloud; 2] {
-    let floor = scan(&scene::plane_patch(0.2), spacing, std, 1, mode);
-    [floor, scan(&scene::sphere(0.05, 3), spacing, std, 2, mode)]
+fn pair(spacing: f64, std: f64) -> [Cloud; 2] {
+    let settings = CloudSettings::new(SensorModel::Isotropic { std });
+    let scan = |mesh: &TriangleMesh, seed| {
+        let points = PointCloud::from_points(measured(mesh, spacing, std, seed));
+        Cloud::prepare(&points, &settings).expect("a good cloud")
+    };
+    [scan(&scene::plane_patch(0.2), 1), scan(&scene::sphere(0.05, 3), 2)]
 }
 
 fn refined(clouds: [Cloud; 2]) -> [Cloud; 2] {
@@ -35,7 +40,7 @@ proptest! {
         let offset = Vector3::new(place[0], place[1], 0.05 + gap);
         let pose = Pose::from_translation_rpy(offset, rpy);
         let query = Query::new(QuerySettings::default()).unwrap();
-        let clouds = pair(spacing, std, Mode::Calibrated);
+        let clouds = pair(spacing, std);
         let lazy = query.run(&clouds[0], &clouds[1], &pose).unwrap();
         let clouds = refined(clouds);
         let eager = query.run(&clouds[0], &clouds[1], &pose).unwrap();
@@ -53,18 +58,10 @@ fn refined_clouds_meet_meshes_as_before() {
     let ball = mesh(&scene::sphere(0.05, 3));
     for (gap, verdict) in [(0.03, Verdict::Free), (-0.02, Verdict::InCollision)] {
         let pose = Pose::from_translation(Vector3::new(0.01, 0.02, 0.05 + gap));
-        let [floor, _] = pair(0.01, 0.001, Mode::Calibrated);
+        let [floor, _] = pair(0.01, 0.001);
         let lazy = query.run(&floor, &ball, &pose).unwrap();
         let eager = query.run(&floor.refined().unwrap(), &ball, &pose).unwrap();
         assert_eq!((lazy.verdict, eager.verdict), (verdict, verdict));
         assert!((lazy.collision_probability - eager.collision_probability).abs() < 1e-6);
     }
-}
-
-#[test]
-fn refining_keeps_the_paper_mode() {
-    let query = Query::new(QuerySettings::new(Mode::Paper)).unwrap();
-    let pose = Pose::from_translation(Vector3::new(0.0, 0.0, 0.04));
-    let [floor, ball] = refined(pair(0.01, 0.001, Mode::Paper));
-    assert_eq!(query.run(&floor, &ball, &pose).unwrap().verdict, Verdict::InCollision);
 }

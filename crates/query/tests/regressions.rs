@@ -5,8 +5,11 @@ mod common;
 use cloudtouch::geom::{
     Covariance, Matrix3, Point3, PointCloud, Pose, PoseError, UnitVector3, Vector3,
 };
-use cloudtouch::noise::{Combination, SensorModel};
-use cloudtouch::{Cloud, CloudSettings, Mode, PrepareError, Query, QueryError, Verdict};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{
+    Cloud, CloudSettings, Mode, PaperCloud, PaperCloudSettings, PaperNoise, PrepareError,
+    QueryError, Verdict,
+};
 use cloudtouch_testkit::scene;
 use common::{MODES, ask, at, measured, mesh, prepare_each, query};
 use nalgebra::{Isometry3, Matrix4, Translation3, UnitQuaternion};
@@ -26,24 +29,24 @@ fn dome(radius: f64, count: usize) -> Vec<Point3> {
 }
 
 /// Nested domes 10 and 12 cm in radius, small enough to be one leaf each.
-fn nested(mode: Mode, covariance: impl Fn(&Point3) -> Covariance) -> (Cloud, Cloud) {
+fn nested(covariance: impl Fn(&Point3) -> Covariance) -> (PaperCloud, PaperCloud) {
     let cloud = |points: Vec<Point3>| {
         let covariances = points.iter().map(&covariance).collect();
-        let mut settings = CloudSettings::new(SensorModel::PerPoint, mode);
+        let mut settings = PaperCloudSettings::new(SensorModel::PerPoint);
         settings.tree.max_leaf_points = 150;
         settings.tree.min_leaf_points = 150;
         // Noise and sampling added: the paper's own combination would hide noise that is larger
-        // than the sampling, and the posterior would refine it.
-        settings.noise.combination = Combination::Convolution;
+        // than the sampling.
+        settings.noise = PaperNoise::Convolution;
         let cloud =
             PointCloud { covariances: Some(covariances), ..PointCloud::from_points(points) };
-        Cloud::prepare(&cloud, &settings).expect("a good cloud")
+        PaperCloud::prepare(&cloud, &settings).expect("a good cloud")
     };
     (cloud(dome(0.10, 120)), cloud(dome(0.12, 150)))
 }
 
 fn kernel_probability(covariance: impl Fn(&Point3) -> Covariance) -> f64 {
-    let (a, b) = nested(Mode::Paper, covariance);
+    let (a, b) = nested(covariance);
     let report = ask(Mode::Paper, &a, &b, &Pose::identity());
     assert!(report.stats.kernel_solves > 0, "a plane separates them: {:?}", report.stats);
     report.collision_probability
@@ -110,26 +113,29 @@ fn partial_gradient_sums_made_noise_along_the_surface_count() {
 fn probabilities_of_points_are_those_of_equation_16() {
     let stds = [0.03, 0.002, 0.01];
     let points: Vec<Point3> =
-        (0..10).map(|i| Point3::new(0.02 * f64::from(i), 0.0, 0.005 * f64::from(i))).collect();
+        (1..11).map(|i| Point3::new(0.02 * f64::from(i), 0.0, -0.005 * f64::from(i))).collect();
     let covariance = Covariance::diagonal(stds.map(|s| s * s));
-    // As measured, without any refinement: exact up to rounding.
-    let mut settings = CloudSettings::new(SensorModel::PerPoint, Mode::Calibrated);
-    settings.noise.combination = Combination::Convolution;
+    // About where they were measured: exact up to rounding. The deepest is certain to be inside, so
+    // that no leaf pair is asked as well.
+    let settings = PaperCloudSettings {
+        noise: PaperNoise::Convolution,
+        ..PaperCloudSettings::new(SensorModel::PerPoint)
+    };
     let cloud = PointCloud {
         covariances: Some(vec![covariance; 10]),
         ..PointCloud::from_points(points.clone())
     };
-    let convolution = Cloud::prepare(&cloud, &settings).unwrap();
+    let convolution = PaperCloud::prepare(&cloud, &settings).unwrap();
     // A box whose top is the plane z = 0, far wider than the cloud.
     let block = mesh(&scene::cuboid([2.0, 2.0, 1.0]));
-    let report = ask(Mode::Calibrated, &convolution, &block, &at(0.0, 0.0, -0.5));
+    let report = ask(Mode::Paper, &convolution, &block, &at(0.0, 0.0, -0.5));
     for &(index, probability) in &report.point_probabilities.a {
         // Discretization adds variance, so at least Σ alone; a line of points in x and z has none
         // along y, and its own slope 1/4 bounds what is added along z by 1/16 of that along x.
         let height = points[index].z;
-        let floor = cloudtouch::geom::normal::upper_tail(height / stds[2]);
+        let ceiling = cloudtouch::geom::normal::upper_tail(height / stds[2]);
         let spread = 0.25 * 0.2;
-        let ceiling = cloudtouch::geom::normal::upper_tail(height / stds[2].hypot(spread));
+        let floor = cloudtouch::geom::normal::upper_tail(height / stds[2].hypot(spread));
         assert!(probability >= floor - 1e-12, "{index}: {probability} < {floor}");
         assert!(probability <= ceiling + 1e-12, "{index}: {probability} > {ceiling}");
     }
@@ -148,16 +154,16 @@ fn nan_ended_as_probability_zero() {
     covariances[5] = Covariance::from_symmetric(&Matrix3::from_element(nan));
     let cloud =
         PointCloud { covariances: Some(covariances), ..PointCloud::from_points(points.clone()) };
-    let settings = CloudSettings::new(SensorModel::PerPoint, Mode::Calibrated);
+    let settings = CloudSettings::new(SensorModel::PerPoint);
     let error = Cloud::prepare(&cloud, &settings).unwrap_err();
     assert!(matches!(error, PrepareError::Noise(_)), "{error}");
     // In the noise of a sensor: an error.
-    let settings = CloudSettings::new(SensorModel::Isotropic { std: nan }, Mode::Calibrated);
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: nan });
     assert!(Cloud::prepare(&PointCloud::from_points(points.clone()), &settings).is_err());
     // In a point: dropped, and counted.
     let mut holed = points.clone();
     holed[3].z = nan;
-    let good = CloudSettings::new(SensorModel::Isotropic { std: 0.001 }, Mode::Calibrated);
+    let good = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
     let prepared = Cloud::prepare(&PointCloud::from_points(holed), &good).unwrap();
     assert_eq!(prepared.filter_stages()[0].removed, 1);
     // In the sensor's place: an error where the place matters.
@@ -165,7 +171,7 @@ fn nan_ended_as_probability_zero() {
         sensor_pose: Pose::from_translation(Vector3::new(0.0, nan, 0.0)),
         ..PointCloud::from_points(points)
     };
-    let kinect = CloudSettings::new(SensorModel::Kinect, Mode::Calibrated);
+    let kinect = CloudSettings::new(SensorModel::Kinect);
     assert!(Cloud::prepare(&lost, &kinect).is_err());
 }
 
@@ -183,7 +189,7 @@ fn nan_in_a_pose_is_an_error() {
         let pose = Pose::from_isometry(isometry);
         let ball = mesh(&scene::sphere(0.1, 2));
         let cloud = common::scan(&scene::plane_patch(0.2), 0.02, 0.001, 1, Mode::Calibrated);
-        let query: Query = query(Mode::Calibrated);
+        let query = query(Mode::Calibrated);
         let cloud_and_mesh = query.run(&cloud, &ball, &pose);
         assert!(matches!(cloud_and_mesh, Err(QueryError::Pose { .. })), "{cloud_and_mesh:?}");
         let meshes = query.run(&ball, &ball, &pose);

@@ -3,9 +3,9 @@
 mod common;
 
 use cloudtouch::geom::{Covariance, Point3, Pose, Vector3};
-use cloudtouch::{Cloud, Mode, Report};
+use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{ask, at, measured, prepare_each, uniform};
+use common::{Scan, ask, at, measured, prepare_each, uniform};
 use proptest::prelude::*;
 
 /// What the library promises: boxes turn along with the points, rounding may choose another of two
@@ -17,7 +17,7 @@ fn lopsided() -> Covariance {
     Covariance::diagonal([0.004_f64.powi(2), 0.002_f64.powi(2), 0.002_f64.powi(2)])
 }
 
-fn placed(points: &[Point3], pose: &Pose) -> Cloud {
+fn placed(points: &[Point3], pose: &Pose) -> Scan {
     let moved = points.iter().map(|p| pose.transform_point(p)).collect();
     let covariance = lopsided().rotated(pose.rotation());
     prepare_each(moved, vec![covariance; points.len()], Mode::Calibrated)

@@ -4,13 +4,13 @@
 mod common;
 
 use cloudtouch::geom::{Covariance, Point3, Pose, Vector3};
-use cloudtouch::{Cloud, Mode, Report};
+use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{MODES, ask, measured, mesh, prepare_each};
+use common::{MODES, Scan, ask, measured, mesh, prepare_each};
 
 const STD: f64 = 0.003;
 
-fn scaled(points: &[Point3], factor: f64, mode: Mode) -> Cloud {
+fn scaled(points: &[Point3], factor: f64, mode: Mode) -> Scan {
     let covariance = Covariance::isotropic(STD * STD).scaled(factor);
     let points: Vec<Point3> = points.iter().map(|p| p * factor).collect();
     let count = points.len();

@@ -3,9 +3,9 @@
 mod common;
 
 use cloudtouch::geom::{Pose, Vector3};
-use cloudtouch::{BodyRef, Cloud, Mode, Report};
+use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{ask, mesh, scan};
+use common::{Asked, Scan, ask, mesh, scan};
 
 /// What the library promises of the calibrated mode.
 const TOLERANCE: f64 = 1e-3;
@@ -14,11 +14,11 @@ const TOLERANCE: f64 = 1e-3;
 const TURNED: [f64; 3] = [0.4, -0.7, 1.9];
 const PARALLEL: [f64; 3] = [0.0; 3];
 
-fn floor() -> Cloud {
+fn floor() -> Scan {
     scan(&scene::plane_patch(0.4), 0.015, 0.003, 1, Mode::Calibrated)
 }
 
-fn ball() -> Cloud {
+fn ball() -> Scan {
     scan(&scene::sphere(0.1, 3), 0.012, 0.002, 2, Mode::Calibrated)
 }
 
@@ -29,11 +29,11 @@ fn poses(rpy: [f64; 3]) -> Vec<Pose> {
         .to_vec()
 }
 
-fn both_ways(a: BodyRef<'_>, b: BodyRef<'_>, a_from_b: &Pose) -> [Report; 2] {
+fn both_ways(a: Asked<'_>, b: Asked<'_>, a_from_b: &Pose) -> [Report; 2] {
     [ask(Mode::Calibrated, a, b, a_from_b), ask(Mode::Calibrated, b, a, &a_from_b.inverse())]
 }
 
-fn same_probability(a: BodyRef<'_>, b: BodyRef<'_>, rpy: [f64; 3]) {
+fn same_probability(a: Asked<'_>, b: Asked<'_>, rpy: [f64; 3]) {
     for a_from_b in poses(rpy) {
         let [forth, back] = both_ways(a, b, &a_from_b);
         let (p, q) = (forth.collision_probability, back.collision_probability);
@@ -82,7 +82,7 @@ fn two_meshes() {
 fn contacts_are_mapped_and_normals_turned_round() {
     let (floor, ball, solid) = (floor(), ball(), mesh(&scene::sphere(0.1, 3)));
     let mut compared = 0;
-    for b in [BodyRef::from(&ball), BodyRef::from(&solid)] {
+    for b in [Asked::from(&ball), Asked::from(&solid)] {
         for a_from_b in poses(PARALLEL) {
             let [forth, back] = both_ways((&floor).into(), b, &a_from_b);
             let Some(contact) = forth.contacts.first() else { continue };

@@ -7,12 +7,13 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Body, Query, Report};
+use cloudtouch::{PaperQuery, Query, Report};
 use cloudtouch_io::write_atomically;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-use crate::args::BatchArguments;
+use crate::args::{BatchArguments, ModeName};
+use crate::body::{self, Body};
 use crate::case_file::{self, Case};
 use crate::load::{self, Role};
 use crate::print;
@@ -24,7 +25,14 @@ type BodyKey = (PathBuf, Role, String);
 type Answer = Result<Report, String>;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
-    let query = Query::new(arguments.common.query_settings())?;
+    let common = &arguments.common;
+    match common.mode {
+        ModeName::Calibrated => run_by(&Query::new(common.query_settings())?, arguments),
+        ModeName::Paper => run_by(&PaperQuery::new(common.paper_settings())?, arguments),
+    }
+}
+
+fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCode> {
     let file = case_file::read(&arguments.cases, arguments.common.limits.read_limits().bytes)?;
     let bodies = prepare_all(arguments, file.cases.iter().filter_map(|(_, c)| c.as_ref().ok()));
     let progress = progress_bar(file.cases.len(), "queries");
@@ -33,7 +41,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
         .par_iter()
         .map(|(_, case)| {
             let answer = match case {
-                Ok(case) => answer(arguments, &query, &bodies, case),
+                Ok(case) => answer(arguments, query, &bodies, case),
                 Err(error) => Err(format!("{error:#}")),
             };
             progress.inc(1);
@@ -63,10 +71,10 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-fn answer(
+fn answer<P: body::Path>(
     arguments: &BatchArguments,
-    query: &Query,
-    bodies: &BTreeMap<BodyKey, Result<Body, String>>,
+    query: &P,
+    bodies: &BTreeMap<BodyKey, Result<Body<P::Cloud>, String>>,
     case: &Case,
 ) -> Answer {
     let [scene, object] = keys(arguments, case).map(|key| match bodies.get(&key) {
@@ -74,7 +82,7 @@ fn answer(
         Some(Err(error)) => Err(error.clone()),
         None => Err(format!("{}: not prepared", key.0.display())),
     });
-    query.run(scene?, object?, &case.scene_from_object).map_err(|error| error.to_string())
+    query.ask(scene?, object?, &case.scene_from_object).map_err(|error| error.to_string())
 }
 
 fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
@@ -95,10 +103,10 @@ fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
     ]
 }
 
-fn prepare_all<'a>(
+fn prepare_all<'a, C: body::PreparedCloud>(
     arguments: &BatchArguments,
     cases: impl Iterator<Item = &'a Case>,
-) -> BTreeMap<BodyKey, Result<Body, String>> {
+) -> BTreeMap<BodyKey, Result<Body<C>, String>> {
     let wanted: BTreeSet<BodyKey> = cases.flat_map(|case| keys(arguments, case)).collect();
     let progress = progress_bar(wanted.len(), "files");
     let wanted: Vec<BodyKey> = wanted.into_iter().collect();

@@ -7,10 +7,11 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Body, Cloud, CloudSettings, Mode, Query, QuerySettings, Report, Verdict};
+use cloudtouch::{PaperQuery, PaperSettings, Query, QuerySettings, Report, Verdict};
 use cloudtouch_io::pcd;
 
-use crate::args::DemoArguments;
+use crate::args::{DemoArguments, ModeName};
+use crate::body::{self, Body, PreparedCloud};
 use crate::{case_file, picture, print};
 
 const ROOM: &[u8] = include_bytes!("../../demo/room.pcd");
@@ -23,10 +24,15 @@ const NOISE: f64 = 0.002;
 const BAR: usize = 10;
 
 pub(crate) fn run(arguments: &DemoArguments) -> Result<ExitCode> {
-    let mode = arguments.mode.into();
-    let query = Query::new(QuerySettings::new(mode))?;
-    let (room, piano) = (body(ROOM, mode)?, body(PIANO, mode)?);
-    let poses = poses(&query, &room, &piano)?;
+    match arguments.mode {
+        ModeName::Calibrated => run_by(&Query::new(QuerySettings::default())?, arguments),
+        ModeName::Paper => run_by(&PaperQuery::new(PaperSettings::default())?, arguments),
+    }
+}
+
+fn run_by<P: body::Path>(query: &P, arguments: &DemoArguments) -> Result<ExitCode> {
+    let (room, piano) = (body(ROOM)?, body(PIANO)?);
+    let poses = poses(query, &room, &piano)?;
     let mut text = format!(
         "A grand piano in a furnished room, twelve poses from free to deep. Both are seen as clouds\n\
          with {:.0} mm of noise. The truth is that of the meshes the clouds were sampled from.\n\n\
@@ -66,19 +72,23 @@ impl Answered {
     }
 }
 
-fn body(pcd: &[u8], mode: Mode) -> Result<Body> {
+fn body<C: PreparedCloud>(pcd: &[u8]) -> Result<Body<C>> {
     let cloud = pcd::parse(pcd)?;
     let sensor = SensorModel::Isotropic { std: NOISE };
-    Ok(Body::Cloud(Cloud::prepare(&cloud, &CloudSettings::new(sensor, mode))?))
+    Ok(Body::Cloud(C::prepare(&cloud, sensor, |_, _| {})?))
 }
 
 /// One after the other, so that the times are those of a single thread.
-fn poses(query: &Query, room: &Body, piano: &Body) -> Result<Vec<Answered>> {
+fn poses<P: body::Path>(
+    query: &P,
+    room: &Body<P::Cloud>,
+    piano: &Body<P::Cloud>,
+) -> Result<Vec<Answered>> {
     let file = case_file::parse(CASES, Path::new(""))?;
     let answered = file.cases.into_iter().map(|(id, case)| {
         let case = case.with_context(|| id.clone())?;
         let truth = case.signed_distance.with_context(|| format!("{id}: no true distance"))?;
-        let report = query.run(room, piano, &case.scene_from_object)?;
+        let report = query.ask(room, piano, &case.scene_from_object)?;
         Ok(Answered { room_from_piano: case.scene_from_object, truth, report })
     });
     answered.collect()

@@ -4,20 +4,28 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use cloudtouch::geom::{Pose, Vector3};
-use cloudtouch::{Query, Verdict};
+use cloudtouch::{PaperQuery, Query, Verdict};
 
-use crate::args::{QueryArguments, Triple};
+use crate::args::{ModeName, QueryArguments, Triple};
+use crate::body::Path;
 use crate::load::{self, Role};
 use crate::{picture, pose_file, print};
 
 pub(crate) fn run(arguments: &QueryArguments) -> Result<ExitCode> {
     let common = &arguments.common;
-    let query = Query::new(common.query_settings())?;
+    match common.mode {
+        ModeName::Calibrated => run_by(&Query::new(common.query_settings())?, arguments),
+        ModeName::Paper => run_by(&PaperQuery::new(common.paper_settings())?, arguments),
+    }
+}
+
+fn run_by<P: Path>(query: &P, arguments: &QueryArguments) -> Result<ExitCode> {
+    let common = &arguments.common;
     let pose = pose(arguments)?;
     let object_sensor = common.object_sensor.as_ref().unwrap_or(&common.sensor);
-    let scene = load::body(&arguments.scene, Role::Scene, &common.sensor, common)?;
-    let object = load::body(&arguments.object, Role::Object, object_sensor, common)?;
-    let report = query.run(&scene, &object, &pose)?;
+    let scene = load::body::<P::Cloud>(&arguments.scene, Role::Scene, &common.sensor, common)?;
+    let object = load::body::<P::Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
+    let report = query.ask(&scene, &object, &pose)?;
     if let Some(path) = &arguments.ply {
         picture::write(path, &scene, &object, &pose, &report)?;
     }

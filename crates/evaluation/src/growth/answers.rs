@@ -1,7 +1,6 @@
 //! What each method says of every pose under every noise that is added.
 
 use anyhow::{Context, Result};
-use cloudtouch::Mode;
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::{exact::ExactMesh, family::Observation};
 use rayon::prelude::*;
@@ -9,7 +8,7 @@ use rayon::prelude::*;
 use super::scan::Scan;
 use crate::{
     answers::Pair,
-    methods::{Boxes, Distance, Draw, Method, Ours, Prepared},
+    methods::{Boxes, Distance, Draw, Method, Ours, Paper, Prepared},
 };
 
 /// Standard deviation of the noise that the scan itself is said to have, m.
@@ -74,8 +73,8 @@ fn answers(
     // Asked as a mesh; a cloud of it has to be there nevertheless.
     let b = observed(PointCloud::from_points(object.vertices().to_vec()), 0.0);
     let draw = Draw { family: "real scan", a: &a, b: &b, mesh: object };
-    let calibrated = Ours::new(METHODS[0], Mode::Calibrated)?;
-    let paper = Ours::new(METHODS[1], Mode::Paper)?;
+    let calibrated = Ours::new(METHODS[0])?;
+    let paper = Paper::new(METHODS[1]);
     let (boxes, inside) = (Boxes { side: 0.01 }, Distance { smoothed: false });
     let methods: [&dyn Method; 4] = [&calibrated, &paper, &boxes, &inside];
     let prepared: Vec<Box<dyn Prepared>> =

@@ -6,6 +6,7 @@ mod boxes;
 mod distance;
 mod fitted;
 mod ours;
+mod paper;
 mod plain_svm;
 
 use std::time::Instant;
@@ -21,6 +22,7 @@ pub(crate) use distance::spread;
 pub use distance::{CloudIndex, Distance};
 pub use fitted::{Coefficients, Fitted};
 pub use ours::Ours;
+pub use paper::Paper;
 pub use plain_svm::PlainSvm;
 
 use crate::answers::{Pair, Said};

@@ -1,8 +1,8 @@
-//! Ours: the default, the paper's mode, either with any setting changed, and the oracle.
+//! Ours: the default, with any setting changed, and the oracle.
 
 use anyhow::Result;
 use cloudtouch::{
-    Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Recalibration, bvh::TreeSettings,
+    Cloud, CloudSettings, Mesh, Query, QuerySettings, Recalibration, bvh::TreeSettings,
     noise::SensorModel,
 };
 use cloudtouch_geom::{PointCloud, Pose, UnitVector3};
@@ -26,15 +26,15 @@ pub struct Ours {
 }
 
 impl Ours {
-    /// The defaults of a mode.
+    /// The defaults.
     ///
     /// # Errors
     /// When the stored fit cannot be read.
-    pub fn new(name: &str, mode: Mode) -> Result<Self> {
+    pub fn new(name: &str) -> Result<Self> {
         Ok(Self {
             name: name.to_owned(),
-            query: QuerySettings::new(mode),
-            tree: CloudSettings::new(SensorModel::Exact, mode).tree,
+            query: QuerySettings::default(),
+            tree: CloudSettings::new(SensorModel::Exact).tree,
             is_refined: false,
             sees_truth: false,
             fitted: Fitted::stored()?,
@@ -46,7 +46,7 @@ impl Ours {
     /// # Errors
     /// When the stored fit cannot be read.
     pub fn oracle(name: &str) -> Result<Self> {
-        Ok(Self { sees_truth: true, ..Self::new(name, Mode::Calibrated)? })
+        Ok(Self { sees_truth: true, ..Self::new(name)? })
     }
 
     /// The same, gathering all evidence however clear the first of it is.
@@ -77,8 +77,7 @@ impl Ours {
         } else {
             (&observation.cloud, sensor_of(observation))
         };
-        let settings =
-            CloudSettings { tree: self.tree, ..CloudSettings::new(sensor, self.query.mode) };
+        let settings = CloudSettings { tree: self.tree, ..CloudSettings::new(sensor) };
         let cloud = Cloud::prepare(cloud, &settings)?;
         if self.is_refined { Ok(cloud.refined()?) } else { Ok(cloud) }
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use cloudtouch::{
-    Cloud, CloudSettings, FilterSettings, Mesh, Mode, Query, QuerySettings, noise::SensorModel,
+    Cloud, CloudSettings, FilterSettings, Mesh, Query, QuerySettings, noise::SensorModel,
 };
 use cloudtouch_geom::{PointCloud, Pose, seed};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
@@ -34,7 +34,7 @@ const LIMIT: f64 = 0.025;
 /// A cloud prepared with a noise of this standard deviation.
 pub(super) fn prepare(cloud: &PointCloud, std: f64) -> Result<Cloud> {
     let sensor = SensorModel::Isotropic { std };
-    Ok(Cloud::prepare(cloud, &CloudSettings::new(sensor, Mode::Calibrated))?)
+    Ok(Cloud::prepare(cloud, &CloudSettings::new(sensor))?)
 }
 
 /// Prepares both clouds anew for every near pose.
@@ -121,7 +121,7 @@ impl Frames {
     ) -> Result<()> {
         // The stages that suit a camera.
         let filter = FilterSettings::for_sensor(&SensorModel::Kinect);
-        let settings = CloudSettings { filter, ..CloudSettings::new(sensor, Mode::Calibrated) };
+        let settings = CloudSettings { filter, ..CloudSettings::new(sensor) };
         let query = Query::new(QuerySettings::default())?;
         let (cloud, prepare) = timed(|| Ok(Cloud::prepare(frame, &settings)?))?;
         let run = |(pose, _): &(Pose, Option<bool>)| {

@@ -4,7 +4,6 @@ use std::fs;
 
 use anyhow::{Context, Result};
 use cloudtouch::{
-    Mode,
     bvh::{Primitive, Tree, TreeSettings},
     noise::SensorModel,
 };
@@ -94,7 +93,7 @@ impl Grown {
         let building = tree_time(&room.cloud)?;
         let rates = [building, preparing].map(|seconds| points as f64 / seconds);
         let draw = Draw { family: "", a: &room, b: &piano, mesh: &scene.piano };
-        let ours = Ours::new("ours, not refined", Mode::Calibrated)?;
+        let ours = Ours::new("ours, not refined")?;
         let meshes = ExactMeshes(scene.meshes(points));
         let poses = &scene.poses[..scene.poses.len().min(POSES)];
         let methods: [&dyn crate::methods::Method; 3] =

@@ -1,7 +1,6 @@
 //! The piano in the room, prepared: every method asked about every pose in turn.
 
 use anyhow::Result;
-use cloudtouch::Mode;
 
 use super::{
     peers::{ExactMeshes, Spheres},
@@ -63,12 +62,12 @@ pub(super) fn measure(scene: &Scene) -> Findings {
 fn ask(scene: &Scene, std: f64) -> Result<Vec<Timed>> {
     let (room, piano) = (scene.room(POINTS, std), scene.piano(std));
     let draw = Draw { family: "", a: &room, b: &piano, mesh: &scene.piano };
-    let refined = Ours::new("ours", Mode::Calibrated)?.refined();
-    let mut geometry = Ours::new("ours, geometry alone", Mode::Calibrated)?.refined();
+    let refined = Ours::new("ours")?.refined();
+    let mut geometry = Ours::new("ours, geometry alone")?.refined();
     geometry.query.doubt = [0.5; 2];
     let methods: [&dyn Method; 7] = [
         &refined,
-        &Ours::new("ours, not refined", Mode::Calibrated)?,
+        &Ours::new("ours, not refined")?,
         &geometry,
         &ExactMeshes(scene.meshes(POINTS)),
         &Boxes { side: 0.01 },

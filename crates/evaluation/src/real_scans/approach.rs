@@ -12,6 +12,7 @@ use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
 
 use super::{cases, side_view};
 use crate::{
+    either::{EitherCloud, EitherQuery},
     figure::{Axis, Figure, Panel, Series},
     page::Section,
 };
@@ -38,19 +39,18 @@ pub(super) fn evaluate(data: &Path) -> Result<(Section, Vec<String>)> {
     let scan = read_cloud(&series[0].1.scene)?;
     let object = read_mesh(&series[0].1.object, LengthUnit::Metres)?;
     let mesh = Mesh::prepare(&object)?;
-    let cloud = |std, mode| {
-        Cloud::prepare(&scan, &CloudSettings::new(SensorModel::Isotropic { std }, mode))
-    };
+    let sensor = |std| SensorModel::Isotropic { std };
     let mut answers: Vec<Vec<Report>> = Vec::new();
     for (std, mode, _) in RUNS {
-        let (cloud, query) = (cloud(std, mode)?, Query::new(QuerySettings::new(mode))?);
+        let cloud = EitherCloud::prepare(&scan, sensor(std), mode)?;
+        let query = EitherQuery::new(mode);
         let ask = |pose| query.run(&cloud, &mesh, pose);
         answers.push(poses.iter().map(ask).collect::<Result<_, _>>()?);
     }
 
     // No early stop: every likely point is to be seen.
     let query = Query::new(QuerySettings { stop_above: 1.0, ..QuerySettings::default() })?;
-    let main = cloud(RUNS[0].0, RUNS[0].1)?;
+    let main = Cloud::prepare(&scan, &CloudSettings::new(sensor(RUNS[0].0)))?;
     let mut shown = Vec::new();
     for advance in PICTURED {
         let pose = poses[cases::at_advance(&series, advance)?];

@@ -7,7 +7,7 @@ use std::{
 
 use anyhow::{Context, Result};
 use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, Mode, Query, QueryError, QuerySettings, Report, Verdict,
+    Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySettings, Report, Verdict,
     noise::SensorModel,
 };
 use cloudtouch_io::{Geometry, LengthUnit, read_geometry};
@@ -75,7 +75,7 @@ fn body(path: &Path) -> Result<Body> {
             let found = SENSORS.iter().find(|(part, _)| name.contains(part));
             let (_, spec) = found.with_context(|| format!("{name}: no sensor is known"))?;
             let sensor: SensorModel = spec.parse()?;
-            Body::Cloud(Cloud::prepare(&cloud, &CloudSettings::new(sensor, Mode::Calibrated))?)
+            Body::Cloud(Cloud::prepare(&cloud, &CloudSettings::new(sensor))?)
         }
     })
 }
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn clear_cases_need_clear_answers_and_all_need_sound_ones() {
-        let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.01 }, Mode::Calibrated);
+        let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.01 });
         let points = PointCloud::from_points(vec![Point3::origin()]);
         let cloud = Cloud::prepare(&points, &settings).unwrap();
         let query = Query::new(QuerySettings::default()).unwrap();

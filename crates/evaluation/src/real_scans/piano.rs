@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use cloudtouch::{Cloud, CloudSettings, Mode, Query, QuerySettings, noise::SensorModel};
+use cloudtouch::{Mode, noise::SensorModel};
 use cloudtouch_geom::{PointCloud, TriangleMesh, seed};
 use cloudtouch_io::{LengthUnit, read_mesh};
 use cloudtouch_testkit::{
@@ -13,6 +13,7 @@ use cloudtouch_testkit::{
 
 use super::cases::{self, Labelled};
 use crate::{
+    either::{EitherCloud, EitherQuery},
     figure::{Axis, Figure, Panel, Series, palette},
     measures::{Sample, auc, brier},
     page::Section,
@@ -56,9 +57,10 @@ pub(super) fn evaluate(data: &Path) -> Result<(Section, Vec<String>)> {
             noisy(&piano, of_piano, noise, seed::derive(SEED, 2, 0)),
         ];
         for (mode, mode_name) in MODES {
-            let settings = CloudSettings::new(SensorModel::Isotropic { std: noise }, mode);
-            let [room, piano] = clouds.each_ref().map(|cloud| Cloud::prepare(cloud, &settings));
-            let (room, piano, query) = (room?, piano?, Query::new(QuerySettings::new(mode))?);
+            let sensor = SensorModel::Isotropic { std: noise };
+            let [room, piano] =
+                clouds.each_ref().map(|cloud| EitherCloud::prepare(cloud, sensor, mode));
+            let (room, piano, query) = (room?, piano?, EitherQuery::new(mode));
             let mut answers: Vec<Answer> = Vec::new();
             for case in &cases {
                 match query.run(&room, &piano, &case.pose) {

@@ -1,7 +1,7 @@
 //! How often default queries on generated scenes fall back or stay undecided.
 
 use anyhow::{Context, Result};
-use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Mode, Report};
+use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Query, QuerySettings, Report};
 use cloudtouch_geom::seed;
 use cloudtouch_testkit::{
     family::{Family, FamilyScene, Side},
@@ -11,7 +11,7 @@ use cloudtouch_testkit::{
 use rayon::prelude::*;
 
 use super::{
-    examine::{default_query, examine},
+    examine::examine,
     sheet::{SEED, Sheet, small},
 };
 use crate::{methods::sensor_of, page::Section};
@@ -82,7 +82,7 @@ fn ask(
     let draw = seed::derive(SEED, family as u64, 1 + number as u64);
     let cloud = |side| -> Result<Body> {
         let seen = scene.observe(side, POINTS, NoiseKind::Gaussian, std, draw);
-        let settings = CloudSettings::new(sensor_of(&seen), Mode::default());
+        let settings = CloudSettings::new(sensor_of(&seen));
         Ok(Body::Cloud(Cloud::prepare(&seen.cloud, &settings)?))
     };
     let a = cloud(Side::A)?;
@@ -91,5 +91,5 @@ fn ask(
         Family::Tabletop => Body::Mesh(Mesh::prepare(scene.b.mesh())?),
         _ => cloud(Side::B)?,
     };
-    Ok(default_query(Mode::default(), (&a).into(), (&b).into(), &pose.scene_from_object)?)
+    Ok(Query::new(QuerySettings::default())?.run(&a, &b, &pose.scene_from_object)?)
 }

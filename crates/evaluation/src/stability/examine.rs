@@ -1,7 +1,6 @@
 //! Whole queries at their default settings, and what must hold of any answer.
 
-use cloudtouch::{BodyRef, Contact, Mode, Query, QueryError, QuerySettings, Report, Verdict};
-use cloudtouch_geom::Pose;
+use cloudtouch::{Contact, Report, Verdict};
 
 use super::sheet::Sheet;
 
@@ -12,17 +11,6 @@ pub(super) enum Judged {
     Open,
     Wrong,
     Unknown,
-}
-
-pub(super) fn default_query(
-    mode: Mode,
-    a: BodyRef<'_>,
-    b: BodyRef<'_>,
-    a_from_b: &Pose,
-) -> Result<Report, QueryError> {
-    // Default settings are checked by the library's own tests.
-    let query = Query::new(QuerySettings::new(mode)).expect("default settings are allowed");
-    query.run(a, b, a_from_b)
 }
 
 /// Judges a report; what is wrong or not sound is a fault.
@@ -87,11 +75,12 @@ fn unsound(report: &Report) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch::{Cloud, CloudSettings, Mesh, noise::SensorModel};
-    use cloudtouch_geom::{Point3, PointCloud};
+    use cloudtouch::{Mesh, Mode, noise::SensorModel};
+    use cloudtouch_geom::{Point3, PointCloud, Pose};
     use cloudtouch_testkit::scene;
 
     use super::*;
+    use crate::either::{EitherCloud, EitherQuery};
 
     #[test]
     fn free_and_collision_can_be_wrong_and_the_rest_is_open() {
@@ -106,10 +95,10 @@ mod tests {
     fn a_probability_out_of_its_bounds_is_not_sound() {
         let mesh = Mesh::prepare(&scene::sphere(0.1, 1)).unwrap();
         let points = PointCloud::from_points(vec![Point3::new(0.1, 0.0, 0.0)]);
-        let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.01 }, Mode::Calibrated);
-        let cloud = Cloud::prepare(&points, &settings).unwrap();
+        let sensor = SensorModel::Isotropic { std: 0.01 };
+        let cloud = EitherCloud::prepare(&points, sensor, Mode::Calibrated).unwrap();
         let here = Pose::identity();
-        let asked = default_query(Mode::Calibrated, (&cloud).into(), (&mesh).into(), &here);
+        let asked = EitherQuery::new(Mode::Calibrated).run(&cloud, &mesh, &here);
         let mut report = asked.unwrap();
         assert_eq!(unsound(&report), None);
         report.bounds[1] = 0.5 * report.collision_probability;

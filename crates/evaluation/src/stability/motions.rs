@@ -1,7 +1,7 @@
 //! What must not change an answer: moving, scaling, turning, swapping, permuting.
 
 use anyhow::Result;
-use cloudtouch::{Cloud, CloudSettings, Mode, Query, QuerySettings, Report, noise::SensorModel};
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report, noise::SensorModel};
 use cloudtouch_geom::{PointCloud, Pose, UncertainPoint, Vector3, seed};
 use rayon::prelude::*;
 
@@ -111,7 +111,7 @@ fn ask(pair: &Clouds, tolerances: [f64; 2]) -> Result<[Report; 2]> {
     let prepare = |points: &Vec<UncertainPoint>| {
         let covariances = Some(points.iter().map(|p| p.covariance).collect());
         let points = PointCloud::from_points(points.iter().map(|p| p.mean).collect());
-        let settings = CloudSettings::new(SensorModel::PerPoint, Mode::Calibrated);
+        let settings = CloudSettings::new(SensorModel::PerPoint);
         Cloud::prepare(&PointCloud { covariances, ..points }, &settings)
     };
     let [a, b] = pair.each_ref().map(prepare);

@@ -1,15 +1,16 @@
 //! The catalogue of clouds, meshes and poses through full queries in both modes.
 
 use anyhow::Result;
-use cloudtouch::{Cloud, CloudSettings, Mesh, Mode, Report, noise::SensorModel};
+use cloudtouch::{Mesh, Mode, Report, noise::SensorModel};
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Pose};
 use cloudtouch_testkit::hard_cases::{HardCase, HardMesh, hard_cases, hard_meshes, hard_poses};
 
 use super::{
-    examine::{Judged, default_query, examine},
+    examine::{Judged, examine},
     sheet::{Sheet, small},
 };
 use crate::{
+    either::{EitherCloud, EitherQuery},
     page::Section,
     table::{Table, bounds, probability, verdict},
 };
@@ -81,7 +82,7 @@ fn clouds(case: HardCase) -> Asked {
             let b = prepare(&case.cloud_b, &case.covariance_b, mode)?;
             let stages = a.filter_stages().iter().chain(b.filter_stages());
             let dropped = stages.map(|stage| stage.removed).sum();
-            let report = default_query(mode, (&a).into(), (&b).into(), &Pose::identity())?;
+            let report = EitherQuery::new(mode).run(&a, &b, &Pose::identity())?;
             Ok((report, dropped))
         }),
     }
@@ -94,24 +95,24 @@ fn mesh(case: HardMesh) -> Asked {
         valid: case.valid,
         ask: Box::new(move |mode| {
             let mesh = Mesh::prepare(&case.mesh)?;
-            let cloud = measured(&case.cloud, case.std)?;
+            let cloud = measured(&case.cloud, case.std, mode)?;
             let here = Pose::identity();
-            Ok((default_query(mode, (&cloud).into(), (&mesh).into(), &here)?, 0))
+            Ok((EitherQuery::new(mode).run(&cloud, &mesh, &here)?, 0))
         }),
     }
 }
 
-fn prepare(points: &[Point3], matrices: &[Matrix3], mode: Mode) -> Result<Cloud> {
+fn prepare(points: &[Point3], matrices: &[Matrix3], mode: Mode) -> Result<EitherCloud> {
     let covariances: Result<Vec<_>, _> = matrices.iter().map(Covariance::try_from_matrix).collect();
     let cloud =
         PointCloud { covariances: Some(covariances?), ..PointCloud::from_points(points.to_vec()) };
-    Ok(Cloud::prepare(&cloud, &CloudSettings::new(SensorModel::PerPoint, mode))?)
+    Ok(EitherCloud::prepare(&cloud, SensorModel::PerPoint, mode)?)
 }
 
 /// A cloud with the same noise everywhere, m.
-fn measured(points: &[Point3], std: f64) -> Result<Cloud> {
-    let settings = CloudSettings::new(SensorModel::Isotropic { std }, Mode::Calibrated);
-    Ok(Cloud::prepare(&PointCloud::from_points(points.to_vec()), &settings)?)
+fn measured(points: &[Point3], std: f64, mode: Mode) -> Result<EitherCloud> {
+    let cloud = PointCloud::from_points(points.to_vec());
+    Ok(EitherCloud::prepare(&cloud, SensorModel::Isotropic { std }, mode)?)
 }
 
 fn judge(sheet: &mut Sheet, name: &str, asked: &Asked, answer: &Answer) -> Judged {
@@ -163,7 +164,7 @@ fn row(
 fn poses(sheet: &mut Sheet) -> Result<()> {
     let at = |i: u32, z: f64| Point3::new(0.02 * f64::from(i % 10), 0.02 * f64::from(i / 10), z);
     let [a, b] = [0.0, 0.05].map(|z| (0..100).map(|i| at(i, z)).collect::<Vec<_>>());
-    let (a, b) = (measured(&a, 0.002)?, measured(&b, 0.002)?);
+    let (a, b) = (measured(&a, 0.002, Mode::Calibrated)?, measured(&b, 0.002, Mode::Calibrated)?);
     let (mut answered, mut refused) = (Vec::new(), Vec::new());
     for case in hard_poses() {
         let name = format!("pose, {}", case.name);
@@ -175,7 +176,7 @@ fn poses(sheet: &mut Sheet) -> Result<()> {
             refused.push(format!("`{}` ({})", case.name, case.reason));
             continue;
         };
-        let ask = || default_query(Mode::Calibrated, (&a).into(), (&b).into(), &pose);
+        let ask = || EitherQuery::new(Mode::Calibrated).run(&a, &b, &pose);
         let Some(report) = sheet.guard(&name, ask) else { continue };
         let report = report?;
         examine(sheet, &name, &report, Some(false));

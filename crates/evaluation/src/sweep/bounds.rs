@@ -1,7 +1,6 @@
 //! Whether the bounds of an answer contain what a search of everything finds.
 
 use anyhow::Result;
-use cloudtouch::Mode;
 
 use super::{
     OURS,
@@ -20,10 +19,10 @@ const ROUNDING: f64 = 1e-9;
 
 /// Asks the default, and a query that culls next to nothing and never stops early.
 pub(super) fn section() -> Result<Section> {
-    let mut everything = Ours::new(EVERYTHING, Mode::Calibrated)?;
+    let mut everything = Ours::new(EVERYTHING)?;
     everything.query.cull_probability = 1e-12;
     everything.query.stop_above = 1.0;
-    let methods = [Asked::always(Ours::new(OURS, Mode::Calibrated)?), Asked::always(everything)];
+    let methods = [Asked::always(Ours::new(OURS)?), Asked::always(everything)];
     let answers = ask(&Plan::of(Scenes::generated(), 1, 12, POINTS, STD), &methods)?;
     let mut table =
         Table::new(["pair", "answers", "outside of the bounds", "largest miss", "mean width"]);

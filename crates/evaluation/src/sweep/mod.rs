@@ -18,7 +18,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
-use cloudtouch::Mode;
 
 pub use ask::{Asked, ask};
 pub use judged::{Judged, Measured};
@@ -27,7 +26,7 @@ pub use scenes::Scenes;
 pub use short::run as check;
 
 use crate::{
-    methods::{Boxes, Distance, Ours, PlainSvm},
+    methods::{Boxes, Distance, Ours, Paper, PlainSvm},
     page,
 };
 use tables::Answered;
@@ -83,13 +82,13 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
 /// Ours, the oracle, the paper's mode and the alternatives. What takes long answers less: the paper's
 /// mode and the plain machine every seventh pose, what smooths every point every second draw.
 fn methods() -> Result<Vec<Asked>> {
-    let mut paper = Ours::new("paper", Mode::Paper)?;
+    let mut paper = Paper::new("paper");
     // A dense cloud beside a large mesh is to be answered, however long that takes.
     paper.query.max_mesh_parts = 1_000_000;
     let smoothed = Asked::always(Distance { smoothed: true });
     let seventh = |asked: Asked| Asked { pose_of: 7, ..asked };
     Ok(vec![
-        Asked::always(Ours::new(OURS, Mode::Calibrated)?),
+        Asked::always(Ours::new(OURS)?),
         Asked::always(Ours::oracle(ORACLE)?),
         Asked::always(Distance { smoothed: false }),
         Asked { draw_of: 2, ..smoothed },

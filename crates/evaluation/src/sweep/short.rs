@@ -1,7 +1,6 @@
 //! The short sweep that CI runs: fails when accuracy gets worse than recorded.
 
 use anyhow::{Result, bail};
-use cloudtouch::Mode;
 use cloudtouch_testkit::family::Family;
 
 use super::{
@@ -50,7 +49,7 @@ const RECORDED: [(Family, [[f64; 2]; 2]); 16] = [
 /// When a method fails, or a family is answered worse than recorded.
 pub fn run() -> Result<()> {
     let families = RECORDED.map(|(family, _)| family.into()).to_vec();
-    let methods = [Asked::always(Ours::new(OURS, Mode::Calibrated)?)];
+    let methods = [Asked::always(Ours::new(OURS)?)];
     let answers = ask(&Plan::of(families, DRAWS, POSES, POINTS, STD), &methods)?;
     let mut worse = Vec::new();
     for (family, recorded) in RECORDED {

@@ -2,23 +2,29 @@
 
 use arbitrary::{Result, Unstructured};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh};
-use cloudtouch::{Body, Cloud, Mesh, Mode};
+use cloudtouch::{Mesh, PrepareError};
 
 use super::numbers::{count, covariance, number, point};
-use super::settings::cloud_settings;
 
 /// Points of a body at most: a few leaves, and thousands of runs a minute.
 const MOST_POINTS: usize = 150;
 
+/// A prepared cloud of either path, or a mesh.
+#[allow(clippy::large_enum_variant, reason = "there are two, each far larger on the heap")]
+pub(super) enum Body<C> {
+    Cloud(C),
+    Mesh(Mesh),
+}
+
 /// A prepared body, or the message of the error of preparing it.
-pub(super) fn body(
+pub(super) fn body<S, C>(
     u: &mut Unstructured<'_>,
-    mode: Mode,
-) -> Result<std::result::Result<Body, String>> {
+    settings: impl Fn(&mut Unstructured<'_>) -> Result<S>,
+    prepare: impl Fn(&PointCloud, &S) -> std::result::Result<C, PrepareError>,
+) -> Result<std::result::Result<Body<C>, String>> {
     if u.arbitrary::<u8>()? < 192 {
-        let settings = cloud_settings(u, mode)?;
-        let cloud = cloud(u)?;
-        let prepared = Cloud::prepare(&cloud, &settings);
+        let settings = settings(u)?;
+        let prepared = prepare(&cloud(u)?, &settings);
         Ok(prepared.map(Body::Cloud).map_err(|error| error.to_string()))
     } else {
         let mesh = match mesh(u)? {

@@ -1,10 +1,25 @@
 //! What must hold for every report and every message.
 
-use cloudtouch::{QuerySettings, Report, Verdict};
+use cloudtouch::{QueryError, Report, Verdict};
+
+/// What a query was asked to keep to.
+pub(super) struct Limits {
+    pub accept: f64,
+    pub reject: f64,
+    pub max_contacts: usize,
+}
+
+/// Checks a report or the message of an error.
+pub(super) fn answer(answer: &Result<Report, QueryError>, limits: &Limits, points: [usize; 2]) {
+    match answer {
+        Ok(found) => report(found, limits, points),
+        Err(error) => message(&error.to_string()),
+    }
+}
 
 /// Checks a report against itself and the settings that it was asked under; `points` are those of
 /// A and of B, none for a mesh.
-pub(super) fn report(report: &Report, settings: &QuerySettings, points: [usize; 2]) {
+fn report(report: &Report, settings: &Limits, points: [usize; 2]) {
     let probability = report.collision_probability;
     let [low, high] = report.bounds;
     for value in [probability, low, high, report.max_probability, report.noisy_or_probability] {

@@ -7,7 +7,10 @@ mod numbers;
 mod settings;
 
 use arbitrary::Unstructured;
-use cloudtouch::{Body, Query};
+use cloudtouch::{BodyRef, Cloud, PaperBodyRef, PaperCloud, PaperQuery, Query, SettingsError};
+
+use bodies::Body;
+use check::Limits;
 
 /// Bytes as two bodies, a pose and settings.
 ///
@@ -19,27 +22,71 @@ pub fn query(bytes: &[u8]) {
 }
 
 fn run(u: &mut Unstructured<'_>) -> arbitrary::Result<()> {
+    if u.arbitrary()? { by_the_paper(u) } else { by_default(u) }
+}
+
+fn by_default(u: &mut Unstructured<'_>) -> arbitrary::Result<()> {
     let settings = settings::query_settings(u)?;
     let pose = numbers::pose(u)?;
     let query = Query::new(settings);
-    let (a, b) = (bodies::body(u, settings.mode)?, bodies::body(u, settings.mode)?);
-    for error in [query.as_ref().err().map(ToString::to_string), a.as_ref().err().cloned()] {
-        error.iter().for_each(|message| check::message(message));
-    }
-    if let Err(message) = &b {
-        check::message(message);
-    }
-    let (Ok(query), Ok(a), Ok(b)) = (query, a, b) else { return Ok(()) };
-    match query.run(&a, &b, &pose) {
-        Ok(report) => check::report(&report, query.settings(), [points(&a), points(&b)]),
-        Err(error) => check::message(&error.to_string()),
-    }
+    let mut body = || bodies::body(u, settings::cloud_settings, Cloud::prepare);
+    let Some((query, a, b)) = all(query, body()?, body()?) else { return Ok(()) };
+    let answer = query.run(default_ref(&a), default_ref(&b), &pose);
+    let limits = Limits {
+        accept: settings.accept,
+        reject: settings.reject,
+        max_contacts: settings.max_contacts,
+    };
+    check::answer(&answer, &limits, [&a, &b].map(|body| points(body, Cloud::len)));
     Ok(())
 }
 
-fn points(body: &Body) -> usize {
+fn by_the_paper(u: &mut Unstructured<'_>) -> arbitrary::Result<()> {
+    let settings = settings::paper_settings(u)?;
+    let pose = numbers::pose(u)?;
+    let query = PaperQuery::new(settings);
+    let mut body = || bodies::body(u, settings::paper_cloud_settings, PaperCloud::prepare);
+    let Some((query, a, b)) = all(query, body()?, body()?) else { return Ok(()) };
+    let answer = query.run(paper_ref(&a), paper_ref(&b), &pose);
+    let limits = Limits {
+        accept: settings.accept,
+        reject: settings.reject,
+        max_contacts: settings.max_contacts,
+    };
+    check::answer(&answer, &limits, [&a, &b].map(|body| points(body, PaperCloud::len)));
+    Ok(())
+}
+
+/// A query and its bodies, where there is no error; the messages of errors are checked.
+fn all<Q, C>(
+    query: Result<Q, SettingsError>,
+    a: Result<Body<C>, String>,
+    b: Result<Body<C>, String>,
+) -> Option<(Q, Body<C>, Body<C>)> {
+    if let Err(error) = &query {
+        check::message(&error.to_string());
+    }
+    [&a, &b].into_iter().filter_map(|body| body.as_ref().err()).for_each(|e| check::message(e));
+    Some((query.ok()?, a.ok()?, b.ok()?))
+}
+
+fn default_ref(body: &Body<Cloud>) -> BodyRef<'_> {
     match body {
-        Body::Cloud(cloud) => cloud.len(),
+        Body::Cloud(cloud) => cloud.into(),
+        Body::Mesh(mesh) => mesh.into(),
+    }
+}
+
+fn paper_ref(body: &Body<PaperCloud>) -> PaperBodyRef<'_> {
+    match body {
+        Body::Cloud(cloud) => cloud.into(),
+        Body::Mesh(mesh) => mesh.into(),
+    }
+}
+
+fn points<C>(body: &Body<C>, count: impl Fn(&C) -> usize) -> usize {
+    match body {
+        Body::Cloud(cloud) => count(cloud),
         Body::Mesh(_) => 0,
     }
 }

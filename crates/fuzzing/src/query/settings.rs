@@ -2,16 +2,36 @@
 
 use arbitrary::{Result, Unstructured};
 use cloudtouch::bvh::{Traversal, TreeSettings};
-use cloudtouch::noise::{Combination, SensorModel};
-use cloudtouch::{CloudSettings, Mode, OutlierSettings, Pooling, QuerySettings, VeilSettings};
+use cloudtouch::noise::{Discretization, SensorModel};
+use cloudtouch::{
+    CloudSettings, FilterSettings, OutlierSettings, PaperCloudSettings, PaperNoise, PaperSettings,
+    Pooling, QuerySettings, VeilSettings,
+};
 
 use super::numbers::{count, number, setting};
 
 pub(super) fn query_settings(u: &mut Unstructured<'_>) -> Result<QuerySettings> {
-    let mode = if u.arbitrary()? { Mode::Paper } else { Mode::Calibrated };
-    let usual = QuerySettings::new(mode);
-    let traversals = [usual.traversal, Traversal::Certified, Traversal::GapAware, Traversal::Paper];
+    let usual = QuerySettings::default();
     Ok(QuerySettings {
+        accept: setting(u, usual.accept, 0.5, 1.0)?,
+        reject: setting(u, usual.reject, 0.0, 0.5)?,
+        gamma: setting(u, usual.gamma, 0.0, 1000.0)?,
+        penalty: setting(u, usual.penalty, 0.0, 1e6)?,
+        mesh_penalty_factor: setting(u, usual.mesh_penalty_factor, 0.0, 100.0)?,
+        ellipsoid_radius: setting(u, usual.ellipsoid_radius, 0.0, 10.0)?,
+        relative_gap: setting(u, usual.relative_gap, 1e-9, 1.0)?,
+        cull_probability: setting(u, usual.cull_probability, 0.0, 1.0)?,
+        stop_above: setting(u, usual.stop_above, 0.0, 2.0)?,
+        max_contacts: count(u, usual.max_contacts)?,
+        max_mesh_parts: count(u, usual.max_mesh_parts)?,
+        ..usual
+    })
+}
+
+pub(super) fn paper_settings(u: &mut Unstructured<'_>) -> Result<PaperSettings> {
+    let usual = PaperSettings::default();
+    let traversals = [usual.traversal, Traversal::Certified, Traversal::GapAware, Traversal::Paper];
+    Ok(PaperSettings {
         accept: setting(u, usual.accept, 0.5, 1.0)?,
         reject: setting(u, usual.reject, 0.0, 0.5)?,
         pooling: if u.arbitrary()? { Pooling::NoisyOr } else { Pooling::Max },
@@ -30,13 +50,38 @@ pub(super) fn query_settings(u: &mut Unstructured<'_>) -> Result<QuerySettings> 
     })
 }
 
-pub(super) fn cloud_settings(u: &mut Unstructured<'_>, mode: Mode) -> Result<CloudSettings> {
-    let mut settings = CloudSettings::new(sensor(u)?, mode);
+pub(super) fn cloud_settings(u: &mut Unstructured<'_>) -> Result<CloudSettings> {
+    let mut settings = CloudSettings::new(sensor(u)?);
     if u.arbitrary()? {
         // Only half of the inputs spend bytes on what rarely matters.
         return Ok(settings);
     }
-    let (filter, noise) = (&mut settings.filter, &mut settings.noise);
+    change_filter(u, &mut settings.filter)?;
+    settings.posterior.disc_std = setting(u, settings.posterior.disc_std, 0.0, 2.0)?;
+    settings.tree = tree(u)?;
+    Ok(settings)
+}
+
+pub(super) fn paper_cloud_settings(u: &mut Unstructured<'_>) -> Result<PaperCloudSettings> {
+    let mut settings = PaperCloudSettings::new(sensor(u)?);
+    if u.arbitrary()? {
+        return Ok(settings);
+    }
+    change_filter(u, &mut settings.filter)?;
+    if u.arbitrary()? {
+        settings.noise = PaperNoise::Convolution;
+    }
+    let usual = settings.discretization;
+    settings.discretization = Discretization {
+        neighbors: count(u, usual.neighbors)?,
+        width: setting(u, usual.width, 0.0, 10.0)?,
+        ..usual
+    };
+    settings.tree = tree(u)?;
+    Ok(settings)
+}
+
+fn change_filter(u: &mut Unstructured<'_>, filter: &mut FilterSettings) -> Result<()> {
     filter.min_range = setting(u, filter.min_range, 0.0, 1.0)?;
     filter.max_range = setting(u, filter.max_range, 0.0, 10.0)?;
     filter.drop_duplicates = u.arbitrary()?;
@@ -54,20 +99,17 @@ pub(super) fn cloud_settings(u: &mut Unstructured<'_>, mode: Mode) -> Result<Clo
     if u.arbitrary()? {
         filter.collision_map = Some(setting(u, 0.05, 0.0, 1.0)?);
     }
-    let combinations =
-        [Combination::SurfacePosterior, Combination::Precision, Combination::Convolution];
-    noise.combination = *u.choose(&combinations)?;
-    noise.discretization.neighbors = count(u, noise.discretization.neighbors)?;
-    noise.discretization.width = setting(u, noise.discretization.width, 0.0, 10.0)?;
-    noise.posterior.disc_std = setting(u, noise.posterior.disc_std, 0.0, 2.0)?;
+    Ok(())
+}
+
+fn tree(u: &mut Unstructured<'_>) -> Result<TreeSettings> {
     let usual = TreeSettings::default();
-    settings.tree = TreeSettings {
+    Ok(TreeSettings {
         max_leaf_points: count(u, usual.max_leaf_points)?,
         min_leaf_points: count(u, usual.min_leaf_points)?,
         max_variation: setting(u, usual.max_variation, 0.0, 0.34)?,
         sibling_overlap: setting(u, usual.sibling_overlap, 0.0, 0.5)?,
-    };
-    Ok(settings)
+    })
 }
 
 fn sensor(u: &mut Unstructured<'_>) -> Result<SensorModel> {

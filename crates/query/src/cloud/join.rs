@@ -6,13 +6,13 @@ use cloudtouch_bvh::NodeId;
 use cloudtouch_noise::Scratch;
 
 use super::edge::{EDGE_SPACINGS, Edge, SLOPE};
-use super::prepare::Cloud;
+use super::prepared::Prepared;
 use super::surfel::Surfel;
 
 /// Neighbours of a point that may be joined to it.
 const NEIGHBORS: usize = 8;
 
-impl Cloud {
+impl Prepared {
     /// The edges that start or end at a point of a leaf.
     pub(crate) fn leaf_edges(&self, id: NodeId) -> &[Edge] {
         self.surface.edges[id.index()].get_or_init(|| {
@@ -26,7 +26,7 @@ impl Cloud {
 /// which has the same edge.
 ///
 /// Only points that are among each other's nearest are joined, so that both leaves agree.
-pub(crate) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
+pub(crate) fn edges_of(cloud: &Prepared, indices: &[u32]) -> Vec<Edge> {
     let places: BTreeMap<u32, usize> = indices.iter().copied().zip(0..).collect();
     let mut scratch = Scratch::default();
     let mut nearest = Nearest { cloud, known: BTreeMap::new() };
@@ -56,7 +56,7 @@ pub(crate) fn edges_of(cloud: &Cloud, indices: &[u32]) -> Vec<Edge> {
 
 /// The points nearest to points of a leaf; most are asked for several times.
 struct Nearest<'a> {
-    cloud: &'a Cloud,
+    cloud: &'a Prepared,
     known: BTreeMap<u32, [u32; NEIGHBORS]>,
 }
 

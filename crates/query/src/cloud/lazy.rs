@@ -4,13 +4,13 @@ use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Point3, UnitVector3};
 use cloudtouch_noise::Scratch;
 
-use super::prepare::Cloud;
+use super::prepared::Prepared;
 use super::surfel::Surfel;
 
 /// Relative rounding of an eigenvalue, generously.
 const ROUNDING: f64 = 1e-9;
 
-impl Cloud {
+impl Prepared {
     /// The surface at the points of a node, and whether this call computed it.
     pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
         let mut computed = false;

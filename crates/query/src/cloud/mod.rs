@@ -1,19 +1,23 @@
 //! Noisy clouds prepared for queries: filtered, indexed, in a tree; the costly part of the noise
 //! model is computed for a leaf when a query first visits it.
 
+mod accessors;
 mod edge;
 mod join;
 mod lazy;
 mod prepare;
+mod prepared;
 mod refine;
 mod settings;
 mod slots;
 mod surfel;
 mod view;
 
+pub(crate) use accessors::cloud_accessors;
 pub(crate) use edge::{DISC_SPACINGS, Edge, SLOPE};
 #[cfg(test)]
 pub(crate) use join::edges_of;
 pub use prepare::Cloud;
+pub(crate) use prepared::{Preparation, Prepared};
 pub use settings::CloudSettings;
 pub(crate) use surfel::Surfel;

@@ -8,25 +8,16 @@ use rayon::prelude::*;
 use crate::error::PrepareError;
 
 use super::edge::{DISC_SPACINGS, Edge};
-use super::prepare::Cloud;
+use super::prepared::Prepared;
 use super::surfel::Surfel;
 
 /// The half axes of an ellipsoid, along a disc and across it, that holds everything up to (1, 1): the
 /// sum of their inverse squares is less than one.
 const HOLDS_BOTH: [f64; 2] = [1.1, 2.5];
 
-impl Cloud {
+impl Prepared {
     /// Computes the surface at every point, on all threads of the pool, and fits the tree to it.
-    ///
-    /// A cloud as prepared computes its surface where queries come near it, and until then has to
-    /// allow for what it might be; one that is refined is searched several times as fast, from the
-    /// first query on. It takes as long as a handful of first queries, and pays for a scene that many
-    /// poses are tested in, not for a frame that is looked at a few times. Probabilities stay what
-    /// they are, only what is left out of the search and the bounds on it may differ.
-    ///
-    /// # Errors
-    /// When the surface of a point is beyond what a tree holds, as at a noise of 1e50 m.
-    pub fn refined(mut self) -> Result<Self, PrepareError> {
+    pub(super) fn refine(&mut self) -> Result<(), PrepareError> {
         let start = std::time::Instant::now();
         let leaves: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
         leaves.par_iter().for_each(|&leaf| {
@@ -48,7 +39,7 @@ impl Cloud {
         self.tree.refit(&primitives)?;
         self.tree.set_extents(extents)?;
         self.prepare_time += start.elapsed();
-        Ok(self)
+        Ok(())
     }
 
     /// For each point of a leaf how far the near halves of its edges reach along its disc and across

@@ -1,24 +1,15 @@
-//! Queries: settings, the ladder for a leaf pair, and what becomes of its answer.
+//! The default path: geometry first, the classifier in doubt, a fitted probability.
 
+mod batch;
 mod calibrated;
 mod classify;
-mod clock;
-mod contacts;
-mod estimate;
-mod evidence;
 mod exact;
-mod leaf_pair;
 mod leaf_pairs;
-mod pair;
-mod pool;
-mod record;
 mod run;
 mod settings;
 mod signed;
-mod surface;
 mod task;
-mod train;
-mod unseen;
 
+pub(crate) use exact::{ExactPair, exact_pair};
 pub use run::Query;
-pub use settings::{Pooling, QuerySettings};
+pub use settings::QuerySettings;

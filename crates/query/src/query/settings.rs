@@ -2,37 +2,22 @@
 
 use std::time::Duration;
 
-use cloudtouch_bvh::Traversal;
-
+use crate::checks::{fraction, positive, thresholds};
+use crate::classifier::ClassifierSettings;
 use crate::error::SettingsError;
-use crate::mode::Mode;
 use crate::recalibration::Recalibration;
 
-/// How point probabilities become the probability of a pair of clouds (section 4.4).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Pooling {
-    /// The largest point probability.
-    #[default]
-    Max,
-    /// The chance that at least one of the likely, well separated points collides.
-    NoisyOr,
-}
-
-/// All settings of a query; [`Query::new`](crate::Query::new) checks them.
+/// All settings of a query on the default path; [`Query::new`](crate::Query::new) checks them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuerySettings {
-    /// How probabilities are estimated.
-    pub mode: Mode,
     /// A: a pair with a higher probability is in collision; at least ½.
     pub accept: f64,
     /// B: a pair with a lower probability is free; at most ½.
     pub reject: f64,
-    /// How point probabilities are pooled.
-    pub pooling: Pooling,
-    /// Two clouds in the calibrated mode: the classifier is asked where geometry alone gives a
+    /// Two clouds: the classifier is asked where geometry alone gives a
     /// probability in this interval.
     pub doubt: [f64; 2],
-    /// Two clouds in the calibrated mode: from evidence to the probability.
+    /// Two clouds: from evidence to the probability.
     pub recalibration: Recalibration,
     /// Kernel width γ for a leaf pair scaled to the unit box.
     pub gamma: f64,
@@ -44,12 +29,10 @@ pub struct QuerySettings {
     pub ellipsoid_radius: f64,
     /// Relative gap at which a kernel problem counts as solved.
     pub relative_gap: f64,
-    /// Which pairs of nodes are descended.
-    pub traversal: Traversal,
     /// Pairs of boxes are culled when no point in them can be more probable than this.
     pub cull_probability: f64,
-    /// The search ends when a collision is this certain; 1 never ends it early. Between two clouds in
-    /// the calibrated mode it ends at 0.95 too, where more of the same changes nothing.
+    /// The search ends when a collision is this certain; 1 never ends it early. Between two clouds
+    /// it ends at 0.95 too, where more of the same changes nothing.
     pub stop_above: f64,
     /// How long a query may search. What was not looked at by then raises the upper bound, to 1 as a
     /// rule, and is no guess. The clock is looked at before each leaf pair and each classifier,
@@ -63,24 +46,13 @@ pub struct QuerySettings {
     /// How many triangles, before and after splitting, the part of a mesh that faces a leaf of a
     /// cloud is sampled by at most; a usual part takes some thousands.
     pub max_mesh_parts: usize,
-    /// Seed of the stochastic traversals.
-    pub seed: u64,
 }
 
 impl Default for QuerySettings {
     fn default() -> Self {
-        Self::new(Mode::default())
-    }
-}
-
-impl QuerySettings {
-    /// The default settings of a mode.
-    pub fn new(mode: Mode) -> Self {
         Self {
-            mode,
             accept: 0.9,
             reject: 0.1,
-            pooling: Pooling::Max,
             doubt: [0.1, 0.9],
             recalibration: Recalibration::default(),
             gamma: 10.0,
@@ -89,51 +61,39 @@ impl QuerySettings {
             // κ = 0.84: an ellipsoid of one standard deviation.
             ellipsoid_radius: 1.0,
             relative_gap: 1e-3,
-            traversal: match mode {
-                Mode::Calibrated => Traversal::Certified,
-                Mode::Paper => Traversal::Paper,
-            },
             cull_probability: 1e-6,
             stop_above: 0.999,
             deadline: None,
             max_contacts: 16,
             max_mesh_parts: 20_000,
-            seed: 0,
         }
     }
+}
 
+impl QuerySettings {
     /// Checks every field.
     ///
     /// # Errors
     /// Names the setting that is out of range, and its value.
     pub fn validate(&self) -> Result<(), SettingsError> {
         self.recalibration.validate()?;
-        let (accept, reject) = (self.accept, self.reject);
-        if !((0.0..=0.5).contains(&reject) && (0.5..=1.0).contains(&accept)) {
-            return Err(SettingsError::Thresholds { accept, reject });
-        }
-        for (name, value) in [
-            ("gamma", self.gamma),
-            ("penalty", self.penalty),
-            ("mesh_penalty_factor", self.mesh_penalty_factor),
-            ("ellipsoid_radius", self.ellipsoid_radius),
-            ("stop_above", self.stop_above),
-        ] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(SettingsError::NotPositive { name, value });
-            }
-        }
+        thresholds(self.accept, self.reject)?;
+        self.classifier().validate()?;
+        positive("stop_above", self.stop_above)?;
         let [lowest, highest] = self.doubt;
         if !(0.0 <= lowest && lowest <= highest && highest <= 1.0) {
             return Err(SettingsError::NotAnInterval { name: "doubt", lowest, highest });
         }
-        for (name, value) in
-            [("relative_gap", self.relative_gap), ("cull_probability", self.cull_probability)]
-        {
-            if !(value > 0.0 && value < 1.0) {
-                return Err(SettingsError::NotAFraction { name, value });
-            }
+        fraction("cull_probability", self.cull_probability)
+    }
+
+    pub(crate) fn classifier(&self) -> ClassifierSettings {
+        ClassifierSettings {
+            gamma: self.gamma,
+            penalty: self.penalty,
+            mesh_penalty_factor: self.mesh_penalty_factor,
+            ellipsoid_radius: self.ellipsoid_radius,
+            relative_gap: self.relative_gap,
         }
-        Ok(())
     }
 }

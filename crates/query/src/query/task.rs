@@ -2,7 +2,8 @@
 
 use cloudtouch_bvh::TraversalSettings;
 
-use super::clock::Clock;
+use crate::classifier::{ClassifierSettings, Clock};
+
 use super::settings::QuerySettings;
 
 /// What every part of one query goes by.
@@ -10,6 +11,7 @@ use super::settings::QuerySettings;
 pub(super) struct Task<'a> {
     /// Checked.
     pub settings: &'a QuerySettings,
+    pub classifier: ClassifierSettings,
     /// What the traversal of two trees is asked.
     pub traversal: TraversalSettings,
     pub clock: Clock,

@@ -1,13 +1,15 @@
 //! Clouds of known surfaces, prepared, and what every report has to satisfy.
-#![allow(dead_code, reason = "each test file uses a part of it")]
+#![allow(dead_code, unused_imports, reason = "each test file uses a part of it")]
 
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{BodyRef, Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, Stats};
+use cloudtouch::{Mesh, Mode, Report, Stats};
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::{scene, surface};
 
-pub(crate) const MODES: [Mode; 2] = [Mode::Calibrated, Mode::Paper];
+mod paths;
+
+pub(crate) use paths::{AnyQuery, Asked, MODES, Scan};
 
 /// A pose that only moves.
 pub(crate) fn at(x: f64, y: f64, z: f64) -> Pose {
@@ -31,20 +33,19 @@ pub(crate) fn measured(mesh: &TriangleMesh, spacing: f64, std: f64, seed: u64) -
 }
 
 /// Prepares points with the same noise in every direction.
-pub(crate) fn prepare(points: Vec<Point3>, std: f64, mode: Mode) -> Cloud {
-    let settings = CloudSettings::new(SensorModel::Isotropic { std }, mode);
-    Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud")
+pub(crate) fn prepare(points: Vec<Point3>, std: f64, mode: Mode) -> Scan {
+    let sensor = SensorModel::Isotropic { std };
+    Scan::of(&PointCloud::from_points(points), sensor, mode).expect("a good cloud")
 }
 
 /// Prepares points that each bring their covariance.
-pub(crate) fn prepare_each(points: Vec<Point3>, covariances: Vec<Covariance>, mode: Mode) -> Cloud {
+pub(crate) fn prepare_each(points: Vec<Point3>, covariances: Vec<Covariance>, mode: Mode) -> Scan {
     let cloud = PointCloud { covariances: Some(covariances), ..PointCloud::from_points(points) };
-    let settings = CloudSettings::new(SensorModel::PerPoint, mode);
-    Cloud::prepare(&cloud, &settings).expect("a good cloud")
+    Scan::of(&cloud, SensorModel::PerPoint, mode).expect("a good cloud")
 }
 
 /// Measures a surface and prepares the cloud.
-pub(crate) fn scan(mesh: &TriangleMesh, spacing: f64, std: f64, seed: u64, mode: Mode) -> Cloud {
+pub(crate) fn scan(mesh: &TriangleMesh, spacing: f64, std: f64, seed: u64, mode: Mode) -> Scan {
     prepare(measured(mesh, spacing, std, seed), std, mode)
 }
 
@@ -53,15 +54,15 @@ pub(crate) fn mesh(mesh: &TriangleMesh) -> Mesh {
 }
 
 /// A query with the default settings of a mode.
-pub(crate) fn query(mode: Mode) -> Query {
-    Query::new(QuerySettings::new(mode)).expect("default settings are good")
+pub(crate) fn query(mode: Mode) -> AnyQuery {
+    AnyQuery::with(mode, |_| {}, |_| {})
 }
 
 /// Runs a default query and checks the report.
 pub(crate) fn ask<'a>(
     mode: Mode,
-    a: impl Into<BodyRef<'a>>,
-    b: impl Into<BodyRef<'a>>,
+    a: impl Into<Asked<'a>>,
+    b: impl Into<Asked<'a>>,
     a_from_b: &Pose,
 ) -> Report {
     let report = query(mode).run(a, b, a_from_b).expect("a finite pose");

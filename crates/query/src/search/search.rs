@@ -62,6 +62,7 @@ pub(super) fn search<'a>(
     let cull_deviations = found.relevant_half_gap();
     let settings = TraversalSettings { crossings: true, cull_deviations, ..*settings };
     let motion = Motion::from(a_from_b);
+    // A certified traversal draws nothing: any seed will do.
     let outcome = traverse(a.tree(), b.tree(), a_from_b, &settings, 0, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), &motion, &pair, stats);
@@ -184,17 +185,17 @@ mod tests {
 
     use super::*;
     use crate::Cloud;
+    use crate::CloudSettings;
     use crate::cloud::{Edge, Surfel, edges_of};
     use crate::query::calibrated::crossing::through_disc;
     use crate::query::calibrated::crossings::Witness;
     use crate::query::calibrated::meeting::squared_deviations;
-    use crate::{CloudSettings, Mode};
 
     fn ball(count: usize, std: f64, seed: u64) -> Cloud {
         let samples = surface::sample_surface(&scene::sphere(0.05, 2), count, seed);
         let points: Vec<Point3> =
             add_noise(&surface::positions(&samples), NoiseKind::Gaussian, std, seed);
-        let mut settings = CloudSettings::new(SensorModel::Isotropic { std }, Mode::Calibrated);
+        let mut settings = CloudSettings::new(SensorModel::Isotropic { std });
         settings.tree.max_leaf_points = 12;
         settings.tree.min_leaf_points = 4;
         Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap()
@@ -206,7 +207,7 @@ mod tests {
         let surfels = leaves.flat_map(|id| cloud.leaf(id).0.to_vec());
         let motion = Motion::from(a_from_cloud);
         let indices: Vec<u32> = (0..cloud.len() as u32).collect();
-        let edges = edges_of(cloud, &indices);
+        let edges = edges_of(cloud.prepared(), &indices);
         (
             surfels.map(|s| s.moved(&motion)).collect(),
             edges.iter().map(|e| e.moved(&motion)).collect(),

@@ -3,9 +3,7 @@
 use cloudtouch_geom::{Point3, Vector3};
 
 use crate::CONTACT_FLOOR;
-use crate::query::evidence::Evidence;
-use crate::query::pool::{PointProbability, Side};
-use crate::query::record::CORRELATION_SPACINGS;
+use crate::record::{CORRELATION_SPACINGS, Evidence, PointProbability, Side};
 use crate::report::{Clearance, Contact};
 
 use super::leaf::{Leaf, NoisyLeaf};

@@ -4,7 +4,7 @@ use crate::recalibration::ContactEvidence;
 
 /// A probability with its bounds, and what it rests on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Estimate {
+pub(crate) struct Estimate {
     pub probability: f64,
     /// Lower and upper bound on the probability under the same model.
     pub bounds: [f64; 2],

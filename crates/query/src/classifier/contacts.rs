@@ -126,11 +126,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::classifier::clock::Clock;
+    use crate::classifier::settings::ClassifierSettings;
+    use crate::classifier::train::by_kernel;
     use crate::mode::Mode;
-    use crate::query::classify::classify;
-    use crate::query::clock::Clock;
-    use crate::query::settings::QuerySettings;
-    use crate::query::train::by_kernel;
+    use crate::paper::classify;
     use crate::report::Stats;
 
     const SPACING: f64 = 0.02;
@@ -160,12 +160,12 @@ mod tests {
     /// The answer as the calibrated mode trains it for a contact patch, or the paper's mode for a
     /// pair of leaves, so tightly that what is compared does not hang on the tolerance.
     fn answer(points: &PairPoints, mode: Mode) -> PairAnswer {
-        let settings = QuerySettings { relative_gap: 1e-8, ..QuerySettings::new(mode) };
+        let settings = ClassifierSettings { relative_gap: 1e-8, ..ClassifierSettings::default() };
         let stats = &mut Stats::default();
         let clock = Clock::new(Instant::now(), None);
         match mode {
             Mode::Calibrated => by_kernel(points, &settings, &clock, stats),
-            Mode::Paper => classify(points, &settings, 0.0, &clock, stats),
+            Mode::Paper => classify(points, &settings, &clock, stats),
         }
     }
 

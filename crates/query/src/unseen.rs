@@ -3,8 +3,8 @@
 
 use cloudtouch_geom::{Point3, Pose};
 
-use crate::body::BodyRef;
-use crate::cloud::Cloud;
+use crate::cloud::Prepared;
+use crate::shape::Shape;
 
 /// How many points stand for a body here.
 const SAMPLES: usize = 100;
@@ -12,17 +12,17 @@ const SAMPLES: usize = 100;
 const HIDDEN_SHARE: f64 = 0.5;
 
 /// Whether either body lies mostly behind what the other, a cloud, saw.
-pub(crate) fn is_either_hidden(a: BodyRef<'_>, b: BodyRef<'_>, a_from_b: &Pose) -> bool {
+pub(crate) fn is_either_hidden(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
     match (a, b) {
-        (BodyRef::Cloud(cloud), b) if is_hidden(cloud, b, a_from_b) => true,
-        (a, BodyRef::Cloud(cloud)) => is_hidden(cloud, a, &a_from_b.inverse()),
+        (Shape::Cloud(cloud), b) if is_hidden(cloud, b, a_from_b) => true,
+        (a, Shape::Cloud(cloud)) => is_hidden(cloud, a, &a_from_b.inverse()),
         _ => false,
     }
 }
 
 /// Whether the other body lies mostly behind what `cloud` saw, so that "no surface near" does not
 /// mean "free". False when the cloud is not a single view.
-fn is_hidden(cloud: &Cloud, other: BodyRef<'_>, cloud_from_other: &Pose) -> bool {
+fn is_hidden(cloud: &Prepared, other: Shape<'_>, cloud_from_other: &Pose) -> bool {
     let Some(view) = cloud.view() else { return false };
     let samples = coarse_samples(other);
     let measured = (cloud.points(), cloud.sensor());
@@ -32,7 +32,7 @@ fn is_hidden(cloud: &Cloud, other: BodyRef<'_>, cloud_from_other: &Pose) -> bool
 }
 
 /// Evenly chosen leaves, by their middle: close to the surface and spread over all of it.
-fn coarse_samples(body: BodyRef<'_>) -> Vec<Point3> {
+fn coarse_samples(body: Shape<'_>) -> Vec<Point3> {
     let tree = body.tree();
     let centers: Vec<Point3> = tree.leaves().map(|leaf| leaf.obb().centre).collect();
     let step = centers.len().div_ceil(SAMPLES).max(1);

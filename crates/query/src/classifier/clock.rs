@@ -4,17 +4,17 @@ use std::time::{Duration, Instant};
 
 /// When a query has to answer with what it knows.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Clock {
+pub(crate) struct Clock {
     /// `None` without a limit, or where it is beyond all time.
     until: Option<Instant>,
 }
 
 impl Clock {
-    pub(super) fn new(start: Instant, limit: Option<Duration>) -> Self {
+    pub(crate) fn new(start: Instant, limit: Option<Duration>) -> Self {
         Self { until: limit.and_then(|limit| start.checked_add(limit)) }
     }
 
-    pub(super) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.until.is_some_and(|until| Instant::now() >= until)
     }
 }

@@ -1,57 +1,39 @@
-//! Pairs of leaves, each classified on its own: the paper's mode, and clouds against open meshes.
+//! The hierarchy (section 5): pairs of leaves, each classified on its own.
 
 use std::collections::BTreeSet;
 
 use cloudtouch_bvh::{Flow, NodeId, Traversal, TraversalSettings, traverse};
 use cloudtouch_geom::Pose;
 
-use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::mode::Mode;
+use crate::record::{Evidence, add_pair};
+use crate::shape::Shape;
 
 use super::classify::classify;
-use super::evidence::Evidence;
-use super::leaf_pair::{self, gather};
-use super::record::add_pair;
+use super::leaf_pair::{bound_left_out, gather};
 use super::task::Task;
 
-/// What the classifier wants of a cloud at a time.
-const LEAF_POINTS: usize = 40;
-
-/// Clouds of the calibrated mode have smaller leaves than the classifier wants.
-fn leaf_traversal(task: &Task<'_>, bodies: [BodyRef<'_>; 2]) -> TraversalSettings {
-    let leaf_points = bodies.map(|body| match body {
-        BodyRef::Cloud(_) => LEAF_POINTS,
-        BodyRef::Mesh(_) => 0,
-    });
-    TraversalSettings { leaf_points, ..task.traversal }
-}
-
-/// Classifies the leaf pairs that may touch and bounds the others.
+/// Classifies the pairs of leaves that the traversal descends to and bounds the others.
 pub(super) fn traverse_leaf_pairs(
-    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    (a, b): (Shape<'_>, Shape<'_>),
     a_from_b: &Pose,
     task: &Task<'_>,
     evidence: &mut Evidence,
 ) -> Result<(), QueryError> {
     let settings = task.settings;
-    let traversal = leaf_traversal(task, [a, b]);
+    // As printed, but for pairs that no probability can come from.
+    let next = Flow::Above(settings.cull_probability);
+    let (traversal, seed) = (&task.traversal, settings.seed);
     let mut looked_at = BTreeSet::new();
     let mut failed = None;
-    let outcome = traverse(a.tree(), b.tree(), a_from_b, &traversal, settings.seed, |pair| {
+    let outcome = traverse(a.tree(), b.tree(), a_from_b, traversal, seed, |pair| {
         looked_at.insert((pair.a, pair.b));
-        let relevant = match settings.mode {
-            Mode::Calibrated => evidence.relevant_probability(),
-            // As printed, but for pairs that no probability can come from.
-            Mode::Paper => 0.0,
-        };
-        let next = Flow::Above(relevant.max(settings.cull_probability));
         let stats = &mut evidence.stats;
         let max_parts = settings.max_mesh_parts;
         let points = match gather((a, pair.a), (b, pair.b), a_from_b, max_parts, stats) {
             Ok(Some(points)) => points,
             Ok(None) => {
-                evidence.widen(leaf_pair::bound_left_out());
+                evidence.widen(bound_left_out());
                 return next;
             }
             Err(error) => {
@@ -60,7 +42,7 @@ pub(super) fn traverse_leaf_pairs(
             }
         };
         stats.leaf_pairs += 1;
-        let answer = classify(&points, settings, relevant, &task.clock, stats);
+        let answer = classify(&points, &task.classifier, &task.clock, stats);
         add_pair((a, b, a_from_b), &points, &answer, evidence);
         let is_enough = evidence.largest() > settings.stop_above || task.clock.is_over();
         if is_enough { Flow::Stop } else { next }
@@ -73,7 +55,7 @@ pub(super) fn traverse_leaf_pairs(
     if settings.traversal == Traversal::Certified || outcome.stopped {
         evidence.widen(outcome.culled_bound);
     } else {
-        bound_what_chance_culled((a, b), a_from_b, task, &looked_at, evidence)?;
+        bound_what_chance_culled((a, b), a_from_b, traversal, &looked_at, evidence)?;
     }
     Ok(())
 }
@@ -81,14 +63,13 @@ pub(super) fn traverse_leaf_pairs(
 /// Bounds the leaf pairs that a stochastic traversal culled: the boxes of the large nodes it
 /// culled by chance bound their points far too loosely.
 fn bound_what_chance_culled(
-    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    (a, b): (Shape<'_>, Shape<'_>),
     a_from_b: &Pose,
-    task: &Task<'_>,
+    by_chance: &TraversalSettings,
     looked_at: &BTreeSet<(NodeId, NodeId)>,
     evidence: &mut Evidence,
 ) -> Result<(), QueryError> {
-    let certified =
-        TraversalSettings { kind: Traversal::Certified, ..leaf_traversal(task, [a, b]) };
+    let certified = TraversalSettings { kind: Traversal::Certified, ..*by_chance };
     let mut left_out = 0.0_f64;
     let outcome = traverse(a.tree(), b.tree(), a_from_b, &certified, 0, |pair| {
         if !looked_at.contains(&(pair.a, pair.b)) {

@@ -3,22 +3,20 @@
 use cloudtouch_geom::Pose;
 
 use crate::CONTACT_FLOOR;
-use crate::body::BodyRef;
+use crate::classifier::{PairAnswer, PairPoint, PairPoints, most_probable_place};
+use crate::query::ExactPair;
 use crate::report::{Clearance, Contact};
+use crate::shape::Shape;
 
-use super::contacts::most_probable_place;
 use super::evidence::Evidence;
-use super::exact::ExactPair;
-use super::pair::{PairAnswer, PairPoint, PairPoints};
-use super::pool::{PointProbability, Side};
-use super::signed::SignedPoint;
+use super::point::{PointProbability, Side};
 
 /// Points nearer than this many spacings share the samples their position was estimated from.
-pub(super) const CORRELATION_SPACINGS: f64 = 3.0;
+pub(crate) const CORRELATION_SPACINGS: f64 = 3.0;
 
 /// Adds what a leaf pair says.
-pub(super) fn add_pair(
-    (a, b, a_from_b): (BodyRef<'_>, BodyRef<'_>, &Pose),
+pub(crate) fn add_pair(
+    (a, b, a_from_b): (Shape<'_>, Shape<'_>, &Pose),
     points: &PairPoints,
     answer: &PairAnswer,
     evidence: &mut Evidence,
@@ -64,10 +62,10 @@ fn pair_point(side: Side, point: &PairPoint, probability: f64) -> PointProbabili
 /// A contact with a mesh lies on the mesh and has its normal: that surface is known better than the
 /// one between. Out of a watertight mesh is towards the other body; the normal of an open one
 /// takes the side that the separating surface gives it.
-fn onto_mesh(contact: Contact, a: BodyRef<'_>, b: BodyRef<'_>, a_from_b: &Pose) -> Contact {
+fn onto_mesh(contact: Contact, a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> Contact {
     let (mesh, a_from_mesh, towards_b) = match (a, b) {
-        (BodyRef::Mesh(mesh), _) => (mesh, &Pose::identity(), 1.0),
-        (_, BodyRef::Mesh(mesh)) => (mesh, a_from_b, -1.0),
+        (Shape::Mesh(mesh), _) => (mesh, &Pose::identity(), 1.0),
+        (_, Shape::Mesh(mesh)) => (mesh, a_from_b, -1.0),
         _ => return contact,
     };
     let in_mesh = a_from_mesh.inverse().transform_point(&contact.point);
@@ -82,42 +80,8 @@ fn onto_mesh(contact: Contact, a: BodyRef<'_>, b: BodyRef<'_>, a_from_b: &Pose) 
     Contact { point, normal_a_to_b, ..contact }
 }
 
-/// Adds points by their signed distance from a watertight mesh.
-pub(super) fn add_signed_points(
-    points: &[SignedPoint],
-    side: Side,
-    a_from_cloud: &Pose,
-    evidence: &mut Evidence,
-) {
-    for point in points {
-        evidence.add_point(PointProbability {
-            side,
-            index: Some(point.index),
-            position: a_from_cloud.transform_point(&point.position),
-            probability: point.probability,
-            correlation_length: CORRELATION_SPACINGS * point.spacing,
-        });
-        let clearance = Clearance { mean: point.distance, std: point.std };
-        evidence.add_clearance(point.probability, clearance);
-        if point.probability >= CONTACT_FLOOR {
-            evidence.add_contact(signed_contact(point, side, a_from_cloud));
-        }
-    }
-}
-
-fn signed_contact(point: &SignedPoint, cloud_side: Side, a_from_cloud: &Pose) -> Contact {
-    // Out of the mesh is towards the cloud's body; the normal runs from A to B.
-    let outward = a_from_cloud.transform_vector(&point.outward);
-    Contact {
-        point: a_from_cloud.transform_point(&point.surface_point),
-        normal_a_to_b: if cloud_side == Side::A { -outward } else { outward },
-        probability: point.probability,
-        clearance_m: point.distance,
-    }
-}
-
 /// Adds what is exactly known of two meshes.
-pub(super) fn add_exact(evidence: &mut Evidence, pair: &ExactPair) {
+pub(crate) fn add_exact(evidence: &mut Evidence, pair: &ExactPair) {
     evidence.stats.leaf_pairs = 1;
     if pair.intersecting {
         evidence.add_certain_collision();

@@ -8,6 +8,8 @@ use crate::cloud::{Cloud, Surfel};
 use crate::error::SubdivisionError;
 use crate::mesh::{Mesh, SampleRegion, sample_region};
 use crate::query::pair::{PairPoint, PairPoints};
+use crate::classifier::{PairPoint, PairPoints};
+use crate::cloud::{Cloud, Surfel};
 
 use super::search::{Finding, Found};
 

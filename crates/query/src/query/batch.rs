@@ -5,8 +5,9 @@ use rayon::prelude::*;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::query::Query;
 use crate::report::Report;
+
+use super::run::Query;
 
 impl Query {
     /// Answers every pose, on all threads of the current rayon pool, in the order of the poses.

@@ -47,7 +47,7 @@ pub(crate) enum PairAnswer {
 
 impl PairAnswer {
     /// The probabilities that a surface gives the points; `None` when one of them is not a number.
-    pub(super) fn of(surface: Surface, a: &[UncertainPoint], b: &[UncertainPoint]) -> Option<Self> {
+    pub(crate) fn of(surface: Surface, a: &[UncertainPoint], b: &[UncertainPoint]) -> Option<Self> {
         let side = |points: &[UncertainPoint], class| {
             points.iter().map(|p| surface.probability(p, class)).collect::<Option<Vec<f64>>>()
         };
@@ -56,7 +56,7 @@ impl PairAnswer {
     }
 
     /// The largest probability of a point; 1 without an answer.
-    pub(super) fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         match self {
             Self::Separated { a, b, .. } => a.iter().chain(b).copied().fold(0.0, f64::max),
             Self::Indistinct | Self::Undecided => 1.0,
@@ -65,7 +65,7 @@ impl PairAnswer {
 }
 
 /// Mean position of some points, of which there must be one.
-pub(super) fn centroid(points: &[PairPoint]) -> Point3 {
+pub(crate) fn centroid(points: &[PairPoint]) -> Point3 {
     let sum: Vector3 = points.iter().map(|p| p.point.mean.coords).sum();
     Point3::from(sum / points.len() as f64)
 }

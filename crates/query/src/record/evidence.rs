@@ -3,9 +3,10 @@
 use cloudtouch_geom::Point3;
 
 use crate::POINT_FLOOR;
+use crate::paper::pool;
 use crate::report::{Clearance, Contact, PointProbabilities, Stats};
 
-use super::pool::{self, PointProbability, Side};
+use super::point::{PointProbability, Side};
 
 /// Everything the parts of a query add to, and the report is made from.
 #[derive(Debug, Default)]

@@ -1,26 +1,6 @@
 //! From point probabilities to the probability of a pair of clouds (section 4.4 of the paper).
 
-use cloudtouch_geom::Point3;
-
-/// Which body a point belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Side {
-    A,
-    B,
-}
-
-/// The probability of one point, by the surface that separates its leaf pair.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PointProbability {
-    pub side: Side,
-    /// Index in the prepared cloud; `None` for a point of a mesh.
-    pub index: Option<u32>,
-    /// In the local frame of A.
-    pub position: Point3,
-    pub probability: f64,
-    /// Points nearer than this to each other tell the same story, m.
-    pub correlation_length: f64,
-}
+use crate::record::PointProbability;
 
 /// Points below this share of the largest probability add nothing but noise.
 pub(crate) const SHARE_OF_MAX: f64 = 0.8;
@@ -71,7 +51,10 @@ pub(crate) fn noisy_or_bound(points: &[PointProbability], rest: f64, total: usiz
 
 #[cfg(test)]
 mod tests {
+    use cloudtouch_geom::Point3;
+
     use super::*;
+    use crate::record::Side;
 
     fn point(x: f64, probability: f64) -> PointProbability {
         PointProbability {

@@ -1,4 +1,4 @@
-//! Two clouds in the calibrated mode: geometry first, the classifier where geometry leaves doubt,
+//! Two clouds: geometry first, the classifier where geometry leaves doubt,
 //! and a probability fitted to scenes whose truth is known.
 //!
 //! The search gathers how far apart the surfaces are in standard deviations and how clearly they
@@ -20,16 +20,15 @@ mod through_mesh;
 use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
+use crate::classifier::{PairAnswer, by_kernel};
+use crate::cloud::Cloud;
 use crate::error::QueryError;
 use crate::recalibration::{ContactEvidence, MOST_CERTAIN, MOST_DEVIATIONS, Recalibration};
+use crate::record::{Estimate, Evidence, add_pair};
+use crate::shape::Shape;
 
-use super::estimate::Estimate;
-use super::evidence::Evidence;
-use super::pair::PairAnswer;
-use super::record::add_pair;
 use super::settings::QuerySettings;
 use super::task::Task;
-use super::train::by_kernel;
 
 use patches::patches;
 use places::{add_crossing, add_finding, add_leaves};
@@ -166,7 +165,7 @@ fn ask_classifier(
             all = all.map(|known| known.or_more(left)).or(Some(Misclassified::unknown(count)));
             continue;
         }
-        let answer = by_kernel(&points, settings, &task.clock, &mut evidence.stats);
+        let answer = by_kernel(&points, &task.classifier, &task.clock, &mut evidence.stats);
         let of_patch = match &answer {
             PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(b).sum()),
             PairAnswer::Undecided => Misclassified::unknown(count),

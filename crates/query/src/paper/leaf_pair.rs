@@ -3,13 +3,12 @@
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Pose, UncertainPoint, normal};
 
-use crate::body::BodyRef;
-use crate::cloud::Cloud;
+use crate::classifier::{PairPoint, PairPoints, centroid};
+use crate::cloud::Prepared;
 use crate::error::SubdivisionError;
 use crate::mesh::{Mesh, SampleRegion, sample_region};
 use crate::report::Stats;
-
-use super::pair::{PairPoint, PairPoints, centroid};
+use crate::shape::Shape;
 
 /// Around a cloud leaf a mesh is sampled this many spacings farther than the leaf reaches.
 const MARGIN_SPACINGS: f64 = 2.0;
@@ -23,31 +22,31 @@ const MARGIN_DEVIATIONS: f64 = 4.75;
 /// # Errors
 /// When a mesh takes more than `max_parts` parts to be sampled as densely as the cloud.
 pub(crate) fn gather(
-    (a, leaf_a): (BodyRef<'_>, NodeId),
-    (b, leaf_b): (BodyRef<'_>, NodeId),
+    (a, leaf_a): (Shape<'_>, NodeId),
+    (b, leaf_b): (Shape<'_>, NodeId),
     a_from_b: &Pose,
     max_parts: usize,
     stats: &mut Stats,
 ) -> Result<Option<PairPoints>, SubdivisionError> {
     let points = match (a, b) {
-        (BodyRef::Cloud(a), BodyRef::Cloud(b)) => PairPoints {
+        (Shape::Cloud(a), Shape::Cloud(b)) => PairPoints {
             a: cloud_points(a, leaf_a, &Pose::identity(), stats),
             b: cloud_points(b, leaf_b, a_from_b, stats),
             a_is_mesh: false,
             b_is_mesh: false,
         },
-        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
+        (Shape::Cloud(cloud), Shape::Mesh(mesh)) => {
             let near = cloud_points(cloud, leaf_a, &Pose::identity(), stats);
             let b = mesh_points(mesh, leaf_b, &near, a_from_b, max_parts)?;
             PairPoints { a: near, b, a_is_mesh: false, b_is_mesh: true }
         }
-        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
+        (Shape::Mesh(mesh), Shape::Cloud(cloud)) => {
             let near = cloud_points(cloud, leaf_b, a_from_b, stats);
             let a = mesh_points(mesh, leaf_a, &near, &Pose::identity(), max_parts)?;
             PairPoints { a, b: near, a_is_mesh: true, b_is_mesh: false }
         }
         // Two meshes are tested exactly and never come here.
-        (BodyRef::Mesh(_), BodyRef::Mesh(_)) => PairPoints::default(),
+        (Shape::Mesh(_), Shape::Mesh(_)) => PairPoints::default(),
     };
     Ok((!points.a.is_empty() && !points.b.is_empty()).then_some(points))
 }
@@ -58,7 +57,7 @@ pub(crate) fn bound_left_out() -> f64 {
 }
 
 fn cloud_points(
-    cloud: &Cloud,
+    cloud: &Prepared,
     leaf: NodeId,
     a_from_cloud: &Pose,
     stats: &mut Stats,

@@ -12,7 +12,7 @@ use crate::report::Stats;
 
 use super::clock::Clock;
 use super::pair::{PairAnswer, PairPoints};
-use super::settings::QuerySettings;
+use super::settings::ClassifierSettings;
 use super::surface::Surface;
 
 /// That a pair is apart is not believed of a classifier where the typical standard deviation across
@@ -27,9 +27,9 @@ const TIGHTER: f64 = 1e-2;
 ///
 /// An answer that the first solution leaves open is solved again, tighter; left open still, or cut
 /// short by the clock, the pair is undecided.
-pub(super) fn by_kernel(
+pub(crate) fn by_kernel(
     points: &PairPoints,
-    settings: &QuerySettings,
+    settings: &ClassifierSettings,
     clock: &Clock,
     stats: &mut Stats,
 ) -> PairAnswer {
@@ -69,7 +69,7 @@ fn samples(
     points: &PairPoints,
     all: &[UncertainPoint],
     unit_box: &UnitBox,
-    settings: &QuerySettings,
+    settings: &ClassifierSettings,
 ) -> Vec<Sample> {
     let (penalty_a, penalty_b) =
         balanced_penalties(settings.penalty, points.a.len(), points.b.len());

@@ -1,0 +1,139 @@
+//! Prepared bodies of either path, and what the commands ask of both paths alike.
+
+use cloudtouch::geom::{Point3, PointCloud, Pose};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{
+    BodyRef, Cloud, CloudSettings, FilterSettings, Mesh, PaperBodyRef, PaperCloud,
+    PaperCloudSettings, PaperQuery, PrepareError, Query, QueryError, Report, StageReport,
+};
+
+/// A cloud prepared for one of the paths, or a mesh.
+#[allow(clippy::large_enum_variant, reason = "there are a few, each far larger on the heap")]
+pub(crate) enum Body<C> {
+    Cloud(C),
+    Mesh(Mesh),
+}
+
+/// A prepared cloud of one of the paths.
+pub(crate) trait PreparedCloud: Sized + Send + Sync {
+    /// Prepares a cloud by the defaults for its sensor, as `change` leaves filter and sensor.
+    fn prepare(
+        cloud: &PointCloud,
+        sensor: SensorModel,
+        change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
+    ) -> Result<Self, PrepareError>;
+
+    /// The kept points in the file's frame, m.
+    fn points(&self) -> Vec<Point3>;
+
+    /// How many points were kept.
+    fn count(&self) -> usize;
+
+    /// What the filter removed.
+    fn stages(&self) -> &[StageReport];
+}
+
+/// One of the paths: it asks only about bodies that were prepared for it.
+pub(crate) trait Path: Sync {
+    type Cloud: PreparedCloud;
+
+    /// How likely it is that two bodies collide.
+    fn ask(
+        &self,
+        scene: &Body<Self::Cloud>,
+        object: &Body<Self::Cloud>,
+        scene_from_object: &Pose,
+    ) -> Result<Report, QueryError>;
+}
+
+impl PreparedCloud for Cloud {
+    fn prepare(
+        cloud: &PointCloud,
+        sensor: SensorModel,
+        change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
+    ) -> Result<Self, PrepareError> {
+        let mut settings = CloudSettings::new(sensor);
+        change(&mut settings.filter, &mut settings.sensor);
+        Self::prepare(cloud, &settings)
+    }
+
+    fn points(&self) -> Vec<Point3> {
+        (0..self.len()).map(|i| self.point(i)).collect()
+    }
+
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn stages(&self) -> &[StageReport] {
+        self.filter_stages()
+    }
+}
+
+impl PreparedCloud for PaperCloud {
+    fn prepare(
+        cloud: &PointCloud,
+        sensor: SensorModel,
+        change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
+    ) -> Result<Self, PrepareError> {
+        let mut settings = PaperCloudSettings::new(sensor);
+        change(&mut settings.filter, &mut settings.sensor);
+        Self::prepare(cloud, &settings)
+    }
+
+    fn points(&self) -> Vec<Point3> {
+        (0..self.len()).map(|i| self.point(i)).collect()
+    }
+
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn stages(&self) -> &[StageReport] {
+        self.filter_stages()
+    }
+}
+
+impl<'a> From<&'a Body<Cloud>> for BodyRef<'a> {
+    fn from(body: &'a Body<Cloud>) -> Self {
+        match body {
+            Body::Cloud(cloud) => cloud.into(),
+            Body::Mesh(mesh) => mesh.into(),
+        }
+    }
+}
+
+impl<'a> From<&'a Body<PaperCloud>> for PaperBodyRef<'a> {
+    fn from(body: &'a Body<PaperCloud>) -> Self {
+        match body {
+            Body::Cloud(cloud) => cloud.into(),
+            Body::Mesh(mesh) => mesh.into(),
+        }
+    }
+}
+
+impl Path for Query {
+    type Cloud = Cloud;
+
+    fn ask(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &Pose,
+    ) -> Result<Report, QueryError> {
+        self.run(scene, object, scene_from_object)
+    }
+}
+
+impl Path for PaperQuery {
+    type Cloud = PaperCloud;
+
+    fn ask(
+        &self,
+        scene: &Body<PaperCloud>,
+        object: &Body<PaperCloud>,
+        scene_from_object: &Pose,
+    ) -> Result<Report, QueryError> {
+        self.run(scene, object, scene_from_object)
+    }
+}

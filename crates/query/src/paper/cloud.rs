@@ -1,0 +1,64 @@
+//! The cloud of the paper's path.
+
+use cloudtouch_geom::PointCloud;
+
+use crate::cloud::{Prepared, cloud_accessors};
+use crate::error::PrepareError;
+
+use super::cloud_settings::PaperCloudSettings;
+use super::weights::sphere_area;
+
+/// A noisy cloud, ready to be queried by the paper in any pose, from many threads at once.
+#[derive(Debug)]
+pub struct PaperCloud {
+    prepared: Prepared,
+}
+
+cloud_accessors!(PaperCloud);
+
+impl PaperCloud {
+    /// Filters a cloud, models its sensor, and builds its index and tree.
+    ///
+    /// # Errors
+    /// When nothing is left after filtering, a coordinate is beyond 1e50 m, a covariance is not one,
+    /// or a setting is out of range.
+    pub fn prepare(
+        cloud: &PointCloud,
+        settings: &PaperCloudSettings,
+    ) -> Result<Self, PrepareError> {
+        let neighbors = settings.discretization.neighbors;
+        let area = |near: &_, index| sphere_area(near, index, neighbors);
+        Ok(Self { prepared: Prepared::new(cloud, &settings.preparation(), area)? })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::Point3;
+    use cloudtouch_noise::SensorModel;
+
+    use super::*;
+
+    /// A grid of `side`³ points about the origin.
+    fn grid(side: i32, spacing: f64) -> impl Iterator<Item = Point3> {
+        let at = move |i: i32| spacing * (f64::from(i) - 0.5 * f64::from(side - 1));
+        (0..side.pow(3))
+            .map(move |i| Point3::new(at(i % side), at(i / side % side), at(i / side.pow(2))))
+    }
+
+    /// A dense cluster amid few points, most of which lie on the faces of the box: by number most of
+    /// the surface was covered, by area little of it is.
+    #[test]
+    fn many_points_of_a_small_surface_hid_what_leaks_elsewhere() {
+        let points = grid(5, 0.1).chain(grid(8, 0.01)).collect();
+        let cloud = PointCloud::from_points(points);
+        let settings = PaperCloudSettings::new(SensorModel::Isotropic { std: 0.01 });
+        let by_area = PaperCloud::prepare(&cloud, &settings).unwrap();
+        let by_number = Prepared::new(&cloud, &settings.preparation(), |_, _| 1.0).unwrap();
+        let leakage = |cloud: &Prepared| 1.0 - cloud.tree().root().unwrap().coverage();
+        let (by_area, by_number) = (leakage(by_area.prepared()), leakage(&by_number));
+        // Of 125 points 98 lie on faces, each with at least half a chance of being outside.
+        assert!(by_number < 0.2, "{by_number}");
+        assert!(by_area > 0.35, "{by_area}");
+    }
+}

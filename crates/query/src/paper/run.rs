@@ -1,0 +1,143 @@
+//! One query by the paper, from two prepared bodies and a pose to a report.
+
+use std::time::Instant;
+
+use cloudtouch_bvh::TraversalSettings;
+use cloudtouch_geom::{Pose, normal};
+use rayon::prelude::*;
+
+use crate::classifier::Clock;
+use crate::error::{QueryError, SettingsError};
+use crate::mode::Mode;
+use crate::query::exact_pair;
+use crate::record::{Estimate, Evidence, Side, Terms, add_exact};
+use crate::report::Report;
+use crate::shape::Shape;
+
+use super::body::PaperBodyRef;
+use super::inside::add_points_inside;
+use super::leaf_pairs::traverse_leaf_pairs;
+use super::pool;
+use super::settings::{PaperSettings, Pooling};
+use super::task::Task;
+
+/// A checked set of settings that answers queries by the paper; cheap to copy, shared by threads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PaperQuery {
+    settings: PaperSettings,
+    /// `cull_probability` in standard deviations.
+    cull_deviations: f64,
+}
+
+impl PaperQuery {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// Names the setting that is out of range, and its value.
+    pub fn new(settings: PaperSettings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(Self { settings, cull_deviations: -normal::quantile(settings.cull_probability) })
+    }
+
+    /// The settings, as checked.
+    pub fn settings(&self) -> &PaperSettings {
+        &self.settings
+    }
+
+    /// How likely it is that the surfaces behind two bodies collide, by the paper.
+    ///
+    /// `a_from_b` maps the file frame of `b` into that of `a`; nothing is rebuilt for it. Contacts
+    /// are in the frame of `a`, with normals from `a` to `b`. The answer rests on the points
+    /// sampled: surface that no point stands for cannot be found in collision.
+    ///
+    /// # Errors
+    /// When the pose is not finite or beyond 1e50 m, two meshes cannot be tested exactly, or a mesh
+    /// takes more parts than allowed to be sampled as densely as the cloud. A pair that could not be
+    /// decided is not an error but a verdict, and never reads as free.
+    pub fn run<'a>(
+        &self,
+        a: impl Into<PaperBodyRef<'a>>,
+        b: impl Into<PaperBodyRef<'a>>,
+        a_from_b: &Pose,
+    ) -> Result<Report, QueryError> {
+        let terms = Terms {
+            mode: Mode::Paper,
+            seed: self.settings.seed,
+            accept: self.settings.accept,
+            reject: self.settings.reject,
+            max_contacts: self.settings.max_contacts,
+        };
+        let bodies = (a.into().shape(), b.into().shape());
+        terms.ask(bodies, a_from_b, |start, local, evidence| {
+            gather_evidence(bodies, local, &self.task(start), evidence)?;
+            Ok(self.pooled(evidence, bodies))
+        })
+    }
+
+    /// Answers every pose, on all threads of the current rayon pool, in the order of the poses.
+    ///
+    /// Apart from times and `leaves_prepared` in the statistics, the reports are the same bits
+    /// whatever the number of threads.
+    pub fn run_batch<'a>(
+        &self,
+        a: impl Into<PaperBodyRef<'a>>,
+        b: impl Into<PaperBodyRef<'a>>,
+        a_from_b: &[Pose],
+    ) -> Vec<Result<Report, QueryError>> {
+        let (a, b) = (a.into(), b.into());
+        a_from_b.par_iter().map(|pose| self.run(a, b, pose)).collect()
+    }
+
+    fn task(&self, start: Instant) -> Task<'_> {
+        Task {
+            settings: &self.settings,
+            classifier: self.settings.classifier(),
+            traversal: TraversalSettings {
+                kind: self.settings.traversal,
+                cull_deviations: self.cull_deviations.max(0.0),
+                ..TraversalSettings::default()
+            },
+            clock: Clock::new(start, self.settings.deadline),
+        }
+    }
+
+    /// The probability by the points alone (section 4.4).
+    fn pooled(&self, evidence: &mut Evidence, (a, b): (Shape<'_>, Shape<'_>)) -> Estimate {
+        let rest = evidence.bound_of_rest();
+        let points = evidence.merge_points();
+        let (probability, upper) = match self.settings.pooling {
+            Pooling::Max => (pool::max(points), pool::max(points).max(rest)),
+            Pooling::NoisyOr => {
+                let total = a.point_count() + b.point_count();
+                (pool::noisy_or(points), pool::noisy_or_bound(points, rest, total))
+            }
+        };
+        Estimate { probability, bounds: [probability, upper], evidence: None }
+    }
+}
+
+fn gather_evidence(
+    (a, b): (Shape<'_>, Shape<'_>),
+    a_from_b: &Pose,
+    task: &Task<'_>,
+    evidence: &mut Evidence,
+) -> Result<(), QueryError> {
+    match (a, b) {
+        (Shape::Mesh(a), Shape::Mesh(b)) => {
+            add_exact(evidence, &exact_pair(a, b, a_from_b)?);
+            return Ok(());
+        }
+        (Shape::Cloud(cloud), Shape::Mesh(mesh)) if mesh.is_watertight() => {
+            let poses = (&a_from_b.inverse(), &Pose::identity());
+            add_points_inside((cloud, Side::A), mesh, poses, task, evidence);
+        }
+        (Shape::Mesh(mesh), Shape::Cloud(cloud)) if mesh.is_watertight() => {
+            add_points_inside((cloud, Side::B), mesh, (a_from_b, a_from_b), task, evidence);
+        }
+        _ => {}
+    }
+    if evidence.largest() <= task.settings.stop_above {
+        traverse_leaf_pairs((a, b), a_from_b, task, evidence)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,102 @@
+//! One query, from two bodies and a pose to a report, whichever path estimates.
+
+use std::time::{Duration, Instant};
+
+use cloudtouch_geom::{Pose, Vector3};
+
+use crate::error::QueryError;
+use crate::mode::Mode;
+use crate::paper::pool;
+use crate::range::bad_entry;
+use crate::report::{Report, Stats, Verdict};
+use crate::shape::Shape;
+use crate::unseen::is_either_hidden;
+
+use super::estimate::Estimate;
+use super::evidence::Evidence;
+
+/// By what a path turns what it gathered into a report.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Terms {
+    pub mode: Mode,
+    pub seed: u64,
+    pub accept: f64,
+    pub reject: f64,
+    pub max_contacts: usize,
+}
+
+impl Terms {
+    /// Asks `estimate` and reports. It is given when the query began, the pose of B's local frame in
+    /// that of A, and where to put its evidence.
+    pub(crate) fn ask(
+        &self,
+        (a, b): (Shape<'_>, Shape<'_>),
+        a_from_b: &Pose,
+        estimate: impl FnOnce(Instant, &Pose, &mut Evidence) -> Result<Estimate, QueryError>,
+    ) -> Result<Report, QueryError> {
+        let start = Instant::now();
+        let span = tracing::debug_span!("query");
+        let _entered = span.enter();
+        if let Some(value) = bad_entry(a_from_b) {
+            return Err(QueryError::Pose { value });
+        }
+        let local = a.local_from(&b, a_from_b);
+        let mut evidence = Evidence::default();
+        let mut estimate = estimate(start, &local, &mut evidence)?;
+        if estimate.probability <= self.accept && is_either_hidden(a, b, &local) {
+            evidence.stats.undecided += 1;
+            evidence.widen(1.0);
+            estimate.bounds[1] = 1.0;
+        }
+        let mut report = self.report(evidence, estimate, a.origin());
+        let micros = |d: Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
+        report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
+        report.stats.query_us = micros(start.elapsed());
+        tracing::debug!(
+            probability = report.collision_probability,
+            leaf_pairs = report.stats.leaf_pairs,
+            kernel_solves = report.stats.kernel_solves,
+            "query"
+        );
+        Ok(report)
+    }
+
+    fn report(&self, mut evidence: Evidence, estimate: Estimate, origin: Vector3) -> Report {
+        let points = evidence.merge_points();
+        let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points));
+        let mut contacts = evidence.top_contacts(self.max_contacts);
+        for contact in &mut contacts {
+            contact.point += origin;
+        }
+        let stats: Stats = evidence.stats;
+        Report {
+            collision_probability: estimate.probability,
+            bounds: estimate.bounds,
+            verdict: self.verdict(estimate.probability, estimate.bounds[1], stats.undecided),
+            clearance_m: evidence.clearance(self.accept),
+            contacts,
+            evidence: estimate.evidence,
+            stats,
+            seed: self.seed,
+            mode: self.mode,
+            max_probability,
+            noisy_or_probability,
+            point_probabilities: evidence.point_probabilities(),
+        }
+    }
+
+    fn verdict(&self, probability: f64, upper: f64, undecided: usize) -> Verdict {
+        let Self { accept, reject, .. } = *self;
+        if probability > accept {
+            Verdict::InCollision
+        } else if upper < reject && undecided == 0 {
+            Verdict::Free
+        } else if probability < reject || undecided > 0 {
+            // What was culled, left out or not solved could still collide.
+            Verdict::Undecided
+        } else {
+            // NaN would end here too, and not at free.
+            Verdict::InContact
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! A body as both paths see it: what does not depend on how its points are understood.
+
+use std::time::Duration;
+
+use cloudtouch_bvh::Tree;
+use cloudtouch_geom::{Pose, Vector3};
+
+use crate::cloud::Prepared;
+use crate::mesh::Mesh;
+
+/// A prepared cloud of either path, or a mesh.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Shape<'a> {
+    /// A noisy cloud.
+    Cloud(&'a Prepared),
+    /// An exact mesh.
+    Mesh(&'a Mesh),
+}
+
+impl<'a> Shape<'a> {
+    pub(crate) fn prepare_time(&self) -> Duration {
+        match self {
+            Self::Cloud(cloud) => cloud.prepare_time(),
+            Self::Mesh(mesh) => mesh.prepare_time(),
+        }
+    }
+
+    /// How many points stand for the body: those of a cloud, the corners of a mesh.
+    pub(crate) fn point_count(&self) -> usize {
+        match self {
+            Self::Cloud(cloud) => cloud.len(),
+            Self::Mesh(mesh) => 3 * mesh.triangle_count(),
+        }
+    }
+
+    pub(crate) fn origin(&self) -> Vector3 {
+        match self {
+            Self::Cloud(cloud) => cloud.origin(),
+            Self::Mesh(mesh) => mesh.origin(),
+        }
+    }
+
+    pub(crate) fn tree(&self) -> &'a Tree {
+        match self {
+            Self::Cloud(cloud) => cloud.tree(),
+            Self::Mesh(mesh) => mesh.tree(),
+        }
+    }
+
+    /// Maps the local frame of `other` into the local frame of `self`, given how their file
+    /// frames relate. Large offsets cancel here, once, in double precision.
+    pub(crate) fn local_from(&self, other: &Self, self_from_other: &Pose) -> Pose {
+        Pose::from_translation(-self.origin())
+            .after(self_from_other)
+            .after(&Pose::from_translation(other.origin()))
+    }
+}
