@@ -15,6 +15,8 @@ pub(crate) struct Examined {
     /// See [`crate::LeafPair`].
     pub(crate) gap: f64,
     pub(crate) axis: Vector3,
+    /// How far apart the surfaces are at least, m; negative where they may cross.
+    pub(crate) apart: f64,
     /// How many standard deviations from a point of either to the middle of the gap, at least; minus
     /// infinity where the surfaces may cross.
     pub(crate) deviations: f64,
@@ -100,7 +102,7 @@ impl<'a> Examiner<'a> {
                         self.draw(gap_aware_probability(gap, sides()), id_a, id_b)
                     }
                 });
-        Examined { a: id_a, b: id_b, gap, axis, deviations, urgency, descend }
+        Examined { a: id_a, b: id_b, gap, axis, apart, deviations, urgency, descend }
     }
 
     /// The box of what may not overlap: of the surfaces where crossings are told apart, else of the

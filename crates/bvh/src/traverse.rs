@@ -63,6 +63,9 @@ pub struct Outcome {
     /// That bound in standard deviations, δ/(2σ): infinite when none was culled, minus infinity when
     /// the surfaces of one may cross.
     pub culled_deviations: f64,
+    /// The surfaces below a culled pair are at least so far apart, m; negative where they may cross,
+    /// infinite when none was culled.
+    pub culled_gap: f64,
     /// Whether the caller stopped it.
     pub stopped: bool,
     /// The same bound for the pairs that were left when the caller stopped; 0 when none was.
@@ -78,6 +81,7 @@ impl Default for Outcome {
             culled: 0,
             culled_bound: 0.0,
             culled_deviations: f64::INFINITY,
+            culled_gap: f64::INFINITY,
             stopped: false,
             pending_bound: 0.0,
         }
@@ -135,6 +139,7 @@ fn walk(
     let mut cull = |pair: &Examined, outcome: &mut Outcome| {
         outcome.culled += 1;
         outcome.culled_deviations = outcome.culled_deviations.min(pair.deviations);
+        outcome.culled_gap = outcome.culled_gap.min(pair.apart);
         on_culled(pair);
     };
     let mut found = vec![(root_a, root_b)];

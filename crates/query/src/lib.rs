@@ -6,14 +6,15 @@ mod classifier;
 mod cloud;
 mod error;
 mod filter;
+mod judge;
 mod mesh;
 mod mode;
 pub mod paper;
 mod query;
 mod range;
-mod recalibration;
 mod record;
 mod report;
+mod search;
 mod shape;
 mod unseen;
 
@@ -29,7 +30,9 @@ pub use paper::{
     PaperBodyRef, PaperCloud, PaperCloudSettings, PaperNoise, PaperQuery, PaperSettings, Pooling,
 };
 pub use query::{Query, QuerySettings};
-pub use recalibration::{ContactEvidence, Recalibration};
+pub use judge::{
+    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
+};
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Verdict};
 
 /// The crates below, for users who need their types: a query takes a [`geom::Pose`], a cloud a

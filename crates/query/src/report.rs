@@ -4,7 +4,7 @@ use cloudtouch_geom::{Point3, Vector3};
 use serde::Serialize;
 
 use crate::mode::Mode;
-use crate::recalibration::ContactEvidence;
+use crate::judge::ContactEvidence;
 
 /// The answer to one query. Serialises to the JSON object of the command-line tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -16,9 +16,17 @@ pub struct Report {
     pub bounds: [f64; 2],
     /// The decision at the thresholds of the query.
     pub verdict: Verdict,
-    /// Gap between the surfaces at the most probable place; `None` when what was culled may be
-    /// closer, so that a gap that is given is the one that decides.
+    /// What the evidence weighs: the logarithm of how many times as probable it is in a collision as
+    /// without one. The probability is that of the prior moved by it. `None` on the paper's path, and
+    /// between two meshes, which are exact.
+    pub log_likelihood_ratio: Option<f64>,
+    /// Distance of the surfaces where they are likeliest to touch; `None` when nothing was near
+    /// enough to be measured, or what was left out may be closer.
     pub clearance_m: Option<Clearance>,
+    /// No sampled surface of one body is nearer to that of the other than this, m: a lower bound from
+    /// the boxes around them, zero or less where they may touch. `None` when the paper's path or a
+    /// deadline left surfaces out.
+    pub clearance_at_least_m: Option<f64>,
     /// Where the surfaces touch or may touch, most probable first.
     pub contacts: Vec<Contact>,
     /// What the probability rests on; `None` but for two clouds on the default path.
@@ -59,27 +67,33 @@ pub enum Verdict {
 /// A gap between two surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Clearance {
-    /// Expected gap, m; negative in overlap. Between clouds the size of an overlap is rough: a
-    /// pair of leaves sees only its own part of it.
+    /// Expected gap along the normal of the contact, m; negative in overlap.
     pub mean: f64,
-    /// Standard deviation, m.
+    /// Standard deviation of that, m: of the surfaces across, not along them.
     pub std: f64,
+    /// Whether the overlap may be deeper than `mean` says: beyond a spacing only a part of it is
+    /// seen.
+    pub is_bound: bool,
 }
 
 /// A place where the surfaces touch or may touch, in the frame of A.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Contact {
-    /// A point on the separating surface, m; where that passes far from the most probable samples,
-    /// as deep in an overlap, the middle of these.
+    /// Where the surfaces meet or would meet, m. On the paper's path a point on the separating
+    /// surface; where that passes far from the most probable samples, the middle of these.
     #[serde(serialize_with = "as_array")]
     pub point: Point3,
-    /// Unit normal of the separating surface there, pointing from A to B.
+    /// Unit normal of the surfaces there, pointing from A to B: out of a closed mesh, else along the
+    /// gap.
     #[serde(serialize_with = "vector_as_array")]
     pub normal_a_to_b: Vector3,
-    /// Probability of the point that made this contact.
+    /// Probability that the surfaces meet there; never above that of the collision.
     pub probability: f64,
     /// Gap along the normal, m; negative in overlap.
     pub clearance_m: f64,
+    /// How much surface belongs to the contact, m², roughly: the places within a spacing of it.
+    /// `None` on the paper's path.
+    pub area_m2: Option<f64>,
 }
 
 fn as_array<S: serde::Serializer>(point: &Point3, serializer: S) -> Result<S::Ok, S::Error> {

@@ -34,14 +34,20 @@ pub enum SettingsError {
         /// Its upper end.
         highest: f64,
     },
-    /// A slope of a recalibration has the wrong sign.
-    #[error(
-        "recalibration: more evidence ({name}) would make a collision less probable; \
-         leave it out of the fit, with a slope of 0"
-    )]
+    /// A judge goes against its evidence.
+    #[error("judge: more evidence ({name}) would make a collision less probable at some knot")]
     Slope {
-        /// Whose slope.
+        /// Of which evidence.
         name: &'static str,
+    },
+    /// A judge lets the classifier revise where geometry leaves no doubt.
+    #[error(
+        "judge: the row of revisions at log odds of {} must repeat that number, or probabilities jump",
+        number(*at)
+    )]
+    Revision {
+        /// The outermost knot concerned.
+        at: f64,
     },
     /// A number that has to be finite.
     #[error("{name} = {}: must be finite", number(*value))]

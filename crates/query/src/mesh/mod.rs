@@ -9,5 +9,4 @@ mod subdivide;
 mod winding;
 
 pub use prepare::Mesh;
-pub(crate) use side::Side;
 pub(crate) use subdivide::{SampleRegion, sample_region};

@@ -130,7 +130,7 @@ impl Mesh {
     }
 
     /// Whether the surface has no border, so that every place off it is on one side.
-    pub(super) fn is_closed(&self) -> bool {
+    pub(crate) fn is_closed(&self) -> bool {
         self.closed
     }
 

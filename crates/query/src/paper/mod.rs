@@ -33,6 +33,5 @@ pub use body::PaperBodyRef;
 pub(crate) use classify::classify;
 pub use cloud::PaperCloud;
 pub use cloud_settings::{PaperCloudSettings, PaperNoise};
-pub(crate) use leaf_pair::{bound_left_out, gather};
 pub use run::PaperQuery;
 pub use settings::{PaperSettings, Pooling};

@@ -112,7 +112,13 @@ impl PaperQuery {
                 (pool::noisy_or(points), pool::noisy_or_bound(points, rest, total))
             }
         };
-        Estimate { probability, bounds: [probability, upper], evidence: None }
+        Estimate {
+            probability,
+            bounds: [probability, upper],
+            evidence: None,
+            log_likelihood_ratio: None,
+            places: None,
+        }
     }
 }
 

@@ -1,13 +1,15 @@
 //! The default path: geometry first, the classifier in doubt, a fitted probability.
 
 mod batch;
-mod calibrated;
 mod classify;
+mod contacts;
+mod estimate;
 mod exact;
-mod leaf_pairs;
+mod patches;
+mod points;
 mod run;
 mod settings;
-mod signed;
+mod spots;
 mod task;
 
 pub(crate) use exact::{ExactPair, exact_pair};

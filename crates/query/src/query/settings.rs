@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::checks::{fraction, positive, thresholds};
 use crate::classifier::ClassifierSettings;
 use crate::error::SettingsError;
-use crate::recalibration::Recalibration;
+use crate::judge::Judge;
 
 /// All settings of a query on the default path; [`Query::new`](crate::Query::new) checks them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,11 +14,12 @@ pub struct QuerySettings {
     pub accept: f64,
     /// B: a pair with a lower probability is free; at most ½.
     pub reject: f64,
-    /// Two clouds: the classifier is asked where geometry alone gives a
-    /// probability in this interval.
-    pub doubt: [f64; 2],
-    /// Two clouds: from evidence to the probability.
-    pub recalibration: Recalibration,
+    /// From evidence to log odds, and where the classifier is asked.
+    pub judge: Judge,
+    /// Which share of the poses asked about collides, before anything is known of them: between 0
+    /// and 1. The fit is for one half; a planner whose poses mostly collide, or hardly ever, knows
+    /// better.
+    pub prior: f64,
     /// Kernel width γ for a leaf pair scaled to the unit box.
     pub gamma: f64,
     /// C: what a misclassified point costs, before balancing by class size.
@@ -29,10 +30,7 @@ pub struct QuerySettings {
     pub ellipsoid_radius: f64,
     /// Relative gap at which a kernel problem counts as solved.
     pub relative_gap: f64,
-    /// Pairs of boxes are culled when no point in them can be more probable than this.
-    pub cull_probability: f64,
-    /// The search ends when a collision is this certain; 1 never ends it early. Between two clouds
-    /// it ends at 0.95 too, where more of the same changes nothing.
+    /// The search ends when a collision is this certain; 1 never ends it early.
     pub stop_above: f64,
     /// How long a query may search. What was not looked at by then raises the upper bound, to 1 as a
     /// rule, and is no guess. The clock is looked at before each leaf pair and each classifier,
@@ -53,15 +51,14 @@ impl Default for QuerySettings {
         Self {
             accept: 0.9,
             reject: 0.1,
-            doubt: [0.1, 0.9],
-            recalibration: Recalibration::default(),
+            judge: Judge::default(),
+            prior: 0.5,
             gamma: 10.0,
             penalty: 100.0,
             mesh_penalty_factor: 10.0,
             // κ = 0.84: an ellipsoid of one standard deviation.
             ellipsoid_radius: 1.0,
             relative_gap: 1e-3,
-            cull_probability: 1e-6,
             stop_above: 0.999,
             deadline: None,
             max_contacts: 16,
@@ -76,15 +73,12 @@ impl QuerySettings {
     /// # Errors
     /// Names the setting that is out of range, and its value.
     pub fn validate(&self) -> Result<(), SettingsError> {
-        self.recalibration.validate()?;
+        self.judge.validate()?;
+        fraction("prior", self.prior)?;
         thresholds(self.accept, self.reject)?;
         self.classifier().validate()?;
         positive("stop_above", self.stop_above)?;
-        let [lowest, highest] = self.doubt;
-        if !(0.0 <= lowest && lowest <= highest && highest <= 1.0) {
-            return Err(SettingsError::NotAnInterval { name: "doubt", lowest, highest });
-        }
-        fraction("cull_probability", self.cull_probability)
+        Ok(())
     }
 
     pub(crate) fn classifier(&self) -> ClassifierSettings {

@@ -12,7 +12,7 @@ use crate::report::{Report, Stats, Verdict};
 use crate::shape::Shape;
 use crate::unseen::is_either_hidden;
 
-use super::estimate::Estimate;
+use super::estimate::{Estimate, Places};
 use super::evidence::Evidence;
 
 /// By what a path turns what it gathered into a report.
@@ -64,7 +64,12 @@ impl Terms {
     fn report(&self, mut evidence: Evidence, estimate: Estimate, origin: Vector3) -> Report {
         let points = evidence.merge_points();
         let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points));
-        let mut contacts = evidence.top_contacts(self.max_contacts);
+        let Places { mut contacts, clearance, at_least } =
+            estimate.places.unwrap_or_else(|| Places {
+                contacts: evidence.top_contacts(self.max_contacts),
+                clearance: evidence.clearance(self.accept),
+                at_least: None,
+            });
         for contact in &mut contacts {
             contact.point += origin;
         }
@@ -73,7 +78,9 @@ impl Terms {
             collision_probability: estimate.probability,
             bounds: estimate.bounds,
             verdict: self.verdict(estimate.probability, estimate.bounds[1], stats.undecided),
-            clearance_m: evidence.clearance(self.accept),
+            log_likelihood_ratio: estimate.log_likelihood_ratio,
+            clearance_m: clearance,
+            clearance_at_least_m: at_least,
             contacts,
             evidence: estimate.evidence,
             stats,

@@ -44,7 +44,7 @@ pub(crate) fn add_signed_points(
             probability: point.probability,
             correlation_length: CORRELATION_SPACINGS * point.spacing,
         });
-        let clearance = Clearance { mean: point.distance, std: point.std };
+        let clearance = Clearance { mean: point.distance, std: point.std, is_bound: false };
         evidence.add_clearance(point.probability, clearance);
         if point.probability >= CONTACT_FLOOR {
             evidence.add_contact(signed_contact(point, side, a_from_cloud));
@@ -60,5 +60,6 @@ fn signed_contact(point: &SignedPoint, cloud_side: Side, a_from_cloud: &Pose) ->
         normal_a_to_b: if cloud_side == Side::A { -outward } else { outward },
         probability: point.probability,
         clearance_m: point.distance,
+        area_m2: None,
     }
 }

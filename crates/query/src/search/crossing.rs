@@ -22,7 +22,7 @@ const CLEAREST: f64 = 6.0;
 
 /// A place where a piece of one surface passes through a piece of the other.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Crossing {
+pub(crate) struct Crossing {
     /// How clearly, in standard deviations: that of the less clear end.
     pub clear: f64,
     /// How near the middle of the disc it passes, from 1 to 0.
@@ -39,6 +39,8 @@ pub(super) struct Crossing {
     pub std: f64,
     /// Distance between samples there, m.
     pub spacing: f64,
+    pub heights: [f64; 2],
+    pub stds: [f64; 2],
 }
 
 impl Crossing {
@@ -57,6 +59,8 @@ impl Crossing {
             depth: heights[nearer].abs(),
             std: stds[nearer],
             spacing: 0.0,
+            heights,
+            stds,
         }
     }
 }

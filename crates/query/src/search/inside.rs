@@ -1,42 +1,110 @@
-//! Points of a cloud inside a closed mesh.
+//! How deep a cloud is inside a closed mesh: a search along surfaces does not see what lies wholly
+//! within.
 
 use cloudtouch_bvh::Visit;
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Point3, Pose, Vector3};
 
 use crate::body::BodyRef;
+use crate::classifier::Clock;
 use crate::cloud::Cloud;
+use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 
-pub(super) fn inside((a, b): (BodyRef<'_>, BodyRef<'_>), a_from_b: &Pose) -> [f64; 2] {
+/// The point of a cloud that is most clearly inside a closed mesh.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Inside {
+    /// Depth over the largest standard deviation of the point, sampling included: a lonely point is
+    /// known badly.
+    pub deviations: f64,
+    /// Depth, m, and standard deviation toward the surface.
+    pub depth: f64,
+    pub std: f64,
+    /// The nearest place of the mesh, in the frame of A.
+    pub place: Point3,
+    /// Unit normal out of the mesh there, in the frame of A.
+    pub outward: Vector3,
+    /// Distance between samples there, m.
+    pub spacing: f64,
+}
+
+/// What looking inside found.
+#[derive(Debug, Default)]
+pub(crate) struct Looked {
+    /// `None` where no point is expected inside.
+    pub deepest: Option<Inside>,
+    /// Whether the clock ended it.
+    pub is_cut_short: bool,
+    pub nodes_visited: usize,
+    pub leaves_prepared: usize,
+}
+
+/// Looks for points of a cloud inside the mesh it is asked about, until one is clearly so or the time
+/// is over; finds nothing where neither body is a mesh.
+pub(crate) fn look_inside(
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    a_from_b: &Pose,
+    clock: &Clock,
+) -> Looked {
+    let here = Pose::identity();
     match (a, b) {
-        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => deepest(cloud, mesh, &a_from_b.inverse()),
-        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => deepest(cloud, mesh, a_from_b),
-        _ => [0.0; 2],
+        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
+            deepest(cloud, mesh, &a_from_b.inverse(), a_from_b, clock)
+        }
+        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
+            deepest(cloud, mesh, a_from_b, &here, clock)
+        }
+        _ => Looked::default(),
     }
 }
 
-fn deepest(cloud: &Cloud, mesh: &Mesh, mesh_from_cloud: &Pose) -> [f64; 2] {
-    let mut best = [0.0_f64; 2];
-    if !mesh.is_watertight() {
-        return best;
+fn deepest(
+    cloud: &Cloud,
+    mesh: &Mesh,
+    mesh_from_cloud: &Pose,
+    a_from_mesh: &Pose,
+    clock: &Clock,
+) -> Looked {
+    let mut looked = Looked::default();
+    if !mesh.is_closed() {
+        return looked;
     }
     cloud.tree().visit_nodes(|node| {
+        looked.nodes_visited += 1;
+        looked.is_cut_short |= clock.is_over();
+        let known = looked.deepest.map_or(0.0, |inside| inside.deviations);
+        if looked.is_cut_short || known >= MOST_DEVIATIONS {
+            return Visit::Prune;
+        }
         let obb = node.obb();
-        let center = mesh_from_cloud.transform_point(&obb.centre);
-        let deepest = -mesh.project(&center).signed_distance + obb.radius() + node.shift();
-        if deepest <= 0.0 {
+        let middle = mesh_from_cloud.transform_point(&obb.centre);
+        let reach = obb.radius() + node.shift();
+        if mesh.project(&middle).signed_distance >= reach {
             return Visit::Prune;
         }
         if node.is_leaf() {
-            for surfel in cloud.leaf(node.id()).0 {
+            let (surfels, computed) = cloud.leaf(node.id());
+            looked.leaves_prepared += usize::from(computed);
+            for surfel in surfels {
                 let at = mesh_from_cloud.transform_point(&surfel.point.mean);
-                let depth = -mesh.project(&at).signed_distance;
-                let std = (surfel.most_variance.sqrt()).max(1e-12);
-                best[0] = best[0].max(depth / std);
-                best[1] = best[1].max(depth);
+                let projection = mesh.project(&at);
+                let depth = -projection.signed_distance;
+                let deviations = depth / surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
+                let known = looked.deepest.map_or(0.0, |inside| inside.deviations);
+                let way = projection.point - at;
+                if deviations > known && let Some(outward) = way.try_normalize(0.0) {
+                    let across = mesh_from_cloud.inverse().transform_vector(&outward);
+                    looked.deepest = Some(Inside {
+                        deviations,
+                        depth,
+                        std: surfel.point.covariance.std_along(&across),
+                        place: a_from_mesh.transform_point(&projection.point),
+                        outward: a_from_mesh.transform_vector(&outward),
+                        spacing: surfel.spacing,
+                    });
+                }
             }
         }
         Visit::Descend
     });
-    best
+    looked
 }

@@ -8,7 +8,7 @@ use cloudtouch_geom::{Motion, Point3, Vector3};
 use crate::body::BodyRef;
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
 use crate::mesh::Mesh;
-use crate::recalibration::MOST_DEVIATIONS;
+use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
 use super::facet::{Facet, Whitening};
@@ -16,21 +16,21 @@ use super::meeting::probability_at;
 
 /// A leaf in the local frame of A: noisy pieces of surface, or exact ones.
 #[derive(Debug)]
-pub(super) enum Leaf<'a> {
+pub(crate) enum Leaf<'a> {
     Noisy(NoisyLeaf<'a>),
     Exact(ExactLeaf),
 }
 
 /// A leaf of a mesh.
 #[derive(Debug)]
-pub(super) struct ExactLeaf {
+pub(crate) struct ExactLeaf {
     pub facets: Vec<Facet>,
     pub ball: Ball,
 }
 
 /// A leaf of a cloud.
 #[derive(Debug)]
-pub(super) struct NoisyLeaf<'a> {
+pub(crate) struct NoisyLeaf<'a> {
     pub surfels: Cow<'a, [Surfel]>,
     /// `None` until they are needed.
     edges: Option<Cow<'a, [Edge]>>,
@@ -157,7 +157,7 @@ impl<'a> NoisyLeaf<'a> {
 
     /// How likely each piece is to collide, by geometry: halfway between two equally well known
     /// pieces a plane is z/√2 deviations from either.
-    pub(super) fn probabilities(&self) -> impl Iterator<Item = (&Surfel, f64)> {
+    pub(crate) fn probabilities(&self) -> impl Iterator<Item = (&Surfel, f64)> {
         let of = |(&squared, &crossing): (&f64, &f64)| {
             let is_near = squared < MOST_DEVIATIONS.powi(2);
             let by_gap = if is_near { probability_at(squared.sqrt()) } else { 0.0 };

@@ -8,7 +8,7 @@ use super::facet::LEAST_STD;
 
 /// Where two pieces of surface would meet.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Meeting {
+pub(crate) struct Meeting {
     /// z: the Mahalanobis distance of the two pieces.
     pub deviations: f64,
     /// The place both are most likely to have in common.
@@ -26,7 +26,7 @@ pub(super) struct Meeting {
 ///
 /// A pair of boxes between whose points there are at least so many deviations has no point more
 /// probable than this: with a gap g and standard deviations up to σ, z ≥ g/(√2σ) and P ≤ Φ(−g/(2σ)).
-pub(super) fn probability_at(deviations: f64) -> f64 {
+pub(crate) fn probability_at(deviations: f64) -> f64 {
     normal::upper_tail(deviations / std::f64::consts::SQRT_2)
 }
 

@@ -1,19 +1,21 @@
 //! The two pieces of surface of two leaves with the least deviations between them.
 
-use cloudtouch_geom::{Point3, UncertainPoint};
+use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 
-use crate::recalibration::MOST_DEVIATIONS;
+use crate::judge::MOST_DEVIATIONS;
 
 use super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use super::meeting::squared_deviations;
 
 /// The two pieces of two leaves with the least deviations between them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Nearest {
+pub(crate) struct Nearest {
     pub squared: f64,
     /// The pieces: where on a triangle is part of what is found.
     pub a: UncertainPoint,
     pub b: UncertainPoint,
+    /// Unit normals of the surface there, where known; of a triangle by the turn of its corners.
+    pub normals: [Option<Vector3>; 2],
     /// Which they are: of the points of a cloud, or of the triangles of a mesh.
     pub between: [u32; 2],
     /// The larger of their spacings, m; a mesh has none.
@@ -22,8 +24,8 @@ pub(super) struct Nearest {
 
 impl Nearest {
     fn swapped(self) -> Self {
-        let [a, b] = self.between;
-        Self { a: self.b, b: self.a, between: [b, a], ..self }
+        let ([a, b], [of_a, of_b]) = (self.between, self.normals);
+        Self { a: self.b, b: self.a, normals: [of_b, of_a], between: [b, a], ..self }
     }
 }
 
@@ -59,6 +61,7 @@ fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>) -> Option<Nearest
                     squared,
                     a: on_a.point,
                     b: on_b.point,
+                    normals: [on_a.normal, on_b.normal],
                     between: [on_a.index, on_b.index],
                     spacing: on_a.spacing.max(on_b.spacing),
                 });
@@ -90,6 +93,7 @@ fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf) -> Option<Nearest> {
                     squared,
                     a: surfel.point,
                     b: UncertainPoint::exact(on_mesh),
+                    normals: [surfel.normal, facet.normal],
                     between: [surfel.index, facet.triangle],
                     spacing: surfel.spacing,
                 });

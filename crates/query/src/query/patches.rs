@@ -4,14 +4,12 @@
 use cloudtouch_geom::{Motion, Point3, Pose, UncertainPoint};
 
 use crate::body::BodyRef;
+use crate::classifier::{PairPoint, PairPoints};
 use crate::cloud::{Cloud, Surfel};
 use crate::error::SubdivisionError;
 use crate::mesh::{Mesh, SampleRegion, sample_region};
-use crate::query::pair::{PairPoint, PairPoints};
-use crate::classifier::{PairPoint, PairPoints};
-use crate::cloud::{Cloud, Surfel};
 
-use super::search::{Finding, Found};
+use crate::search::{Finding, Found};
 
 /// More patches than this add little: the first is the least apart.
 const MOST_PATCHES: usize = 3;
@@ -65,15 +63,15 @@ fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), found: &Found<'_>) -> Vec<Seed> {
     let mut findings: Vec<&Finding> =
         found.findings.iter().filter(|f| f.meeting.deviations <= most).collect();
     let key = |f: &Finding| f.meeting.deviations;
-    findings.sort_by(|f, g| key(f).total_cmp(&key(g)).then(f.between.cmp(&g.between)));
+    findings.sort_by(|f, g| key(f).total_cmp(&key(g)).then(f.nearest.between.cmp(&g.nearest.between)));
     let mut seeds: Vec<Seed> = Vec::new();
     for finding in findings {
-        let [of_a, of_b] = finding.between;
+        let [of_a, of_b] = finding.nearest.between;
         let noise = std_of(a, of_a).max(std_of(b, of_b));
-        let reach = REACH_SPACINGS * finding.spacing + REACH_DEVIATIONS * noise;
+        let reach = REACH_SPACINGS * finding.nearest.spacing + REACH_DEVIATIONS * noise;
         let place = finding.meeting.place;
         if seeds.iter().all(|seed| (seed.place - place).norm() > seed.reach.max(reach)) {
-            seeds.push(Seed { place, reach, spacing: finding.spacing });
+            seeds.push(Seed { place, reach, spacing: finding.nearest.spacing });
             if seeds.len() == MOST_PATCHES {
                 break;
             }

@@ -7,7 +7,7 @@ use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::recalibration::MOST_DEVIATIONS;
+use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
 use super::crossing::{
@@ -18,27 +18,25 @@ use super::crossings::Crossings;
 use super::facet::Facet;
 use super::leaf::{Leaf, NoisyLeaf};
 use super::meeting::Meeting;
-use super::nearest::nearest_pieces;
+use super::nearest::{Nearest, nearest_pieces};
 
 /// Places that are more than this many deviations above the least are not looked at.
 const DEVIATIONS_OF_INTEREST: f64 = 1.5;
 
 /// Where the pieces of two leaves are least apart.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Finding {
-    /// Of the two pieces of surface with the least deviations between them.
+pub(crate) struct Finding {
+    /// The two pieces of surface with the least deviations between them.
+    pub nearest: Nearest,
+    /// Where these would meet.
     pub meeting: Meeting,
-    /// Which these are.
-    pub between: [u32; 2],
-    /// The larger of their spacings, m.
-    pub spacing: f64,
     /// From the middle of the leaf of A to that of B.
     pub toward_b: Vector3,
 }
 
 /// All that the search found.
 #[derive(Debug, Default)]
-pub(super) struct Found<'a> {
+pub(crate) struct Found<'a> {
     pub leaves_a: BTreeMap<NodeId, Leaf<'a>>,
     pub leaves_b: BTreeMap<NodeId, Leaf<'a>>,
     pub findings: Vec<Finding>,
@@ -47,38 +45,40 @@ pub(super) struct Found<'a> {
     pub crossings: Crossings,
     /// Whether what was left out can change neither of these.
     pub is_complete: bool,
+    /// Nothing that was left out is nearer than this, m; negative where surfaces may cross there.
+    pub at_least: f64,
 }
 
 /// Looks at the pairs of leaves where the surfaces may touch until `is_enough` of the deviations
-/// and the crossing found so far.
-pub(super) fn search<'a>(
+/// and of the clearness of crossings, as far as found.
+pub(crate) fn search<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
-    settings: &TraversalSettings,
     is_enough: impl Fn(f64, f64) -> bool,
     stats: &mut Stats,
 ) -> Result<Found<'a>, QueryError> {
     let mut found = Found { deviations: MOST_DEVIATIONS, ..Found::default() };
     let cull_deviations = found.relevant_half_gap();
-    let settings = TraversalSettings { crossings: true, cull_deviations, ..*settings };
+    let settings = TraversalSettings { crossings: true, cull_deviations, ..TraversalSettings::default() };
     let motion = Motion::from(a_from_b);
     // A certified traversal draws nothing: any seed will do.
-    let outcome = traverse(a.tree(), b.tree(), a_from_b, &settings, 0, |pair| {
+    let outcome = traverse(a.shape().tree(), b.shape().tree(), a_from_b, &settings, 0, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), &motion, &pair, stats);
-        if is_enough(found.deviations, found.crossings.total()) {
+        if is_enough(found.deviations, found.crossings.last_clearness()) {
             return Flow::Stop;
         }
         Flow::Within(found.relevant_half_gap())
     })?;
     stats.nodes_visited += outcome.nodes_visited;
+    found.at_least = if outcome.stopped { f64::NEG_INFINITY } else { outcome.culled_gap };
     found.is_complete = !outcome.stopped && outcome.culled_deviations >= found.relevant_half_gap();
     Ok(found)
 }
 
 impl<'a> Found<'a> {
     /// Places with more deviations than this change nothing.
-    pub(super) fn deviations_of_interest(&self) -> f64 {
+    pub(crate) fn deviations_of_interest(&self) -> f64 {
         (self.deviations + DEVIATIONS_OF_INTEREST).min(MOST_DEVIATIONS)
     }
 
@@ -107,8 +107,7 @@ impl<'a> Found<'a> {
         self.deviations = self.deviations.min(nearest.squared.sqrt());
         if let Some(meeting) = Meeting::of(&nearest.a, &nearest.b) {
             let toward_b = leaf_b.middle() - leaf_a.middle();
-            let (between, spacing) = (nearest.between, nearest.spacing);
-            self.findings.push(Finding { meeting, between, spacing, toward_b });
+            self.findings.push(Finding { nearest, meeting, toward_b });
         }
     }
 }
@@ -187,9 +186,9 @@ mod tests {
     use crate::Cloud;
     use crate::CloudSettings;
     use crate::cloud::{Edge, Surfel, edges_of};
-    use crate::query::calibrated::crossing::through_disc;
-    use crate::query::calibrated::crossings::Witness;
-    use crate::query::calibrated::meeting::squared_deviations;
+    use crate::search::crossing::through_disc;
+    use crate::search::crossings::Witness;
+    use crate::search::meeting::squared_deviations;
 
     fn ball(count: usize, std: f64, seed: u64) -> Cloud {
         let samples = surface::sample_surface(&scene::sphere(0.05, 2), count, seed);
@@ -232,7 +231,7 @@ mod tests {
                 }
             }
         }
-        (least.sqrt(), crossings.total())
+        (least.sqrt(), crossings.clearness())
     }
 
     proptest! {
@@ -249,14 +248,13 @@ mod tests {
             let (a, b) = (ball(counts[0], std, seed), ball(counts[1], std, !seed));
             let offset = Vector3::new(0.0, 0.3 * offset, offset);
             let pose = Pose::from_translation_rpy(offset, [turn, 0.3, 0.0]);
-            let settings = TraversalSettings::default();
             let found =
                 search((BodyRef::Cloud(&a), BodyRef::Cloud(&b)), &pose, &settings, |_, _| false, &mut Stats::default()).unwrap();
             prop_assert!(found.is_complete);
             let (deviations, clearness) = brute_force(&a, &b, &pose);
             prop_assert!((found.deviations - deviations).abs() < 1e-9);
             // The sums run in different orders.
-            prop_assert!((found.crossings.total() - clearness).abs() <= 1e-9 * (1.0 + clearness));
+            prop_assert!((found.crossings.clearness() - clearness).abs() <= 1e-9 * (1.0 + clearness));
         }
     }
 }

@@ -1,0 +1,53 @@
+//! A surface over two numbers: values at knots, and straight lines between them.
+
+/// Values at the knots of two axes, the first by rows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grid<'a, const N: usize, const M: usize> {
+    pub rows: &'a [f64; N],
+    pub columns: &'a [f64; M],
+    pub values: &'a [[f64; M]; N],
+}
+
+impl<const N: usize, const M: usize> Grid<'_, N, M> {
+    /// Bilinear between the knots around a place, as at the border beyond it: continuous, and
+    /// monotone where the values are.
+    pub(super) fn at(&self, x: f64, y: f64) -> f64 {
+        let ((i, s), (j, t)) = (place(self.rows, x), place(self.columns, y));
+        let along = |row: &[f64; M]| row[j] + t * (row[j + 1] - row[j]);
+        let (low, high) = (along(&self.values[i]), along(&self.values[i + 1]));
+        low + s * (high - low)
+    }
+}
+
+/// The interval between two knots that a number falls in, and how far along it, from 0 to 1.
+fn place(knots: &[f64], x: f64) -> (usize, f64) {
+    let last = knots.len() - 2;
+    let i = knots.partition_point(|&knot| knot <= x).saturating_sub(1).min(last);
+    let share = (x - knots[i]) / (knots[i + 1] - knots[i]);
+    (i, share.clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRID: Grid<'_, 2, 3> =
+        Grid { rows: &[0.0, 2.0], columns: &[0.0, 1.0, 3.0], values: &[[0.0, 1.0, 2.0], [4.0, 5.0, 8.0]] };
+
+    #[test]
+    fn knots_have_their_values_and_places_between_them_the_mean() {
+        for (i, &x) in GRID.rows.iter().enumerate() {
+            for (j, &y) in GRID.columns.iter().enumerate() {
+                assert_eq!(GRID.at(x, y), GRID.values[i][j]);
+            }
+        }
+        assert_eq!(GRID.at(1.0, 0.5), 2.5);
+        assert_eq!(GRID.at(1.0, 2.0), 4.0);
+    }
+
+    #[test]
+    fn beyond_the_border_nothing_changes() {
+        assert_eq!(GRID.at(-9.0, 99.0), 2.0);
+        assert_eq!(GRID.at(f64::INFINITY, f64::NEG_INFINITY), 4.0);
+    }
+}

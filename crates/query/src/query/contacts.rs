@@ -1,0 +1,64 @@
+//! From spots to what is reported: contacts merged to patches, and the clearance.
+
+use crate::CONTACT_FLOOR;
+use crate::report::{Clearance, Contact};
+
+use super::spots::Spot;
+
+/// More spots than this say nothing new of where bodies touch.
+const MOST_SPOTS: usize = 400;
+/// Overlaps deeper than this many spacings may be deeper still elsewhere.
+const MEASURED_SPACINGS: f64 = 1.0;
+
+/// The spots in the order of what they say, likeliest first; the deeper of two that are equally
+/// likely. The order does not depend on that of the search.
+pub(super) fn sorted(mut spots: Vec<Spot>) -> Vec<Spot> {
+    let place = |s: &Spot| (s.place.x, s.place.y, s.place.z);
+    spots.sort_by(|p, q| {
+        let ((px, py, pz), (qx, qy, qz)) = (place(p), place(q));
+        (q.probability.total_cmp(&p.probability))
+            .then(p.gap.total_cmp(&q.gap))
+            .then(px.total_cmp(&qx).then(py.total_cmp(&qy)).then(pz.total_cmp(&qz)))
+    });
+    spots.truncate(MOST_SPOTS);
+    spots
+}
+
+/// Contact patches, likeliest first: spots within a spacing of a likelier one belong to its patch.
+/// None is more probable than the collision is.
+pub(super) fn contacts(sorted: &[Spot], collision: f64, most: usize) -> Vec<Contact> {
+    let mut patches: Vec<(Spot, usize)> = Vec::new();
+    for spot in sorted.iter().filter(|spot| spot.probability.min(collision) >= CONTACT_FLOOR) {
+        let is_near = |(of, _): &&mut (Spot, usize)| {
+            (of.place - spot.place).norm() <= of.spacing.max(spot.spacing)
+        };
+        let is_full = patches.len() >= most;
+        match patches.iter_mut().find(is_near) {
+            Some((_, count)) => *count += 1,
+            None if is_full => {}
+            None => patches.push((*spot, 1)),
+        }
+    }
+    let contact = |(spot, count): &(Spot, usize)| Contact {
+        point: spot.place,
+        normal_a_to_b: spot.normal,
+        probability: spot.probability.min(collision),
+        clearance_m: spot.gap,
+        // A patch is a spacing wide on either side, however many pieces met there.
+        area_m2: Some(spot.spacing * spot.spacing * (*count).min(4) as f64),
+    };
+    patches.iter().map(contact).collect()
+}
+
+/// The distance of the two surfaces: that of the likeliest spot, or, where an overlap is deep, as much
+/// of it as was seen.
+pub(super) fn clearance(sorted: &[Spot]) -> Option<Clearance> {
+    let likeliest = sorted.first()?;
+    let deepest = sorted
+        .iter()
+        .filter(|spot| spot.gap < 0.0 && spot.probability >= 0.9 * likeliest.probability)
+        .min_by(|p, q| p.gap.total_cmp(&q.gap));
+    let spot = deepest.unwrap_or(likeliest);
+    let is_bound = spot.gap < -MEASURED_SPACINGS * spot.spacing;
+    Some(Clearance { mean: spot.gap, std: spot.std, is_bound })
+}

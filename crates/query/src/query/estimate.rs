@@ -1,0 +1,115 @@
+//! One query on the default path: the search, the classifier where that leaves doubt, the judge.
+
+use cloudtouch_geom::Pose;
+
+use crate::body::BodyRef;
+use crate::error::QueryError;
+use crate::judge::{ContactEvidence, is_doubtful, probability};
+use crate::record::{Estimate, Evidence, Places, add_exact};
+use crate::search::{Found, Inside, look_inside, search};
+
+use super::classify::{Misclassified, ask_classifier};
+use super::contacts::{clearance, contacts, sorted};
+use super::exact::exact_pair;
+use super::points::add_points;
+use super::spots::spots;
+use super::task::Task;
+
+/// Estimates how probable a collision of two bodies is; the probabilities of single points go to
+/// `evidence`.
+pub(super) fn estimate(
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    a_from_b: &Pose,
+    task: &Task<'_>,
+    evidence: &mut Evidence,
+) -> Result<Estimate, QueryError> {
+    if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
+        return exact((a, b), a_from_b, evidence);
+    }
+    let (settings, judge) = (task.settings, &task.settings.judge);
+    let stats = &mut evidence.stats;
+    let looked = look_inside((a, b), a_from_b, &task.clock);
+    stats.nodes_visited += looked.nodes_visited;
+    stats.leaves_prepared += looked.leaves_prepared;
+    let depth = looked.deepest.map_or(0.0, |inside| inside.deviations);
+    let is_enough = |deviations: f64, clearness: f64| {
+        let log_odds = judge.log_odds_by_geometry(deviations - depth, clearness.ln_1p());
+        probability(log_odds, settings.prior) > settings.stop_above || task.clock.is_over()
+    };
+    let found = search((a, b), a_from_b, is_enough, stats)?;
+    let (deviations, crossing) = (found.deviations - depth, found.crossings.clearness().ln_1p());
+    let of_geometry = ContactEvidence { deviations, crossing, misclassified: None, features: features(&found, depth) };
+    let by_geometry = judge.log_odds_by_geometry(deviations, crossing);
+    let is_complete = found.is_complete && !looked.is_cut_short;
+
+    let misclassified = if is_complete && is_doubtful(by_geometry) {
+        ask_classifier((a, b), a_from_b, &found, by_geometry, task, &mut evidence.stats)?
+    } else {
+        Misclassified::NOT_ASKED
+    };
+    let of = |log_odds| probability(log_odds, settings.prior);
+    let [low, high] = misclassified.bounds.map(|count| of(judge.revise(by_geometry, count)));
+    let log_odds = misclassified.log_odds(judge, by_geometry);
+    // More evidence only raises the odds; what was not looked at may be any.
+    let bounds = [low, if is_complete { high } else { 1.0 }];
+
+    add_points(&found, evidence);
+    let probability = of(log_odds);
+    Ok(Estimate {
+        probability,
+        bounds,
+        evidence: Some(ContactEvidence { misclassified: misclassified.value, ..of_geometry }),
+        log_likelihood_ratio: Some(log_odds),
+        places: Some(places((a, b), &found, looked.deepest.as_ref(), probability, task)),
+    })
+}
+
+fn places(
+    bodies: (BodyRef<'_>, BodyRef<'_>),
+    found: &Found<'_>,
+    inside: Option<&Inside>,
+    probability: f64,
+    task: &Task<'_>,
+) -> Places {
+    let spots = sorted(spots(bodies, found, inside));
+    let nearest = spots.iter().map(|spot| spot.gap - 3.0 * spot.std).fold(f64::INFINITY, f64::min);
+    Places {
+        contacts: contacts(&spots, probability, task.settings.max_contacts),
+        clearance: clearance(&spots).filter(|_| found.is_complete || probability > 0.5),
+        at_least: Some(found.at_least.min(nearest)).filter(|least| least.is_finite()),
+    }
+}
+
+/// Two exact surfaces: a yes or no.
+fn exact(
+    (a, b): (&crate::mesh::Mesh, &crate::mesh::Mesh),
+    a_from_b: &Pose,
+    evidence: &mut Evidence,
+) -> Result<Estimate, QueryError> {
+    add_exact(evidence, &exact_pair(a, b, a_from_b)?);
+    let probability = evidence.largest();
+    let bounds = [probability; 2];
+    Ok(Estimate { probability, bounds, evidence: None, log_likelihood_ratio: None, places: None })
+}
+
+fn features(found: &Found<'_>, depth: f64) -> [f64; 12] {
+    let least = found
+        .findings
+        .iter()
+        .min_by(|f, g| f.meeting.deviations.total_cmp(&g.meeting.deviations));
+    let of = |e: f64| found.crossings.variant(e, 3.0);
+    [
+        found.deviations,
+        depth,
+        found.crossings.clearness(),
+        of(0.03),
+        of(0.06),
+        of(0.1),
+        of(0.15),
+        of(0.25),
+        found.crossings.variant(0.1, 6.0),
+        found.crossings.iter().map(|(c, _)| c.depth / c.spacing).fold(0.0, f64::max),
+        least.map_or(0.0, |f| f.nearest.spacing),
+        found.crossings.iter().count() as f64,
+    ]
+}

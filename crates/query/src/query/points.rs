@@ -1,0 +1,27 @@
+//! What geometry says of single points, for pictures and planners.
+
+use crate::record::{CORRELATION_SPACINGS, Evidence, PointProbability, Side};
+use crate::search::{Found, Leaf, NoisyLeaf};
+
+/// Adds the points of every leaf that was looked at.
+pub(super) fn add_points(found: &Found<'_>, evidence: &mut Evidence) {
+    for (side, leaves) in [(Side::A, &found.leaves_a), (Side::B, &found.leaves_b)] {
+        for leaf in leaves.values() {
+            if let Leaf::Noisy(leaf) = leaf {
+                add_leaf(side, leaf, evidence);
+            }
+        }
+    }
+}
+
+fn add_leaf(side: Side, leaf: &NoisyLeaf<'_>, evidence: &mut Evidence) {
+    for (surfel, probability) in leaf.probabilities() {
+        evidence.add_point(PointProbability {
+            side,
+            index: Some(surfel.index),
+            position: surfel.point.mean,
+            probability,
+            correlation_length: CORRELATION_SPACINGS * surfel.spacing,
+        });
+    }
+}

@@ -1,0 +1,111 @@
+//! The places where two bodies are nearest to touching, as geometry sees them: normals of surfaces,
+//! and gaps along them.
+
+use cloudtouch_geom::{Point3, Vector3};
+
+use crate::body::BodyRef;
+use crate::search::{Crossing, Finding, Found, Inside, probability_at};
+
+/// A crossing less probable than this is told by the gap of the pieces nearest to it.
+const LIKELY: f64 = 0.5;
+/// Normals of two pieces with a smaller cosine between them belong to no common plane.
+const ONE_PLANE: f64 = 0.7;
+/// The piece of surface about a sample reaches so many spacings.
+const FOOTPRINT_SPACINGS: f64 = 0.5;
+
+/// A place where the bodies touch, overlap or come near.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spot {
+    pub place: Point3,
+    /// Unit normal from A to B.
+    pub normal: Vector3,
+    /// Distance of the surfaces along it, m; negative in overlap, then at least so deep.
+    pub gap: f64,
+    /// Its standard deviation, m.
+    pub std: f64,
+    /// Distance between samples there, m.
+    pub spacing: f64,
+    /// How likely the surfaces meet there, by the pieces there alone.
+    pub probability: f64,
+}
+
+/// All spots of a search, in no particular order.
+pub(super) fn spots(
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    found: &Found<'_>,
+    inside: Option<&Inside>,
+) -> Vec<Spot> {
+    let mut spots: Vec<Spot> =
+        found.findings.iter().map(|finding| near((a, b), finding)).collect();
+    // A crossing has no direction of its own: it takes that of the nearest pair of pieces.
+    let pairs = spots.clone();
+    for (crossing, _) in found.crossings.iter().filter(|(c, _)| c.probability > LIKELY) {
+        spots.push(through(crossing, &pairs));
+    }
+    spots.extend(inside.map(|inside| within(a, inside)));
+    spots
+}
+
+/// Of the two pieces that are least apart.
+fn near((a, b): (BodyRef<'_>, BodyRef<'_>), finding: &Finding) -> Spot {
+    let Finding { nearest, meeting, toward_b } = finding;
+    let offset = nearest.b.mean - nearest.a.mean;
+    let joint = nearest.a.covariance.sum(&nearest.b.covariance);
+    let axis = common_normal(finding)
+        .or(meeting.normal)
+        .or_else(|| toward_b.try_normalize(0.0))
+        .unwrap_or_else(Vector3::z);
+    let std = joint.std_along(&axis);
+    let normal = match outward(a, b, nearest.normals) {
+        Some(known) if known.dot(&axis).abs() > ONE_PLANE => known,
+        // Where the gap is less than what is known of it, the pieces say nothing of the direction.
+        _ if axis.dot(&offset).abs() > std => axis * axis.dot(&offset).signum(),
+        _ if axis.dot(toward_b) < 0.0 => -axis,
+        _ => axis,
+    };
+    // The pieces reach to their sides: only what is beyond adds to their distance.
+    let across = normal.dot(&offset);
+    let aside = (offset - normal * across).norm();
+    let beyond = (aside - 2.0 * FOOTPRINT_SPACINGS * nearest.spacing).max(0.0);
+    let gap = if beyond > 0.0 { across.hypot(beyond) } else { across };
+    let probability = probability_at(meeting.deviations);
+    Spot { place: meeting.place, normal, gap, std, spacing: nearest.spacing, probability }
+}
+
+/// The mean of the normals of two pieces that are of one plane, or the only one there is.
+fn common_normal(finding: &Finding) -> Option<Vector3> {
+    match finding.nearest.normals {
+        [Some(a), Some(b)] => {
+            let cosine = a.dot(&b);
+            (cosine.abs() > ONE_PLANE).then(|| (a + b * cosine.signum()).normalize())
+        }
+        [Some(only), None] | [None, Some(only)] => Some(only),
+        [None, None] => None,
+    }
+}
+
+/// The direction from A to B by the outside of a closed mesh.
+fn outward(a: BodyRef<'_>, b: BodyRef<'_>, [of_a, of_b]: [Option<Vector3>; 2]) -> Option<Vector3> {
+    match (a, b) {
+        (BodyRef::Mesh(mesh), _) if mesh.is_closed() => of_a,
+        (_, BodyRef::Mesh(mesh)) if mesh.is_closed() => of_b.map(|normal| -normal),
+        _ => None,
+    }
+}
+
+/// Of surfaces that cross.
+fn through(crossing: &Crossing, pairs: &[Spot]) -> Spot {
+    let Crossing { place, axis, depth, std, spacing, probability, .. } = *crossing;
+    let distance = |spot: &&Spot| (spot.place - place).norm_squared();
+    let nearest = pairs.iter().min_by(|p, q| distance(p).total_cmp(&distance(q)));
+    let sign = nearest.map_or(1.0, |spot| if spot.normal.dot(&axis) < 0.0 { -1.0 } else { 1.0 });
+    Spot { place, normal: axis * sign, gap: -depth, std, spacing, probability }
+}
+
+/// Of a point inside a closed mesh.
+fn within(a: BodyRef<'_>, inside: &Inside) -> Spot {
+    let Inside { deviations, depth, std, place, outward, spacing } = *inside;
+    let normal = if matches!(a, BodyRef::Mesh(_)) { outward } else { -outward };
+    let probability = 1.0 - probability_at(std::f64::consts::SQRT_2 * deviations);
+    Spot { place, normal, gap: -depth, std, spacing, probability }
+}
