@@ -38,7 +38,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let answers = ask(&Plan::evidence(draws, poses), &methods)?;
     let folder = root.join("target/sweep");
     fs::create_dir_all(&folder)?;
-    answers.write_csv(&folder.join("evidence.csv"))?;
+    answers.write(&folder.join("evidence.jsonl"))?;
     let without_each = |method: &str| -> Result<BTreeMap<String, Coefficients>> {
         let without =
             |family: &'static str| Ok((family.to_owned(), fit(&answers, method, Some(family))?));

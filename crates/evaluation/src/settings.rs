@@ -129,21 +129,18 @@ fn table(judged: &Judged<'_>, names: &[&str]) -> Table {
 }
 
 fn figure(judged: &Judged<'_>, names: &[&str]) -> Figure {
-    let panel = |measure: Measure, error: &dyn Fn(f64) -> f64, title: &str| {
+    let panel = |(measure, title): (Measure, &str)| {
         let place = |name: &str| {
             let value = judged.sample(name).map_or(f64::NAN, |s| measure.of(s, &s.ones()));
-            (judged.query_ms(name, 0.5), error(value))
+            let error = if measure == Measure::Auc { 1.0 - value } else { value };
+            Series { size: 6, ..Series::points(name, [(judged.query_ms(name, 0.5), error)]) }
         };
-        let places: Vec<(f64, f64)> = names.iter().map(|name| place(name)).collect();
-        let notes = places.iter().zip(names).map(|(at, name)| (*at, (*name).to_owned()));
-        Panel::new(Axis::log("median query (ms)"), Axis::linear(title))
-            .series(Series::points("one setting changed", places[1..].to_vec()))
-            .series(Series::points(DEFAULT, [places[0]]).size(7))
-            .series(Series::notes(notes))
+        let series = names.iter().map(|name| place(name)).collect();
+        let (x, y) = (Axis::log("median query (ms)"), Axis::linear(title));
+        Panel { title: String::new(), x, y, series }
     };
-    Figure::new("Speed against error")
-        .columns(1)
-        .panel_size(800, 420)
-        .panel(panel(Measure::Brier, &|v| v, "Brier score"))
-        .panel(panel(Measure::Auc, &|v| 1.0 - v, "1 − AUC"))
+    Figure::new(
+        "Speed against error",
+        [(Measure::Brier, "Brier score"), (Measure::Auc, "1 − AUC")].map(panel),
+    )
 }

@@ -100,32 +100,36 @@ fn place((advance, case): &(f64, Labelled)) -> String {
 }
 
 fn figure(poses: &Poses, answers: &Answers) -> Result<Figure> {
-    let panel = |title: &str, y: Axis| {
-        Panel::new(Axis::linear("std of the added noise (mm)"), y).title(title)
+    let panel = |title: String, y: Axis, series: Vec<Series>| Panel {
+        title,
+        x: Axis::linear("std of the added noise (mm)"),
+        y,
+        series,
     };
-    let mut figure = Figure::new("Answers while noise is added to a real scan");
+    let levels = || (0..ADDED.len()).map(|level| (level, ADDED[level]));
+    let mut panels = Vec::new();
     for advance in PICTURED {
         let pose = at_advance(poses, advance)?;
-        let mut panel = panel(&place(&poses[pose]), Axis::unit("probability or verdict"));
+        let mut series = Vec::new();
         for (method, name) in METHODS.iter().enumerate() {
-            let levels = || (0..ADDED.len()).map(|level| (level, answers.of(method, pose, level)));
-            let span = |(level, said): (usize, Vec<f64>)| {
-                (ADDED[level], quantile(&said, 0.1), quantile(&said, 0.9))
+            let said = |(level, added)| (added, answers.of(method, pose, level));
+            let span = |(added, said): (f64, Vec<f64>)| {
+                (added, quantile(&said, 0.1), quantile(&said, 0.9))
             };
             // Verdicts have no spread: their mean says how often they are which.
-            let spread = levels().filter(|_| method < 2).map(span);
-            let means = levels().map(|(level, said)| (ADDED[level], mean(&said)));
-            panel = panel.series(Series::whiskers(name, spread)).series(Series::curve(name, means));
+            let spread = levels().filter(|_| method < 2).map(said).map(span);
+            let means = levels().map(said).map(|(added, said)| (added, mean(&said)));
+            series.extend([Series::whiskers(name, spread), Series::curve(name, means)]);
         }
-        figure = figure.panel(panel);
+        panels.push(panel(place(&poses[pose]), Axis::unit("probability or verdict"), series));
     }
-    let mut panel = panel("verdicts that flip from draw to draw", Axis::linear("share of changes"));
-    for (method, name) in METHODS.iter().enumerate() {
+    let flipping = METHODS.iter().enumerate().map(|(method, name)| {
         let share = |level| share(flips(poses.len(), answers, method, level));
-        let points = (0..ADDED.len()).map(|level| (ADDED[level], share(level)));
-        panel = panel.series(Series::curve(name, points));
-    }
-    Ok(figure.panel(panel))
+        Series::curve(name, levels().map(|(level, added)| (added, share(level))))
+    });
+    let y = Axis::linear("share of changes");
+    panels.push(panel("verdicts that flip from draw to draw".into(), y, flipping.collect()));
+    Ok(Figure::new("Answers while noise is added to a real scan", panels))
 }
 
 fn methods(poses: &Poses, answers: &Answers) -> Table {

@@ -9,7 +9,7 @@ mod sample;
 pub use bootstrap::{Clusters, Estimate, Replicates};
 pub use calibration::{Bin, brier, calibration_error, chance_error, observed_within, reliability};
 pub use logistic::Logistic;
-pub use rank::{auc, false_stops, roc};
+pub use rank::{auc, false_stops};
 pub use sample::Sample;
 
 /// What a method can be judged by.

@@ -8,10 +8,13 @@ use rayon::ThreadPoolBuilder;
 use super::{
     fresh::prepare,
     scene::{POINTS, STD, Scene},
-    target::{Findings, Target},
     timing::{ratio, time, timed},
 };
-use crate::{page::Section, table::Table};
+use crate::{
+    page::Section,
+    table::Table,
+    targets::{Findings, Target},
+};
 
 /// Poses of the batch, and its parts; one and two threads take turns at each.
 const POSES: usize = 10_000;

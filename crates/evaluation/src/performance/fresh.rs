@@ -15,10 +15,15 @@ use cloudtouch_testkit::{
 
 use super::{
     scene::{Class, POINTS, STD, Scene},
-    target::{Findings, Target},
     timing::{time, timed, times},
 };
-use crate::{page::Section, real_scans::cases, statistics::median, table::Table};
+use crate::{
+    page::Section,
+    real_scans::cases,
+    statistics::median,
+    table::Table,
+    targets::{Findings, Target},
+};
 
 /// Frames of each kind, returns of a frame, and poses asked of it.
 const FRAMES: usize = 20;

@@ -14,17 +14,16 @@ use super::{
     fresh::prepare,
     peers::ExactMeshes,
     scene::{POINTS, STD, Scene},
-    target::{Findings, Target},
-    timing::{curve, least_of, ratio, three_digits, time},
+    timing::{least_of, ratio, three_digits, time},
     turns::{Timed, take_turns},
 };
 use crate::{
     answers::Pair,
-    figure::{Axis, Figure, Panel},
     methods::{Distance, Draw, Ours},
     page::Section,
     statistics::median,
     table::Table,
+    targets::{Findings, Target},
 };
 
 /// Points of the room.
@@ -78,8 +77,7 @@ pub(super) fn measure(scene: &Scene) -> Findings {
              grows while a cloud is prepared; only the largest sizes mean something.",
             1e3 * STD
         ))
-        .text(table)
-        .figure("performance-growth", "Times of queries by points of the scene", figure(&grown));
+        .text(table);
     Ok((section, targets(&grown)))
 }
 
@@ -127,16 +125,6 @@ fn resident() -> Result<f64> {
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
     let kilobytes = line.and_then(|line| line.trim().strip_suffix(" kB"));
     Ok(1024.0 * kilobytes.context("VmRSS in /proc/self/status")?.parse::<f64>()?)
-}
-
-fn figure(grown: &[Grown]) -> Figure {
-    let panel = Panel::new(Axis::log("points of the scene"), Axis::log("time (ms)"));
-    let curves = (0..3).flat_map(|i| {
-        let of = grown.iter().map(|g| (g.points, g.timed[i].seconds(None))).collect::<Vec<_>>();
-        let name = grown.first().map_or(String::new(), |g| g.timed[i].name.clone());
-        curve(&name, &of)
-    });
-    Figure::new("Prepared queries against 10,000 points").panel(curves.fold(panel, Panel::series))
 }
 
 fn targets(grown: &[Grown]) -> Vec<Target> {

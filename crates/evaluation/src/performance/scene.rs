@@ -62,12 +62,6 @@ const TURN: [(Class, bool); 6] = [
 ];
 
 impl Class {
-    pub(super) const ALL: [Self; 3] = [Self::Far, Self::Near, Self::Deep];
-
-    pub(super) fn name(self) -> &'static str {
-        ["far", "near", "deep"][self as usize]
-    }
-
     /// None for what lies between the classes.
     fn of(signed_distance: f64) -> Option<Self> {
         match signed_distance {

@@ -9,7 +9,7 @@ use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
 use i_overlay::{core::fill_rule::FillRule, float::simplify::SimplifyShape};
 
 use crate::{
-    figure::{Axis, Figure, Panel, Place, RGBColor, Series, palette},
+    figure::{Axis, Figure, GREY, Panel, Place, RGBColor, Series},
     statistics::quantile,
     table::verdict,
 };
@@ -27,12 +27,11 @@ const SQUARE: f64 = 0.4;
 const SPECK: f64 = 0.05;
 /// Points and contacts at least this likely are marked.
 const LIKELY: f64 = 0.3;
-/// Length of a contact's arrow, cm.
-const ARROW: f64 = 5.0;
 
 const POINTS: &str = "measured points of the scene";
 const GRIPPER: RGBColor = RGBColor(150, 195, 235);
 const RED: RGBColor = RGBColor(215, 25, 28);
+const BLACK: RGBColor = RGBColor(0, 0, 0);
 
 /// The plane of the picture.
 struct View {
@@ -82,26 +81,28 @@ pub(super) fn figure(
     let (pose, first) = touching.context("no pose has a contact")?;
     let view = View::of(cloud, first.point, pose)?;
     let mesh = Mesh::prepare(object)?;
-    let title = "How likely does the gripper hit the mug? Three poses, seen from the side";
-    let figure = Figure::new(title).columns(3).panel_size(290, 440);
-    Ok(shown.iter().fold(figure, |figure, (pose, report)| {
+    let panel = |(pose, report): &(Pose, Report)| {
         let (outlines, holes) = outline(&view, object, pose);
         let (likely, other) = points(&view, cloud, &mesh, pose, report);
-        let x = Axis::linear("sideways (cm)").range(-SIDEWAYS..SIDEWAYS);
-        let y = Axis::linear("height above the table (cm)").range(HEIGHTS);
-        let p = report.collision_probability;
-        let panel = Panel::new(x, y)
-            .title(&format!("P = {p:.2}: {}", verdict(report.verdict)))
-            .equal_aspect()
+        let x = Axis { range: Some(-SIDEWAYS..SIDEWAYS), ..Axis::linear("sideways (cm)") };
+        let y = Axis { range: Some(HEIGHTS), ..Axis::linear("height above the table (cm)") };
+        let painted = |series, color| Series { color: Some(color), size: 2, ..series };
+        let series = vec![
             // First in the legend, and drawn as circles.
-            .series(Series::points(POINTS, []).color(palette::GREY))
-            .series(Series::polygons("gripper, known exactly", outlines).color(GRIPPER))
-            .series(Series::polygons("", holes).color(RGBColor(255, 255, 255)))
-            .series(Series::points(POINTS, other).color(palette::GREY).size(2))
-            .series(Series::points("points in contact or inside", likely).color(RED).size(3));
-        let arrows = Series::arrows("contact: place and direction", arrow(&view, report));
-        figure.panel(panel.series(arrows.color(palette::BLACK)))
-    }))
+            painted(Series::points(POINTS, []), GREY),
+            painted(Series::polygons("gripper, known exactly", outlines), GRIPPER),
+            painted(Series::polygons("", holes), RGBColor(255, 255, 255)),
+            painted(Series::points(POINTS, other), GREY),
+            painted(Series::points("points in contact or inside", likely), RED),
+            painted(Series::polygons("contact: place and direction", arrow(&view, report)), BLACK),
+        ];
+        let p = report.collision_probability;
+        Panel { title: format!("P = {p:.2}: {}", verdict(report.verdict)), x, y, series }
+    };
+    let title = "How likely does the gripper hit the mug? Three poses, seen from the side";
+    let figure = Figure::new(title, shown.iter().map(panel));
+    // As many pixels for a centimetre upwards as sideways.
+    Ok(Figure { columns: 3, panel_size: (290, 440), ..figure })
 }
 
 /// What the mesh covers, and the holes in it.
@@ -149,15 +150,18 @@ fn points(
     (marked, other)
 }
 
-/// The likeliest contact whose normal lies in the picture.
-fn arrow(view: &View, report: &Report) -> Option<[Place; 2]> {
-    let found = report.contacts.iter().find(|contact| {
+/// An arrow at the likeliest contact whose normal lies in the picture.
+fn arrow(view: &View, report: &Report) -> Option<Vec<Place>> {
+    let contact = report.contacts.iter().find(|contact| {
         contact.probability >= LIKELY && contact.normal_a_to_b.dot(&view.towards_eye).abs() < 0.5
-    });
-    found.map(|contact| {
-        let end = contact.point + contact.normal_a_to_b * (0.01 * ARROW);
-        [view.place(&contact.point), view.place(&end)]
-    })
+    })?;
+    let along = contact.normal_a_to_b;
+    let across = along.cross(&view.towards_eye);
+    // Corners from the tail around the head and back, cm along and across.
+    let corners =
+        [[0.0, 0.1], [4.2, 0.1], [4.2, 0.5], [5.0, 0.0], [4.2, -0.5], [4.2, -0.1], [0.0, -0.1]];
+    let place = |[a, b]: [f64; 2]| view.place(&(contact.point + 0.01 * (a * along + b * across)));
+    Some(corners.map(place).to_vec())
 }
 
 #[cfg(test)]

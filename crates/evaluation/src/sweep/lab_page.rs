@@ -53,22 +53,18 @@ pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>, bounds
         let section = Section::new(&format!("{}: noise, ordinary scenes", capitalised(pair)));
         page.section(section.text(answered.noises(pair)));
     }
-    let figures = [
-        (
+    let figures = Section::new("Figures")
+        .figure(
             "sweep-reliability",
             "Stated probability against observed rate",
             figures::reliability_figure(answered),
-        ),
-        ("sweep-roc", "Collisions found against free poses stopped", figures::roc_figure(answered)),
-        ("sweep-noise", "AUC and Brier score against noise", figures::noise_figure(answered)),
-        ("sweep-distance", "Probability against distance", figures::distance_figure(answered)),
-        ("sweep-speed", "Query time against 1 − AUC", figures::speed_figure(answered)),
-    ];
-    let pictures =
-        figures.into_iter().fold(Section::new("Figures"), |section, (name, shows, figure)| {
-            section.figure(name, shows, figure)
-        });
-    page.section(pictures);
+        )
+        .figure(
+            "sweep-distance",
+            "Probability against distance",
+            figures::distance_figure(answered),
+        );
+    page.section(figures);
     page.section(bounds);
     page.section(times(answered));
     page
