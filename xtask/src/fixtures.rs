@@ -3,7 +3,7 @@
 //! Coordinates are rounded to 0.1 mm and answers to 0.01 mm, so that the last bits in which
 //! platforms differ do not reach the files; answers hold for the files as rounded.
 
-use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path};
+use std::{collections::BTreeMap, fs, path::Path};
 
 use anyhow::{Context, Result, bail};
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, seed};
@@ -15,7 +15,6 @@ use cloudtouch_testkit::{
     surface::sample_surface,
 };
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 
 const SEED: u64 = 2011;
 const COMMAND: &str = "cargo xtask fixtures";
@@ -118,8 +117,6 @@ fn generate() -> Result<Files> {
     add("room.pcd", pcd(&noisy(&room, 54_000, 1, inside)));
     add("piano.pcd", pcd(&noisy(&piano, 9_000, 2, |_| true)));
     add("cases.json", json(&cases(&room, &piano)?)?);
-    let manifest = Manifest::of(&files);
-    files.insert("manifest.json".into(), json(&manifest)?);
     Ok(files)
 }
 
@@ -195,40 +192,6 @@ fn case(id: String, room: &ExactMesh, piano: &ExactMesh, drawn: &LabelledPose) -
         object_mesh: "piano.obj",
         in_collision: truth.in_collision,
         signed_distance_m: rounded(truth.signed_distance, 1e5),
-    })
-}
-
-#[derive(Serialize)]
-struct Manifest {
-    format: u32,
-    command: &'static str,
-    seed: u64,
-    files: Vec<Listed>,
-}
-
-#[derive(Serialize)]
-struct Listed {
-    path: String,
-    bytes: usize,
-    sha256: String,
-}
-
-impl Manifest {
-    fn of(files: &Files) -> Self {
-        let listed = |(path, bytes): (&String, &Vec<u8>)| Listed {
-            path: path.clone(),
-            bytes: bytes.len(),
-            sha256: sha256(bytes),
-        };
-        Self { format: 1, command: COMMAND, seed: SEED, files: files.iter().map(listed).collect() }
-    }
-}
-
-fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
-        // Writing into a string cannot fail.
-        let _ = write!(hex, "{byte:02x}");
-        hex
     })
 }
 
@@ -318,14 +281,14 @@ mod tests {
         store(&root, files()).unwrap();
         compare(&root, files()).unwrap();
         fs::write(root.join("fixtures/piano-room/room.obj"), "v 0 0 0\n").unwrap();
-        fs::remove_file(root.join("fixtures/manifest.json")).unwrap();
+        fs::remove_file(root.join("fixtures/piano-room/cases.json")).unwrap();
         fs::write(root.join("fixtures/notes.txt"), "").unwrap();
         fs::write(root.join("crates/cli/demo/room.pcd"), "").unwrap();
         let error = compare(&root, files()).unwrap_err().to_string();
         fs::remove_dir_all(&root).unwrap();
         for part in [
             "room.obj differs",
-            "manifest.json: ",
+            "cases.json: ",
             "notes.txt is not made",
             "crates/cli/demo/room.pcd differs",
         ] {

@@ -149,14 +149,6 @@ impl Answers {
         Ok(())
     }
 
-    /// Appends the answers of another run.
-    ///
-    /// # Errors
-    /// As [`Self::push`].
-    pub fn extend(&mut self, other: Vec<(Question, Vec<(String, Said)>)>) -> Result<()> {
-        other.into_iter().try_for_each(|(question, said)| self.push(question, &said))
-    }
-
     /// The families asked about, in the order of the questions.
     pub fn families(&self) -> Vec<&'static str> {
         let mut families = Vec::new();

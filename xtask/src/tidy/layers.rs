@@ -7,8 +7,8 @@ use super::manifest::{KINDS, Manifest};
 /// A development dependency of whoever likes, and of nobody otherwise among the published.
 const TESTKIT: &str = "cloudtouch-testkit";
 
-/// What stands on all layers may use any of them.
-const PRODUCT: [&str; 7] = [
+/// From the lowest layer upwards: what a crate may use comes before it.
+const LAYERS: [&str; 8] = [
     "cloudtouch-geom",
     "cloudtouch-noise",
     "cloudtouch-svm",
@@ -16,6 +16,7 @@ const PRODUCT: [&str; 7] = [
     "cloudtouch",
     "cloudtouch-io",
     "cloudtouch-cli",
+    "cloudtouch-evaluation",
 ];
 
 /// What of the project a crate may depend on; `None` for one that nobody has placed yet.
@@ -23,24 +24,12 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
     Some(match name {
         "cloudtouch-geom" => &[],
         "cloudtouch-noise" | "cloudtouch-svm" | "cloudtouch-bvh" | "cloudtouch-io" | TESTKIT => {
-            &["cloudtouch-geom"]
+            &LAYERS[..1]
         }
-        "cloudtouch" => {
-            &["cloudtouch-geom", "cloudtouch-noise", "cloudtouch-svm", "cloudtouch-bvh"]
-        }
-        "cloudtouch-cli"
-        | "cloudtouch-benches"
-        | "cloudtouch-fuzzing"
-        | "cloudtouch-evaluation" => &PRODUCT,
-        "xtask" => &[
-            "cloudtouch-geom",
-            "cloudtouch-noise",
-            "cloudtouch-svm",
-            "cloudtouch-bvh",
-            "cloudtouch",
-            "cloudtouch-io",
-            "cloudtouch-evaluation",
-        ],
+        "cloudtouch" => &LAYERS[..4],
+        "cloudtouch-cli" => &LAYERS[..6],
+        "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..7],
+        "xtask" => &LAYERS,
         _ => return None,
     })
 }

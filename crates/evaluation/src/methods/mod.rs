@@ -17,8 +17,7 @@ use cloudtouch_testkit::family::Observation;
 
 pub use boxes::Boxes;
 pub(crate) use boxes::parry_mesh;
-pub(crate) use distance::spread;
-pub use distance::{CloudIndex, Distance};
+pub use distance::Distance;
 pub use fitted::{Coefficients, Fitted};
 pub use ours::Ours;
 pub use plain_svm::PlainSvm;

@@ -4,7 +4,7 @@ use anyhow::Result;
 use cloudtouch::Mode;
 
 use super::{
-    peers::{ExactMeshes, Spheres},
+    peers::ExactMeshes,
     scene::{Class, POINTS, STD, Scene},
     timing::{p95, ratio, time},
     turns::{Timed, table, take_turns},
@@ -34,7 +34,6 @@ about 10,000 triangles each. No sensor knows them: it is told more than the othe
 - `1 cm boxes`: parry3d's voxels about the points of both clouds.
 - `distance`: the nearest point of the room for every point of the piano by kiddo, sought no farther \
 than the smallest distance so far.
-- `capt, spheres`: balls of 1 cm about the points of the piano against the points of the room.
 
 False stops and misses: free poses called collisions, and collisions called free; ours calls from ½ \
 on, a distance has no threshold. AUC of a method that says only yes or no is what ties leave.";
@@ -58,14 +57,13 @@ fn ask(scene: &Scene, std: f64) -> Result<Vec<Timed>> {
     let refined = Ours::new("ours", Mode::Calibrated)?.refined();
     let mut geometry = Ours::new("ours, geometry alone", Mode::Calibrated)?.refined();
     geometry.query.doubt = [0.5; 2];
-    let methods: [&dyn Method; 7] = [
+    let methods: [&dyn Method; 6] = [
         &refined,
         &Ours::new("ours, not refined", Mode::Calibrated)?,
         &geometry,
         &ExactMeshes(scene.meshes(POINTS)),
         &Boxes { side: 0.01 },
         &Distance { smoothed: false },
-        &Spheres,
     ];
     take_turns(&methods, &draw, Pair::CloudCloud, &scene.poses)
 }

@@ -86,23 +86,28 @@ impl Scene {
                 |part| poses_near_contact(&exact[0], &exact[1], BATCH, derive(seed, 1, part));
             (4 * number..4 * number + 4).into_par_iter().flat_map_iter(drawn).collect::<Vec<_>>()
         };
-        let mut kinds: [Vec<Posed>; TURN.len()] = Default::default();
-        let wanted = count.div_ceil(TURN.len());
-        for LabelledPose { scene_from_object: pose, in_collision: collides, signed_distance } in
-            (0..2000).flat_map(batch)
-        {
-            let class = Class::of(signed_distance);
-            let fits = |i: &usize| class == Some(TURN[*i].0) && collides == TURN[*i].1;
-            let open = (0..TURN.len()).filter(fits).find(|&i| kinds[i].len() < wanted);
-            if let (Some(class), Some(kind)) = (class, open) {
-                kinds[kind].push(Posed { class, collides, pose });
+        let mut drawn = (0..2000).flat_map(batch);
+        // What was drawn before its turn.
+        let mut spare: Vec<Posed> = Vec::new();
+        let mut next = |turn: (Class, bool)| {
+            loop {
+                let found = spare.iter().position(|p| (p.class, p.collides) == turn);
+                if let Some(at) = found {
+                    return Some(spare.remove(at));
+                }
+                let LabelledPose {
+                    scene_from_object: pose,
+                    in_collision: collides,
+                    signed_distance,
+                } = drawn.next()?;
+                spare.extend(Class::of(signed_distance).map(|class| Posed {
+                    class,
+                    collides,
+                    pose,
+                }));
             }
-            if kinds.iter().all(|kind| kind.len() == wanted) {
-                break;
-            }
-        }
-        let in_turn = |i: usize| kinds[i % TURN.len()].get(i / TURN.len()).copied();
-        let poses: Option<Vec<Posed>> = (0..count).map(in_turn).collect();
+        };
+        let poses: Option<Vec<Posed>> = (0..count).map(|i| next(TURN[i % TURN.len()])).collect();
         let poses = poses.context("too few far, near or deep poses")?;
         Ok(Self { room, piano, poses, seed })
     }

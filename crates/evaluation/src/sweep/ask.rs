@@ -68,7 +68,9 @@ pub fn ask(plan: &Plan, methods: &[Asked]) -> Result<Answers> {
                     .with_context(|| format!("{}, draw {}", family.name, scene.number))
             })
             .collect::<Result<_>>()?;
-        rows.into_iter().try_for_each(|rows| answers.extend(rows))?;
+        for (question, said) in rows.into_iter().flatten() {
+            answers.push(question, &said)?;
+        }
         eprintln!("{}: {} answers", family.name, answers.questions.len());
     }
     Ok(answers)
