@@ -16,6 +16,8 @@ use cloudtouch_testkit::{
 };
 use serde::Serialize;
 
+use crate::tidy;
+
 const SEED: u64 = 2011;
 const COMMAND: &str = "cargo xtask fixtures";
 /// Standard deviation of the clouds' noise, m; the cases state it as the sensor.
@@ -77,7 +79,7 @@ fn compare(root: &Path, files: &Files) -> Result<()> {
         }
     }
     for folder in FOLDERS {
-        for path in list(&root.join(folder), &format!("{folder}/"))? {
+        for path in tidy::files(root, &root.join(folder))? {
             if !files.contains_key(&path) && !path.ends_with("/README.md") {
                 wrong.push(format!("{path} is not made by this task"));
             }
@@ -88,21 +90,6 @@ fn compare(root: &Path, files: &Files) -> Result<()> {
         return Ok(());
     }
     bail!("{}; run `{COMMAND}` and commit the result", wrong.join("; "))
-}
-
-/// Paths of all files below a folder, relative to it, with slashes.
-fn list(folder: &Path, prefix: &str) -> Result<Vec<String>> {
-    let mut paths = Vec::new();
-    for entry in fs::read_dir(folder).with_context(|| format!("list {}", folder.display()))? {
-        let entry = entry?;
-        let path = format!("{prefix}{}", entry.file_name().to_string_lossy());
-        if entry.file_type()?.is_dir() {
-            paths.extend(list(&entry.path(), &format!("{path}/"))?);
-        } else {
-            paths.push(path);
-        }
-    }
-    Ok(paths)
 }
 
 fn generate() -> Result<Files> {

@@ -3,10 +3,10 @@
 use anyhow::{Context, Result};
 use cloudtouch::Mode;
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
-use cloudtouch_testkit::{exact::ExactMesh, family::Observation};
+use cloudtouch_testkit::family::Observation;
 use rayon::prelude::*;
 
-use super::scan::Scan;
+use super::scan::with_noise;
 use crate::{
     answers::Pair,
     methods::{Boxes, Distance, Draw, Method, Ours, Prepared},
@@ -18,8 +18,8 @@ pub(super) const OWN_STD: f64 = 0.005;
 pub(super) const ADDED: [f64; 4] = [0.0, 5.0, 10.0, 20.0];
 
 /// The methods, in the order of the answers; the first two say a probability.
-pub(super) const METHODS: [&str; 5] =
-    ["calibrated", "paper", "1 cm boxes", "points inside the mesh", "mesh of the scan"];
+pub(super) const METHODS: [&str; 4] =
+    ["calibrated", "paper", "1 cm boxes", "points inside the mesh"];
 
 /// The answers of all methods to all poses: a probability, or 0 and 1 of a yes-or-no method.
 type OfDraw = Vec<[f64; METHODS.len()]>;
@@ -30,7 +30,7 @@ pub(super) struct Answers(Vec<Vec<OfDraw>>);
 impl Answers {
     /// Asks all methods about all poses, `draws` times for each noise.
     pub(super) fn ask(
-        scan: &Scan,
+        scan: &PointCloud,
         object: &TriangleMesh,
         poses: &[Pose],
         draws: u64,
@@ -51,21 +51,19 @@ impl Answers {
 }
 
 fn of_draw(
-    scan: &Scan,
+    scan: &PointCloud,
     added: f64,
     draw: u64,
     object: &TriangleMesh,
     poses: &[Pose],
 ) -> Result<OfDraw> {
-    let noisy = scan.with_noise(added, draw);
-    let (surface, exact) = (ExactMesh::new(&scan.mesh(&noisy)?), ExactMesh::new(object));
     let observed = |cloud, std| Observation { cloud, truth: Vec::new(), std };
     // Whoever adds noise tells the sensor model.
-    let a = observed(noisy, OWN_STD.hypot(added));
+    let a = observed(with_noise(scan, added, draw), OWN_STD.hypot(added));
     // Asked as a mesh; a cloud of it has to be there nevertheless.
     let b = observed(PointCloud::from_points(object.vertices().to_vec()), 0.0);
     let draw = Draw { family: "real scan", a: &a, b: &b, mesh: object };
-    let methods: [&dyn Method; METHODS.len() - 1] = [
+    let methods: [&dyn Method; METHODS.len()] = [
         &Ours::new(METHODS[0], Mode::Calibrated)?,
         &Ours::new(METHODS[1], Mode::Paper)?,
         &Boxes { side: 0.01 },
@@ -80,7 +78,6 @@ fn of_draw(
             // A score above 0: a box that touches, a point inside.
             *said = answer.probability.unwrap_or(f64::from(u8::from(answer.score > 0.0)));
         }
-        all[METHODS.len() - 1] = f64::from(u8::from(surface.intersects(&exact, pose)));
         Ok(all)
     };
     poses.iter().map(all).collect()

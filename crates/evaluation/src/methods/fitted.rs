@@ -41,20 +41,13 @@ impl Fitted {
         serde_json::from_str(include_str!("../../recalibration.json")).context(PLACE)
     }
 
-    /// Constants that do not know a family, to judge our answers about it.
+    /// Constants that do not know a family, to judge answers about it: ours, or the oracle's.
     ///
     /// # Errors
     /// When a slope has the wrong sign.
-    pub fn to_judge(&self, family: &str) -> Result<Recalibration> {
-        self.without.get(family).unwrap_or(&self.all).recalibration()
-    }
-
-    /// The same for the oracle.
-    ///
-    /// # Errors
-    /// When a slope has the wrong sign.
-    pub fn oracle_to_judge(&self, family: &str) -> Result<Recalibration> {
-        self.oracle_without.get(family).unwrap_or(&self.all).recalibration()
+    pub fn to_judge(&self, family: &str, is_oracle: bool) -> Result<Recalibration> {
+        let without = if is_oracle { &self.oracle_without } else { &self.without };
+        without.get(family).unwrap_or(&self.all).recalibration()
     }
 
     /// Keeps it.

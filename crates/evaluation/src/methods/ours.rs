@@ -2,8 +2,7 @@
 
 use anyhow::Result;
 use cloudtouch::{
-    Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Recalibration, bvh::TreeSettings,
-    noise::SensorModel,
+    Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, bvh::TreeSettings, noise::SensorModel,
 };
 use cloudtouch_geom::{PointCloud, Pose, UnitVector3};
 use cloudtouch_testkit::family::Observation;
@@ -61,14 +60,6 @@ impl Ours {
         Self { is_refined: true, ..self }
     }
 
-    fn recalibration(&self, family: &str) -> Result<Recalibration> {
-        if self.sees_truth {
-            self.fitted.oracle_to_judge(family)
-        } else {
-            self.fitted.to_judge(family)
-        }
-    }
-
     fn cloud(&self, observation: &Observation) -> Result<Cloud> {
         let exact;
         let (cloud, sensor) = if self.sees_truth {
@@ -107,7 +98,7 @@ impl Method for Ours {
     }
 
     fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
-        let recalibration = self.recalibration(draw.family)?;
+        let recalibration = self.fitted.to_judge(draw.family, self.sees_truth)?;
         Ok(Box::new(Bodies {
             query: Query::new(QuerySettings { recalibration, ..self.query })?,
             a: self.cloud(draw.a)?,

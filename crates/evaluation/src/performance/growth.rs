@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     answers::Pair,
-    methods::{Distance, Draw, Ours},
+    methods::{Draw, Ours},
     page::Section,
     statistics::median,
     table::Table,
@@ -36,7 +36,7 @@ const BUILDS: usize = 3;
 /// What was measured of a room of one size.
 struct Grown {
     points: usize,
-    /// Ours, distance, exact meshes.
+    /// Ours, exact meshes.
     timed: Vec<Timed>,
     /// Points a second of the tree alone, and of the whole preparation.
     rates: [f64; 2],
@@ -51,9 +51,6 @@ pub(super) fn measure(scene: &Scene) -> Findings {
     let mut table = Table::new([
         "points",
         "query, median",
-        "AUC",
-        "distance, median",
-        "AUC",
         "parry3d, exact meshes",
         "tree, M points/s",
         "prepare, M points/s",
@@ -61,12 +58,16 @@ pub(super) fn measure(scene: &Scene) -> Findings {
     ]);
     let million = |rate: f64| three_digits(1e-6 * rate);
     for g in &grown {
-        let [ours, distance, meshes] = [0, 1, 2].map(|i| time(g.median(i)));
-        let [auc, auc_of_distance] = [0, 1].map(|i| format!("{:.3}", g.timed[i].auc(None)));
         let [tree, prepare] = g.rates.map(million);
         let held = format!("{:.0}", g.held);
-        let row = [ours, auc, distance, auc_of_distance, meshes, tree, prepare, held];
-        table.row(std::iter::once(g.points.to_string()).chain(row));
+        table.row([
+            g.points.to_string(),
+            time(g.median(0)),
+            time(g.median(1)),
+            tree,
+            prepare,
+            held,
+        ]);
     }
     let section = Section::new("Larger scenes")
         .text(format_args!(
@@ -95,9 +96,7 @@ impl Grown {
         let ours = Ours::new("ours, not refined", Mode::Calibrated)?;
         let meshes = ExactMeshes(scene.meshes(points));
         let poses = &scene.poses[..scene.poses.len().min(POSES)];
-        let methods: [&dyn crate::methods::Method; 3] =
-            [&ours, &Distance { smoothed: false }, &meshes];
-        let timed = take_turns(&methods, &draw, Pair::CloudCloud, poses)?;
+        let timed = take_turns(&[&ours, &meshes], &draw, Pair::CloudCloud, poses)?;
         eprintln!("bench-report: {points} points done");
         Ok(Self { points, timed, rates, held })
     }

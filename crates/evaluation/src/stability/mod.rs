@@ -33,12 +33,8 @@ pub struct Arguments {
 type Part = fn() -> Findings;
 
 /// Everything in the order of the page.
-const PARTS: [(&str, Part); 4] = [
-    ("solver", solver::measure),
-    ("queries", queries::measure),
-    ("poses", queries::poses),
-    ("motions", motions::measure),
-];
+const PARTS: [(&str, Part); 3] =
+    [("solver", solver::measure), ("queries", queries::measure), ("motions", motions::measure)];
 
 /// Runs everything, writes the page, and fails when a target is missed.
 ///

@@ -1,4 +1,4 @@
-//! The catalogue of clouds, meshes and poses through full queries in both modes.
+//! The catalogue of clouds and meshes through full queries in both modes.
 
 use anyhow::Result;
 use cloudtouch::{
@@ -6,7 +6,7 @@ use cloudtouch::{
     noise::SensorModel,
 };
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Pose};
-use cloudtouch_testkit::hard_cases::{HardCase, HardMesh, hard_cases, hard_meshes, hard_poses};
+use cloudtouch_testkit::hard_cases::{HardCase, HardMesh, hard_cases, hard_meshes};
 
 use crate::{
     page::Section,
@@ -65,35 +65,6 @@ pub(super) fn measure() -> Findings {
 }
 
 const BOTH: [Mode; 2] = [Mode::Calibrated, Mode::Paper];
-
-/// Asks about matrices between two harmless clouds.
-pub(super) fn poses() -> Findings {
-    let at = |i: u32, z: f64| Point3::new(0.02 * f64::from(i % 10), 0.02 * f64::from(i / 10), z);
-    let [a, b] = [0.0, 0.05].map(|z| (0..100).map(|i| at(i, z)).collect::<Vec<_>>());
-    let (a, b) = (measured(&a, 0.002)?, measured(&b, 0.002)?);
-    let (mut answered, mut refused, mut faults) = (Vec::new(), Vec::new(), Vec::new());
-    for case in hard_poses() {
-        let pose = Pose::try_from_matrix(&case.matrix).ok();
-        if pose.is_some() != case.valid {
-            faults.push(format!("{}: accepted or refused against what it is", case.name));
-        }
-        let Some(pose) = pose else {
-            refused.push(format!("`{}` ({})", case.name, case.reason));
-            continue;
-        };
-        let said = ask(Mode::Calibrated, &a, &b, &pose)?.verdict;
-        if said == Verdict::InCollision {
-            faults.push(format!("{}: {}", case.name, verdict(said)));
-        }
-        answered.push(format!("`{}`: {}", case.name, verdict(said)));
-    }
-    let section = Section::new("Hard cases: poses").text(format_args!(
-        "Two squares of points 5 cm apart and a matrix between them. Answered: {}. Refused: {}.",
-        answered.join(", "),
-        refused.join(", ")
-    ));
-    Ok((section, vec![Target::none_of("poses: wrong answers and wrong refusals", &faults)]))
-}
 
 fn ask<'a>(
     mode: Mode,
