@@ -240,11 +240,6 @@ mod tests {
     }
 
     #[test]
-    fn stored_fixtures_are_what_the_task_makes() {
-        compare(&crate::project_root(), files()).unwrap();
-    }
-
-    #[test]
     fn fixtures_are_small_closed_and_run_from_free_to_deep() {
         let total: usize = files().values().map(Vec::len).sum();
         assert!(total < 600_000, "{total} bytes");

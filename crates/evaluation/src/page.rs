@@ -65,14 +65,6 @@ impl Page {
         self.sections.push(section);
     }
 
-    /// The Markdown.
-    fn text(&self) -> String {
-        let sections = self.sections.iter().map(|section| section.text.trim_end());
-        let mut parts = vec![self.head.trim_end()];
-        parts.extend(sections);
-        parts.join("\n\n") + "\n"
-    }
-
     /// Writes `NAME.md` and `figures/*.svg` into the folder, each file whole.
     ///
     /// # Errors
@@ -87,7 +79,9 @@ impl Page {
             })?;
         }
         let path = folder.join(format!("{}.md", self.name));
-        write_atomically(&path, |out| out.write_all(self.text().as_bytes()))?;
+        let sections = self.sections.iter().map(|section| section.text.trim_end());
+        let parts: Vec<&str> = std::iter::once(self.head.trim_end()).chain(sections).collect();
+        write_atomically(&path, |out| writeln!(out, "{}", parts.join("\n\n")))?;
         println!("{}: wrote {}", self.task, path.display());
         Ok(())
     }

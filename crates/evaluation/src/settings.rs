@@ -9,7 +9,6 @@ use cloudtouch_testkit::family::Family;
 
 use crate::{
     answers::Pair,
-    figure::{Axis, Figure, Panel, Series},
     measures::Measure,
     methods::{Method, Ours},
     page::{self, Page, Section},
@@ -32,7 +31,7 @@ pub struct Arguments {
     /// Poses of each draw
     #[arg(long, default_value_t = 28)]
     poses: usize,
-    /// Write docs/lab/settings.md and its figure; else everything goes to target/lab/
+    /// Write docs/lab/settings.md; else it goes to target/lab/
     #[arg(long)]
     update_docs: bool,
 }
@@ -68,7 +67,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let title = ("settings", "Speed and error over settings");
     let mut page = Page::new(title, ("settings", &command), &introduction, root, SEED);
     let section = Section::new("One change at a time").text(table(&judged, &names));
-    page.section(section.figure("settings", "Speed against error", figure(&judged, &names)));
+    page.section(section);
     page.write(&page::folder(root, update_docs))
 }
 
@@ -103,44 +102,16 @@ fn changes() -> Result<Vec<Ours>> {
 fn table(judged: &Judged<'_>, names: &[&str]) -> Table {
     let measures = [Measure::Brier, Measure::Auc];
     let measured = judged.measure(&measures);
-    let mut table = Table::new([
-        "setting",
-        "median (ms)",
-        "p95 (ms)",
-        "Brier",
-        "minus default",
-        "AUC",
-        "minus default",
-    ]);
+    let header = "setting, median (ms), p95 (ms), Brier, minus default, AUC, minus default";
+    let mut table = Table::new(header.split(", "));
     for name in names {
         let mut row = vec![(*name).to_owned()];
         row.extend([0.5, 0.95].map(|share| format!("{:.2}", judged.query_ms(name, share))));
         for measure in measures {
             row.push(measured.estimate(name, measure).map_or("–".into(), |e| e.to_string()));
-            row.push(match measured.difference(name, DEFAULT, measure) {
-                Some(d) if *name != DEFAULT && d.excludes_zero() => format!("**{d:+}**"),
-                Some(d) if *name != DEFAULT => format!("{d:+}"),
-                _ => "–".into(),
-            });
+            row.push(measured.compared(name, DEFAULT, measure));
         }
         table.row(row);
     }
     table
-}
-
-fn figure(judged: &Judged<'_>, names: &[&str]) -> Figure {
-    let panel = |(measure, title): (Measure, &str)| {
-        let place = |name: &str| {
-            let value = judged.sample(name).map_or(f64::NAN, |s| measure.of(s, &s.ones()));
-            let error = if measure == Measure::Auc { 1.0 - value } else { value };
-            Series { size: 6, ..Series::points(name, [(judged.query_ms(name, 0.5), error)]) }
-        };
-        let series = names.iter().map(|name| place(name)).collect();
-        let (x, y) = (Axis::log("median query (ms)"), Axis::linear(title));
-        Panel { title: String::new(), x, y, series }
-    };
-    Figure::new(
-        "Speed against error",
-        [(Measure::Brier, "Brier score"), (Measure::Auc, "1 − AUC")].map(panel),
-    )
 }

@@ -93,14 +93,16 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         .y_label_area_size(44)
         .build_cartesian_2d(x, y)
         .map_err(failed)?;
+    // Few decades are better than their fractions.
+    let labels = |axis: &Axis| if axis.is_log { 6 } else { 9 };
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.1))
         .x_desc(&panel.x.name)
         .y_desc(&panel.y.name)
-        .x_labels(panel.x.label_count())
-        .y_labels(panel.y.label_count())
+        .x_labels(labels(&panel.x))
+        .y_labels(labels(&panel.y))
         .x_label_formatter(&|place| panel.x.label(*place))
         .y_label_formatter(&|place| panel.y.label(*place))
         .axis_desc_style(FONT)
@@ -188,11 +190,6 @@ impl Axis {
             0.0 => low - 0.5..high + 0.5,
             _ => 0.0..1.0,
         }
-    }
-
-    /// Few decades are better than their fractions.
-    fn label_count(&self) -> usize {
-        if self.is_log { 6 } else { 9 }
     }
 
     /// What stands at a place, without digits that say nothing.

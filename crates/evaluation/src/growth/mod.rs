@@ -137,9 +137,10 @@ fn methods(poses: &Poses, answers: &Answers) -> Table {
         };
         let mut cells = vec![(*name).to_owned()];
         cells.extend((1..ADDED.len()).map(|level| {
-            let flips = (0..poses.len()).flat_map(|pose| changes(&verdicts(pose, level)));
-            let flips: Vec<bool> = flips.collect();
-            format!("{} of {}", flips.iter().filter(|flip| **flip).count(), flips.len())
+            let of_poses: Vec<Vec<bool>> =
+                (0..poses.len()).map(|pose| verdicts(pose, level)).collect();
+            let pairs = || of_poses.iter().flat_map(|said| said.windows(2));
+            format!("{} of {}", pairs().filter(|pair| pair[0] != pair[1]).count(), pairs().count())
         }));
         let shares = [stated("near", true), stated("collision", false)];
         cells.extend(shares.map(|share| format!("{share:.3}")));
@@ -148,22 +149,6 @@ fn methods(poses: &Poses, answers: &Answers) -> Table {
     table
 }
 
-/// Whether each verdict differs from the one before.
-fn changes(verdicts: &[bool]) -> Vec<bool> {
-    verdicts.windows(2).map(|pair| pair[0] != pair[1]).collect()
-}
-
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn changes_are_counted_between_neighbours() {
-        assert_eq!(changes(&[true, true, false, true]), [false, true, true]);
-        assert!(changes(&[true]).is_empty() && changes(&[]).is_empty());
-    }
 }

@@ -145,6 +145,7 @@ mod tests {
             [Side::A, Side::B].map(|s| scene.observe(s, 300, NoiseKind::Gaussian, 0.002, 1));
         let draw = Draw { family: "x", a: &a, b: &b, mesh: scene.b.mesh() };
         let prepared = Distance { smoothed: false }.prepare(&draw).unwrap();
+        let mesh = Mesh::prepare(scene.b.mesh()).unwrap();
         for i in 0..10 {
             let along = |k| 0.4 * seed::unit(seed::derive(9, i, k)) - 0.2;
             let offset = Vector3::new(along(0), along(1), 0.3 + along(2));
@@ -153,17 +154,13 @@ mod tests {
             let moved: Vec<Point3> =
                 b.cloud.points.iter().map(|p| pose.transform_point(p)).collect();
             let clouds = brute::minimum_distance(&a.cloud.points, &moved);
-            let in_b: Vec<Point3> =
-                a.cloud.points.iter().map(|p| pose.inverse().transform_point(p)).collect();
-            let mesh = Mesh::prepare(scene.b.mesh()).unwrap();
-            let to_mesh =
-                in_b.iter().map(|p| mesh.signed_distance(p)).fold(f64::INFINITY, f64::min);
+            let in_b = a.cloud.points.iter().map(|p| pose.inverse().transform_point(p));
+            let to_mesh = in_b.map(|p| mesh.signed_distance(&p)).fold(f64::INFINITY, f64::min);
             // Both are divided by the same unit in every pose.
-            let unit = -clouds / said(Pair::CloudCloud);
-            assert!(unit > 0.002 && unit < 0.1, "{unit}");
-            assert!((said(Pair::CloudMesh) * to_mesh) < 0.0 || to_mesh.abs() < 1e-12);
-            let unit = -to_mesh / said(Pair::CloudMesh);
-            assert!(unit > 0.002 && unit < 0.1, "{unit}");
+            for (pair, distance) in [(Pair::CloudCloud, clouds), (Pair::CloudMesh, to_mesh)] {
+                let unit = -distance / said(pair);
+                assert!(unit > 0.002 && unit < 0.1, "{pair:?}: {unit}");
+            }
         }
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! A method is prepared once for a draw of a scene and then asked at many poses, as a planner does.
 
-mod boxes;
 mod distance;
 mod fitted;
 mod ours;
 mod plain_svm;
+mod shapes;
 
 use std::time::Instant;
 
@@ -15,12 +15,11 @@ use cloudtouch::{FilterSettings, filter, noise::SensorModel};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::Observation;
 
-pub use boxes::Boxes;
-pub(crate) use boxes::parry_mesh;
 pub use distance::Distance;
 pub use fitted::{Coefficients, Fitted};
 pub use ours::Ours;
 pub use plain_svm::PlainSvm;
+pub use shapes::{Boxes, ExactMeshes};
 
 use crate::answers::{Pair, Said};
 

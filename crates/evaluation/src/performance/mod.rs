@@ -4,7 +4,6 @@
 mod batch;
 mod fresh;
 mod growth;
-mod peers;
 mod room;
 mod scene;
 mod solvers;

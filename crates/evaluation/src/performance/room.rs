@@ -4,14 +4,13 @@ use anyhow::Result;
 use cloudtouch::Mode;
 
 use super::{
-    peers::ExactMeshes,
     scene::{Class, POINTS, STD, Scene},
     timing::{p95, ratio, time},
     turns::{Timed, table, take_turns},
 };
 use crate::{
     answers::Pair,
-    methods::{Boxes, Distance, Draw, Method, Ours},
+    methods::{Boxes, Distance, Draw, ExactMeshes, Method, Ours},
     page::Section,
     statistics::median,
     targets::{Findings, Target},

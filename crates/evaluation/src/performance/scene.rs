@@ -148,14 +148,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_have_gaps_between_them() {
-        assert_eq!([0.5, 0.1].map(Class::of), [Some(Class::Far); 2]);
-        assert_eq!([0.02, 0.0, -0.02].map(Class::of), [Some(Class::Near); 3]);
-        assert_eq!([-0.05, f64::NEG_INFINITY].map(Class::of), [Some(Class::Deep); 2]);
-        assert_eq!([0.05, -0.03, f64::NAN].map(Class::of), [None; 3]);
-    }
-
-    #[test]
     fn poses_are_what_they_are_drawn_for() {
         let scene = Scene::draw(7, 3).unwrap();
         let exact = [&scene.room, &scene.piano].map(ExactMesh::new);

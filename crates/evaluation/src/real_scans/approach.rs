@@ -60,8 +60,6 @@ pub(super) fn evaluate(data: &Path) -> Findings {
     let picture = side_view::figure(&main, &object, &shown)?;
 
     let contacts = || answers[0].iter().flat_map(|report| &report.contacts);
-    let advance = poses[poses.len() - 1].translation() - poses[0].translation();
-    let facing = contacts().filter(|c| c.normal_a_to_b.dot(&advance) < 0.0).count();
     let distances: Vec<f64> = contacts().map(|c| nearest(&scan.points, &c.point)).collect();
     let drops = RUNS.iter().zip(&answers).map(|((.., name), run)| (largest_drop(run), name));
     let drops: Vec<String> = drops.map(|(drop, name)| format!("{drop:.3} ({name})")).collect();
@@ -69,12 +67,10 @@ pub(super) fn evaluate(data: &Path) -> Findings {
         "A PR2 gripper, known as a mesh, moves along a straight line towards a mug on a table, from \
          {:.0} mm before its first contact with a measured point to {:.0} mm past it. Largest fall \
          of P below its running maximum: {}. The first run is checked, the scan has about that \
-         noise. Of its {} contacts {facing} have a normal (scene to gripper) that faces the \
-         gripper, that is, against its advance.",
+         noise.",
         -advances[0],
         advances[advances.len() - 1],
         drops.join(", "),
-        distances.len(),
     );
     let shows = "A slice through a mug on a table as a depth camera measured it, and the outline \
                  of a gripper at three poses: free, touching and in collision";

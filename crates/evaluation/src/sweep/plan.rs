@@ -17,7 +17,7 @@ pub(super) const STDS: [f64; 4] = [0.0, 0.002, 0.01, 0.02];
 pub(super) const POINTS: [usize; 2] = [2_500, 10_000];
 
 /// Which scenes are asked about, how observed, and at how many poses.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Plan {
     /// Generators of scenes.
     pub families: Vec<Scenes>,
