@@ -66,8 +66,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let command = format!("--draws {draws} --poses {poses} --update-docs");
     let title = ("settings", "Speed and error over settings");
     let mut page = Page::new(title, ("settings", &command), &introduction, root, SEED);
-    let section = Section::new("One change at a time").text(table(&judged, &names));
-    page.section(section);
+    page.section(Section::new("One change at a time").text(table(&judged, &names)));
     page.write(&page::folder(root, update_docs))
 }
 

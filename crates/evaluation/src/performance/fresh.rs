@@ -193,8 +193,6 @@ fn thinned(cloud: &PointCloud, returns: usize) -> Result<PointCloud> {
     let (columns, rows) = (kept(width), kept(height));
     let pixels = rows.iter().flat_map(|&row| columns.iter().map(move |c| row * width + c));
     let points = pixels.map(|i| cloud.points[i]).collect();
-    Ok(PointCloud {
-        image_size: Some((columns.len(), rows.len())),
-        ..PointCloud { points, covariances: None, normals: None, ..cloud.clone() }
-    })
+    let image_size = Some((columns.len(), rows.len()));
+    Ok(PointCloud { points, image_size, covariances: None, normals: None, ..cloud.clone() })
 }

@@ -108,7 +108,6 @@ fn wrong(p: f64, [low, high]: [f64; 2], wanted: Option<[f64; 2]>) -> Option<Stri
 }
 
 fn by_label(cases: &[Labelled], answers: &[Answer]) -> Table {
-    let quantiles = [0.0, 0.5, 1.0];
     let mut table = Table::new(["label", "cases", "P min", "P median", "P max", "query (ms)"]);
     for label in LABELS {
         let of_label = cases.iter().zip(answers).filter(|(case, _)| case.label == label);
@@ -117,7 +116,7 @@ fn by_label(cases: &[Labelled], answers: &[Answer]) -> Table {
         let p: Vec<f64> = reports.iter().map(|report| report.collision_probability).collect();
         let time: Vec<f64> = reports.iter().map(|report| query_ms(report)).collect();
         let mut cells = vec![label.to_owned(), reports.len().to_string()];
-        cells.extend(quantiles.map(|q| probability(quantile(&p, q))));
+        cells.extend([0.0, 0.5, 1.0].map(|q| probability(quantile(&p, q))));
         cells.push(format!("{:.1}", quantile(&time, 0.5)));
         table.row(cells);
     }

@@ -22,6 +22,8 @@ error.";
 const HEADER: [&str; 9] =
     ["case", "truth", "verdict", "P", "bounds", "paper's mode", "solved", "gap", "ms"];
 
+const BOTH: [Mode; 2] = [Mode::Calibrated, Mode::Paper];
+
 /// A report and how many points the filters dropped.
 type Answer = Result<(Report, usize)>;
 
@@ -63,8 +65,6 @@ pub(super) fn measure() -> Findings {
     ));
     Ok((section.text(table), vec![sound]))
 }
-
-const BOTH: [Mode; 2] = [Mode::Calibrated, Mode::Paper];
 
 fn ask<'a>(
     mode: Mode,
