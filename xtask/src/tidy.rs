@@ -10,9 +10,6 @@ use std::{fs, path::Path};
 
 use anyhow::{Context, Result, bail};
 
-/// Crates whose modules still use one another.
-const WITH_CIRCLES: [&str; 0] = [];
-
 /// Prints every violation and fails when there is one.
 pub(crate) fn run(root: &Path) -> Result<()> {
     let violations = violations(root)?;
@@ -26,10 +23,8 @@ pub(crate) fn run(root: &Path) -> Result<()> {
 fn violations(root: &Path) -> Result<Vec<String>> {
     let manifests = manifest::read_all(root)?;
     let mut found = layers::check(&manifests);
-    found.extend(manifest::check(root, &manifests)?);
-    let folders = manifests.iter().map(|m| m.folder.as_str());
-    let folders: Vec<&str> = folders.filter(|f| !WITH_CIRCLES.contains(f)).collect();
-    found.extend(circles::check(root, &folders)?);
+    found.extend(manifest::check(&manifests));
+    found.extend(circles::check(root, manifests.iter().map(|m| m.folder.as_str()))?);
     for path in files(root, root)? {
         found.extend(check_file(root, &path)?);
     }
@@ -56,7 +51,7 @@ fn check_file(root: &Path, path: &str) -> Result<Vec<String>> {
 }
 
 /// Files of the project, relative to its root, in order; not what git or cargo made.
-fn files(root: &Path, folder: &Path) -> Result<Vec<String>> {
+pub(crate) fn files(root: &Path, folder: &Path) -> Result<Vec<String>> {
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).with_context(|| format!("list {}", folder.display()))? {
         let path = entry?.path();

@@ -1,4 +1,3 @@
-use cloudtouch::Mode;
 use cloudtouch_evaluation::{methods::Ours, sweep::{Asked, OURS, Plan, ask}};
 fn main() {
     let args: Vec<String> = std::env::args().collect();
@@ -10,8 +9,8 @@ fn main() {
     if let Some(only) = args.get(4) {
         plan.families.retain(|f| only.contains(f.name));
     }
-    let methods = [Asked::always(Ours::new(OURS, Mode::Calibrated).unwrap().gathering_everything())];
-    println!("family,kind,pair,points,std,draw,pose,collides,distance,z,crossing,misclassified,total,local2,local3,local5,sq,sq3,sq5,prob3,strong,spacing,inside,depth,micros");
+    let methods = [Asked::always(Ours::new(OURS).unwrap().gathering_everything())];
+    println!("family,kind,pair,points,std,draw,pose,collides,distance,z,crossing,misclassified,zz,inside,e0,e03,e06,e1,e15,e25,e1r6,depthsp,spacing,count,micros");
     for family in plan.families.clone() {
     plan.families = vec![family];
     let answers = ask(&plan, &methods).unwrap();

@@ -4,7 +4,7 @@ use std::{path::Path, time::Instant};
 
 use anyhow::{Context, Result, ensure};
 use cloudtouch::{ContactEvidence, Report};
-use cloudtouch_testkit::noise::NoiseKind;
+use cloudtouch_io::write_atomically;
 use serde::Serialize;
 
 /// What the moving body is given as.
@@ -43,18 +43,16 @@ pub enum Kind {
 }
 
 /// How a scene was observed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Condition {
     /// Points of each cloud.
     pub points: usize,
-    /// How the noise is distributed.
-    pub noise: NoiseKind,
-    /// Standard deviation of the noise along each axis, m.
+    /// Standard deviation of the normal noise along each axis, m.
     pub std: f64,
 }
 
 /// One pose of one draw of a scene, and what is true there.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Question {
     /// Generator of the scene.
     pub family: &'static str,
@@ -75,7 +73,7 @@ pub struct Question {
 }
 
 /// What a method says of a question.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Said {
     /// Larger = more likely a collision; any monotone scale.
     pub score: f64,
@@ -151,14 +149,6 @@ impl Answers {
         Ok(())
     }
 
-    /// Appends the answers of another run.
-    ///
-    /// # Errors
-    /// As [`Self::push`].
-    pub fn extend(&mut self, other: Vec<(Question, Vec<(String, Said)>)>) -> Result<()> {
-        other.into_iter().try_for_each(|(question, said)| self.push(question, &said))
-    }
-
     /// The families asked about, in the order of the questions.
     pub fn families(&self) -> Vec<&'static str> {
         let mut families = Vec::new();
@@ -180,74 +170,32 @@ impl Answers {
         self.methods.iter().find(|(name, _)| name == method).map(|(_, said)| said.as_slice())
     }
 
-    /// Writes a row for every answer; missing values are empty cells.
+    /// Writes a line of JSON for every answer.
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn write_csv(&self, path: &Path) -> Result<()> {
-        let mut file =
-            csv::Writer::from_path(path).with_context(|| format!("write {}", path.display()))?;
-        for (i, question) in self.questions.iter().enumerate() {
-            for (method, said) in &self.methods {
-                let Some(said) = said[i] else { continue };
-                file.serialize(Row::new(question, method, &said))?;
+    pub fn write(&self, path: &Path) -> Result<()> {
+        write_atomically(path, |out| {
+            for (i, question) in self.questions.iter().enumerate() {
+                for (method, said) in &self.methods {
+                    let Some(said) = said[i] else { continue };
+                    serde_json::to_writer(&mut *out, &Line { question, method, said })?;
+                    out.write_all(b"\n")?;
+                }
             }
-        }
-        Ok(file.flush()?)
+            Ok(())
+        })
+        .with_context(|| format!("write {}", path.display()))
     }
 }
 
-/// A row of the file.
 #[derive(Serialize)]
-struct Row<'a> {
-    family: &'static str,
-    kind: Kind,
-    pair: Pair,
-    points: usize,
-    noise: &'static str,
-    std_m: f64,
-    draw: u32,
-    pose: u32,
-    collides: bool,
-    signed_distance_m: f64,
+struct Line<'a> {
+    #[serde(flatten)]
+    question: &'a Question,
     method: &'a str,
-    score: f64,
-    probability: Option<f64>,
-    low: Option<f64>,
-    high: Option<f64>,
-    deviations: Option<f64>,
-    crossing: Option<f64>,
-    misclassified: Option<f64>,
-    micros: f64,
-}
-
-impl<'a> Row<'a> {
-    fn new(question: &Question, method: &'a str, said: &Said) -> Self {
-        Self {
-            family: question.family,
-            kind: question.kind,
-            pair: question.pair,
-            points: question.condition.points,
-            noise: match question.condition.noise {
-                NoiseKind::Gaussian => "gaussian",
-                NoiseKind::HeavyTailed => "heavy-tailed",
-            },
-            std_m: question.condition.std,
-            draw: question.draw,
-            pose: question.pose,
-            collides: question.collides,
-            signed_distance_m: question.signed_distance,
-            method,
-            score: said.score,
-            probability: said.probability,
-            low: said.bounds.map(|b| b[0]),
-            high: said.bounds.map(|b| b[1]),
-            deviations: said.evidence.map(|e| e.deviations),
-            crossing: said.evidence.map(|e| e.crossing),
-            misclassified: said.evidence.and_then(|e| e.misclassified),
-            micros: said.micros,
-        }
-    }
+    #[serde(flatten)]
+    said: Said,
 }
 
 #[cfg(test)]
@@ -260,7 +208,7 @@ pub(crate) mod tests {
             family,
             kind: Kind::Ordinary,
             pair: Pair::CloudCloud,
-            condition: Condition { points: 5_000, noise: NoiseKind::Gaussian, std: 0.005 },
+            condition: Condition { points: 5_000, std: 0.005 },
             draw,
             pose,
             collides,

@@ -1,15 +1,17 @@
-//! `cargo xtask calibrate`: the constants that turn evidence into a probability.
+//! `cargo xtask calibrate`: the surfaces that turn evidence into a probability.
 
 use std::{collections::BTreeMap, fs, path::Path};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use cloudtouch::ContactEvidence;
+use cloudtouch::{
+    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
+};
 
 use crate::{
     answers::Answers,
-    measures::Logistic,
-    methods::{Coefficients, Fitted, Ours},
+    measures::{Axis, SurfaceSample, fit_surface},
+    methods::{Fitted, Ours},
     sweep::{Asked, ORACLE, OURS, Plan, ask},
 };
 
@@ -17,12 +19,12 @@ use crate::{
 #[derive(Args)]
 pub struct Arguments {
     /// Draws of each family
-    #[arg(long, default_value_t = 4)]
+    #[arg(long, default_value_t = 6)]
     draws: u32,
     /// Poses of each draw
-    #[arg(long, default_value_t = 28)]
+    #[arg(long, default_value_t = 24)]
     poses: usize,
-    /// Keep the fit; what the library takes by default is changed by hand
+    /// Keep the fit, in the lab and as the library's default
     #[arg(long)]
     update: bool,
 }
@@ -30,7 +32,7 @@ pub struct Arguments {
 /// Fits, prints, and keeps when asked to.
 ///
 /// # Errors
-/// When a query fails, or the evidence does not determine the constants.
+/// When a query fails or a file cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update } = *arguments;
     let gathering = |ours: Ours| Asked::always(ours.gathering_everything());
@@ -38,8 +40,8 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let answers = ask(&Plan::evidence(draws, poses), &methods)?;
     let folder = root.join("target/sweep");
     fs::create_dir_all(&folder)?;
-    answers.write_csv(&folder.join("evidence.csv"))?;
-    let without_each = |method: &str| -> Result<BTreeMap<String, Coefficients>> {
+    answers.write(&folder.join("evidence.jsonl"))?;
+    let without_each = |method: &str| -> Result<BTreeMap<String, Judge>> {
         let without =
             |family: &'static str| Ok((family.to_owned(), fit(&answers, method, Some(family))?));
         answers.families().into_iter().map(without).collect()
@@ -50,12 +52,12 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         without: without_each(OURS)?,
         oracle_without: without_each(ORACLE)?,
     };
-    println!("{}", serde_json::to_string_pretty(&fitted)?);
+    println!("{}", fitted.as_source());
     if update { fitted.write(root) } else { Ok(()) }
 }
 
-/// Fitted on all families but one.
-fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Coefficients> {
+/// Fitted on all families but one, on clouds and on meshes alike.
+fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> {
     let said = answers.said(method).with_context(|| format!("{method} did not answer"))?;
     let mut records: Vec<(ContactEvidence, bool)> = Vec::new();
     for (question, said) in answers.questions.iter().zip(said) {
@@ -64,40 +66,35 @@ fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Coeffic
             records.push((evidence, question.collides));
         }
     }
-    let geometry = constrained(&records, |e| Some([e.crossing, e.deviations]), [1.0, -1.0])?;
-    // Where the noise is as large as the patches the classifier says nothing.
-    let everything = |e: &ContactEvidence| Some([e.crossing, e.deviations, e.ln_misclassified()?]);
-    let all = constrained(&records, everything, [1.0, -1.0, 1.0])?;
-    let (Ok(by_geometry), Ok(by_all)) = (geometry.try_into(), all.try_into()) else {
-        unreachable!("an intercept and a slope for every feature");
-    };
-    Ok(Coefficients { by_geometry, by_all })
+    fit_judge(&records)
 }
 
-/// A fit in which every slope has the sign of its evidence: a feature that comes out the other way
-/// is left out, since bounds rest on the signs.
-fn constrained<const N: usize>(
-    records: &[(ContactEvidence, bool)],
-    features: impl Fn(&ContactEvidence) -> Option<[f64; N]>,
-    signs: [f64; N],
-) -> Result<Vec<f64>> {
-    let (rows, truths): (Vec<[f64; N]>, Vec<bool>) =
-        records.iter().filter_map(|(e, collides)| Some((features(e)?, *collides))).unzip();
-    let mut used: Vec<usize> = (0..N).collect();
-    loop {
-        let table: Vec<Vec<f64>> =
-            rows.iter().map(|row| used.iter().map(|&k| row[k]).collect()).collect();
-        let [intercept, slopes @ ..] = &Logistic::fit(&table, &truths)?.coefficients[..] else {
-            anyhow::bail!("a fit without an intercept");
-        };
-        if let Some(wrong) = used.iter().zip(slopes).position(|(&k, s)| s * signs[k] < 0.0) {
-            used.remove(wrong);
-            continue;
-        }
-        let mut all = vec![0.0; N + 1];
-        all[0] = *intercept;
-        used.iter().zip(slopes).for_each(|(&k, slope)| all[k + 1] = *slope);
-        return Ok(all.iter().map(|v| (1e3 * v).round() / 1e3).collect());
+/// The surface over geometry first; then, where that leaves doubt, how the classifier revises it.
+fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
+    let geometry: Vec<SurfaceSample> =
+        records.iter().map(|(e, collides)| ([e.deviations, e.crossing], *collides)).collect();
+    let deviations = Axis { knots: &DEVIATION_KNOTS, rises: false };
+    let crossing = Axis { knots: &CROSSING_KNOTS, rises: true };
+    let mut judge = Judge::default();
+    keep(&mut judge.by_geometry, &fit_surface(&geometry, deviations, crossing, false));
+    let doubtful = |(e, collides): &(ContactEvidence, bool)| -> Option<SurfaceSample> {
+        let by_geometry = judge.log_odds_by_geometry(e.deviations, e.crossing);
+        let [least, .., most] = DOUBT_KNOTS;
+        let is_doubtful = least < by_geometry && by_geometry < most;
+        // Where the noise is as large as the patches the classifier says nothing.
+        is_doubtful.then_some(([by_geometry, e.ln_misclassified()?], *collides))
+    };
+    let in_doubt: Vec<SurfaceSample> = records.iter().filter_map(doubtful).collect();
+    let doubt = Axis { knots: &DOUBT_KNOTS, rises: true };
+    let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, rises: true };
+    keep(&mut judge.revised, &fit_surface(&in_doubt, doubt, misclassified, true));
+    judge.validate()?;
+    Ok(judge)
+}
+
+fn keep<const N: usize, const M: usize>(values: &mut [[f64; M]; N], fitted: &[Vec<f64>]) {
+    for (row, fitted) in values.iter_mut().zip(fitted) {
+        row.copy_from_slice(fitted);
     }
 }
 
@@ -108,21 +105,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_feature_that_counts_the_wrong_way_is_left_out() {
+    fn a_judge_that_made_the_truth_is_found_again() {
         let unit = |i: u64, k: u64| seed::unit(seed::derive(7, i, k));
-        let drawn = |sign: f64| -> Vec<(ContactEvidence, bool)> {
-            let record = |i| {
-                let [deviations, crossing] = [5.0 * unit(i, 0), 4.0 * unit(i, 1)];
-                let x = sign * crossing - 0.7 * deviations;
-                let collides = unit(i, 3) < 1.0 / (1.0 + (-x).exp());
-                (ContactEvidence { deviations, crossing, misclassified: None }, collides)
-            };
-            (0..3000).map(record).collect()
+        let record = |i| {
+            let (deviations, crossing) = (6.0 * unit(i, 0), 5.0 * unit(i, 1));
+            let count = 10.0 * unit(i, 2) * unit(i, 2);
+            let evidence = ContactEvidence { deviations, crossing, misclassified: Some(count) };
+            let log_odds = crossing - 1.5 * deviations + 0.5 * (count - 3.0);
+            (evidence, unit(i, 3) < 1.0 / (1.0 + (-log_odds).exp()))
         };
-        let fit = |sign| {
-            constrained(&drawn(sign), |e| Some([e.crossing, e.deviations]), [1.0, -1.0]).unwrap()
-        };
-        assert_eq!(fit(-1.0)[1], 0.0);
-        assert!((fit(1.0)[1] - 1.0).abs() < 0.2 && (fit(1.0)[2] + 0.7).abs() < 0.15);
+        let records: Vec<_> = (0..30_000).map(record).collect();
+        let judge = fit_judge(&records).unwrap();
+        // Averaged over what the classifier says, odds are nearer to even.
+        let odds = judge.log_odds_by_geometry(1.0, 3.6);
+        assert!((1.0..2.4).contains(&odds), "{odds}");
+        assert!(judge.revise(0.0, 8.0) > 0.8 && judge.revise(0.0, 0.1) < -0.5);
     }
 }

@@ -4,17 +4,13 @@ use std::{fs, path::Path, process::Command};
 
 /// The lines of a page that say when, from what and where its numbers were made.
 pub fn provenance(root: &Path, seed: u64) -> String {
+    let date = jiff::Timestamp::now().strftime("%F");
     let (commit, processor) = (commit(root), processor());
-    format!("- date: {}\n- commit: {commit}\n- machine: {processor}\n- seed: {seed}\n", date())
-}
-
-/// Today in UTC as year-month-day.
-pub fn date() -> String {
-    jiff::Timestamp::now().strftime("%F").to_string()
+    format!("- date: {date}\n- commit: {commit}\n- machine: {processor}\n- seed: {seed}\n")
 }
 
 /// Processor and number of cores.
-pub fn processor() -> String {
+fn processor() -> String {
     let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info
         .lines()
@@ -26,7 +22,7 @@ pub fn processor() -> String {
 }
 
 /// The commit of the sources, and whether they differ from it.
-pub fn commit(root: &Path) -> String {
+fn commit(root: &Path) -> String {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").args(arguments).current_dir(root).output().ok()?;
         let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();

@@ -65,14 +65,6 @@ impl Page {
         self.sections.push(section);
     }
 
-    /// The Markdown.
-    fn text(&self) -> String {
-        let sections = self.sections.iter().map(|section| section.text.trim_end());
-        let mut parts = vec![self.head.trim_end()];
-        parts.extend(sections);
-        parts.join("\n\n") + "\n"
-    }
-
     /// Writes `NAME.md` and `figures/*.svg` into the folder, each file whole.
     ///
     /// # Errors
@@ -81,10 +73,15 @@ impl Page {
         let figures = folder.join("figures");
         fs::create_dir_all(&figures).with_context(|| format!("create {}", figures.display()))?;
         for (name, figure) in self.sections.iter().flat_map(|section| &section.figures) {
-            figure.write(&figures.join(format!("{name}.svg")))?;
+            let svg = figure.svg()?;
+            write_atomically(figures.join(format!("{name}.svg")), |out| {
+                out.write_all(svg.as_bytes())
+            })?;
         }
         let path = folder.join(format!("{}.md", self.name));
-        write_atomically(&path, |out| out.write_all(self.text().as_bytes()))?;
+        let sections = self.sections.iter().map(|section| section.text.trim_end());
+        let parts: Vec<&str> = std::iter::once(self.head.trim_end()).chain(sections).collect();
+        write_atomically(&path, |out| writeln!(out, "{}", parts.join("\n\n")))?;
         println!("{}: wrote {}", self.task, path.display());
         Ok(())
     }
@@ -125,14 +122,14 @@ mod tests {
     #[test]
     fn a_page_and_its_figures_are_written_in_order() {
         let folder = tempfile::tempdir().unwrap();
-        let panel = Panel::new(Axis::linear("x (m)"), Axis::linear("y (m)"))
-            .series(Series::points("a", [(0.0, 1.0)]));
+        let (x, y) = (Axis::linear("x (m)"), Axis::linear("y (m)"));
+        let panel = Panel { title: "a".into(), x, y, series: vec![Series::points("a", [])] };
         let names = (("test", "Test"), ("try", "--seed 3"));
         let mut page = Page::new(names.0, names.1, "Says why.", folder.path(), 3);
         let section = Section::new("First").text("Before.\n").figure(
             "one",
             "One point",
-            Figure::new("One").panel(panel),
+            Figure::new("One", [panel]),
         );
         page.section(section.text("After."));
         page.write(folder.path()).unwrap();

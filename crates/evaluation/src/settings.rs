@@ -8,7 +8,6 @@ use cloudtouch_testkit::family::Family;
 
 use crate::{
     answers::Pair,
-    figure::{Axis, Figure, Panel, Series},
     measures::Measure,
     methods::{Method, Ours, Paper},
     page::{self, Page, Section},
@@ -31,7 +30,7 @@ pub struct Arguments {
     /// Poses of each draw
     #[arg(long, default_value_t = 28)]
     poses: usize,
-    /// Write docs/lab/settings.md and its figure; else everything goes to target/lab/
+    /// Write docs/lab/settings.md; else it goes to target/lab/
     #[arg(long)]
     update_docs: bool,
 }
@@ -56,8 +55,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let judged = Judged::pick(&answers, &names, |_| true);
     let (count, collisions) = judged.counts();
     let introduction = format!(
-        "Each row changes one setting of the default: the largest leaf (n_max), the probability \
-         below which pairs of boxes are culled (ε), the relative gap at which a kernel problem \
+        "Each row changes one setting of the default: the largest leaf (n_max), the relative gap at which a kernel problem \
          counts as solved (tolerance), the kernel's width γ and penalty C; the last is the paper's \
          mode. Families {}; {POINTS} points a cloud, {} mm of noise; {count} poses, {collisions} of \
          them collisions, the same clouds for all. Differences are paired, in bold where the 95 % \
@@ -68,8 +66,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let command = format!("--draws {draws} --poses {poses} --update-docs");
     let title = ("settings", "Speed and error over settings");
     let mut page = Page::new(title, ("settings", &command), &introduction, root, SEED);
-    let section = Section::new("One change at a time").text(table(&judged, &names));
-    page.section(section.figure("settings", "Speed against error", figure(&judged, &names)));
+    page.section(Section::new("One change at a time").text(table(&judged, &names)));
     page.write(&page::folder(root, update_docs))
 }
 
@@ -85,7 +82,6 @@ fn changes() -> Result<Vec<Ours>> {
     for points in [20, 40] {
         change(format!("n_max {points}"), &|ours| ours.tree.max_leaf_points = points)?;
     }
-    change("ε 1e-3".into(), &|ours| ours.query.cull_probability = 1e-3)?;
     for gap in [1e-1, 1e-2] {
         change(format!("tolerance {gap:.0e}"), &|ours| ours.query.relative_gap = gap)?;
     }
@@ -102,47 +98,16 @@ fn changes() -> Result<Vec<Ours>> {
 fn table(judged: &Judged<'_>, names: &[&str]) -> Table {
     let measures = [Measure::Brier, Measure::Auc];
     let measured = judged.measure(&measures);
-    let mut table = Table::new([
-        "setting",
-        "median (ms)",
-        "p95 (ms)",
-        "Brier",
-        "minus default",
-        "AUC",
-        "minus default",
-    ]);
+    let header = "setting, median (ms), p95 (ms), Brier, minus default, AUC, minus default";
+    let mut table = Table::new(header.split(", "));
     for name in names {
         let mut row = vec![(*name).to_owned()];
         row.extend([0.5, 0.95].map(|share| format!("{:.2}", judged.query_ms(name, share))));
         for measure in measures {
             row.push(measured.estimate(name, measure).map_or("–".into(), |e| e.to_string()));
-            row.push(match measured.difference(name, DEFAULT, measure) {
-                Some(d) if *name != DEFAULT && d.excludes_zero() => format!("**{d:+}**"),
-                Some(d) if *name != DEFAULT => format!("{d:+}"),
-                _ => "–".into(),
-            });
+            row.push(measured.compared(name, DEFAULT, measure));
         }
         table.row(row);
     }
     table
-}
-
-fn figure(judged: &Judged<'_>, names: &[&str]) -> Figure {
-    let panel = |measure: Measure, error: &dyn Fn(f64) -> f64, title: &str| {
-        let place = |name: &str| {
-            let value = judged.sample(name).map_or(f64::NAN, |s| measure.of(s, &s.ones()));
-            (judged.query_ms(name, 0.5), error(value))
-        };
-        let places: Vec<(f64, f64)> = names.iter().map(|name| place(name)).collect();
-        let notes = places.iter().zip(names).map(|(at, name)| (*at, (*name).to_owned()));
-        Panel::new(Axis::log("median query (ms)"), Axis::linear(title))
-            .series(Series::points("one setting changed", places[1..].to_vec()))
-            .series(Series::points(DEFAULT, [places[0]]).size(7))
-            .series(Series::notes(notes))
-    };
-    Figure::new("Speed against error")
-        .columns(1)
-        .panel_size(800, 420)
-        .panel(panel(Measure::Brier, &|v| v, "Brier score"))
-        .panel(panel(Measure::Auc, &|v| 1.0 - v, "1 − AUC"))
 }

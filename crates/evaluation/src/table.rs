@@ -1,10 +1,8 @@
-//! Tables: Markdown for pages, aligned so that it reads well on a terminal too, and CSV.
+//! Tables: Markdown for pages, aligned so that it reads well on a terminal too.
 
-use std::{fmt, io, path::Path};
+use std::fmt;
 
-use anyhow::Result;
 use cloudtouch::Verdict;
-use cloudtouch_io::write_atomically;
 
 /// Rows under a header; [`Display`](fmt::Display) writes Markdown.
 #[derive(Debug, Clone)]
@@ -27,22 +25,6 @@ impl Table {
         let cells: Vec<String> = cells.into_iter().map(|cell| cell.to_string()).collect();
         assert_eq!(cells.len(), self.rows[0].len(), "cells of a row under {:?}", self.rows[0]);
         self.rows.push(cells);
-    }
-
-    /// Writes the file whole, the header in its first line.
-    ///
-    /// # Errors
-    /// When the file cannot be written.
-    pub fn write_csv(&self, path: &Path) -> Result<()> {
-        write_atomically(path, |out| {
-            let mut writer = csv::Writer::from_writer(out);
-            self.rows
-                .iter()
-                .try_for_each(|row| writer.write_record(row))
-                .map_err(io::Error::from)?;
-            writer.flush()
-        })?;
-        Ok(())
     }
 }
 
@@ -72,6 +54,11 @@ pub fn probability(p: f64) -> String {
     if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
 }
 
+/// A number that may be very small or none.
+pub fn small(value: f64) -> String {
+    if value == 0.0 { "0".into() } else { format!("{value:.0e}") }
+}
+
 /// Lower and upper bound of a probability.
 pub fn bounds([low, high]: [f64; 2]) -> String {
     format!("{} .. {}", probability(low), probability(high))
@@ -92,13 +79,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_are_as_wide_as_their_widest_cell_and_csv_is_quoted_where_it_must_be() {
+    fn columns_are_as_wide_as_their_widest_cell() {
         let mut table = Table::new(["a", "label"]);
         table.row(["1,234", "±"]);
         assert_eq!(table.to_string(), "| a     | label |\n| ----- | ----- |\n| 1,234 | ±     |\n");
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.csv");
-        table.write_csv(&path).unwrap();
-        assert_eq!(std::fs::read_to_string(path).unwrap(), "a,label\n\"1,234\",±\n");
     }
 }

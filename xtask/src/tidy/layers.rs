@@ -7,8 +7,8 @@ use super::manifest::{KINDS, Manifest};
 /// A development dependency of whoever likes, and of nobody otherwise among the published.
 const TESTKIT: &str = "cloudtouch-testkit";
 
-/// What stands on all layers may use any of them.
-const PRODUCT: [&str; 7] = [
+/// From the lowest layer upwards: what a crate may use comes before it.
+const LAYERS: [&str; 8] = [
     "cloudtouch-geom",
     "cloudtouch-noise",
     "cloudtouch-svm",
@@ -16,6 +16,7 @@ const PRODUCT: [&str; 7] = [
     "cloudtouch",
     "cloudtouch-io",
     "cloudtouch-cli",
+    "cloudtouch-evaluation",
 ];
 
 /// What of the project a crate may depend on; `None` for one that nobody has placed yet.
@@ -23,24 +24,12 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
     Some(match name {
         "cloudtouch-geom" => &[],
         "cloudtouch-noise" | "cloudtouch-svm" | "cloudtouch-bvh" | "cloudtouch-io" | TESTKIT => {
-            &["cloudtouch-geom"]
+            &LAYERS[..1]
         }
-        "cloudtouch" => {
-            &["cloudtouch-geom", "cloudtouch-noise", "cloudtouch-svm", "cloudtouch-bvh"]
-        }
-        "cloudtouch-cli"
-        | "cloudtouch-benches"
-        | "cloudtouch-fuzzing"
-        | "cloudtouch-evaluation" => &PRODUCT,
-        "xtask" => &[
-            "cloudtouch-geom",
-            "cloudtouch-noise",
-            "cloudtouch-svm",
-            "cloudtouch-bvh",
-            "cloudtouch",
-            "cloudtouch-io",
-            "cloudtouch-evaluation",
-        ],
+        "cloudtouch" => &LAYERS[..4],
+        "cloudtouch-cli" => &LAYERS[..6],
+        "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..7],
+        "xtask" => &LAYERS,
         _ => return None,
     })
 }
@@ -92,55 +81,31 @@ mod tests {
     }
 
     #[test]
-    fn the_layers_as_drawn_pass() {
-        let found = faults(&[
-            ("cloudtouch-geom", true, "[dependencies]\nlibm.workspace = true"),
-            ("cloudtouch-svm", true, "[dependencies]\ncloudtouch-geom.workspace = true"),
-            (
-                "cloudtouch-noise",
-                true,
-                "[dependencies]\ncloudtouch-geom.workspace = true\n\
-                 [dev-dependencies]\ncloudtouch-testkit.workspace = true",
-            ),
-            ("cloudtouch-testkit", false, "[dependencies]\ncloudtouch-geom.workspace = true"),
-            ("xtask", false, "[dependencies]\ncloudtouch-testkit.workspace = true"),
-        ]);
-        assert_eq!(found, Vec::<String>::new());
-    }
-
-    #[test]
-    fn sideways_upward_unpublished_renamed_and_unknown_are_named() {
+    fn what_points_down_passes_and_sideways_upward_unpublished_and_unknown_are_named() {
         let all = [
             ("cloudtouch-geom", true, ""),
             ("cloudtouch-noise", true, ""),
             ("cloudtouch-testkit", false, ""),
         ];
+        let of = |name: &str, dependencies: &str| {
+            faults(&[&all[..], &[(name, true, dependencies)]].concat())
+        };
+        let for_tests = "[dependencies]\ncloudtouch-geom.workspace = true\n\
+                         [dev-dependencies]\ncloudtouch-testkit.workspace = true";
+        assert_eq!(of("cloudtouch-svm", for_tests), Vec::<String>::new());
+        let noise = "cloudtouch-noise.workspace = true";
         for (name, dependencies, named) in [
-            (
-                "cloudtouch-svm",
-                "[dependencies]\ncloudtouch-noise.workspace = true",
-                "cloudtouch-noise",
-            ),
-            ("cloudtouch-svm", "[dev-dependencies]\ncloudtouch-noise.workspace = true", "dev-"),
-            ("cloudtouch-bvh", "[dependencies]\ncloudtouch-testkit.workspace = true", "testkit"),
-            ("cloudtouch-io", "[build-dependencies]\ncloudtouch-noise.workspace = true", "build-"),
-            (
-                "cloudtouch-io",
-                "[dependencies]\nn = { package = 'cloudtouch-noise' }",
-                "cloudtouch-noise",
-            ),
-            ("cloudtouch-new", "", "no place"),
+            ("cloudtouch-svm", format!("[dependencies]\n{noise}"), "cloudtouch-noise"),
+            ("cloudtouch-svm", format!("[dev-dependencies]\n{noise}"), "dev-"),
+            ("cloudtouch-io", format!("[build-dependencies]\n{noise}"), "build-"),
+            ("cloudtouch-bvh", for_tests.replace("[dev-dependencies]", ""), "testkit"),
+            ("cloudtouch-io", "dependencies.n.package = 'cloudtouch-noise'".into(), "-noise"),
+            ("cloudtouch-new", String::new(), "no place"),
         ] {
-            let found = faults(&[all.as_slice(), &[(name, true, dependencies)]].concat());
-            assert!(
-                found.len() == 1 && found[0].contains(named),
-                "{name} {dependencies}: {found:?}"
-            );
+            let found = of(name, &dependencies);
+            assert!(found.len() == 1 && found[0].contains(named), "{dependencies}: {found:?}");
         }
-        let upward = faults(&[
-            ("cloudtouch-geom", true, "[dependencies]\ncloudtouch.workspace = true"),
-            ("cloudtouch", true, ""),
-        ]);
-        assert_eq!(upward.len(), 1);
+        let upward = ("cloudtouch-geom", true, "[dependencies]\ncloudtouch.workspace = true");
+        assert_eq!(faults(&[upward, ("cloudtouch", true, "")]).len(), 1);
     }
 }

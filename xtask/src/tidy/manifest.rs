@@ -54,32 +54,9 @@ pub(super) fn read_all(root: &Path) -> Result<Vec<Manifest>> {
         .collect()
 }
 
-/// Everything about manifests but the layers.
-pub(super) fn check(root: &Path, manifests: &[Manifest]) -> Result<Vec<String>> {
-    let mut found: Vec<String> = manifests.iter().flat_map(check_fields).collect();
-    for manifest in manifests.iter().filter(|m| m.is_published()) {
-        if !root.join(&manifest.folder).join("README.md").is_file() {
-            found.push(format!("{}/README.md is missing: the crate is published", manifest.folder));
-        }
-    }
-    let text = fs::read_to_string(root.join("Cargo.toml")).context("read Cargo.toml")?;
-    let workspace: Table = text.parse().context("parse Cargo.toml")?;
-    found.extend(check_unversioned(&workspace, manifests));
-    Ok(found)
-}
-
-/// A path-only development dependency is dropped from a published manifest; one with a version
-/// would have to be on the registry.
-fn check_unversioned(workspace: &Table, manifests: &[Manifest]) -> Vec<String> {
-    let shared = workspace.get("workspace").and_then(|w| w.get("dependencies"));
-    let has_version = |name: &str| {
-        shared.and_then(|d| d.get(name)).is_some_and(|d| d.is_str() || d.get("version").is_some())
-    };
-    manifests
-        .iter()
-        .filter(|m| !m.is_published() && has_version(m.name()))
-        .map(|m| format!("Cargo.toml: {} is not published and must have no version", m.name()))
-        .collect()
+/// Everything about manifests but the layers and what `cargo package` checks.
+pub(super) fn check(manifests: &[Manifest]) -> Vec<String> {
+    manifests.iter().flat_map(check_fields).collect()
 }
 
 fn check_fields(manifest: &Manifest) -> Vec<String> {
@@ -141,16 +118,5 @@ mod tests {
             let found = check_fields(&manifest(&GOOD.replace(from, to)));
             assert!(found.len() == 1 && found[0].contains(named), "{from}: {found:?}");
         }
-    }
-
-    #[test]
-    fn an_unpublished_crate_with_a_version_is_named() {
-        let members = [manifest("[package]\nname = 'x'\npublish = false")];
-        let workspace = |dependency: &str| {
-            format!("[workspace.dependencies]\nx = {dependency}").parse::<Table>().unwrap()
-        };
-        assert!(check_unversioned(&workspace("{ path = 'x' }"), &members).is_empty());
-        let versioned = workspace("{ path = 'x', version = '0.1' }");
-        assert_eq!(check_unversioned(&versioned, &members).len(), 1);
     }
 }

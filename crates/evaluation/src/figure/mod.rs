@@ -1,22 +1,153 @@
 //! One kind of figure for every report: panels with axes, and series of marks as plain data.
 //!
 //! Series of one name look alike in all panels of a figure and share a row of its legend; those
-//! without a name are left out of it.
+//! without a name are grey and left out of it.
 //!
 //! ```
 //! use cloudtouch_evaluation::figure::{Axis, Figure, Panel, Series};
-//! let panel = Panel::new(Axis::linear("noise (mm)"), Axis::log("time (ms)"))
-//!     .series(Series::curve("ours", [(2.0, 0.7), (10.0, 1.3)]))
-//!     .series(Series::whiskers("ours", [(2.0, 0.2, 3.7), (10.0, 0.4, 4.8)]));
-//! let svg = Figure::new("Times").panel(panel).svg()?;
-//! assert!(svg.starts_with("<svg"));
+//! let series = vec![
+//!     Series::curve("ours", [(2.0, 0.7), (10.0, 1.3)]),
+//!     Series::whiskers("ours", [(2.0, 0.2, 3.7), (10.0, 0.4, 4.8)]),
+//! ];
+//! let (x, y) = (Axis::linear("noise (mm)"), Axis::log("time (ms)"));
+//! let panel = Panel { title: "Times".into(), x, y, series };
+//! assert!(Figure::new("Speed", [panel]).svg()?.starts_with("<svg"));
 //! # Ok::<(), anyhow::Error>(())
 //! ```
 
-mod axis;
-mod data;
 mod draw;
 
-pub use axis::Axis;
-pub use data::{Figure, Panel, Place, Series, palette};
+use std::ops::Range;
+
 pub use plotters::style::RGBColor;
+
+/// A place in a panel, in the units of its axes.
+pub type Place = (f64, f64);
+
+/// The grey of what has no name.
+pub const GREY: RGBColor = RGBColor(120, 120, 120);
+
+/// Panels in a grid under one title, with one legend at their right.
+#[derive(Debug, Clone)]
+pub struct Figure {
+    pub(crate) title: String,
+    pub(crate) panels: Vec<Panel>,
+    /// Panels side by side.
+    pub columns: usize,
+    /// Width and height of a panel, pixels.
+    pub panel_size: (u32, u32),
+}
+
+/// Axes and what is drawn in them, in order.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    /// What stands over it.
+    pub title: String,
+    /// The lower axis.
+    pub x: Axis,
+    /// The left axis.
+    pub y: Axis,
+    /// What is drawn, the last on top.
+    pub series: Vec<Series>,
+}
+
+/// One axis.
+#[derive(Debug, Clone)]
+pub struct Axis {
+    /// What it shows, with the unit.
+    pub(crate) name: String,
+    /// Its values; as far as what is drawn where it is not given.
+    pub range: Option<Range<f64>>,
+    pub(crate) is_log: bool,
+}
+
+/// Marks of one look.
+#[derive(Debug, Clone)]
+pub struct Series {
+    pub(crate) name: String,
+    pub(crate) kind: Kind,
+    /// What each mark goes through.
+    pub(crate) marks: Vec<Vec<Place>>,
+    /// Another colour than the next of the palette.
+    pub color: Option<RGBColor>,
+    /// Half the width of markers, pixels.
+    pub size: u32,
+}
+
+/// How the places of a mark are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Line,
+    Points,
+    /// A line with points.
+    Curve,
+    Area,
+    /// An area to see through.
+    Band,
+}
+
+impl Figure {
+    /// Two panels side by side.
+    pub fn new(title: &str, panels: impl IntoIterator<Item = Panel>) -> Self {
+        let panels = panels.into_iter().collect();
+        Self { title: title.to_owned(), panels, columns: 2, panel_size: (480, 360) }
+    }
+}
+
+impl Axis {
+    /// Values.
+    pub fn linear(name: &str) -> Self {
+        Self { name: name.to_owned(), range: None, is_log: false }
+    }
+
+    /// Values above 0 by their logarithm; others are left out.
+    pub fn log(name: &str) -> Self {
+        Self { is_log: true, ..Self::linear(name) }
+    }
+
+    /// A share or probability.
+    pub fn unit(name: &str) -> Self {
+        Self { range: Some(-0.03..1.03), ..Self::linear(name) }
+    }
+}
+
+impl Series {
+    fn new(name: &str, kind: Kind, marks: impl IntoIterator<Item = Vec<Place>>) -> Self {
+        let marks = marks.into_iter().collect();
+        Self { name: name.to_owned(), kind, marks, color: None, size: 4 }
+    }
+
+    /// A line through the places in order.
+    pub fn line(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
+        Self::new(name, Kind::Line, [places.into_iter().collect()])
+    }
+
+    /// A marker at each place.
+    pub fn points(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
+        Self::new(name, Kind::Points, [places.into_iter().collect()])
+    }
+
+    /// A line through the places in order with a marker at each.
+    pub fn curve(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
+        Self::new(name, Kind::Curve, [places.into_iter().collect()])
+    }
+
+    /// Upright bars of error: x, and y from and to.
+    pub fn whiskers(name: &str, spans: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
+        let ends = spans.into_iter().map(|(x, low, high)| vec![(x, low), (x, high)]);
+        Self::new(name, Kind::Line, ends)
+    }
+
+    /// The area between two curves: x, and y from and to.
+    pub fn band(name: &str, spans: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
+        let spans: Vec<_> = spans.into_iter().collect();
+        let back = spans.iter().rev().map(|&(x, _, high)| (x, high));
+        let edge = spans.iter().map(|&(x, low, _)| (x, low)).chain(back).collect();
+        Self::new(name, Kind::Band, [edge])
+    }
+
+    /// Filled polygons.
+    pub fn polygons(name: &str, polygons: impl IntoIterator<Item = Vec<Place>>) -> Self {
+        Self::new(name, Kind::Area, polygons)
+    }
+}

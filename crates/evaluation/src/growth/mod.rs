@@ -19,14 +19,12 @@ use crate::{
     table::Table,
 };
 use answers::{ADDED, Answers, METHODS, OWN_STD};
-use scan::{SEED, Scan};
+use scan::SEED;
 
 /// Poses that are farther from first contact than this are left out, mm.
 const FARTHEST: f64 = -30.0;
 /// How far past first contact the poses are that the figure shows, mm.
 const PICTURED: [f64; 3] = [-30.0, 0.0, 20.0];
-/// Numbers of the added noises that have columns of their own: 5, 10 and 20 mm.
-const SHOWN: [usize; 3] = [4, 6, 8];
 
 /// The poses with how far past first contact they are, mm.
 type Poses = [(f64, Labelled)];
@@ -38,7 +36,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "../shared/data")]
     data: PathBuf,
     /// How often noise of each size is drawn
-    #[arg(long, default_value_t = 12)]
+    #[arg(long, default_value_t = 4)]
     draws: u64,
     /// Write docs/lab/growth.md and its figure; else they go to target/lab/
     #[arg(long)]
@@ -55,7 +53,9 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     series.retain(|(advance, _)| *advance >= FARTHEST);
     let object = read_mesh(&series[0].1.object, LengthUnit::Metres)?;
     let poses: Vec<Pose> = series.iter().map(|(_, case)| case.pose).collect();
-    let scan = Scan::read(&series[0].1.scene, &scan::reach(&object, &poses))?;
+    let placed =
+        |pose: &Pose| object.vertices().iter().map(|v| pose.transform_point(v)).collect::<Vec<_>>();
+    let scan = scan::read(&series[0].1.scene, poses.iter().flat_map(placed).collect())?;
     let answers = Answers::ask(&scan, &object, &poses, arguments.draws)?;
     let introduction = format!(
         "After the paper's figure 5: a gripper, known as a mesh, at {} poses of its approach to a \
@@ -65,10 +65,9 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
          project.\n\n\
          `calibrated` and `paper` answer with a probability, in collision from ½ on. The others \
          say yes or no: a 1 cm box around a measured point touches the gripper; a measured point \
-         is inside of it (its smallest signed distance is negative); a mesh of the scan (means of \
-         4 × 4 pixels, joined where the scan without added noise has no edge) intersects it.",
+         is inside of it (its smallest signed distance is negative).",
         series.len(),
-        scan.len(),
+        scan.points.iter().filter(|p| p.x.is_finite()).count(),
         arguments.draws,
         1e3 * OWN_STD,
     );
@@ -79,8 +78,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         Section::new("Answers by noise")
             .text(
                 "Lines are means over the draws, bars reach from the 10th to the 90th percentile \
-                 of a probability. Lower right: how often the verdict on a pose differs from that \
-                 of the draw before, over all poses.",
+                 of a probability.",
             )
             .figure("growth", "Answers while noise grows", figure(&series, &answers)?)
             .text(
@@ -100,50 +98,49 @@ fn place((advance, case): &(f64, Labelled)) -> String {
 }
 
 fn figure(poses: &Poses, answers: &Answers) -> Result<Figure> {
-    let panel = |title: &str, y: Axis| {
-        Panel::new(Axis::linear("std of the added noise (mm)"), y).title(title)
-    };
-    let mut figure = Figure::new("Answers while noise is added to a real scan");
-    for advance in PICTURED {
+    let panel = |advance: f64| {
         let pose = at_advance(poses, advance)?;
-        let mut panel = panel(&place(&poses[pose]), Axis::unit("probability or verdict"));
+        let mut series = Vec::new();
         for (method, name) in METHODS.iter().enumerate() {
-            let levels = || (0..ADDED.len()).map(|level| (level, answers.of(method, pose, level)));
-            let span = |(level, said): (usize, Vec<f64>)| {
-                (ADDED[level], quantile(&said, 0.1), quantile(&said, 0.9))
-            };
+            let levels = ADDED.into_iter().enumerate();
+            let said: Vec<_> =
+                levels.map(|(level, added)| (added, answers.of(method, pose, level))).collect();
             // Verdicts have no spread: their mean says how often they are which.
-            let spread = levels().filter(|_| method < 2).map(span);
-            let means = levels().map(|(level, said)| (ADDED[level], mean(&said)));
-            panel = panel.series(Series::whiskers(name, spread)).series(Series::curve(name, means));
+            let spread = said.iter().filter(|_| method < 2);
+            let span = |(added, said): &(f64, Vec<f64>)| {
+                (*added, quantile(said, 0.1), quantile(said, 0.9))
+            };
+            series.push(Series::whiskers(name, spread.map(span)));
+            series.push(Series::curve(name, said.iter().map(|(added, said)| (*added, mean(said)))));
         }
-        figure = figure.panel(panel);
-    }
-    let mut panel = panel("verdicts that flip from draw to draw", Axis::linear("share of changes"));
-    for (method, name) in METHODS.iter().enumerate() {
-        let share = |level| share(flips(poses.len(), answers, method, level));
-        let points = (0..ADDED.len()).map(|level| (ADDED[level], share(level)));
-        panel = panel.series(Series::curve(name, points));
-    }
-    Ok(figure.panel(panel))
+        let x = Axis::linear("std of the added noise (mm)");
+        let y = Axis::unit("probability or verdict");
+        Ok(Panel { title: place(&poses[pose]), x, y, series })
+    };
+    let panels: Vec<Panel> = PICTURED.into_iter().map(panel).collect::<Result<_>>()?;
+    Ok(Figure::new("Answers while noise is added to a real scan", panels))
 }
 
 fn methods(poses: &Poses, answers: &Answers) -> Table {
-    let mut header = vec!["method".to_owned()];
-    header.extend(SHOWN.map(|level| format!("flips at {} mm", ADDED[level])));
-    header.extend(["false stops", "misses"].map(String::from));
-    let mut table = Table::new(header);
+    let flips = ADDED[1..].iter().map(|added| format!("flips at {added} mm"));
+    let header = std::iter::once("method".to_owned()).chain(flips);
+    let mut table = Table::new(header.chain(["false stops".into(), "misses".into()]));
     for (method, name) in METHODS.iter().enumerate() {
-        let verdicts = |pose, level| answers.verdicts(method, pose, level);
+        let verdicts = |pose, level| -> Vec<bool> {
+            answers.of(method, pose, level).iter().map(|p| *p >= 0.5).collect()
+        };
         let stated = |label: &str, verdict: bool| {
             let of_label = (0..poses.len()).filter(|&pose| poses[pose].1.label == label);
             let all = of_label.flat_map(|pose| (0..ADDED.len()).map(move |level| (pose, level)));
-            share(all.flat_map(|(pose, level)| verdicts(pose, level)).map(|said| said == verdict))
+            let said = all.flat_map(|(pose, level)| verdicts(pose, level));
+            mean(&said.map(|said| f64::from(u8::from(said == verdict))).collect::<Vec<_>>())
         };
         let mut cells = vec![(*name).to_owned()];
-        cells.extend(SHOWN.map(|level| {
-            let flips = flips(poses.len(), answers, method, level);
-            format!("{} of {}", flips.iter().filter(|flip| **flip).count(), flips.len())
+        cells.extend((1..ADDED.len()).map(|level| {
+            let of_poses: Vec<Vec<bool>> =
+                (0..poses.len()).map(|pose| verdicts(pose, level)).collect();
+            let pairs = || of_poses.iter().flat_map(|said| said.windows(2));
+            format!("{} of {}", pairs().filter(|pair| pair[0] != pair[1]).count(), pairs().count())
         }));
         let shares = [stated("near", true), stated("collision", false)];
         cells.extend(shares.map(|share| format!("{share:.3}")));
@@ -152,33 +149,6 @@ fn methods(poses: &Poses, answers: &Answers) -> Table {
     table
 }
 
-/// Whether each verdict differs from that of the draw before, within the draws of a pose.
-fn flips(poses: usize, answers: &Answers, method: usize, level: usize) -> Vec<bool> {
-    (0..poses).flat_map(|pose| changes(&answers.verdicts(method, pose, level))).collect()
-}
-
-fn changes(verdicts: &[bool]) -> Vec<bool> {
-    verdicts.windows(2).map(|pair| pair[0] != pair[1]).collect()
-}
-
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
-}
-
-fn share(of: impl IntoIterator<Item = bool>) -> f64 {
-    let each: Vec<f64> = of.into_iter().map(|is| f64::from(u8::from(is))).collect();
-    mean(&each)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn changes_are_counted_between_neighbours() {
-        assert_eq!(changes(&[true, true, false, true]), [false, true, true]);
-        assert!(changes(&[true]).is_empty() && changes(&[]).is_empty());
-        assert_eq!(share(changes(&[true, true, false, true])), 2.0 / 3.0);
-        assert!(share(changes(&[true])).is_nan());
-    }
 }

@@ -27,22 +27,18 @@ impl Clusters {
             (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
         let mut clusters = Self { pose_of: Vec::new(), draw_of: Vec::new(), draws: Vec::new() };
         for (family, draw, pose) in answers {
-            let next = poses.len() as u32;
-            let number = *poses.entry((family, draw, pose)).or_insert(next);
-            clusters.pose_of.push(number);
-            if number < next {
-                continue;
+            let of_pose = number(&mut poses, (family, draw, pose));
+            let of_draw = number(&mut draws, (family, draw));
+            let of_family = number(&mut families, family);
+            clusters.pose_of.push(of_pose);
+            if of_pose as usize == clusters.draw_of.len() {
+                clusters.draw_of.push(of_draw);
             }
-            let next = draws.len() as u32;
-            let draw = *draws.entry((family, draw)).or_insert(next);
-            clusters.draw_of.push(draw);
-            if draw < next {
-                continue;
-            }
-            let next = families.len();
-            let family: usize = *families.entry(family).or_insert(next);
             clusters.draws.resize(families.len(), Vec::new());
-            clusters.draws[family].push(draw);
+            let known = &mut clusters.draws[of_family as usize];
+            if !known.contains(&of_draw) {
+                known.push(of_draw);
+            }
         }
         clusters
     }
@@ -79,6 +75,12 @@ impl Clusters {
         }
         self.pose_of.iter().map(|&pose| of_pose[pose as usize]).collect()
     }
+}
+
+/// The number of a key, counted from 0 in the order of first use.
+fn number<K: Ord>(known: &mut BTreeMap<K, u32>, key: K) -> u32 {
+    let next = known.len() as u32;
+    *known.entry(key).or_insert(next)
 }
 
 /// All resampling follows from this.

@@ -56,29 +56,20 @@ pub struct Bin {
 
 /// The bins that are not empty, by rising probability.
 pub fn reliability(sample: &Sample) -> Vec<Bin> {
-    let mut sums = [(0.0, 0.0, 0); BINS];
-    for (&p, &collides) in sample.probabilities.iter().zip(&sample.collides) {
-        let (mean, hits, count) = &mut sums[bin_of(p)];
-        *mean += p;
-        *hits += f64::from(u8::from(collides));
-        *count += 1;
-    }
-    let filled = sums.into_iter().filter(|(.., count)| *count > 0);
-    filled
-        .map(|(mean, hits, count)| Bin {
-            mean: mean / f64::from(count),
-            observed: hits / f64::from(count),
-            count: count as usize,
-        })
-        .collect()
+    let bins = (0..BINS).map(|number| bin(sample, |p| bin_of(p) == number));
+    bins.filter(|bin| bin.count > 0).collect()
 }
 
 /// Of the answers with a probability in `range`: how many there are, their mean probability and
 /// their share of collisions.
 pub fn observed_within(sample: &Sample, range: std::ops::Range<f64>) -> Bin {
+    bin(sample, |p| range.contains(&p))
+}
+
+fn bin(sample: &Sample, is_within: impl Fn(f64) -> bool) -> Bin {
     let within = sample.probabilities.iter().zip(&sample.collides);
     let within: Vec<(f64, bool)> =
-        within.filter(|(p, _)| range.contains(p)).map(|(p, c)| (*p, *c)).collect();
+        within.filter(|(p, _)| is_within(**p)).map(|(p, c)| (*p, *c)).collect();
     let count = within.len();
     Bin {
         mean: within.iter().map(|(p, _)| p).sum::<f64>() / count as f64,

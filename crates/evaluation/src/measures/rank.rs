@@ -14,22 +14,6 @@ pub fn auc(sample: &Sample, weights: &[f64]) -> f64 {
     wins / (hits_below * free_below)
 }
 
-/// Points (share of free poses stopped, share of collisions found) of all thresholds, from (0, 0)
-/// to (1, 1); not numbers without both kinds.
-pub fn roc(sample: &Sample) -> Vec<(f64, f64)> {
-    let weights = sample.ones();
-    let (all_hits, all_free) = sample.totals(&weights);
-    let mut points = vec![(1.0, 1.0)];
-    let (mut hits_below, mut free_below) = (0.0, 0.0);
-    sample.score_groups(&weights, |_, hits, free| {
-        hits_below += hits;
-        free_below += free;
-        points.push((1.0 - free_below / all_free, 1.0 - hits_below / all_hits));
-    });
-    points.reverse();
-    points
-}
-
 /// Share of the free poses stopped at the highest threshold that misses at most `miss_rate` of the
 /// collisions, a pose being stopped when its score is at or above it; NaN without both kinds.
 pub fn false_stops(sample: &Sample, weights: &[f64], miss_rate: f64) -> f64 {
@@ -82,15 +66,5 @@ mod tests {
         // One of three may be missed: threshold .4, with one free pose at it.
         assert!((false_stops(&sample, &sample.ones(), 0.34) - 1.0 / 3.0).abs() < 1e-12);
         assert!(false_stops(&sample, &[0.0; 6], 0.0).is_nan());
-    }
-
-    #[test]
-    fn the_curve_of_all_thresholds_has_the_area() {
-        let sample = known();
-        let points = roc(&sample);
-        assert_eq!([points[0], points[points.len() - 1]], [(0.0, 0.0), (1.0, 1.0)]);
-        let area: f64 =
-            points.windows(2).map(|w| (w[1].0 - w[0].0) * 0.5 * (w[0].1 + w[1].1)).sum();
-        assert!((area - auc(&sample, &sample.ones())).abs() < 1e-12);
     }
 }

@@ -17,7 +17,7 @@ use crate::answers::{Pair, Said};
 const DISC_STD: f64 = 0.35;
 /// Points whose spacing stands for that of all.
 const SPACING_SAMPLE: usize = 500;
-/// Points of the second cloud are visited in strides of this, so that a close one comes early.
+/// Points of the second cloud are visited in strides of this.
 const STRIDE: usize = 64;
 
 /// The least distance, negative where a point is inside of a mesh.
@@ -27,46 +27,11 @@ pub struct Distance {
     pub smoothed: bool,
 }
 
-/// A cloud and its k-d tree.
-pub struct CloudIndex(ImmutableKdTree<f64, 3>);
-
-impl CloudIndex {
-    /// Indexes finite points.
-    ///
-    /// # Errors
-    /// When the tree cannot be built.
-    pub fn new(points: &[Point3]) -> Result<Self> {
-        // −0 and 0 are one place.
-        let entries: Vec<(u32, [f64; 3])> =
-            (0..).zip(points).map(|(i, p)| (i, p.coords.map(|v| v + 0.0).into())).collect();
-        Ok(Self(ImmutableKdTree::new_from_entries(&entries).map_err(|e| anyhow!("index: {e}"))?))
-    }
-
-    /// The least distance of other points, moved by a pose, from the indexed ones, m.
-    pub fn distance(&self, points: &[Point3], pose: &Pose) -> f64 {
-        let mut least = f64::MAX;
-        for point in spread(points) {
-            let place: [f64; 3] = pose.transform_point(point).coords.into();
-            let nearest =
-                self.0.query(&place).nearest_n::<SquaredEuclidean<f64>>(NonZeroUsize::MIN);
-            // Each is sought no farther than the nearest so far.
-            if let Some(hit) = nearest.within(least).execute().first() {
-                least = least.min(hit.distance);
-            }
-        }
-        least.sqrt()
-    }
-}
-
-/// All points in strides.
-pub(crate) fn spread(points: &[Point3]) -> impl Iterator<Item = &Point3> {
-    (0..STRIDE).flat_map(move |start| points.iter().skip(start).step_by(STRIDE))
-}
-
 struct Bodies {
     a: Vec<Point3>,
     b: Vec<Point3>,
-    index: CloudIndex,
+    /// Of the points of A.
+    index: ImmutableKdTree<f64, 3>,
     mesh: Mesh,
     /// Lowest and highest corner of the mesh's box, m.
     mesh_box: [Point3; 2],
@@ -83,8 +48,12 @@ impl Method for Distance {
         let [(a, unit_a), (b, unit_b)] =
             [points(draw.a, self.smoothed)?, points(draw.b, self.smoothed)?];
         let (low, high) = draw.mesh.bounding_box().ok_or_else(|| anyhow!("a mesh of nothing"))?;
+        // −0 and 0 are one place.
+        let entries: Vec<(u32, [f64; 3])> =
+            (0..).zip(&a).map(|(i, p)| (i, p.coords.map(|v| v + 0.0).into())).collect();
+        let index = ImmutableKdTree::new_from_entries(&entries);
         Ok(Box::new(Bodies {
-            index: CloudIndex::new(&a)?,
+            index: index.map_err(|e| anyhow!("index: {e}"))?,
             a,
             b,
             mesh: Mesh::prepare(draw.mesh)?,
@@ -110,6 +79,22 @@ fn points(observation: &Observation, smoothed: bool) -> Result<(Vec<Point3>, f64
 }
 
 impl Bodies {
+    /// The least distance of the points of B from those of A, m.
+    fn to_points(&self, a_from_b: &Pose) -> f64 {
+        let mut least = f64::MAX;
+        // In strides, so that a close one comes early.
+        for point in (0..STRIDE).flat_map(|start| self.b.iter().skip(start).step_by(STRIDE)) {
+            let place: [f64; 3] = a_from_b.transform_point(point).coords.into();
+            let nearest =
+                self.index.query(&place).nearest_n::<SquaredEuclidean<f64>>(NonZeroUsize::MIN);
+            // Each is sought no farther than the nearest so far.
+            if let Some(hit) = nearest.within(least).execute().first() {
+                least = least.min(hit.distance);
+            }
+        }
+        least.sqrt()
+    }
+
     /// The least signed distance of the points of A from the mesh, m.
     fn to_mesh(&self, a_from_b: &Pose) -> f64 {
         let b_from_a = a_from_b.inverse();
@@ -135,7 +120,7 @@ impl Prepared for Bodies {
     fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
         let start = Instant::now();
         let (distance, scale) = match pair {
-            Pair::CloudCloud => (self.index.distance(&self.b, a_from_b), self.scales[0]),
+            Pair::CloudCloud => (self.to_points(a_from_b), self.scales[0]),
             Pair::CloudMesh => (self.to_mesh(a_from_b), self.scales[1]),
         };
         Ok(Some(Said::score(-distance / scale, micros_since(start))))
@@ -160,6 +145,7 @@ mod tests {
             [Side::A, Side::B].map(|s| scene.observe(s, 300, NoiseKind::Gaussian, 0.002, 1));
         let draw = Draw { family: "x", a: &a, b: &b, mesh: scene.b.mesh() };
         let prepared = Distance { smoothed: false }.prepare(&draw).unwrap();
+        let mesh = Mesh::prepare(scene.b.mesh()).unwrap();
         for i in 0..10 {
             let along = |k| 0.4 * seed::unit(seed::derive(9, i, k)) - 0.2;
             let offset = Vector3::new(along(0), along(1), 0.3 + along(2));
@@ -168,17 +154,13 @@ mod tests {
             let moved: Vec<Point3> =
                 b.cloud.points.iter().map(|p| pose.transform_point(p)).collect();
             let clouds = brute::minimum_distance(&a.cloud.points, &moved);
-            let in_b: Vec<Point3> =
-                a.cloud.points.iter().map(|p| pose.inverse().transform_point(p)).collect();
-            let mesh = Mesh::prepare(scene.b.mesh()).unwrap();
-            let to_mesh =
-                in_b.iter().map(|p| mesh.signed_distance(p)).fold(f64::INFINITY, f64::min);
+            let in_b = a.cloud.points.iter().map(|p| pose.inverse().transform_point(p));
+            let to_mesh = in_b.map(|p| mesh.signed_distance(&p)).fold(f64::INFINITY, f64::min);
             // Both are divided by the same unit in every pose.
-            let unit = -clouds / said(Pair::CloudCloud);
-            assert!(unit > 0.002 && unit < 0.1, "{unit}");
-            assert!((said(Pair::CloudMesh) * to_mesh) < 0.0 || to_mesh.abs() < 1e-12);
-            let unit = -to_mesh / said(Pair::CloudMesh);
-            assert!(unit > 0.002 && unit < 0.1, "{unit}");
+            for (pair, distance) in [(Pair::CloudCloud, clouds), (Pair::CloudMesh, to_mesh)] {
+                let unit = -distance / said(pair);
+                assert!(unit > 0.002 && unit < 0.1, "{pair:?}: {unit}");
+            }
         }
     }
 }

@@ -1,35 +1,28 @@
-//! The constants that turn evidence into a probability, as they are kept.
+//! The surfaces that turn evidence into a probability, as they are kept.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, fmt::Write, path::Path};
 
 use anyhow::{Context, Result};
-use cloudtouch::Recalibration;
+use cloudtouch::Judge;
 use cloudtouch_io::write_atomically;
 use serde::{Deserialize, Serialize};
 
 /// Where they are, seen from the project's folder.
-const PLACE: &str = "crates/evaluation/recalibration.json";
+const PLACE: &str = "crates/evaluation/judges.json";
+/// ... and where the library has its default.
+const SOURCE: &str = "crates/query/src/judge/fitted.rs";
 
-/// Slopes and intercepts of two logistic regressions.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Coefficients {
-    /// Intercept, and slopes of crossing and deviations.
-    pub by_geometry: [f64; 3],
-    /// The same and the slope of ln(misclassified + 0.02).
-    pub by_all: [f64; 4],
-}
-
-/// The fitted constants: those of the library, and for every family those fitted without it.
+/// What was fitted: the judge of the library, and for every family one fitted without it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fitted {
     /// How they were made.
     pub command: String,
     /// Fitted on all families.
-    pub all: Coefficients,
+    pub all: Judge,
     /// For each family, fitted on the others.
-    pub without: BTreeMap<String, Coefficients>,
+    pub without: BTreeMap<String, Judge>,
     /// The same for the oracle.
-    pub oracle_without: BTreeMap<String, Coefficients>,
+    pub oracle_without: BTreeMap<String, Judge>,
 }
 
 impl Fitted {
@@ -38,42 +31,45 @@ impl Fitted {
     /// # Errors
     /// When the file is not one.
     pub fn stored() -> Result<Self> {
-        serde_json::from_str(include_str!("../../recalibration.json")).context(PLACE)
+        serde_json::from_str(include_str!("../../judges.json")).context(PLACE)
     }
 
-    /// Constants that do not know a family, to judge our answers about it.
-    ///
-    /// # Errors
-    /// When a slope has the wrong sign.
-    pub fn to_judge(&self, family: &str) -> Result<Recalibration> {
-        self.without.get(family).unwrap_or(&self.all).recalibration()
+    /// A judge that does not know a family, for answers about it: ours, or the oracle's.
+    pub fn to_judge(&self, family: &str, is_oracle: bool) -> Judge {
+        let without = if is_oracle { &self.oracle_without } else { &self.without };
+        *without.get(family).unwrap_or(&self.all)
     }
 
-    /// The same for the oracle.
+    /// Keeps it, in the lab and as the library's default.
     ///
     /// # Errors
-    /// When a slope has the wrong sign.
-    pub fn oracle_to_judge(&self, family: &str) -> Result<Recalibration> {
-        self.oracle_without.get(family).unwrap_or(&self.all).recalibration()
-    }
-
-    /// Keeps it.
-    ///
-    /// # Errors
-    /// When the file cannot be written.
+    /// When a file cannot be written.
     pub fn write(&self, root: &Path) -> Result<()> {
-        let text = serde_json::to_string_pretty(self)? + "\n";
-        Ok(write_atomically(root.join(PLACE), |out| out.write_all(text.as_bytes()))?)
+        let text = serde_json::to_string(self)? + "\n";
+        for (place, text) in [(PLACE, text), (SOURCE, self.as_source())] {
+            write_atomically(root.join(place), |out| out.write_all(text.as_bytes()))?;
+        }
+        Ok(())
+    }
+
+    /// The default of the library as a Rust file.
+    pub fn as_source(&self) -> String {
+        let mut text = format!("//! Made by `{} --update`.\n", self.command);
+        let Judge { by_geometry, revised } = &self.all;
+        add(&mut text, "BY_GEOMETRY", by_geometry);
+        add(&mut text, "REVISED", revised);
+        text
     }
 }
 
-impl Coefficients {
-    fn recalibration(&self) -> Result<Recalibration> {
-        let Self { by_geometry, by_all } = *self;
-        let recalibration = Recalibration { by_geometry, by_all };
-        recalibration.validate()?;
-        Ok(recalibration)
+fn add<const N: usize, const M: usize>(text: &mut String, name: &str, values: &[[f64; M]; N]) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "\npub(super) const {name}: [[f64; {M}]; {N}] = [");
+    for row in values {
+        let numbers: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
+        let _ = writeln!(text, "    [{}],", numbers.join(", "));
     }
+    text.push_str("];\n");
 }
 
 #[cfg(test)]
@@ -84,12 +80,11 @@ mod tests {
 
     #[test]
     fn the_default_of_the_library_is_what_was_fitted() {
-        let stored = Fitted::stored().unwrap();
-        assert_eq!(stored.all.recalibration().unwrap(), Recalibration::default());
+        assert_eq!(Fitted::stored().unwrap().all, Judge::default());
     }
 
     #[test]
-    fn no_family_is_judged_with_constants_fitted_on_it() {
+    fn no_family_is_judged_by_a_judge_fitted_on_it() {
         let stored = Fitted::stored().unwrap();
         for family in Family::ALL {
             assert!(stored.without.contains_key(family.name()), "{}", family.name());

@@ -2,12 +2,12 @@
 //!
 //! A method is prepared once for a draw of a scene and then asked at many poses, as a planner does.
 
-mod boxes;
 mod distance;
 mod fitted;
 mod ours;
 mod paper;
 mod plain_svm;
+mod shapes;
 
 use std::time::Instant;
 
@@ -16,14 +16,12 @@ use cloudtouch::{FilterSettings, filter, noise::SensorModel};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::Observation;
 
-pub use boxes::Boxes;
-pub(crate) use boxes::parry_mesh;
-pub(crate) use distance::spread;
-pub use distance::{CloudIndex, Distance};
-pub use fitted::{Coefficients, Fitted};
+pub use distance::Distance;
+pub use fitted::Fitted;
 pub use ours::Ours;
 pub use paper::Paper;
 pub use plain_svm::PlainSvm;
+pub use shapes::{Boxes, ExactMeshes};
 
 use crate::answers::{Pair, Said};
 

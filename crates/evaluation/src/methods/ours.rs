@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use cloudtouch::{
-    Cloud, CloudSettings, Mesh, Query, QuerySettings, Recalibration, bvh::TreeSettings,
+    Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query, QuerySettings, bvh::TreeSettings,
     noise::SensorModel,
 };
 use cloudtouch_geom::{PointCloud, Pose, UnitVector3};
@@ -14,7 +14,8 @@ use crate::answers::{Pair, Said};
 /// The query with some settings.
 pub struct Ours {
     name: String,
-    /// Settings of the query; the recalibration is that fitted without the family asked about.
+    /// Settings of the query; the judge is that fitted without the family asked about, unless all
+    /// evidence is gathered for a new one.
     pub query: QuerySettings,
     /// Settings of the trees of clouds.
     pub tree: TreeSettings,
@@ -22,6 +23,8 @@ pub struct Ours {
     is_refined: bool,
     /// Whether it is given the points without noise and the true normals.
     sees_truth: bool,
+    /// Whether the classifier is asked everywhere.
+    gathers: bool,
     fitted: Fitted,
 }
 
@@ -37,6 +40,7 @@ impl Ours {
             tree: CloudSettings::new(SensorModel::Exact).tree,
             is_refined: false,
             sees_truth: false,
+            gathers: false,
             fitted: Fitted::stored()?,
         })
     }
@@ -51,7 +55,7 @@ impl Ours {
 
     /// The same, gathering all evidence however clear the first of it is.
     pub fn gathering_everything(mut self) -> Self {
-        self.query.doubt = [0.0, 1.0];
+        self.gathers = true;
         self.query.stop_above = 1.0;
         self
     }
@@ -59,14 +63,6 @@ impl Ours {
     /// The same, computing the surface of both clouds beforehand.
     pub fn refined(self) -> Self {
         Self { is_refined: true, ..self }
-    }
-
-    fn recalibration(&self, family: &str) -> Result<Recalibration> {
-        if self.sees_truth {
-            self.fitted.oracle_to_judge(family)
-        } else {
-            self.fitted.to_judge(family)
-        }
     }
 
     fn cloud(&self, observation: &Observation) -> Result<Cloud> {
@@ -93,6 +89,17 @@ fn true_points(observation: &Observation) -> PointCloud {
     }
 }
 
+/// A judge that geometry leaves in doubt of everything, so that the classifier is asked everywhere.
+fn doubting() -> Judge {
+    let mut judge = Judge::default().without_classifier();
+    judge.by_geometry.as_flattened_mut().fill(0.0);
+    let middle = DOUBT_KNOTS.len() / 2;
+    for (value, knot) in judge.revised[middle].iter_mut().zip(MISCLASSIFIED_KNOTS) {
+        *value = 1e-3 * knot;
+    }
+    judge
+}
+
 struct Bodies {
     query: Query,
     a: Cloud,
@@ -106,9 +113,13 @@ impl Method for Ours {
     }
 
     fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
-        let recalibration = self.recalibration(draw.family)?;
+        let judge = if self.gathers {
+            doubting()
+        } else {
+            self.fitted.to_judge(draw.family, self.sees_truth)
+        };
         Ok(Box::new(Bodies {
-            query: Query::new(QuerySettings { recalibration, ..self.query })?,
+            query: Query::new(QuerySettings { judge, ..self.query })?,
             a: self.cloud(draw.a)?,
             b: self.cloud(draw.b)?,
             mesh: Mesh::prepare(draw.mesh)?,

@@ -6,12 +6,13 @@ use std::time::Instant;
 use anyhow::Result;
 use cloudtouch_geom::{Covariance, Point3, Pose, UncertainPoint};
 use cloudtouch_noise::Neighborhoods;
-use cloudtouch_svm::{
-    Class, Classifier, Kernel, Problem, Sample, Settings, UnitBox, balanced_penalties,
-};
+use cloudtouch_svm::{Class, Classifier, Kernel, Problem, Settings};
 
 use super::{Draw, Method, Prepared, cleaned, micros_since};
-use crate::answers::{Pair, Said};
+use crate::{
+    answers::{Pair, Said},
+    leaf,
+};
 
 /// Points of each side nearest to where the clouds are closest.
 const POINTS_A_SIDE: usize = 60;
@@ -85,14 +86,9 @@ fn nearest<'a>(cloud: &'a Neighborhoods, to: &Point3) -> impl Iterator<Item = Po
 
 /// The largest probability of a point to be on the wrong side.
 fn largest(a: &[UncertainPoint], b: &[UncertainPoint]) -> Result<f64> {
-    let Some(unit_box) = UnitBox::around(a.iter().chain(b)) else { return Ok(UNDETERMINED) };
-    let (penalty_a, penalty_b) = balanced_penalties(PENALTY, a.len(), b.len());
-    let sample = |point: &UncertainPoint, class, penalty| {
-        unit_box.sample_inside(&Sample { point: *point, class, radius: 0.0, penalty })
+    let Some((unit_box, samples)) = leaf::posed([a, b], 0.0, PENALTY) else {
+        return Ok(UNDETERMINED);
     };
-    let of_a = a.iter().map(|point| sample(point, Class::A, penalty_a));
-    let of_b = b.iter().map(|point| sample(point, Class::B, penalty_b));
-    let samples: Vec<Sample> = of_a.chain(of_b).collect();
     let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma: GAMMA })?;
     let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
     let solution = problem.solve(&settings)?;

@@ -15,10 +15,15 @@ use cloudtouch_testkit::{
 
 use super::{
     scene::{Class, POINTS, STD, Scene},
-    target::{Findings, Target},
     timing::{time, timed, times},
 };
-use crate::{page::Section, real_scans::cases, statistics::median, table::Table};
+use crate::{
+    page::Section,
+    real_scans::cases,
+    statistics::median,
+    table::Table,
+    targets::{Findings, Target},
+};
 
 /// Frames of each kind, returns of a frame, and poses asked of it.
 const FRAMES: usize = 20;
@@ -188,30 +193,6 @@ fn thinned(cloud: &PointCloud, returns: usize) -> Result<PointCloud> {
     let (columns, rows) = (kept(width), kept(height));
     let pixels = rows.iter().flat_map(|&row| columns.iter().map(move |c| row * width + c));
     let points = pixels.map(|i| cloud.points[i]).collect();
-    Ok(PointCloud {
-        image_size: Some((columns.len(), rows.len())),
-        ..PointCloud { points, covariances: None, normals: None, ..cloud.clone() }
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use cloudtouch_geom::Point3;
-
-    use super::*;
-
-    #[test]
-    fn a_thinned_image_is_an_image_with_as_many_returns_as_wanted() {
-        let points: Vec<Point3> = (0..200 * 100)
-            .map(|i| Point3::new(f64::from(i % 200), f64::from(i / 200), 1.0))
-            .collect();
-        let image = PointCloud { image_size: Some((200, 100)), ..PointCloud::from_points(points) };
-        let thin = thinned(&image, 5000).unwrap();
-        let (width, height) = thin.image_size.unwrap();
-        assert!(thin.len() == width * height && (4900..=5200).contains(&thin.len()));
-        // A row of the thin image is one of the whole image.
-        let row = &thin.points[width..2 * width];
-        assert!(row.windows(2).all(|p| p[0].y == p[1].y && p[0].x < p[1].x));
-        assert_eq!(thinned(&image, 50_000).unwrap().len(), 20_000);
-    }
+    let image_size = Some((columns.len(), rows.len()));
+    Ok(PointCloud { points, image_size, covariances: None, normals: None, ..cloud.clone() })
 }

@@ -11,19 +11,17 @@ use cloudtouch_geom::{PointCloud, UncertainPoint};
 
 use super::{
     fresh::prepare,
-    peers::ExactMeshes,
     scene::{POINTS, STD, Scene},
-    target::{Findings, Target},
-    timing::{curve, least_of, ratio, three_digits, time},
-    turns::{Timed, take_turns},
+    timing::{least_of, ratio, three_digits, time},
+    turns::take_turns,
 };
 use crate::{
     answers::Pair,
-    figure::{Axis, Figure, Panel},
-    methods::{Distance, Draw, Ours},
+    methods::{Draw, ExactMeshes, Ours},
     page::Section,
     statistics::median,
     table::Table,
+    targets::{Findings, Target},
 };
 
 /// Points of the room.
@@ -33,80 +31,53 @@ const POSES: usize = 30;
 /// How often something is built; the least time counts.
 const BUILDS: usize = 3;
 
-/// What was measured of a room of one size.
-struct Grown {
-    points: usize,
-    /// Ours, distance, exact meshes.
-    timed: Vec<Timed>,
-    /// Points a second of the tree alone, and of the whole preparation.
-    rates: [f64; 2],
-    /// Bytes that a prepared cloud holds for each point.
-    held: f64,
-}
-
 /// Measures every size.
 pub(super) fn measure(scene: &Scene) -> Findings {
-    let grown: Vec<Grown> =
-        SIZES.into_iter().map(|points| Grown::measure(scene, points)).collect::<Result<_>>()?;
-    let mut table = Table::new([
-        "points",
-        "query, median",
-        "AUC",
-        "distance, median",
-        "AUC",
-        "parry3d, exact meshes",
-        "tree, M points/s",
-        "prepare, M points/s",
-        "bytes a point",
-    ]);
+    let header = ["points", "query, median", "parry3d, exact meshes", "tree, M points/s"];
+    let mut table = Table::new(header.into_iter().chain(["prepare, M points/s", "bytes a point"]));
     let million = |rate: f64| three_digits(1e-6 * rate);
-    for g in &grown {
-        let [ours, distance, meshes] = [0, 1, 2].map(|i| time(g.median(i)));
-        let [auc, auc_of_distance] = [0, 1].map(|i| format!("{:.3}", g.timed[i].auc(None)));
-        let [tree, prepare] = g.rates.map(million);
-        let held = format!("{:.0}", g.held);
-        let row = [ours, auc, distance, auc_of_distance, meshes, tree, prepare, held];
-        table.row(std::iter::once(g.points.to_string()).chain(row));
-    }
-    let section = Section::new("Larger scenes")
-        .text(format_args!(
-            "The room in more and more points, the piano in {POINTS}, {} mm of noise, {POSES} poses, \
-             asked as above of clouds that are not refined. *Tree* is `Tree::build` alone, *prepare* \
-             all of `Cloud::prepare`; of {BUILDS} the fastest. Meshes have as many triangles as the \
-             cloud has points. *Bytes a point*: how much the resident memory of the process (`VmRSS`) \
-             grows while a cloud is prepared; only the largest sizes mean something.",
-            1e3 * STD
-        ))
-        .text(table)
-        .figure("performance-growth", "Times of queries by points of the scene", figure(&grown));
-    Ok((section, targets(&grown)))
-}
-
-impl Grown {
-    fn measure(scene: &Scene, points: usize) -> Result<Self> {
+    let (mut queries, mut slowest, mut held) = (Vec::new(), [f64::INFINITY; 2], f64::NAN);
+    for points in SIZES {
         let (room, piano) = (scene.room(points, STD), scene.piano(STD));
         let before = resident()?;
         let kept = prepare(&room.cloud, STD)?;
-        let held = (resident()? - before) / kept.len() as f64;
+        held = (resident()? - before) / kept.len() as f64;
         drop(kept);
         let (_, preparing) = least_of(BUILDS, || prepare(&room.cloud, STD))?;
-        let building = tree_time(&room.cloud)?;
-        let rates = [building, preparing].map(|seconds| points as f64 / seconds);
+        let rates = [tree_time(&room.cloud)?, preparing].map(|seconds| points as f64 / seconds);
+        slowest = [0, 1].map(|k| slowest[k].min(rates[k]));
         let draw = Draw { family: "", a: &room, b: &piano, mesh: &scene.piano };
         let ours = Ours::new("ours, not refined")?;
         let meshes = ExactMeshes(scene.meshes(points));
         let poses = &scene.poses[..scene.poses.len().min(POSES)];
-        let methods: [&dyn crate::methods::Method; 3] =
-            [&ours, &Distance { smoothed: false }, &meshes];
-        let timed = take_turns(&methods, &draw, Pair::CloudCloud, poses)?;
+        let timed = take_turns(&[&ours, &meshes], &draw, Pair::CloudCloud, poses)?;
+        let [ours, meshes] = [0, 1].map(|i| median(&timed[i].seconds(None)));
+        queries.push(ours);
+        let [tree, all] = rates.map(million);
+        table.row([points.to_string(), time(ours), time(meshes), tree, all, format!("{held:.0}")]);
         eprintln!("bench-report: {points} points done");
-        Ok(Self { points, timed, rates, held })
     }
-
-    /// Of the method with this number, s.
-    fn median(&self, method: usize) -> f64 {
-        median(&self.timed[method].seconds(None))
-    }
+    let section = Section::new("Larger scenes").text(format_args!(
+        "The room in more and more points, the piano in {POINTS}, {} mm of noise, {POSES} poses, \
+         asked as above of clouds that are not refined. *Tree* is `Tree::build` alone, *prepare* \
+         all of `Cloud::prepare`; of {BUILDS} the fastest. Meshes have as many triangles as the \
+         cloud has points. *Bytes a point*: how much the resident memory of the process (`VmRSS`) \
+         grows while a cloud is prepared; only the largest sizes mean something.",
+        1e3 * STD
+    ));
+    let largest = SIZES[SIZES.len() - 1];
+    let to = format!("room of 10k to {largest} points");
+    let rate = |rate: f64| format!("{} M points/s", million(rate));
+    let growth = queries[queries.len() - 1] / queries[0];
+    let [tree, all] = slowest;
+    let bytes = format!("{largest} points: a prepared cloud holds ≤ 200 bytes a point");
+    let targets = vec![
+        Target::at_most(format!("{to}: query, median ≤ 2 × that at 10k"), growth, 2.0, ratio),
+        Target::at_least(format!("{to}: tree ≥ 2 M points/s"), tree, 2e6, rate),
+        Target::at_least(format!("{to}: `Cloud::prepare` ≥ 2 M points/s"), all, 2e6, rate),
+        Target::at_most(bytes, held, 200.0, |held| format!("{held:.0} bytes")),
+    ];
+    Ok((section.text(table), targets))
 }
 
 /// Least time of the tree alone, s.
@@ -126,35 +97,4 @@ fn resident() -> Result<f64> {
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
     let kilobytes = line.and_then(|line| line.trim().strip_suffix(" kB"));
     Ok(1024.0 * kilobytes.context("VmRSS in /proc/self/status")?.parse::<f64>()?)
-}
-
-fn figure(grown: &[Grown]) -> Figure {
-    let panel = Panel::new(Axis::log("points of the scene"), Axis::log("time (ms)"));
-    let curves = (0..3).flat_map(|i| {
-        let of = grown.iter().map(|g| (g.points, g.timed[i].seconds(None))).collect::<Vec<_>>();
-        let name = grown.first().map_or(String::new(), |g| g.timed[i].name.clone());
-        curve(&name, &of)
-    });
-    Figure::new("Prepared queries against 10,000 points").panel(curves.fold(panel, Panel::series))
-}
-
-fn targets(grown: &[Grown]) -> Vec<Target> {
-    let [Some(smallest), Some(largest)] = [grown.first(), grown.last()] else { return Vec::new() };
-    let slowest = |i: usize| grown.iter().map(|g| g.rates[i]).fold(f64::INFINITY, f64::min);
-    let rate = |points: f64| format!("{} M points/s", three_digits(1e-6 * points));
-    let bytes = |b: f64| format!("{b:.0} bytes");
-    let growth = largest.median(0) / smallest.median(0);
-    let to = format!("room of 10k to {} points", largest.points);
-    let least = |what: &str, value| Target::at_least(format!("{to}: {what}"), value, 2e6, rate);
-    vec![
-        Target::at_most(format!("{to}: query, median ≤ 2 × that at 10k"), growth, 2.0, ratio),
-        least("tree ≥ 2 M points/s", slowest(0)),
-        least("`Cloud::prepare` ≥ 2 M points/s", slowest(1)),
-        Target::at_most(
-            format!("{} points: a prepared cloud holds ≤ 200 bytes a point", largest.points),
-            largest.held,
-            200.0,
-            bytes,
-        ),
-    ]
 }

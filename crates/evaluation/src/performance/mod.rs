@@ -4,12 +4,9 @@
 mod batch;
 mod fresh;
 mod growth;
-mod leaf_problems;
-mod peers;
 mod room;
 mod scene;
 mod solvers;
-mod target;
 mod timing;
 mod turns;
 
@@ -20,11 +17,11 @@ use clap::Args;
 use rayon::ThreadPoolBuilder;
 
 use crate::{
-    page::{self, Page, Section},
+    page::{self, Page},
     real_scans::cases,
+    targets::{self, Findings},
 };
 use scene::Scene;
-use target::Findings;
 
 /// What `cargo xtask bench-report` is given.
 #[derive(Debug, Args)]
@@ -32,7 +29,7 @@ pub struct Arguments {
     /// Poses of the piano in the room
     #[arg(long, default_value_t = 100)]
     poses: usize,
-    /// Write docs/lab/performance.md and its figures; else everything goes to target/lab/
+    /// Write docs/lab/performance.md; else everything goes to target/lab/
     #[arg(long)]
     update_docs: bool,
     /// Folder of the real scans, from the project's root
@@ -81,18 +78,11 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         ("larger scenes", |scene, _| growth::measure(scene)),
         ("batch", |scene, _| batch::measure(scene)),
     ];
-    let (mut sections, mut targets) = (Vec::new(), Vec::new());
-    for (name, part) in parts {
-        let measured = alone.install(|| part(&scene, data.as_deref()));
-        let (section, judged) = measured.with_context(|| format!("measure {name}"))?;
-        eprintln!("bench-report: {name} done");
-        sections.push(section);
-        targets.extend(judged);
-    }
     let command = format!("--poses {poses} --update-docs");
     let names = ("performance", "Performance");
-    let mut page = Page::new(names, ("bench-report", &command), INTRODUCTION, root, SEED);
-    page.section(Section::new("Targets").text(target::table(&targets)).text(MISSED));
-    sections.into_iter().for_each(|section| page.section(section));
-    page.write(&page::folder(root, update_docs))
+    let page = Page::new(names, ("bench-report", &command), INTRODUCTION, root, SEED);
+    let measured = parts
+        .into_iter()
+        .map(|(name, part)| (name, alone.install(|| part(&scene, data.as_deref()))));
+    targets::report(page, &page::folder(root, update_docs), MISSED, measured).map(drop)
 }

@@ -3,18 +3,16 @@
 use anyhow::Result;
 
 use super::{
-    peers::{ExactMeshes, Spheres},
     scene::{Class, POINTS, STD, Scene},
-    target::{Findings, Target},
     timing::{p95, ratio, time},
     turns::{Timed, table, take_turns},
 };
 use crate::{
     answers::Pair,
-    figure::{Axis, Figure, Panel, Series, palette},
-    methods::{Boxes, Distance, Draw, Method, Ours},
+    methods::{Boxes, Distance, Draw, ExactMeshes, Method, Ours},
     page::Section,
     statistics::median,
+    targets::{Findings, Target},
 };
 
 /// The larger of the two noises, m.
@@ -34,7 +32,6 @@ about 10,000 triangles each. No sensor knows them: it is told more than the othe
 - `1 cm boxes`: parry3d's voxels about the points of both clouds.
 - `distance`: the nearest point of the room for every point of the piano by kiddo, sought no farther \
 than the smallest distance so far.
-- `capt, spheres`: balls of 1 cm about the points of the piano against the points of the room.
 
 False stops and misses: free poses called collisions, and collisions called free; ours calls from ½ \
 on, a distance has no threshold. AUC of a method that says only yes or no is what ties leave.";
@@ -48,13 +45,6 @@ pub(super) fn measure(scene: &Scene) -> Findings {
         targets.extend(judged(&timed, std));
         section =
             section.text(format_args!("### Noise of {:.0} mm", 1e3 * std)).text(table(&timed));
-        if std == STD {
-            section = section.text("A mark is a pose, the bar is the median.").figure(
-                "performance-room",
-                "Times of queries by class of pose",
-                strips(&timed),
-            );
-        }
     }
     Ok((section, targets))
 }
@@ -64,15 +54,14 @@ fn ask(scene: &Scene, std: f64) -> Result<Vec<Timed>> {
     let draw = Draw { family: "", a: &room, b: &piano, mesh: &scene.piano };
     let refined = Ours::new("ours")?.refined();
     let mut geometry = Ours::new("ours, geometry alone")?.refined();
-    geometry.query.doubt = [0.5; 2];
-    let methods: [&dyn Method; 7] = [
+    geometry.query.judge = geometry.query.judge.without_classifier();
+    let methods: [&dyn Method; 6] = [
         &refined,
         &Ours::new("ours, not refined")?,
         &geometry,
         &ExactMeshes(scene.meshes(POINTS)),
         &Boxes { side: 0.01 },
         &Distance { smoothed: false },
-        &Spheres,
     ];
     take_turns(&methods, &draw, Pair::CloudCloud, &scene.poses)
 }
@@ -93,26 +82,4 @@ fn judged(timed: &[Timed], std: f64) -> Vec<Target> {
         Target::at_most(format!("{at}: deep, median ≤ 0.5 ms"), deep, 5e-4, time),
         Target::at_most(format!("{at}: near, p95 ≤ 3 ms"), near, 3e-3, time),
     ]
-}
-
-/// A panel for each class of pose, a row for each method, a mark for each pose.
-fn strips(timed: &[Timed]) -> Figure {
-    let rows = || timed.iter().rev();
-    let panel = |class: Class| {
-        let names = rows().map(|t| t.name.clone());
-        let mut panel =
-            Panel::new(Axis::log("query (ms)").range(1e-4..1e2), Axis::names("", names));
-        for (row, timed) in rows().enumerate() {
-            let (row, seconds) = (row as f64, timed.seconds(Some(class)));
-            let spread = |i: usize| row + 0.28 * ((i % 7) as f64 / 3.0 - 1.0);
-            let marks = seconds.iter().enumerate().map(|(i, s)| (1e3 * s, spread(i)));
-            let middle = (1e3 * median(&seconds), row - 0.42, row + 0.42);
-            panel = panel
-                .series(Series::points("", marks).color(palette::SKY).size(3))
-                .series(Series::whiskers("", [middle]).color(palette::BLACK));
-        }
-        panel.title(&format!("{} poses", class.name()))
-    };
-    let figure = Figure::new("Prepared queries, 2 mm of noise").columns(1).panel_size(800, 230);
-    Class::ALL.into_iter().map(panel).fold(figure, Figure::panel)
 }

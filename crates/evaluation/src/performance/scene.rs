@@ -62,12 +62,6 @@ const TURN: [(Class, bool); 6] = [
 ];
 
 impl Class {
-    pub(super) const ALL: [Self; 3] = [Self::Far, Self::Near, Self::Deep];
-
-    pub(super) fn name(self) -> &'static str {
-        ["far", "near", "deep"][self as usize]
-    }
-
     /// None for what lies between the classes.
     fn of(signed_distance: f64) -> Option<Self> {
         match signed_distance {
@@ -92,23 +86,28 @@ impl Scene {
                 |part| poses_near_contact(&exact[0], &exact[1], BATCH, derive(seed, 1, part));
             (4 * number..4 * number + 4).into_par_iter().flat_map_iter(drawn).collect::<Vec<_>>()
         };
-        let mut kinds: [Vec<Posed>; TURN.len()] = Default::default();
-        let wanted = count.div_ceil(TURN.len());
-        for LabelledPose { scene_from_object: pose, in_collision: collides, signed_distance } in
-            (0..2000).flat_map(batch)
-        {
-            let class = Class::of(signed_distance);
-            let fits = |i: &usize| class == Some(TURN[*i].0) && collides == TURN[*i].1;
-            let open = (0..TURN.len()).filter(fits).find(|&i| kinds[i].len() < wanted);
-            if let (Some(class), Some(kind)) = (class, open) {
-                kinds[kind].push(Posed { class, collides, pose });
+        let mut drawn = (0..2000).flat_map(batch);
+        // What was drawn before its turn.
+        let mut spare: Vec<Posed> = Vec::new();
+        let mut next = |turn: (Class, bool)| {
+            loop {
+                let found = spare.iter().position(|p| (p.class, p.collides) == turn);
+                if let Some(at) = found {
+                    return Some(spare.remove(at));
+                }
+                let LabelledPose {
+                    scene_from_object: pose,
+                    in_collision: collides,
+                    signed_distance,
+                } = drawn.next()?;
+                spare.extend(Class::of(signed_distance).map(|class| Posed {
+                    class,
+                    collides,
+                    pose,
+                }));
             }
-            if kinds.iter().all(|kind| kind.len() == wanted) {
-                break;
-            }
-        }
-        let in_turn = |i: usize| kinds[i % TURN.len()].get(i / TURN.len()).copied();
-        let poses: Option<Vec<Posed>> = (0..count).map(in_turn).collect();
+        };
+        let poses: Option<Vec<Posed>> = (0..count).map(|i| next(TURN[i % TURN.len()])).collect();
         let poses = poses.context("too few far, near or deep poses")?;
         Ok(Self { room, piano, poses, seed })
     }
@@ -147,14 +146,6 @@ fn observed(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observ
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn classes_have_gaps_between_them() {
-        assert_eq!([0.5, 0.1].map(Class::of), [Some(Class::Far); 2]);
-        assert_eq!([0.02, 0.0, -0.02].map(Class::of), [Some(Class::Near); 3]);
-        assert_eq!([-0.05, f64::NEG_INFINITY].map(Class::of), [Some(Class::Deep); 2]);
-        assert_eq!([0.05, -0.03, f64::NAN].map(Class::of), [None; 3]);
-    }
 
     #[test]
     fn poses_are_what_they_are_drawn_for() {

@@ -1,13 +1,10 @@
-//! Wall times of calls, and how they are written and drawn.
+//! Wall times of calls, and how they are written.
 
 use std::time::Instant;
 
 use anyhow::Result;
 
-use crate::{
-    figure::Series,
-    statistics::{median, quantile},
-};
+use crate::statistics::{median, quantile};
 
 /// What a call returns and how long it took, s.
 pub(super) fn timed<T>(call: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
@@ -54,14 +51,6 @@ pub(super) fn three_digits(value: f64) -> String {
         _ => 0,
     };
     format!("{value:.digits$}")
-}
-
-/// The medians of lists of times (s) over x in milliseconds, with bars from the 5th to the 95th
-/// percentile.
-pub(super) fn curve(name: &str, lists: &[(usize, Vec<f64>)]) -> [Series; 2] {
-    let at = |q: f64| lists.iter().map(move |(x, seconds)| (*x as f64, 1e3 * quantile(seconds, q)));
-    let bars = at(0.05).zip(at(0.95)).map(|((x, low), (_, high))| (x, low, high));
-    [Series::curve(name, at(0.5)), Series::whiskers(name, bars)]
 }
 
 /// Median and 95th percentile, written.

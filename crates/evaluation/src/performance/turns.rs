@@ -94,48 +94,21 @@ impl Timed {
 /// Times by class of pose, and errors on the same poses; the first method is compared with all.
 /// A score below zero is a distance, which has no threshold, so no verdict.
 pub(super) fn table(all: &[Timed]) -> Table {
-    let mut table = Table::new([
-        "method",
-        "prepare",
-        "far, median",
-        "near, median",
-        "near, p95",
-        "deep, median",
-        "all, median",
-        "all, p95",
-        "first to it",
-        "AUC",
-        "AUC near",
-        "false stops",
-        "misses",
-    ]);
+    const HEADER: &str = "method, prepare, far median, near median, near p95, deep median, \
+                          all median, first to it, AUC, AUC near, false stops, misses";
+    let mut table = Table::new(HEADER.split(", "));
     let first = all.first().map_or(f64::NAN, |first| median(&first.seconds(None)));
     for timed in all {
-        let of = |class| times(&timed.seconds(Some(class)));
-        let ([far, _], [near, near_p95], [deep, _]) =
-            (of(Class::Far), of(Class::Near), of(Class::Deep));
-        let [middle, p95] = times(&timed.seconds(None));
-        let [auc, auc_near] =
-            [None, Some(Class::Near)].map(|class| format!("{:.3}", timed.auc(class)));
+        let middle = |class| time(median(&timed.seconds(class)));
+        let near = Some(Class::Near);
         let is_verdict = timed.answers.iter().all(|a| a.score >= 0.0);
-        let [stops, misses] =
-            timed.wrong().map(|n| if is_verdict { n.to_string() } else { "-".into() });
-        let compared = ratio(first / median(&timed.seconds(None)));
-        table.row([
-            timed.name.clone(),
-            time(timed.prepare),
-            far,
-            near,
-            near_p95,
-            deep,
-            middle,
-            p95,
-            compared,
-            auc,
-            auc_near,
-            stops,
-            misses,
-        ]);
+        let mut row = vec![timed.name.clone(), time(timed.prepare), middle(Some(Class::Far))];
+        row.extend(times(&timed.seconds(near)));
+        row.extend([middle(Some(Class::Deep)), middle(None)]);
+        row.push(ratio(first / median(&timed.seconds(None))));
+        row.extend([None, near].map(|class| format!("{:.3}", timed.auc(class))));
+        row.extend(timed.wrong().map(|n| if is_verdict { n.to_string() } else { "-".into() }));
+        table.row(row);
     }
     table
 }

@@ -14,12 +14,11 @@ pub(crate) struct Labelled {
     pub(crate) scene: PathBuf,
     pub(crate) object: PathBuf,
     pub(crate) pose: Pose,
-    /// Free, near, contact, shallow or collision, of the measured points; apart or collision, of
-    /// meshes.
+    /// Free, near, contact, shallow or collision, of the measured points.
     pub(crate) label: String,
     /// What the label rests on: distance, depth or advance; empty where nothing is said.
     pub(crate) basis: String,
-    /// Of the meshes, or the smallest signed distance of a scene point; negative in overlap, mm.
+    /// The smallest signed distance of a scene point; negative inside, mm.
     pub(crate) distance_mm: f64,
     /// How far the object went past first contact, mm; only cases of the approach series say so.
     pub(crate) advance_mm: Option<f64>,
@@ -28,11 +27,10 @@ pub(crate) struct Labelled {
 /// The folder of the data; says so when it is not there.
 pub(crate) fn folder(root: &Path, data: &Path) -> Option<PathBuf> {
     let folder = root.join(data);
-    let is_there = ["cases.json", "piano_cases.json"].map(|name| folder.join(name).is_file());
-    if is_there != [true, true] {
+    if !folder.join("cases.json").is_file() {
         println!(
-            "skipped: no real scans at {}; put cases.json, piano_cases.json, clouds/ and meshes/ \
-             there or name their folder with --data DIR",
+            "skipped: no real scans at {}; put cases.json, clouds/ and meshes/ there or name their \
+             folder with --data DIR",
             data.display()
         );
         return None;

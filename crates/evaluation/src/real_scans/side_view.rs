@@ -9,7 +9,7 @@ use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
 use i_overlay::{core::fill_rule::FillRule, float::simplify::SimplifyShape};
 
 use crate::{
-    figure::{Axis, Figure, Panel, Place, RGBColor, Series, palette},
+    figure::{Axis, Figure, GREY, Panel, Place, RGBColor, Series},
     statistics::quantile,
     table::verdict,
 };
@@ -23,16 +23,13 @@ const SIDEWAYS: f64 = 10.0;
 const HEIGHTS: std::ops::Range<f64> = -1.5..30.0;
 /// Side of the squares of which no more than one point is drawn, cm.
 const SQUARE: f64 = 0.4;
-/// Holes between triangles that are smaller than this are not seen, cm².
-const SPECK: f64 = 0.05;
 /// Points and contacts at least this likely are marked.
 const LIKELY: f64 = 0.3;
-/// Length of a contact's arrow, cm.
-const ARROW: f64 = 5.0;
 
 const POINTS: &str = "measured points of the scene";
 const GRIPPER: RGBColor = RGBColor(150, 195, 235);
 const RED: RGBColor = RGBColor(215, 25, 28);
+const BLACK: RGBColor = RGBColor(0, 0, 0);
 
 /// The plane of the picture.
 struct View {
@@ -82,30 +79,33 @@ pub(super) fn figure(
     let (pose, first) = touching.context("no pose has a contact")?;
     let view = View::of(cloud, first.point, pose)?;
     let mesh = Mesh::prepare(object)?;
-    let title = "How likely does the gripper hit the mug? Three poses, seen from the side";
-    let figure = Figure::new(title).columns(3).panel_size(290, 440);
-    Ok(shown.iter().fold(figure, |figure, (pose, report)| {
-        let (outlines, holes) = outline(&view, object, pose);
+    let panel = |(pose, report): &(Pose, Report)| {
         let (likely, other) = points(&view, cloud, &mesh, pose, report);
-        let x = Axis::linear("sideways (cm)").range(-SIDEWAYS..SIDEWAYS);
-        let y = Axis::linear("height above the table (cm)").range(HEIGHTS);
-        let p = report.collision_probability;
-        let panel = Panel::new(x, y)
-            .title(&format!("P = {p:.2}: {}", verdict(report.verdict)))
-            .equal_aspect()
+        let x = Axis { range: Some(-SIDEWAYS..SIDEWAYS), ..Axis::linear("sideways (cm)") };
+        let y = Axis { range: Some(HEIGHTS), ..Axis::linear("height above the table (cm)") };
+        let painted = |series, color| Series { color: Some(color), size: 2, ..series };
+        let series = vec![
             // First in the legend, and drawn as circles.
-            .series(Series::points(POINTS, []).color(palette::GREY))
-            .series(Series::polygons("gripper, known exactly", outlines).color(GRIPPER))
-            .series(Series::polygons("", holes).color(RGBColor(255, 255, 255)))
-            .series(Series::points(POINTS, other).color(palette::GREY).size(2))
-            .series(Series::points("points in contact or inside", likely).color(RED).size(3));
-        let arrows = Series::arrows("contact: place and direction", arrow(&view, report));
-        figure.panel(panel.series(arrows.color(palette::BLACK)))
-    }))
+            painted(Series::points(POINTS, []), GREY),
+            painted(
+                Series::polygons("gripper, known exactly", outline(&view, object, pose)),
+                GRIPPER,
+            ),
+            painted(Series::points(POINTS, other), GREY),
+            painted(Series::points("points in contact or inside", likely), RED),
+            painted(Series::polygons("contact: place and direction", arrow(&view, report)), BLACK),
+        ];
+        let p = report.collision_probability;
+        Panel { title: format!("P = {p:.2}: {}", verdict(report.verdict)), x, y, series }
+    };
+    let title = "How likely does the gripper hit the mug? Three poses, seen from the side";
+    let figure = Figure::new(title, shown.iter().map(panel));
+    // As many pixels for a centimetre upwards as sideways.
+    Ok(Figure { columns: 3, panel_size: (290, 440), ..figure })
 }
 
-/// What the mesh covers, and the holes in it.
-fn outline(view: &View, mesh: &TriangleMesh, pose: &Pose) -> (Vec<Vec<Place>>, Vec<Vec<Place>>) {
+/// What the mesh covers; no hole in it is large enough to be seen.
+fn outline(view: &View, mesh: &TriangleMesh, pose: &Pose) -> Vec<Vec<Place>> {
     let project = |corner: Point3| <[f64; 2]>::from(view.place(&pose.transform_point(&corner)));
     let triangles = (0..mesh.triangles().len()).map(|triangle| {
         let [a, b, c] = mesh.corners(triangle).map(project);
@@ -114,17 +114,8 @@ fn outline(view: &View, mesh: &TriangleMesh, pose: &Pose) -> (Vec<Vec<Place>>, V
         if turn < 0.0 { vec![a, c, b] } else { vec![a, b, c] }
     });
     let shapes = triangles.collect::<Vec<_>>().simplify_shape(FillRule::NonZero);
-    let visible = |contour: &&Vec<[f64; 2]>| area(contour) > SPECK;
     let places = |contour: &Vec<[f64; 2]>| contour.iter().map(|&[x, y]| (x, y)).collect();
-    let outer = shapes.iter().filter_map(|shape| shape.first()).filter(visible).map(places);
-    let holes = shapes.iter().flat_map(|shape| &shape[1..]).filter(visible).map(places);
-    (outer.collect(), holes.collect())
-}
-
-/// Area of a polygon.
-fn area(contour: &[[f64; 2]]) -> f64 {
-    let next = contour.iter().cycle().skip(1);
-    0.5 * contour.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
+    shapes.iter().filter_map(|shape| shape.first()).map(places).collect()
 }
 
 /// The points likely in contact or measured inside of the mesh, and the others, thinned.
@@ -149,36 +140,16 @@ fn points(
     (marked, other)
 }
 
-/// The likeliest contact whose normal lies in the picture.
-fn arrow(view: &View, report: &Report) -> Option<[Place; 2]> {
-    let found = report.contacts.iter().find(|contact| {
+/// An arrow at the likeliest contact whose normal lies in the picture.
+fn arrow(view: &View, report: &Report) -> Option<Vec<Place>> {
+    let contact = report.contacts.iter().find(|contact| {
         contact.probability >= LIKELY && contact.normal_a_to_b.dot(&view.towards_eye).abs() < 0.5
-    });
-    found.map(|contact| {
-        let end = contact.point + contact.normal_a_to_b * (0.01 * ARROW);
-        [view.place(&contact.point), view.place(&end)]
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_outline_is_what_triangles_cover_and_its_holes() {
-        // A square frame of eight triangles in the plane of the picture, some turned over.
-        let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]];
-        let inner = corners.map(|[x, y]: [f64; 2]| [0.5 * x + 0.75, 0.5 * y + 0.75]);
-        let all = corners.into_iter().chain(inner);
-        let vertices = all.map(|[x, y]| Point3::new(0.01 * x, 0.01 * y, 0.0)).collect();
-        let side = |i: u32| [[i, (i + 1) % 4, 4 + i], [4 + (i + 1) % 4, (i + 1) % 4, 4 + i]];
-        let mesh = TriangleMesh::try_new(vertices, (0..4).flat_map(side).collect()).unwrap();
-        let (right, up, towards_eye) = (Vector3::x(), Vector3::y(), Vector3::z());
-        let view = View { middle: Point3::origin(), right, up, towards_eye, table: 0.0 };
-        let (outer, holes) = outline(&view, &mesh, &Pose::identity());
-        assert_eq!((outer.len(), holes.len()), (1, 1));
-        let widest = |contour: &[Place]| contour.iter().map(|p| p.0).fold(0.0, f64::max);
-        assert!((widest(&outer[0]) - 3.0).abs() < 1e-6);
-        assert!((widest(&holes[0]) - 2.25).abs() < 1e-6);
-    }
+    })?;
+    let along = contact.normal_a_to_b;
+    let across = along.cross(&view.towards_eye);
+    // Corners from the tail around the head and back, cm along and across.
+    let corners =
+        [[0.0, 0.1], [4.2, 0.1], [4.2, 0.5], [5.0, 0.0], [4.2, -0.5], [4.2, -0.1], [0.0, -0.1]];
+    let place = |[a, b]: [f64; 2]| view.place(&(contact.point + 0.01 * (a * along + b * across)));
+    Some(corners.map(place).to_vec())
 }

@@ -4,6 +4,7 @@ use anyhow::{Context, Result};
 use cloudtouch_geom::seed;
 use cloudtouch_testkit::{
     family::{FamilyScene, Side},
+    noise::NoiseKind,
     poses::LabelledPose,
 };
 use rayon::prelude::*;
@@ -67,7 +68,9 @@ pub fn ask(plan: &Plan, methods: &[Asked]) -> Result<Answers> {
                     .with_context(|| format!("{}, draw {}", family.name, scene.number))
             })
             .collect::<Result<_>>()?;
-        rows.into_iter().try_for_each(|rows| answers.extend(rows))?;
+        for (question, said) in rows.into_iter().flatten() {
+            answers.push(question, &said)?;
+        }
         eprintln!("{}: {} answers", family.name, answers.questions.len());
     }
     Ok(answers)
@@ -87,10 +90,11 @@ fn of_draw(
     condition: &Condition,
     methods: &[Asked],
 ) -> Result<Vec<Row>> {
-    let Condition { points, noise, std } = *condition;
+    let Condition { points, std } = *condition;
     // The same for every standard deviation, so that only the size of the errors differs.
-    let draw = seed::derive(*seed, points as u64, 2 + noise as u64);
-    let [a, b] = [Side::A, Side::B].map(|side| scene.observe(side, points, noise, std, draw));
+    let draw = seed::derive(*seed, points as u64, 2);
+    let [a, b] =
+        [Side::A, Side::B].map(|side| scene.observe(side, points, NoiseKind::Gaussian, std, draw));
     let seen = Draw { family: family.name, a: &a, b: &b, mesh: scene.b.mesh() };
     let mut rows: Vec<Row> = Vec::new();
     let is_open = scene.b.mesh().merged().open_edges() > 0;

@@ -55,11 +55,6 @@ impl<'a> Judged<'a> {
         &self.questions
     }
 
-    /// Names of the methods.
-    pub fn names(&self) -> Vec<&'a str> {
-        self.methods.iter().map(|(name, _)| *name).collect()
-    }
-
     /// The answers of a method; none when it was not picked.
     pub fn said(&self, method: &str) -> &[Said] {
         self.methods.iter().find(|(name, _)| *name == method).map_or(&[], |(_, said)| said)
@@ -90,7 +85,11 @@ impl<'a> Judged<'a> {
             };
             self.samples.iter().flat_map(of).collect()
         });
-        Measured { names: self.names(), measures: measures.to_vec(), replicates }
+        Measured {
+            names: self.methods.iter().map(|(name, _)| *name).collect(),
+            measures: measures.to_vec(),
+            replicates,
+        }
     }
 }
 
@@ -111,6 +110,15 @@ impl Measured<'_> {
     pub fn difference(&self, first: &str, second: &str, measure: Measure) -> Option<Estimate> {
         let index = |method| self.index(method, measure);
         Some(self.replicates.difference(index(first)?, index(second)?))
+    }
+
+    /// The difference in words, bold where its interval excludes zero; a dash beside itself.
+    pub fn compared(&self, method: &str, with: &str, measure: Measure) -> String {
+        match self.difference(method, with, measure).filter(|_| method != with) {
+            Some(d) if d.excludes_zero() => format!("**{d:+}**"),
+            Some(d) => format!("{d:+}"),
+            None => "–".into(),
+        }
     }
 
     fn index(&self, method: &str, measure: Measure) -> Option<usize> {

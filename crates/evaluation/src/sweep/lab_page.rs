@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use super::{OURS, figures, judged::Judged, plan::SEED, tables::Answered, targets};
+use super::{figures, plan::SEED, tables::Answered, targets};
 use crate::{
-    answers::{Kind, Pair, Question},
+    answers::{Kind, Pair},
     page::{Page, Section},
-    table::Table,
 };
 
 const INTRODUCTION: &str = "Every method answers the same poses of generated scenes whose exact \
@@ -32,7 +31,9 @@ other families.
 `a [b, c]` is a value with its 95 % interval: draws are resampled within each family, then the \
 poses of a draw, with all conditions of a pose together. False stops: the share of free poses that \
 a threshold stops which misses at most so many of the collisions. ECE is over 15 bins; in brackets \
-what chance alone gives a perfect forecaster.";
+what chance alone gives a perfect forecaster. Times are medians of queries on clouds of 10,000 \
+points, prepared once for the poses of a draw, as many at a time as there are cores; the noise model \
+of `calibrated` is computed where queries first come near, so early poses pay for later ones.";
 
 pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>, bounds: Section) -> Page {
     let names = (("accuracy", "Accuracy, in full"), ("sweep", arguments));
@@ -53,24 +54,19 @@ pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>, bounds
         let section = Section::new(&format!("{}: noise, ordinary scenes", capitalised(pair)));
         page.section(section.text(answered.noises(pair)));
     }
-    let figures = [
-        (
+    let figures = Section::new("Figures")
+        .figure(
             "sweep-reliability",
             "Stated probability against observed rate",
             figures::reliability_figure(answered),
-        ),
-        ("sweep-roc", "Collisions found against free poses stopped", figures::roc_figure(answered)),
-        ("sweep-noise", "AUC and Brier score against noise", figures::noise_figure(answered)),
-        ("sweep-distance", "Probability against distance", figures::distance_figure(answered)),
-        ("sweep-speed", "Query time against 1 − AUC", figures::speed_figure(answered)),
-    ];
-    let pictures =
-        figures.into_iter().fold(Section::new("Figures"), |section, (name, shows, figure)| {
-            section.figure(name, shows, figure)
-        });
-    page.section(pictures);
+        )
+        .figure(
+            "sweep-distance",
+            "Probability against distance",
+            figures::distance_figure(answered),
+        );
+    page.section(figures);
     page.section(bounds);
-    page.section(times(answered));
     page
 }
 
@@ -79,23 +75,4 @@ fn capitalised(pair: Pair) -> &'static str {
         Pair::CloudCloud => "Two clouds",
         Pair::CloudMesh => "Cloud and mesh",
     }
-}
-
-fn times(answered: &Answered<'_>) -> Section {
-    let mut table = Table::new(["method", "pair", "median (ms)", "p95 (ms)"]);
-    for name in answered.answers.names() {
-        for pair in Pair::ALL {
-            let keep = |q: &Question| q.pair == pair && q.condition.points == 10_000;
-            let judged = Judged::pick(answered.answers, &[name], keep);
-            if judged.counts().0 > 0 {
-                let of = |share| format!("{:.2}", judged.query_ms(name, share));
-                table.row([name.to_owned(), pair.name().into(), of(0.5), of(0.95)]);
-            }
-        }
-    }
-    Section::new("Time of a query").text(format_args!(
-        "10,000 points, bodies prepared once for the poses of a draw; the noise model of `{OURS}` is \
-         computed where queries first come near, so early poses pay for later ones. As many queries \
-         at a time as there are cores."
-    )).text(table)
 }

@@ -67,7 +67,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     grade::grade(&mut answers)?;
     let folder = page::folder(root, update_docs);
     std::fs::create_dir_all(root.join("target/lab"))?;
-    answers.write_csv(&root.join("target/lab/answers.csv"))?;
+    answers.write(&root.join("target/lab/answers.jsonl"))?;
     let answered = Answered::new(&answers);
     let arguments = format!("--draws {draws} --poses {poses} --update-docs");
     let bounds = bounds::section()?;

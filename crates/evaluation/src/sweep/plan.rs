@@ -1,7 +1,5 @@
 //! What a sweep consists of: one grid of conditions for every report.
 
-use cloudtouch_testkit::noise::NoiseKind;
-
 use super::scenes::Scenes;
 use crate::answers::{Condition, Pair};
 
@@ -19,7 +17,7 @@ pub(super) const STDS: [f64; 4] = [0.0, 0.002, 0.01, 0.02];
 pub(super) const POINTS: [usize; 2] = [2_500, 10_000];
 
 /// Which scenes are asked about, how observed, and at how many poses.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Plan {
     /// Generators of scenes.
     pub families: Vec<Scenes>,
@@ -38,12 +36,13 @@ pub struct Plan {
 impl Plan {
     /// Every generated family and kind of pair under every noise and density.
     pub fn full(draws: u32, poses: usize) -> Self {
+        let of_points = |points| STDS.map(|std| Condition { points, std });
         Self {
             families: Scenes::generated(),
             draws,
             poses,
             pairs: Pair::ALL.to_vec(),
-            conditions: conditions(),
+            conditions: POINTS.into_iter().flat_map(of_points).collect(),
             stream: 0,
         }
     }
@@ -55,14 +54,6 @@ impl Plan {
 
     /// One condition of some families.
     pub fn of(families: Vec<Scenes>, draws: u32, poses: usize, points: usize, std: f64) -> Self {
-        Self { families, conditions: vec![gaussian(points, std)], ..Self::full(draws, poses) }
+        Self { families, conditions: vec![Condition { points, std }], ..Self::full(draws, poses) }
     }
-}
-
-fn conditions() -> Vec<Condition> {
-    POINTS.iter().flat_map(|&points| STDS.map(|std| gaussian(points, std))).collect()
-}
-
-fn gaussian(points: usize, std: f64) -> Condition {
-    Condition { points, noise: NoiseKind::Gaussian, std }
 }

@@ -1,6 +1,6 @@
 //! Where scenes come from: generators, and real meshes where their files are.
 
-use std::{fmt, path::Path, sync::Arc};
+use std::{path::Path, sync::Arc};
 
 use anyhow::Result;
 use cloudtouch_geom::TriangleMesh;
@@ -18,12 +18,6 @@ pub struct Scenes {
     pub kind: Kind,
     /// The variant that belongs to a seed.
     scene: Arc<dyn Fn(u64) -> FamilyScene + Send + Sync>,
-}
-
-impl fmt::Debug for Scenes {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(self.name)
-    }
 }
 
 impl From<Family> for Scenes {

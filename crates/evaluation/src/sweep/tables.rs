@@ -57,16 +57,16 @@ impl<'a> Answered<'a> {
 
     /// A row for every method, and by how much its AUC differs from ours on the same questions.
     pub(super) fn methods(&self, keep: impl Fn(&Question) -> bool + Copy) -> Table {
-        let mut table = Table::new(header("method").into_iter().chain(["AUC minus ours".into()]));
+        let mut table = Table::new(
+            header("method").into_iter().chain(["AUC minus ours", "query (ms)"].map(String::from)),
+        );
         for name in self.answers.names() {
             let mut row = self.row(name, name, keep);
             let judged = Judged::pick(self.answers, &[name, OURS], keep);
-            let difference = judged.measure(&[Measure::Auc]).difference(name, OURS, Measure::Auc);
-            row.push(match difference {
-                Some(d) if name != OURS && d.excludes_zero() => format!("**{d:+}**"),
-                Some(d) if name != OURS => format!("{d:+}"),
-                _ => "–".into(),
-            });
+            row.push(judged.measure(&[Measure::Auc]).compared(name, OURS, Measure::Auc));
+            let dense = |q: &Question| keep(q) && q.condition.points == 10_000;
+            let judged = Judged::pick(self.answers, &[name], dense);
+            row.push(format!("{:.2}", judged.query_ms(name, 0.5)));
             table.row(row);
         }
         table

@@ -1,4 +1,4 @@
-//! What is aimed at, and whether it is reached.
+//! What is aimed at on ordinary scenes, and whether it is reached.
 
 use super::{
     ORACLE, OURS,
@@ -8,13 +8,13 @@ use super::{
 };
 use crate::{
     answers::{Kind, Pair, Question},
-    measures::{Measure, observed_within},
+    measures::{Bin, Measure, observed_within},
     page::Section,
-    table::Table,
+    targets::{self, Target},
 };
 
 /// A number that should be reached on the ordinary families together.
-struct Target {
+struct Limit {
     pair: Pair,
     near: bool,
     measure: Measure,
@@ -23,63 +23,42 @@ struct Target {
     up_to: f64,
 }
 
-const TARGETS: [Target; 7] = [
-    target(Pair::CloudCloud, false, Measure::Auc, 0.96, 0.02),
-    target(Pair::CloudCloud, true, Measure::Auc, 0.86, 0.02),
-    target(Pair::CloudCloud, false, Measure::Brier, 0.08, 0.02),
-    target(Pair::CloudCloud, false, Measure::CalibrationError, 0.03, 0.02),
-    target(Pair::CloudMesh, false, Measure::Auc, 0.98, 0.01),
-    target(Pair::CloudMesh, true, Measure::Auc, 0.94, 0.01),
-    target(Pair::CloudMesh, false, Measure::CalibrationError, 0.03, 0.02),
+const LIMITS: [Limit; 7] = [
+    limit(Pair::CloudCloud, false, Measure::Auc, 0.96, 0.02),
+    limit(Pair::CloudCloud, true, Measure::Auc, 0.86, 0.02),
+    limit(Pair::CloudCloud, false, Measure::Brier, 0.08, 0.02),
+    limit(Pair::CloudCloud, false, Measure::CalibrationError, 0.03, 0.02),
+    limit(Pair::CloudMesh, false, Measure::Auc, 0.98, 0.01),
+    limit(Pair::CloudMesh, true, Measure::Auc, 0.94, 0.01),
+    limit(Pair::CloudMesh, false, Measure::CalibrationError, 0.03, 0.02),
 ];
 
 /// The largest ECE of one family beyond what chance gives.
 const FAMILY_ERROR: f64 = 0.045;
-/// What may collide of poses that are stated to do so with a probability below a tenth.
-const STATED_FREE: f64 = 0.04;
+/// What may collide of poses that are stated to do so with a probability below a tenth, %.
+const STATED_FREE: f64 = 4.0;
 
-const fn target(pair: Pair, near: bool, measure: Measure, limit: f64, up_to: f64) -> Target {
-    Target { pair, near, measure, limit, up_to }
+const fn limit(pair: Pair, near: bool, measure: Measure, limit: f64, up_to: f64) -> Limit {
+    Limit { pair, near, measure, limit, up_to }
 }
 
-struct Rows {
-    table: Table,
-    met: usize,
-    count: usize,
-}
-
-impl Rows {
-    fn add(&mut self, target: String, reached: String, oracle: String, met: bool) {
-        self.count += 1;
-        self.met += usize::from(met);
-        self.table.row([target, reached, oracle, if met { "yes" } else { "no" }.into()]);
-    }
-}
-
-/// All targets, on ordinary scenes.
+/// All targets.
 pub(super) fn section(answered: &Answered<'_>) -> Section {
-    let table = Table::new(["target, ordinary scenes", "reached", "oracle", "met"]);
-    let mut rows = Rows { table, met: 0, count: 0 };
-    for target in &TARGETS {
-        limited(answered, target, &mut rows);
-    }
+    let mut all: Vec<Target> = LIMITS.iter().map(|limit| limited(answered, limit)).collect();
     for pair in Pair::ALL {
-        families(answered, pair, &mut rows);
-        stated(answered, pair, &mut rows);
-        for std in STDS {
-            alternatives(answered, pair, std, &mut rows);
-        }
+        all.push(families(answered, pair));
+        all.extend(stated(answered, pair));
+        all.extend(STDS.map(|std| alternatives(answered, pair, std)));
     }
-    let Rows { table, met, count } = rows;
-    Section::new("Targets").text(format_args!(
-        "{met} of {count} are met. The oracle is `{OURS}` given every sampled point where it truly \
-         is with the true normal: what the samples leave to be known. Every family is judged with \
+    targets::section(&all).text(format_args!(
+        "On ordinary scenes. The oracle is `{OURS}` given every sampled point where it truly is \
+         with the true normal: what the samples leave to be known. Every family is judged with \
          constants fitted on the others."
-    )).text(table)
+    ))
 }
 
-fn limited(answered: &Answered<'_>, target: &Target, rows: &mut Rows) {
-    let Target { pair, near, measure, limit, up_to } = *target;
+fn limited(answered: &Answered<'_>, limit: &Limit) -> Target {
+    let Limit { pair, near, measure, limit, up_to } = *limit;
     let keep = |q: &Question| {
         Answered::is_of(pair, Kind::Ordinary)(q)
             && q.condition.std <= up_to
@@ -94,11 +73,11 @@ fn limited(answered: &Answered<'_>, target: &Target, rows: &mut Rows) {
         format!("{}{which}, up to {noise} mm: {} {relation} {limit}", pair.name(), measure.name());
     // Not a number is not met.
     let met = ours.is_some_and(|e| measure.sign() * (e.value - limit) >= 0.0);
-    rows.add(name, shown(ours), shown(oracle), met);
+    Target::new(name, format!("{}; oracle {}", shown(ours), shown(oracle)), met)
 }
 
 /// The family that is calibrated worst.
-fn families(answered: &Answered<'_>, pair: Pair, rows: &mut Rows) {
+fn families(answered: &Answered<'_>, pair: Pair) -> Target {
     let error = |family: &'static str| {
         let keep = |q: &Question| q.family == family && Answered::is_of(pair, Kind::Ordinary)(q);
         let judged = Judged::pick(answered.answers, &[OURS], keep);
@@ -107,56 +86,44 @@ fn families(answered: &Answered<'_>, pair: Pair, rows: &mut Rows) {
         (family, error - judged.chance_error(OURS))
     };
     let all = answered.answers.families().into_iter().map(error).filter(|(_, e)| !e.is_nan());
-    if let Some((family, worst)) = all.max_by(|a, b| a.1.total_cmp(&b.1)) {
-        let target =
-            format!("{}: ECE of every family at most {FAMILY_ERROR} above chance", pair.name());
-        let reached = format!("{worst:.3} ({family})");
-        rows.add(target, reached, "–".into(), worst <= FAMILY_ERROR);
-    }
+    let worst = all.max_by(|a, b| a.1.total_cmp(&b.1));
+    let (family, worst) = worst.unwrap_or(("no family", f64::NAN));
+    let what = format!("{}: ECE of every family at most {FAMILY_ERROR} above chance", pair.name());
+    Target::at_most(what, worst, FAMILY_ERROR, |worst| format!("{worst:.3} ({family})"))
 }
 
 /// What is observed where a probability is stated.
-fn stated(answered: &Answered<'_>, pair: Pair, rows: &mut Rows) {
+fn stated(answered: &Answered<'_>, pair: Pair) -> [Target; 2] {
     let judged =
         Judged::pick(answered.answers, &[OURS, ORACLE], Answered::is_of(pair, Kind::Ordinary));
-    let [Some(ours), Some(oracle)] = [OURS, ORACLE].map(|m| judged.sample(m)) else { return };
-    let within = |range: std::ops::Range<f64>| {
-        [ours, oracle].map(|sample| observed_within(sample, range.clone()))
+    let within = |low: f64, high: f64, of: fn(Bin) -> f64| {
+        [OURS, ORACLE].map(|method| {
+            judged.sample(method).map_or(f64::NAN, |s| of(observed_within(s, low..high)))
+        })
     };
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    let [free, free_of_oracle] = within(0.0..0.1);
-    let limit = percent(STATED_FREE);
-    let target = format!("{}: stated below .1, at most {limit} collide", pair.name());
-    let met = free.observed <= STATED_FREE;
-    rows.add(target, percent(free.observed), percent(free_of_oracle.observed), met);
-    let [likely, likely_of_oracle] = within(0.6..0.95);
-    let off = |bin: &crate::measures::Bin| bin.observed - bin.mean;
-    let target = format!("{}: stated .6 to .95, observed within .07", pair.name());
-    let met = off(&likely).abs() <= 0.07;
-    rows.add(
-        target,
-        format!("{:+.3}", off(&likely)),
-        format!("{:+.3}", off(&likely_of_oracle)),
-        met,
-    );
+    let [free, of_oracle] = within(0.0, 0.1, |bin| 100.0 * bin.observed);
+    let what = format!("{}: stated below .1, at most {STATED_FREE} % collide", pair.name());
+    let free = Target::at_most(what, free, STATED_FREE, |free| {
+        format!("{free:.1} %; oracle {of_oracle:.1} %")
+    });
+    let [off, of_oracle] = within(0.6, 0.95, |bin| bin.observed - bin.mean);
+    let what = format!("{}: stated .6 to .95, observed within .07", pair.name());
+    let show = |_| format!("{off:+.3}; oracle {of_oracle:+.3}");
+    [free, Target::at_most(what, off.abs(), 0.07, show)]
 }
 
 /// No alternative ranks significantly better at this noise.
-fn alternatives(answered: &Answered<'_>, pair: Pair, std: f64, rows: &mut Rows) {
+fn alternatives(answered: &Answered<'_>, pair: Pair, std: f64) -> Target {
     let keep = |q: &Question| Answered::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
-    let better = |name: &&&str| {
+    let is_better = |name: &&str| {
         let judged = Judged::pick(answered.answers, &[name, OURS], keep);
         let difference = judged.measure(&[Measure::Auc]).difference(name, OURS, Measure::Auc);
         difference.is_some_and(|d| d.value > 0.0 && d.excludes_zero())
     };
-    let better: Vec<&str> = answered.alternatives.iter().filter(better).copied().collect();
     let (best, auc) = answered.best_alternative(keep);
     let ours = Judged::pick(answered.answers, &[OURS], keep).measure(&[Measure::Auc]);
-    let reached = format!(
-        "{}; best alternative {best}: {}",
-        shown(ours.estimate(OURS, Measure::Auc)),
-        shown(auc)
-    );
-    let target = format!("{}, {} mm: no alternative ranks better", pair.name(), 1e3 * std);
-    rows.add(target, reached, "–".into(), better.is_empty());
+    let ours = shown(ours.estimate(OURS, Measure::Auc));
+    let reached = format!("{ours}; best alternative {best}: {}", shown(auc));
+    let what = format!("{}, {} mm: no alternative ranks better", pair.name(), 1e3 * std);
+    Target::new(what, reached, !answered.alternatives.iter().any(is_better))
 }

@@ -111,6 +111,19 @@ impl Judge {
         Ok(())
     }
 
+    /// The same without the classifier: it is never asked.
+    pub fn without_classifier(mut self) -> Self {
+        for (row, knot) in self.revised.iter_mut().zip(DOUBT_KNOTS) {
+            row.fill(knot);
+        }
+        self
+    }
+
+    /// Whether a classifier can change log odds by geometry.
+    pub(crate) fn is_open(&self, by_geometry: f64) -> bool {
+        self.revise(by_geometry, 0.0) < self.revise(by_geometry, f64::INFINITY)
+    }
+
     /// Log odds given the geometry alone.
     pub fn log_odds_by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
         let Self { by_geometry: values, .. } = self;
@@ -119,19 +132,14 @@ impl Judge {
 
     /// Log odds given what a classifier said too; the same again where geometry leaves no doubt.
     pub fn revise(&self, by_geometry: f64, misclassified: f64) -> f64 {
-        if !is_doubtful(by_geometry) {
+        let [least, .., most] = DOUBT_KNOTS;
+        if by_geometry <= least || by_geometry >= most {
             return by_geometry;
         }
         let Self { revised: values, .. } = self;
         let grid = Grid { rows: &DOUBT_KNOTS, columns: &MISCLASSIFIED_KNOTS, values };
         grid.at(by_geometry, ln_above_floor(misclassified))
     }
-}
-
-/// Whether a classifier can change log odds by geometry.
-pub(crate) fn is_doubtful(by_geometry: f64) -> bool {
-    let [least, .., most] = DOUBT_KNOTS;
-    least < by_geometry && by_geometry < most
 }
 
 /// The probability at a log likelihood ratio where this share of poses collides beforehand.

@@ -5,7 +5,7 @@ use cloudtouch_geom::Pose;
 use crate::body::BodyRef;
 use crate::classifier::{PairAnswer, by_kernel};
 use crate::error::QueryError;
-use crate::judge::{Judge, is_doubtful};
+use crate::judge::{DOUBT_KNOTS, Judge};
 use crate::report::Stats;
 use crate::search::Found;
 
@@ -93,7 +93,9 @@ pub(super) fn ask_classifier(
             PairAnswer::Indistinct => Misclassified::indistinct(count),
         };
         all = all.or_more(of_patch);
-        if !is_doubtful(all.log_odds(&task.settings.judge, by_geometry).min(by_geometry)) {
+        let [.., most] = DOUBT_KNOTS;
+        if all.log_odds(&task.settings.judge, by_geometry) >= most {
+            // No doubt is left, and further patches could only say more of the same.
             break;
         }
     }

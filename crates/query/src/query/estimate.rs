@@ -4,7 +4,7 @@ use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::judge::{ContactEvidence, is_doubtful, probability};
+use crate::judge::{ContactEvidence, probability};
 use crate::record::{Estimate, Evidence, Places, add_exact};
 use crate::search::{Found, Inside, look_inside, search};
 
@@ -42,7 +42,7 @@ pub(super) fn estimate(
     let by_geometry = judge.log_odds_by_geometry(deviations, crossing);
     let is_complete = found.is_complete && !looked.is_cut_short;
 
-    let misclassified = if is_complete && is_doubtful(by_geometry) {
+    let misclassified = if is_complete && judge.is_open(by_geometry) {
         ask_classifier((a, b), a_from_b, &found, by_geometry, task, &mut evidence.stats)?
     } else {
         Misclassified::NOT_ASKED

@@ -1,0 +1,203 @@
+//! Log odds as a surface over two numbers: values at knots, straight lines between them, fitted by
+//! penalised maximum likelihood (Newton's method) and monotone.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Weighs how much neighbouring slopes may differ.
+const SMOOTHNESS: f64 = 2.0;
+/// Weighs slopes against the evidence: as good as forbidden.
+const MONOTONE: f64 = 1e4;
+/// Draws slopes to nothing where no sample is.
+const FLAT: f64 = 1e-2;
+/// Keeps values finite that no sample is near.
+const RIDGE: f64 = 1e-3;
+/// Holds the rows that are given.
+const PINNED: f64 = 1e8;
+/// Newton's method is done long before.
+const MOST_STEPS: usize = 100;
+
+/// One of the two numbers.
+#[derive(Debug, Clone, Copy)]
+pub struct Axis<'a> {
+    /// Where the surface has values, ascending.
+    pub knots: &'a [f64],
+    /// Whether more of it makes the event more probable, or less.
+    pub rises: bool,
+}
+
+/// What the surface is fitted to: the two numbers, and whether the event came.
+pub type Sample = ([f64; 2], bool);
+
+/// Fits values at the knots, by rows. The first and the last row are the knots themselves where
+/// `pins_border`.
+///
+/// # Panics
+/// When a knot is not finite: then nothing can be solved.
+pub fn fit_surface(
+    samples: &[Sample],
+    rows: Axis<'_>,
+    columns: Axis<'_>,
+    pins_border: bool,
+) -> Vec<Vec<f64>> {
+    let (n, m) = (rows.knots.len(), columns.knots.len());
+    let shares: Vec<([(usize, f64); 4], bool)> =
+        samples.iter().map(|&(x, came)| (shares(rows, columns, x), came)).collect();
+    let (slopes, bends) = differences(rows, columns);
+    let pins: Vec<usize> = if pins_border { vec![0, n - 1] } else { Vec::new() };
+    let mut values = DVector::zeros(n * m);
+    for _ in 0..MOST_STEPS {
+        let mut hessian = DMatrix::from_diagonal_element(n * m, n * m, RIDGE);
+        let mut gradient = RIDGE * &values;
+        for (at, came) in &shares {
+            let log_odds: f64 = at.iter().map(|&(k, w)| w * values[k]).sum();
+            let probability = 1.0 / (1.0 + (-log_odds).exp());
+            let error = probability - f64::from(u8::from(*came));
+            let weight = (probability * (1.0 - probability)).max(1e-9);
+            for &(i, w) in at {
+                gradient[i] += w * error;
+                for &(j, v) in at {
+                    hessian[(i, j)] += w * v * weight;
+                }
+            }
+        }
+        for (terms, penalty) in slopes
+            .iter()
+            .map(|terms| (&terms[..], if value(terms, &values) < 0.0 { MONOTONE } else { FLAT }))
+            .chain(bends.iter().map(|terms| (&terms[..], SMOOTHNESS)))
+        {
+            let bend = value(terms, &values);
+            for &(i, w) in terms {
+                gradient[i] += penalty * w * bend;
+                for &(j, v) in terms {
+                    hessian[(i, j)] += penalty * w * v;
+                }
+            }
+        }
+        for &row in &pins {
+            for k in row * m..(row + 1) * m {
+                gradient[k] += PINNED * (values[k] - rows.knots[row]);
+                hessian[(k, k)] += PINNED;
+            }
+        }
+        let step = hessian.cholesky().expect("a positive definite matrix").solve(&gradient);
+        // Full steps overshoot where everything is certain.
+        let scale = (3.0 / step.amax().max(f64::MIN_POSITIVE)).min(1.0);
+        values -= scale * &step;
+        if step.amax() < 1e-8 {
+            break;
+        }
+    }
+    let mut table: Vec<Vec<f64>> = values.as_slice().chunks(m).map(<[f64]>::to_vec).collect();
+    round(&mut table, rows, columns);
+    for &row in &pins {
+        table[row] = vec![rows.knots[row]; m];
+    }
+    table
+}
+
+/// Which values a place between the knots is made from, and how much of each.
+fn shares(rows: Axis<'_>, columns: Axis<'_>, [x, y]: [f64; 2]) -> [(usize, f64); 4] {
+    let m = columns.knots.len();
+    let place = |knots: &[f64], x: f64| {
+        let i = knots.partition_point(|&k| k <= x).saturating_sub(1).min(knots.len() - 2);
+        (i, ((x - knots[i]) / (knots[i + 1] - knots[i])).clamp(0.0, 1.0))
+    };
+    let ((i, s), (j, t)) = (place(rows.knots, x), place(columns.knots, y));
+    [
+        (i * m + j, (1.0 - s) * (1.0 - t)),
+        (i * m + j + 1, (1.0 - s) * t),
+        ((i + 1) * m + j, s * (1.0 - t)),
+        ((i + 1) * m + j + 1, s * t),
+    ]
+}
+
+type Terms = Vec<(usize, f64)>;
+
+fn value(terms: &[(usize, f64)], values: &DVector<f64>) -> f64 {
+    terms.iter().map(|&(k, w)| w * values[k]).sum()
+}
+
+/// Differences between neighbouring values, positive where they go with the evidence, and between
+/// neighbouring slopes, scaled by the distances of the knots.
+fn differences(rows: Axis<'_>, columns: Axis<'_>) -> (Vec<Terms>, Vec<Terms>) {
+    let (n, m) = (rows.knots.len(), columns.knots.len());
+    let (mut slopes, mut bends) = (Vec::new(), Vec::new());
+    let mut along = |axis: Axis<'_>, k: usize, index: &dyn Fn(usize) -> usize| {
+        let sign = if axis.rises { 1.0 } else { -1.0 };
+        if k + 1 < axis.knots.len() {
+            slopes.push(vec![(index(k + 1), sign), (index(k), -sign)]);
+        }
+        if k > 0 && k + 1 < axis.knots.len() {
+            let [before, after] = [axis.knots[k] - axis.knots[k - 1], axis.knots[k + 1] - axis.knots[k]];
+            let mean = 0.5 * (before + after);
+            let (low, high) = (mean / before, mean / after);
+            bends.push(vec![(index(k - 1), low), (index(k), -low - high), (index(k + 1), high)]);
+        }
+    };
+    for i in 0..n {
+        for j in 0..m {
+            along(rows, i, &|k| k * m + j);
+            along(columns, j, &|k| i * m + k);
+        }
+    }
+    (slopes, bends)
+}
+
+/// To thousandths, and exactly monotone: what is left of slopes against the evidence is levelled.
+fn round(table: &mut [Vec<f64>], rows: Axis<'_>, columns: Axis<'_>) {
+    let (n, m) = (table.len(), table[0].len());
+    let in_order = |rises: bool, k: usize, n: usize| if rises { k } else { n - 1 - k };
+    for i in 0..n {
+        for j in 0..m {
+            let (i, j) = (in_order(rows.rises, i, n), in_order(columns.rises, j, m));
+            let before = |rises: bool, k: usize, n: usize| {
+                if rises { k.checked_sub(1) } else { Some(k + 1).filter(|&k| k < n) }
+            };
+            let above = before(rows.rises, i, n).map_or(f64::NEG_INFINITY, |i| table[i][j]);
+            let beside = before(columns.rises, j, m).map_or(f64::NEG_INFINITY, |j| table[i][j]);
+            let rounded = (1e3 * table[i][j]).round() / 1e3;
+            table[i][j] = rounded.max(above).max(beside);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::seed;
+
+    use super::*;
+
+    const ROWS: Axis<'_> = Axis { knots: &[0.0, 1.0, 2.0, 4.0], rises: false };
+    const COLUMNS: Axis<'_> = Axis { knots: &[0.0, 1.0, 3.0], rises: true };
+
+    fn drawn(log_odds: impl Fn(f64, f64) -> f64) -> Vec<Sample> {
+        let unit = |i, k| seed::unit(seed::derive(7, i, k));
+        let sample = |i| {
+            let (x, y) = (4.0 * unit(i, 0), 3.0 * unit(i, 1));
+            ([x, y], unit(i, 2) < 1.0 / (1.0 + (-log_odds(x, y)).exp()))
+        };
+        (0..20_000).map(sample).collect()
+    }
+
+    #[test]
+    fn a_plane_is_found_again() {
+        let plane = |x: f64, y: f64| 0.5 - 0.8 * x + 1.1 * y;
+        let table = fit_surface(&drawn(plane), ROWS, COLUMNS, false);
+        for (row, &x) in table.iter().zip(ROWS.knots) {
+            for (&found, &y) in row.iter().zip(COLUMNS.knots) {
+                assert!((found - plane(x, y)).abs() < 0.4, "{x} {y}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_goes_against_the_evidence_is_levelled_and_borders_are_kept() {
+        let table = fit_surface(&drawn(|x, y| x - y), ROWS, COLUMNS, false);
+        for (row, next) in table.iter().zip(&table[1..]) {
+            assert!(row.is_sorted() && row.iter().zip(next).all(|(a, b)| a >= b), "{table:?}");
+        }
+        let rising = Axis { rises: true, ..ROWS };
+        let pinned = fit_surface(&drawn(|x, y| x + y), rising, COLUMNS, true);
+        assert_eq!((pinned[0][2], pinned[3][0]), (0.0, 4.0));
+    }
+}

@@ -1,0 +1,81 @@
+//! Yes or no by parry3d: a collision map as motion planners keep it, where every measured point
+//! fills a box of a grid, and the exact surfaces, which no sensor knows.
+
+use std::time::Instant;
+
+use anyhow::{Result, anyhow};
+use cloudtouch_geom::{Point3, Pose, TriangleMesh};
+use glamx::DPose3;
+use parry3d_f64::{
+    math::Vector,
+    query::intersection_test,
+    shape::{Shape, TriMesh, Voxels},
+};
+
+use super::{Draw, Method, Prepared, cleaned};
+use crate::answers::{Pair, Said};
+
+/// Boxes of this side around the points, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Boxes {
+    /// Side of a box, m.
+    pub side: f64,
+}
+
+/// The surfaces that the clouds were drawn from.
+pub struct ExactMeshes(pub [TriangleMesh; 2]);
+
+struct Shapes {
+    a: Box<dyn Shape>,
+    b: Box<dyn Shape>,
+    mesh: TriMesh,
+}
+
+impl Method for Boxes {
+    fn name(&self) -> String {
+        format!("{:.0} cm boxes", 100.0 * self.side)
+    }
+
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+        let around = |points: &[Point3]| -> Box<dyn Shape> {
+            let points: Vec<Vector> = points.iter().map(vector).collect();
+            Box::new(Voxels::from_points(Vector::splat(self.side), &points))
+        };
+        let [a, b] = [draw.a, draw.b].map(cleaned);
+        let mesh = trimesh(draw.mesh)?;
+        Ok(Box::new(Shapes { a: around(&a?.points), b: around(&b?.points), mesh }))
+    }
+}
+
+impl Method for ExactMeshes {
+    fn name(&self) -> String {
+        "parry3d, exact meshes".into()
+    }
+
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+        let [a, b] = self.0.each_ref().map(trimesh);
+        Ok(Box::new(Shapes { a: Box::new(a?), b: Box::new(b?), mesh: trimesh(draw.mesh)? }))
+    }
+}
+
+impl Prepared for Shapes {
+    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
+        let start = Instant::now();
+        let other: &dyn Shape = match pair {
+            Pair::CloudCloud => &*self.b,
+            Pair::CloudMesh => &self.mesh,
+        };
+        let pose = DPose3::from(*a_from_b.isometry());
+        let touch = intersection_test(&DPose3::IDENTITY, &*self.a, &pose, other)?.intersecting;
+        Ok(Some(Said::yes_or_no(touch, start)))
+    }
+}
+
+fn trimesh(mesh: &TriangleMesh) -> Result<TriMesh> {
+    let vertices = mesh.vertices().iter().map(vector).collect();
+    TriMesh::new(vertices, mesh.triangles().to_vec()).map_err(|error| anyhow!("{error}"))
+}
+
+fn vector(point: &Point3) -> Vector {
+    Vector::new(point.x, point.y, point.z)
+}

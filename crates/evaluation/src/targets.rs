@@ -1,0 +1,119 @@
+//! What is to be reached, and whether it was: reports of parts that each bring targets.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+
+use crate::{
+    page::{Page, Section},
+    table::Table,
+};
+
+/// A target with what was measured of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    what: String,
+    measured: String,
+    met: bool,
+}
+
+/// What a part of a report finds.
+pub type Findings = Result<(Section, Vec<Target>)>;
+
+impl Target {
+    /// A target that was judged already.
+    pub fn new(what: impl Into<String>, measured: impl Into<String>, met: bool) -> Self {
+        Self { what: what.into(), measured: measured.into(), met }
+    }
+
+    /// A value that must not be larger; NaN is not met.
+    pub fn at_most(
+        what: impl Into<String>,
+        value: f64,
+        limit: f64,
+        show: impl Fn(f64) -> String,
+    ) -> Self {
+        Self::new(what, show(value), value <= limit)
+    }
+
+    /// A value that must not be smaller; NaN is not met.
+    pub fn at_least(
+        what: impl Into<String>,
+        value: f64,
+        limit: f64,
+        show: impl Fn(f64) -> String,
+    ) -> Self {
+        Self::new(what, show(value), value >= limit)
+    }
+
+    /// Nothing of this kind may have gone wrong.
+    pub fn none_of(what: impl Into<String>, faults: &[String]) -> Self {
+        let found = if faults.is_empty() { "none".to_owned() } else { faults.join("; ") };
+        Self::new(what, found, faults.is_empty())
+    }
+}
+
+/// All targets in a table, and how many are met.
+pub fn section(targets: &[Target]) -> Section {
+    let mut table = Table::new(["target", "measured", "met"]);
+    for Target { what, measured, met } in targets {
+        table.row([what.as_str(), measured, if *met { "yes" } else { "**no**" }]);
+    }
+    let met = targets.iter().filter(|target| target.met).count();
+    Section::new("Targets").text(format_args!("{met} of {} are met.", targets.len())).text(table)
+}
+
+/// Writes a page of all targets, a note on them, and what the parts found, which are measured one
+/// after the other.
+///
+/// # Errors
+/// When a part cannot be measured or the page not be written.
+pub fn report(
+    mut page: Page,
+    folder: &Path,
+    note: &str,
+    parts: impl IntoIterator<Item = (&'static str, Findings)>,
+) -> Result<Vec<Target>> {
+    let (mut sections, mut targets) = (Vec::new(), Vec::new());
+    for (name, found) in parts {
+        let (section, of_part) = found.with_context(|| format!("measure {name}"))?;
+        eprintln!("{name} done");
+        sections.push(section);
+        targets.extend(of_part);
+    }
+    page.section(section(&targets).text(note));
+    sections.into_iter().for_each(|section| page.section(section));
+    page.write(folder)?;
+    Ok(targets)
+}
+
+/// For reports that judge: a target that is missed is a failure.
+///
+/// # Errors
+/// When a target is missed.
+pub fn require(targets: &[Target]) -> Result<()> {
+    let missed = targets.iter().filter(|target| !target.met);
+    let missed: Vec<String> = missed.map(|t| format!("{}: {}", t.what, t.measured)).collect();
+    if !missed.is_empty() {
+        bail!("missed: {}", missed.join("\n  "));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_judged_from_the_right_side_and_nothing_is_met_by_no_number() {
+        let show = |v: f64| format!("{v}");
+        for (value, most, least) in
+            [(1.0, true, false), (2.0, true, true), (2.1, false, true), (f64::NAN, false, false)]
+        {
+            let of =
+                [Target::at_most("t", value, 2.0, show), Target::at_least("t", value, 2.0, show)];
+            assert_eq!(of.each_ref().map(|target| target.met), [most, least], "{value}");
+            assert_eq!(require(&of).is_ok(), most && least);
+        }
+    }
+}
