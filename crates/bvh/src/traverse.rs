@@ -348,7 +348,16 @@ mod tests {
         let candidate = |urgency, a, b| {
             let deviations = f64::NEG_INFINITY;
             let axis = Vector3::x();
-            Candidate(Examined { a, b, gap: urgency, axis, deviations, urgency, descend: true })
+            Candidate(Examined {
+                a,
+                b,
+                gap: urgency,
+                apart: urgency,
+                axis,
+                deviations,
+                urgency,
+                descend: true,
+            })
         };
         let mut queue: BinaryHeap<_> = [
             candidate(0.1, 0, 0),

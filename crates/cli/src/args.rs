@@ -189,6 +189,9 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_name = "B", default_value_t = 0.1, value_parser = parse_reject,
           help_heading = "Estimate")]
     pub reject: f64,
+    /// Share of the poses asked about that collide, above 0 and below 1; not for --mode paper [0.5]
+    #[arg(long, value_name = "P", value_parser = parse_prior, help_heading = "Estimate")]
+    pub prior: Option<f64>,
     /// Paper: how point probabilities make one: max, or noisy-or [max]
     #[arg(long, value_enum, hide_possible_values = true, help_heading = "Estimate")]
     pub pooling: Option<PoolingName>,
@@ -223,7 +226,13 @@ pub(crate) struct CommonArguments {
 
 impl CommonArguments {
     pub(crate) fn query_settings(&self) -> QuerySettings {
-        QuerySettings { accept: self.accept, reject: self.reject, ..QuerySettings::default() }
+        let usual = QuerySettings::default();
+        QuerySettings {
+            accept: self.accept,
+            reject: self.reject,
+            prior: self.prior.unwrap_or(usual.prior),
+            ..usual
+        }
     }
 
     pub(crate) fn paper_settings(&self) -> PaperSettings {
@@ -244,6 +253,9 @@ impl CommonArguments {
             Some((name, _)) if self.mode == ModeName::Calibrated => Err(format!(
                 "{name} has no effect in the calibrated mode: leave it out, or give --mode paper"
             )),
+            _ if self.mode == ModeName::Paper && self.prior.is_some() => {
+                Err("--prior has no effect in the paper's mode: leave it out".to_owned())
+            }
             _ => Ok(()),
         }
     }
@@ -310,6 +322,12 @@ fn parse_length(text: &str) -> Result<f64, String> {
 fn parse_positive(text: &str) -> Result<f64, String> {
     let length = parse_finite(text)?;
     if length > 0.0 { Ok(length) } else { Err("it must be above 0, such as 0.01".to_owned()) }
+}
+
+fn parse_prior(text: &str) -> Result<f64, String> {
+    let prior = parse_finite(text)?;
+    let is_between = prior > 0.0 && prior < 1.0;
+    if is_between { Ok(prior) } else { Err("give a number above 0 and below 1".to_owned()) }
 }
 
 fn parse_accept(text: &str) -> Result<f64, String> {

@@ -63,7 +63,18 @@ pub(crate) fn probability(p: f64) -> String {
 
 /// A gap in millimetres with its standard deviation, or a dash when none was computed.
 pub(crate) fn gap_mm(clearance: Option<Clearance>) -> String {
-    clearance.map_or("-".to_owned(), |c| format!("{:+.1} ± {:.1}", 1e3 * c.mean, 1e3 * c.std))
+    clearance.map_or("-".to_owned(), |c| {
+        let bound = if c.is_bound { "≤ " } else { "" };
+        format!("{bound}{:+.1} ± {:.1}", 1e3 * c.mean, 1e3 * c.std)
+    })
+}
+
+/// What is known of surfaces too far apart to be measured.
+fn too_far(at_least_m: Option<f64>) -> String {
+    match at_least_m.filter(|least| *least > 0.0) {
+        Some(least) => format!("clearance              at least {:.1} mm\n", 1e3 * least),
+        None => "clearance              not computed\n".to_owned(),
+    }
 }
 
 /// A whole report in a few lines.
@@ -81,12 +92,13 @@ pub(crate) fn report(report: &Report) -> String {
         Some(c) => {
             let _ = writeln!(
                 text,
-                "clearance              {:+.1} mm, std {:.1} mm",
+                "clearance              {:+.1} mm{}, std {:.1} mm",
                 1e3 * c.mean,
+                if c.is_bound { " or deeper" } else { "" },
                 1e3 * c.std
             );
         }
-        None => text.push_str("clearance              not computed: too far apart to matter\n"),
+        None => text.push_str(&too_far(report.clearance_at_least_m)),
     }
     if !report.contacts.is_empty() {
         text.push_str(

@@ -70,6 +70,8 @@ pub struct Question {
     pub collides: bool,
     /// Distance of the meshes, or minus their penetration depth, m.
     pub signed_distance: f64,
+    /// Distance between neighbouring points of the sparser cloud that is asked about, m.
+    pub spacing: f64,
 }
 
 /// What a method says of a question.
@@ -213,6 +215,7 @@ pub(crate) mod tests {
             pose,
             collides,
             signed_distance: if collides { -0.01 } else { 0.01 },
+            spacing: 0.01,
         }
     }
 

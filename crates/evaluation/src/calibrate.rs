@@ -19,10 +19,10 @@ use crate::{
 #[derive(Args)]
 pub struct Arguments {
     /// Draws of each family
-    #[arg(long, default_value_t = 6)]
+    #[arg(long, default_value_t = 4)]
     draws: u32,
     /// Poses of each draw
-    #[arg(long, default_value_t = 24)]
+    #[arg(long, default_value_t = 20)]
     poses: usize,
     /// Keep the fit, in the lab and as the library's default
     #[arg(long)]
@@ -71,10 +71,11 @@ fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> 
 
 /// The surface over geometry first; then, where that leaves doubt, how the classifier revises it.
 fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
-    let geometry: Vec<SurfaceSample> =
+    let mut geometry: Vec<SurfaceSample> =
         records.iter().map(|(e, collides)| ([e.deviations, e.crossing], *collides)).collect();
-    let deviations = Axis { knots: &DEVIATION_KNOTS, rises: false };
-    let crossing = Axis { knots: &CROSSING_KNOTS, rises: true };
+    geometry.extend(within());
+    let deviations = Axis { knots: &DEVIATION_KNOTS, rises: false, usual: 3.0 };
+    let crossing = Axis { knots: &CROSSING_KNOTS, rises: true, usual: 1.0 };
     let mut judge = Judge::default();
     keep(&mut judge.by_geometry, &fit_surface(&geometry, deviations, crossing, false));
     let doubtful = |(e, collides): &(ContactEvidence, bool)| -> Option<SurfaceSample> {
@@ -85,11 +86,21 @@ fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
         is_doubtful.then_some(([by_geometry, e.ln_misclassified()?], *collides))
     };
     let in_doubt: Vec<SurfaceSample> = records.iter().filter_map(doubtful).collect();
-    let doubt = Axis { knots: &DOUBT_KNOTS, rises: true };
-    let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, rises: true };
+    let doubt = Axis { knots: &DOUBT_KNOTS, rises: true, usual: 1.0 };
+    let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, rises: true, usual: 0.2 };
     keep(&mut judge.revised, &fit_surface(&in_doubt, doubt, misclassified, true));
     judge.validate()?;
     Ok(judge)
+}
+
+/// Clouds wholly within solids, which hardly a pose that comes from outside is: a point clearly inside
+/// is a collision by what the words mean, whatever crosses.
+fn within() -> impl Iterator<Item = SurfaceSample> {
+    const CLEARLY_INSIDE: f64 = -4.0;
+    const WEIGHT: usize = 100;
+    let inside = DEVIATION_KNOTS.into_iter().filter(|&z| z <= CLEARLY_INSIDE);
+    let places = inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| [z, crossing]));
+    places.flat_map(|place| std::iter::repeat_n((place, true), WEIGHT))
 }
 
 fn keep<const N: usize, const M: usize>(values: &mut [[f64; M]; N], fitted: &[Vec<f64>]) {

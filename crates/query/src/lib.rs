@@ -4,6 +4,7 @@ mod body;
 mod checks;
 mod classifier;
 mod cloud;
+mod enclosed;
 mod error;
 mod filter;
 mod judge;
@@ -24,16 +25,16 @@ pub use error::{FilterError, PrepareError, QueryError, SettingsError, Subdivisio
 pub use filter::{
     FilterSettings, Filtered, OutlierSettings, SelfMesh, StageReport, VeilSettings, filter,
 };
+pub use judge::{
+    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
+};
 pub use mesh::Mesh;
 pub use mode::Mode;
 pub use paper::{
     PaperBodyRef, PaperCloud, PaperCloudSettings, PaperNoise, PaperQuery, PaperSettings, Pooling,
 };
 pub use query::{Query, QuerySettings};
-pub use judge::{
-    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
-};
-pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Verdict};
+pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Undecided, Verdict};
 
 /// The crates below, for users who need their types: a query takes a [`geom::Pose`], a cloud a
 /// [`noise::SensorModel`].

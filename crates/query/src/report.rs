@@ -3,8 +3,8 @@
 use cloudtouch_geom::{Point3, Vector3};
 use serde::Serialize;
 
-use crate::mode::Mode;
 use crate::judge::ContactEvidence;
+use crate::mode::Mode;
 
 /// The answer to one query. Serialises to the JSON object of the command-line tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -16,6 +16,8 @@ pub struct Report {
     pub bounds: [f64; 2],
     /// The decision at the thresholds of the query.
     pub verdict: Verdict,
+    /// Why the verdict is [`Verdict::Undecided`]; `None` for every other.
+    pub undecided_by: Option<Undecided>,
     /// What the evidence weighs: the logarithm of how many times as probable it is in a collision as
     /// without one. The probability is that of the prior moved by it. `None` on the paper's path, and
     /// between two meshes, which are exact.
@@ -62,6 +64,22 @@ pub enum Verdict {
     /// Some part could not be decided, or was left out without a bound below the reject threshold,
     /// and the rest does not settle the matter.
     Undecided,
+}
+
+/// What keeps a query from a decision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Undecided {
+    /// An object is mostly behind what a single depth image saw.
+    Hidden,
+    /// The surface of one cloud is all around the other: it is in a hollow space, or within a solid.
+    /// A cloud that knows where its sensor stood tells which.
+    Enclosed,
+    /// A classifier could not be trained.
+    Unsolved,
+    /// What was culled, cut short by a deadline, or too noisy to be told apart could still collide.
+    Bounds,
 }
 
 /// A gap between two surfaces.

@@ -34,7 +34,7 @@ fn clouds_of(mode: Mode) -> &'static [Scan; 2] {
 fn thorough(mode: Mode) -> AnyQuery {
     AnyQuery::with(
         mode,
-        |s| (s.doubt, s.relative_gap, s.stop_above) = ([0.0, 1.0], 1e-7, 1.0),
+        |s| (s.relative_gap, s.stop_above) = (1e-7, 1.0),
         |s| (s.traversal, s.relative_gap, s.stop_above) = (Traversal::Certified, 1e-7, 1.0),
     )
 }

@@ -302,6 +302,6 @@ fn settings_out_of_range_are_refused_by_name() {
     assert!(bad(|s| s.reject = f64::NAN).contains("reject"));
     assert!(bad(|s| s.gamma = 0.0).contains("gamma"));
     assert!(bad(|s| s.penalty = f64::INFINITY).contains("penalty"));
-    assert!(bad(|s| s.cull_probability = 0.0).contains("cull_probability"));
+    assert!(bad(|s| s.prior = 0.0).contains("prior"));
     assert!(bad(|s| s.relative_gap = 1.0).contains("relative_gap"));
 }

@@ -7,7 +7,7 @@ use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings,
-    PrepareError, Query, QueryError, QuerySettings, SubdivisionError,
+    PrepareError, Query, QueryError, QuerySettings, SubdivisionError, Verdict,
 };
 
 fn cloud(points: Vec<Point3>) -> Result<Cloud, PrepareError> {
@@ -67,7 +67,7 @@ fn poses_beyond_reckoning_are_refused() {
         assert!(error.to_string().contains("1e10"), "{error}");
     }
     let far = query.run(&a, &b, &Pose::from_translation(Vector3::new(0.0, 1e10, 0.0))).unwrap();
-    assert_eq!(far.collision_probability, 0.0);
+    assert!(far.collision_probability < 5e-4, "{far:?}");
 }
 
 #[test]
@@ -80,26 +80,27 @@ fn a_mesh_that_a_dense_cloud_would_split_millions_of_times_is_an_error() {
     });
     let (points, b) = (bunches.collect::<Vec<_>>(), triangle(1.0).unwrap());
     let a = cloud(points.clone()).unwrap();
+    // The default path takes the triangle as it is.
     let by_default = Query::new(QuerySettings::default()).unwrap().run(&a, &b, &Pose::identity());
+    assert_eq!(by_default.unwrap().verdict, Verdict::Free);
     let settings = PaperCloudSettings::new(SensorModel::Exact);
     let a = PaperCloud::prepare(&PointCloud::from_points(points), &settings).unwrap();
     let certified = PaperSettings { traversal: Traversal::Certified, ..PaperSettings::default() };
     // In its plane: exact points that are apart from it need no classifier.
     let within = Pose::from_translation(Vector3::new(0.0, 0.0, 0.001));
     let by_the_paper = PaperQuery::new(certified).unwrap().run(&a, &b, &within);
-    for error in [by_default.unwrap_err(), by_the_paper.unwrap_err()] {
-        assert!(
-            matches!(error, QueryError::Subdivision(SubdivisionError { max_parts: 20_000, .. })),
-            "{error}"
-        );
-    }
+    let error = by_the_paper.unwrap_err();
+    assert!(
+        matches!(error, QueryError::Subdivision(SubdivisionError { max_parts: 20_000, .. })),
+        "{error}"
+    );
 }
 
 #[test]
 fn pictures_of_a_mesh_take_no_more_points_than_allowed() {
     let mesh = triangle(1.0).unwrap();
-    // 4 + 16 + 64 parts, and the triangle itself.
-    assert!(mesh.surface_points(0.4, 85).is_ok());
+    // Halved over and over to 64 parts, all before counted.
+    assert!(mesh.surface_points(0.4, 127).is_ok());
     assert_eq!(
         mesh.surface_points(1e-9, 1_000_000),
         Err(SubdivisionError { spacing: 1e-9, max_parts: 1_000_000 })

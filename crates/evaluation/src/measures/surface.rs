@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector};
 const SMOOTHNESS: f64 = 2.0;
 /// Weighs slopes against the evidence: as good as forbidden.
 const MONOTONE: f64 = 1e4;
-/// Draws slopes to nothing where no sample is.
-const FLAT: f64 = 1e-2;
+/// Draws slopes to those of the prior where hardly a sample is.
+const WEAK: f64 = 0.1;
 /// Keeps values finite that no sample is near.
 const RIDGE: f64 = 1e-3;
 /// Holds the rows that are given.
@@ -23,6 +23,8 @@ pub struct Axis<'a> {
     pub knots: &'a [f64],
     /// Whether more of it makes the event more probable, or less.
     pub rises: bool,
+    /// By how much a unit of it changes log odds where hardly a sample is.
+    pub usual: f64,
 }
 
 /// What the surface is fitted to: the two numbers, and whether the event came.
@@ -60,14 +62,18 @@ pub fn fit_surface(
                 }
             }
         }
-        for (terms, penalty) in slopes
+        let of_slope = |(terms, usual): &'_ (Terms, f64)| {
+            let rise = value(terms, &values);
+            if rise < 0.0 { (MONOTONE, rise) } else { (WEAK, rise - usual) }
+        };
+        let penalties: Vec<(&Terms, (f64, f64))> = slopes
             .iter()
-            .map(|terms| (&terms[..], if value(terms, &values) < 0.0 { MONOTONE } else { FLAT }))
-            .chain(bends.iter().map(|terms| (&terms[..], SMOOTHNESS)))
-        {
-            let bend = value(terms, &values);
+            .map(|slope| (&slope.0, of_slope(slope)))
+            .chain(bends.iter().map(|terms| (terms, (SMOOTHNESS, value(terms, &values)))))
+            .collect();
+        for (terms, (penalty, excess)) in penalties {
             for &(i, w) in terms {
-                gradient[i] += penalty * w * bend;
+                gradient[i] += penalty * w * excess;
                 for &(j, v) in terms {
                     hessian[(i, j)] += penalty * w * v;
                 }
@@ -117,18 +123,20 @@ fn value(terms: &[(usize, f64)], values: &DVector<f64>) -> f64 {
     terms.iter().map(|&(k, w)| w * values[k]).sum()
 }
 
-/// Differences between neighbouring values, positive where they go with the evidence, and between
-/// neighbouring slopes, scaled by the distances of the knots.
-fn differences(rows: Axis<'_>, columns: Axis<'_>) -> (Vec<Terms>, Vec<Terms>) {
+/// Differences between neighbouring values, positive where they go with the evidence, with what they
+/// usually are, and between neighbouring slopes, scaled by the distances of the knots.
+fn differences(rows: Axis<'_>, columns: Axis<'_>) -> (Vec<(Terms, f64)>, Vec<Terms>) {
     let (n, m) = (rows.knots.len(), columns.knots.len());
     let (mut slopes, mut bends) = (Vec::new(), Vec::new());
     let mut along = |axis: Axis<'_>, k: usize, index: &dyn Fn(usize) -> usize| {
         let sign = if axis.rises { 1.0 } else { -1.0 };
         if k + 1 < axis.knots.len() {
-            slopes.push(vec![(index(k + 1), sign), (index(k), -sign)]);
+            let usual = axis.usual * (axis.knots[k + 1] - axis.knots[k]);
+            slopes.push((vec![(index(k + 1), sign), (index(k), -sign)], usual));
         }
         if k > 0 && k + 1 < axis.knots.len() {
-            let [before, after] = [axis.knots[k] - axis.knots[k - 1], axis.knots[k + 1] - axis.knots[k]];
+            let [before, after] =
+                [axis.knots[k] - axis.knots[k - 1], axis.knots[k + 1] - axis.knots[k]];
             let mean = 0.5 * (before + after);
             let (low, high) = (mean / before, mean / after);
             bends.push(vec![(index(k - 1), low), (index(k), -low - high), (index(k + 1), high)]);
@@ -167,8 +175,8 @@ mod tests {
 
     use super::*;
 
-    const ROWS: Axis<'_> = Axis { knots: &[0.0, 1.0, 2.0, 4.0], rises: false };
-    const COLUMNS: Axis<'_> = Axis { knots: &[0.0, 1.0, 3.0], rises: true };
+    const ROWS: Axis<'_> = Axis { knots: &[0.0, 1.0, 2.0, 4.0], rises: false, usual: 1.0 };
+    const COLUMNS: Axis<'_> = Axis { knots: &[0.0, 1.0, 3.0], rises: true, usual: 1.0 };
 
     fn drawn(log_odds: impl Fn(f64, f64) -> f64) -> Vec<Sample> {
         let unit = |i, k| seed::unit(seed::derive(7, i, k));

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use cloudtouch::{
-    Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query, QuerySettings, bvh::TreeSettings,
-    noise::SensorModel,
+    Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query, QuerySettings,
+    bvh::TreeSettings, noise::SensorModel,
 };
 use cloudtouch_geom::{PointCloud, Pose, UnitVector3};
 use cloudtouch_testkit::family::Observation;
@@ -25,6 +25,7 @@ pub struct Ours {
     sees_truth: bool,
     /// Whether the classifier is asked everywhere.
     gathers: bool,
+    classifies: bool,
     fitted: Fitted,
 }
 
@@ -41,6 +42,7 @@ impl Ours {
             is_refined: false,
             sees_truth: false,
             gathers: false,
+            classifies: true,
             fitted: Fitted::stored()?,
         })
     }
@@ -58,6 +60,11 @@ impl Ours {
         self.gathers = true;
         self.query.stop_above = 1.0;
         self
+    }
+
+    /// The same by geometry alone.
+    pub fn without_classifier(self) -> Self {
+        Self { classifies: false, ..self }
     }
 
     /// The same, computing the surface of both clouds beforehand.
@@ -118,6 +125,7 @@ impl Method for Ours {
         } else {
             self.fitted.to_judge(draw.family, self.sees_truth)
         };
+        let judge = if self.classifies { judge } else { judge.without_classifier() };
         Ok(Box::new(Bodies {
             query: Query::new(QuerySettings { judge, ..self.query })?,
             a: self.cloud(draw.a)?,

@@ -53,8 +53,7 @@ fn ask(scene: &Scene, std: f64) -> Result<Vec<Timed>> {
     let (room, piano) = (scene.room(POINTS, std), scene.piano(std));
     let draw = Draw { family: "", a: &room, b: &piano, mesh: &scene.piano };
     let refined = Ours::new("ours")?.refined();
-    let mut geometry = Ours::new("ours, geometry alone")?.refined();
-    geometry.query.judge = geometry.query.judge.without_classifier();
+    let geometry = Ours::new("ours, geometry alone")?.refined().without_classifier();
     let methods: [&dyn Method; 6] = [
         &refined,
         &Ours::new("ours, not refined")?,

@@ -7,8 +7,7 @@ use std::{
 
 use anyhow::{Context, Result};
 use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySettings, Report,
-    noise::SensorModel,
+    Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySettings, Report, noise::SensorModel,
 };
 use cloudtouch_io::{Geometry, LengthUnit, read_geometry};
 

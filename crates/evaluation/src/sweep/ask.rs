@@ -44,9 +44,6 @@ struct Scene<'a> {
     seed: u64,
 }
 
-/// Of how many poses one is asked of an open mesh: leaf by leaf, that takes a hundred times as long.
-const OPEN_MESH_ONE_OF: usize = 1;
-
 /// What a method says of one question.
 type Row = (Question, Vec<(String, Said)>);
 
@@ -97,10 +94,10 @@ fn of_draw(
         [Side::A, Side::B].map(|side| scene.observe(side, points, NoiseKind::Gaussian, std, draw));
     let seen = Draw { family: family.name, a: &a, b: &b, mesh: scene.b.mesh() };
     let mut rows: Vec<Row> = Vec::new();
-    let is_open = scene.b.mesh().merged().open_edges() > 0;
+    let [of_a, of_b] = [Side::A, Side::B].map(|side| scene.spacing(side, points));
     for &pair in &plan.pairs {
-        let one_of = if is_open && pair == Pair::CloudMesh { OPEN_MESH_ONE_OF } else { 1 };
-        rows.extend(poses.iter().zip(0..).step_by(one_of).map(|(pose, number_of_pose)| {
+        let spacing = if pair == Pair::CloudCloud { of_a.max(of_b) } else { of_a };
+        rows.extend(poses.iter().zip(0..).map(|(pose, number_of_pose)| {
             let question = Question {
                 family: family.name,
                 kind: family.kind,
@@ -110,6 +107,7 @@ fn of_draw(
                 pose: number_of_pose,
                 collides: pose.in_collision,
                 signed_distance: pose.signed_distance,
+                spacing,
             };
             (question, Vec::new())
         }));

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{figures, plan::SEED, tables::Answered, targets};
+use super::{agreement, figures, plan::SEED, tables::Answered, targets};
 use crate::{
     answers::{Kind, Pair},
     page::{Page, Section},
@@ -20,11 +20,12 @@ surface that no sensor sees are left out: no method could tell them. The moving 
 as a second cloud or as its exact mesh.
 
 Methods: `calibrated` is what users get by default, its constants fitted on the other families \
-(`cargo xtask calibrate`), `oracle` the same given noise-free points and true normals, `paper` \
+(`cargo xtask calibrate`), `oracle` the same given noise-free points and true normals, `geometry alone` the same without the \
+classifier, `paper` \
 the method as printed. Alternatives: the least distance of the points, as measured or after our own \
 surface fit, in units of noise and spacing; 1 cm boxes around the points (yes or no); a support \
 vector machine without robust terms. `paper` and the plain SVM answer every seventh \
-pose, the smoothed distance every second draw, and open meshes are asked at every thirteenth pose. \
+pose, the smoothed distance every second draw. \
 Alternatives without a probability get one by a logistic function of their score, fitted on the \
 other families.
 
@@ -65,6 +66,7 @@ pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>, bounds
             "Probability against distance",
             figures::distance_figure(answered),
         );
+    page.section(agreement::section(answered));
     page.section(figures);
     page.section(bounds);
     page

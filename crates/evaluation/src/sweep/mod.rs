@@ -1,6 +1,7 @@
 //! `cargo xtask sweep`: collision probabilities of many scenes, noises and methods against exact
 //! truth.
 
+mod agreement;
 mod ask;
 mod bounds;
 mod figures;
@@ -21,7 +22,7 @@ use clap::Args;
 
 pub use ask::{Asked, ask};
 pub use judged::{Judged, Measured};
-pub use plan::{ORACLE, OURS, Plan, SEED};
+pub use plan::{GEOMETRY, ORACLE, OURS, Plan, SEED};
 pub use scenes::Scenes;
 pub use short::run as check;
 
@@ -90,6 +91,7 @@ fn methods() -> Result<Vec<Asked>> {
     Ok(vec![
         Asked::always(Ours::new(OURS)?),
         Asked::always(Ours::oracle(ORACLE)?),
+        Asked::always(Ours::new(GEOMETRY)?.without_classifier()),
         Asked::always(Distance { smoothed: false }),
         Asked { draw_of: 2, ..smoothed },
         Asked::always(Boxes { side: 0.01 }),

@@ -8,6 +8,9 @@ pub const OURS: &str = "calibrated";
 /// ... and ours given every sampled point as it truly is.
 pub const ORACLE: &str = "oracle";
 
+/// ... and ours without the classifier.
+pub const GEOMETRY: &str = "geometry alone";
+
 /// All randomness of the sweeps comes from this.
 pub const SEED: u64 = 2011;
 
@@ -47,9 +50,9 @@ impl Plan {
         }
     }
 
-    /// Two clouds under every noise and density, drawn apart from [`Self::full`].
+    /// The same, drawn apart from [`Self::full`].
     pub fn evidence(draws: u32, poses: usize) -> Self {
-        Self { pairs: vec![Pair::CloudCloud], stream: 1, ..Self::full(draws, poses) }
+        Self { stream: 1, ..Self::full(draws, poses) }
     }
 
     /// One condition of some families.

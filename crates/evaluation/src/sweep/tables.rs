@@ -2,7 +2,7 @@
 
 use cloudtouch_testkit::poses::NEAR;
 
-use super::{ORACLE, OURS, judged::Judged, plan::STDS};
+use super::{GEOMETRY, ORACLE, OURS, judged::Judged, plan::STDS};
 use crate::{
     answers::{Answers, Kind, Pair, Question},
     measures::{Estimate, Measure},
@@ -22,7 +22,7 @@ const MEASURES: [Measure; 5] = [
 pub(super) struct Answered<'a> {
     /// The table of answers.
     pub answers: &'a Answers,
-    /// Methods other than ours and the oracle.
+    /// Methods other than ours, whole, true or without the classifier.
     pub alternatives: Vec<&'a str>,
 }
 
@@ -39,7 +39,7 @@ pub(super) fn shown(estimate: Option<Estimate>) -> String {
 impl<'a> Answered<'a> {
     pub(super) fn new(answers: &'a Answers) -> Self {
         let mut alternatives = answers.names();
-        alternatives.retain(|name| ![OURS, ORACLE].contains(name));
+        alternatives.retain(|name| ![OURS, ORACLE, GEOMETRY].contains(name));
         Self { answers, alternatives }
     }
 

@@ -35,6 +35,12 @@ const LIMITS: [Limit; 7] = [
 
 /// The largest ECE of one family beyond what chance gives.
 const FAMILY_ERROR: f64 = 0.045;
+/// Overlaps deeper than this, m, and than so many spacings, at noise up to this, m, are to be certain
+/// in so many of a hundred.
+const DEEP: f64 = 0.05;
+const DEEP_SPACINGS: f64 = 3.0;
+const DEEP_NOISE: f64 = 0.01;
+const DEEP_CERTAIN: f64 = 95.0;
 /// What may collide of poses that are stated to do so with a probability below a tenth, %.
 const STATED_FREE: f64 = 4.0;
 
@@ -48,6 +54,7 @@ pub(super) fn section(answered: &Answered<'_>) -> Section {
     for pair in Pair::ALL {
         all.push(families(answered, pair));
         all.extend(stated(answered, pair));
+        all.push(deep(answered, pair));
         all.extend(STDS.map(|std| alternatives(answered, pair, std)));
     }
     targets::section(&all).text(format_args!(
@@ -110,6 +117,24 @@ fn stated(answered: &Answered<'_>, pair: Pair) -> [Target; 2] {
     let what = format!("{}: stated .6 to .95, observed within .07", pair.name());
     let show = |_| format!("{off:+.3}; oracle {of_oracle:+.3}");
     [free, Target::at_most(what, off.abs(), 0.07, show)]
+}
+
+/// How many deep overlaps are stated to collide with certainty.
+fn deep(answered: &Answered<'_>, pair: Pair) -> Target {
+    let keep = |q: &Question| {
+        Answered::is_of(pair, Kind::Ordinary)(q)
+            && q.condition.std <= DEEP_NOISE
+            && q.signed_distance < -DEEP.max(DEEP_SPACINGS * q.spacing)
+    };
+    let judged = Judged::pick(answered.answers, &[OURS], keep);
+    let said = judged.said(OURS);
+    let certain = said.iter().filter(|s| s.probability.is_some_and(|p| p >= 0.99)).count();
+    let share = 100.0 * certain as f64 / said.len() as f64;
+    let what = format!(
+        "{}: overlaps beyond 5 cm and 3 spacings, up to 10 mm: P ≥ .99 in {DEEP_CERTAIN} %",
+        pair.name()
+    );
+    Target::at_least(what, share, DEEP_CERTAIN, |share| format!("{share:.0} % of {}", said.len()))
 }
 
 /// No alternative ranks significantly better at this noise.

@@ -20,7 +20,7 @@ pub(super) fn query_settings(u: &mut Unstructured<'_>) -> Result<QuerySettings> 
         mesh_penalty_factor: setting(u, usual.mesh_penalty_factor, 0.0, 100.0)?,
         ellipsoid_radius: setting(u, usual.ellipsoid_radius, 0.0, 10.0)?,
         relative_gap: setting(u, usual.relative_gap, 1e-9, 1.0)?,
-        cull_probability: setting(u, usual.cull_probability, 0.0, 1.0)?,
+        prior: setting(u, usual.prior, 0.0, 1.0)?,
         stop_above: setting(u, usual.stop_above, 0.0, 2.0)?,
         max_contacts: count(u, usual.max_contacts)?,
         max_mesh_parts: count(u, usual.max_mesh_parts)?,

@@ -36,13 +36,8 @@ pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> O
     let clearance = Clearance { mean, std: of_a.std.hypot(of_b.std), is_bound: false };
     let probability = a.iter().chain(b).copied().fold(0.0, f64::max);
     let (point, normal_a_to_b) = foot_of_the_tied(points, (a, b), surface, probability, reach);
-    let contact = Contact {
-        point,
-        normal_a_to_b,
-        probability,
-        clearance_m: clearance.mean,
-        area_m2: None,
-    };
+    let contact =
+        Contact { point, normal_a_to_b, probability, clearance_m: clearance.mean, area_m2: None };
     Some(Place { probability, clearance, contact })
 }
 

@@ -6,6 +6,7 @@ use cloudtouch_bvh::{LeafBounds, Primitive, Tree, TreeSettings};
 use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
 use cloudtouch_noise::{
     Combination, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, SensorModel, SensorNoise,
+    typical_spacing,
 };
 
 use crate::error::PrepareError;
@@ -15,6 +16,9 @@ use crate::range::check_points;
 use super::edge::DISC_SPACINGS;
 use super::slots::LazySurface;
 use super::view::SingleView;
+
+/// Points whose neighbours tell the typical spacing.
+const SPACING_SAMPLE: usize = 200;
 
 /// What a path prepares a cloud by.
 #[derive(Debug, Clone, Copy)]
@@ -53,6 +57,8 @@ pub(crate) struct Prepared {
     pub(super) tree: Tree,
     pub(super) surface: LazySurface,
     view: Option<SingleView>,
+    /// Where the sensor stood, in the local frame, where the cloud says so.
+    sensor_origin: Option<Point3>,
     pub(super) prepare_time: Duration,
 }
 
@@ -119,6 +125,10 @@ impl Prepared {
             .image_size
             .filter(|&(width, height)| width > 1 && height > 1)
             .map(|_| SingleView::new(kept.sensor_origin() - origin));
+        // The origin is what a file says that does not know.
+        let sensor_origin = Some(kept.sensor_origin())
+            .filter(|place| *place != Point3::origin())
+            .map(|place| place - origin);
         let prepare_time = start.elapsed();
         Ok(Self {
             origin,
@@ -131,6 +141,7 @@ impl Prepared {
             tree,
             surface,
             view,
+            sensor_origin,
             prepare_time,
         })
     }
@@ -178,6 +189,15 @@ impl Prepared {
 
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
+    }
+
+    pub(crate) fn sensor_origin(&self) -> Option<&Point3> {
+        self.sensor_origin.as_ref()
+    }
+
+    /// Distance between neighbouring points, m, as the median of some of them.
+    pub(crate) fn typical_spacing(&self) -> f64 {
+        typical_spacing(&self.neighborhoods, SPACING_SAMPLE)
     }
 
     pub(crate) fn view(&self) -> Option<&SingleView> {

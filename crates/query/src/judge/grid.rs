@@ -31,8 +31,11 @@ fn place(knots: &[f64], x: f64) -> (usize, f64) {
 mod tests {
     use super::*;
 
-    const GRID: Grid<'_, 2, 3> =
-        Grid { rows: &[0.0, 2.0], columns: &[0.0, 1.0, 3.0], values: &[[0.0, 1.0, 2.0], [4.0, 5.0, 8.0]] };
+    const GRID: Grid<'_, 2, 3> = Grid {
+        rows: &[0.0, 2.0],
+        columns: &[0.0, 1.0, 3.0],
+        values: &[[0.0, 1.0, 2.0], [4.0, 5.0, 8.0]],
+    };
 
     #[test]
     fn knots_have_their_values_and_places_between_them_the_mean() {

@@ -43,8 +43,6 @@ pub struct ContactEvidence {
     /// surface that separates it best, largest over the patches; `None` where geometry leaves no
     /// doubt and no classifier was trained.
     pub misclassified: Option<f64>,
-    /// X.
-    pub features: [f64; 12],
 }
 
 impl ContactEvidence {

@@ -176,10 +176,10 @@ mod tests {
             radius: f64::INFINITY,
             spacing,
         };
-        // Three splits make 64 parts of 85 triangles in all.
-        assert!(sample_region([corners], &region(0.2), 85).is_ok());
-        let error = sample_region([corners], &region(0.2), 84).unwrap_err();
-        assert_eq!(error, SubdivisionError { spacing: 0.2, max_parts: 84 });
+        // Six splits make 64 parts of 127 triangles in all.
+        assert!(sample_region([corners], &region(0.2), 127).is_ok());
+        let error = sample_region([corners], &region(0.2), 126).unwrap_err();
+        assert_eq!(error, SubdivisionError { spacing: 0.2, max_parts: 126 });
         // Ten triangles, a million parts each.
         for spacing in [1e-3, 0.0, -1.0, f64::NAN] {
             assert!(sample_region([corners; 10], &region(spacing), 1000).is_err());

@@ -20,7 +20,7 @@ impl PaperCloud {
     /// Filters a cloud, models its sensor, and builds its index and tree.
     ///
     /// # Errors
-    /// When nothing is left after filtering, a coordinate is beyond 1e50 m, a covariance is not one,
+    /// When nothing is left after filtering, a coordinate is beyond 1e10 m, a covariance is not one,
     /// or a setting is out of range.
     pub fn prepare(
         cloud: &PointCloud,

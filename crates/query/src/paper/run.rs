@@ -51,7 +51,7 @@ impl PaperQuery {
     /// sampled: surface that no point stands for cannot be found in collision.
     ///
     /// # Errors
-    /// When the pose is not finite or beyond 1e50 m, two meshes cannot be tested exactly, or a mesh
+    /// When the pose is not finite or beyond 1e10 m, two meshes cannot be tested exactly, or a mesh
     /// takes more parts than allowed to be sampled as densely as the cloud. A pair that could not be
     /// decided is not an error but a verdict, and never reads as free.
     pub fn run<'a>(

@@ -4,7 +4,7 @@ use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::judge::{ContactEvidence, probability};
+use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
 use crate::record::{Estimate, Evidence, Places, add_exact};
 use crate::search::{Found, Inside, look_inside, search};
 
@@ -37,8 +37,9 @@ pub(super) fn estimate(
         probability(log_odds, settings.prior) > settings.stop_above || task.clock.is_over()
     };
     let found = search((a, b), a_from_b, is_enough, stats)?;
-    let (deviations, crossing) = (found.deviations - depth, found.crossings.clearness().ln_1p());
-    let of_geometry = ContactEvidence { deviations, crossing, misclassified: None, features: features(&found, depth) };
+    let deviations = (found.deviations - depth).max(-MOST_DEVIATIONS);
+    let crossing = found.crossings.clearness().ln_1p();
+    let of_geometry = ContactEvidence { deviations, crossing, misclassified: None };
     let by_geometry = judge.log_odds_by_geometry(deviations, crossing);
     let is_complete = found.is_complete && !looked.is_cut_short;
 
@@ -90,26 +91,4 @@ fn exact(
     let probability = evidence.largest();
     let bounds = [probability; 2];
     Ok(Estimate { probability, bounds, evidence: None, log_likelihood_ratio: None, places: None })
-}
-
-fn features(found: &Found<'_>, depth: f64) -> [f64; 12] {
-    let least = found
-        .findings
-        .iter()
-        .min_by(|f, g| f.meeting.deviations.total_cmp(&g.meeting.deviations));
-    let of = |e: f64| found.crossings.variant(e, 3.0);
-    [
-        found.deviations,
-        depth,
-        found.crossings.clearness(),
-        of(0.03),
-        of(0.06),
-        of(0.1),
-        of(0.15),
-        of(0.25),
-        found.crossings.variant(0.1, 6.0),
-        found.crossings.iter().map(|(c, _)| c.depth / c.spacing).fold(0.0, f64::max),
-        least.map_or(0.0, |f| f.nearest.spacing),
-        found.crossings.iter().count() as f64,
-    ]
 }

@@ -63,7 +63,8 @@ fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), found: &Found<'_>) -> Vec<Seed> {
     let mut findings: Vec<&Finding> =
         found.findings.iter().filter(|f| f.meeting.deviations <= most).collect();
     let key = |f: &Finding| f.meeting.deviations;
-    findings.sort_by(|f, g| key(f).total_cmp(&key(g)).then(f.nearest.between.cmp(&g.nearest.between)));
+    findings
+        .sort_by(|f, g| key(f).total_cmp(&key(g)).then(f.nearest.between.cmp(&g.nearest.between)));
     let mut seeds: Vec<Seed> = Vec::new();
     for finding in findings {
         let [of_a, of_b] = finding.nearest.between;

@@ -35,11 +35,10 @@ pub(super) fn spots(
     found: &Found<'_>,
     inside: Option<&Inside>,
 ) -> Vec<Spot> {
-    let mut spots: Vec<Spot> =
-        found.findings.iter().map(|finding| near((a, b), finding)).collect();
+    let mut spots: Vec<Spot> = found.findings.iter().map(|finding| near((a, b), finding)).collect();
     // A crossing has no direction of its own: it takes that of the nearest pair of pieces.
     let pairs = spots.clone();
-    for (crossing, _) in found.crossings.iter().filter(|(c, _)| c.probability > LIKELY) {
+    for crossing in found.crossings.iter().filter(|c| c.probability > LIKELY) {
         spots.push(through(crossing, &pairs));
     }
     spots.extend(inside.map(|inside| within(a, inside)));

@@ -88,6 +88,9 @@ pub(crate) fn add_exact(evidence: &mut Evidence, pair: &ExactPair) {
     }
     if let Some((on_a, on_b)) = pair.nearest {
         // Known for certain, however improbable a collision is.
-        evidence.add_clearance(1.0, Clearance { mean: (on_b - on_a).norm(), std: 0.0, is_bound: false });
+        evidence.add_clearance(
+            1.0,
+            Clearance { mean: (on_b - on_a).norm(), std: 0.0, is_bound: false },
+        );
     }
 }

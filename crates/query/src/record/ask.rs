@@ -4,11 +4,12 @@ use std::time::{Duration, Instant};
 
 use cloudtouch_geom::{Pose, Vector3};
 
+use crate::enclosed::is_enclosed;
 use crate::error::QueryError;
 use crate::mode::Mode;
 use crate::paper::pool;
 use crate::range::bad_entry;
-use crate::report::{Report, Stats, Verdict};
+use crate::report::{Report, Stats, Undecided, Verdict};
 use crate::shape::Shape;
 use crate::unseen::is_either_hidden;
 
@@ -43,12 +44,22 @@ impl Terms {
         let local = a.local_from(&b, a_from_b);
         let mut evidence = Evidence::default();
         let mut estimate = estimate(start, &local, &mut evidence)?;
-        if estimate.probability <= self.accept && is_either_hidden(a, b, &local) {
+        let unseen = match estimate.probability <= self.accept {
+            true if is_either_hidden(a, b, &local) => Some(Undecided::Hidden),
+            true if is_enclosed(a, b, &local) => Some(Undecided::Enclosed),
+            _ => None,
+        };
+        if unseen.is_some() {
             evidence.stats.undecided += 1;
             evidence.widen(1.0);
             estimate.bounds[1] = 1.0;
         }
         let mut report = self.report(evidence, estimate, a.origin());
+        if report.verdict == Verdict::Undecided {
+            let solved = report.stats.undecided == 0;
+            let of_search = if solved { Undecided::Bounds } else { Undecided::Unsolved };
+            report.undecided_by = Some(unseen.unwrap_or(of_search));
+        }
         let micros = |d: Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
         report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
         report.stats.query_us = micros(start.elapsed());
@@ -78,6 +89,7 @@ impl Terms {
             collision_probability: estimate.probability,
             bounds: estimate.bounds,
             verdict: self.verdict(estimate.probability, estimate.bounds[1], stats.undecided),
+            undecided_by: None,
             log_likelihood_ratio: estimate.log_likelihood_ratio,
             clearance_m: clearance,
             clearance_at_least_m: at_least,

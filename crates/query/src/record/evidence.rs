@@ -3,7 +3,6 @@
 use cloudtouch_geom::Point3;
 
 use crate::POINT_FLOOR;
-use crate::paper::pool;
 use crate::report::{Clearance, Contact, PointProbabilities, Stats};
 
 use super::point::{PointProbability, Side};
@@ -66,11 +65,6 @@ impl Evidence {
 
     pub(crate) fn largest(&self) -> f64 {
         self.largest
-    }
-
-    /// What a point must exceed to change the answer, however probabilities are pooled.
-    pub(crate) fn relevant_probability(&self) -> f64 {
-        pool::SHARE_OF_MAX * self.largest
     }
 
     pub(crate) fn bound_of_rest(&self) -> f64 {

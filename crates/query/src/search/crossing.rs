@@ -17,6 +17,9 @@ use super::through_mesh::Outline;
 
 /// The weight of a disc falls off like a normal density with this many spacings.
 const WEIGHT_SPACINGS: f64 = 0.5;
+/// Between its samples a surface may be so many spacings off the straight pieces that stand for it: it
+/// bends, and it ends.
+const BEND_SPACINGS: f64 = 0.25;
 /// No crossing is clearer than this many standard deviations.
 const CLEAREST: f64 = 6.0;
 
@@ -39,14 +42,13 @@ pub(crate) struct Crossing {
     pub std: f64,
     /// Distance between samples there, m.
     pub spacing: f64,
-    pub heights: [f64; 2],
-    pub stds: [f64; 2],
 }
 
 impl Crossing {
     /// Of two ends at these heights, of unequal sign, known so well.
-    fn of(heights: [f64; 2], stds: [f64; 2], weight: f64) -> Self {
-        let clear_of = |k: usize| heights[k].abs() / stds[k].max(f64::MIN_POSITIVE);
+    fn of(heights: [f64; 2], stds: [f64; 2], weight: f64, spacing: f64) -> Self {
+        let bend = BEND_SPACINGS * spacing;
+        let clear_of = |k: usize| heights[k].abs() / stds[k].hypot(bend).max(f64::MIN_POSITIVE);
         let nearer = usize::from(heights[1].abs() < heights[0].abs());
         // Twice the excess over one half: none on the surface, certain far from it.
         let sure = |k: usize| 1.0 - 2.0 * normal::below_zero(heights[k].abs(), stds[k]);
@@ -58,9 +60,7 @@ impl Crossing {
             axis: Vector3::z(),
             depth: heights[nearer].abs(),
             std: stds[nearer],
-            spacing: 0.0,
-            heights,
-            stds,
+            spacing,
         }
     }
 }
@@ -174,8 +174,7 @@ pub(super) fn add_mesh_through_discs(
         let crossing = Crossing {
             place: through.place,
             axis: normal,
-            spacing: disc.spacing,
-            ..Crossing::of([through.above, -through.below], [std; 2], weight)
+            ..Crossing::of([through.above, -through.below], [std; 2], weight, disc.spacing)
         };
         discs.crossing[k] = discs.crossing[k].max(crossing.probability);
         found.add(Witness::disc(is_a, disc), &crossing);
@@ -205,8 +204,8 @@ pub(super) fn through_disc(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
     }
     let of_disc = disc.variance_across();
     let stds = edge.across.map(|across| (across + of_disc).sqrt());
-    let spacing = disc.spacing;
-    Some(Crossing { place, axis, spacing, ..Crossing::of(heights, stds, weight_at(off)) })
+    let of_pair = Crossing::of(heights, stds, weight_at(off), disc.spacing);
+    Some(Crossing { place, axis, ..of_pair })
 }
 
 /// The same for a triangle.
@@ -215,9 +214,8 @@ pub(super) fn through_facet(edge: &Edge, facet: &Facet) -> Option<Crossing> {
     let pierced = facet.pierced_by(&edge.ends)?;
     edge.own[nearer_end(edge, pierced.heights)]?;
     let stds = edge.across.map(f64::sqrt);
-    let spacing = 2.0 * edge.half_length;
-    let place = pierced.place;
-    Some(Crossing { place, axis, spacing, ..Crossing::of(pierced.heights, stds, 1.0) })
+    let of_pair = Crossing::of(pierced.heights, stds, 1.0, 2.0 * edge.half_length);
+    Some(Crossing { place: pierced.place, axis, ..of_pair })
 }
 
 /// The end with the smaller height; between equals the one that comes first in space, so that both
@@ -260,7 +258,8 @@ mod tests {
     #[test]
     fn an_edge_through_the_middle_crosses_as_clearly_as_its_nearer_end() {
         let found = through_disc(&upright(0.0, -0.2, 0.5), &disc(0.1)).unwrap();
-        assert!((found.clear - 2.0).abs() < 1e-12, "{found:?}");
+        // Known to 0.1 and to a quarter of a spacing, together.
+        assert!((found.clear - 0.2 / 0.1_f64.hypot(0.25)).abs() < 1e-12, "{found:?}");
         assert!((found.depth - 0.2).abs() < 1e-12 && found.place == Point3::origin());
         // One spacing off the middle: two standard deviations of the weight.
         let aside = through_disc(&upright(1.0, -0.2, 0.5), &disc(0.1)).unwrap();

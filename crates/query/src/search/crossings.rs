@@ -8,6 +8,13 @@ use crate::cloud::{Edge, Surfel};
 
 use super::crossing::Crossing;
 
+/// Crossings within so many spacings of one another are at one place: what adds up there does not
+/// grow with the area of contact.
+const PLACE_SPACINGS: f64 = 3.0;
+/// Clearness, in standard deviations, that a crossing seen from one side alone brings without any
+/// seen from the other.
+const ONE_SIDED: f64 = 0.25;
+
 /// A piece of surface that passes through the other body: an edge, or the disc about a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Witness {
@@ -24,12 +31,18 @@ impl Witness {
     pub(super) fn disc(is_a: bool, disc: &Surfel) -> Self {
         Self { is_a, points: [disc.index; 2] }
     }
+
+    /// Whether it says that the surface of A is on both sides of that of B: an edge of A does, and a
+    /// disc of B that a mesh passes.
+    fn is_of_a(&self) -> bool {
+        let is_disc = self.points[0] == self.points[1];
+        self.is_a != is_disc
+    }
 }
 
 /// What one witness saw.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 struct Seen {
-    all: Vec<([f64; 2], [f64; 2], f64, f64)>,
     sum: f64,
     clearest: f64,
     best: Crossing,
@@ -43,10 +56,6 @@ impl Seen {
     }
 }
 
-/// Crossings within so many spacings of one another are at one place: what adds up there does not
-/// grow with the area of contact.
-const PLACE_SPACINGS: f64 = 3.0;
-
 /// The crossings found so far.
 #[derive(Debug, Default)]
 pub(crate) struct Crossings {
@@ -55,12 +64,18 @@ pub(crate) struct Crossings {
     last: Option<Witness>,
 }
 
+/// A witness at its place, reaching so far, with its clearness by sides.
+struct Heard {
+    place: Point3,
+    reach: f64,
+    clearness: [f64; 2],
+}
+
 impl Crossings {
     pub(super) fn add(&mut self, witness: Witness, crossing: &Crossing) {
         let Crossing { clear, weight, probability, .. } = *crossing;
         let seen = self.witnesses.entry(witness);
-        let seen = seen.or_insert(Seen { all: Vec::new(), sum: 0.0, clearest: 0.0, best: *crossing });
-        seen.all.push((crossing.heights, crossing.stds, weight, crossing.spacing));
+        let seen = seen.or_insert(Seen { sum: 0.0, clearest: 0.0, best: *crossing });
         seen.sum += clear * weight;
         seen.clearest = seen.clearest.max(clear);
         if probability > seen.best.probability {
@@ -69,68 +84,116 @@ impl Crossings {
         self.last = Some(witness);
     }
 
-    /// The most probable crossing of every witness with its clearness.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (&Crossing, f64)> {
-        self.witnesses.values().map(|seen| (&seen.best, seen.clearness()))
+    /// The most probable crossing of every witness.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Crossing> {
+        self.witnesses.values().map(|seen| &seen.best)
     }
 
-    /// Clearness of all crossings together at the place where it is most.
+    /// Clearness of all crossings together at the place where it is most; never less by one more.
     pub(crate) fn clearness(&self) -> f64 {
-        let mut all: Vec<(Point3, f64, f64)> =
-            self.iter().map(|(c, s)| (c.place, PLACE_SPACINGS * c.spacing, s)).collect();
-        all.sort_by(|p, q| p.0.x.total_cmp(&q.0.x));
-        let around = |(place, reach, _): &(Point3, f64, f64)| -> f64 {
-            let from = all.partition_point(|other| other.0.x < place.x - reach);
-            all[from..]
-                .iter()
-                .take_while(|other| other.0.x <= place.x + reach)
-                .filter(|other| (other.0 - place).norm_squared() <= reach * reach)
-                .map(|other| other.2)
-                .sum()
+        let mut all: Vec<Heard> = self.heard().collect();
+        all.sort_by(|p, q| p.place.x.total_cmp(&q.place.x));
+        let around = |at: &Heard| {
+            let from = all.partition_point(|other| other.place.x < at.place.x - at.reach);
+            let until = |other: &&Heard| other.place.x <= at.place.x + at.reach;
+            together(all[from..].iter().take_while(until), at)
         };
         all.iter().map(around).fold(0.0, f64::max)
     }
 
     /// The same at the place heard of last: no more than that.
     pub(super) fn last_clearness(&self) -> f64 {
-        let Some(last) = self.last.and_then(|witness| self.witnesses.get(&witness)) else {
-            return 0.0;
-        };
-        let (place, reach) = (last.best.place, PLACE_SPACINGS * last.best.spacing);
-        let is_there = |crossing: &Crossing| (crossing.place - place).norm() <= reach;
-        self.iter().filter(|(crossing, _)| is_there(crossing)).map(|(_, s)| s).sum()
+        let last = self.last.and_then(|witness| Some((witness, self.witnesses.get(&witness)?)));
+        let Some((witness, seen)) = last else { return 0.0 };
+        let all: Vec<Heard> = self.heard().collect();
+        together(all.iter(), &Heard::of(&witness, seen))
+    }
+
+    fn heard(&self) -> impl Iterator<Item = Heard> {
+        self.witnesses.iter().map(|(witness, seen)| Heard::of(witness, seen))
     }
 }
 
-impl Crossings {
-    /// X.
-    pub(crate) fn variant(&self, e: f64, r: f64) -> f64 {
-        let mut all: Vec<(Point3, f64, f64)> = self
-            .witnesses
-            .values()
-            .map(|seen| {
-                let mut sum = 0.0;
-                let mut clearest = 0.0_f64;
-                for (heights, stds, weight, spacing) in &seen.all {
-                    let clear = (0..2)
-                        .map(|k| heights[k].abs() / (stds[k].powi(2) + (e * spacing).powi(2)).sqrt().max(1e-300))
-                        .fold(6.0, f64::min);
-                    sum += clear * weight;
-                    clearest = clearest.max(clear);
+impl Heard {
+    fn of(witness: &Witness, seen: &Seen) -> Self {
+        let mut clearness = [0.0; 2];
+        clearness[usize::from(witness.is_of_a())] = seen.clearness();
+        Self { place: seen.best.place, reach: PLACE_SPACINGS * seen.best.spacing, clearness }
+    }
+}
+
+/// What the witnesses within reach of one say together.
+///
+/// Where two surfaces cross, each is on both sides of the other. Where one ends beside the other, as at
+/// the corner of a table, discs that reach beyond its end are passed by the other, but none of
+/// its own edges passes the other: so the two sides count by their geometric mean.
+fn together<'a>(others: impl Iterator<Item = &'a Heard>, at: &Heard) -> f64 {
+    let mut sums = [ONE_SIDED; 2];
+    for other in others {
+        if (other.place - at.place).norm_squared() <= at.reach * at.reach {
+            sums[0] += other.clearness[0];
+            sums[1] += other.clearness[1];
+        }
+    }
+    2.0 * ((sums[0] * sums[1]).sqrt() - ONE_SIDED)
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::Vector3;
+
+    use super::*;
+
+    fn crossing(x: f64) -> Crossing {
+        Crossing {
+            clear: 4.0,
+            weight: 1.0,
+            probability: 0.9,
+            place: Point3::new(x, 0.0, 0.0),
+            axis: Vector3::z(),
+            depth: 0.01,
+            std: 0.001,
+            spacing: 0.1,
+        }
+    }
+
+    fn crossings(count: u32, step: f64, sides: [bool; 2]) -> f64 {
+        let mut all = Crossings::default();
+        for i in 0..count {
+            for is_a in [true, false] {
+                if sides[usize::from(is_a)] {
+                    let witness = Witness { is_a, points: [i, i + 1] };
+                    all.add(witness, &crossing(step * f64::from(i)));
                 }
-                (seen.best.place, r * seen.best.spacing, sum.min(clearest))
-            })
-            .collect();
-        all.sort_by(|p, q| p.0.x.total_cmp(&q.0.x));
-        let around = |(place, reach, _): &(Point3, f64, f64)| -> f64 {
-            let from = all.partition_point(|other| other.0.x < place.x - reach);
-            all[from..]
-                .iter()
-                .take_while(|other| other.0.x <= place.x + reach)
-                .filter(|other| (other.0 - place).norm_squared() <= reach * reach)
-                .map(|other| other.2)
-                .sum()
-        };
-        all.iter().map(around).fold(0.0, f64::max)
+            }
+        }
+        all.clearness()
+    }
+
+    #[test]
+    fn twice_the_area_of_the_same_contact_is_no_more_evidence() {
+        let both = [true, true];
+        let (short, long) = (crossings(20, 0.1, both), crossings(200, 0.1, both));
+        assert!(short > 20.0 && (long - short).abs() < 1e-9, "{short} {long}");
+        // Twice as dense is.
+        assert!(crossings(40, 0.05, both) > 1.5 * short);
+    }
+
+    #[test]
+    fn one_surface_that_ends_beside_the_other_says_little() {
+        let (one, both) = (crossings(20, 0.1, [false, true]), crossings(20, 0.1, [true, true]));
+        assert!(one > 0.0 && one < 0.3 * both, "{one} {both}");
+    }
+
+    #[test]
+    fn an_edge_through_several_discs_passes_once() {
+        let mut all = Crossings::default();
+        let witness = Witness { is_a: true, points: [3, 7] };
+        for x in [0.0, 0.01, 0.02] {
+            all.add(witness, &crossing(x));
+        }
+        let mut once = Crossings::default();
+        once.add(witness, &crossing(0.0));
+        assert_eq!(all.clearness(), once.clearness());
     }
 }

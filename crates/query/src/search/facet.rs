@@ -189,12 +189,17 @@ mod tests {
 
     #[test]
     fn an_edge_passes_a_facet_inside_its_border_only() {
-        let facet = Facet::new(0, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0)));
+        let facet = Facet::new(
+            0,
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0)),
+        );
         let upright = |x: f64, y: f64| [Point3::new(x, y, -1.0), Point3::new(x, y, 2.0)];
         let pierced = facet.pierced_by(&upright(0.2, 0.3)).unwrap();
         assert_eq!((pierced.place, pierced.heights), (Point3::new(0.2, 0.3, 0.0), [-1.0, 2.0]));
         assert!(facet.pierced_by(&upright(0.6, 0.6)).is_none());
-        assert!(facet.pierced_by(&[Point3::new(0.2, 0.3, 1.0), Point3::new(0.2, 0.3, 2.0)]).is_none());
+        assert!(
+            facet.pierced_by(&[Point3::new(0.2, 0.3, 1.0), Point3::new(0.2, 0.3, 2.0)]).is_none()
+        );
     }
 
     #[test]

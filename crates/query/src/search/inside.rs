@@ -91,7 +91,9 @@ fn deepest(
                 let deviations = depth / surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
                 let known = looked.deepest.map_or(0.0, |inside| inside.deviations);
                 let way = projection.point - at;
-                if deviations > known && let Some(outward) = way.try_normalize(0.0) {
+                if deviations > known
+                    && let Some(outward) = way.try_normalize(0.0)
+                {
                     let across = mesh_from_cloud.inverse().transform_vector(&outward);
                     looked.deepest = Some(Inside {
                         deviations,

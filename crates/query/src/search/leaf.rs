@@ -7,8 +7,8 @@ use cloudtouch_geom::{Motion, Point3, Vector3};
 
 use crate::body::BodyRef;
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
-use crate::mesh::Mesh;
 use crate::judge::MOST_DEVIATIONS;
+use crate::mesh::Mesh;
 use crate::report::Stats;
 
 use super::facet::{Facet, Whitening};
@@ -24,8 +24,8 @@ pub(crate) enum Leaf<'a> {
 /// A leaf of a mesh.
 #[derive(Debug)]
 pub(crate) struct ExactLeaf {
-    pub facets: Vec<Facet>,
-    pub ball: Ball,
+    pub(super) facets: Vec<Facet>,
+    pub(super) ball: Ball,
 }
 
 /// A leaf of a cloud.
@@ -42,9 +42,9 @@ pub(crate) struct NoisyLeaf<'a> {
     /// For each surfel the probability of its clearest crossing.
     pub crossing: Vec<f64>,
     /// For each surfel whether a mesh was looked at that passes through its disc.
-    pub is_pierced: Vec<bool>,
-    pub ball: Ball,
-    pub slab: Slab,
+    pub(super) is_pierced: Vec<bool>,
+    pub(super) ball: Ball,
+    pub(super) slab: Slab,
 }
 
 /// Between which heights along a direction all discs of a leaf lie, m.
@@ -106,12 +106,7 @@ impl ExactLeaf {
 
 impl<'a> NoisyLeaf<'a> {
     /// A leaf of a cloud, moved to the frame of A by `motion`, or of A itself.
-    fn load(
-        cloud: &'a Cloud,
-        id: NodeId,
-        motion: Option<&Motion>,
-        stats: &mut Stats,
-    ) -> Self {
+    fn load(cloud: &'a Cloud, id: NodeId, motion: Option<&Motion>, stats: &mut Stats) -> Self {
         let (surfels, computed) = cloud.leaf(id);
         stats.leaves_prepared += usize::from(computed);
         let surfels = match motion {

@@ -16,9 +16,6 @@ pub(crate) struct Meeting {
     /// Unit normal of the plane that separates them best, from A to B; `None` where both are at one
     /// place.
     pub normal: Option<Vector3>,
-    /// Gap across that plane, m, and its standard deviation; their ratio is `deviations`.
-    pub gap: f64,
-    pub std: f64,
 }
 
 /// The probability of pieces so many deviations apart, by the plane halfway between two that are
@@ -52,9 +49,7 @@ impl Meeting {
         let deviations = offset.dot(&weighted).max(0.0).sqrt();
         let place = a.mean + a.covariance.matrix() * weighted;
         let normal = weighted.try_normalize(0.0);
-        let gap = normal.map_or(0.0, |n| n.dot(&offset));
-        let std = normal.map_or_else(|| joint.max_std(), |n| joint.std_along(&n));
-        Some(Self { deviations, place, normal, gap, std })
+        Some(Self { deviations, place, normal })
     }
 }
 
@@ -93,7 +88,6 @@ mod tests {
         let b = disc(Point3::new(0.0, 0.0, 0.1), Vector3::z(), 0.04, 0.35);
         let meeting = Meeting::of(&a.point, &b.point).unwrap();
         assert!((meeting.deviations - 0.1 / 0.05).abs() < 1e-12);
-        assert!((meeting.gap - 0.1).abs() < 1e-12 && (meeting.std - 0.05).abs() < 1e-12);
         assert_eq!(meeting.normal, Some(Vector3::z()));
         // The better known one moves less.
         assert!((meeting.place.z - 0.1 * 0.0009 / 0.0025).abs() < 1e-12);
@@ -109,6 +103,6 @@ mod tests {
         assert_eq!(squared_deviations(&exact(0.0), &exact(0.0), 9.0), Some(0.0));
         let one_place = disc(Point3::origin(), Vector3::z(), 0.1, 0.1);
         let meeting = Meeting::of(&one_place.point, &one_place.point).unwrap();
-        assert_eq!((meeting.deviations, meeting.gap, meeting.normal), (0.0, 0.0, None));
+        assert_eq!((meeting.deviations, meeting.normal), (0.0, None));
     }
 }

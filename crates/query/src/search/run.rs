@@ -59,7 +59,8 @@ pub(crate) fn search<'a>(
 ) -> Result<Found<'a>, QueryError> {
     let mut found = Found { deviations: MOST_DEVIATIONS, ..Found::default() };
     let cull_deviations = found.relevant_half_gap();
-    let settings = TraversalSettings { crossings: true, cull_deviations, ..TraversalSettings::default() };
+    let settings =
+        TraversalSettings { crossings: true, cull_deviations, ..TraversalSettings::default() };
     let motion = Motion::from(a_from_b);
     // A certified traversal draws nothing: any seed will do.
     let outcome = traverse(a.shape().tree(), b.shape().tree(), a_from_b, &settings, 0, |pair| {
@@ -249,7 +250,7 @@ mod tests {
             let offset = Vector3::new(0.0, 0.3 * offset, offset);
             let pose = Pose::from_translation_rpy(offset, [turn, 0.3, 0.0]);
             let found =
-                search((BodyRef::Cloud(&a), BodyRef::Cloud(&b)), &pose, &settings, |_, _| false, &mut Stats::default()).unwrap();
+                search((BodyRef::Cloud(&a), BodyRef::Cloud(&b)), &pose, |_, _| false, &mut Stats::default()).unwrap();
             prop_assert!(found.is_complete);
             let (deviations, clearness) = brute_force(&a, &b, &pose);
             prop_assert!((found.deviations - deviations).abs() < 1e-9);

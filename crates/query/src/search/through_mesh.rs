@@ -32,7 +32,9 @@ impl Outline {
         let mut all = Through { above: 0.0, below: 0.0, off: f64::INFINITY, place: self.middle };
         for facet in facets {
             let corners = facet.corners.map(|corner| self.local(&corner));
-            if corners.iter().all(|c| c.z > self.radius) || corners.iter().all(|c| c.z < -self.radius) {
+            if corners.iter().all(|c| c.z > self.radius)
+                || corners.iter().all(|c| c.z < -self.radius)
+            {
                 continue;
             }
             let heights = |all: &mut Through, z: f64| {
@@ -40,7 +42,8 @@ impl Outline {
                 all.below = all.below.max((-z).min(self.radius));
             };
             for k in 0..3 {
-                for z in self.ends_within(&corners[k], &corners[(k + 1) % 3]).into_iter().flatten() {
+                for z in self.ends_within(&corners[k], &corners[(k + 1) % 3]).into_iter().flatten()
+                {
                     heights(&mut all, z);
                 }
             }
@@ -143,8 +146,11 @@ fn passes_nearest(corners: &[Vector3; 3]) -> Option<Vector3> {
 mod tests {
     use super::*;
 
-    const DISC: Outline =
-        Outline { middle: Point3::new(0.0, 0.0, 0.0), normal: Vector3::new(0.0, 0.0, 1.0), radius: 0.1 };
+    const DISC: Outline = Outline {
+        middle: Point3::new(0.0, 0.0, 0.0),
+        normal: Vector3::new(0.0, 0.0, 1.0),
+        radius: 0.1,
+    };
 
     fn facet(corners: [[f64; 3]; 3]) -> Facet {
         Facet::new(0, corners.map(Point3::from))

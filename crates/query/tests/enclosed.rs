@@ -1,0 +1,68 @@
+//! A closed cloud within a closed cloud: in a hollow space or within a solid, no surface tells which.
+
+mod common;
+
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report, Undecided, Verdict};
+use cloudtouch_testkit::scene;
+use common::{assert_sound, at, measured};
+
+/// Seen from a place, or from who knows where.
+fn cloud(shape: &TriangleMesh, sensor: Option<Vector3>, seed: u64) -> Cloud {
+    let points: Vec<Point3> = measured(shape, 0.01, 0.001, seed);
+    let sensor_pose = sensor.map_or_else(Pose::identity, Pose::from_translation);
+    let cloud = PointCloud { sensor_pose, ..PointCloud::from_points(points) };
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+    Cloud::prepare(&cloud, &settings).expect("a good cloud")
+}
+
+fn ask(a: &Cloud, b: &Cloud, pose: &Pose) -> Report {
+    let report = Query::new(QuerySettings::default()).unwrap().run(a, b, pose).unwrap();
+    assert_sound(&report);
+    report
+}
+
+#[test]
+fn a_ball_within_a_ball_read_free() {
+    let outer = cloud(&scene::sphere(0.2, 3), None, 1);
+    let inner = cloud(&scene::sphere(0.05, 3), None, 2);
+    for report in
+        [ask(&outer, &inner, &at(0.0, 0.02, 0.0)), ask(&inner, &outer, &at(0.0, 0.02, 0.0))]
+    {
+        assert_eq!(report.verdict, Verdict::Undecided, "{report:?}");
+        assert_eq!((report.undecided_by, report.bounds[1]), (Some(Undecided::Enclosed), 1.0));
+    }
+    let beside = ask(&outer, &inner, &at(0.0, 0.0, 0.4));
+    assert_eq!((beside.verdict, beside.undecided_by), (Verdict::Free, None));
+}
+
+#[test]
+fn a_sensor_within_the_hollow_tells_that_it_is_one() {
+    let inner = cloud(&scene::sphere(0.05, 3), None, 2);
+    let hollow = cloud(&scene::sphere(0.2, 3), Some(Vector3::new(0.12, 0.0, 0.0)), 1);
+    let free = ask(&hollow, &inner, &at(0.0, 0.02, 0.0));
+    assert_eq!(free.verdict, Verdict::Free, "{free:?}");
+    // From outside the surface is before everything within.
+    let solid = cloud(&scene::sphere(0.2, 3), Some(Vector3::new(0.5, 0.0, 0.0)), 1);
+    let within = ask(&solid, &inner, &at(0.0, 0.02, 0.0));
+    assert_eq!(within.undecided_by, Some(Undecided::Enclosed), "{within:?}");
+}
+
+/// Five walls are a box with a way out.
+#[test]
+fn an_object_in_an_open_box_is_free() {
+    let wall = |pose: &Pose| scene::moved(&scene::plane_patch(0.4), pose);
+    let turned = |x: f64, y: f64, rpy| Pose::from_translation_rpy(Vector3::new(x, y, 0.2), rpy);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let walls = scene::assemble([
+        wall(&Pose::identity()),
+        wall(&turned(0.2, 0.0, [0.0, quarter, 0.0])),
+        wall(&turned(-0.2, 0.0, [0.0, quarter, 0.0])),
+        wall(&turned(0.0, 0.2, [quarter, 0.0, 0.0])),
+        wall(&turned(0.0, -0.2, [quarter, 0.0, 0.0])),
+    ]);
+    let inner = cloud(&scene::sphere(0.05, 3), None, 2);
+    let report = ask(&cloud(&walls, None, 3), &inner, &at(0.0, 0.0, 0.2));
+    assert_eq!(report.verdict, Verdict::Free, "{report:?}");
+}
