@@ -22,7 +22,7 @@ pub(crate) enum EitherRef<'a> {
 
 /// A query with the default settings of a path.
 pub(crate) enum EitherQuery {
-    Calibrated(Query),
+    Calibrated(Box<Query>),
     Paper(PaperQuery),
 }
 
@@ -84,9 +84,9 @@ impl EitherQuery {
     pub(crate) fn new(mode: Mode) -> Self {
         // Default settings are checked by the library's own tests.
         match mode {
-            Mode::Calibrated => Self::Calibrated(
+            Mode::Calibrated => Self::Calibrated(Box::new(
                 Query::new(QuerySettings::default()).expect("default settings are allowed"),
-            ),
+            )),
             Mode::Paper => Self::Paper(
                 PaperQuery::new(PaperSettings::default()).expect("default settings are allowed"),
             ),

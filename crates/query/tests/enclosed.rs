@@ -18,7 +18,8 @@ fn cloud(shape: &TriangleMesh, sensor: Option<Vector3>, seed: u64) -> Cloud {
 }
 
 fn ask(a: &Cloud, b: &Cloud, pose: &Pose) -> Report {
-    let report = Query::new(QuerySettings::default()).unwrap().run(a, b, pose).unwrap();
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    let report = query.run(a, b, pose).expect("a good pose");
     assert_sound(&report);
     report
 }

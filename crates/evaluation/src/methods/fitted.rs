@@ -54,7 +54,8 @@ impl Fitted {
 
     /// The default of the library as a Rust file.
     pub fn as_source(&self) -> String {
-        let mut text = format!("//! Made by `{} --update`.\n", self.command);
+        let mut text = format!("//! Made by `{} --update`.\n\n", self.command);
+        text += "#![allow(clippy::approx_constant, reason = \"what is fitted may look like π\")]\n";
         let Judge { by_geometry, revised } = &self.all;
         add(&mut text, "BY_GEOMETRY", by_geometry);
         add(&mut text, "REVISED", revised);

@@ -7,8 +7,6 @@ use super::spots::Spot;
 
 /// More spots than this say nothing new of where bodies touch.
 const MOST_SPOTS: usize = 400;
-/// Overlaps deeper than this many spacings may be deeper still elsewhere.
-const MEASURED_SPACINGS: f64 = 1.0;
 
 /// The spots in the order of what they say, likeliest first; the deeper of two that are equally
 /// likely. The order does not depend on that of the search.
@@ -59,6 +57,5 @@ pub(super) fn clearance(sorted: &[Spot]) -> Option<Clearance> {
         .filter(|spot| spot.gap < 0.0 && spot.probability >= 0.9 * likeliest.probability)
         .min_by(|p, q| p.gap.total_cmp(&q.gap));
     let spot = deepest.unwrap_or(likeliest);
-    let is_bound = spot.gap < -MEASURED_SPACINGS * spot.spacing;
-    Some(Clearance { mean: spot.gap, std: spot.std, is_bound })
+    Some(Clearance { mean: spot.gap, std: spot.std, is_bound: spot.is_bound })
 }

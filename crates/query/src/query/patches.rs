@@ -22,6 +22,9 @@ const REACH_SPACINGS: f64 = 3.0;
 /// ... and so many standard deviations of the position noise.
 const REACH_DEVIATIONS: f64 = 2.0;
 
+/// Of a mesh it reaches no more spacings than this.
+const MESH_SPACINGS: f64 = 4.0;
+
 /// A place the classifier is asked about.
 #[derive(Debug, Clone, Copy)]
 struct Seed {
@@ -123,10 +126,11 @@ fn of_mesh(
     place: &Point3,
     max_parts: usize,
 ) -> Result<Vec<Point3>, SubdivisionError> {
+    // The place is on the mesh as a rule: so far there are more samples than are wanted.
+    let radius = seed.reach.min(MESH_SPACINGS * seed.spacing);
     let mut triangles = Vec::new();
-    mesh.visit_triangles_near(place, seed.reach, |_, corners| triangles.push(corners));
-    let (center, core, radius) = (*place, seed.reach, seed.reach);
-    let region = SampleRegion { center, core, radius, spacing: seed.spacing };
+    mesh.visit_triangles_near(place, radius, |_, corners| triangles.push(corners));
+    let region = SampleRegion { center: *place, core: radius, radius, spacing: seed.spacing };
     let mut points = sample_region(triangles, &region, max_parts)?;
     let distance = |p: &Point3| (p - place).norm();
     points.sort_by(|p, q| distance(p).total_cmp(&distance(q)));

@@ -19,8 +19,10 @@ pub(super) struct Spot {
     pub place: Point3,
     /// Unit normal from A to B.
     pub normal: Vector3,
-    /// Distance of the surfaces along it, m; negative in overlap, then at least so deep.
+    /// Distance of the surfaces along it, m; negative in overlap.
     pub gap: f64,
+    /// Whether the overlap is at least so deep: of surfaces that cross only a part is seen.
+    pub is_bound: bool,
     /// Its standard deviation, m.
     pub std: f64,
     /// Distance between samples there, m.
@@ -49,12 +51,26 @@ pub(super) fn spots(
 fn near((a, b): (BodyRef<'_>, BodyRef<'_>), finding: &Finding) -> Spot {
     let Finding { nearest, meeting, toward_b } = finding;
     let offset = nearest.b.mean - nearest.a.mean;
-    let joint = nearest.a.covariance.sum(&nearest.b.covariance);
     let axis = common_normal(finding)
         .or(meeting.normal)
         .or_else(|| toward_b.try_normalize(0.0))
         .unwrap_or_else(Vector3::z);
-    let std = joint.std_along(&axis);
+    // What a piece reaches along the axis to the other; a triangle is where it is.
+    let reach = |body: BodyRef<'_>, normal: Option<Vector3>| match body {
+        BodyRef::Mesh(_) => 0.0,
+        BodyRef::Cloud(_) => {
+            let sine = normal.map_or(1.0, |n| (1.0 - n.dot(&axis).powi(2)).max(0.0).sqrt());
+            FOOTPRINT_SPACINGS * nearest.spacing * sine
+        }
+    };
+    let [of_a, of_b] = nearest.normals;
+    let reach = reach(a, of_a) + reach(b, of_b);
+    let across = [(of_a, &nearest.a), (of_b, &nearest.b)].map(|(normal, point)| {
+        let normal = normal.unwrap_or(axis);
+        point.covariance.std_along(&normal) * normal.dot(&axis)
+    });
+    // Where a piece ends is known to half of what it reaches.
+    let std = across[0].hypot(across[1]).hypot(0.5 * reach);
     let normal = match outward(a, b, nearest.normals) {
         Some(known) if known.dot(&axis).abs() > ONE_PLANE => known,
         // Where the gap is less than what is known of it, the pieces say nothing of the direction.
@@ -66,9 +82,11 @@ fn near((a, b): (BodyRef<'_>, BodyRef<'_>), finding: &Finding) -> Spot {
     let across = normal.dot(&offset);
     let aside = (offset - normal * across).norm();
     let beyond = (aside - 2.0 * FOOTPRINT_SPACINGS * nearest.spacing).max(0.0);
-    let gap = if beyond > 0.0 { across.hypot(beyond) } else { across };
+    let apart = if across > 0.0 { (across - reach).max(0.0) } else { across };
+    let gap = if beyond > 0.0 { apart.max(0.0).hypot(beyond) } else { apart };
     let probability = probability_at(meeting.deviations);
-    Spot { place: meeting.place, normal, gap, std, spacing: nearest.spacing, probability }
+    let (place, spacing) = (meeting.place, nearest.spacing);
+    Spot { place, normal, gap, is_bound: false, std, spacing, probability }
 }
 
 /// The mean of the normals of two pieces that are of one plane, or the only one there is.
@@ -98,7 +116,7 @@ fn through(crossing: &Crossing, pairs: &[Spot]) -> Spot {
     let distance = |spot: &&Spot| (spot.place - place).norm_squared();
     let nearest = pairs.iter().min_by(|p, q| distance(p).total_cmp(&distance(q)));
     let sign = nearest.map_or(1.0, |spot| if spot.normal.dot(&axis) < 0.0 { -1.0 } else { 1.0 });
-    Spot { place, normal: axis * sign, gap: -depth, std, spacing, probability }
+    Spot { place, normal: axis * sign, gap: -depth, is_bound: true, std, spacing, probability }
 }
 
 /// Of a point inside a closed mesh.
@@ -106,5 +124,5 @@ fn within(a: BodyRef<'_>, inside: &Inside) -> Spot {
     let Inside { deviations, depth, std, place, outward, spacing } = *inside;
     let normal = if matches!(a, BodyRef::Mesh(_)) { outward } else { -outward };
     let probability = 1.0 - probability_at(std::f64::consts::SQRT_2 * deviations);
-    Spot { place, normal, gap: -depth, std, spacing, probability }
+    Spot { place, normal, gap: -depth, is_bound: true, std, spacing, probability }
 }

@@ -7,6 +7,7 @@
 mod crossing;
 mod crossings;
 mod facet;
+mod gather;
 mod inside;
 mod leaf;
 mod meeting;

@@ -10,12 +10,12 @@ use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
-use super::crossing::{
+use super::crossings::Crossings;
+use super::facet::Facet;
+use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach,
     may_reach_facets,
 };
-use super::crossings::Crossings;
-use super::facet::Facet;
 use super::leaf::{Leaf, NoisyLeaf};
 use super::meeting::Meeting;
 use super::nearest::{Nearest, nearest_pieces};

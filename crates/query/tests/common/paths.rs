@@ -109,9 +109,9 @@ impl<'a> Asked<'a> {
 }
 
 /// A query of a path.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) enum AnyQuery {
-    Calibrated(Query),
+    Calibrated(Box<Query>),
     Paper(PaperQuery),
 }
 
@@ -126,7 +126,7 @@ impl AnyQuery {
             Mode::Calibrated => {
                 let mut settings = QuerySettings::default();
                 calibrated(&mut settings);
-                Self::Calibrated(Query::new(settings).expect("good settings"))
+                Self::Calibrated(Box::new(Query::new(settings).expect("good settings")))
             }
             Mode::Paper => {
                 let mut settings = PaperSettings::default();

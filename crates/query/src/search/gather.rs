@@ -1,0 +1,121 @@
+//! Gathers the crossings of two leaves.
+
+use cloudtouch_geom::Point3;
+
+use crate::cloud::{DISC_SPACINGS, SLOPE};
+
+use super::crossing::{of_mesh, through_disc, through_facet};
+use super::crossings::{Crossings, Witness};
+use super::facet::Facet;
+use super::leaf::{ExactLeaf, NoisyLeaf};
+use super::through_mesh::Outline;
+
+/// Whether an edge may cross a disc of another leaf near its end at a piece of the first: that can be
+/// told before the edges are known, for half of one is not longer than a disc reaches, and runs along
+/// the surface.
+pub(super) fn may_reach(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> bool {
+    let NoisyLeaf { ball, slab, .. } = of_discs;
+    of_edges.surfels.iter().any(|surfel| {
+        let Some(normal) = surfel.normal else { return false };
+        let half = DISC_SPACINGS * surfel.spacing;
+        let middle = &surfel.point.mean;
+        slab.is_within(middle, half * SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)))
+            && ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
+    })
+}
+
+/// Whether a facet may be within reach of a disc or of the near half of an edge.
+pub(super) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> bool {
+    of_edges.surfels.iter().any(|surfel| {
+        surfel.normal.is_some()
+            && facets.ball.is_within(&surfel.point.mean, DISC_SPACINGS * surfel.spacing)
+    })
+}
+
+/// Adds the crossings of edges of one leaf with discs of another; the points they join, and those of
+/// the discs, are as probable as their clearest crossing.
+pub(super) fn add_edges_through_discs(
+    is_a: bool,
+    of_edges: &mut NoisyLeaf<'_>,
+    of_discs: &mut NoisyLeaf<'_>,
+    found: &mut Crossings,
+) {
+    let (around, slab) = (of_discs.ball, of_discs.slab);
+    // Taken out, for the edges are borrowed while probabilities are raised.
+    let mut of_ends = std::mem::take(&mut of_edges.crossing);
+    for edge in of_edges.edges() {
+        if !slab.may_hold(&edge.ends) {
+            continue;
+        }
+        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
+        if !around.is_within(&middle, edge.half_length + DISC_SPACINGS * around.spacing) {
+            continue;
+        }
+        for (disc, of_disc) in of_discs.surfels.iter().zip(&mut of_discs.crossing) {
+            let reach = edge.half_length + DISC_SPACINGS * disc.spacing;
+            if (disc.point.mean - middle).norm_squared() > reach * reach {
+                continue;
+            }
+            let Some(crossing) = through_disc(edge, disc) else { continue };
+            *of_disc = of_disc.max(crossing.probability);
+            for place in edge.own.into_iter().flatten() {
+                of_ends[place] = of_ends[place].max(crossing.probability);
+            }
+            found.add(Witness::edge(is_a, edge), &crossing);
+        }
+    }
+    of_edges.crossing = of_ends;
+}
+
+/// Adds the crossings of edges of a leaf with the triangles of another.
+pub(super) fn add_edges_through_facets(
+    is_a: bool,
+    of_edges: &mut NoisyLeaf<'_>,
+    facets: &ExactLeaf,
+    found: &mut Crossings,
+) {
+    let mut of_ends = std::mem::take(&mut of_edges.crossing);
+    for edge in of_edges.edges() {
+        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
+        if !facets.ball.is_within(&middle, edge.half_length) {
+            continue;
+        }
+        for facet in &facets.facets {
+            let Some(crossing) = through_facet(edge, facet) else { continue };
+            for place in edge.own.into_iter().flatten() {
+                of_ends[place] = of_ends[place].max(crossing.probability);
+            }
+            found.add(Witness::edge(is_a, edge), &crossing);
+        }
+    }
+    of_edges.crossing = of_ends;
+}
+
+/// Adds what a mesh does to the discs of a leaf that one of these triangles passes; `around` gives
+/// all triangles of the mesh within a distance of a place.
+pub(super) fn add_mesh_through_discs(
+    is_a: bool,
+    discs: &mut NoisyLeaf<'_>,
+    facets: &ExactLeaf,
+    mut around: impl FnMut(&Point3, f64) -> Vec<Facet>,
+    found: &mut Crossings,
+) {
+    for (k, disc) in discs.surfels.iter().enumerate() {
+        let Some(normal) = disc.normal else { continue };
+        let outline =
+            Outline { middle: disc.point.mean, normal, radius: DISC_SPACINGS * disc.spacing };
+        if discs.is_pierced[k] || !facets.ball.is_within(&outline.middle, outline.radius) {
+            continue;
+        }
+        if outline.through(facets.facets.iter()).off.is_infinite() {
+            continue;
+        }
+        // Once, and by all of the mesh there: however its triangles are shared out to leaves.
+        discs.is_pierced[k] = true;
+        let near = around(&outline.middle, std::f64::consts::SQRT_2 * outline.radius);
+        let through = outline.through(near.iter());
+        let crossing = of_mesh(disc, normal, &through);
+        discs.crossing[k] = discs.crossing[k].max(crossing.probability);
+        found.add(Witness::disc(is_a, disc), &crossing);
+    }
+}
