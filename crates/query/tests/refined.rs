@@ -10,7 +10,7 @@ use common::{measured, mesh};
 use proptest::prelude::*;
 
 /// Above this a search ends, with as much as it has found by then.
-const ENOUGH: f64 = 0.99;
+const ENOUGH: f64 = 0.999;
 
 fn are_same(p: f64, q: f64) -> bool {
     (p - q).abs() < 1e-6 || p.min(q) > ENOUGH

@@ -59,7 +59,7 @@ impl Default for QuerySettings {
             // κ = 0.84: an ellipsoid of one standard deviation.
             ellipsoid_radius: 1.0,
             relative_gap: 1e-3,
-            stop_above: 0.99,
+            stop_above: 0.999,
             deadline: None,
             max_contacts: 16,
             max_mesh_parts: 20_000,
