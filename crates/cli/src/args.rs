@@ -189,7 +189,7 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_name = "B", default_value_t = 0.1, value_parser = parse_reject,
           help_heading = "Estimate")]
     pub reject: f64,
-    /// Share of the poses asked about that collide, above 0 and below 1; not for --mode paper [0.5]
+    /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
     #[arg(long, value_name = "P", value_parser = parse_prior, help_heading = "Estimate")]
     pub prior: Option<f64>,
     /// Paper: how point probabilities make one: max, or noisy-or [max]

@@ -6,20 +6,23 @@ use serde_json::Value;
 use support::{HEIGHTS, Inputs, case_at, case_file};
 
 /// As documented in the README.
-const REPORT: [&str; 10] = [
+const REPORT: [&str; 13] = [
     "id",
     "collision_probability",
     "bounds",
     "verdict",
+    "undecided_by",
+    "log_likelihood_ratio",
     "clearance_m",
+    "clearance_at_least_m",
     "contacts",
     "evidence",
     "stats",
     "seed",
     "mode",
 ];
-const CLEARANCE: [&str; 2] = ["mean", "std"];
-const CONTACT: [&str; 4] = ["point", "normal_a_to_b", "probability", "clearance_m"];
+const CLEARANCE: [&str; 3] = ["mean", "std", "is_bound"];
+const CONTACT: [&str; 5] = ["point", "normal_a_to_b", "probability", "clearance_m", "area_m2"];
 const EVIDENCE: [&str; 3] = ["deviations", "crossing", "misclassified"];
 const STATS: [&str; 9] = [
     "nodes_visited",
@@ -60,17 +63,23 @@ fn reports_have_the_documented_keys() {
 fn keys_come_in_the_documented_order() {
     let inputs = Inputs::new();
     let text = inputs.query_at(0.1, &["--json"]).quiet(0).stdout();
-    // The clearance of a contact has the name of that of the report: look past it; against a mesh
-    // there is no evidence.
-    let order: Vec<&str> = REPORT[..5]
+    // The clearance of a contact has the name of that of the report: look past it.
+    let order: Vec<&str> = REPORT[..7]
         .iter()
         .chain(&CLEARANCE)
-        .chain(&["contacts"])
+        .chain(&["clearance_at_least_m", "contacts"])
         .chain(&CONTACT)
         .copied()
         .collect();
     let mut at = 0;
-    for key in order.into_iter().chain(["evidence", "stats"]).chain(STATS).chain(["seed", "mode"]) {
+    for key in order
+        .into_iter()
+        .chain(["evidence"])
+        .chain(EVIDENCE)
+        .chain(["stats"])
+        .chain(STATS)
+        .chain(["seed", "mode"])
+    {
         let quoted = format!("\"{key}\":");
         let found = text[at..].find(&quoted);
         at += found.unwrap_or_else(|| panic!("{key} is missing or too early in {text}"));
@@ -131,7 +140,7 @@ fn check_report(report: &Value) {
         assert!((0.0..=1.0).contains(&number(&contact["probability"])));
         number(&contact["clearance_m"]);
     }
-    // Only two clouds in the calibrated mode have it; see below.
+    // Only the calibrated mode has it; see below.
     if !report["evidence"].is_null() {
         check_keys(&report["evidence"], &EVIDENCE);
     }

@@ -95,8 +95,11 @@ pub fn fit_surface(
     }
     let mut table: Vec<Vec<f64>> = values.as_slice().chunks(m).map(<[f64]>::to_vec).collect();
     round(&mut table, rows, columns);
-    for &row in &pins {
-        table[row] = vec![rows.knots[row]; m];
+    if pins_border {
+        let [least, .., most] = rows.knots else { return table };
+        table.iter_mut().flatten().for_each(|value| *value = value.clamp(*least, *most));
+        table[0].fill(*least);
+        table[n - 1].fill(*most);
     }
     table
 }

@@ -54,8 +54,8 @@ pub(super) fn estimate(
     // More evidence only raises the odds; what was not looked at may be any.
     let bounds = [low, if is_complete { high } else { 1.0 }];
 
-    add_points(&found, evidence);
     let probability = of(log_odds);
+    add_points(&found, probability, evidence);
     Ok(Estimate {
         probability,
         bounds,

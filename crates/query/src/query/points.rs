@@ -3,24 +3,24 @@
 use crate::record::{CORRELATION_SPACINGS, Evidence, PointProbability, Side};
 use crate::search::{Found, Leaf, NoisyLeaf};
 
-/// Adds the points of every leaf that was looked at.
-pub(super) fn add_points(found: &Found<'_>, evidence: &mut Evidence) {
+/// Adds the points of every leaf that was looked at; none is more probable than the collision is.
+pub(super) fn add_points(found: &Found<'_>, collision: f64, evidence: &mut Evidence) {
     for (side, leaves) in [(Side::A, &found.leaves_a), (Side::B, &found.leaves_b)] {
         for leaf in leaves.values() {
             if let Leaf::Noisy(leaf) = leaf {
-                add_leaf(side, leaf, evidence);
+                add_leaf(side, leaf, collision, evidence);
             }
         }
     }
 }
 
-fn add_leaf(side: Side, leaf: &NoisyLeaf<'_>, evidence: &mut Evidence) {
+fn add_leaf(side: Side, leaf: &NoisyLeaf<'_>, collision: f64, evidence: &mut Evidence) {
     for (surfel, probability) in leaf.probabilities() {
         evidence.add_point(PointProbability {
             side,
             index: Some(surfel.index),
             position: surfel.point.mean,
-            probability,
+            probability: probability.min(collision),
             correlation_length: CORRELATION_SPACINGS * surfel.spacing,
         });
     }
