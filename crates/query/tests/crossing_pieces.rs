@@ -113,6 +113,18 @@ fn how_the_tree_is_cut_does_not_matter() {
     }
 }
 
+/// A foot a centimetre above a floor with seven between its samples read "at least 77 mm".
+#[test]
+fn a_lower_bound_on_the_clearance_forgot_what_was_looked_at() {
+    let floor = cloud(measured(&scene::plane_patch(2.0), 0.07, 0.002, 3), 0.002);
+    let foot = mesh(&scene::cuboid([0.05, 0.05, 0.3]));
+    for x in [0.0, 0.02, 0.04, 0.3] {
+        let report = ask(&floor, &foot, &at(x, 0.1, 0.16));
+        let least = report.clearance_at_least_m.expect("nothing was left out");
+        assert!(least <= 0.011, "{x}: {report:?}");
+    }
+}
+
 #[test]
 fn both_modes_see_a_mesh_above_a_cloud_as_free() {
     let sheet = mesh(&scene::plane_patch(0.2));

@@ -73,11 +73,10 @@ fn places(
     task: &Task<'_>,
 ) -> Places {
     let spots = sorted(spots(bodies, found, inside));
-    let nearest = spots.iter().map(|spot| spot.gap - 3.0 * spot.std).fold(f64::INFINITY, f64::min);
     Places {
         contacts: contacts(&spots, probability, task.settings.max_contacts),
         clearance: clearance(&spots).filter(|_| found.is_complete || probability > 0.5),
-        at_least: Some(found.at_least.min(nearest)).filter(|least| least.is_finite()),
+        at_least: Some(found.at_least).filter(|least| least.is_finite()),
     }
 }
 

@@ -81,11 +81,22 @@ impl<'a> Leaf<'a> {
         }
     }
 
-    pub(super) fn middle(&self) -> Point3 {
+    /// No piece of one leaf is nearer than this to a piece of the other, m.
+    pub(super) fn distance(&self, other: &Self) -> f64 {
+        let (ball, around) = (self.ball(), other.ball());
+        let reach = |ball: &Ball| ball.radius + DISC_SPACINGS * ball.spacing;
+        (ball.middle - around.middle).norm() - reach(ball) - reach(around)
+    }
+
+    fn ball(&self) -> &Ball {
         match self {
-            Self::Noisy(leaf) => leaf.ball.middle,
-            Self::Exact(leaf) => leaf.ball.middle,
+            Self::Noisy(leaf) => &leaf.ball,
+            Self::Exact(leaf) => &leaf.ball,
         }
+    }
+
+    pub(super) fn middle(&self) -> Point3 {
+        self.ball().middle
     }
 }
 

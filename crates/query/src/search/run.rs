@@ -45,7 +45,7 @@ pub(crate) struct Found<'a> {
     pub crossings: Crossings,
     /// Whether what was left out can change neither of these.
     pub is_complete: bool,
-    /// Nothing that was left out is nearer than this, m; negative where surfaces may cross there.
+    /// No two pieces are nearer than this, m; negative where surfaces may cross.
     pub at_least: f64,
 }
 
@@ -57,7 +57,8 @@ pub(crate) fn search<'a>(
     is_enough: impl Fn(f64, f64) -> bool,
     stats: &mut Stats,
 ) -> Result<Found<'a>, QueryError> {
-    let mut found = Found { deviations: MOST_DEVIATIONS, ..Found::default() };
+    let mut found =
+        Found { deviations: MOST_DEVIATIONS, at_least: f64::INFINITY, ..Found::default() };
     let cull_deviations = found.relevant_half_gap();
     let settings =
         TraversalSettings { crossings: true, cull_deviations, ..TraversalSettings::default() };
@@ -72,7 +73,8 @@ pub(crate) fn search<'a>(
         Flow::Within(found.relevant_half_gap())
     })?;
     stats.nodes_visited += outcome.nodes_visited;
-    found.at_least = if outcome.stopped { f64::NEG_INFINITY } else { outcome.culled_gap };
+    let left_out = if outcome.stopped { f64::NEG_INFINITY } else { outcome.culled_gap };
+    found.at_least = found.at_least.min(left_out);
     found.is_complete = !outcome.stopped && outcome.culled_deviations >= found.relevant_half_gap();
     Ok(found)
 }
@@ -100,6 +102,7 @@ impl<'a> Found<'a> {
         let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, stats));
         let leaf_b = self.leaves_b.entry(pair.b);
         let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(a_from_b), stats));
+        self.at_least = self.at_least.min(leaf_a.distance(leaf_b));
         let nearest = nearest_pieces(leaf_a, leaf_b);
         if pair.may_cross {
             cross((a, b), a_from_b, pair, (leaf_a, leaf_b), &mut self.crossings);
