@@ -31,7 +31,7 @@ pub struct Report {
     pub clearance_at_least_m: Option<f64>,
     /// Where the surfaces touch or may touch, most probable first.
     pub contacts: Vec<Contact>,
-    /// What the probability rests on; `None` but for two clouds on the default path.
+    /// What the probability rests on; `None` on the paper's path, and between two meshes.
     pub evidence: Option<ContactEvidence>,
     /// What the answer cost.
     pub stats: Stats,

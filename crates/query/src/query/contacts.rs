@@ -5,23 +5,6 @@ use crate::report::{Clearance, Contact};
 
 use super::spots::Spot;
 
-/// More spots than this say nothing new of where bodies touch.
-const MOST_SPOTS: usize = 400;
-
-/// The spots in the order of what they say, likeliest first; the deeper of two that are equally
-/// likely. The order does not depend on that of the search.
-pub(super) fn sorted(mut spots: Vec<Spot>) -> Vec<Spot> {
-    let place = |s: &Spot| (s.place.x, s.place.y, s.place.z);
-    spots.sort_by(|p, q| {
-        let ((px, py, pz), (qx, qy, qz)) = (place(p), place(q));
-        (q.probability.total_cmp(&p.probability))
-            .then(p.gap.total_cmp(&q.gap))
-            .then(px.total_cmp(&qx).then(py.total_cmp(&qy)).then(pz.total_cmp(&qz)))
-    });
-    spots.truncate(MOST_SPOTS);
-    spots
-}
-
 /// Contact patches, likeliest first: spots within a spacing of a likelier one belong to its patch.
 /// None is more probable than the collision is.
 pub(super) fn contacts(sorted: &[Spot], collision: f64, most: usize) -> Vec<Contact> {

@@ -5,11 +5,12 @@ use cloudtouch_geom::Pose;
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
+use crate::mesh::Mesh;
 use crate::record::{Estimate, Evidence, Places, add_exact};
 use crate::search::{Found, Inside, look_inside, search};
 
 use super::classify::{Misclassified, ask_classifier};
-use super::contacts::{clearance, contacts, sorted};
+use super::contacts::{clearance, contacts};
 use super::exact::exact_pair;
 use super::points::add_points;
 use super::spots::spots;
@@ -72,7 +73,7 @@ fn places(
     probability: f64,
     task: &Task<'_>,
 ) -> Places {
-    let spots = sorted(spots(bodies, found, inside));
+    let spots = spots(bodies, found, inside);
     Places {
         contacts: contacts(&spots, probability, task.settings.max_contacts),
         clearance: clearance(&spots).filter(|_| found.is_complete || probability > 0.5),
@@ -82,7 +83,7 @@ fn places(
 
 /// Two exact surfaces: a yes or no.
 fn exact(
-    (a, b): (&crate::mesh::Mesh, &crate::mesh::Mesh),
+    (a, b): (&Mesh, &Mesh),
     a_from_b: &Pose,
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {

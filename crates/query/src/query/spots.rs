@@ -31,20 +31,39 @@ pub(super) struct Spot {
     pub probability: f64,
 }
 
-/// All spots of a search, in no particular order.
+/// More spots than this say nothing new of where bodies touch.
+const MOST_SPOTS: usize = 400;
+
+/// The spots of a search in the order of what they say, likeliest first; the deeper of two that are
+/// equally likely. The order does not depend on that of the search.
 pub(super) fn spots(
     (a, b): (BodyRef<'_>, BodyRef<'_>),
     found: &Found<'_>,
     inside: Option<&Inside>,
 ) -> Vec<Spot> {
-    let mut spots: Vec<Spot> = found.findings.iter().map(|finding| near((a, b), finding)).collect();
-    // A crossing has no direction of its own: it takes that of the nearest pair of pieces.
-    let pairs = spots.clone();
-    for crossing in found.crossings.iter().filter(|c| c.probability > LIKELY) {
-        spots.push(through(crossing, &pairs));
+    let mut pairs: Vec<Spot> = found.findings.iter().map(|finding| near((a, b), finding)).collect();
+    let likely = found.crossings.iter().filter(|crossing| crossing.probability > LIKELY);
+    let mut crossed: Vec<Spot> = likely.map(through).collect();
+    // Deep overlaps have thousands: those that are not told need no direction.
+    sort(&mut crossed);
+    for spot in &mut crossed {
+        orient(spot, &pairs);
     }
-    spots.extend(inside.map(|inside| within(a, inside)));
-    spots
+    pairs.extend(crossed);
+    pairs.extend(inside.map(|inside| within(a, inside)));
+    sort(&mut pairs);
+    pairs
+}
+
+fn sort(spots: &mut Vec<Spot>) {
+    let place = |s: &Spot| (s.place.x, s.place.y, s.place.z);
+    spots.sort_by(|p, q| {
+        let ((px, py, pz), (qx, qy, qz)) = (place(p), place(q));
+        (q.probability.total_cmp(&p.probability))
+            .then(p.gap.total_cmp(&q.gap))
+            .then(px.total_cmp(&qx).then(py.total_cmp(&qy)).then(pz.total_cmp(&qz)))
+    });
+    spots.truncate(MOST_SPOTS);
 }
 
 /// Of the two pieces that are least apart.
@@ -110,13 +129,19 @@ fn outward(a: BodyRef<'_>, b: BodyRef<'_>, [of_a, of_b]: [Option<Vector3>; 2]) -
     }
 }
 
-/// Of surfaces that cross.
-fn through(crossing: &Crossing, pairs: &[Spot]) -> Spot {
+/// Of surfaces that cross; which way its normal points is open.
+fn through(crossing: &Crossing) -> Spot {
     let Crossing { place, axis, depth, std, spacing, probability, .. } = *crossing;
-    let distance = |spot: &&Spot| (spot.place - place).norm_squared();
+    Spot { place, normal: axis, gap: -depth, is_bound: true, std, spacing, probability }
+}
+
+/// A crossing has no direction of its own: it takes that of the nearest pair of pieces.
+fn orient(crossed: &mut Spot, pairs: &[Spot]) {
+    let distance = |spot: &&Spot| (spot.place - crossed.place).norm_squared();
     let nearest = pairs.iter().min_by(|p, q| distance(p).total_cmp(&distance(q)));
-    let sign = nearest.map_or(1.0, |spot| if spot.normal.dot(&axis) < 0.0 { -1.0 } else { 1.0 });
-    Spot { place, normal: axis * sign, gap: -depth, is_bound: true, std, spacing, probability }
+    if nearest.is_some_and(|spot| spot.normal.dot(&crossed.normal) < 0.0) {
+        crossed.normal = -crossed.normal;
+    }
 }
 
 /// Of a point inside a closed mesh.

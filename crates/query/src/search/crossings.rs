@@ -60,11 +60,14 @@ impl Seen {
 #[derive(Debug, Default)]
 pub(crate) struct Crossings {
     witnesses: BTreeMap<Witness, Seen>,
-    /// The witness heard last.
+    /// The witness heard last, until it was looked what there is at its place.
     last: Option<Witness>,
+    /// What there was at the place looked at last.
+    at_last: f64,
 }
 
 /// A witness at its place, reaching so far, with its clearness by sides.
+#[derive(Debug, Clone, Copy)]
 struct Heard {
     place: Point3,
     reach: f64,
@@ -96,17 +99,19 @@ impl Crossings {
         let around = |at: &Heard| {
             let from = all.partition_point(|other| other.place.x < at.place.x - at.reach);
             let until = |other: &&Heard| other.place.x <= at.place.x + at.reach;
-            together(all[from..].iter().take_while(until), at)
+            together(all[from..].iter().take_while(until).copied(), at)
         };
         all.iter().map(around).fold(0.0, f64::max)
     }
 
-    /// The same at the place heard of last: no more than that.
-    pub(super) fn last_clearness(&self) -> f64 {
-        let last = self.last.and_then(|witness| Some((witness, self.witnesses.get(&witness)?)));
-        let Some((witness, seen)) = last else { return 0.0 };
-        let all: Vec<Heard> = self.heard().collect();
-        together(all.iter(), &Heard::of(&witness, seen))
+    /// The same at the place heard of last: no more than that. Most pairs of leaves add no crossing, and
+    /// cost nothing here.
+    pub(super) fn last_clearness(&mut self) -> f64 {
+        let last = self.last.take();
+        if let Some((witness, seen)) = last.and_then(|last| self.witnesses.get_key_value(&last)) {
+            self.at_last = together(self.heard(), &Heard::of(witness, seen));
+        }
+        self.at_last
     }
 
     fn heard(&self) -> impl Iterator<Item = Heard> {
@@ -127,7 +132,7 @@ impl Heard {
 /// Where two surfaces cross, each is on both sides of the other. Where one ends beside the other, as at
 /// the corner of a table, discs that reach beyond its end are passed by the other, but none of
 /// its own edges passes the other: so the two sides count by their geometric mean.
-fn together<'a>(others: impl Iterator<Item = &'a Heard>, at: &Heard) -> f64 {
+fn together(others: impl Iterator<Item = Heard>, at: &Heard) -> f64 {
     let mut sums = [ONE_SIDED; 2];
     for other in others {
         if (other.place - at.place).norm_squared() <= at.reach * at.reach {

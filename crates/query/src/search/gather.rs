@@ -102,17 +102,17 @@ pub(super) fn add_mesh_through_discs(
 ) {
     for (k, disc) in discs.surfels.iter().enumerate() {
         let Some(normal) = disc.normal else { continue };
-        let outline =
-            Outline { middle: disc.point.mean, normal, radius: DISC_SPACINGS * disc.spacing };
-        if discs.is_pierced[k] || !facets.ball.is_within(&outline.middle, outline.radius) {
+        let (middle, radius) = (disc.point.mean, DISC_SPACINGS * disc.spacing);
+        if discs.is_pierced[k] || !facets.ball.is_within(&middle, radius) {
             continue;
         }
+        let outline = Outline::new(middle, normal, radius);
         if outline.through(facets.facets.iter()).off.is_infinite() {
             continue;
         }
         // Once, and by all of the mesh there: however its triangles are shared out to leaves.
         discs.is_pierced[k] = true;
-        let near = around(&outline.middle, std::f64::consts::SQRT_2 * outline.radius);
+        let near = around(&middle, std::f64::consts::SQRT_2 * radius);
         let through = outline.through(near.iter());
         let crossing = of_mesh(disc, normal, &through);
         discs.crossing[k] = discs.crossing[k].max(crossing.probability);

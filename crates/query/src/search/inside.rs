@@ -6,7 +6,7 @@ use cloudtouch_geom::{Point3, Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
-use crate::cloud::Cloud;
+use crate::cloud::{Cloud, Surfel};
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 
@@ -68,45 +68,64 @@ fn deepest(
     if !mesh.is_closed() {
         return looked;
     }
+    let cloud_from_mesh = mesh_from_cloud.inverse();
     cloud.tree().visit_nodes(|node| {
         looked.nodes_visited += 1;
         looked.is_cut_short |= clock.is_over();
-        let known = looked.deepest.map_or(0.0, |inside| inside.deviations);
-        if looked.is_cut_short || known >= MOST_DEVIATIONS {
+        if looked.is_cut_short || looked.deviations() >= MOST_DEVIATIONS {
             return Visit::Prune;
         }
         let obb = node.obb();
         let middle = mesh_from_cloud.transform_point(&obb.centre);
-        let reach = obb.radius() + node.shift();
-        if mesh.project(&middle).signed_distance >= reach {
+        if mesh.project(&middle).signed_distance >= obb.radius() + node.shift() {
             return Visit::Prune;
         }
         if node.is_leaf() {
             let (surfels, computed) = cloud.leaf(node.id());
             looked.leaves_prepared += usize::from(computed);
             for surfel in surfels {
-                let at = mesh_from_cloud.transform_point(&surfel.point.mean);
-                let projection = mesh.project(&at);
-                let depth = -projection.signed_distance;
-                let deviations = depth / surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
-                let known = looked.deepest.map_or(0.0, |inside| inside.deviations);
-                let way = projection.point - at;
-                if deviations > known
-                    && let Some(outward) = way.try_normalize(0.0)
-                {
-                    let across = mesh_from_cloud.inverse().transform_vector(&outward);
-                    looked.deepest = Some(Inside {
-                        deviations,
-                        depth,
-                        std: surfel.point.covariance.std_along(&across),
-                        place: a_from_mesh.transform_point(&projection.point),
-                        outward: a_from_mesh.transform_vector(&outward),
-                        spacing: surfel.spacing,
-                    });
-                }
+                looked.look_at(surfel, mesh, mesh_from_cloud, &cloud_from_mesh);
             }
         }
         Visit::Descend
     });
+    looked.deepest = looked.deepest.map(|inside| Inside {
+        place: a_from_mesh.transform_point(&inside.place),
+        outward: a_from_mesh.transform_vector(&inside.outward),
+        ..inside
+    });
     looked
+}
+
+impl Looked {
+    fn deviations(&self) -> f64 {
+        self.deepest.map_or(0.0, |inside| inside.deviations)
+    }
+
+    /// Keeps a point that is more clearly inside than all before, in the frame of the mesh.
+    fn look_at(
+        &mut self,
+        surfel: &Surfel,
+        mesh: &Mesh,
+        mesh_from_cloud: &Pose,
+        cloud_from_mesh: &Pose,
+    ) {
+        let at = mesh_from_cloud.transform_point(&surfel.point.mean);
+        let projection = mesh.project(&at);
+        let depth = -projection.signed_distance;
+        let deviations = depth / surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
+        // On the surface itself no direction is outward.
+        let Some(outward) = (projection.point - at).try_normalize(0.0) else { return };
+        if deviations > self.deviations() {
+            let in_cloud = cloud_from_mesh.transform_vector(&outward);
+            self.deepest = Some(Inside {
+                deviations,
+                depth,
+                std: surfel.point.covariance.std_along(&in_cloud),
+                place: projection.point,
+                outward,
+                spacing: surfel.spacing,
+            });
+        }
+    }
 }

@@ -21,17 +21,24 @@ pub(super) struct Through {
 /// A disc, seen along its normal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Outline {
-    pub middle: Point3,
-    pub normal: Vector3,
-    pub radius: f64,
+    middle: Point3,
+    radius: f64,
+    normal: Vector3,
+    /// Two directions across the normal; any will do, for only lengths are told from them.
+    across: [Vector3; 2],
 }
 
 impl Outline {
+    pub(super) fn new(middle: Point3, normal: Vector3, radius: f64) -> Self {
+        let first = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();
+        Self { middle, radius, normal, across: [first, normal.cross(&first)] }
+    }
+
     /// Adds up what some facets do; no height counts beyond the radius.
     pub(super) fn through<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Through {
         let mut all = Through { above: 0.0, below: 0.0, off: f64::INFINITY, place: self.middle };
         for facet in facets {
-            let corners = facet.corners.map(|corner| self.local(&corner));
+            let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
             if corners.iter().all(|c| c.z > self.radius)
                 || corners.iter().all(|c| c.z < -self.radius)
             {
@@ -54,29 +61,18 @@ impl Outline {
                 let off = place.norm();
                 if off < all.off && off <= self.radius {
                     all.off = off;
-                    all.place = self.middle + self.lateral(&place);
+                    let [x, y] = self.across;
+                    all.place = self.middle + (x * place.x + y * place.y);
                 }
             }
         }
         all
     }
 
-    /// Lateral place and height of a point: x and y along two directions across the normal.
-    fn local(&self, point: &Point3) -> Vector3 {
-        let offset = point - self.middle;
-        let [x, y] = self.across();
-        Vector3::new(x.dot(&offset), y.dot(&offset), self.normal.dot(&offset))
-    }
-
-    /// Any two directions will do: only lengths are told from them.
-    fn across(&self) -> [Vector3; 2] {
-        let first = self.normal.cross(&Vector3::ith(self.normal.iamin(), 1.0)).normalize();
-        [first, self.normal.cross(&first)]
-    }
-
-    fn lateral(&self, place: &Vector3) -> Vector3 {
-        let [x, y] = self.across();
-        x * place.x + y * place.y
+    /// The components of a vector across the normal and along it.
+    fn local(&self, vector: &Vector3) -> Vector3 {
+        let [x, y] = &self.across;
+        Vector3::new(x.dot(vector), y.dot(vector), self.normal.dot(vector))
     }
 
     /// Heights where an edge enters and leaves the cylinder over the disc.
@@ -107,8 +103,7 @@ impl Outline {
     fn steepest(&self, facet: &Facet, corners: &[Vector3; 3]) -> [Option<f64>; 2] {
         let none = [None; 2];
         let Some(normal) = facet.normal else { return none };
-        let [x, y] = self.across();
-        let n = Vector3::new(x.dot(&normal), y.dot(&normal), self.normal.dot(&normal));
+        let n = self.local(&normal);
         let slope = n.xy().norm();
         if n.z.abs() < 1e-9 || slope == 0.0 {
             return none;
@@ -146,11 +141,9 @@ fn passes_nearest(corners: &[Vector3; 3]) -> Option<Vector3> {
 mod tests {
     use super::*;
 
-    const DISC: Outline = Outline {
-        middle: Point3::new(0.0, 0.0, 0.0),
-        normal: Vector3::new(0.0, 0.0, 1.0),
-        radius: 0.1,
-    };
+    fn disc() -> Outline {
+        Outline::new(Point3::origin(), Vector3::z(), 0.1)
+    }
 
     fn facet(corners: [[f64; 3]; 3]) -> Facet {
         Facet::new(0, corners.map(Point3::from))
@@ -159,7 +152,7 @@ mod tests {
     #[test]
     fn an_upright_sheet_is_as_high_and_deep_as_the_disc_is_wide() {
         let sheet = facet([[-9.0, 0.03, -9.0], [9.0, 0.03, -9.0], [0.0, 0.03, 9.0]]);
-        let through = DISC.through([sheet].iter());
+        let through = disc().through([sheet].iter());
         assert_eq!((through.above, through.below), (0.1, 0.1));
         assert!((through.off - 0.03).abs() < 1e-12 && through.place.z.abs() < 1e-12);
     }
@@ -178,7 +171,7 @@ mod tests {
                 fine.push(facet([at(1, 0), at(1, 1), at(0, 1)]));
             }
         }
-        let (whole, fine) = (DISC.through(whole.iter()), DISC.through(fine.iter()));
+        let (whole, fine) = (disc().through(whole.iter()), disc().through(fine.iter()));
         assert!((whole.above - 0.06).abs() < 1e-12 && (whole.below - 0.04).abs() < 1e-12);
         assert!((fine.above - whole.above).abs() < 1e-9 && (fine.below - whole.below).abs() < 1e-9);
         assert!((fine.off - 0.02).abs() < 1e-9 && (whole.off - 0.02).abs() < 1e-12);
@@ -187,10 +180,10 @@ mod tests {
     #[test]
     fn a_thin_rod_between_samples_passes_and_one_beside_the_disc_does_not() {
         let rod = |x: f64| facet([[x, 0.0, -0.5], [x + 0.002, 0.0, 0.5], [x, 0.002, 0.5]]);
-        let through = DISC.through([rod(0.07)].iter());
+        let through = disc().through([rod(0.07)].iter());
         assert!(through.above > 0.09 && through.below > 0.09 && (through.off - 0.07).abs() < 2e-3);
-        assert_eq!(DISC.through([rod(0.12)].iter()).off, f64::INFINITY);
+        assert_eq!(disc().through([rod(0.12)].iter()).off, f64::INFINITY);
         let above = facet([[0.0, 0.0, 0.01], [0.2, 0.0, 0.01], [0.0, 0.2, 0.5]]);
-        assert_eq!(DISC.through([above].iter()).off, f64::INFINITY);
+        assert_eq!(disc().through([above].iter()).off, f64::INFINITY);
     }
 }
