@@ -6,6 +6,7 @@ mod classifier;
 mod cloud;
 mod enclosed;
 mod error;
+mod exact;
 mod filter;
 mod judge;
 mod mesh;

@@ -1,9 +1,9 @@
 //! One leaf pair: the kernel classifier, unless a plane is certain.
 
-use crate::classifier::{
-    ClassifierSettings, Clock, PairAnswer, PairPoints, Plane, by_kernel, by_plane,
-};
+use crate::classifier::{ClassifierSettings, Clock, PairAnswer, PairPoints, by_kernel};
 use crate::report::Stats;
+
+use super::plane::{Plane, by_plane};
 
 /// The kernel classifier's answer. A plane that keeps every point below 1e-6 would say the same
 /// sooner; one that does not stands in where the classifier has no answer.

@@ -6,8 +6,9 @@ use cloudtouch_geom::{Pose, Vector3, normal};
 
 use crate::cloud::{Prepared, Surfel};
 use crate::mesh::Mesh;
-use crate::record::{Evidence, Side, SignedPoint, add_signed_points};
+use crate::record::{Evidence, Side};
 
+use super::signed::{SignedPoint, add_signed_points};
 use super::task::Task;
 
 /// Nodes farther outside than this many standard deviations are not looked into.

@@ -6,9 +6,10 @@ use cloudtouch_bvh::{Flow, NodeId, Traversal, TraversalSettings, traverse};
 use cloudtouch_geom::Pose;
 
 use crate::error::QueryError;
-use crate::record::{Evidence, add_pair};
+use crate::record::Evidence;
 use crate::shape::Shape;
 
+use super::add::add_pair;
 use super::classify::classify;
 use super::leaf_pair::{bound_left_out, gather};
 use super::task::Task;

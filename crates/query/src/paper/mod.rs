@@ -15,22 +15,24 @@
 //! }
 //! ```
 
+mod add;
 mod body;
 mod classify;
 mod cloud;
 mod cloud_settings;
+mod contacts;
 mod inside;
 mod leaf_pair;
 mod leaf_pairs;
+mod plane;
 pub(crate) mod pool;
 mod run;
 mod settings;
+mod signed;
 mod task;
 mod weights;
 
 pub use body::PaperBodyRef;
-#[cfg(test)]
-pub(crate) use classify::classify;
 pub use cloud::PaperCloud;
 pub use cloud_settings::{PaperCloudSettings, PaperNoise};
 pub use run::PaperQuery;

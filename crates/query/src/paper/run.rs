@@ -8,9 +8,9 @@ use rayon::prelude::*;
 
 use crate::classifier::Clock;
 use crate::error::{QueryError, SettingsError};
+use crate::exact::add_exact;
 use crate::mode::Mode;
-use crate::query::exact_pair;
-use crate::record::{Estimate, Evidence, Side, Terms, add_exact};
+use crate::record::{Estimate, Evidence, Side, Terms};
 use crate::report::Report;
 use crate::shape::Shape;
 
@@ -130,8 +130,7 @@ fn gather_evidence(
 ) -> Result<(), QueryError> {
     match (a, b) {
         (Shape::Mesh(a), Shape::Mesh(b)) => {
-            add_exact(evidence, &exact_pair(a, b, a_from_b)?);
-            return Ok(());
+            return add_exact((a, b), a_from_b, evidence);
         }
         (Shape::Cloud(cloud), Shape::Mesh(mesh)) if mesh.is_watertight() => {
             let poses = (&a_from_b.inverse(), &Pose::identity());

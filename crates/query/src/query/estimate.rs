@@ -4,14 +4,14 @@ use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
+use crate::exact::add_exact;
 use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
 use crate::mesh::Mesh;
-use crate::record::{Estimate, Evidence, Places, add_exact};
+use crate::record::{Estimate, Evidence, Places};
 use crate::search::{Found, Inside, look_inside, search};
 
 use super::classify::{Misclassified, ask_classifier};
 use super::contacts::{clearance, contacts};
-use super::exact::exact_pair;
 use super::points::add_points;
 use super::spots::spots;
 use super::task::Task;
@@ -87,7 +87,7 @@ fn exact(
     a_from_b: &Pose,
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
-    add_exact(evidence, &exact_pair(a, b, a_from_b)?);
+    add_exact((a, b), a_from_b, evidence)?;
     let probability = evidence.largest();
     let bounds = [probability; 2];
     Ok(Estimate { probability, bounds, evidence: None, log_likelihood_ratio: None, places: None })

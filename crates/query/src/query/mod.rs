@@ -4,7 +4,6 @@ mod batch;
 mod classify;
 mod contacts;
 mod estimate;
-mod exact;
 mod patches;
 mod points;
 mod run;
@@ -12,6 +11,5 @@ mod settings;
 mod spots;
 mod task;
 
-pub(crate) use exact::{ExactPair, exact_pair};
 pub use run::Query;
 pub use settings::QuerySettings;

@@ -2,6 +2,9 @@
 
 use cloudtouch_geom::Point3;
 
+/// Points nearer than this many spacings share the samples their position was estimated from.
+pub(crate) const CORRELATION_SPACINGS: f64 = 3.0;
+
 /// Which body a point belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Side {

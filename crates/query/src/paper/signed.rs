@@ -3,15 +3,12 @@
 use cloudtouch_geom::{Point3, Pose, Vector3};
 
 use crate::CONTACT_FLOOR;
+use crate::record::{CORRELATION_SPACINGS, Evidence, PointProbability, Side};
 use crate::report::{Clearance, Contact};
-
-use super::add::CORRELATION_SPACINGS;
-use super::evidence::Evidence;
-use super::point::{PointProbability, Side};
 
 /// A point of the cloud at its signed distance from the mesh.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SignedPoint {
+pub(super) struct SignedPoint {
     /// Index in the prepared cloud.
     pub index: u32,
     /// Its expected position, in the cloud's local frame.
@@ -30,7 +27,7 @@ pub(crate) struct SignedPoint {
 }
 
 /// Adds points by their signed distance from a watertight mesh.
-pub(crate) fn add_signed_points(
+pub(super) fn add_signed_points(
     points: &[SignedPoint],
     side: Side,
     a_from_cloud: &Pose,

@@ -1,21 +1,17 @@
-//! What each part of a query adds to the evidence.
+//! What a leaf pair adds to the evidence.
 
 use cloudtouch_geom::Pose;
 
 use crate::CONTACT_FLOOR;
-use crate::classifier::{PairAnswer, PairPoint, PairPoints, most_probable_place};
-use crate::query::ExactPair;
-use crate::report::{Clearance, Contact};
+use crate::classifier::{PairAnswer, PairPoint, PairPoints};
+use crate::record::{CORRELATION_SPACINGS, Evidence, PointProbability, Side};
+use crate::report::Contact;
 use crate::shape::Shape;
 
-use super::evidence::Evidence;
-use super::point::{PointProbability, Side};
-
-/// Points nearer than this many spacings share the samples their position was estimated from.
-pub(crate) const CORRELATION_SPACINGS: f64 = 3.0;
+use super::contacts::most_probable_place;
 
 /// Adds what a leaf pair says.
-pub(crate) fn add_pair(
+pub(super) fn add_pair(
     (a, b, a_from_b): (Shape<'_>, Shape<'_>, &Pose),
     points: &PairPoints,
     answer: &PairAnswer,
@@ -78,19 +74,4 @@ fn onto_mesh(contact: Contact, a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> C
         normal_a_to_b = -normal_a_to_b;
     }
     Contact { point, normal_a_to_b, ..contact }
-}
-
-/// Adds what is exactly known of two meshes.
-pub(crate) fn add_exact(evidence: &mut Evidence, pair: &ExactPair) {
-    evidence.stats.leaf_pairs = 1;
-    if pair.intersecting {
-        evidence.add_certain_collision();
-    }
-    if let Some((on_a, on_b)) = pair.nearest {
-        // Known for certain, however improbable a collision is.
-        evidence.add_clearance(
-            1.0,
-            Clearance { mean: (on_b - on_a).norm(), std: 0.0, is_bound: false },
-        );
-    }
 }

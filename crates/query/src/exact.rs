@@ -6,17 +6,38 @@ use parry3d_f64::query::{ClosestPoints, closest_points, intersection_test};
 
 use crate::error::QueryError;
 use crate::mesh::Mesh;
+use crate::record::Evidence;
+use crate::report::Clearance;
 
 /// What is known of two exact surfaces.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ExactPair {
-    pub intersecting: bool,
+struct ExactPair {
+    intersecting: bool,
     /// Nearest points of A and of B in A's local frame, when apart.
-    pub nearest: Option<(Point3, Point3)>,
+    nearest: Option<(Point3, Point3)>,
 }
 
-/// Tests two meshes with parry; `a_from_b` maps local frames.
-pub(crate) fn exact_pair(a: &Mesh, b: &Mesh, a_from_b: &Pose) -> Result<ExactPair, QueryError> {
+/// Adds what is exactly known of two meshes; `a_from_b` maps local frames.
+pub(crate) fn add_exact(
+    (a, b): (&Mesh, &Mesh),
+    a_from_b: &Pose,
+    evidence: &mut Evidence,
+) -> Result<(), QueryError> {
+    let pair = exact_pair(a, b, a_from_b)?;
+    evidence.stats.leaf_pairs = 1;
+    if pair.intersecting {
+        evidence.add_certain_collision();
+    }
+    if let Some((on_a, on_b)) = pair.nearest {
+        let clearance = Clearance { mean: (on_b - on_a).norm(), std: 0.0, is_bound: false };
+        // Known for certain, however improbable a collision is.
+        evidence.add_clearance(1.0, clearance);
+    }
+    Ok(())
+}
+
+/// Tests two meshes with parry.
+fn exact_pair(a: &Mesh, b: &Mesh, a_from_b: &Pose) -> Result<ExactPair, QueryError> {
     let unsupported = |_| QueryError::Unsupported;
     let pose_a = math::Pose::IDENTITY;
     let pose_b = parry_pose(a_from_b);

@@ -3,14 +3,12 @@
 use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_svm::Class;
 
+use crate::classifier::{PairAnswer, PairPoint, PairPoints, Surface, centroid};
 use crate::report::{Clearance, Contact};
-
-use super::pair::{PairAnswer, PairPoint, PairPoints, centroid};
-use super::surface::Surface;
 
 /// What a leaf pair says about its most probable place.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(super) struct Place {
     /// The largest probability of a point of the pair.
     pub probability: f64,
     /// The gap there.
@@ -24,7 +22,7 @@ pub(crate) struct Place {
 /// The contact lies on the separating surface, where its most probable points project to. The
 /// clearance is what the foremost points of the two sides keep from that surface, added up:
 /// negative in overlap.
-pub(crate) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> Option<Place> {
+pub(super) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> Option<Place> {
     let PairAnswer::Separated { surface, a, b } = answer else { return None };
     let reach = extent(points);
     let of_a = foremost(surface, Class::A, (&points.a, &points.b), reach)?;
@@ -127,11 +125,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::classifier::clock::Clock;
-    use crate::classifier::settings::ClassifierSettings;
-    use crate::classifier::train::by_kernel;
+    use crate::classifier::{ClassifierSettings, Clock, by_kernel};
     use crate::mode::Mode;
-    use crate::paper::classify;
+    use crate::paper::classify::classify;
     use crate::report::Stats;
 
     const SPACING: f64 = 0.02;

@@ -2,8 +2,7 @@
 
 use cloudtouch_svm::{DEFAULT_KAPPA_MAX, separate};
 
-use super::pair::{PairAnswer, PairPoint, PairPoints};
-use super::surface::Surface;
+use crate::classifier::{PairAnswer, PairPoint, PairPoints, Surface};
 
 /// Beyond this many standard deviations on either side of a plane, no kernel problem is solved:
 /// every point is less probable than 1e-6.
@@ -11,7 +10,7 @@ const CERTAIN_DEVIATIONS: f64 = DEFAULT_KAPPA_MAX;
 
 /// What the best plane between the points says.
 #[derive(Debug)]
-pub(crate) enum Plane {
+pub(super) enum Plane {
     /// No point is on the wrong side of it with more than 1e-6.
     Certain(PairAnswer),
     /// Some point may be.
@@ -21,7 +20,7 @@ pub(crate) enum Plane {
 }
 
 /// Separates the points by a plane.
-pub(crate) fn by_plane(points: &PairPoints) -> Plane {
+pub(super) fn by_plane(points: &PairPoints) -> Plane {
     let uncertain = |side: &[PairPoint]| side.iter().map(|p| p.point).collect::<Vec<_>>();
     let (a, b) = (uncertain(&points.a), uncertain(&points.b));
     // Why there is none makes no difference here.
