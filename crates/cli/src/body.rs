@@ -46,53 +46,37 @@ pub(crate) trait Path: Sync {
     ) -> Result<Report, QueryError>;
 }
 
-impl PreparedCloud for Cloud {
-    fn prepare(
-        cloud: &PointCloud,
-        sensor: SensorModel,
-        change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
-    ) -> Result<Self, PrepareError> {
-        let mut settings = CloudSettings::new(sensor);
-        change(&mut settings.filter, &mut settings.sensor);
-        Self::prepare(cloud, &settings)
-    }
+/// The clouds of the two paths have no trait in common, and the same functions.
+macro_rules! prepared_cloud {
+    ($cloud:ty, $settings:ty) => {
+        impl PreparedCloud for $cloud {
+            fn prepare(
+                cloud: &PointCloud,
+                sensor: SensorModel,
+                change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
+            ) -> Result<Self, PrepareError> {
+                let mut settings = <$settings>::new(sensor);
+                change(&mut settings.filter, &mut settings.sensor);
+                Self::prepare(cloud, &settings)
+            }
 
-    fn points(&self) -> Vec<Point3> {
-        (0..self.len()).map(|i| self.point(i)).collect()
-    }
+            fn points(&self) -> Vec<Point3> {
+                (0..self.len()).map(|i| self.point(i)).collect()
+            }
 
-    fn count(&self) -> usize {
-        self.len()
-    }
+            fn count(&self) -> usize {
+                self.len()
+            }
 
-    fn stages(&self) -> &[StageReport] {
-        self.filter_stages()
-    }
+            fn stages(&self) -> &[StageReport] {
+                self.filter_stages()
+            }
+        }
+    };
 }
 
-impl PreparedCloud for PaperCloud {
-    fn prepare(
-        cloud: &PointCloud,
-        sensor: SensorModel,
-        change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
-    ) -> Result<Self, PrepareError> {
-        let mut settings = PaperCloudSettings::new(sensor);
-        change(&mut settings.filter, &mut settings.sensor);
-        Self::prepare(cloud, &settings)
-    }
-
-    fn points(&self) -> Vec<Point3> {
-        (0..self.len()).map(|i| self.point(i)).collect()
-    }
-
-    fn count(&self) -> usize {
-        self.len()
-    }
-
-    fn stages(&self) -> &[StageReport] {
-        self.filter_stages()
-    }
-}
+prepared_cloud!(Cloud, CloudSettings);
+prepared_cloud!(PaperCloud, PaperCloudSettings);
 
 impl<'a> From<&'a Body<Cloud>> for BodyRef<'a> {
     fn from(body: &'a Body<Cloud>) -> Self {

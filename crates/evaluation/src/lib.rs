@@ -6,7 +6,6 @@
 
 pub mod answers;
 pub mod calibrate;
-mod either;
 pub mod figure;
 pub mod growth;
 pub mod leaf;

@@ -28,6 +28,7 @@ pub use filter::{
 };
 pub use judge::{
     CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
+    between_knots,
 };
 pub use mesh::Mesh;
 pub use mode::Mode;

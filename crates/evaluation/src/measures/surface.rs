@@ -1,6 +1,7 @@
 //! Log odds as a surface over two numbers: values at knots, straight lines between them, fitted by
 //! penalised maximum likelihood (Newton's method) and monotone.
 
+use cloudtouch::between_knots;
 use nalgebra::{DMatrix, DVector};
 
 /// Weighs how much neighbouring slopes may differ.
@@ -107,11 +108,7 @@ pub fn fit_surface(
 /// Which values a place between the knots is made from, and how much of each.
 fn shares(rows: Axis<'_>, columns: Axis<'_>, [x, y]: [f64; 2]) -> [(usize, f64); 4] {
     let m = columns.knots.len();
-    let place = |knots: &[f64], x: f64| {
-        let i = knots.partition_point(|&k| k <= x).saturating_sub(1).min(knots.len() - 2);
-        (i, ((x - knots[i]) / (knots[i + 1] - knots[i])).clamp(0.0, 1.0))
-    };
-    let ((i, s), (j, t)) = (place(rows.knots, x), place(columns.knots, y));
+    let ((i, s), (j, t)) = (between_knots(rows.knots, x), between_knots(columns.knots, y));
     [
         (i * m + j, (1.0 - s) * (1.0 - t)),
         (i * m + j + 1, (1.0 - s) * t),

@@ -2,6 +2,7 @@
 //!
 //! A method is prepared once for a draw of a scene and then asked at many poses, as a planner does.
 
+mod asker;
 mod distance;
 mod fitted;
 mod ours;
@@ -16,6 +17,7 @@ use cloudtouch::{FilterSettings, filter, noise::SensorModel};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::Observation;
 
+pub use asker::asker;
 pub use distance::Distance;
 pub use fitted::Fitted;
 pub use ours::Ours;

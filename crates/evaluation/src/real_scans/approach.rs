@@ -12,8 +12,8 @@ use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
 
 use super::{cases, side_view};
 use crate::{
-    either::{EitherCloud, EitherQuery},
     figure::{Axis, Figure, Panel, Series},
+    methods::asker,
     page::Section,
     targets::{Findings, Target},
 };
@@ -43,10 +43,8 @@ pub(super) fn evaluate(data: &Path) -> Findings {
     let sensor = |std| SensorModel::Isotropic { std };
     let mut answers: Vec<Vec<Report>> = Vec::new();
     for (std, mode, _) in RUNS {
-        let cloud = EitherCloud::prepare(&scan, sensor(std), mode)?;
-        let query = EitherQuery::new(mode);
-        let ask = |pose| query.run(&cloud, &mesh, pose);
-        answers.push(poses.iter().map(ask).collect::<Result<_, _>>()?);
+        let ask = asker(&scan, std, mode)?;
+        answers.push(poses.iter().map(|pose| ask(&mesh, pose)).collect::<Result<_>>()?);
     }
 
     // No early stop: every likely point is to be seen.

@@ -1,12 +1,15 @@
 //! The catalogue of clouds and meshes through full queries in both modes.
 
 use anyhow::Result;
-use cloudtouch::{Mesh, Mode, Report, Verdict, noise::SensorModel};
+use cloudtouch::{
+    Cloud, CloudSettings, Mesh, Mode, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings,
+    Query, QuerySettings, Report, StageReport, Verdict, noise::SensorModel,
+};
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Pose};
 use cloudtouch_testkit::hard_cases::{HardCase, HardMesh, hard_cases, hard_meshes};
 
 use crate::{
-    either::{EitherCloud, EitherQuery},
+    methods::asker,
     page::Section,
     table::{Table, bounds, probability, small, verdict},
     targets::{Findings, Target},
@@ -65,29 +68,36 @@ pub(super) fn measure() -> Findings {
 }
 
 fn of_clouds(case: &HardCase, mode: Mode) -> Answer {
-    let a = prepare(&case.cloud_a, &case.covariance_a, mode)?;
-    let b = prepare(&case.cloud_b, &case.covariance_b, mode)?;
-    let dropped =
-        a.filter_stages().iter().chain(b.filter_stages()).map(|stage| stage.removed).sum();
-    Ok((EitherQuery::new(mode).run(&a, &b, &Pose::identity())?, dropped))
+    let a = with_covariances(&case.cloud_a, &case.covariance_a)?;
+    let b = with_covariances(&case.cloud_b, &case.covariance_b)?;
+    let here = Pose::identity();
+    let dropped = |stages: [&[StageReport]; 2]| stages.concat().iter().map(|s| s.removed).sum();
+    Ok(match mode {
+        Mode::Calibrated => {
+            let settings = CloudSettings::new(SensorModel::PerPoint);
+            let (a, b) = (Cloud::prepare(&a, &settings)?, Cloud::prepare(&b, &settings)?);
+            let report = Query::new(QuerySettings::default())?.run(&a, &b, &here)?;
+            (report, dropped([a.filter_stages(), b.filter_stages()]))
+        }
+        Mode::Paper => {
+            let settings = PaperCloudSettings::new(SensorModel::PerPoint);
+            let (a, b) = (PaperCloud::prepare(&a, &settings)?, PaperCloud::prepare(&b, &settings)?);
+            let report = PaperQuery::new(PaperSettings::default())?.run(&a, &b, &here)?;
+            (report, dropped([a.filter_stages(), b.filter_stages()]))
+        }
+    })
 }
 
 fn of_mesh(case: &HardMesh, mode: Mode) -> Answer {
-    let (mesh, cloud) = (Mesh::prepare(&case.mesh)?, measured(&case.cloud, case.std, mode)?);
-    Ok((EitherQuery::new(mode).run(&cloud, &mesh, &Pose::identity())?, 0))
+    let cloud = PointCloud::from_points(case.cloud.clone());
+    let mesh = Mesh::prepare(&case.mesh)?;
+    let report = asker(&cloud, case.std, mode)?(&mesh, &Pose::identity())?;
+    Ok((report, 0))
 }
 
-fn prepare(points: &[Point3], matrices: &[Matrix3], mode: Mode) -> Result<EitherCloud> {
+fn with_covariances(points: &[Point3], matrices: &[Matrix3]) -> Result<PointCloud> {
     let covariances: Result<Vec<_>, _> = matrices.iter().map(Covariance::try_from_matrix).collect();
-    let cloud =
-        PointCloud { covariances: Some(covariances?), ..PointCloud::from_points(points.to_vec()) };
-    Ok(EitherCloud::prepare(&cloud, SensorModel::PerPoint, mode)?)
-}
-
-/// A cloud with the same noise everywhere, m.
-fn measured(points: &[Point3], std: f64, mode: Mode) -> Result<EitherCloud> {
-    let cloud = PointCloud::from_points(points.to_vec());
-    Ok(EitherCloud::prepare(&cloud, SensorModel::Isotropic { std }, mode)?)
+    Ok(PointCloud { covariances: Some(covariances?), ..PointCloud::from_points(points.to_vec()) })
 }
 
 fn row(name: String, truth: Option<bool>, [ours, paper]: &[Answer; 2]) -> Vec<String> {

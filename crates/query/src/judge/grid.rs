@@ -12,15 +12,20 @@ impl<const N: usize, const M: usize> Grid<'_, N, M> {
     /// Bilinear between the knots around a place, as at the border beyond it: continuous, and
     /// monotone where the values are.
     pub(super) fn at(&self, x: f64, y: f64) -> f64 {
-        let ((i, s), (j, t)) = (place(self.rows, x), place(self.columns, y));
+        let ((i, s), (j, t)) = (between_knots(self.rows, x), between_knots(self.columns, y));
         let along = |row: &[f64; M]| row[j] + t * (row[j + 1] - row[j]);
         let (low, high) = (along(&self.values[i]), along(&self.values[i + 1]));
         low + s * (high - low)
     }
 }
 
-/// The interval between two knots that a number falls in, and how far along it, from 0 to 1.
-fn place(knots: &[f64], x: f64) -> (usize, f64) {
+/// Between which two of ascending knots a number falls, by the index of the first, and how far along
+/// from it to the next, from 0 to 1; beyond the border as at the border. A [`Judge`](crate::Judge) reads
+/// its values so, and who fits one of their own has to.
+///
+/// # Panics
+/// With fewer than two knots.
+pub fn between_knots(knots: &[f64], x: f64) -> (usize, f64) {
     let last = knots.len() - 2;
     let i = knots.partition_point(|&knot| knot <= x).saturating_sub(1).min(last);
     let share = (x - knots[i]) / (knots[i + 1] - knots[i]);

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::SettingsError;
 
 use grid::Grid;
+pub use grid::between_knots;
 
 /// Deviations beyond this say no more than these, and no fewer below: what is looked for.
 pub(crate) const MOST_DEVIATIONS: f64 = 6.0;
