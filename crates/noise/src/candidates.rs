@@ -13,6 +13,8 @@ const TRIPLED: usize = 6;
 const VOTERS: usize = 19;
 /// A voter farther off than this many standard deviations counts as off the plane, however far.
 const CUT: f64 = 3.0;
+/// By so much at most an outlier costs more the farther it is.
+const TAIL: f64 = 0.1;
 /// A plane that misses the point itself costs as much as one that misses this many voters.
 const OWN_VOTES: f64 = 4.0;
 
@@ -71,16 +73,25 @@ fn disagreement(voters: &Patch, plane: &Plane, scale: f64, enough: f64) -> f64 {
     let (inverse, most) = (1.0 / variance, CUT * CUT);
     let floor = narrowness * voters.offsets.len() as f64;
     // The plane is to be the one the point is on, unless the point is far beyond its noise.
-    let mut cost = (plane.height * plane.height * inverse).min(OWN_VOTES * most);
+    let mut cost = capped(plane.height * plane.height * inverse, OWN_VOTES * most);
     for offset in voters.offsets {
         let residual = plane.normal.dot(offset) - plane.height;
-        cost += (residual * residual * inverse + narrowness).min(most);
+        cost += capped(residual * residual * inverse + narrowness, most);
         // Every term left is at least the narrowness, and all of them together at least `floor`.
         if cost + floor.min(0.0) >= enough {
             return f64::INFINITY;
         }
     }
     cost
+}
+
+/// The cost up to the cap, and hardly more beyond it.
+///
+/// Where samples are far sharper than their spacing every plane misses all voters but those it was
+/// laid through. Planes that cost the same to the last bit would be told apart by rounding, and the
+/// surface would jump when the cloud is moved.
+fn capped(cost: f64, most: f64) -> f64 {
+    if cost <= most { cost } else { most + TAIL * (cost - most) / cost }
 }
 
 /// The direction across two others; `None` when they are nearly parallel, which would leave a

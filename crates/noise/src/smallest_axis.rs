@@ -36,8 +36,10 @@ pub(crate) fn smallest_axis(matrix: &Matrix3) -> Option<Vector3> {
     (length > GAP * spread * spread).then(|| longest / length)
 }
 
-/// Least product of the two gaps, relative to the spread squared.
-const GAP: f64 = 1e-10;
+/// Least product of the two gaps, relative to the spread squared. Where two eigenvalues are equal the
+/// trigonometric formula leaves gaps of 1e-8, the root of the rounding: places on one line would get
+/// a plane, another one in each frame.
+const GAP: f64 = 1e-6;
 
 #[cfg(test)]
 mod tests {

@@ -85,7 +85,7 @@ pub(crate) fn fit_surface(patch: &Patch) -> Option<Surface> {
         {
             plane = refined;
             *trial = Some(surface);
-            if best.is_none_or(|b| surface.expected_error < b.expected_error) {
+            if best.is_none_or(|b| is_better(surface.expected_error, b.expected_error)) {
                 best = Some(surface);
             }
         }
@@ -96,6 +96,12 @@ pub(crate) fn fit_surface(patch: &Patch) -> Option<Surface> {
     let best = best?;
     let (disagreement, tilt) = disagreement(&best, &tried);
     Some(Surface { disagreement, tilt, ..best })
+}
+
+/// Less by more than rounding: errors that stand at the variance of the point itself differ by nothing
+/// else, and a choice among them would change when the cloud is moved.
+fn is_better(error: f64, than: f64) -> bool {
+    error < than * (1.0 - 1e-9)
 }
 
 /// What the sizes disagree about the height beyond their own errors, m², and about the normal, as the
@@ -316,7 +322,7 @@ fn measured(patch: &Patch, plane: &Plane) -> Option<Surface> {
     let mut best = (first.flat, first.flat_error);
     if let Some(second) = second
         && let Some(error) = second.curved_error
-        && error.expected() < best.1.expected()
+        && is_better(error.expected(), best.1.expected())
     {
         best = (second.curved, error);
     }
