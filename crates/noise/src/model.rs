@@ -10,6 +10,7 @@ use crate::neighborhoods::Neighborhoods;
 use crate::parallel::parallel;
 use crate::posterior::{disc, posterior};
 use crate::refined::{Bounds, Refined};
+use crate::representatives::Representatives;
 use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::settings::{Combination, NoiseSettings};
@@ -66,6 +67,35 @@ impl NoiseModel {
         spacing_cap: f64,
         scratch: &mut Scratch,
     ) -> Refined {
+        self.refined(index, neighborhoods, None, sensor, spacing_cap, scratch)
+    }
+
+    /// [`Self::refine`] of one of the points that stand for all: the surface is fitted to every point,
+    /// but the spacing, and the disc as wide as it, are those of the representatives.
+    ///
+    /// # Panics
+    /// When `index`, the representatives or the length of `sensor` do not belong to the cloud.
+    pub fn refine_representative(
+        &self,
+        index: usize,
+        neighborhoods: &Neighborhoods,
+        representatives: &Representatives,
+        sensor: &SensorNoise,
+        spacing_cap: f64,
+        scratch: &mut Scratch,
+    ) -> Refined {
+        self.refined(index, neighborhoods, Some(representatives), sensor, spacing_cap, scratch)
+    }
+
+    fn refined(
+        &self,
+        index: usize,
+        neighborhoods: &Neighborhoods,
+        representatives: Option<&Representatives>,
+        sensor: &SensorNoise,
+        spacing_cap: f64,
+        scratch: &mut Scratch,
+    ) -> Refined {
         let points = neighborhoods.points();
         assert_eq!(sensor.len(), points.len(), "one sensor covariance for each point");
         let count = match self.settings.combination {
@@ -94,8 +124,16 @@ impl NoiseModel {
             Combination::SurfacePosterior => {
                 let settings = &self.settings.posterior;
                 let disc = (settings.disc_std * spacing).powi(2);
-                posterior(index, neighborhoods, sensor, spacing_cap, settings, scratch)
-                    .unwrap_or_else(|| unfitted(sensor[index].sum(&Covariance::isotropic(disc))))
+                posterior(
+                    index,
+                    neighborhoods,
+                    representatives,
+                    sensor,
+                    spacing_cap,
+                    settings,
+                    scratch,
+                )
+                .unwrap_or_else(|| unfitted(sensor[index].sum(&Covariance::isotropic(disc))))
             }
         }
     }

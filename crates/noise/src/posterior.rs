@@ -6,10 +6,11 @@ use crate::neighborhoods::Neighborhoods;
 use crate::patch::Patch;
 use crate::posterior_settings::PosteriorSettings;
 use crate::refined::Refined;
+use crate::representatives::Representatives;
 use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::spacing::{SPACING_NEIGHBORS, spacing_around, spacing_of_rank};
-use crate::surface::{Surface, fit_surface};
+use crate::surface::{MOST_NEIGHBORS, Surface, fit_surface};
 use crate::wide::wide_surface;
 
 /// Where the noise is more than this many spacings the nearest neighbours are all noise.
@@ -29,6 +30,7 @@ const SAMPLE_OFFSET: f64 = 3.5;
 pub(crate) fn posterior(
     index: usize,
     neighborhoods: &Neighborhoods,
+    representatives: Option<&Representatives>,
     sensor: &SensorNoise,
     spacing_cap: f64,
     settings: &PosteriorSettings,
@@ -36,13 +38,24 @@ pub(crate) fn posterior(
 ) -> Option<Refined> {
     let points = neighborhoods.points();
     let around = spacing_around(&scratch.neighbors)?;
-    let is_noisy = sensor[index].max_std() > NOISY_SPACINGS * around;
-    let wide =
-        is_noisy.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
-    let Scratch { neighbors, patch, .. } = scratch;
+    let wide = is_noisy(&sensor[index], around)
+        .then(|| wide_surface(index, neighborhoods, sensor, around, scratch))
+        .flatten();
+    let Scratch { neighbors, patch, wide_neighbors, wide_patch } = scratch;
     let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
     let surface = wide.or_else(|| fit_surface(&patch))?;
-    let spacing = tangential_spacing(&patch, &surface)?.min(spacing_cap);
+    let spacing = match representatives {
+        None => tangential_spacing(&patch, &surface)?,
+        Some(kept) => {
+            kept.nearest_to_into(&points[index], 1 + MOST_NEIGHBORS, wide_neighbors);
+            let others = wide_neighbors.iter().filter(|near| points[near.index] != points[index]);
+            let others = wide_patch.patch(index, others, points, sensor, around);
+            // One alone stands for no more than its noise.
+            let alone = sensor[index].max_std();
+            tangential_spacing(&others, &surface).unwrap_or(alone)
+        }
+    }
+    .min(spacing_cap);
 
     let error = &settings.surface_error;
     let noise = sensor[index].variance_along(&surface.normal);
@@ -83,6 +96,12 @@ pub(crate) fn disc(
 ) -> Covariance {
     let along = variance.sqrt().hypot(settings.sampling_std * spacing);
     Covariance::from_axis(normal, along, across)
+}
+
+/// Whether the noise of a point exceeds the spacing about it so far that its nearest neighbours tell
+/// nothing of the surface.
+pub(crate) fn is_noisy(noise: &Covariance, spacing: f64) -> bool {
+    noise.max_std() > NOISY_SPACINGS * spacing
 }
 
 /// a/(a + b), and nothing of nothing.

@@ -17,7 +17,7 @@ pub(crate) struct Edge {
     pub ends: [Point3; 2],
     /// Half its length, m.
     pub half_length: f64,
-    /// Which points of the cloud these are.
+    /// Which pieces of the cloud these are.
     pub points: [u32; 2],
     /// Variances of the ends across the surface, m².
     pub across: [f64; 2],

@@ -65,7 +65,8 @@ impl Nearest<'_> {
     fn of(&mut self, index: u32) -> [u32; NEIGHBORS] {
         *self.known.entry(index).or_insert_with(|| {
             let mut nearest = [index; NEIGHBORS];
-            let found = self.cloud.neighborhoods.nearest(index as usize, NEIGHBORS);
+            let pieces = self.cloud.pieces.neighborhoods(&self.cloud.neighborhoods);
+            let found = pieces.nearest(index as usize, NEIGHBORS);
             for (slot, neighbor) in nearest.iter_mut().zip(found) {
                 *slot = neighbor.index as u32;
             }

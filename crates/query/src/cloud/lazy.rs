@@ -18,7 +18,7 @@ impl Prepared {
             computed = true;
             let Some(leaf) = self.tree.node(id) else { return Vec::new() };
             let mut scratch = Scratch::default();
-            let surfel = |&index: &u32| *self.surfel(index, &mut scratch);
+            let surfel = |&piece: &u32| *self.surfel(piece, &mut scratch);
             leaf.primitive_indices().iter().map(surfel).collect()
         });
         (surfels, computed)
@@ -27,27 +27,30 @@ impl Prepared {
     /// The surface at the points measured nearest to a place in the local frame.
     pub(crate) fn surfels_near(&self, place: &Point3, count: usize) -> Vec<Surfel> {
         let mut scratch = Scratch::default();
-        let nearest = self.neighborhoods.nearest_to(place, count);
+        let nearest = self.pieces.neighborhoods(&self.neighborhoods).nearest_to(place, count);
         nearest.iter().map(|near| *self.surfel(near.index as u32, &mut scratch)).collect()
     }
 
-    /// The surface at one point.
-    pub(super) fn surfel(&self, index: u32, scratch: &mut Scratch) -> &Surfel {
-        let place = index as usize;
-        self.surface.surfels[place].get_or_init(|| {
-            let cap = self.surface.spacing_caps[place];
+    /// The surface at one piece.
+    pub(super) fn surfel(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
+        self.surface.surfels[piece as usize].get_or_init(|| {
+            let index = self.pieces.index(piece);
+            let cap = self.surface.spacing_caps[piece as usize];
             let near = &self.neighborhoods;
-            let refined = match self.normals.as_ref().map(|normals| normals[place]) {
+            let refined = match self.normals.as_ref().map(|normals| normals[index]) {
                 Some(normal) => {
-                    let sensor = &self.sensor[place];
-                    self.noise.with_normal(place, normal, near, sensor, cap, scratch)
+                    let sensor = &self.sensor[index];
+                    self.noise.with_normal(index, normal, near, sensor, cap, scratch)
                 }
-                None => self.noise.refine(place, near, &self.sensor, cap, scratch),
+                None => {
+                    let measured = (&self.noise, near, &self.sensor);
+                    self.pieces.refine(piece, measured, cap, scratch)
+                }
             };
             let (point, spacing) = (refined.point, refined.spacing);
             let normal = refined.normal.map(UnitVector3::into_inner);
             let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
-            Box::new(Surfel { index, point, spacing, most_variance, normal })
+            Box::new(Surfel { index: index as u32, point, spacing, most_variance, normal })
         })
     }
 }

@@ -5,6 +5,7 @@ mod accessors;
 mod edge;
 mod join;
 mod lazy;
+mod pieces;
 mod prepare;
 mod prepared;
 mod refine;

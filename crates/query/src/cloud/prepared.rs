@@ -14,6 +14,7 @@ use crate::filter::{FilterSettings, StageReport, filter};
 use crate::range::check_points;
 
 use super::edge::DISC_SPACINGS;
+use super::pieces::Pieces;
 use super::slots::LazySurface;
 use super::view::SingleView;
 
@@ -53,6 +54,7 @@ pub(crate) struct Prepared {
     stages: Vec<StageReport>,
     /// The points kept by the filter, in the local frame, and which are near which.
     pub(super) neighborhoods: Neighborhoods,
+    pub(super) pieces: Pieces,
     pub(super) noise: NoiseModel,
     pub(super) tree: Tree,
     pub(super) surface: LazySurface,
@@ -96,25 +98,30 @@ impl Prepared {
         let origin = nalgebra::center(&low, &high).coords;
         let points: Vec<Point3> = kept.points.iter().map(|p| p - origin).collect();
         let neighborhoods = Neighborhoods::try_new(points)?;
-        let primitives = neighborhoods
-            .points()
-            .iter()
-            .zip(sensor.iter())
-            .enumerate()
-            .map(|(index, (&mean, &covariance))| Primitive::Point {
-                point: UncertainPoint { mean, covariance },
-                weight: weigh(&neighborhoods, index),
-            })
-            .collect();
+        // A surface that is known needs no others to be told from, and one point is as good as the next.
+        let is_fitted = by.noise.combination == Combination::SurfacePosterior && normals.is_none();
+        let pieces = match is_fitted {
+            true => Pieces::chosen(&neighborhoods, &sensor)?,
+            false => Pieces::all(),
+        };
+        let primitive = |index: usize| Primitive::Point {
+            point: UncertainPoint {
+                mean: neighborhoods.points()[index],
+                covariance: sensor[index],
+            },
+            weight: weigh(&neighborhoods, index),
+        };
+        let indices = pieces.indices(&neighborhoods);
+        let primitives = indices.iter().map(|&index| primitive(index)).collect();
         let mut tree = Tree::build(primitives, by.tree)?;
         let noise = NoiseModel::try_new(by.noise)?;
-        let surface = LazySurface::new(&tree, sensor.len());
+        let surface = LazySurface::new(&tree, indices.len());
         tree.set_leaf_bounds(|leaf| {
             let cap = surface.spacing_cap(leaf);
             let reach = DISC_SPACINGS * cap;
             let mut bounds = LeafBounds { std: 0.0, shift: 0.0, reach };
-            for &index in leaf.primitive_indices() {
-                let point = noise.bounds(&sensor[index as usize], cap);
+            for &piece in leaf.primitive_indices() {
+                let point = noise.bounds(&sensor[indices[piece as usize]], cap);
                 bounds.std = bounds.std.max(point.std);
                 bounds.shift = bounds.shift.max(point.shift);
             }
@@ -137,6 +144,7 @@ impl Prepared {
             rows: filtered.rows,
             stages,
             neighborhoods,
+            pieces,
             noise,
             tree,
             surface,

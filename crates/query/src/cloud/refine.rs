@@ -26,15 +26,16 @@ impl Prepared {
         leaves.par_iter().for_each(|&leaf| {
             self.leaf_edges(leaf);
         });
-        let mut extents = vec![Covariance::zero(); self.len()];
-        for &leaf in &leaves {
-            for (surfel, edges) in self.leaf(leaf).0.iter().zip(self.near_halves(leaf)) {
-                extents[surfel.index as usize] = extent(surfel, edges);
+        let mut extents = vec![Covariance::zero(); self.surface.surfels.len()];
+        for leaf in self.tree.leaves() {
+            let surfels = self.leaf(leaf.id()).0.iter().zip(self.near_halves(leaf.id()));
+            for (&piece, (surfel, edges)) in leaf.primitive_indices().iter().zip(surfels) {
+                extents[piece as usize] = extent(surfel, edges);
             }
         }
         let mut scratch = Scratch::default();
-        let primitives: Vec<Primitive> = (0..self.len() as u32)
-            .map(|index| Primitive::point(self.surfel(index, &mut scratch).point))
+        let primitives: Vec<Primitive> = (0..self.surface.surfels.len() as u32)
+            .map(|piece| Primitive::point(self.surfel(piece, &mut scratch).point))
             .collect();
         self.tree.refit(&primitives)?;
         self.tree.set_extents(extents)?;

@@ -10,20 +10,20 @@ use super::surfel::Surfel;
 /// Points that a spacing is told from, at most.
 const REGION_POINTS: usize = 40;
 
-/// One slot per point, and per tree node, of which only those of leaves are ever filled. Each is a
+/// One slot per piece, and per tree node, of which only those of leaves are ever filled. Each is a
 /// pure function of the cloud, so it does not matter which thread fills it.
 #[derive(Debug)]
 pub(super) struct LazySurface {
     pub surfels: Vec<OnceLock<Box<Surfel>>>,
     pub leaves: Vec<OnceLock<Vec<Surfel>>>,
     pub edges: Vec<OnceLock<Vec<Edge>>>,
-    /// What the spacing of each point is limited to, m.
+    /// What the spacing of each of them is limited to, m.
     pub spacing_caps: Vec<f64>,
 }
 
 impl LazySurface {
-    pub(super) fn new(tree: &Tree, points: usize) -> Self {
-        let mut spacing_caps = vec![0.0; points];
+    pub(super) fn new(tree: &Tree, pieces: usize) -> Self {
+        let mut spacing_caps = vec![0.0; pieces];
         for leaf in tree.leaves() {
             let cap = spacing_cap(tree, leaf);
             for &index in leaf.primitive_indices() {
@@ -31,7 +31,7 @@ impl LazySurface {
             }
         }
         Self {
-            surfels: slots(points),
+            surfels: slots(pieces),
             leaves: slots(tree.node_slots()),
             edges: slots(tree.node_slots()),
             spacing_caps,

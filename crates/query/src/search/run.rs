@@ -209,7 +209,8 @@ mod tests {
         let leaves = cloud.tree().leaves().map(|leaf| leaf.id());
         let surfels = leaves.flat_map(|id| cloud.leaf(id).0.to_vec());
         let motion = Motion::from(a_from_cloud);
-        let indices: Vec<u32> = (0..cloud.len() as u32).collect();
+        let indices: Vec<u32> =
+            cloud.tree().leaves().flat_map(|leaf| leaf.primitive_indices().to_vec()).collect();
         let edges = edges_of(cloud.prepared(), &indices);
         (
             surfels.map(|s| s.moved(&motion)).collect(),

@@ -1,0 +1,107 @@
+//! A few points stand for all where samples are far denser than their noise, and only there.
+
+mod common;
+
+use cloudtouch_geom::{Covariance, Matrix3, Point3, Vector3};
+use cloudtouch_noise::{
+    Neighborhoods, NoiseModel, NoiseSettings, Representatives, Scratch, SensorNoise,
+};
+use common::{noisy, sphere};
+use proptest::prelude::*;
+
+/// A ball of 5 cm with a sample every 2.8 mm.
+fn ball(std: f64, stream: u64) -> Vec<Point3> {
+    noisy(&sphere(0.05, 0.0028, stream).points, std, stream + 1)
+}
+
+fn chosen(points: &[Point3], std: f64) -> Option<Vec<Point3>> {
+    let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
+    let cloud = Neighborhoods::try_new(points.to_vec()).unwrap();
+    let chosen = Representatives::choose(&cloud, &noise).unwrap()?;
+    Some(chosen.indices().iter().map(|&index| points[index as usize]).collect())
+}
+
+#[test]
+fn samples_sharper_than_their_spacing_all_stand_for_themselves() {
+    for std in [0.0, 0.001, 0.003] {
+        assert_eq!(chosen(&ball(std, 1), std), None, "{std}");
+    }
+}
+
+#[test]
+fn no_point_is_farther_than_its_noise_from_one_that_stands_for_it() {
+    let std = 0.015;
+    let points = ball(std, 2);
+    let chosen = chosen(&points, std).unwrap();
+    assert!(3 * chosen.len() < points.len(), "{} of {}", chosen.len(), points.len());
+    for point in &points {
+        assert!(chosen.iter().any(|near| (near - point).norm() <= std), "{point}");
+    }
+}
+
+#[test]
+fn a_sharp_point_is_not_stood_for_by_a_noisy_one() {
+    let std = 0.015;
+    let points = ball(std, 3);
+    let sharp = |index: usize| index % 50 == 0;
+    let of = |index| Covariance::isotropic(if sharp(index) { 1e-8 } else { std * std });
+    let noise: SensorNoise = (0..points.len()).map(of).collect::<Vec<_>>().into();
+    let count = points.len();
+    let cloud = Neighborhoods::try_new(points).unwrap();
+    let chosen = Representatives::choose(&cloud, &noise).unwrap().unwrap();
+    for index in (0..count).filter(|&index| sharp(index)) {
+        assert!(chosen.indices().contains(&(index as u32)), "{index}");
+    }
+}
+
+#[test]
+fn discs_are_as_wide_as_the_spacing_of_what_was_chosen() {
+    let std = 0.015;
+    let points = ball(std, 4);
+    let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
+    let cloud = Neighborhoods::try_new(points).unwrap();
+    let chosen = Representatives::choose(&cloud, &noise).unwrap().unwrap();
+    let model = NoiseModel::try_new(NoiseSettings::default()).unwrap();
+    let mut scratch = Scratch::default();
+    let mut wider = 0;
+    for &index in chosen.indices() {
+        let index = index as usize;
+        let alone = model.refine(index, &cloud, &noise, f64::INFINITY, &mut scratch);
+        let for_all = model.refine_representative(
+            index,
+            &cloud,
+            &chosen,
+            &noise,
+            f64::INFINITY,
+            &mut scratch,
+        );
+        assert_eq!(alone.point.mean, for_all.point.mean, "the surface is that of all points");
+        wider += usize::from(for_all.spacing > 1.2 * alone.spacing);
+    }
+    let count = chosen.indices().len();
+    assert!(10 * wider > 9 * count, "{wider} of {count}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_choice_depends_on_neither_frame_nor_order(
+        seed in any::<u32>(),
+        std in 0.01..0.03_f64,
+        offset in prop::array::uniform3(-5.0..5.0_f64),
+    ) {
+        let points = ball(std, seed.into());
+        // Exchanged axes, moved, backwards.
+        let turn = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0);
+        let moved: Vec<Point3> =
+            points.iter().rev().map(|p| turn * p + Vector3::from(offset)).collect();
+        let here = chosen(&points, std).unwrap();
+        let mut there = chosen(&moved, std).unwrap();
+        there.reverse();
+        prop_assert_eq!(here.len(), there.len());
+        for (p, q) in here.iter().zip(&there) {
+            prop_assert!((turn * p + Vector3::from(offset) - q).norm() < 1e-12);
+        }
+    }
+}
