@@ -13,20 +13,11 @@ use cloudtouch_evaluation::sweep;
 
 use crate::{fixtures, tidy};
 
-/// Not published, so not packaged.
-const UNPUBLISHED: [&str; 5] = [
-    "cloudtouch-testkit",
-    "cloudtouch-evaluation",
-    "cloudtouch-fuzzing",
-    "cloudtouch-benches",
-    "xtask",
-];
-
 /// Runs every step. Tests come last, and the last line sums them up.
 pub(crate) fn run(root: &Path) -> Result<()> {
     step("fmt", "cargo fmt --all -- --check", || cargo(root, "fmt --all -- --check"))?;
     step("tidy", "cargo xtask tidy", || tidy::run(root))?;
-    step("fixtures", "cargo xtask fixtures --check", || fixtures::check(root))?;
+    step("fixtures", "cargo xtask fixtures --check", || fixtures::run(root, true))?;
     // The lock file holds: what is checked is what was committed, and no network is needed.
     let clippy = "clippy --locked --workspace --all-targets -- -D warnings";
     step("clippy", &format!("cargo {clippy}"), || cargo(root, clippy))?;
@@ -37,7 +28,8 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     })?;
     let benches = "check --locked --package cloudtouch-benches --benches";
     step("benches", &format!("cargo {benches}"), || cargo(root, benches))?;
-    let exclude: String = UNPUBLISHED.iter().map(|name| format!(" --exclude {name}")).collect();
+    let exclude: String =
+        tidy::unpublished(root)?.iter().map(|name| format!(" --exclude {name}")).collect();
     let package = format!("package --locked --workspace{exclude} --allow-dirty --no-verify");
     step("package", &format!("cargo {package}"), || cargo(root, &package))?;
     step("sweep", "cargo xtask sweep --short", sweep::check)?;

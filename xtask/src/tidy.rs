@@ -20,6 +20,13 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     bail!("{} violations\n  {}", violations.len(), violations.join("\n  "))
 }
 
+/// The members that do not go to the registry.
+pub(crate) fn unpublished(root: &Path) -> Result<Vec<String>> {
+    let mut manifests = manifest::read_all(root)?;
+    manifests.retain(|manifest| !manifest.is_published());
+    Ok(manifests.iter().map(|manifest| manifest.name().to_owned()).collect())
+}
+
 fn violations(root: &Path) -> Result<Vec<String>> {
     let manifests = manifest::read_all(root)?;
     let mut found = layers::check(&manifests);

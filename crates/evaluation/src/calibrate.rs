@@ -1,6 +1,6 @@
 //! `cargo xtask calibrate`: the surfaces that turn evidence into a probability.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeMap, path::Path};
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -38,9 +38,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let gathering = |ours: Ours| Asked::always(ours.gathering_everything());
     let methods = [gathering(Ours::new(OURS)?), gathering(Ours::oracle(ORACLE)?)];
     let answers = ask(&Plan::evidence(draws, poses), &methods)?;
-    let folder = root.join("target/sweep");
-    fs::create_dir_all(&folder)?;
-    answers.write(&folder.join("evidence.jsonl"))?;
     let without_each = |method: &str| -> Result<BTreeMap<String, Judge>> {
         let without =
             |family: &'static str| Ok((family.to_owned(), fit(&answers, method, Some(family))?));
@@ -58,11 +55,12 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
 
 /// Fitted on all families but one, on clouds and on meshes alike.
 fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> {
-    let said = answers.said(method).with_context(|| format!("{method} did not answer"))?;
+    let method = answers.index(method).with_context(|| format!("{method} did not answer"))?;
     let mut records: Vec<(ContactEvidence, bool)> = Vec::new();
-    for (question, said) in answers.questions.iter().zip(said) {
+    for (question, said) in &answers.rows {
         if without != Some(question.family) {
-            let evidence = said.and_then(|s| s.evidence).context("an answer without evidence")?;
+            let evidence =
+                said[method].and_then(|s| s.evidence).context("an answer without evidence")?;
             records.push((evidence, question.collides));
         }
     }

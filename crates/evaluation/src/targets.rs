@@ -63,8 +63,11 @@ pub fn section(targets: &[Target]) -> Section {
     Section::new("Targets").text(format_args!("{met} of {} are met.", targets.len())).text(table)
 }
 
-/// Writes a page of all targets, a note on them, and what the parts found, which are measured one
-/// after the other.
+/// A part of a report: its name, and what measures it.
+pub type Part<'a> = (&'static str, &'a (dyn Fn() -> Findings + Sync));
+
+/// Measures the parts one after the other, and writes a page of all targets, a note on them, and
+/// what was found.
 ///
 /// # Errors
 /// When a part cannot be measured or the page not be written.
@@ -72,11 +75,11 @@ pub fn report(
     mut page: Page,
     folder: &Path,
     note: &str,
-    parts: impl IntoIterator<Item = (&'static str, Findings)>,
+    parts: &[Part<'_>],
 ) -> Result<Vec<Target>> {
     let (mut sections, mut targets) = (Vec::new(), Vec::new());
-    for (name, found) in parts {
-        let (section, of_part) = found.with_context(|| format!("measure {name}"))?;
+    for (name, measure) in parts {
+        let (section, of_part) = measure().with_context(|| format!("measure {name}"))?;
         eprintln!("{name} done");
         sections.push(section);
         targets.extend(of_part);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use anyhow::{Result, anyhow};
 use plotters::{coord::Shift, element::PointCollection, prelude::*};
 
-use super::{Axis, Figure, GREY, Kind, Panel, Place};
+use super::{Axis, Figure, GREY, Panel, Place};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -76,8 +76,8 @@ fn looks(figure: &Figure) -> Vec<Look<'_>> {
             looks.push(Look { name, number, color, line: false, points: false });
             number
         });
-        looks[at].points |= matches!(series.kind, Kind::Points | Kind::Curve);
-        looks[at].line |= series.kind != Kind::Points;
+        looks[at].points |= series.points;
+        looks[at].line |= series.line || series.fill.is_some();
     }
     looks
 }
@@ -117,16 +117,15 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
             let places = mark.iter().map(|&(x, y)| (panel.x.place(x), panel.y.place(y)));
             let places: Vec<Place> =
                 places.filter(|place| place.0.is_finite() && place.1.is_finite()).collect();
-            if matches!(series.kind, Kind::Area | Kind::Band) {
-                let opacity = if series.kind == Kind::Band { 0.25 } else { 1.0 };
+            if let Some(opacity) = series.fill {
                 let area = Polygon::new(places.clone(), color.mix(opacity));
                 chart.draw_series([area]).map_err(failed)?;
             }
-            if matches!(series.kind, Kind::Line | Kind::Curve) {
+            if series.line {
                 let line = PathElement::new(places.clone(), color.stroke_width(2));
                 chart.draw_series([line]).map_err(failed)?;
             }
-            if matches!(series.kind, Kind::Points | Kind::Curve) {
+            if series.points {
                 let marker = |at| marker(number, at, series.size, color.mix(0.8).filled());
                 chart.draw_series(places.into_iter().map(marker)).map_err(failed)?;
             }
@@ -192,16 +191,12 @@ impl Axis {
         }
     }
 
-    /// What stands at a place, without digits that say nothing.
+    /// What stands at a place, without digits that say nothing; never −0.
     fn label(&self, place: f64) -> String {
         let value = if self.is_log { 10_f64.powf(place) } else { place };
-        let digits = if self.is_log { (1.0 - place.floor()).clamp(0.0, 9.0) as usize } else { 4 };
-        let text = format!("{value:.digits$}");
-        let text = match text.split_once('.') {
-            Some(_) => text.trim_end_matches('0').trim_end_matches('.'),
-            None => &text,
-        };
-        if text == "-0" { "0".to_owned() } else { text.to_owned() }
+        let digits = if self.is_log { (1.0 - place.floor()).clamp(0.0, 9.0) } else { 4.0 };
+        let scale = 10_f64.powf(digits);
+        format!("{}", (value * scale).round() / scale + 0.0)
     }
 }
 

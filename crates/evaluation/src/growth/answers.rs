@@ -68,12 +68,12 @@ fn of_draw(
         &Boxes { side: 0.01 },
         &Distance { smoothed: false },
     ];
-    let prepared: Vec<Box<dyn Prepared>> =
+    let prepared: Vec<Prepared> =
         methods.into_iter().map(|method| method.prepare(&draw)).collect::<Result<_>>()?;
     let all = |pose: &Pose| {
         let mut all = [0.0; METHODS.len()];
         for (said, method) in all.iter_mut().zip(&prepared) {
-            let answer = method.ask(Pair::CloudMesh, pose)?.context("no answer about a mesh")?;
+            let answer = method(Pair::CloudMesh, pose)?.context("no answer about a mesh")?;
             // A score above 0: a box that touches, a point inside.
             *said = answer.probability.unwrap_or(f64::from(u8::from(answer.score > 0.0)));
         }

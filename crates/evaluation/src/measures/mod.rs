@@ -7,7 +7,7 @@ mod rank;
 mod sample;
 mod surface;
 
-pub use bootstrap::{Clusters, Estimate, Replicates};
+pub use bootstrap::{Clusters, Estimate};
 pub use calibration::{Bin, brier, calibration_error, chance_error, observed_within, reliability};
 pub use logistic::Logistic;
 pub use rank::{auc, false_stops};

@@ -25,7 +25,8 @@ pub(super) fn measure(scene: &Scene) -> Findings {
     let room = prepare(&scene.room(POINTS, STD).cloud, STD)?.refined()?;
     let piano = prepare(&scene.piano(STD).cloud, STD)?.refined()?;
     let query = Query::new(QuerySettings::default())?;
-    let poses: Vec<Pose> = scene.poses.iter().map(|p| p.pose).cycle().take(POSES).collect();
+    let poses: Vec<Pose> =
+        scene.poses.iter().map(|p| p.scene_from_object).cycle().take(POSES).collect();
     let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).build();
     let pools = [pool(1).context("start a thread")?, pool(2).context("start threads")?];
     let mut seconds = [0.0; 2];

@@ -47,10 +47,10 @@ pub(super) fn first_query(scene: &Scene) -> Findings {
     let (room, piano) = (scene.room(POINTS, STD), scene.piano(STD));
     let query = Query::new(QuerySettings::default())?;
     let mut parts = [const { Vec::new() }; 3];
-    for posed in scene.of(Class::Near) {
+    for pose in scene.of(Class::Near) {
         let both = || Ok((prepare(&room.cloud, STD)?, prepare(&piano.cloud, STD)?));
         let ((a, b), preparing) = timed(both)?;
-        let (_, asking) = timed(|| Ok(query.run(&a, &b, &posed.pose)?))?;
+        let (_, asking) = timed(|| Ok(query.run(&a, &b, &pose.scene_from_object)?))?;
         for (list, value) in parts.iter_mut().zip([preparing, asking, preparing + asking]) {
             list.push(value);
         }

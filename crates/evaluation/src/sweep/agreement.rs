@@ -1,8 +1,10 @@
 //! Whether families agree on what the same evidence means.
 
+use cloudtouch_testkit::family::Kind;
+
 use super::{OURS, judged::Judged, tables::Answered};
 use crate::{
-    answers::{Kind, Pair, Question},
+    answers::{Pair, Question},
     measures::Logistic,
     page::Section,
     table::Table,
@@ -19,8 +21,8 @@ pub(super) fn section(answered: &Answered<'_>) -> Section {
         for pair in Pair::ALL {
             let keep =
                 |q: &Question| q.family == family && Answered::is_of(pair, Kind::Ordinary)(q);
-            if let Some([shift, slope]) = fit(answered, keep) {
-                let numbers = [slope, shift].map(|number| format!("{number:.2}"));
+            if let Some(fitted) = fit(answered, keep) {
+                let numbers = [fitted.slope, fitted.intercept].map(|number| format!("{number:.2}"));
                 table.row([family, pair.name()].map(String::from).into_iter().chain(numbers));
             }
         }
@@ -29,14 +31,13 @@ pub(super) fn section(answered: &Answered<'_>) -> Section {
 }
 
 /// `None` where there are no answers, or all alike.
-fn fit(answered: &Answered<'_>, keep: impl Fn(&Question) -> bool + Copy) -> Option<[f64; 2]> {
+fn fit(answered: &Answered<'_>, keep: impl Fn(&Question) -> bool + Copy) -> Option<Logistic> {
     /// Odds beyond this are as good as certain, and single answers there would settle the fit.
     const MOST: f64 = 6.0;
     let judged = Judged::pick(answered.answers, &[OURS], keep);
     let log_odds = |p: f64| (p / (1.0 - p)).ln().clamp(-MOST, MOST);
-    let rows: Option<Vec<Vec<f64>>> =
-        judged.said(OURS).iter().map(|said| Some(vec![log_odds(said.probability?)])).collect();
+    let stated: Option<Vec<f64>> =
+        judged.said(OURS).iter().map(|said| Some(log_odds(said.probability?))).collect();
     let truths: Vec<bool> = judged.questions().iter().map(|q| q.collides).collect();
-    let fitted = Logistic::fit(&rows?, &truths).ok()?;
-    fitted.coefficients.try_into().ok()
+    Logistic::fit(&stated?, &truths).ok()
 }

@@ -1,8 +1,10 @@
 //! The figures of the pages.
 
+use cloudtouch_testkit::family::Kind;
+
 use super::{ORACLE, OURS, judged::Judged, tables::Answered};
 use crate::{
-    answers::{Kind, Pair, Question},
+    answers::{Pair, Question},
     figure::{Axis, Figure, Panel, Series},
     measures::reliability,
 };
@@ -18,7 +20,7 @@ pub(super) fn reliability_figure(answered: &Answered<'_>) -> Figure {
             [("ordinary scenes", Kind::Ordinary), ("adversarial scenes", Kind::Adversarial)];
         for (name, kind) in kinds {
             let judged = Judged::pick(answered.answers, &[OURS], Answered::is_of(pair, kind));
-            let bins = judged.sample(OURS).map(reliability).unwrap_or_default();
+            let bins = reliability(judged.sample(OURS));
             series.push(Series::curve(name, bins.iter().map(|b| (b.mean, b.observed))));
         }
         let (x, y) = (Axis::unit("stated probability"), Axis::unit("share that collides"));

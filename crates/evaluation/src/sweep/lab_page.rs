@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use cloudtouch_testkit::family::Kind;
+
 use super::{agreement, figures, plan::SEED, tables::Answered, targets};
 use crate::{
-    answers::{Kind, Pair},
+    answers::Pair,
     page::{Page, Section},
 };
 

@@ -21,7 +21,7 @@ use anyhow::Result;
 use clap::Args;
 
 pub use ask::{Asked, ask};
-pub use judged::{Judged, Measured};
+pub use judged::Judged;
 pub use plan::{GEOMETRY, ORACLE, OURS, Plan, SEED};
 pub use scenes::Scenes;
 pub use short::run as check;
@@ -67,8 +67,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let mut answers = ask(&plan, &methods()?)?;
     grade::grade(&mut answers)?;
     let folder = page::folder(root, update_docs);
-    std::fs::create_dir_all(root.join("target/lab"))?;
-    answers.write(&root.join("target/lab/answers.jsonl"))?;
     let answered = Answered::new(&answers);
     let arguments = format!("--draws {draws} --poses {poses} --update-docs");
     let bounds = bounds::section()?;

@@ -1,22 +1,13 @@
 //! The answers by kind of pair, kind of scene, family and noise, as rows of tables.
 
-use cloudtouch_testkit::poses::NEAR;
+use cloudtouch_testkit::{family::Kind, poses::NEAR};
 
 use super::{GEOMETRY, ORACLE, OURS, judged::Judged, plan::STDS};
 use crate::{
-    answers::{Answers, Kind, Pair, Question},
+    answers::{Answers, Pair, Question},
     measures::{Estimate, Measure},
     table::Table,
 };
-
-/// Measured of all poses of a group; AUC also of those near contact.
-const MEASURES: [Measure; 5] = [
-    Measure::Auc,
-    Measure::Brier,
-    Measure::CalibrationError,
-    Measure::FalseStops(0.01),
-    Measure::FalseStops(0.05),
-];
 
 /// All answers of a sweep, with what tables ask of them.
 pub(super) struct Answered<'a> {
@@ -31,14 +22,9 @@ pub(super) fn is_near(question: &Question) -> bool {
     question.signed_distance.abs() < NEAR
 }
 
-/// An estimate, or a dash.
-pub(super) fn shown(estimate: Option<Estimate>) -> String {
-    estimate.map_or("–".into(), |e| e.to_string())
-}
-
 impl<'a> Answered<'a> {
     pub(super) fn new(answers: &'a Answers) -> Self {
-        let mut alternatives = answers.names();
+        let mut alternatives: Vec<&str> = answers.methods.iter().map(String::as_str).collect();
         alternatives.retain(|name| ![OURS, ORACLE, GEOMETRY].contains(name));
         Self { answers, alternatives }
     }
@@ -60,10 +46,10 @@ impl<'a> Answered<'a> {
         let mut table = Table::new(
             header("method").into_iter().chain(["AUC minus ours", "query (ms)"].map(String::from)),
         );
-        for name in self.answers.names() {
+        for name in &self.answers.methods {
             let mut row = self.row(name, name, keep);
             let judged = Judged::pick(self.answers, &[name, OURS], keep);
-            row.push(judged.measure(&[Measure::Auc]).compared(name, OURS, Measure::Auc));
+            row.push(judged.compared(name, OURS, Measure::Auc));
             let dense = |q: &Question| keep(q) && q.condition.points == 10_000;
             let judged = Judged::pick(self.answers, &[name], dense);
             row.push(format!("{:.2}", judged.query_ms(name, 0.5)));
@@ -85,7 +71,7 @@ impl<'a> Answered<'a> {
                 let is_hard = kind == Kind::Adversarial;
                 let name = if is_hard { format!("({family})") } else { family.to_owned() };
                 let mut row = self.row(&name, OURS, keep);
-                row.push(self.auc(ORACLE, keep));
+                row.push(self.auc(ORACLE, keep).to_string());
                 table.row(row);
             }
         }
@@ -102,7 +88,7 @@ impl<'a> Answered<'a> {
             let name = format!("{} mm", 1e3 * std);
             let mut row = self.row(&name, OURS, keep);
             let (best, auc) = self.best_alternative(keep);
-            row.extend([self.auc(ORACLE, keep), best.to_owned(), shown(auc)]);
+            row.extend([self.auc(ORACLE, keep).to_string(), best.to_owned(), auc]);
             table.row(row);
         }
         table
@@ -112,16 +98,12 @@ impl<'a> Answered<'a> {
     pub(super) fn best_alternative(
         &self,
         keep: impl Fn(&Question) -> bool + Copy,
-    ) -> (&'a str, Option<Estimate>) {
-        let auc = |name: &'a str| {
-            let judged = Judged::pick(self.answers, &[name], keep);
-            (name, judged.measure(&[Measure::Auc]).estimate(name, Measure::Auc))
-        };
-        let value = |e: &Option<Estimate>| e.map_or(f64::NEG_INFINITY, |e| e.value);
-        let all = self.alternatives.iter().map(|name| auc(name));
-        all.filter(|(_, e)| e.is_some_and(|e| !e.value.is_nan()))
-            .max_by(|(_, a), (_, b)| value(a).total_cmp(&value(b)))
-            .unwrap_or(("none", None))
+    ) -> (&'a str, String) {
+        let all = self.alternatives.iter().map(|&name| (name, self.auc(name, keep)));
+        let best = all
+            .filter(|(_, auc)| !auc.value.is_nan())
+            .max_by(|(_, a), (_, b)| a.value.total_cmp(&b.value));
+        best.map_or(("none", "–".into()), |(name, auc)| (name, auc.to_string()))
     }
 
     fn row(
@@ -130,26 +112,24 @@ impl<'a> Answered<'a> {
         method: &'a str,
         keep: impl Fn(&Question) -> bool + Copy,
     ) -> Vec<String> {
-        let all = Judged::pick(self.answers, &[method], keep);
-        let measured = all.measure(&MEASURES);
-        let of = |measure| shown(measured.estimate(method, measure));
-        let chance = all.chance_error(method);
-        let error = measured.estimate(method, Measure::CalibrationError);
-        let error = error.filter(|e| !e.value.is_nan());
+        let judged = Judged::pick(self.answers, &[method], keep);
+        let of = |measure| judged.estimate(method, measure).to_string();
+        let error = judged.estimate(method, Measure::CalibrationError).value;
+        let by_chance = || format!("{error:.3} ({:.3})", judged.chance_error(method));
         vec![
             name.to_owned(),
             of(Measure::Auc),
-            self.auc(method, |q| keep(q) && is_near(q)),
+            self.auc(method, |q| keep(q) && is_near(q)).to_string(),
             of(Measure::Brier),
-            error.map_or("–".into(), |e| format!("{:.3} ({chance:.3})", e.value)),
+            if error.is_nan() { "–".into() } else { by_chance() },
             of(Measure::FalseStops(0.01)),
             of(Measure::FalseStops(0.05)),
         ]
     }
 
-    fn auc(&self, method: &'a str, keep: impl Fn(&Question) -> bool) -> String {
-        let judged = Judged::pick(self.answers, &[method], keep);
-        shown(judged.measure(&[Measure::Auc]).estimate(method, Measure::Auc))
+    /// The AUC of a method on the questions it answered.
+    pub(super) fn auc(&self, method: &'a str, keep: impl Fn(&Question) -> bool) -> Estimate {
+        Judged::pick(self.answers, &[method], keep).estimate(method, Measure::Auc)
     }
 }
 

@@ -1,36 +1,32 @@
 //! What is aimed at on ordinary scenes, and whether it is reached.
 
+use cloudtouch_testkit::family::Kind;
+
 use super::{
     ORACLE, OURS,
     judged::Judged,
     plan::STDS,
-    tables::{Answered, is_near, shown},
+    tables::{Answered, is_near},
 };
 use crate::{
-    answers::{Kind, Pair, Question},
+    answers::{Pair, Question},
     measures::{Bin, Measure, observed_within},
     page::Section,
     targets::{self, Target},
 };
 
-/// A number that should be reached on the ordinary families together.
-struct Limit {
-    pair: Pair,
-    near: bool,
-    measure: Measure,
-    limit: f64,
-    /// Only noise up to this counts, m.
-    up_to: f64,
-}
+/// What should be reached on the ordinary families together: of which pair, whether only near
+/// contact, the measure, its limit, and up to which noise, m.
+type Limit = (Pair, bool, Measure, f64, f64);
 
 const LIMITS: [Limit; 7] = [
-    limit(Pair::CloudCloud, false, Measure::Auc, 0.96, 0.02),
-    limit(Pair::CloudCloud, true, Measure::Auc, 0.86, 0.02),
-    limit(Pair::CloudCloud, false, Measure::Brier, 0.08, 0.02),
-    limit(Pair::CloudCloud, false, Measure::CalibrationError, 0.03, 0.02),
-    limit(Pair::CloudMesh, false, Measure::Auc, 0.98, 0.01),
-    limit(Pair::CloudMesh, true, Measure::Auc, 0.94, 0.01),
-    limit(Pair::CloudMesh, false, Measure::CalibrationError, 0.03, 0.02),
+    (Pair::CloudCloud, false, Measure::Auc, 0.96, 0.02),
+    (Pair::CloudCloud, true, Measure::Auc, 0.86, 0.02),
+    (Pair::CloudCloud, false, Measure::Brier, 0.08, 0.02),
+    (Pair::CloudCloud, false, Measure::CalibrationError, 0.03, 0.02),
+    (Pair::CloudMesh, false, Measure::Auc, 0.98, 0.01),
+    (Pair::CloudMesh, true, Measure::Auc, 0.94, 0.01),
+    (Pair::CloudMesh, false, Measure::CalibrationError, 0.03, 0.02),
 ];
 
 /// The largest ECE of one family beyond what chance gives.
@@ -44,13 +40,9 @@ const DEEP_CERTAIN: f64 = 95.0;
 /// What may collide of poses that are stated to do so with a probability below a tenth, %.
 const STATED_FREE: f64 = 4.0;
 
-const fn limit(pair: Pair, near: bool, measure: Measure, limit: f64, up_to: f64) -> Limit {
-    Limit { pair, near, measure, limit, up_to }
-}
-
 /// All targets.
 pub(super) fn section(answered: &Answered<'_>) -> Section {
-    let mut all: Vec<Target> = LIMITS.iter().map(|limit| limited(answered, limit)).collect();
+    let mut all: Vec<Target> = LIMITS.map(|limit| limited(answered, limit)).into();
     for pair in Pair::ALL {
         all.push(families(answered, pair));
         all.extend(stated(answered, pair));
@@ -64,23 +56,22 @@ pub(super) fn section(answered: &Answered<'_>) -> Section {
     ))
 }
 
-fn limited(answered: &Answered<'_>, limit: &Limit) -> Target {
-    let Limit { pair, near, measure, limit, up_to } = *limit;
+fn limited(answered: &Answered<'_>, (pair, near, measure, limit, up_to): Limit) -> Target {
     let keep = |q: &Question| {
         Answered::is_of(pair, Kind::Ordinary)(q)
             && q.condition.std <= up_to
             && (!near || is_near(q))
     };
-    let measured = Judged::pick(answered.answers, &[OURS, ORACLE], keep).measure(&[measure]);
-    let [ours, oracle] = [OURS, ORACLE].map(|method| measured.estimate(method, measure));
+    let judged = Judged::pick(answered.answers, &[OURS, ORACLE], keep);
+    let [ours, oracle] = [OURS, ORACLE].map(|method| judged.estimate(method, measure));
     let relation = if measure == Measure::Auc { "at least" } else { "at most" };
     let which = if near { ", near" } else { "" };
     let noise = 1e3 * up_to;
     let name =
         format!("{}{which}, up to {noise} mm: {} {relation} {limit}", pair.name(), measure.name());
     // Not a number is not met.
-    let met = ours.is_some_and(|e| measure.sign() * (e.value - limit) >= 0.0);
-    Target::new(name, format!("{}; oracle {}", shown(ours), shown(oracle)), met)
+    let met = measure.sign() * (ours.value - limit) >= 0.0;
+    Target::new(name, format!("{ours}; oracle {oracle}"), met)
 }
 
 /// The family that is calibrated worst.
@@ -88,8 +79,7 @@ fn families(answered: &Answered<'_>, pair: Pair) -> Target {
     let error = |family: &'static str| {
         let keep = |q: &Question| q.family == family && Answered::is_of(pair, Kind::Ordinary)(q);
         let judged = Judged::pick(answered.answers, &[OURS], keep);
-        let error =
-            judged.sample(OURS).map_or(f64::NAN, |s| Measure::CalibrationError.of(s, &s.ones()));
+        let error = judged.estimate(OURS, Measure::CalibrationError).value;
         (family, error - judged.chance_error(OURS))
     };
     let all = answered.answers.families().into_iter().map(error).filter(|(_, e)| !e.is_nan());
@@ -104,9 +94,7 @@ fn stated(answered: &Answered<'_>, pair: Pair) -> [Target; 2] {
     let judged =
         Judged::pick(answered.answers, &[OURS, ORACLE], Answered::is_of(pair, Kind::Ordinary));
     let within = |low: f64, high: f64, of: fn(Bin) -> f64| {
-        [OURS, ORACLE].map(|method| {
-            judged.sample(method).map_or(f64::NAN, |s| of(observed_within(s, low..high)))
-        })
+        [OURS, ORACLE].map(|method| of(observed_within(judged.sample(method), low..high)))
     };
     let [free, of_oracle] = within(0.0, 0.1, |bin| 100.0 * bin.observed);
     let what = format!("{}: stated below .1, at most {STATED_FREE} % collide", pair.name());
@@ -142,13 +130,11 @@ fn alternatives(answered: &Answered<'_>, pair: Pair, std: f64) -> Target {
     let keep = |q: &Question| Answered::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
     let is_better = |name: &&str| {
         let judged = Judged::pick(answered.answers, &[name, OURS], keep);
-        let difference = judged.measure(&[Measure::Auc]).difference(name, OURS, Measure::Auc);
-        difference.is_some_and(|d| d.value > 0.0 && d.excludes_zero())
+        judged.difference(name, OURS, Measure::Auc).low > 0.0
     };
     let (best, auc) = answered.best_alternative(keep);
-    let ours = Judged::pick(answered.answers, &[OURS], keep).measure(&[Measure::Auc]);
-    let ours = shown(ours.estimate(OURS, Measure::Auc));
-    let reached = format!("{ours}; best alternative {best}: {}", shown(auc));
+    let ours = answered.auc(OURS, keep);
+    let reached = format!("{ours}; best alternative {best}: {auc}");
     let what = format!("{}, {} mm: no alternative ranks better", pair.name(), 1e3 * std);
     Target::new(what, reached, !answered.alternatives.iter().any(is_better))
 }

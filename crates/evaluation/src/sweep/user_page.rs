@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use cloudtouch_testkit::family::Kind;
+
 use super::{OURS, figures, judged::Judged, plan::SEED, tables::Answered};
 use crate::{
-    answers::{Kind, Pair},
-    measures::observed_within,
+    answers::Pair,
+    measures::{Bin, observed_within},
     page::{Page, Section},
     table::Table,
 };
@@ -59,10 +61,11 @@ fn stated(answered: &Answered<'_>) -> Table {
     for pair in Pair::ALL {
         let judged = Judged::pick(answered.answers, &[OURS], Answered::is_of(pair, Kind::Ordinary));
         let cell = |[low, high]: [f64; 2]| {
-            let bin = judged.sample(OURS).map(|s| observed_within(s, low..high));
-            bin.filter(|b| b.count > 0).map_or("–".into(), |b| {
-                format!("{:.2} (mean stated {:.2}, {} answers)", b.observed, b.mean, b.count)
-            })
+            let Bin { mean, observed, count } = observed_within(judged.sample(OURS), low..high);
+            if count == 0 {
+                return "–".to_owned();
+            }
+            format!("{observed:.2} (mean stated {mean:.2}, {count} answers)")
         };
         table.row(std::iter::once(format!("{}: collide", pair.name())).chain(STATED.map(cell)));
     }
