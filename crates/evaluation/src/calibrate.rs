@@ -69,13 +69,17 @@ fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> 
 
 /// The surface over geometry first; then, where that leaves doubt, how the classifier revises it.
 fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
+    // Fewer deviations make a collision more probable: the axis is turned round, and back again.
+    let nearness: Vec<f64> = DEVIATION_KNOTS.iter().rev().map(|z| -z).collect();
     let mut geometry: Vec<SurfaceSample> =
-        records.iter().map(|(e, collides)| ([e.deviations, e.crossing], *collides)).collect();
+        records.iter().map(|(e, collides)| ([-e.deviations, e.crossing], *collides)).collect();
     geometry.extend(within());
-    let deviations = Axis { knots: &DEVIATION_KNOTS, rises: false, usual: 3.0 };
-    let crossing = Axis { knots: &CROSSING_KNOTS, rises: true, usual: 1.0 };
+    let nearness = Axis { knots: &nearness, usual: 3.0 };
+    let crossing = Axis { knots: &CROSSING_KNOTS, usual: 1.0 };
     let mut judge = Judge::default();
-    keep(&mut judge.by_geometry, &fit_surface(&geometry, deviations, crossing, false));
+    let mut fitted = fit_surface(&geometry, nearness, crossing, false);
+    fitted.reverse();
+    keep(&mut judge.by_geometry, &fitted);
     let doubtful = |(e, collides): &(ContactEvidence, bool)| -> Option<SurfaceSample> {
         let by_geometry = judge.log_odds_by_geometry(e.deviations, e.crossing);
         let [least, .., most] = DOUBT_KNOTS;
@@ -84,8 +88,8 @@ fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
         is_doubtful.then_some(([by_geometry, e.ln_misclassified()?], *collides))
     };
     let in_doubt: Vec<SurfaceSample> = records.iter().filter_map(doubtful).collect();
-    let doubt = Axis { knots: &DOUBT_KNOTS, rises: true, usual: 1.0 };
-    let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, rises: true, usual: 0.2 };
+    let doubt = Axis { knots: &DOUBT_KNOTS, usual: 1.0 };
+    let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, usual: 0.2 };
     keep(&mut judge.revised, &fit_surface(&in_doubt, doubt, misclassified, true));
     judge.validate()?;
     Ok(judge)
@@ -97,7 +101,8 @@ fn within() -> impl Iterator<Item = SurfaceSample> {
     const CLEARLY_INSIDE: f64 = -4.0;
     const WEIGHT: usize = 100;
     let inside = DEVIATION_KNOTS.into_iter().filter(|&z| z <= CLEARLY_INSIDE);
-    let places = inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| [z, crossing]));
+    let places =
+        inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| [-z, crossing]));
     places.flat_map(|place| std::iter::repeat_n((place, true), WEIGHT))
 }
 

@@ -9,7 +9,7 @@ use cloudtouch_testkit::family::Family;
 use crate::{
     answers::Pair,
     measures::Measure,
-    methods::{Method, Ours, Paper},
+    methods::{Ours, Paper},
     page::{self, Page, Section},
     sweep::{Asked, Judged, Plan, SEED, ask},
     table::Table,
@@ -43,8 +43,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update_docs } = *arguments;
     let settings = changes()?;
     let paper = Paper::new("mode paper");
-    let names: Vec<String> = settings.iter().map(Method::name).chain([paper.name()]).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let asked: Vec<Asked> =
         settings.into_iter().map(Asked::always).chain([Asked::always(paper)]).collect();
     let plan = Plan {
@@ -52,6 +50,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         ..Plan::of(FAMILIES.map(Into::into).to_vec(), draws, poses, POINTS, STD)
     };
     let answers = ask(&plan, &asked)?;
+    let names: Vec<&str> = answers.methods.iter().map(String::as_str).collect();
     let judged = Judged::pick(&answers, &names, |_| true);
     let (count, collisions) = judged.counts();
     let introduction = format!(

@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use anyhow::Result;
+use cloudtouch::QuerySettings;
 use cloudtouch_geom::{Covariance, Point3, Pose, UncertainPoint};
 use cloudtouch_noise::Neighborhoods;
 use cloudtouch_svm::{Class, Classifier, Kernel, Problem, Settings};
@@ -16,9 +17,6 @@ use crate::{
 
 /// Points of each side nearest to where the clouds are closest.
 const POINTS_A_SIDE: usize = 60;
-/// The settings of ours, so that only the robust terms differ.
-const GAMMA: f64 = 10.0;
-const PENALTY: f64 = 100.0;
 const RELATIVE_GAP: f64 = 1e-4;
 /// What is said where no classifier can be had.
 const UNDETERMINED: f64 = 0.5;
@@ -72,10 +70,12 @@ fn nearest<'a>(cloud: &'a Neighborhoods, to: &Point3) -> impl Iterator<Item = Po
 
 /// The largest probability of a point to be on the wrong side.
 fn largest(a: &[UncertainPoint], b: &[UncertainPoint]) -> Result<f64> {
-    let Some((unit_box, samples)) = leaf::posed([a, b], 0.0, PENALTY) else {
+    let Some((unit_box, samples)) = leaf::posed([a, b], 0.0) else {
         return Ok(UNDETERMINED);
     };
-    let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma: GAMMA })?;
+    // The width and the penalty of ours, so that only the robust terms differ.
+    let gamma = QuerySettings::default().gamma;
+    let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma })?;
     let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
     let solution = problem.solve(&settings)?;
     let Ok(classifier) = Classifier::try_new(&problem, &solution) else { return Ok(UNDETERMINED) };

@@ -46,6 +46,7 @@ pub(super) fn measure(scene: &Scene) -> Findings {
          were asked before; one and two threads take turns at tenths of the batch."
     ));
     let what = format!("batch of {POSES} poses: two threads ≥ 1.8 × one");
-    let target = Target::at_least(what, seconds[0] / seconds[1], 1.8, ratio);
+    let faster = seconds[0] / seconds[1];
+    let target = Target::new(what, ratio(faster), faster >= 1.8);
     Ok((section.text(table), vec![target]))
 }

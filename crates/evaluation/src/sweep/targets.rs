@@ -86,7 +86,7 @@ fn families(answered: &Answered<'_>, pair: Pair) -> Target {
     let worst = all.max_by(|a, b| a.1.total_cmp(&b.1));
     let (family, worst) = worst.unwrap_or(("no family", f64::NAN));
     let what = format!("{}: ECE of every family at most {FAMILY_ERROR} above chance", pair.name());
-    Target::at_most(what, worst, FAMILY_ERROR, |worst| format!("{worst:.3} ({family})"))
+    Target::new(what, format!("{worst:.3} ({family})"), worst <= FAMILY_ERROR)
 }
 
 /// What is observed where a probability is stated.
@@ -98,13 +98,11 @@ fn stated(answered: &Answered<'_>, pair: Pair) -> [Target; 2] {
     };
     let [free, of_oracle] = within(0.0, 0.1, |bin| 100.0 * bin.observed);
     let what = format!("{}: stated below .1, at most {STATED_FREE} % collide", pair.name());
-    let free = Target::at_most(what, free, STATED_FREE, |free| {
-        format!("{free:.1} %; oracle {of_oracle:.1} %")
-    });
+    let measured = format!("{free:.1} %; oracle {of_oracle:.1} %");
+    let free = Target::new(what, measured, free <= STATED_FREE);
     let [off, of_oracle] = within(0.6, 0.95, |bin| bin.observed - bin.mean);
     let what = format!("{}: stated .6 to .95, observed within .07", pair.name());
-    let show = |_| format!("{off:+.3}; oracle {of_oracle:+.3}");
-    [free, Target::at_most(what, off.abs(), 0.07, show)]
+    [free, Target::new(what, format!("{off:+.3}; oracle {of_oracle:+.3}"), off.abs() <= 0.07)]
 }
 
 /// How many deep overlaps are stated to collide with certainty.
@@ -122,7 +120,7 @@ fn deep(answered: &Answered<'_>, pair: Pair) -> Target {
         "{}: overlaps beyond 5 cm and 3 spacings, up to 10 mm: P ≥ .99 in {DEEP_CERTAIN} %",
         pair.name()
     );
-    Target::at_least(what, share, DEEP_CERTAIN, |share| format!("{share:.0} % of {}", said.len()))
+    Target::new(what, format!("{share:.0} % of {}", said.len()), share >= DEEP_CERTAIN)
 }
 
 /// No alternative ranks significantly better at this noise.
