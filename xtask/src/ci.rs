@@ -15,23 +15,23 @@ use crate::{fixtures, tidy};
 
 /// Runs every step. Tests come last, and the last line sums them up.
 pub(crate) fn run(root: &Path) -> Result<()> {
-    step("fmt", "cargo fmt --all -- --check", || cargo(root, "fmt --all -- --check"))?;
+    let cargo = |name: &str, arguments: &str| {
+        step(name, &format!("cargo {arguments}"), || succeed(&mut command(root, arguments)))
+    };
+    cargo("fmt", "fmt --all -- --check")?;
     step("tidy", "cargo xtask tidy", || tidy::run(root))?;
     step("fixtures", "cargo xtask fixtures --check", || fixtures::run(root, true))?;
     // The lock file holds: what is checked is what was committed, and no network is needed.
-    let clippy = "clippy --locked --workspace --all-targets -- -D warnings";
-    step("clippy", &format!("cargo {clippy}"), || cargo(root, clippy))?;
+    cargo("clippy", "clippy --locked --workspace --all-targets -- -D warnings")?;
     // The tool is left out: its binary and the library it wraps would share one page.
     let doc = "doc --locked --workspace --exclude cloudtouch-cli --no-deps";
     step("doc", &format!("RUSTDOCFLAGS='-D warnings' cargo {doc}"), || {
         succeed(command(root, doc).env("RUSTDOCFLAGS", "-D warnings"))
     })?;
-    let benches = "check --locked --package cloudtouch-benches --benches";
-    step("benches", &format!("cargo {benches}"), || cargo(root, benches))?;
-    let exclude: String =
-        tidy::unpublished(root)?.iter().map(|name| format!(" --exclude {name}")).collect();
-    let package = format!("package --locked --workspace{exclude} --allow-dirty --no-verify");
-    step("package", &format!("cargo {package}"), || cargo(root, &package))?;
+    cargo("benches", "check --locked --package cloudtouch-benches --benches")?;
+    let unpublished = tidy::unpublished(root)?;
+    let exclude: String = unpublished.iter().map(|name| format!(" --exclude {name}")).collect();
+    cargo("package", &format!("package --locked --workspace{exclude} --allow-dirty --no-verify"))?;
     step("sweep", "cargo xtask sweep --short", sweep::check)?;
     let test = "test --locked --workspace --no-fail-fast";
     step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
@@ -53,10 +53,6 @@ fn command(root: &Path, arguments: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments.split_whitespace()).current_dir(root);
     command
-}
-
-fn cargo(root: &Path, arguments: &str) -> Result<()> {
-    succeed(&mut command(root, arguments))
 }
 
 fn succeed(command: &mut Command) -> Result<()> {

@@ -70,16 +70,16 @@ fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> 
 /// The surface over geometry first; then, where that leaves doubt, how the classifier revises it.
 fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
     // Fewer deviations make a collision more probable: the axis is turned round, and back again.
-    let nearness: Vec<f64> = DEVIATION_KNOTS.iter().rev().map(|z| -z).collect();
+    let mut nearness = DEVIATION_KNOTS.map(|z| -z);
+    nearness.reverse();
     let mut geometry: Vec<SurfaceSample> =
         records.iter().map(|(e, collides)| ([-e.deviations, e.crossing], *collides)).collect();
     geometry.extend(within());
-    let nearness = Axis { knots: &nearness, usual: 3.0 };
-    let crossing = Axis { knots: &CROSSING_KNOTS, usual: 1.0 };
+    let nearness = Axis { knots: nearness, usual: 3.0 };
+    let crossing = Axis { knots: CROSSING_KNOTS, usual: 1.0 };
     let mut judge = Judge::default();
-    let mut fitted = fit_surface(&geometry, nearness, crossing, false);
-    fitted.reverse();
-    keep(&mut judge.by_geometry, &fitted);
+    judge.by_geometry = fit_surface(&geometry, nearness, crossing, false);
+    judge.by_geometry.reverse();
     let doubtful = |(e, collides): &(ContactEvidence, bool)| -> Option<SurfaceSample> {
         let by_geometry = judge.log_odds_by_geometry(e.deviations, e.crossing);
         let [least, .., most] = DOUBT_KNOTS;
@@ -88,9 +88,9 @@ fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
         is_doubtful.then_some(([by_geometry, e.ln_misclassified()?], *collides))
     };
     let in_doubt: Vec<SurfaceSample> = records.iter().filter_map(doubtful).collect();
-    let doubt = Axis { knots: &DOUBT_KNOTS, usual: 1.0 };
-    let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, usual: 0.2 };
-    keep(&mut judge.revised, &fit_surface(&in_doubt, doubt, misclassified, true));
+    let doubt = Axis { knots: DOUBT_KNOTS, usual: 1.0 };
+    let misclassified = Axis { knots: MISCLASSIFIED_KNOTS, usual: 0.2 };
+    judge.revised = fit_surface(&in_doubt, doubt, misclassified, true);
     judge.validate()?;
     Ok(judge)
 }
@@ -104,12 +104,6 @@ fn within() -> impl Iterator<Item = SurfaceSample> {
     let places =
         inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| [-z, crossing]));
     places.flat_map(|place| std::iter::repeat_n((place, true), WEIGHT))
-}
-
-fn keep<const N: usize, const M: usize>(values: &mut [[f64; M]; N], fitted: &[Vec<f64>]) {
-    for (row, fitted) in values.iter_mut().zip(fitted) {
-        row.copy_from_slice(fitted);
-    }
 }
 
 #[cfg(test)]

@@ -41,10 +41,13 @@ pub struct Arguments {
 /// When a query fails or the page cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update_docs } = *arguments;
-    let settings = changes()?;
-    let paper = Paper::new("mode paper");
-    let asked: Vec<Asked> =
-        settings.into_iter().map(Asked::always).chain([Asked::always(paper)]).collect();
+    let changed = |(name, change): (&str, Change)| -> Result<Asked> {
+        let mut ours = Ours::new(name)?;
+        change(&mut ours);
+        Ok(Asked::always(ours))
+    };
+    let mut asked: Vec<Asked> = SETTINGS.into_iter().map(changed).collect::<Result<_>>()?;
+    asked.push(Asked::always(Paper::new("mode paper")));
     let plan = Plan {
         pairs: vec![Pair::CloudCloud],
         ..Plan::of(FAMILIES.map(Into::into).to_vec(), draws, poses, POINTS, STD)
@@ -69,30 +72,25 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     page.write(&page::folder(root, update_docs))
 }
 
+/// A setting that is changed.
+type Change = fn(&mut Ours);
+
 /// The defaults first, then one change at a time.
-fn changes() -> Result<Vec<Ours>> {
-    let mut all = vec![Ours::new(DEFAULT)?];
-    let mut change = |name: String, edit: &dyn Fn(&mut Ours)| -> Result<()> {
-        let mut ours = Ours::new(&name)?;
-        edit(&mut ours);
-        all.push(ours);
-        Ok(())
-    };
-    for points in [20, 40] {
-        change(format!("n_max {points}"), &|ours| ours.tree.max_leaf_points = points)?;
-    }
-    for gap in [1e-1, 1e-2] {
-        change(format!("tolerance {gap:.0e}"), &|ours| ours.query.relative_gap = gap)?;
-    }
-    for gamma in [1.0, 3.0, 20.0, 40.0] {
-        change(format!("γ {gamma}"), &|ours| ours.query.gamma = gamma)?;
-    }
-    for penalty in [1.0, 10.0, 1000.0] {
-        change(format!("C {penalty}"), &|ours| ours.query.penalty = penalty)?;
-    }
-    change("γ 1, C 1".into(), &|ours| (ours.query.gamma, ours.query.penalty) = (1.0, 1.0))?;
-    Ok(all)
-}
+const SETTINGS: [(&str, Change); 13] = [
+    (DEFAULT, |_| {}),
+    ("n_max 20", |ours| ours.tree.max_leaf_points = 20),
+    ("n_max 40", |ours| ours.tree.max_leaf_points = 40),
+    ("tolerance 1e-1", |ours| ours.query.relative_gap = 1e-1),
+    ("tolerance 1e-2", |ours| ours.query.relative_gap = 1e-2),
+    ("γ 1", |ours| ours.query.gamma = 1.0),
+    ("γ 3", |ours| ours.query.gamma = 3.0),
+    ("γ 20", |ours| ours.query.gamma = 20.0),
+    ("γ 40", |ours| ours.query.gamma = 40.0),
+    ("C 1", |ours| ours.query.penalty = 1.0),
+    ("C 10", |ours| ours.query.penalty = 10.0),
+    ("C 1000", |ours| ours.query.penalty = 1000.0),
+    ("γ 1, C 1", |ours| (ours.query.gamma, ours.query.penalty) = (1.0, 1.0)),
+];
 
 fn table(judged: &Judged<'_>, names: &[&str]) -> Table {
     let header = "setting, median (ms), p95 (ms), Brier, minus default, AUC, minus default";

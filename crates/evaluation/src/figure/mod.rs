@@ -9,7 +9,7 @@
 //!     Series::curve("ours", [(2.0, 0.7), (10.0, 1.3)]),
 //!     Series::whiskers("ours", [(2.0, 0.2, 3.7), (10.0, 0.4, 4.8)]),
 //! ];
-//! let (x, y) = (Axis::linear("noise (mm)"), Axis::log("time (ms)"));
+//! let (x, y) = (Axis::linear("noise (mm)"), Axis::linear("time (ms)"));
 //! let panel = Panel { title: "Times".into(), x, y, series };
 //! assert!(Figure::new("Speed", [panel]).svg()?.starts_with("<svg"));
 //! # Ok::<(), anyhow::Error>(())
@@ -58,7 +58,6 @@ pub struct Axis {
     pub(crate) name: String,
     /// Its values; as far as what is drawn where it is not given.
     pub range: Option<Range<f64>>,
-    pub(crate) is_log: bool,
 }
 
 /// Marks of one look.
@@ -90,12 +89,7 @@ impl Figure {
 impl Axis {
     /// Values.
     pub fn linear(name: &str) -> Self {
-        Self { name: name.to_owned(), range: None, is_log: false }
-    }
-
-    /// Values above 0 by their logarithm; others are left out.
-    pub fn log(name: &str) -> Self {
-        Self { is_log: true, ..Self::linear(name) }
+        Self { name: name.to_owned(), range: None }
     }
 
     /// A share or probability.

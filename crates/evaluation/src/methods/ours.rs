@@ -23,10 +23,9 @@ pub struct Ours {
     is_refined: bool,
     /// Whether it is given the points without noise and the true normals.
     sees_truth: bool,
-    /// Whether the classifier is asked everywhere.
-    gathers: bool,
-    classifies: bool,
     fitted: Fitted,
+    /// What is made of a fitted judge.
+    alter: fn(Judge) -> Judge,
 }
 
 impl Ours {
@@ -41,9 +40,8 @@ impl Ours {
             tree: CloudSettings::new(SensorModel::Exact).tree,
             is_refined: false,
             sees_truth: false,
-            gathers: false,
-            classifies: true,
             fitted: Fitted::stored()?,
+            alter: |judge| judge,
         })
     }
 
@@ -57,14 +55,14 @@ impl Ours {
 
     /// The same, gathering all evidence however clear the first of it is.
     pub fn gathering_everything(mut self) -> Self {
-        self.gathers = true;
+        self.alter = |_| doubting();
         self.query.stop_above = 1.0;
         self
     }
 
     /// The same by geometry alone.
     pub fn without_classifier(self) -> Self {
-        Self { classifies: false, ..self }
+        Self { alter: |judge| judge.without_classifier(), ..self }
     }
 
     /// The same, computing the surface of both clouds beforehand.
@@ -113,12 +111,7 @@ impl Method for Ours {
     }
 
     fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
-        let judge = if self.gathers {
-            doubting()
-        } else {
-            self.fitted.to_judge(draw.family, self.sees_truth)
-        };
-        let judge = if self.classifies { judge } else { judge.without_classifier() };
+        let judge = (self.alter)(self.fitted.to_judge(draw.family, self.sees_truth));
         let query = Query::new(QuerySettings { judge, ..self.query })?;
         let (a, b) = (self.cloud(draw.a)?, self.cloud(draw.b)?);
         let mesh = Mesh::prepare(draw.mesh)?;

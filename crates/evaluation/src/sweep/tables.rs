@@ -9,49 +9,44 @@ use crate::{
     table::Table,
 };
 
-/// All answers of a sweep, with what tables ask of them.
-pub(super) struct Answered<'a> {
-    /// The table of answers.
-    pub answers: &'a Answers,
-    /// Methods other than ours, whole, true or without the classifier.
-    pub alternatives: Vec<&'a str>,
-}
-
 /// Whether a pose is within 3 cm of contact.
 pub(super) fn is_near(question: &Question) -> bool {
     question.signed_distance.abs() < NEAR
 }
 
-impl<'a> Answered<'a> {
-    pub(super) fn new(answers: &'a Answers) -> Self {
-        let mut alternatives: Vec<&str> = answers.methods.iter().map(String::as_str).collect();
-        alternatives.retain(|name| ![OURS, ORACLE, GEOMETRY].contains(name));
-        Self { answers, alternatives }
-    }
+/// Whether a question is one of a pair about one kind of scenes.
+pub(super) fn is_of(pair: Pair, kind: Kind) -> impl Fn(&Question) -> bool + Copy {
+    move |q: &Question| q.pair == pair && q.kind == kind
+}
 
-    /// A pair's questions about one kind of scenes.
-    pub(super) fn is_of(pair: Pair, kind: Kind) -> impl Fn(&Question) -> bool + Copy {
-        move |q: &Question| q.pair == pair && q.kind == kind
+/// The same about ordinary scenes.
+pub(super) fn ordinary(pair: Pair) -> impl Fn(&Question) -> bool + Copy {
+    is_of(pair, Kind::Ordinary)
+}
+
+impl Answers {
+    /// Methods other than ours, whole, true or without the classifier.
+    pub(super) fn alternatives(&self) -> impl Iterator<Item = &str> {
+        let names = self.methods.iter().map(String::as_str);
+        names.filter(|name| ![OURS, ORACLE, GEOMETRY].contains(name))
     }
 
     /// How many questions, how many of them collisions: the base rate.
     pub(super) fn base_rate(&self, keep: impl Fn(&Question) -> bool) -> String {
-        let (count, collisions) = Judged::pick(self.answers, &[OURS], keep).counts();
+        let (count, collisions) = Judged::pick(self, &[OURS], keep).counts();
         let share = 100.0 * collisions as f64 / count as f64;
         format!("{count} answers, {share:.0} % of them to collisions")
     }
 
     /// A row for every method, and by how much its AUC differs from ours on the same questions.
-    pub(super) fn methods(&self, keep: impl Fn(&Question) -> bool + Copy) -> Table {
-        let mut table = Table::new(
-            header("method").into_iter().chain(["AUC minus ours", "query (ms)"].map(String::from)),
-        );
-        for name in &self.answers.methods {
+    pub(super) fn by_method(&self, keep: impl Fn(&Question) -> bool + Copy) -> Table {
+        let mut table = headed("method", &["AUC minus ours", "query (ms)"]);
+        for name in &self.methods {
             let mut row = self.row(name, name, keep);
-            let judged = Judged::pick(self.answers, &[name, OURS], keep);
+            let judged = Judged::pick(self, &[name, OURS], keep);
             row.push(judged.compared(name, OURS, Measure::Auc));
             let dense = |q: &Question| keep(q) && q.condition.points == 10_000;
-            let judged = Judged::pick(self.answers, &[name], dense);
+            let judged = Judged::pick(self, &[name], dense);
             row.push(format!("{:.2}", judged.query_ms(name, 0.5)));
             table.row(row);
         }
@@ -59,13 +54,12 @@ impl<'a> Answered<'a> {
     }
 
     /// Ours on every family, judged with constants fitted on the others, and the oracle's AUC.
-    pub(super) fn families(&self, pair: Pair) -> Table {
-        let header = header("family").into_iter().chain(["AUC of the oracle".into()]);
-        let mut table = Table::new(header);
+    pub(super) fn by_family(&self, pair: Pair) -> Table {
+        let mut table = headed("family", &["AUC of the oracle"]);
         for kind in [Kind::Ordinary, Kind::Adversarial, Kind::Real] {
-            for family in self.answers.families() {
-                let keep = move |q: &Question| q.family == family && Self::is_of(pair, kind)(q);
-                if Judged::pick(self.answers, &[OURS], keep).counts().0 == 0 {
+            for family in self.families() {
+                let keep = move |q: &Question| q.family == family && is_of(pair, kind)(q);
+                if Judged::pick(self, &[OURS], keep).counts().0 == 0 {
                     continue;
                 }
                 let is_hard = kind == Kind::Adversarial;
@@ -79,12 +73,10 @@ impl<'a> Answered<'a> {
     }
 
     /// Ours by noise, on ordinary scenes, with the oracle and the best alternative.
-    pub(super) fn noises(&self, pair: Pair) -> Table {
-        let extra = ["AUC of the oracle", "best alternative", "its AUC"].map(String::from);
-        let mut table = Table::new(header("noise").into_iter().chain(extra));
+    pub(super) fn by_noise(&self, pair: Pair) -> Table {
+        let mut table = headed("noise", &["AUC of the oracle", "best alternative", "its AUC"]);
         for std in STDS {
-            let keep =
-                |q: &Question| Self::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
+            let keep = |q: &Question| ordinary(pair)(q) && q.condition.std == std;
             let name = format!("{} mm", 1e3 * std);
             let mut row = self.row(&name, OURS, keep);
             let (best, auc) = self.best_alternative(keep);
@@ -98,8 +90,8 @@ impl<'a> Answered<'a> {
     pub(super) fn best_alternative(
         &self,
         keep: impl Fn(&Question) -> bool + Copy,
-    ) -> (&'a str, String) {
-        let all = self.alternatives.iter().map(|&name| (name, self.auc(name, keep)));
+    ) -> (&str, String) {
+        let all = self.alternatives().map(|name| (name, self.auc(name, keep)));
         let best = all
             .filter(|(_, auc)| !auc.value.is_nan())
             .max_by(|(_, a), (_, b)| a.value.total_cmp(&b.value));
@@ -109,10 +101,10 @@ impl<'a> Answered<'a> {
     fn row(
         &self,
         name: &str,
-        method: &'a str,
+        method: &str,
         keep: impl Fn(&Question) -> bool + Copy,
     ) -> Vec<String> {
-        let judged = Judged::pick(self.answers, &[method], keep);
+        let judged = Judged::pick(self, &[method], keep);
         let of = |measure| judged.estimate(method, measure).to_string();
         let error = judged.estimate(method, Measure::CalibrationError).value;
         let by_chance = || format!("{error:.3} ({:.3})", judged.chance_error(method));
@@ -127,14 +119,15 @@ impl<'a> Answered<'a> {
         ]
     }
 
-    /// The AUC of a method on the questions it answered.
-    pub(super) fn auc(&self, method: &'a str, keep: impl Fn(&Question) -> bool) -> Estimate {
-        Judged::pick(self.answers, &[method], keep).estimate(method, Measure::Auc)
+    /// The AUC of a method on the questions it answers.
+    pub(super) fn auc(&self, method: &str, keep: impl Fn(&Question) -> bool) -> Estimate {
+        Judged::pick(self, &[method], keep).estimate(method, Measure::Auc)
     }
 }
 
-fn header(first: &str) -> Vec<String> {
+/// A table for rows as [`Answers::row`] makes them, with more at their ends.
+fn headed(first: &str, more: &[&str]) -> Table {
     let rest =
         ["AUC", "AUC near", "Brier", "ECE (by chance)", "false stops at 1 % misses", "at 5 %"];
-    std::iter::once(first).chain(rest).map(String::from).collect()
+    Table::new([&[first], &rest[..], more].concat())
 }

@@ -1,15 +1,13 @@
 //! What is aimed at on ordinary scenes, and whether it is reached.
 
-use cloudtouch_testkit::family::Kind;
-
 use super::{
     ORACLE, OURS,
     judged::Judged,
     plan::STDS,
-    tables::{Answered, is_near},
+    tables::{is_near, ordinary},
 };
 use crate::{
-    answers::{Pair, Question},
+    answers::{Answers, Pair, Question},
     measures::{Bin, Measure, observed_within},
     page::Section,
     targets::{self, Target},
@@ -41,13 +39,13 @@ const DEEP_CERTAIN: f64 = 95.0;
 const STATED_FREE: f64 = 4.0;
 
 /// All targets.
-pub(super) fn section(answered: &Answered<'_>) -> Section {
-    let mut all: Vec<Target> = LIMITS.map(|limit| limited(answered, limit)).into();
+pub(super) fn section(answers: &Answers) -> Section {
+    let mut all: Vec<Target> = LIMITS.map(|limit| limited(answers, limit)).into();
     for pair in Pair::ALL {
-        all.push(families(answered, pair));
-        all.extend(stated(answered, pair));
-        all.push(deep(answered, pair));
-        all.extend(STDS.map(|std| alternatives(answered, pair, std)));
+        all.push(families(answers, pair));
+        all.extend(stated(answers, pair));
+        all.push(deep(answers, pair));
+        all.extend(STDS.map(|std| alternatives(answers, pair, std)));
     }
     targets::section(&all).text(format_args!(
         "On ordinary scenes. The oracle is `{OURS}` given every sampled point where it truly is \
@@ -56,13 +54,10 @@ pub(super) fn section(answered: &Answered<'_>) -> Section {
     ))
 }
 
-fn limited(answered: &Answered<'_>, (pair, near, measure, limit, up_to): Limit) -> Target {
-    let keep = |q: &Question| {
-        Answered::is_of(pair, Kind::Ordinary)(q)
-            && q.condition.std <= up_to
-            && (!near || is_near(q))
-    };
-    let judged = Judged::pick(answered.answers, &[OURS, ORACLE], keep);
+fn limited(answers: &Answers, (pair, near, measure, limit, up_to): Limit) -> Target {
+    let keep =
+        |q: &Question| ordinary(pair)(q) && q.condition.std <= up_to && (!near || is_near(q));
+    let judged = Judged::pick(answers, &[OURS, ORACLE], keep);
     let [ours, oracle] = [OURS, ORACLE].map(|method| judged.estimate(method, measure));
     let relation = if measure == Measure::Auc { "at least" } else { "at most" };
     let which = if near { ", near" } else { "" };
@@ -75,14 +70,14 @@ fn limited(answered: &Answered<'_>, (pair, near, measure, limit, up_to): Limit) 
 }
 
 /// The family that is calibrated worst.
-fn families(answered: &Answered<'_>, pair: Pair) -> Target {
+fn families(answers: &Answers, pair: Pair) -> Target {
     let error = |family: &'static str| {
-        let keep = |q: &Question| q.family == family && Answered::is_of(pair, Kind::Ordinary)(q);
-        let judged = Judged::pick(answered.answers, &[OURS], keep);
+        let keep = |q: &Question| q.family == family && ordinary(pair)(q);
+        let judged = Judged::pick(answers, &[OURS], keep);
         let error = judged.estimate(OURS, Measure::CalibrationError).value;
         (family, error - judged.chance_error(OURS))
     };
-    let all = answered.answers.families().into_iter().map(error).filter(|(_, e)| !e.is_nan());
+    let all = answers.families().into_iter().map(error).filter(|(_, e)| !e.is_nan());
     let worst = all.max_by(|a, b| a.1.total_cmp(&b.1));
     let (family, worst) = worst.unwrap_or(("no family", f64::NAN));
     let what = format!("{}: ECE of every family at most {FAMILY_ERROR} above chance", pair.name());
@@ -90,9 +85,8 @@ fn families(answered: &Answered<'_>, pair: Pair) -> Target {
 }
 
 /// What is observed where a probability is stated.
-fn stated(answered: &Answered<'_>, pair: Pair) -> [Target; 2] {
-    let judged =
-        Judged::pick(answered.answers, &[OURS, ORACLE], Answered::is_of(pair, Kind::Ordinary));
+fn stated(answers: &Answers, pair: Pair) -> [Target; 2] {
+    let judged = Judged::pick(answers, &[OURS, ORACLE], ordinary(pair));
     let within = |low: f64, high: f64, of: fn(Bin) -> f64| {
         [OURS, ORACLE].map(|method| of(observed_within(judged.sample(method), low..high)))
     };
@@ -106,13 +100,13 @@ fn stated(answered: &Answered<'_>, pair: Pair) -> [Target; 2] {
 }
 
 /// How many deep overlaps are stated to collide with certainty.
-fn deep(answered: &Answered<'_>, pair: Pair) -> Target {
+fn deep(answers: &Answers, pair: Pair) -> Target {
     let keep = |q: &Question| {
-        Answered::is_of(pair, Kind::Ordinary)(q)
+        ordinary(pair)(q)
             && q.condition.std <= DEEP_NOISE
             && q.signed_distance < -DEEP.max(DEEP_SPACINGS * q.spacing)
     };
-    let judged = Judged::pick(answered.answers, &[OURS], keep);
+    let judged = Judged::pick(answers, &[OURS], keep);
     let said = judged.said(OURS);
     let certain = said.iter().filter(|s| s.probability.is_some_and(|p| p >= 0.99)).count();
     let share = 100.0 * certain as f64 / said.len() as f64;
@@ -124,15 +118,15 @@ fn deep(answered: &Answered<'_>, pair: Pair) -> Target {
 }
 
 /// No alternative ranks significantly better at this noise.
-fn alternatives(answered: &Answered<'_>, pair: Pair, std: f64) -> Target {
-    let keep = |q: &Question| Answered::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
-    let is_better = |name: &&str| {
-        let judged = Judged::pick(answered.answers, &[name, OURS], keep);
+fn alternatives(answers: &Answers, pair: Pair, std: f64) -> Target {
+    let keep = |q: &Question| ordinary(pair)(q) && q.condition.std == std;
+    let is_better = |name: &str| {
+        let judged = Judged::pick(answers, &[name, OURS], keep);
         judged.difference(name, OURS, Measure::Auc).low > 0.0
     };
-    let (best, auc) = answered.best_alternative(keep);
-    let ours = answered.auc(OURS, keep);
+    let (best, auc) = answers.best_alternative(keep);
+    let ours = answers.auc(OURS, keep);
     let reached = format!("{ours}; best alternative {best}: {auc}");
     let what = format!("{}, {} mm: no alternative ranks better", pair.name(), 1e3 * std);
-    Target::new(what, reached, !answered.alternatives.iter().any(is_better))
+    Target::new(what, reached, !answers.alternatives().any(is_better))
 }
