@@ -5,7 +5,7 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, seed};
 use cloudtouch_testkit::{
     exact::ExactMesh,
@@ -71,11 +71,10 @@ fn compare(root: &Path, files: &Files) -> Result<()> {
             }
         }
     }
-    if wrong.is_empty() {
-        println!("fixtures: {} files as stored", files.len());
-        return Ok(());
-    }
-    bail!("{}; run `{COMMAND}` and commit the result", wrong.join("; "))
+    let wrong = wrong.join("; ");
+    ensure!(wrong.is_empty(), "{wrong}; run `{COMMAND}` and commit the result");
+    println!("fixtures: {} files as stored", files.len());
+    Ok(())
 }
 
 fn generate() -> Result<Files> {
@@ -94,7 +93,9 @@ fn generate() -> Result<Files> {
     let inside = |p: &Point3| p.x.abs() < 2.6 && p.y.abs() < 2.1 && p.z > -0.05;
     add("room.pcd", pcd(&noisy(&room, 54_000, 1, inside)));
     add("piano.pcd", pcd(&noisy(&piano, 9_000, 2, |_| true)));
-    add("cases.json", json(&cases(&room, &piano)?)?);
+    let mut text = serde_json::to_vec_pretty(&cases(&room, &piano)?)?;
+    text.push(b'\n');
+    add("cases.json", text);
     Ok(files)
 }
 
@@ -171,12 +172,6 @@ fn case(id: String, room: &ExactMesh, piano: &ExactMesh, drawn: &LabelledPose) -
         in_collision: truth.in_collision,
         signed_distance_m: rounded(truth.signed_distance, 1e5),
     })
-}
-
-fn json(value: &impl Serialize) -> Result<Vec<u8>> {
-    let mut bytes = serde_json::to_vec_pretty(value)?;
-    bytes.push(b'\n');
-    Ok(bytes)
 }
 
 /// To a multiple of 1/`per_unit`; never −0.

@@ -8,16 +8,15 @@ mod text;
 
 use std::{fs, path::Path};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 
 /// Prints every violation and fails when there is one.
 pub(crate) fn run(root: &Path) -> Result<()> {
     let violations = violations(root)?;
-    if violations.is_empty() {
-        println!("tidy: nothing to complain about");
-        return Ok(());
-    }
-    bail!("{} violations\n  {}", violations.len(), violations.join("\n  "))
+    let count = violations.len();
+    ensure!(count == 0, "{count} violations\n  {}", violations.join("\n  "));
+    println!("tidy: nothing to complain about");
+    Ok(())
 }
 
 /// The members that do not go to the registry.

@@ -133,12 +133,9 @@ impl Answers {
 
     /// The families asked about, in the order of the questions.
     pub fn families(&self) -> Vec<&'static str> {
-        let mut families = Vec::new();
-        for (question, _) in &self.rows {
-            if !families.contains(&question.family) {
-                families.push(question.family);
-            }
-        }
+        let mut families: Vec<_> = self.rows.iter().map(|(question, _)| question.family).collect();
+        // One is asked about after the other.
+        families.dedup();
         families
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 
 use crate::{
     page::{Page, Section},
@@ -77,9 +77,7 @@ pub fn report(
 pub fn require(targets: &[Target]) -> Result<()> {
     let missed = targets.iter().filter(|target| !target.met);
     let missed: Vec<String> = missed.map(|t| format!("{}: {}", t.what, t.measured)).collect();
-    if !missed.is_empty() {
-        bail!("missed: {}", missed.join("\n  "));
-    }
+    ensure!(missed.is_empty(), "missed: {}", missed.join("\n  "));
     Ok(())
 }
 

@@ -13,9 +13,9 @@ const RESAMPLES: u64 = 300;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
     /// For each answer its pose, counted over all draws.
-    pose_of: Vec<u32>,
+    pub(super) pose_of: Vec<u32>,
     /// For each pose its draw, counted over all families.
-    draw_of: Vec<u32>,
+    pub(super) draw_of: Vec<u32>,
     /// For each family the draws it has.
     draws: Vec<Vec<u32>>,
 }
@@ -41,16 +41,6 @@ impl Clusters {
             }
         }
         clusters
-    }
-
-    /// For each answer the number of its pose.
-    pub fn poses(&self) -> &[u32] {
-        &self.pose_of
-    }
-
-    /// How many different poses there are.
-    pub fn pose_count(&self) -> usize {
-        self.draw_of.len()
     }
 
     /// How often a resample draws each answer: draws of a scene with replacement within each

@@ -38,11 +38,6 @@ impl Measure {
         }
     }
 
-    /// +1 when more is better, else −1.
-    pub fn sign(self) -> f64 {
-        if self == Self::Auc { 1.0 } else { -1.0 }
-    }
-
     /// Its value; `weights` say how often each answer counts.
     pub fn of(self, sample: &Sample, weights: &[f64]) -> f64 {
         match self {

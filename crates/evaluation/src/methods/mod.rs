@@ -54,6 +54,11 @@ pub trait Method: Sync {
 /// it does not answer for such a pair. It fails where it should not, which a sweep does not excuse.
 pub type Prepared = Box<dyn Fn(Pair, &Pose) -> Result<Option<Said>>>;
 
+/// A cloud with noise of this standard deviation, m, of which nothing else is known.
+pub fn observed(cloud: PointCloud, std: f64) -> Observation {
+    Observation { cloud, truth: Vec::new(), std }
+}
+
 /// How noisy an observation says it is.
 pub fn sensor_of(observation: &Observation) -> SensorModel {
     match &observation.cloud.covariances {

@@ -12,6 +12,8 @@ use cloudtouch_testkit::{
 };
 use rayon::prelude::*;
 
+use crate::methods::observed;
+
 /// Points of a cloud where nothing else is said.
 pub(super) const POINTS: usize = 10_000;
 /// Standard deviation of the noise where nothing else is said, m.
@@ -65,10 +67,7 @@ impl Class {
 }
 
 impl Scene {
-    /// Draws so many poses.
-    ///
-    /// # Errors
-    /// When a class of poses cannot be had.
+    /// Draws so many poses; fails when a class of them cannot be had.
     pub(super) fn draw(count: usize, seed: u64) -> Result<Self> {
         let (room, piano) = (scene::room(), scene::piano());
         let exact = [&room, &piano].map(ExactMesh::new);
@@ -102,12 +101,12 @@ impl Scene {
 
     /// The room in so many points, with noise of this standard deviation (m).
     pub(super) fn room(&self, points: usize, std: f64) -> Observation {
-        observed(&self.room, points, std, derive(self.seed, 2, 0))
+        sampled(&self.room, points, std, derive(self.seed, 2, 0))
     }
 
     /// The piano in [`POINTS`] points.
     pub(super) fn piano(&self, std: f64) -> Observation {
-        observed(&self.piano, POINTS, std, derive(self.seed, 2, 1))
+        sampled(&self.piano, POINTS, std, derive(self.seed, 2, 1))
     }
 
     /// The room's surface in about so many triangles, and the piano's in ten thousand.
@@ -118,12 +117,10 @@ impl Scene {
     }
 }
 
-fn observed(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
-    let samples = sample_surface(mesh, points, stream);
-    let errors = derive(stream, 1, 0);
-    let noisy = add_noise(&positions(&samples), NoiseKind::Gaussian, std, errors);
-    let cloud = PointCloud::from_points(noisy);
-    Observation { cloud, truth: samples.into_iter().map(Some).collect(), std }
+fn sampled(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
+    let exact = positions(&sample_surface(mesh, points, stream));
+    let noisy = add_noise(&exact, NoiseKind::Gaussian, std, derive(stream, 1, 0));
+    observed(PointCloud::from_points(noisy), std)
 }
 
 #[cfg(test)]

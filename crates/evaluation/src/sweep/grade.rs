@@ -12,9 +12,7 @@ use crate::{
 ///
 /// So a score is judged by what it is worth to somebody who never saw the family, as our own
 /// probabilities are.
-///
-/// # Errors
-/// When there is nothing to fit on: one family only, or truths that are all alike.
+/// Fails where there is nothing to fit on: one family only, or truths that are all alike.
 pub(super) fn grade(answers: &mut Answers) -> Result<()> {
     let families = answers.families();
     let Answers { methods, rows } = answers;

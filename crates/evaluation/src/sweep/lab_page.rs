@@ -39,8 +39,8 @@ points, prepared once for the poses of a draw, as many at a time as there are co
 of `calibrated` is computed where queries first come near, so early poses pay for later ones.";
 
 pub(super) fn page(root: &Path, arguments: &str, answers: &Answers, bounds: Section) -> Page {
-    let names = (("accuracy", "Accuracy, in full"), ("sweep", arguments));
-    let mut page = Page::new(names.0, names.1, INTRODUCTION, root, SEED);
+    let title = ("accuracy", "Accuracy, in full");
+    let mut page = Page::new(title, ("sweep", arguments), INTRODUCTION, root, SEED);
     page.section(targets::section(answers));
     for pair in Pair::ALL {
         let mut section = Section::new(&format!("{}: methods", capitalised(pair)));

@@ -1,6 +1,6 @@
 //! The short sweep that CI runs: fails when accuracy gets worse than recorded.
 
-use anyhow::{Result, bail};
+use anyhow::{Result, ensure};
 use cloudtouch_testkit::family::Family;
 
 use super::{
@@ -68,11 +68,7 @@ pub fn run() -> Result<()> {
             }
         }
     }
-    if !worse.is_empty() {
-        bail!(
-            "less accurate than recorded in crates/evaluation/src/sweep/short.rs: {}",
-            worse.join("; ")
-        );
-    }
+    let file = "crates/evaluation/src/sweep/short.rs";
+    ensure!(worse.is_empty(), "less accurate than recorded in {file}: {}", worse.join("; "));
     Ok(())
 }

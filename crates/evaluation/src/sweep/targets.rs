@@ -59,13 +59,15 @@ fn limited(answers: &Answers, (pair, near, measure, limit, up_to): Limit) -> Tar
         |q: &Question| ordinary(pair)(q) && q.condition.std <= up_to && (!near || is_near(q));
     let judged = Judged::pick(answers, &[OURS, ORACLE], keep);
     let [ours, oracle] = [OURS, ORACLE].map(|method| judged.estimate(method, measure));
-    let relation = if measure == Measure::Auc { "at least" } else { "at most" };
+    // Not a number is not met.
+    let (relation, met) = match measure {
+        Measure::Auc => ("at least", ours.value >= limit),
+        _ => ("at most", ours.value <= limit),
+    };
     let which = if near { ", near" } else { "" };
     let noise = 1e3 * up_to;
     let name =
         format!("{}{which}, up to {noise} mm: {} {relation} {limit}", pair.name(), measure.name());
-    // Not a number is not met.
-    let met = measure.sign() * (ours.value - limit) >= 0.0;
     Target::new(name, format!("{ours}; oracle {oracle}"), met)
 }
 

@@ -22,8 +22,8 @@ methods, families one by one, intervals and targets are in [the full report](lab
 const STATED: [[f64; 2]; 5] = [[0.0, 0.1], [0.1, 0.4], [0.4, 0.6], [0.6, 0.9], [0.9, 1.01]];
 
 pub(super) fn page(root: &Path, arguments: &str, answers: &Answers) -> Page {
-    let names = (("accuracy", "Accuracy"), ("sweep", arguments));
-    let mut page = Page::new(names.0, names.1, INTRODUCTION, root, SEED);
+    let title = ("accuracy", "Accuracy");
+    let mut page = Page::new(title, ("sweep", arguments), INTRODUCTION, root, SEED);
     page.section(
         Section::new("How well it tells collisions from free poses")
             .text(
