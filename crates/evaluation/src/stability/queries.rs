@@ -91,8 +91,7 @@ fn of_clouds(case: &HardCase, mode: Mode) -> Answer {
 fn of_mesh(case: &HardMesh, mode: Mode) -> Answer {
     let cloud = PointCloud::from_points(case.cloud.clone());
     let mesh = Mesh::prepare(&case.mesh)?;
-    let report = asker(&cloud, case.std, mode)?(&mesh, &Pose::identity())?;
-    Ok((report, 0))
+    Ok((asker(&cloud, case.std, mode)?(&mesh, &Pose::identity())?, 0))
 }
 
 fn with_covariances(points: &[Point3], matrices: &[Matrix3]) -> Result<PointCloud> {
