@@ -77,9 +77,9 @@ fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
     geometry.extend(within());
     let nearness = Axis { knots: nearness, usual: 3.0 };
     let crossing = Axis { knots: CROSSING_KNOTS, usual: 1.0 };
-    let mut judge = Judge::default();
-    judge.by_geometry = fit_surface(&geometry, nearness, crossing, false);
-    judge.by_geometry.reverse();
+    let mut by_geometry = fit_surface(&geometry, nearness, crossing, false);
+    by_geometry.reverse();
+    let mut judge = Judge { by_geometry, ..Judge::default() };
     let doubtful = |(e, collides): &(ContactEvidence, bool)| -> Option<SurfaceSample> {
         let by_geometry = judge.log_odds_by_geometry(e.deviations, e.crossing);
         let [least, .., most] = DOUBT_KNOTS;
