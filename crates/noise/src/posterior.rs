@@ -9,12 +9,10 @@ use crate::refined::Refined;
 use crate::representatives::Representatives;
 use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
-use crate::spacing::{SPACING_NEIGHBORS, spacing_around, spacing_of_rank};
+use crate::spacing::{SPACING_NEIGHBORS, is_noisy, spacing_around, spacing_of_rank};
 use crate::surface::{MOST_NEIGHBORS, Surface, fit_surface};
 use crate::wide::wide_surface;
 
-/// Where the noise is more than this many spacings the nearest neighbours are all noise.
-const NOISY_SPACINGS: f64 = 1.35;
 /// A neighbour so many standard deviations off the surface is not a sample of it.
 const SAMPLE_OFFSET: f64 = 3.5;
 
@@ -96,12 +94,6 @@ pub(crate) fn disc(
 ) -> Covariance {
     let along = variance.sqrt().hypot(settings.sampling_std * spacing);
     Covariance::from_axis(normal, along, across)
-}
-
-/// Whether the noise of a point exceeds the spacing about it so far that its nearest neighbours tell
-/// nothing of the surface.
-pub(crate) fn is_noisy(noise: &Covariance, spacing: f64) -> bool {
-    noise.max_std() > NOISY_SPACINGS * spacing
 }
 
 /// a/(a + b), and nothing of nothing.

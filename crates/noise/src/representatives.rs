@@ -5,9 +5,8 @@ use rayon::prelude::*;
 
 use crate::error::NoiseError;
 use crate::neighborhoods::{Neighbor, Neighborhoods};
-use crate::posterior::is_noisy;
 use crate::sensor_noise::SensorNoise;
-use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
+use crate::spacing::{SPACING_NEIGHBORS, is_noisy, spacing_around};
 
 /// A representative stands for the points up to so many spacings from it, and for none beyond the
 /// standard deviation of the noise.

@@ -2,11 +2,16 @@
 
 use std::f64::consts::PI;
 
+use cloudtouch_geom::Covariance;
+
 use crate::neighborhoods::{Neighbor, Neighborhoods};
 
 /// The neighbour whose distance gives the spacing: enough to average over direction, few enough
 /// to stay local.
 pub(crate) const SPACING_NEIGHBORS: usize = 6;
+
+/// Where the noise is more than this many spacings the nearest neighbours are all noise.
+const NOISY_SPACINGS: f64 = 1.35;
 
 /// The typical spacing of a cloud, m: the median over `sample` points, evenly spread over the
 /// indices, of dₖ √(π/k) with dₖ the distance to the sixth neighbour.
@@ -43,4 +48,10 @@ pub(crate) fn spacing_around(neighbors: &[Neighbor]) -> Option<f64> {
 /// the squares h².
 pub(crate) fn spacing_of_rank(distance: f64, rank: usize) -> f64 {
     distance * (PI / rank as f64).sqrt()
+}
+
+/// Whether the noise of a point exceeds the spacing about it so far that its nearest neighbours tell
+/// nothing of the surface.
+pub(crate) fn is_noisy(noise: &Covariance, spacing: f64) -> bool {
+    noise.max_std() > NOISY_SPACINGS * spacing
 }

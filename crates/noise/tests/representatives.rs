@@ -16,8 +16,8 @@ fn ball(std: f64, stream: u64) -> Vec<Point3> {
 
 fn chosen(points: &[Point3], std: f64) -> Option<Vec<Point3>> {
     let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
-    let cloud = Neighborhoods::try_new(points.to_vec()).unwrap();
-    let chosen = Representatives::choose(&cloud, &noise).unwrap()?;
+    let cloud = Neighborhoods::try_new(points.to_vec()).expect("an index");
+    let chosen = Representatives::choose(&cloud, &noise).expect("an index of some")?;
     Some(chosen.indices().iter().map(|&index| points[index as usize]).collect())
 }
 
@@ -43,7 +43,7 @@ fn no_point_is_farther_than_its_noise_from_one_that_stands_for_it() {
 fn a_sharp_point_is_not_stood_for_by_a_noisy_one() {
     let std = 0.015;
     let points = ball(std, 3);
-    let sharp = |index: usize| index % 50 == 0;
+    let sharp = |index: usize| index.is_multiple_of(50);
     let of = |index| Covariance::isotropic(if sharp(index) { 1e-8 } else { std * std });
     let noise: SensorNoise = (0..points.len()).map(of).collect::<Vec<_>>().into();
     let count = points.len();
