@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use cloudtouch::{ContactEvidence, Report};
+use cloudtouch::{Clearance, ContactEvidence, Report};
 use cloudtouch_testkit::family::Kind;
 
 /// What the moving body is given as.
@@ -71,6 +71,10 @@ pub struct Said {
     pub bounds: Option<[f64; 2]>,
     /// What the probability rests on, for a method that tells.
     pub evidence: Option<ContactEvidence>,
+    /// The distance of the surfaces, and a lower bound on it, m, for a method that tells.
+    pub clearance: Option<Clearance>,
+    /// See `clearance`.
+    pub clearance_at_least: Option<f64>,
     /// Time of the query on prepared bodies, microseconds.
     pub micros: f64,
 }
@@ -82,6 +86,8 @@ impl From<&Report> for Said {
             probability: Some(report.collision_probability),
             bounds: Some(report.bounds),
             evidence: report.evidence,
+            clearance: report.clearance_m,
+            clearance_at_least: report.clearance_at_least_m,
             micros: report.stats.query_us as f64,
         }
     }
@@ -91,7 +97,15 @@ impl Said {
     /// A score alone, since when it was sought.
     pub fn score(score: f64, start: Instant) -> Self {
         let micros = 1e6 * start.elapsed().as_secs_f64();
-        Self { score, probability: None, bounds: None, evidence: None, micros }
+        Self {
+            score,
+            probability: None,
+            bounds: None,
+            evidence: None,
+            clearance: None,
+            clearance_at_least: None,
+            micros,
+        }
     }
 
     fn check(&self) -> Result<()> {

@@ -100,10 +100,11 @@ pub enum Undecided {
 pub struct Clearance {
     /// Expected gap along the normal of the contact, m; negative in overlap.
     pub mean: f64,
-    /// Standard deviation of that, m: of the surfaces across, not along them.
+    /// Standard deviation of that, m: of the surfaces across, and of what samples leave open between
+    /// them.
     pub std: f64,
-    /// Whether the overlap may be deeper than `mean` says: beyond a spacing only a part of it is
-    /// seen.
+    /// Whether the overlap may be deeper than `mean` says: of surfaces that cross no more than half a
+    /// spacing is told.
     pub is_bound: bool,
 }
 

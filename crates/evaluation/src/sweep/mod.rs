@@ -4,6 +4,7 @@
 mod agreement;
 mod ask;
 mod bounds;
+mod clearance;
 mod figures;
 mod grade;
 mod judged;

@@ -1,7 +1,7 @@
 //! What is aimed at on ordinary scenes, and whether it is reached.
 
 use super::{
-    ORACLE, OURS,
+    ORACLE, OURS, clearance,
     judged::Judged,
     plan::STDS,
     tables::{is_near, ordinary},
@@ -45,6 +45,7 @@ pub(super) fn section(answers: &Answers) -> Section {
         all.push(families(answers, pair));
         all.extend(stated(answers, pair));
         all.push(deep(answers, pair));
+        all.extend(clearance::targets(answers, pair));
         all.extend(STDS.map(|std| alternatives(answers, pair, std)));
     }
     targets::section(&all).text(format_args!(

@@ -31,14 +31,16 @@ pub(super) fn contacts(sorted: &[Spot], collision: f64, most: usize) -> Vec<Cont
     patches.iter().map(contact).collect()
 }
 
-/// The distance of the two surfaces: that of the likeliest spot, or, where an overlap is deep, as much
-/// of it as was seen.
-pub(super) fn clearance(sorted: &[Spot]) -> Option<Clearance> {
-    let likeliest = sorted.first()?;
+/// The distance of the two surfaces. Where a collision is likelier than not, that of the likeliest
+/// spot, or of the deepest that is about as likely: as much of an overlap as was seen. Else that of the
+/// two pieces likeliest to meet: what seems to cross there most probably does not.
+pub(super) fn clearance(sorted: &[Spot], collision: f64) -> Option<Clearance> {
+    let is_likely = collision >= 0.5;
+    let likeliest = sorted.iter().find(|spot| is_likely || !spot.is_bound)?;
     let deepest = sorted
         .iter()
         .filter(|spot| spot.gap < 0.0 && spot.probability >= 0.9 * likeliest.probability)
         .min_by(|p, q| p.gap.total_cmp(&q.gap));
-    let spot = deepest.unwrap_or(likeliest);
+    let spot = deepest.filter(|_| is_likely).unwrap_or(likeliest);
     Some(Clearance { mean: spot.gap, std: spot.std, is_bound: spot.is_bound })
 }

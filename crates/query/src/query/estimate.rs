@@ -76,7 +76,8 @@ fn places(
     let spots = spots(bodies, found, inside);
     Places {
         contacts: contacts(&spots, probability, task.settings.max_contacts),
-        clearance: clearance(&spots).filter(|_| found.is_complete || probability > 0.5),
+        clearance: clearance(&spots, probability)
+            .filter(|_| found.is_complete || probability > 0.5),
         at_least: Some(found.at_least).filter(|least| least.is_finite()),
     }
 }

@@ -10,6 +10,8 @@ use crate::search::{Crossing, Finding, Found, Inside, probability_at};
 const LIKELY: f64 = 0.5;
 /// Normals of two pieces with a smaller cosine between them belong to no common plane.
 const ONE_PLANE: f64 = 0.7;
+/// Between its samples a surface may be so many spacings off the flat pieces that stand for it.
+const BEND_SPACINGS: f64 = 0.2;
 /// The piece of surface about a sample reaches so many spacings.
 const FOOTPRINT_SPACINGS: f64 = 0.5;
 
@@ -89,11 +91,11 @@ fn near((a, b): (BodyRef<'_>, BodyRef<'_>), finding: &Finding) -> Spot {
         point.covariance.std_along(&normal) * normal.dot(&axis)
     });
     // Where a piece ends is known to half of what it reaches.
-    let std = across[0].hypot(across[1]).hypot(0.5 * reach);
+    let of_pieces = across[0].hypot(across[1]).hypot(0.5 * reach);
     let normal = match outward(a, b, nearest.normals) {
         Some(known) if known.dot(&axis).abs() > ONE_PLANE => known,
         // Where the gap is less than what is known of it, the pieces say nothing of the direction.
-        _ if axis.dot(&offset).abs() > std => axis * axis.dot(&offset).signum(),
+        _ if axis.dot(&offset).abs() > of_pieces => axis * axis.dot(&offset).signum(),
         _ if axis.dot(toward_b) < 0.0 => -axis,
         _ => axis,
     };
@@ -105,6 +107,7 @@ fn near((a, b): (BodyRef<'_>, BodyRef<'_>), finding: &Finding) -> Spot {
     let gap = if beyond > 0.0 { apart.max(0.0).hypot(beyond) } else { apart };
     let probability = probability_at(meeting.deviations);
     let (place, spacing) = (meeting.place, nearest.spacing);
+    let std = of_pieces.hypot(BEND_SPACINGS * spacing);
     Spot { place, normal, gap, is_bound: false, std, spacing, probability }
 }
 
@@ -129,10 +132,14 @@ fn outward(a: BodyRef<'_>, b: BodyRef<'_>, [of_a, of_b]: [Option<Vector3>; 2]) -
     }
 }
 
-/// Of surfaces that cross; which way its normal points is open.
+/// Of surfaces that cross; which way its normal points is open. How far one has come through the other
+/// is the depth of their overlap only where the piece that is passed does not end sooner, and how far
+/// that reaches is known to half a spacing.
 fn through(crossing: &Crossing) -> Spot {
     let Crossing { place, axis, depth, std, spacing, probability, .. } = *crossing;
-    Spot { place, normal: axis, gap: -depth, is_bound: true, std, spacing, probability }
+    let footprint = FOOTPRINT_SPACINGS * spacing;
+    let (gap, std) = (-depth.min(footprint), std.hypot(0.5 * footprint));
+    Spot { place, normal: axis, gap, is_bound: true, std, spacing, probability }
 }
 
 /// A crossing has no direction of its own: it takes that of the nearest pair of pieces.
