@@ -33,6 +33,18 @@ pub enum PrepareError {
         /// What was found, m.
         value: f64,
     },
+    /// The noise is so large beside the cloud that its points say nothing.
+    #[error(
+        "the noise is {} m (standard deviation) and the cloud {} m across: give the sensor's noise in \
+         metres, such as iso:0.005 for 5 mm",
+        number(*std), number(*size)
+    )]
+    NoiseBeyondSize {
+        /// Median of the standard deviations, each the largest of its point, m.
+        std: f64,
+        /// Diagonal of the box around the points, m.
+        size: f64,
+    },
     /// A given normal is not of length one.
     #[error(
         "point {index}: normal {normal:?} is not of length one; leave the normals out to have them fitted"
