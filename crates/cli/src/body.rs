@@ -4,7 +4,8 @@ use cloudtouch::geom::{Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, FilterSettings, Mesh, PaperBodyRef, PaperCloud,
-    PaperCloudSettings, PaperQuery, PrepareError, Query, QueryError, Report, StageReport,
+    PaperCloudSettings, PaperQuery, Placement, PrepareError, Query, QueryError, Report,
+    StageReport,
 };
 
 /// A cloud prepared for one of the paths, or a mesh.
@@ -22,6 +23,9 @@ pub(crate) trait PreparedCloud: Sized + Send + Sync {
         sensor: SensorModel,
         change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
     ) -> Result<Self, PrepareError>;
+
+    /// With its surface computed everywhere, where that changes the time of a query.
+    fn refined(self) -> Result<Self, PrepareError>;
 
     /// The kept points in the file's frame, m.
     fn points(&self) -> Vec<Point3>;
@@ -44,11 +48,19 @@ pub(crate) trait Path: Sync {
         object: &Body<Self::Cloud>,
         scene_from_object: &Pose,
     ) -> Result<Report, QueryError>;
+
+    /// Where the object lies in the scene.
+    fn place(
+        &self,
+        scene: &Body<Self::Cloud>,
+        object: &Body<Self::Cloud>,
+        scene_from_object: &Pose,
+    ) -> Placement;
 }
 
 /// The clouds of the two paths have no trait in common, and the same functions.
 macro_rules! prepared_cloud {
-    ($cloud:ty, $settings:ty) => {
+    ($cloud:ty, $settings:ty, $refine:expr) => {
         impl PreparedCloud for $cloud {
             fn prepare(
                 cloud: &PointCloud,
@@ -58,6 +70,10 @@ macro_rules! prepared_cloud {
                 let mut settings = <$settings>::new(sensor);
                 change(&mut settings.filter, &mut settings.sensor);
                 Self::prepare(cloud, &settings)
+            }
+
+            fn refined(self) -> Result<Self, PrepareError> {
+                $refine(self)
             }
 
             fn points(&self) -> Vec<Point3> {
@@ -75,8 +91,9 @@ macro_rules! prepared_cloud {
     };
 }
 
-prepared_cloud!(Cloud, CloudSettings);
-prepared_cloud!(PaperCloud, PaperCloudSettings);
+prepared_cloud!(Cloud, CloudSettings, Cloud::refined);
+// The paper's algorithm has no use for it.
+prepared_cloud!(PaperCloud, PaperCloudSettings, Ok);
 
 impl<'a> From<&'a Body<Cloud>> for BodyRef<'a> {
     fn from(body: &'a Body<Cloud>) -> Self {
@@ -107,6 +124,15 @@ impl Path for Query {
     ) -> Result<Report, QueryError> {
         self.run(scene, object, scene_from_object)
     }
+
+    fn place(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &Pose,
+    ) -> Placement {
+        BodyRef::from(scene).placement(object.into(), scene_from_object)
+    }
 }
 
 impl Path for PaperQuery {
@@ -119,5 +145,14 @@ impl Path for PaperQuery {
         scene_from_object: &Pose,
     ) -> Result<Report, QueryError> {
         self.run(scene, object, scene_from_object)
+    }
+
+    fn place(
+        &self,
+        scene: &Body<PaperCloud>,
+        object: &Body<PaperCloud>,
+        scene_from_object: &Pose,
+    ) -> Placement {
+        PaperBodyRef::from(scene).placement(object.into(), scene_from_object)
     }
 }

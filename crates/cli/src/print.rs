@@ -4,10 +4,12 @@ use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 
 use anyhow::{Context, Result};
-use cloudtouch::{Clearance, Report, StageReport, Verdict};
+use cloudtouch::geom::Pose;
+use cloudtouch::{Clearance, Placement, Report, StageReport, Stats, Undecided, Unseen, Verdict};
 use serde::Serialize;
 
 use crate::body::{Body, PreparedCloud};
+use crate::load::{Input, Loaded};
 
 /// Prints a whole answer.
 ///
@@ -24,12 +26,24 @@ pub(crate) fn to_stdout(text: &str) -> Result<()> {
 /// A report for people shows this many contacts; JSON has them all.
 const CONTACTS_SHOWN: usize = 5;
 
-/// A report with the name of its case: one line of JSON.
+/// A report with where the object was.
+pub(crate) struct Answer<'a> {
+    pub report: &'a Report,
+    pub placement: &'a Placement,
+    /// Object to scene.
+    pub pose: &'a Pose,
+}
+
+/// An answer with the name of its case: one line of JSON.
 #[derive(Serialize)]
 struct Line<'a> {
     id: &'a str,
     #[serde(flatten)]
     report: &'a Report,
+    placement: &'a Placement,
+    pose: [[f64; 4]; 4],
+    scene: &'a Input,
+    object: &'a Input,
 }
 
 /// A case without an answer.
@@ -39,18 +53,37 @@ struct ErrorLine<'a> {
     error: &'a str,
 }
 
-pub(crate) fn json_line(id: &str, report: &Report) -> Result<String> {
-    Ok(serde_json::to_string(&Line { id, report })?)
-}
-
 pub(crate) fn json_error_line(id: &str, error: &str) -> Result<String> {
     Ok(serde_json::to_string(&ErrorLine { id, error })?)
+}
+
+impl Answer<'_> {
+    pub(crate) fn json_line(&self, id: &str, [scene, object]: [&Input; 2]) -> Result<String> {
+        let matrix = self.pose.isometry().to_homogeneous();
+        let pose = std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]));
+        let Self { report, placement, .. } = self;
+        Ok(serde_json::to_string(&Line { id, report, placement, pose, scene, object })?)
+    }
+
+    /// All that a person wants to know; with what it cost if `shows_work`.
+    pub(crate) fn text(&self, shows_work: bool) -> String {
+        let mut text = report(self.report);
+        text.push_str(&place(self.placement));
+        for warning in &self.report.warnings {
+            let _ = writeln!(text, "{}", labelled("warning", &warning.to_string()));
+        }
+        if shows_work {
+            text.push_str(&work(&self.report.stats));
+        }
+        text.truncate(text.trim_end().len());
+        text
+    }
 }
 
 pub(crate) fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Free => "free",
-        Verdict::InContact => "in contact",
+        Verdict::Uncertain => "uncertain",
         Verdict::InCollision => "in collision",
         Verdict::Undecided => "undecided",
     }
@@ -77,8 +110,8 @@ fn too_far(at_least_m: Option<f64>) -> String {
     }
 }
 
-/// A whole report in a few lines.
-pub(crate) fn report(report: &Report) -> String {
+/// What was found, in a few lines.
+fn report(report: &Report) -> String {
     let mut text = String::new();
     let [low, high] = report.bounds.map(probability);
     // Writing to a string cannot fail.
@@ -87,7 +120,9 @@ pub(crate) fn report(report: &Report) -> String {
         "collision probability  {}   (within {low} .. {high})",
         probability(report.collision_probability)
     );
-    let _ = writeln!(text, "verdict                {}", verdict(report.verdict));
+    let reason = report.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
+    let _ =
+        writeln!(text, "{}", labelled("verdict", &(verdict(report.verdict).to_owned() + &reason)));
     match report.clearance_m {
         Some(c) => {
             let _ = writeln!(
@@ -125,36 +160,127 @@ pub(crate) fn report(report: &Report) -> String {
         let more = report.contacts.len() - CONTACTS_SHOWN;
         let _ = writeln!(text, "                       and {more} more");
     }
-    let s = &report.stats;
-    let _ = writeln!(
-        text,
-        "work                   {} node pairs, {} leaf pairs; {} settled by a plane, {} kernel \
-         solves,\n                       {} fallbacks, {} undecided",
-        s.nodes_visited,
-        s.leaf_pairs,
-        s.linear_certificates,
-        s.kernel_solves,
-        s.fallbacks,
-        s.undecided
-    );
-    let _ = write!(
-        text,
-        "time                   prepare {:.1} ms, query {:.2} ms",
-        s.prepare_us as f64 / 1e3,
-        s.query_us as f64 / 1e3
-    );
+    if let Some(unseen) = &report.unseen {
+        let _ = writeln!(text, "{}", labelled("unseen", &unseen_words(unseen)));
+    }
     text
 }
 
-/// What a body is and what the filter did to it, in one line.
-pub(crate) fn body<C: PreparedCloud>(name: &str, body: &Body<C>) -> String {
-    match body {
+/// Columns that a line has at most, and where its words begin.
+const WIDTH: usize = 100;
+const INDENT: usize = 23;
+
+/// A line of a report, with as many lines after it as its words take.
+fn labelled(label: &str, words: &str) -> String {
+    let mut text = format!("{label:<INDENT$}");
+    let mut column = INDENT;
+    for word in words.split(' ') {
+        let length = word.chars().count();
+        if column > INDENT && column + length > WIDTH {
+            text.truncate(text.trim_end().len());
+            let _ = write!(text, "\n{:INDENT$}", "");
+            column = INDENT;
+        }
+        let _ = write!(text, "{word} ");
+        column += length + 1;
+    }
+    text.truncate(text.trim_end().len());
+    text
+}
+
+/// Why there is no decision.
+pub(crate) fn undecided(by: Undecided) -> &'static str {
+    match by {
+        Undecided::Unseen => "the camera saw too little of where the object is",
+        Undecided::Enclosed => "one cloud is all around the other: hollow or solid is not known",
+        Undecided::Units => "sizes or distance cannot be meant",
+        Undecided::Sparse => "one body fits between the points of the other",
+        Undecided::Noise => "the noise is larger than a body",
+        Undecided::NoSurface => "a cloud spans no surface",
+        Undecided::Missing => "too many rows have no return",
+        Undecided::Sensor => "the sensor cannot have seen this cloud",
+        Undecided::Unsolved => "a classifier could not be trained",
+        Undecided::Bounds => "what was not looked at, or is too noisy, could still collide",
+        _ => "see undecided_by in the JSON",
+    }
+}
+
+fn unseen_words(unseen: &Unseen) -> String {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let all = [
+        ("behind the camera", unseen.behind_camera),
+        ("outside of its view", unseen.outside_view),
+        ("in holes of the image", unseen.hole),
+        ("behind what it saw", unseen.behind_returns),
+    ];
+    let shares: Vec<String> = all
+        .iter()
+        .filter(|(_, share)| *share > 0.0)
+        .map(|(place, share)| format!("{} {place}", percent(*share)))
+        .collect();
+    if shares.is_empty() {
+        return format!("nothing of the {}", unseen.body);
+    }
+    format!("{} of the {}: {}", percent(unseen.share()), unseen.body, shares.join(", "))
+}
+
+fn place(placement: &Placement) -> String {
+    let corner = |p: [f64; 3]| format!("({:.3}, {:.3}, {:.3})", p[0], p[1], p[2]);
+    let [low, high] = placement.object_box.map(corner);
+    let [scene_low, scene_high] = placement.scene_box.map(corner);
+    let gap = if placement.box_gap_m > 0.0 {
+        format!(", {:.3} m outside of it", placement.box_gap_m)
+    } else {
+        String::new()
+    };
+    let nearest = placement.nearest_m.map_or(String::new(), |nearest| {
+        format!("; nearest point about {:.1} mm away", 1e3 * nearest)
+    });
+    let words = format!(
+        "object in {low} to {high} m, scene in {scene_low} to {scene_high} m{gap}{nearest}"
+    );
+    labelled("where", &words) + "\n"
+}
+
+fn work(stats: &Stats) -> String {
+    let done = format!(
+        "{} node pairs, {} leaf pairs; {} settled by a plane, {} kernel solves, {} fallbacks, {} \
+         undecided",
+        stats.nodes_visited,
+        stats.leaf_pairs,
+        stats.linear_certificates,
+        stats.kernel_solves,
+        stats.fallbacks,
+        stats.undecided
+    );
+    let time = format!(
+        "prepare {:.1} ms, query {:.2} ms",
+        stats.prepare_us as f64 / 1e3,
+        stats.query_us as f64 / 1e3
+    );
+    format!("{}\n{}\n", labelled("work", &done), labelled("time", &time))
+}
+
+/// What a body is, what it was taken for and what the filter did to it, in a few lines.
+pub(crate) fn body<C: PreparedCloud>(name: &str, loaded: &Loaded<C>) -> String {
+    let Input { unit, sensor, sensor_because, .. } = &loaded.input;
+    match &loaded.body {
         Body::Cloud(cloud) => {
-            format!("{name}: cloud of {} points ({})", cloud.count(), stages(cloud.stages()))
+            let because = sensor_because.map_or(String::new(), |why| format!(" ({why})"));
+            let sensor = sensor.as_deref().unwrap_or_default();
+            format!(
+                "{name}: cloud of {} points in {unit}, sensor {sensor}{because} ({})",
+                cloud.count(),
+                stages(cloud.stages())
+            )
         }
         Body::Mesh(mesh) => {
             let kind = if mesh.is_watertight() { "watertight" } else { "open" };
-            format!("{name}: {kind} mesh of {} triangles", mesh.triangle_count())
+            let count = mesh.triangle_count();
+            format!(
+                "{name}: {kind} mesh of {count} triangles in {unit}, {:.3} m across",
+                mesh.size()
+            )
         }
     }
 }
@@ -163,4 +289,11 @@ fn stages(stages: &[StageReport]) -> String {
     let removed: Vec<String> =
         stages.iter().map(|s| format!("{} removed {}", s.stage, s.removed)).collect();
     removed.join(", ")
+}
+
+/// A name of a case in one line of a table: what steers a terminal is spelled out.
+pub(crate) fn one_line(name: &str) -> String {
+    name.chars()
+        .flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] })
+        .collect()
 }

@@ -68,7 +68,7 @@ pub fn bounds([low, high]: [f64; 2]) -> String {
 pub fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Free => "free",
-        Verdict::InContact => "in contact",
+        Verdict::Uncertain => "uncertain",
         Verdict::InCollision => "in collision",
         Verdict::Undecided => "undecided",
     }

@@ -64,8 +64,10 @@ pub struct Report {
 pub enum Verdict {
     /// The upper bound on the probability is below the reject threshold.
     Free,
-    /// The probability lies between the thresholds.
-    InContact,
+    /// The probability lies between the thresholds: the surfaces may touch, overlap or be apart.
+    /// Still `in_contact` in JSON, the name it had.
+    #[serde(rename = "in_contact")]
+    Uncertain,
     /// The probability is above the accept threshold.
     InCollision,
     /// Some part could not be decided, or was left out without a bound below the reject threshold,

@@ -147,7 +147,7 @@ impl Terms {
             Verdict::Undecided
         } else {
             // NaN would end here too, and not at free.
-            Verdict::InContact
+            Verdict::Uncertain
         }
     }
 }
