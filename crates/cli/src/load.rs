@@ -14,7 +14,7 @@ use cloudtouch_io::{
 };
 use serde::Serialize;
 
-use crate::args::CommonArguments;
+use crate::args::{CommonArguments, Refine};
 use crate::body::{Body, PreparedCloud};
 use crate::sensor::{Chosen, SensorChoice};
 
@@ -35,10 +35,10 @@ pub(crate) struct Loaded<C> {
 }
 
 impl<C: PreparedCloud> Loaded<C> {
-    /// With the surface of a cloud computed everywhere, if that pays.
-    pub(crate) fn refined_if(self, pays: bool) -> Result<Self> {
+    /// With the surface of a cloud computed everywhere, if that pays for so many poses.
+    pub(crate) fn refined_for(self, poses: usize, refine: Refine) -> Result<Self> {
         Ok(match self.body {
-            Body::Cloud(cloud) if pays => {
+            Body::Cloud(cloud) if refine.pays(cloud.count(), poses) => {
                 let body = Body::Cloud(cloud.refined().with_context(|| self.input.file.clone())?);
                 Self { body, ..self }
             }

@@ -60,14 +60,15 @@ pub(crate) enum Refine {
     No,
 }
 
-/// Poses of one cloud that pay for its surface everywhere.
-const POSES_THAT_PAY: usize = 8;
+/// The surface at so many points takes as long as what one more pose saves by it, roughly: on the
+/// scan of a mug, 209,280 points and noise of 5 mm, 75 s of work against 0.5 s a pose.
+const POINTS_A_POSE: usize = 1500;
 
 impl Refine {
-    /// Whether a cloud that is asked about in so many poses is refined.
-    pub(crate) fn pays(self, poses: usize) -> bool {
+    /// Whether a cloud of so many points that is asked about in so many poses is refined.
+    pub(crate) fn pays(self, points: usize, poses: usize) -> bool {
         match self {
-            Self::Auto => poses >= POSES_THAT_PAY,
+            Self::Auto => poses > 1 && poses.saturating_mul(POINTS_A_POSE) >= points,
             Self::Yes => true,
             Self::No => false,
         }

@@ -151,7 +151,7 @@ fn prepare_all<'a, C: body::PreparedCloud>(
                 .parse::<SensorChoice>()
                 .map_err(|error| anyhow!("{error}"))
                 .and_then(|sensor| load::body(path, *role, sensor, common))
-                .and_then(|loaded| loaded.refined_if(common.effort.refine.pays(poses)))
+                .and_then(|loaded| loaded.refined_for(poses, common.effort.refine))
                 .map_err(|error| format!("{error:#}"));
             progress.inc(1);
             (key, body)

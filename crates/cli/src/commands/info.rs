@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
             bail!("--cloud-unit is for clouds, and this is a mesh: give --unit")
         }
         Geometry::Cloud(cloud) => describe_cloud(&cloud)?,
-        Geometry::Mesh(mesh) => describe_mesh(&mesh)?,
+        Geometry::Mesh(mesh) => describe_mesh(&mesh),
     };
     print::to_stdout(&format!("{}\n{text}\n", arguments.file.display()))?;
     Ok(ExitCode::SUCCESS)
@@ -73,10 +73,13 @@ fn image(cloud: &PointCloud) -> String {
     }
 }
 
-fn describe_mesh(mesh: &TriangleMesh) -> Result<String> {
+fn describe_mesh(mesh: &TriangleMesh) -> String {
     let merged = mesh.merged();
     let open = merged.open_edges();
-    let closed = if open == 0 && Mesh::prepare(mesh)?.is_watertight() {
+    let prepared = Mesh::prepare(mesh);
+    let closed = if prepared.is_err() {
+        "none: no triangle has an area, nothing collides with it".to_owned()
+    } else if prepared.is_ok_and(|mesh| mesh.is_watertight()) {
         "watertight: inside and outside are defined".to_owned()
     } else if open == 0 {
         "closed, but part of it encloses no volume; only its surface collides".to_owned()
@@ -98,7 +101,7 @@ fn describe_mesh(mesh: &TriangleMesh) -> Result<String> {
             lines.push("unit        hundreds of metres across: --unit mm?".to_owned());
         }
     }
-    Ok(lines.join("\n"))
+    lines.join("\n")
 }
 
 fn triple(p: &Point3) -> String {

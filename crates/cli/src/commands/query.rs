@@ -39,9 +39,8 @@ fn run_by<P: Path>(query: &P, arguments: &QueryArguments, shows_work: bool) -> R
     let object = load::body::<P::Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
     let is_mesh = [&scene, &object].map(|loaded| matches!(loaded.body, Body::Mesh(_)));
     unused::check(common, &is_mesh)?;
-    let pays = common.effort.refine.pays(1);
-    let scene = scene.refined_if(pays)?;
-    let object = object.refined_if(pays)?;
+    let scene = scene.refined_for(1, common.effort.refine)?;
+    let object = object.refined_for(1, common.effort.refine)?;
     let report = query.ask(&scene.body, &object.body, &pose)?;
     let placement = query.place(&scene.body, &object.body, &pose);
     if let Some(path) = &arguments.ply {
