@@ -10,8 +10,10 @@ use crate::safeguards::Safeguards;
 use crate::shape::Shape;
 use crate::warning::{Warning, Which};
 
-/// No body is so many times as large as the other.
+/// No body is so many times as large as the other, ...
 const LARGEST_RATIO: f64 = 1000.0;
+/// ... and no object as its scene.
+const LARGEST_OBJECT_RATIO: f64 = 100.0;
 /// Meshes seldom say their unit. In metres none is so large, m, ...
 const LARGE_MESH: f64 = 100.0;
 /// ... beside a body so many times smaller, ...
@@ -38,6 +40,13 @@ pub(crate) fn doubts(
             Shape::Mesh(_) => None,
         })
     };
+    for (body, shape, _) in bodies {
+        if let Shape::Mesh(mesh) = shape
+            && !mesh.has_area()
+        {
+            warnings.push(Warning::NoSurface { body, points: 3 * mesh.triangle_count() });
+        }
+    }
     for (body, cloud, _) in clouds() {
         if cloud.is_line {
             warnings.push(Warning::NoSurface { body, points: cloud.distinct });
@@ -65,6 +74,7 @@ fn units((a, b): (Shape<'_>, Shape<'_>)) -> Option<Warning> {
         // A single point has no size; another warning tells of it.
         let is_suspicious = other_size_m > 0.0
             && (beyond(0.0, LARGEST_RATIO)
+                || body == Which::B && beyond(0.0, LARGEST_OBJECT_RATIO)
                 || is_mesh && beyond(LARGE_MESH, LARGE_MESH_RATIO)
                 || is_mesh && body == Which::B && beyond(LARGE_OBJECT, LARGE_OBJECT_RATIO));
         is_suspicious.then_some(Warning::Units { body, size_m, other_size_m })

@@ -32,11 +32,11 @@ impl fmt::Display for Which {
 #[serde(tag = "code", content = "values", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Warning {
-    /// The points of a cloud are on a line, or are one: they span no surface.
+    /// The points of a cloud, or all corners of each face of a mesh, are on a line: no surface.
     NoSurface {
         /// Whose.
         body: Which,
-        /// How many were kept.
+        /// How many there are.
         points: usize,
     },
     /// So many rows of a cloud without image layout have no return.
@@ -145,8 +145,8 @@ impl fmt::Display for Warning {
         match *self {
             Self::NoSurface { body, points } => write!(
                 f,
-                "the {body} has {points} distinct points, and all are on a line: no surface can be \
-                 told from them; check the file"
+                "the {body} has {points} distinct points or corners, all on a line: they span no \
+                 surface; check the file"
             ),
             Self::Missing { body, share } => write!(
                 f,

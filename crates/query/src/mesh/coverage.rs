@@ -9,6 +9,18 @@ use super::prepare::Mesh;
 const STRIDES: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
 impl Mesh {
+    /// Whether any triangle is more than a line.
+    pub(crate) fn has_area(&self) -> bool {
+        let normal = |[a, b, c]: [Point3; 3]| (b - a).cross(&(c - a));
+        // The nearest to a line that single precision tells from one.
+        let is_thin = |corners: [Point3; 3]| {
+            let [a, b, c] = corners;
+            let longest = (b - a).norm_squared().max((c - a).norm_squared());
+            normal(corners).norm() <= 1e-7 * longest
+        };
+        (0..self.triangle_count()).any(|t| !is_thin(self.corners(t)))
+    }
+
     /// So many places on the surface, in the local frame, m; always the same.
     pub(super) fn spread(&self, count: usize) -> Vec<Point3> {
         let areas: Vec<f64> = (0..self.triangle_count())
@@ -18,6 +30,9 @@ impl Mesh {
             })
             .collect();
         let each = areas.iter().sum::<f64>() / count as f64;
+        if each == 0.0 {
+            return (0..self.triangle_count()).flat_map(|t| self.corners(t)).take(count).collect();
+        }
         let mut places = Vec::with_capacity(count);
         let mut covered = 0.0;
         for (triangle, area) in areas.iter().enumerate() {
