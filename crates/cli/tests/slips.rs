@@ -306,7 +306,7 @@ fn what_was_meant_is_free() {
         "image.pcd box.obj --sensor kinect --translate -0.2,0,1.2",
         "image.pcd box.obj --sensor auto --translate -0.2,0,1.2",
         "image_mm.pcd box.obj --cloud-unit mm --sensor kinect --translate -0.2,0,1.2",
-        "base.pcd box.obj --sensor kinect --sensor-pose 0,0,0,0.5,-0.5,0.5,-0.5 --translate 1.2,0.2,0",
+        "base.pcd box.obj --sensor kinect --sensor-pose 0,0,0,-0.5,0.5,-0.5,0.5 --translate 1.2,0.2,0",
         "street.xyz car.obj --sensor auto --translate 0,0,60",
         "floor.pcd box.obj --translate 10,20,500 --trust-units",
         "image.pcd box.obj --sensor kinect --translate 3,0,1 --max-unseen 1",
