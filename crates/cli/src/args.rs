@@ -101,7 +101,7 @@ pub(crate) struct QueryArguments {
     /// Exit with 0 free, 10 uncertain, 20 in collision, 30 undecided
     #[arg(long, help_heading = "Output")]
     pub exit_code: bool,
-    /// Write scene (grey) and object (blue), redder with probability, contacts green
+    /// Write both bodies, redder with probability, contacts green; a mesh as a mesh
     #[arg(long, value_name = "OUT.ply", help_heading = "Output")]
     pub ply: Option<PathBuf>,
     /// Replace an output file that is there already

@@ -30,6 +30,9 @@ pub(crate) trait PreparedCloud: Sized + Send + Sync {
     /// The kept points in the file's frame, m.
     fn points(&self) -> Vec<Point3>;
 
+    /// For every kept point its row in the file; empty for the cells of a collision map.
+    fn file_rows(&self) -> &[usize];
+
     /// How many points were kept.
     fn count(&self) -> usize;
 
@@ -78,6 +81,10 @@ macro_rules! prepared_cloud {
 
             fn points(&self) -> Vec<Point3> {
                 (0..self.len()).map(|i| self.point(i)).collect()
+            }
+
+            fn file_rows(&self) -> &[usize] {
+                self.rows()
             }
 
             fn count(&self) -> usize {

@@ -122,6 +122,22 @@ pub fn read_geometry_within(
     })
 }
 
+/// Red, green and blue of every row of a cloud; `None` where the file has none.
+///
+/// # Errors
+/// As [`read_cloud`].
+pub fn read_colors_within(
+    path: impl AsRef<Path>,
+    limits: &ReadLimits,
+) -> Result<Option<Vec<[u8; 3]>>, ReadError> {
+    let path = path.as_ref();
+    match extension(path).as_str() {
+        "pcd" => read(path, pcd::colors_within, limits),
+        "ply" => read(path, ply::colors_within, limits),
+        _ => Ok(None),
+    }
+}
+
 /// Whether the extension of a file is one that is read, without a look at the file.
 ///
 /// # Errors

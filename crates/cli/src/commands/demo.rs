@@ -60,7 +60,7 @@ fn run_by<P: body::Path>(
         let answer = print::Answer { report, placement, pose };
         let _ = write!(text, "\nPose {number} in full:\n{}\n", answer.text(shows_work));
         if let Some(path) = &arguments.ply {
-            picture::write(path, &room.body, &piano.body, pose, report)?;
+            picture::write(path, (&room.body, None), (&piano.body, None), pose, report)?;
             let _ = writeln!(text, "picture                {}", path.display());
         }
     }

@@ -6,6 +6,7 @@ use anyhow::Result;
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{PaperQuery, Query, Verdict};
 use cloudtouch_cli::numbers::Triple;
+use cloudtouch_io::read_colors_within;
 use nalgebra::UnitQuaternion;
 
 use crate::args::{ModeName, PoseArguments, QueryArguments};
@@ -44,7 +45,13 @@ fn run_by<P: Path>(query: &P, arguments: &QueryArguments, shows_work: bool) -> R
     let report = query.ask(&scene.body, &object.body, &pose)?;
     let placement = query.place(&scene.body, &object.body, &pose);
     if let Some(path) = &arguments.ply {
-        picture::write(path, &scene.body, &object.body, &pose, &report)?;
+        let limits = common.limits.read_limits();
+        let files = [&arguments.scene, &arguments.object];
+        let [of_scene, of_object] = files.map(|file| read_colors_within(file, &limits));
+        let (of_scene, of_object) = (of_scene?, of_object?);
+        let scene = (&scene.body, of_scene.as_deref());
+        let object = (&object.body, of_object.as_deref());
+        picture::write(path, scene, object, &pose, &report)?;
     }
     let answer = print::Answer { report: &report, placement: &placement, pose: &pose };
     let text = if arguments.json {

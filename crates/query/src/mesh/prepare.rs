@@ -130,6 +130,12 @@ impl Mesh {
         Ok(points)
     }
 
+    /// The surface as it was prepared, with merged vertices in the file frame, m.
+    pub fn faces(&self) -> (Vec<Point3>, &[[u32; 3]]) {
+        let in_file = |v: &Vector| Point3::new(v.x, v.y, v.z) + self.origin;
+        (self.surface.vertices().iter().map(in_file).collect(), self.surface.indices())
+    }
+
     /// Some hundred places on the surface in the local frame, m, each for the same area.
     pub(crate) fn samples(&self) -> &[Point3] {
         self.samples.get_or_init(|| self.spread(SAMPLES))
