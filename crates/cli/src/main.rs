@@ -1,5 +1,6 @@
 //! The `cloudtouch` command: queries, batches, file information and a demo.
 
+mod answer;
 mod args;
 mod batch_table;
 mod body;
@@ -10,6 +11,7 @@ mod output;
 mod picture;
 mod pose_file;
 mod print;
+mod report_text;
 mod sensor;
 mod unused;
 

@@ -6,16 +6,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
+use cloudtouch::geom::Pose;
 use cloudtouch::{PaperQuery, Placement, Query, Report};
 use cloudtouch_io::write_atomically;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use crate::answer::{Answer as Line, json_error_line};
 use crate::args::{BatchArguments, ModeName};
 use crate::batch_table::Table;
 use crate::body::{self, Body};
 use crate::case_file::{self, Case};
-use crate::load::{self, Loaded, Role};
+use crate::load::{self, Input, Loaded, Role};
 use crate::sensor::SensorChoice;
 use crate::{ordered, output, print, unused};
 
@@ -23,8 +25,16 @@ use crate::{ordered, output, print, unused};
 type BodyKey = (PathBuf, Role, String);
 type Bodies<C> = BTreeMap<BodyKey, Result<Loaded<C>, String>>;
 
-/// What became of one case: a report with where the object was, or the reason why there is none.
-type Answer = Result<(Report, Placement), String>;
+/// What became of one case: a report, or the reason why there is none.
+type Answer<'a> = Result<Answered<'a>, String>;
+
+/// A report with where the object was and what the files were taken for.
+struct Answered<'a> {
+    report: Report,
+    placement: Placement,
+    pose: &'a Pose,
+    inputs: [&'a Input; 2],
+}
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -55,28 +65,19 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
             Ok(case) => answer(arguments, query, &bodies, case),
             Err(error) => Err(format!("{error:#}")),
         };
-        ordered::for_each(file.cases.len(), threads, work, |index, answer: Answer| {
+        ordered::for_each(file.cases.len(), threads, work, |index, answer: Answer<'_>| {
             let (id, case) = &file.cases[index];
-            let line = match (&answer, case) {
-                (Ok((report, placement)), Ok(case)) => {
-                    let [scene, object] = keys(arguments, case).map(|key| bodies.get(&key));
-                    let inputs = [scene, object].map(|body| body.and_then(|b| b.as_ref().ok()));
-                    let pose = &case.scene_from_object;
-                    match inputs {
-                        [Some(scene), Some(object)] => print::Answer { report, placement, pose }
-                            .json_line(id, [&scene.input, &object.input])
-                            .map_err(io::Error::other)?,
-                        // An answer has both.
-                        _ => String::new(),
-                    }
+            let line = match &answer {
+                Ok(Answered { report, placement, pose, inputs }) => {
+                    Line { report, placement, pose }.json_line(id, *inputs)
                 }
-                (Err(error), _) => print::json_error_line(id, error).map_err(io::Error::other)?,
-                (Ok(_), Err(_)) => String::new(),
+                Err(error) => json_error_line(id, error),
             };
+            let line = line.map_err(io::Error::other)?;
             failed |= answer.is_err();
             writeln!(jsonl, "{line}")?;
             progress.inc(1);
-            let report = answer.as_ref().map(|(report, _)| report).map_err(String::as_str);
+            let report = answer.as_ref().map(|answered| &answered.report).map_err(String::as_str);
             progress.suspend(|| {
                 let row = table.row(id, case, report);
                 to_stdout(&if arguments.json { format!("{line}\n") } else { row })
@@ -96,20 +97,21 @@ fn to_stdout(text: &str) -> io::Result<()> {
     print::to_stdout(text).map_err(io::Error::other)
 }
 
-fn answer<P: body::Path>(
+fn answer<'a, P: body::Path>(
     arguments: &BatchArguments,
     query: &P,
-    bodies: &Bodies<P::Cloud>,
-    case: &Case,
-) -> Answer {
+    bodies: &'a Bodies<P::Cloud>,
+    case: &'a Case,
+) -> Answer<'a> {
     let [scene, object] = keys(arguments, case).map(|key| match bodies.get(&key) {
-        Some(Ok(loaded)) => Ok(&loaded.body),
+        Some(Ok(loaded)) => Ok(loaded),
         Some(Err(error)) => Err(error.clone()),
         None => Err(format!("{}: not prepared", key.0.display())),
     });
     let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
-    let report = query.ask(scene, object, pose).map_err(|error| error.to_string())?;
-    Ok((report, query.place(scene, object, pose)))
+    let report = query.ask(&scene.body, &object.body, pose).map_err(|error| error.to_string())?;
+    let placement = query.place(&scene.body, &object.body, pose);
+    Ok(Answered { report, placement, pose, inputs: [&scene.input, &object.input] })
 }
 
 fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {

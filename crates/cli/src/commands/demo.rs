@@ -14,7 +14,7 @@ use cloudtouch_io::{LengthUnit, pcd};
 use crate::args::{DemoArguments, ModeName};
 use crate::body::{self, Body, PreparedCloud};
 use crate::load::{Input, Loaded};
-use crate::{case_file, output, picture, print};
+use crate::{case_file, output, picture, print, report_text};
 
 const ROOM: &[u8] = include_bytes!("../../demo/room.pcd");
 const PIANO: &[u8] = include_bytes!("../../demo/piano.pcd");
@@ -57,8 +57,11 @@ fn run_by<P: body::Path>(
     text += &table(&poses);
     if let Some((number, shown)) = most_open(&poses) {
         let Answered { room_from_piano: pose, placement, report, .. } = shown;
-        let answer = print::Answer { report, placement, pose };
-        let _ = write!(text, "\nPose {number} in full:\n{}\n", answer.text(shows_work));
+        let _ = write!(
+            text,
+            "\nPose {number} in full:\n{}\n",
+            report_text::text(report, placement, shows_work)
+        );
         if let Some(path) = &arguments.ply {
             picture::write(path, (&room.body, None), (&piano.body, None), pose, report)?;
             let _ = writeln!(text, "picture                {}", path.display());

@@ -9,10 +9,11 @@ use cloudtouch_cli::numbers::Triple;
 use cloudtouch_io::read_colors_within;
 use nalgebra::UnitQuaternion;
 
+use crate::answer::Answer;
 use crate::args::{ModeName, PoseArguments, QueryArguments};
 use crate::body::{Body, Path};
 use crate::load::{self, Role};
-use crate::{output, picture, pose_file, print, unused};
+use crate::{output, picture, pose_file, print, report_text, unused};
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -53,14 +54,14 @@ fn run_by<P: Path>(query: &P, arguments: &QueryArguments, shows_work: bool) -> R
         let object = (&object.body, of_object.as_deref());
         picture::write(path, scene, object, &pose, &report)?;
     }
-    let answer = print::Answer { report: &report, placement: &placement, pose: &pose };
     let text = if arguments.json {
+        let answer = Answer { report: &report, placement: &placement, pose: &pose };
         answer.json_line("query", [&scene.input, &object.input])?
     } else {
         let bodies = [("scene", &scene), ("object", &object)].map(|(role, b)| print::body(role, b));
         let no_pose = (!arguments.pose.is_given())
             .then_some("pose                   not given: the identity");
-        [bodies.join("\n"), answer.text(shows_work)]
+        [bodies.join("\n"), report_text::text(&report, &placement, shows_work)]
             .into_iter()
             .chain(no_pose.map(str::to_owned))
             .collect::<Vec<_>>()
