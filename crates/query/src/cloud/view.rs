@@ -18,8 +18,9 @@ const HOLE_CELLS: isize = 2;
 const CLEARLY: f64 = 3.0;
 /// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
 const PANORAMA: f64 = 0.17;
-/// Cells of a raster at most: beyond, they become wider.
+/// Cells of a raster at most, and columns or rows: beyond, they become wider.
 const MOST_CELLS: f64 = 1e7;
+const MOST_COLUMNS: f64 = 1e4;
 
 /// What a camera knows of a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,11 +92,14 @@ impl Raster {
         let extent = [high[0] - low[0], high[1] - low[1]];
         let area = extent[0] * extent[1];
         let pitch = (CELL_PIXELS * (area / placed.len().max(1) as f64).sqrt())
-            .max((area / MOST_CELLS).sqrt());
+            .max((area / MOST_CELLS).sqrt())
+            .max(extent[0].max(extent[1]) / MOST_COLUMNS);
         if !(pitch > 0.0 && pitch.is_finite()) {
             return None;
         }
-        let size = extent.map(|side| (side / pitch) as usize + 1);
+        // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
+        let low = low.map(|v| v - 0.5 * pitch);
+        let size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
         let mut raster =
             Self { lens, low, pitch, size, clearly_behind: vec![0.0; size[0] * size[1]] };
         for (index, range, at) in placed {
@@ -186,5 +190,85 @@ impl Lens {
                 (range > 0.0).then(|| [ray.y.atan2(ray.x).rem_euclid(TAU), (ray.z / range).asin()])
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Covariance, Pose, seed};
+    use cloudtouch_testkit::camera::DepthCamera;
+    use cloudtouch_testkit::exact::ExactMesh;
+    use cloudtouch_testkit::scene;
+
+    use super::*;
+
+    const STD: f64 = 0.004;
+
+    /// What is known beyond doubt from all measured points around a ray, looked at one by one.
+    fn by_every_ray(points: &[Point3], place: &Point3, pixel: f64) -> Option<Sight> {
+        let aside = |p: &Point3| p.coords.angle(&place.coords) / pixel;
+        let around = |pixels: f64| points.iter().filter(move |p| aside(p) < pixels);
+        let ranges = || around(8.0).map(|p| p.coords.norm());
+        let range = place.coords.norm();
+        if place.z <= 0.0 {
+            Some(Sight::BehindCamera)
+        } else if around(14.0).next().is_none() {
+            Some(Sight::Hole)
+        } else if around(1.0).next().is_none() {
+            None
+        } else if range < ranges().fold(f64::INFINITY, f64::min) {
+            Some(Sight::Seen)
+        } else {
+            let farthest = ranges().fold(0.0, f64::max);
+            (range > farthest + 4.0 * STD).then_some(Sight::BehindReturns)
+        }
+    }
+
+    /// A block before a wall with a window, from a camera that may be turned any way.
+    #[test]
+    fn the_raster_says_what_every_single_ray_says() {
+        let at = |x: f64, y: f64, z: f64| Pose::from_translation(Vector3::new(x, y, z));
+        let part = |size: [f64; 3], pose: &Pose| scene::moved(&scene::cuboid(size), pose);
+        let wall = ExactMesh::new(&scene::assemble([
+            part([2.0, 4.0, 0.05], &at(-1.3, 0.0, 2.5)),
+            part([2.0, 4.0, 0.05], &at(1.3, 0.0, 2.5)),
+        ]));
+        let block = ExactMesh::new(&part([0.4; 3], &at(-0.4, 0.2, 1.4)));
+        let camera = DepthCamera::default();
+        let image = camera.scan(&[&wall, &block], &Pose::identity(), 3);
+        let seen: Vec<Point3> = image.points.into_iter().filter(|p| p.z.is_finite()).collect();
+        let noise = SensorNoise::uniform(Covariance::isotropic(STD * STD), seen.len());
+        let mut told = [0; 4];
+        for turn in [[0.0; 3], [0.7, -1.1, 2.9], [-2.0, 0.3, 0.4]] {
+            let turned = Pose::from_translation_rpy(Vector3::zeros(), turn);
+            let points: Vec<Point3> = seen.iter().map(|p| turned.transform_point(p)).collect();
+            let view = SingleView::new(Point3::origin());
+            let sight = view.sight((&points, &noise)).expect("points with directions");
+            for index in 0..700 {
+                let unit = |k: u64| 2.0 * seed::unit(seed::derive(7, index, k)) - 1.0;
+                let place = Point3::new(2.0 * unit(0), 1.5 * unit(1), 1.5 + 2.0 * unit(2));
+                let Some(sure) = by_every_ray(&seen, &place, 1.0 / camera.focal_px) else {
+                    continue;
+                };
+                let found = sight(&turned.transform_point(&place));
+                let agrees = match sure {
+                    // Where nothing was measured the reference does not tell a hole from the rim.
+                    Sight::Hole => matches!(found, Sight::Hole | Sight::OutsideView),
+                    // The camera's back is told from what it measured, not from its axis.
+                    Sight::BehindCamera => {
+                        matches!(found, Sight::BehindCamera | Sight::OutsideView)
+                    }
+                    sure => found == sure,
+                };
+                assert!(agrees, "{place}: {found:?}, but {sure:?} by every ray");
+                told[match sure {
+                    Sight::Seen => 0,
+                    Sight::BehindCamera => 1,
+                    Sight::BehindReturns => 2,
+                    Sight::Hole | Sight::OutsideView => 3,
+                }] += 1;
+            }
+        }
+        assert!(told.iter().all(|&count| count > 50), "{told:?}");
     }
 }
