@@ -71,7 +71,8 @@ pub enum Verdict {
     /// The probability is above the accept threshold.
     InCollision,
     /// Some part could not be decided, or was left out without a bound below the reject threshold,
-    /// and the rest does not settle the matter.
+    /// and the rest does not settle the matter; or what was found cannot be believed:
+    /// [`Report::undecided_by`] says why.
     Undecided,
 }
 

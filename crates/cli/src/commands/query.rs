@@ -58,14 +58,15 @@ fn run_by<P: Path>(query: &P, arguments: &QueryArguments, shows_work: bool) -> R
         let answer = Answer { report: &report, placement: &placement, pose: &pose };
         answer.json_line("query", [&scene.input, &object.input])?
     } else {
-        let bodies = [("scene", &scene), ("object", &object)].map(|(role, b)| print::body(role, b));
-        let no_pose = (!arguments.pose.is_given())
-            .then_some("pose                   not given: the identity");
-        [bodies.join("\n"), report_text::text(&report, &placement, shows_work)]
-            .into_iter()
-            .chain(no_pose.map(str::to_owned))
-            .collect::<Vec<_>>()
-            .join("\n")
+        let mut parts = vec![
+            print::body("scene", &scene),
+            print::body("object", &object),
+            report_text::text(&report, &placement, shows_work),
+        ];
+        if !arguments.pose.is_given() {
+            parts.push("pose                   not given: the identity".to_owned());
+        }
+        parts.join("\n")
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(if arguments.exit_code { exit_code(report.verdict) } else { ExitCode::SUCCESS })
