@@ -105,25 +105,23 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
         .enumerate()
         .map(|(position, text)| {
             let number = format!("case-{}", position + 1);
-            let case = serde_json::from_str::<Value>(text.get())
-                .context("the case cannot be read")
-                .map_err(shortened);
-            match case {
-                Ok(value) => {
-                    (id(&value).unwrap_or(number), parse_case(value, folder).map_err(shortened))
-                }
-                Err(error) => (number, Err(error)),
-            }
+            let case = serde_json::from_str::<Value>(text.get()).context("the case cannot be read");
+            let case = case.and_then(|value| parse_case(value, folder)).map_err(shortened);
+            (id(text.get()).unwrap_or(number), case)
         })
         .collect();
     Ok(CaseFile { cases })
 }
 
-/// The name a case has, if any.
-fn id(case: &Value) -> Option<String> {
-    match case.get("id")? {
+/// The name a case has, if any, whatever is wrong with the rest of it.
+fn id(case: &str) -> Option<String> {
+    #[derive(Deserialize)]
+    struct Named {
+        id: Value,
+    }
+    match serde_json::from_str::<Named>(case).ok()?.id {
         Value::Null => None,
-        Value::String(id) => Some(id.clone()),
+        Value::String(id) => Some(id),
         other => Some(other.to_string()),
     }
 }

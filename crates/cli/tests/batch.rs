@@ -74,6 +74,7 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
         assert!(line.get("verdict").is_none() && line.as_object().unwrap().len() == 2, "{line}");
     }
     assert_eq!((&lines[0]["id"], &lines[1]["id"]), (&"case-1".into(), &"case-2".into()));
+    assert!(lines[2..cases.len()].iter().all(|line| line["id"] == "bad"), "{lines:?}");
     assert_eq!(lines.last().unwrap()["verdict"], "free");
     let table = inputs.run(&["batch", "cases.json"]).quiet(1).stdout();
     assert!(table.contains("1 answers, 14 errors"), "{table}");
