@@ -13,48 +13,60 @@ type Slip = (&'static str, &'static [&'static str]);
 
 /// Units, poses and sizes that cannot be meant: an answer that is not free, with a warning.
 const DOUBTED: &[Slip] = &[
-    ("floor_mm.pcd box.obj --translate 0,0,0.5", &["\"undecided\"", "1414", "--cloud-unit mm"]),
-    ("floor_mm.pcd box.obj --translate 0,0,500", &["\"undecided\"", "--cloud-unit mm"]),
-    ("floor.pcd box_mm.obj --translate 0,0,0.5", &["\"undecided\"", "346", "--unit mm"]),
-    ("floor.pcd box_mm.obj --translate 0,0,400", &["\"undecided\"", "346", "--unit mm"]),
-    ("floor_mm.pcd box_mm.obj --unit mm --translate 0,0,0.5", &["\"undecided\"", "--cloud-unit"]),
+    (
+        "floor_mm.pcd box.obj --translate 0,0,0.5",
+        &["verdict\":\"undecided", "1414", "--cloud-unit mm"],
+    ),
+    ("floor_mm.pcd box.obj --translate 0,0,500", &["verdict\":\"undecided", "--cloud-unit mm"]),
+    ("floor.pcd box_mm.obj --translate 0,0,0.5", &["verdict\":\"in_collision", "346", "--unit mm"]),
+    ("floor.pcd box_mm.obj --translate 0,0,400", &["verdict\":\"undecided", "346", "--unit mm"]),
+    (
+        "floor_mm.pcd box_mm.obj --unit mm --translate 0,0,0.5",
+        &["verdict\":\"undecided", "--cloud-unit"],
+    ),
     (
         "floor.pcd box.obj --unit mm --translate 0,0,0.0001",
-        &["\"undecided\"", "points of the scene"],
+        &["verdict\":\"undecided", "points of the scene"],
     ),
-    ("floor.pcd box.obj --translate 10,20,500", &["\"undecided\"", "far_away", "check the pose"]),
-    ("far.xyz box.obj", &["\"undecided\"", "far_away", "check the pose"]),
-    ("floor.pcd box.obj --pose mm.txt", &["\"undecided\"", "far_away", "unit"]),
+    (
+        "floor.pcd box.obj --translate 10,20,500",
+        &["verdict\":\"undecided", "far_away", "check the pose"],
+    ),
+    ("far.xyz box.obj", &["verdict\":\"undecided", "far_away", "check the pose"]),
+    ("floor.pcd box.obj --pose mm.txt", &["verdict\":\"undecided", "far_away", "unit"]),
     (
         "point.xyz box.obj --translate 0,0,2",
-        &["\"undecided\"", "1 distinct point", "check the file"],
+        &["verdict\":\"undecided", "1 distinct point", "check the file"],
     ),
-    ("same.xyz box.obj --translate 0,0,2", &["\"undecided\"", "1 distinct points"]),
-    ("line.xyz box.obj --translate 0,0,2", &["\"undecided\"", "on a line", "100"]),
-    ("floor.pcd point.xyz --translate 0,0,2", &["\"undecided\"", "object", "on a line"]),
-    ("holes.xyz box.obj --translate 0,0,0.5", &["\"undecided\"", "33 %", "organised"]),
+    ("same.xyz box.obj --translate 0,0,2", &["verdict\":\"undecided", "1 distinct points"]),
+    ("line.xyz box.obj --translate 0,0,2", &["verdict\":\"undecided", "on a line", "100"]),
+    ("floor.pcd point.xyz --translate 0,0,2", &["verdict\":\"undecided", "object", "on a line"]),
+    ("holes.xyz box.obj --translate 0,0,0.5", &["verdict\":\"undecided", "33 %", "organised"]),
     (
         "floor.pcd box.obj --sensor iso:0.5 --translate 0,0,0.9",
-        &["\"undecided\"", "noise", "metres"],
+        &["verdict\":\"undecided", "noise", "metres"],
     ),
     // A depth image.
-    ("image.pcd box.obj --sensor kinect", &["\"undecided\"", "unseen", "--max-unseen"]),
+    ("image.pcd box.obj --sensor kinect", &["verdict\":\"undecided", "unseen", "--max-unseen"]),
     (
         "image.pcd box.obj --sensor kinect --translate 0,0,-1",
-        &["behind_camera\":1.0", "\"undecided\""],
+        &["behind_camera\":1.0", "verdict\":\"undecided"],
     ),
     (
         "image.pcd box.obj --sensor kinect --translate 3,0,1",
-        &["outside_view\":1.0", "\"undecided\""],
+        &["outside_view\":1.0", "verdict\":\"undecided"],
     ),
-    ("image.pcd box.obj --sensor kinect --translate 0.6,0,1.5", &["hole\":", "\"undecided\""]),
+    (
+        "image.pcd box.obj --sensor kinect --translate 0.6,0,1.5",
+        &["hole\":", "verdict\":\"undecided"],
+    ),
     (
         "image.pcd box.obj --sensor kinect --translate 0,0,2.4",
-        &["behind_returns\":1.0", "\"undecided\""],
+        &["behind_returns\":1.0", "verdict\":\"undecided"],
     ),
     (
         "image.pcd box.obj --sensor auto --translate 0,0,-1",
-        &["\"kinect\"", "\"undecided\"", "a depth image"],
+        &["\"kinect\"", "verdict\":\"undecided", "a depth image"],
     ),
     (
         "image.pcd box.obj --sensor lidar:0.02,0.003 --translate 0,0,2",
@@ -62,33 +74,36 @@ const DOUBTED: &[Slip] = &[
     ),
     (
         "base.pcd box.obj --sensor kinect --translate 1,0,0",
-        &["sensor_pose", "--sensor-pose", "\"undecided\""],
+        &["sensor_pose", "--sensor-pose", "verdict\":\"undecided"],
     ),
     (
         "image.pcd box.obj --sensor kinect --sensor-pose 0,0,3 --translate 0,0,1",
-        &["sensor_pose", "\"undecided\""],
+        &["sensor_pose", "verdict\":\"undecided"],
     ),
     (
         "street.xyz car.obj --sensor kinect --translate 0,0,60",
-        &["sensor_range", "--sensor auto", "\"undecided\""],
+        &["sensor_range", "--sensor auto", "verdict\":\"undecided"],
     ),
     // No time to look.
     ("floor.pcd floor_above.pcd --deadline 1", &[]),
     (
         "floor.pcd box.obj --cloud-unit mm --sensor exact --translate 0,0,1",
-        &["\"undecided\"", "0.346 m across", "--cloud-unit"],
+        &["verdict\":\"undecided", "0.346 m across", "--cloud-unit"],
     ),
-    ("image_mm.pcd box.obj --translate 0,0,1", &["\"undecided\"", "--cloud-unit mm"]),
-    ("flat.obj floor.pcd --translate 0,0,1", &["\"undecided\"", "span no surface"]),
+    ("image_mm.pcd box.obj --translate 0,0,1", &["verdict\":\"undecided", "--cloud-unit mm"]),
+    ("flat.obj floor.pcd --translate 0,0,1", &["verdict\":\"undecided", "span no surface"]),
     // The paper's path is no way round.
     (
         "floor_mm.pcd box.obj --mode paper --translate 0,0,0.5",
-        &["\"undecided\"", "--cloud-unit mm"],
+        &["verdict\":\"undecided", "--cloud-unit mm"],
     ),
-    ("point.xyz box.obj --mode paper --translate 0,0,2", &["\"undecided\"", "check the file"]),
+    (
+        "point.xyz box.obj --mode paper --translate 0,0,2",
+        &["verdict\":\"undecided", "check the file"],
+    ),
     (
         "image.pcd box.obj --mode paper --sensor kinect --translate 0,0,-1",
-        &["\"undecided\"", "unseen"],
+        &["verdict\":\"undecided", "unseen"],
     ),
 ];
 
