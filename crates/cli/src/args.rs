@@ -1,15 +1,25 @@
 //! The command line.
 
+mod caution;
+mod pose;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use cloudtouch::noise::SensorModel;
 use cloudtouch::{FilterSettings, OutlierSettings, PaperSettings, Pooling, QuerySettings};
+use cloudtouch_cli::numbers::{self, Rigid};
 use cloudtouch_io::{LengthUnit, ReadLimits};
+
+use crate::sensor::SensorChoice;
+
+pub(crate) use caution::Refine;
+use caution::{CautionArguments, EffortArguments};
+pub(crate) use pose::PoseArguments;
 
 /// Sensor specs, for the help of the commands that take them.
 const SENSORS: &str = "\
 Sensor specs (metres, pixels, radians):
+  auto                                    what the cloud suggests, as info does
   exact                                   no noise
   iso:STD                                 the same standard deviation in every direction
   axes:SX,SY,SZ                           one along each axis of the file
@@ -49,6 +59,11 @@ impl Arguments {
         }
     }
 
+    /// Whether answers come with what they cost.
+    pub(crate) fn shows_work(&self) -> bool {
+        self.verbose > 0
+    }
+
     pub(crate) fn log_level(&self) -> tracing::Level {
         match self.verbose {
             0 => tracing::Level::WARN,
@@ -78,27 +93,20 @@ pub(crate) struct QueryArguments {
     pub scene: PathBuf,
     /// Cloud or mesh of the object
     pub object: PathBuf,
-    /// Text file with a 4x4 row-major matrix, object to scene
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["translate", "rotate_rpy"],
-          help_heading = "Pose (the identity when not given)")]
-    pub pose: Option<PathBuf>,
-    /// Where the object's origin goes in the scene, m
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_triple, allow_hyphen_values = true,
-          help_heading = "Pose (the identity when not given)")]
-    pub translate: Option<Triple>,
-    /// Roll, pitch and yaw of the object about the axes of the scene, rad
-    #[arg(long, value_name = "R,P,Y", value_parser = parse_triple, allow_hyphen_values = true,
-          help_heading = "Pose (the identity when not given)")]
-    pub rotate_rpy: Option<Triple>,
+    #[command(flatten)]
+    pub pose: PoseArguments,
     /// Print the report as one JSON object
     #[arg(long, help_heading = "Output")]
     pub json: bool,
-    /// Exit with 0 free, 10 in contact, 20 in collision, 30 undecided
+    /// Exit with 0 free, 10 uncertain, 20 in collision, 30 undecided
     #[arg(long, help_heading = "Output")]
     pub exit_code: bool,
-    /// Write scene (grey) and object (blue), redder with probability, contacts green
+    /// Write both bodies, redder with probability, contacts green; a mesh as a mesh
     #[arg(long, value_name = "OUT.ply", help_heading = "Output")]
     pub ply: Option<PathBuf>,
+    /// Replace an output file that is there already
+    #[arg(long, help_heading = "Output")]
+    pub force: bool,
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -114,10 +122,13 @@ pub(crate) struct BatchArguments {
     /// Write one JSON object per case to this file
     #[arg(long, value_name = "OUT.jsonl", help_heading = "Output")]
     pub jsonl: Option<PathBuf>,
+    /// Replace an output file that is there already
+    #[arg(long, help_heading = "Output")]
+    pub force: bool,
     /// Sensor of files whose path contains NAME; the first match counts
     #[arg(long, value_name = "NAME=SPEC", value_parser = parse_sensor_for,
           help_heading = "Files")]
-    pub sensor_for: Vec<(String, SensorModel)>,
+    pub sensor_for: Vec<(String, SensorChoice)>,
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -126,9 +137,12 @@ pub(crate) struct BatchArguments {
 pub(crate) struct InfoArguments {
     /// Cloud or mesh file (.pcd .ply .xyz .txt .csv .stl .obj)
     pub file: PathBuf,
-    /// Length unit of a mesh file: m, cm, mm or in; clouds are in metres
-    #[arg(long, default_value = "m")]
-    pub unit: LengthUnit,
+    /// Length unit of a mesh file: m, cm, mm or in [m]
+    #[arg(long)]
+    pub unit: Option<LengthUnit>,
+    /// Length unit of a cloud file: m, cm, mm or in [m]
+    #[arg(long, value_name = "UNIT")]
+    pub cloud_unit: Option<LengthUnit>,
     #[command(flatten)]
     pub limits: LimitArguments,
 }
@@ -164,6 +178,9 @@ pub(crate) struct DemoArguments {
     /// Write the pose of the full report in colour
     #[arg(long, value_name = "OUT.ply")]
     pub ply: Option<PathBuf>,
+    /// Replace an output file that is there already
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// What query and batch share.
@@ -171,13 +188,20 @@ pub(crate) struct DemoArguments {
 pub(crate) struct CommonArguments {
     /// Sensor of scene clouds; see below
     #[arg(long, value_name = "SPEC", default_value = "iso:0.005", help_heading = "Files")]
-    pub sensor: SensorModel,
+    pub sensor: SensorChoice,
     /// Sensor of object clouds; that of the scene when not given
     #[arg(long, value_name = "SPEC", help_heading = "Files")]
-    pub object_sensor: Option<SensorModel>,
-    /// Unit of meshes: m, cm, mm or in; clouds are in metres
-    #[arg(long, default_value = "m", help_heading = "Files")]
-    pub unit: LengthUnit,
+    pub object_sensor: Option<SensorChoice>,
+    /// Where the sensor of scene clouds stood in their frame; a camera looks along its own z
+    #[arg(long, value_name = "X,Y,Z[,QX,QY,QZ,QW]", value_parser = numbers::rigid,
+          allow_hyphen_values = true, help_heading = "Files")]
+    pub sensor_pose: Option<Rigid>,
+    /// Unit of meshes: m, cm, mm or in [m]
+    #[arg(long, help_heading = "Files")]
+    pub unit: Option<LengthUnit>,
+    /// Unit of clouds: m, cm, mm or in [m]
+    #[arg(long, value_name = "UNIT", help_heading = "Files")]
+    pub cloud_unit: Option<LengthUnit>,
     /// How to estimate: calibrated, or paper (as printed)
     #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated, help_heading = "Estimate")]
     pub mode: ModeName,
@@ -218,8 +242,12 @@ pub(crate) struct CommonArguments {
     pub robot: Vec<PathBuf>,
     /// Points this near to a robot link go too
     #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length,
-          help_heading = "Cleaning")]
+          requires = "robot", help_heading = "Cleaning")]
     pub robot_padding: f64,
+    #[command(flatten)]
+    caution: CautionArguments,
+    #[command(flatten)]
+    pub effort: EffortArguments,
     #[command(flatten)]
     pub limits: LimitArguments,
 }
@@ -231,6 +259,8 @@ impl CommonArguments {
             accept: self.accept,
             reject: self.reject,
             prior: self.prior.unwrap_or(usual.prior),
+            deadline: self.effort.deadline(),
+            safeguards: self.caution.safeguards(),
             ..usual
         }
     }
@@ -242,6 +272,8 @@ impl CommonArguments {
             reject: self.reject,
             pooling: self.pooling.map_or(usual.pooling, Pooling::from),
             seed: self.seed.unwrap_or(usual.seed),
+            deadline: self.effort.deadline(),
+            safeguards: self.caution.safeguards(),
             ..usual
         }
     }
@@ -255,6 +287,9 @@ impl CommonArguments {
             )),
             _ if self.mode == ModeName::Paper && self.prior.is_some() => {
                 Err("--prior has no effect in the paper's mode: leave it out".to_owned())
+            }
+            _ if self.mode == ModeName::Paper && self.effort.refine == Refine::Yes => {
+                Err("--refine has no effect in the paper's mode: leave it out".to_owned())
             }
             _ => Ok(()),
         }
@@ -294,67 +329,53 @@ impl From<PoolingName> for Pooling {
     }
 }
 
-/// Three finite numbers. A type of its own, since clap takes a bare list for repeated values.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Triple(pub [f64; 3]);
-
-fn parse_triple(text: &str) -> Result<Triple, String> {
-    let numbers = text.split(',').map(parse_finite).collect::<Result<Vec<f64>, String>>()?;
-    match numbers[..] {
-        [x, y, z] => Ok(Triple([x, y, z])),
-        _ => Err(format!("{} numbers are given: write three, as in 0.4,0,-1.2", numbers.len())),
-    }
-}
-
-fn parse_finite(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        Ok(_) => Err(format!("`{text}` is not finite")),
-        Err(_) => Err(format!("`{text}` is not a number")),
-    }
-}
-
 fn parse_length(text: &str) -> Result<f64, String> {
-    let length = parse_finite(text)?;
+    let length = numbers::finite(text)?;
     if length >= 0.0 { Ok(length) } else { Err("a length in metres is 0 or more".to_owned()) }
 }
 
 fn parse_positive(text: &str) -> Result<f64, String> {
-    let length = parse_finite(text)?;
+    let length = numbers::finite(text)?;
     if length > 0.0 { Ok(length) } else { Err("it must be above 0, such as 0.01".to_owned()) }
 }
 
 fn parse_prior(text: &str) -> Result<f64, String> {
-    let prior = parse_finite(text)?;
+    let prior = numbers::finite(text)?;
     let is_between = prior > 0.0 && prior < 1.0;
     if is_between { Ok(prior) } else { Err("give a number above 0 and below 1".to_owned()) }
 }
 
 fn parse_accept(text: &str) -> Result<f64, String> {
-    let accept = parse_finite(text)?;
+    let accept = numbers::finite(text)?;
     if (0.5..=1.0).contains(&accept) { Ok(accept) } else { Err("give 0.5 to 1".to_owned()) }
 }
 
 fn parse_reject(text: &str) -> Result<f64, String> {
-    let reject = parse_finite(text)?;
+    let reject = numbers::finite(text)?;
     if (0.0..=0.5).contains(&reject) { Ok(reject) } else { Err("give 0 to 0.5".to_owned()) }
 }
+
+/// More neighbours than this take minutes and smooth everything away.
+const MOST_NEIGHBORS: usize = 200;
 
 fn parse_outliers(text: &str) -> Result<OutlierSettings, String> {
     let form = "write neighbours and standard deviations, as in 8,3";
     let (neighbors, deviations) = text.split_once(',').ok_or_else(|| form.to_owned())?;
     match neighbors.trim().parse::<usize>() {
+        Ok(neighbors) if neighbors > MOST_NEIGHBORS => Err(format!(
+            "{neighbors} neighbours are too many: 8 are usual, {MOST_NEIGHBORS} the most"
+        )),
         Ok(neighbors) if neighbors > 0 => {
-            Ok(OutlierSettings { neighbors, deviations: parse_finite(deviations)? })
+            Ok(OutlierSettings { neighbors, deviations: numbers::finite(deviations)? })
         }
         _ => Err(format!("`{neighbors}` is not a number of neighbours: {form}")),
     }
 }
 
-fn parse_sensor_for(text: &str) -> Result<(String, SensorModel), String> {
+fn parse_sensor_for(text: &str) -> Result<(String, SensorChoice), String> {
     let (name, spec) = text
         .split_once('=')
         .ok_or_else(|| format!("`{text}`: write NAME=SPEC, as in mug=kinect"))?;
-    let sensor = spec.parse::<SensorModel>().map_err(|error| error.to_string())?;
+    let sensor = spec.parse::<SensorChoice>().map_err(|error| error.to_string())?;
     Ok((name.to_owned(), sensor))
 }

@@ -4,7 +4,8 @@ use cloudtouch::geom::{Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, FilterSettings, Mesh, PaperBodyRef, PaperCloud,
-    PaperCloudSettings, PaperQuery, PrepareError, Query, QueryError, Report, StageReport,
+    PaperCloudSettings, PaperQuery, Placement, PrepareError, Query, QueryError, Report,
+    StageReport,
 };
 
 /// A cloud prepared for one of the paths, or a mesh.
@@ -23,8 +24,14 @@ pub(crate) trait PreparedCloud: Sized + Send + Sync {
         change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
     ) -> Result<Self, PrepareError>;
 
+    /// With its surface computed everywhere, where that changes the time of a query.
+    fn refined(self) -> Result<Self, PrepareError>;
+
     /// The kept points in the file's frame, m.
     fn points(&self) -> Vec<Point3>;
+
+    /// For every kept point its row in the file; empty for the cells of a collision map.
+    fn file_rows(&self) -> &[usize];
 
     /// How many points were kept.
     fn count(&self) -> usize;
@@ -44,11 +51,19 @@ pub(crate) trait Path: Sync {
         object: &Body<Self::Cloud>,
         scene_from_object: &Pose,
     ) -> Result<Report, QueryError>;
+
+    /// Where the object lies in the scene.
+    fn place(
+        &self,
+        scene: &Body<Self::Cloud>,
+        object: &Body<Self::Cloud>,
+        scene_from_object: &Pose,
+    ) -> Placement;
 }
 
 /// The clouds of the two paths have no trait in common, and the same functions.
 macro_rules! prepared_cloud {
-    ($cloud:ty, $settings:ty) => {
+    ($cloud:ty, $settings:ty, $refine:expr) => {
         impl PreparedCloud for $cloud {
             fn prepare(
                 cloud: &PointCloud,
@@ -60,8 +75,16 @@ macro_rules! prepared_cloud {
                 Self::prepare(cloud, &settings)
             }
 
+            fn refined(self) -> Result<Self, PrepareError> {
+                $refine(self)
+            }
+
             fn points(&self) -> Vec<Point3> {
                 (0..self.len()).map(|i| self.point(i)).collect()
+            }
+
+            fn file_rows(&self) -> &[usize] {
+                self.rows()
             }
 
             fn count(&self) -> usize {
@@ -75,8 +98,9 @@ macro_rules! prepared_cloud {
     };
 }
 
-prepared_cloud!(Cloud, CloudSettings);
-prepared_cloud!(PaperCloud, PaperCloudSettings);
+prepared_cloud!(Cloud, CloudSettings, Cloud::refined);
+// The paper's algorithm has no use for it.
+prepared_cloud!(PaperCloud, PaperCloudSettings, Ok);
 
 impl<'a> From<&'a Body<Cloud>> for BodyRef<'a> {
     fn from(body: &'a Body<Cloud>) -> Self {
@@ -107,6 +131,15 @@ impl Path for Query {
     ) -> Result<Report, QueryError> {
         self.run(scene, object, scene_from_object)
     }
+
+    fn place(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &Pose,
+    ) -> Placement {
+        BodyRef::from(scene).placement(object.into(), scene_from_object)
+    }
 }
 
 impl Path for PaperQuery {
@@ -119,5 +152,14 @@ impl Path for PaperQuery {
         scene_from_object: &Pose,
     ) -> Result<Report, QueryError> {
         self.run(scene, object, scene_from_object)
+    }
+
+    fn place(
+        &self,
+        scene: &Body<PaperCloud>,
+        object: &Body<PaperCloud>,
+        scene_from_object: &Pose,
+    ) -> Placement {
+        PaperBodyRef::from(scene).placement(object.into(), scene_from_object)
     }
 }

@@ -1,5 +1,6 @@
 //! The case file of a batch.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -8,6 +9,7 @@ use cloudtouch::noise::SensorModel;
 use nalgebra::Matrix4;
 use serde::Deserialize;
 use serde_json::Value;
+use serde_json::value::RawValue;
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.
 #[derive(Debug)]
@@ -38,12 +40,14 @@ pub struct Case {
     pub written: Value,
 }
 
+/// The cases are kept as they are written: what is wrong in one concerns no other.
 #[derive(Deserialize)]
 #[serde(rename = "case file")]
-struct RawFile {
+struct RawFile<'a> {
     format: u32,
     length_unit: String,
-    cases: Vec<Value>,
+    #[serde(borrow)]
+    cases: Vec<&'a RawValue>,
 }
 
 #[derive(Deserialize)]
@@ -53,9 +57,10 @@ struct RawCase {
     pose: Value,
     scene_sensor: Option<String>,
     object_sensor: Option<String>,
-    label: Option<String>,
-    in_collision: Option<bool>,
-    signed_distance_m: Option<f64>,
+    // Never used, so nothing about them is wrong.
+    label: Option<Value>,
+    in_collision: Option<Value>,
+    signed_distance_m: Option<Value>,
 }
 
 /// Reads a case file of at most `max_bytes`; paths in it are relative to its folder.
@@ -77,7 +82,16 @@ pub fn parse(text: &[u8], folder: &Path) -> Result<CaseFile> {
 }
 
 fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
-    let raw: RawFile = serde_json::from_slice(text)
+    // Windows editors begin their files with a byte order mark.
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    if text.trim_ascii_start().starts_with(b"[") {
+        bail!(
+            "not a case file but a list: write \
+             {{\"format\":1,\"length_unit\":\"m\",\"cases\":[...]}} around it"
+        );
+    }
+    let text = without_bare_words(text);
+    let raw: RawFile<'_> = serde_json::from_slice(&text)
         .context("not a case file, a JSON object with \"format\", \"length_unit\" and \"cases\"")?;
     if raw.format != 1 {
         bail!("format {}: this version reads format 1", raw.format);
@@ -89,17 +103,52 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
         .cases
         .into_iter()
         .enumerate()
-        .map(|(position, value)| {
-            let id = match value.get("id") {
-                Some(Value::String(id)) => id.clone(),
-                Some(other) => other.to_string(),
-                None => format!("case-{}", position + 1),
-            };
-            let case = parse_case(value, folder).map_err(shortened);
-            (id, case)
+        .map(|(position, text)| {
+            let number = format!("case-{}", position + 1);
+            let case = serde_json::from_str::<Value>(text.get()).context("the case cannot be read");
+            let case = case.and_then(|value| parse_case(value, folder)).map_err(shortened);
+            (id(text.get()).unwrap_or(number), case)
         })
         .collect();
     Ok(CaseFile { cases })
+}
+
+/// The name a case has, if any, whatever is wrong with the rest of it.
+fn id(case: &str) -> Option<String> {
+    #[derive(Deserialize)]
+    struct Named {
+        id: Value,
+    }
+    match serde_json::from_str::<Named>(case).ok()?.id {
+        Value::Null => None,
+        Value::String(id) => Some(id),
+        other => Some(other.to_string()),
+    }
+}
+
+/// The text with strings of the same length for `NaN`, `Infinity` and `-Infinity`, which Python writes
+/// and JSON does not have: they are wrong only where a number is used.
+fn without_bare_words(text: &[u8]) -> Cow<'_, [u8]> {
+    const WORDS: [(&[u8], &[u8]); 3] =
+        [(b"-Infinity", b"\"-Infin.\""), (b"Infinity", b"\"Infin.\""), (b"NaN", b"\"N\"")];
+    let mut text = Cow::Borrowed(text);
+    let (mut at, mut in_string) = (0, false);
+    while at < text.len() {
+        match text[at] {
+            b'\\' if in_string => at += 1,
+            b'"' => in_string = !in_string,
+            b'-' | b'I' | b'N' if !in_string => {
+                let word = WORDS.iter().find(|(word, _)| text[at..].starts_with(word));
+                if let Some((word, instead)) = word {
+                    text.to_mut()[at..at + word.len()].copy_from_slice(instead);
+                    at += word.len() - 1;
+                }
+            }
+            _ => {}
+        }
+        at += 1;
+    }
+    text
 }
 
 fn parse_case(value: Value, folder: &Path) -> Result<Case> {
@@ -122,10 +171,11 @@ fn parse_case(value: Value, folder: &Path) -> Result<Case> {
         scene_from_object: Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?,
         scene_sensor: sensor(raw.scene_sensor)?,
         object_sensor: sensor(raw.object_sensor)?,
-        label: raw.label.or_else(|| {
-            raw.in_collision.map(|hit| if hit { "collision" } else { "apart" }.to_owned())
+        label: raw.label.and_then(spelled).or_else(|| {
+            let hit = raw.in_collision?.as_bool()?;
+            Some(if hit { "collision" } else { "apart" }.to_owned())
         }),
-        signed_distance: raw.signed_distance_m,
+        signed_distance: raw.signed_distance_m.and_then(|distance| distance.as_f64()),
         written: value,
     })
 }
@@ -142,6 +192,15 @@ fn shortened(error: anyhow::Error) -> anyhow::Error {
     let start: String = message.chars().take(KEPT).collect();
     let end: String = message.chars().skip(characters - KEPT).collect();
     anyhow!("{start} ... {end}")
+}
+
+/// A label as text, whatever it is.
+fn spelled(label: Value) -> Option<String> {
+    match label {
+        Value::Null => None,
+        Value::String(label) => Some(label),
+        other => Some(other.to_string()),
+    }
 }
 
 fn kind(value: &Value) -> &'static str {

@@ -1,3 +1,5 @@
-//! What other programs share with the `cloudtouch` tool: how its case files are read.
+//! What other programs share with the `cloudtouch` tool: how its case files and options are read.
 
 pub mod case_file;
+pub mod numbers;
+pub mod pose_text;

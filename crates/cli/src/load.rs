@@ -3,14 +3,20 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, Result, bail};
-use cloudtouch::geom::Pose;
+use anyhow::{Context, Result, bail, ensure};
+use cloudtouch::geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Mesh, SelfMesh};
-use cloudtouch_io::{Geometry, LengthUnit, ReadLimits, read_geometry_within, read_mesh_within};
+use cloudtouch_cli::numbers::Rigid;
+use cloudtouch_io::{
+    Geometry, LengthUnit, ReadLimits, check_extension, read_geometry_within, read_mesh_within,
+    scaled_cloud,
+};
+use serde::Serialize;
 
-use crate::args::CommonArguments;
+use crate::args::{CommonArguments, Refine};
 use crate::body::{Body, PreparedCloud};
+use crate::sensor::{Chosen, SensorChoice};
 
 /// What a body is used as: only scenes are cleaned of the robot and turned into collision maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,63 +28,154 @@ pub(crate) enum Role {
 /// A mesh this large is rather in millimetres than in metres, m.
 pub(crate) const SUSPICIOUS_MESH_SIZE: f64 = 100.0;
 
+/// A body and what it was taken for.
+pub(crate) struct Loaded<C> {
+    pub body: Body<C>,
+    pub input: Input,
+}
+
+impl<C: PreparedCloud> Loaded<C> {
+    /// With the surface of a cloud computed everywhere, if that pays for so many poses.
+    pub(crate) fn refined_for(self, poses: usize, refine: Refine) -> Result<Self> {
+        Ok(match self.body {
+            Body::Cloud(cloud) if refine.pays(cloud.count(), poses) => {
+                let body = Body::Cloud(cloud.refined().with_context(|| self.input.file.clone())?);
+                Self { body, ..self }
+            }
+            _ => self,
+        })
+    }
+}
+
+/// What a file was taken for: part of the answer, for slips to be seen.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Input {
+    pub file: String,
+    /// In which its coordinates were taken.
+    pub unit: String,
+    /// By its spec; a mesh has none.
+    pub sensor: Option<String>,
+    /// Why it was chosen, where `auto` was asked for.
+    pub sensor_because: Option<&'static str>,
+}
+
 /// Reads a file and prepares it; a mesh file has no sensor.
 pub(crate) fn body<C: PreparedCloud>(
     path: &Path,
     role: Role,
-    sensor: &SensorModel,
+    sensor: SensorChoice,
     common: &CommonArguments,
-) -> Result<Body<C>> {
-    let prepared = match geometry(path, common.unit, &common.limits.read_limits())? {
-        Geometry::Mesh(mesh) => {
-            let mesh = Mesh::prepare(&mesh).with_context(|| named(path))?;
-            if common.unit == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
-                tracing::warn!(
-                    "{}: the mesh is {:.0} m across: if the file is in millimetres, give --unit mm",
-                    path.display(),
-                    mesh.size()
-                );
-            }
-            Body::Mesh(mesh)
-        }
-        Geometry::Cloud(cloud) => {
-            if cloud.covariances.is_some() && *sensor != SensorModel::PerPoint {
-                tracing::warn!(
-                    "{}: its covariance columns are passed over for the sensor {sensor}: give \
-                     --sensor per-point to use them",
-                    path.display()
-                );
-            }
-            let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
-            let prepared = C::prepare(&cloud, *sensor, |filter, sensor| {
-                common.change(filter);
-                if role == Role::Scene {
-                    filter.robot = robot;
-                    filter.collision_map = common.collision_map;
-                    if let Some(resolution) = common.collision_map {
-                        *sensor = SensorModel::Grid { resolution };
-                    }
-                }
-            });
-            Body::Cloud(prepared.with_context(|| named(path))?)
-        }
-    };
-    Ok(prepared)
+) -> Result<Loaded<C>> {
+    match geometry(path, Units::of(common), &common.limits.read_limits())? {
+        Geometry::Mesh(mesh) => of_mesh(path, role, &mesh, common),
+        Geometry::Cloud(cloud) => of_cloud(path, role, cloud, sensor, common),
+    }
 }
 
-/// Reads a cloud, which is in metres, or a mesh in `unit`.
-///
-/// Scans know their unit and exported meshes do not, so that the two are often mixed.
-pub(crate) fn geometry(path: &Path, unit: LengthUnit, limits: &ReadLimits) -> Result<Geometry> {
+fn of_mesh<C>(
+    path: &Path,
+    role: Role,
+    mesh: &TriangleMesh,
+    common: &CommonArguments,
+) -> Result<Loaded<C>> {
+    let of_clouds = [
+        ("--robot", !common.robot.is_empty()),
+        ("--collision-map", common.collision_map.is_some()),
+        ("--sensor-pose", common.sensor_pose.is_some()),
+    ];
+    if role == Role::Scene
+        && let Some((option, _)) = of_clouds.iter().find(|(_, is_given)| *is_given)
+    {
+        bail!(
+            "{}: {option} is for a scene that is a cloud, and this is a mesh: leave it out",
+            named(path)
+        );
+    }
+    let mesh = Mesh::prepare(mesh).with_context(|| named(path))?;
+    if common.unit.unwrap_or_default() == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
+        tracing::warn!(
+            "{}: the mesh is {:.0} m across: if the file is in millimetres, give --unit mm",
+            path.display(),
+            mesh.size()
+        );
+    }
+    let unit = common.unit.unwrap_or_default().to_string();
+    let input = Input { file: named(path), unit, sensor: None, sensor_because: None };
+    Ok(Loaded { body: Body::Mesh(mesh), input })
+}
+
+fn of_cloud<C: PreparedCloud>(
+    path: &Path,
+    role: Role,
+    mut cloud: PointCloud,
+    sensor: SensorChoice,
+    common: &CommonArguments,
+) -> Result<Loaded<C>> {
+    if role == Role::Scene
+        && let Some(Rigid(pose)) = common.sensor_pose
+    {
+        cloud.sensor_pose = pose;
+    }
+    let Chosen { sensor, because } = sensor.of(&cloud);
+    if cloud.covariances.is_some() && sensor != SensorModel::PerPoint {
+        tracing::warn!(
+            "{}: its covariance columns are passed over for the sensor {sensor}: give \
+             --sensor per-point to use them",
+            path.display()
+        );
+    }
+    let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
+    let prepared = C::prepare(&cloud, sensor, |filter, sensor| {
+        common.change(filter);
+        if role == Role::Scene {
+            filter.robot = robot;
+            filter.collision_map = common.collision_map;
+            if let Some(resolution) = common.collision_map {
+                *sensor = SensorModel::Grid { resolution };
+            }
+        }
+    });
+    let input = Input {
+        file: named(path),
+        unit: common.cloud_unit.unwrap_or_default().to_string(),
+        sensor: Some(sensor.to_string()),
+        sensor_because: because,
+    };
+    Ok(Loaded { body: Body::Cloud(prepared.with_context(|| named(path))?), input })
+}
+
+/// What the coordinates of files are in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Units {
+    pub meshes: LengthUnit,
+    pub clouds: LengthUnit,
+}
+
+impl Units {
+    fn of(common: &CommonArguments) -> Self {
+        Self {
+            meshes: common.unit.unwrap_or_default(),
+            clouds: common.cloud_unit.unwrap_or_default(),
+        }
+    }
+}
+
+/// Whether a file is there and has an extension that is read: asked of all files before any is read.
+pub(crate) fn check(path: &Path) -> Result<()> {
     // Said before the extension is looked at: `cloudtouch query folder …` is not about extensions.
     let found =
         std::fs::metadata(path).with_context(|| format!("{}: cannot be read", path.display()))?;
-    if found.is_dir() {
-        bail!("{}: is a folder: give a cloud or mesh file", path.display());
-    }
+    ensure!(!found.is_dir(), "{}: is a folder: give a cloud or mesh file", path.display());
+    Ok(check_extension(path)?)
+}
+
+/// Reads a cloud or a mesh in its own unit: scans mostly know theirs and exported meshes do not, so
+/// that the two are often mixed.
+pub(crate) fn geometry(path: &Path, units: Units, limits: &ReadLimits) -> Result<Geometry> {
+    check(path)?;
     Ok(match read_geometry_within(path, LengthUnit::Metres, limits)? {
-        Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(unit.in_metres())),
-        cloud => cloud,
+        Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(units.meshes.in_metres())),
+        Geometry::Cloud(cloud) => Geometry::Cloud(scaled_cloud(cloud, units.clouds.in_metres())),
     })
 }
 
@@ -87,7 +184,8 @@ fn robot(common: &CommonArguments) -> Result<Vec<SelfMesh>> {
         .robot
         .iter()
         .map(|path| {
-            let mesh = read_mesh_within(path, common.unit, &common.limits.read_limits())?;
+            let unit = common.unit.unwrap_or_default();
+            let mesh = read_mesh_within(path, unit, &common.limits.read_limits())?;
             let mesh = Mesh::prepare(&mesh).with_context(|| named(path))?;
             Ok(SelfMesh {
                 mesh: Arc::new(mesh),

@@ -1,12 +1,19 @@
 //! The `cloudtouch` command: queries, batches, file information and a demo.
 
+mod answer;
 mod args;
+mod batch_table;
 mod body;
 mod commands;
 mod load;
+mod ordered;
+mod output;
 mod picture;
 mod pose_file;
 mod print;
+mod report_text;
+mod sensor;
+mod unused;
 
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
@@ -30,11 +37,12 @@ fn main() -> ExitCode {
         .with_target(false)
         .without_time()
         .init();
+    let shows_work = arguments.shows_work();
     let outcome = match &arguments.command {
-        Command::Query(arguments) => commands::query::run(arguments),
+        Command::Query(arguments) => commands::query::run(arguments, shows_work),
         Command::Batch(arguments) => commands::batch::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
-        Command::Demo(arguments) => commands::demo::run(arguments),
+        Command::Demo(arguments) => commands::demo::run(arguments, shows_work),
     };
     outcome.unwrap_or_else(|error| {
         // When standard error is gone too, the exit code still tells.

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use anyhow::Result;
+use cloudtouch::Report;
 use cloudtouch::geom::{Point3, Pose};
-use cloudtouch::{MAX_MESH_PARTS, Report};
 use cloudtouch_io::write_colored_ply;
 
 use crate::body::{Body, PreparedCloud};
@@ -19,26 +19,26 @@ const CONTACT: Color = [30, 200, 60];
 /// Points along a contact's normal, and how far it reaches, as a share of the object.
 const ARROW_POINTS: usize = 20;
 const ARROW_SHARE: f64 = 0.15;
-/// A mesh is drawn by points this far apart, as a share of its size.
-const MESH_SPACING_SHARE: f64 = 0.01;
 
-/// Writes the scene in grey, the object in blue, both towards red by the probability of each
-/// point, and each contact as a green line along its normal; all in the scene's frame, with the
-/// probability as a column too.
+/// A body, and the colours of the rows of its file, if it has any.
+pub(crate) type Painted<'a, C> = (&'a Body<C>, Option<&'a [Color]>);
+
+/// Writes both bodies in the scene's frame: clouds in their own colours or else the scene in grey and
+/// the object in blue, meshes as meshes, points towards red by their probability, and each contact as
+/// a green line along its normal; with the probability as a column too.
 pub(crate) fn write<C: PreparedCloud>(
     path: &Path,
-    scene: &Body<C>,
-    object: &Body<C>,
+    scene: Painted<'_, C>,
+    object: Painted<'_, C>,
     scene_from_object: &Pose,
     report: &Report,
 ) -> Result<()> {
     let likely = &report.point_probabilities;
-    let object_points: Vec<Point3> =
-        body_points(object)?.iter().map(|p| scene_from_object.transform_point(p)).collect();
-    let arrow = ARROW_SHARE * extent(&object_points);
     let mut picture = Picture::default();
-    picture.add_body(&body_points(scene)?, SCENE, &likely.a);
-    picture.add_body(&object_points, OBJECT, &likely.b);
+    picture.add_body(scene, SCENE, &Pose::identity(), &likely.a);
+    let first = picture.points.len();
+    picture.add_body(object, OBJECT, scene_from_object, &likely.b);
+    let arrow = ARROW_SHARE * extent(&picture.points[first..]);
     for contact in &report.contacts {
         for step in 0..ARROW_POINTS {
             let along = arrow * step as f64 / ARROW_POINTS as f64;
@@ -46,16 +46,17 @@ pub(crate) fn write<C: PreparedCloud>(
             picture.add(point, CONTACT, contact.probability);
         }
     }
-    let Picture { points, colors, probabilities } = picture;
-    Ok(write_colored_ply(path, &points, &colors, Some(&probabilities))?)
+    let Picture { points, colors, probabilities, triangles } = picture;
+    Ok(write_colored_ply(path, &points, &colors, Some(&probabilities), &triangles)?)
 }
 
-/// Lists of one length.
+/// Lists of one length, and triangles between the points.
 #[derive(Default)]
 struct Picture {
     points: Vec<Point3>,
     colors: Vec<Color>,
     probabilities: Vec<f64>,
+    triangles: Vec<[u32; 3]>,
 }
 
 impl Picture {
@@ -65,24 +66,37 @@ impl Picture {
         self.probabilities.push(probability);
     }
 
-    /// Points in `base`, those that are listed in `likely` by their index redder.
-    fn add_body(&mut self, points: &[Point3], base: Color, likely: &[(usize, f64)]) {
+    /// A body where the pose puts it; points that are listed in `likely` by their index redder.
+    fn add_body<C: PreparedCloud>(
+        &mut self,
+        (body, own): Painted<'_, C>,
+        base: Color,
+        pose: &Pose,
+        likely: &[(usize, f64)],
+    ) {
         let first = self.points.len();
-        points.iter().for_each(|&p| self.add(p, base, 0.0));
+        match body {
+            Body::Cloud(cloud) => {
+                let rows = cloud.file_rows();
+                for (index, point) in cloud.points().iter().enumerate() {
+                    let of_row = |row: &usize| own.and_then(|colors| colors.get(*row));
+                    let color = rows.get(index).and_then(of_row).copied().unwrap_or(base);
+                    self.add(pose.transform_point(point), color, 0.0);
+                }
+            }
+            Body::Mesh(mesh) => {
+                let (vertices, triangles) = mesh.faces();
+                let shift = first as u32;
+                self.triangles.extend(triangles.iter().map(|corners| corners.map(|c| c + shift)));
+                vertices.iter().for_each(|p| self.add(pose.transform_point(p), base, 0.0));
+            }
+        }
         for &(index, probability) in likely {
-            self.colors[first + index] = blend(base, CERTAIN, probability);
+            let color = &mut self.colors[first + index];
+            *color = blend(*color, CERTAIN, probability);
             self.probabilities[first + index] = probability;
         }
     }
-}
-
-fn body_points<C: PreparedCloud>(body: &Body<C>) -> Result<Vec<Point3>> {
-    Ok(match body {
-        Body::Cloud(cloud) => cloud.points(),
-        Body::Mesh(mesh) => {
-            mesh.surface_points(MESH_SPACING_SHARE * mesh.size(), MAX_MESH_PARTS)?
-        }
-    })
 }
 
 fn extent(points: &[Point3]) -> f64 {

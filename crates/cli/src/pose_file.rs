@@ -2,52 +2,12 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use cloudtouch::geom::Pose;
-use nalgebra::Matrix4;
+use cloudtouch_cli::pose_text;
 
 pub(crate) fn read(path: &Path) -> Result<Pose> {
     let text = std::fs::read_to_string(path)
         .with_context(|| format!("{}: cannot read the pose", path.display()))?;
-    parse(&text).with_context(|| format!("{}", path.display()))
-}
-
-/// Numbers row by row; brackets, commas and line breaks only separate them, so that a JSON or
-/// numpy matrix can be pasted.
-fn parse(text: &str) -> Result<Pose> {
-    let separator = |c: char| c.is_whitespace() || "[](),;".contains(c);
-    let mut numbers = Vec::new();
-    for (line, content) in text.lines().enumerate() {
-        for word in content.split(separator).filter(|w| !w.is_empty()) {
-            let number: f64 = word.parse().with_context(|| {
-                format!("line {}: `{word}` is not a number; write a 4x4 row-major matrix", line + 1)
-            })?;
-            numbers.push(number);
-        }
-    }
-    if numbers.len() != 16 {
-        bail!("found {} numbers: a pose is a 4x4 row-major matrix, 16 numbers", numbers.len());
-    }
-    Ok(Pose::try_from_matrix(&Matrix4::from_row_slice(&numbers))?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn reads_rows_with_or_without_brackets() {
-        let plain = "1 0 0 0.5\n0 1 0 0\n0 0 1 -2\n0 0 0 1\n";
-        let json = "[[1,0,0,0.5],[0,1,0,0],[0,0,1,-2],[0,0,0,1]]";
-        assert_eq!(parse(plain).unwrap(), parse(json).unwrap());
-        assert_eq!(parse(plain).unwrap().translation().z, -2.0);
-    }
-
-    #[test]
-    fn says_what_is_wrong_and_where() {
-        let error = parse("1 0 0 0\n0 one 0 0\n").unwrap_err();
-        assert!(format!("{error:#}").contains("line 2: `one`"), "{error:#}");
-        assert!(parse("1 2 3").unwrap_err().to_string().contains("found 3 numbers"));
-        assert!(parse("2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1").is_err());
-    }
+    pose_text::parse(&text).with_context(|| format!("{}", path.display()))
 }

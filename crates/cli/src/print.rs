@@ -1,13 +1,12 @@
-//! Reports for people and for programs.
+//! Words and numbers of answers, and the way to standard output.
 
-use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 
 use anyhow::{Context, Result};
-use cloudtouch::{Clearance, Report, StageReport};
-use serde::Serialize;
+use cloudtouch::{Clearance, StageReport, Undecided};
 
 use crate::body::{Body, PreparedCloud};
+use crate::load::{Input, Loaded};
 
 /// Prints a whole answer.
 ///
@@ -21,30 +20,21 @@ pub(crate) fn to_stdout(text: &str) -> Result<()> {
     }
 }
 
-/// A report for people shows this many contacts; JSON has them all.
-const CONTACTS_SHOWN: usize = 5;
-
-/// A report with the name of its case: one line of JSON.
-#[derive(Serialize)]
-struct Line<'a> {
-    id: &'a str,
-    #[serde(flatten)]
-    report: &'a Report,
-}
-
-/// A case without an answer.
-#[derive(Serialize)]
-struct ErrorLine<'a> {
-    id: &'a str,
-    error: &'a str,
-}
-
-pub(crate) fn json_line(id: &str, report: &Report) -> Result<String> {
-    Ok(serde_json::to_string(&Line { id, report })?)
-}
-
-pub(crate) fn json_error_line(id: &str, error: &str) -> Result<String> {
-    Ok(serde_json::to_string(&ErrorLine { id, error })?)
+/// Why there is no decision.
+pub(crate) fn undecided(by: Undecided) -> &'static str {
+    match by {
+        Undecided::Unseen => "the camera saw too little of where the object is",
+        Undecided::Enclosed => "one cloud is all around the other: hollow or solid is not known",
+        Undecided::Units => "sizes or distance cannot be meant",
+        Undecided::Sparse => "one body fits between the points of the other",
+        Undecided::Noise => "the noise is larger than a body",
+        Undecided::NoSurface => "a cloud spans no surface",
+        Undecided::Missing => "too many rows have no return",
+        Undecided::Sensor => "the sensor cannot have seen this cloud",
+        Undecided::Unsolved => "a classifier could not be trained",
+        Undecided::Bounds => "what was not looked at, or is too noisy, could still collide",
+        _ => "see undecided_by in the JSON",
+    }
 }
 
 /// A probability with the digits that mean something.
@@ -60,92 +50,26 @@ pub(crate) fn gap_mm(clearance: Option<Clearance>) -> String {
     })
 }
 
-/// What is known of surfaces too far apart to be measured.
-fn too_far(at_least_m: Option<f64>) -> String {
-    match at_least_m.filter(|least| *least > 0.0) {
-        Some(least) => format!("clearance              at least {:.1} mm\n", 1e3 * least),
-        None => "clearance              not computed\n".to_owned(),
-    }
-}
-
-/// A whole report in a few lines.
-pub(crate) fn report(report: &Report) -> String {
-    let mut text = String::new();
-    let [low, high] = report.bounds.map(probability);
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        text,
-        "collision probability  {}   (within {low} .. {high})",
-        probability(report.collision_probability)
-    );
-    let _ = writeln!(text, "verdict                {}", report.verdict);
-    match report.clearance_m {
-        Some(c) => {
-            let _ = writeln!(
-                text,
-                "clearance              {:+.1} mm{}, std {:.1} mm",
-                1e3 * c.mean,
-                if c.is_bound { " or deeper" } else { "" },
-                1e3 * c.std
-            );
-        }
-        None => text.push_str(&too_far(report.clearance_at_least_m)),
-    }
-    if !report.contacts.is_empty() {
-        text.push_str(
-            "contacts               point (m)                 normal scene to object    P       \
-             gap (mm)\n",
-        );
-    }
-    for contact in report.contacts.iter().take(CONTACTS_SHOWN) {
-        let (p, n) = (contact.point, contact.normal_a_to_b);
-        let _ = writeln!(
-            text,
-            "                       {:7.3} {:7.3} {:7.3}   {:6.2} {:6.2} {:6.2}      {:<7} {:+.1}",
-            p.x,
-            p.y,
-            p.z,
-            n.x,
-            n.y,
-            n.z,
-            probability(contact.probability),
-            1e3 * contact.clearance_m
-        );
-    }
-    if report.contacts.len() > CONTACTS_SHOWN {
-        let more = report.contacts.len() - CONTACTS_SHOWN;
-        let _ = writeln!(text, "                       and {more} more");
-    }
-    let s = &report.stats;
-    let _ = writeln!(
-        text,
-        "work                   {} node pairs, {} leaf pairs; {} settled by a plane, {} kernel \
-         solves,\n                       {} fallbacks, {} undecided",
-        s.nodes_visited,
-        s.leaf_pairs,
-        s.linear_certificates,
-        s.kernel_solves,
-        s.fallbacks,
-        s.undecided
-    );
-    let _ = write!(
-        text,
-        "time                   prepare {:.1} ms, query {:.2} ms",
-        s.prepare_us as f64 / 1e3,
-        s.query_us as f64 / 1e3
-    );
-    text
-}
-
-/// What a body is and what the filter did to it, in one line.
-pub(crate) fn body<C: PreparedCloud>(name: &str, body: &Body<C>) -> String {
-    match body {
+/// What a body is, what it was taken for and what the filter did to it, in a few lines.
+pub(crate) fn body<C: PreparedCloud>(name: &str, loaded: &Loaded<C>) -> String {
+    let Input { unit, sensor, sensor_because, .. } = &loaded.input;
+    match &loaded.body {
         Body::Cloud(cloud) => {
-            format!("{name}: cloud of {} points ({})", cloud.count(), stages(cloud.stages()))
+            let because = sensor_because.map_or(String::new(), |why| format!(" ({why})"));
+            let sensor = sensor.as_deref().unwrap_or_default();
+            format!(
+                "{name}: cloud of {} points in {unit}, sensor {sensor}{because} ({})",
+                cloud.count(),
+                stages(cloud.stages())
+            )
         }
         Body::Mesh(mesh) => {
             let kind = if mesh.is_watertight() { "watertight" } else { "open" };
-            format!("{name}: {kind} mesh of {} triangles", mesh.triangle_count())
+            let count = mesh.triangle_count();
+            format!(
+                "{name}: {kind} mesh of {count} triangles in {unit}, {:.3} m across",
+                mesh.size()
+            )
         }
     }
 }
@@ -154,4 +78,11 @@ fn stages(stages: &[StageReport]) -> String {
     let removed: Vec<String> =
         stages.iter().map(|s| format!("{} removed {}", s.stage, s.removed)).collect();
     removed.join(", ")
+}
+
+/// A name of a case in one line of a table: what steers a terminal is spelled out.
+pub(crate) fn one_line(name: &str) -> String {
+    name.chars()
+        .flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] })
+        .collect()
 }

@@ -57,6 +57,10 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
         ("3 rows", with("[[1,0,0,0.01],", "[")),
         ("last row", with("[0,0,0,1]", "[0,0,1,1]")),
         ("unknown sensor `sonar`", with("iso:0.002", "sonar")),
+        // Python's json writes the first, any language the second, a broken text the third.
+        ("string \"N\"", with("[[1,", "[[NaN,")),
+        ("number out of range", with("[[1,", "[[1e400,")),
+        ("hex escape", with("iso:0.002", "\\ud800")),
     ];
     let mut entries: Vec<String> = cases.iter().map(|(_, case)| case.clone()).collect();
     entries.push(case_at("good", 0.5));
@@ -70,9 +74,10 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
         assert!(line.get("verdict").is_none() && line.as_object().unwrap().len() == 2, "{line}");
     }
     assert_eq!((&lines[0]["id"], &lines[1]["id"]), (&"case-1".into(), &"case-2".into()));
+    assert!(lines[2..cases.len()].iter().all(|line| line["id"] == "bad"), "{lines:?}");
     assert_eq!(lines.last().unwrap()["verdict"], "free");
     let table = inputs.run(&["batch", "cases.json"]).quiet(1).stdout();
-    assert!(table.contains("1 answers, 11 errors"), "{table}");
+    assert!(table.contains("1 answers, 14 errors"), "{table}");
 }
 
 #[test]
@@ -110,4 +115,44 @@ fn threads_do_not_change_the_answers() {
         lines.collect::<Vec<_>>()
     };
     assert_eq!(answers("1"), answers("3"));
+}
+
+#[test]
+fn what_a_case_does_not_need_does_not_fail_it() {
+    let inputs = Inputs::new();
+    let add = |field: &str| case_at("a", 0.5).replacen('{', &format!("{{{field},"), 1);
+    let cases = [
+        add(r#""label":3"#),
+        add(r#""in_collision":"no""#),
+        add(r#""signed_distance_m":NaN"#),
+        add(r#""note":[Infinity,-Infinity,NaN,"NaN, \" and NaN"]"#),
+        case_at("a", 0.5).replace(r#""id":"a""#, r#""id":null"#),
+        case_at("tab\\tbell\\u0007\\n\\u001b[31m", 0.5),
+    ];
+    // A byte order mark, as of Windows.
+    inputs.write("cases.json", &format!("\u{feff}{}", case_file(&cases)));
+    let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(0).json_lines();
+    assert!(lines.iter().all(|line| line["verdict"] == "free"), "{lines:?}");
+    assert_eq!(lines[4]["id"], "case-5");
+    assert_eq!(lines[5]["id"], "tab\tbell\u{7}\n\u{1b}[31m");
+    let table = inputs.run(&["batch", "cases.json"]).quiet(0).stdout();
+    assert_eq!(table.lines().count(), cases.len() + 2, "{table}");
+    assert!(table.contains(r"\u{1b}[31m") && !table.contains('\u{1b}'), "{table}");
+}
+
+#[test]
+fn an_input_is_never_replaced_and_another_file_only_when_asked() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &good_cases());
+    inputs.write("old.jsonl", "old");
+    for output in ["cases.json", "floor.pcd", "./box.obj"] {
+        let run = inputs.run(&["batch", "cases.json", "--jsonl", output, "--force"]);
+        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{output}");
+        assert!(run.stderr().contains("is an input"), "{}", run.stderr());
+    }
+    let refused = inputs.run(&["batch", "cases.json", "--jsonl", "old.jsonl"]);
+    assert!(refused.code() == 1 && refused.stderr().contains("--force"), "{}", refused.stderr());
+    assert_eq!(std::fs::read_to_string(inputs.path("old.jsonl")).unwrap(), "old");
+    inputs.run(&["batch", "cases.json", "--jsonl", "old.jsonl", "--force"]).quiet(0);
+    assert_ne!(std::fs::read_to_string(inputs.path("old.jsonl")).unwrap(), "old");
 }

@@ -77,11 +77,11 @@ fn case_files() {
     let inputs = Inputs::new();
     for (text, parts) in [
         ("", &["cases.json", "not a case file", "line 1"][..]),
-        ("[1]", &["cases.json", "not a case file", "\"cases\""]),
+        ("[1]", &["cases.json", "not a case file but a list", "\"cases\""]),
         (r#"{"format":1,"length_unit":"m"}"#, &["missing field `cases`"]),
         (r#"{"format":2,"length_unit":"m","cases":[]}"#, &["format 2", "format 1"]),
         (r#"{"format":1,"length_unit":"mm","cases":[]}"#, &["`mm`", "metres"]),
-        (r#"{"format":1,"length_unit":"m","cases":[{"pose":NaN}]}"#, &["line 1 column"]),
+        (r#"{"format":1,"length_unit":"m","cases":[{"pose":}]}"#, &["line 1 column"]),
     ] {
         inputs.write("cases.json", text);
         check(&inputs, &["batch", "cases.json"], parts);

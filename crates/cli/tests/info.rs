@@ -44,3 +44,23 @@ fn says_whether_a_mesh_is_closed_and_which_unit_it_may_have() {
     let text = inputs.run(&["info", "open.obj"]).quiet(0).stdout();
     assert!(text.contains("open: 3 edges"), "{text}");
 }
+
+#[test]
+fn a_mesh_of_one_collapsed_face_was_watertight() {
+    let inputs = Inputs::new();
+    inputs.write("point.obj", "v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n");
+    let text = inputs.run(&["info", "point.obj"]).quiet(0).stdout();
+    assert!(text.contains("no triangle has an area") && !text.contains("watertight"), "{text}");
+}
+
+#[test]
+fn a_unit_of_the_other_kind_of_file_is_refused() {
+    let inputs = Inputs::new();
+    for (file, option, other) in
+        [("floor.pcd", "--unit", "--cloud-unit"), ("box.obj", "--cloud-unit", "--unit")]
+    {
+        let run = inputs.run(&["info", file, option, "mm"]);
+        assert_eq!(run.code(), 1);
+        assert!(run.stderr().contains(other), "{}", run.stderr());
+    }
+}

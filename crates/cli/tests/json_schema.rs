@@ -6,7 +6,7 @@ use serde_json::Value;
 use support::{HEIGHTS, Inputs, case_at, case_file};
 
 /// As documented in the README.
-const REPORT: [&str; 13] = [
+const REPORT: [&str; 19] = [
     "id",
     "collision_probability",
     "bounds",
@@ -17,13 +17,23 @@ const REPORT: [&str; 13] = [
     "clearance_at_least_m",
     "contacts",
     "evidence",
+    "unseen",
+    "warnings",
     "stats",
     "seed",
     "mode",
+    "placement",
+    "pose",
+    "scene",
+    "object",
 ];
 const CLEARANCE: [&str; 3] = ["mean", "std", "is_bound"];
 const CONTACT: [&str; 5] = ["point", "normal_a_to_b", "probability", "clearance_m", "area_m2"];
 const EVIDENCE: [&str; 3] = ["deviations", "crossing", "misclassified"];
+const PLACEMENT: [&str; 4] = ["scene_box", "object_box", "box_gap_m", "nearest_m"];
+const INPUT: [&str; 4] = ["file", "unit", "sensor", "sensor_because"];
+const UNSEEN: [&str; 5] = ["body", "behind_camera", "outside_view", "hole", "behind_returns"];
+const WARNING: [&str; 3] = ["code", "values", "words"];
 const STATS: [&str; 9] = [
     "nodes_visited",
     "leaf_pairs",
@@ -76,9 +86,13 @@ fn keys_come_in_the_documented_order() {
         .into_iter()
         .chain(["evidence"])
         .chain(EVIDENCE)
-        .chain(["stats"])
+        .chain(["unseen", "warnings", "stats"])
         .chain(STATS)
-        .chain(["seed", "mode"])
+        .chain(["seed", "mode", "placement"])
+        .chain(PLACEMENT)
+        .chain(["pose", "scene"])
+        .chain(INPUT)
+        .chain(["object"])
     {
         let quoted = format!("\"{key}\":");
         let found = text[at..].find(&quoted);
@@ -145,6 +159,18 @@ fn check_report(report: &Value) {
         check_keys(&report["evidence"], &EVIDENCE);
     }
     check_keys(&report["stats"], &STATS);
+    check_keys(&report["placement"], &PLACEMENT);
+    for body in ["scene", "object"] {
+        check_keys(&report[body], &INPUT);
+    }
+    if !report["unseen"].is_null() {
+        check_keys(&report["unseen"], &UNSEEN);
+    }
+    for warning in report["warnings"].as_array().unwrap() {
+        check_keys(warning, &WARNING);
+    }
+    let rows = report["pose"].as_array().unwrap();
+    assert!(rows.len() == 4 && rows.iter().all(|row| numbers(row, 4)[3].is_finite()), "{report}");
     for (key, value) in report["stats"].as_object().unwrap() {
         assert!(value.is_u64() || key == "max_relative_gap" && value.is_f64(), "{key}: {value}");
     }

@@ -1,10 +1,12 @@
 #![doc = include_str!("../README.md")]
 
 mod cases;
+mod options;
 mod query;
 mod readers;
 
 pub use cases::case_file;
+pub use options::options;
 pub use query::query;
 pub use readers::{read_obj, read_pcd, read_ply, read_stl, read_xyz};
 
@@ -12,12 +14,13 @@ pub use readers::{read_obj, read_pcd, read_ply, read_stl, read_xyz};
 pub type Target = fn(&[u8]);
 
 /// Every target under the name of its folder of seeds.
-pub const TARGETS: [(&str, Target); 7] = [
+pub const TARGETS: [(&str, Target); 8] = [
     ("read_pcd", read_pcd),
     ("read_ply", read_ply),
     ("read_xyz", read_xyz),
     ("read_stl", read_stl),
     ("read_obj", read_obj),
     ("case_file", case_file),
+    ("options", options),
     ("query", query),
 ];

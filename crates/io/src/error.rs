@@ -241,6 +241,15 @@ pub enum Fault {
         /// Values found.
         found: usize,
     },
+    /// A row has so many values that several points seem to be in it.
+    #[error(
+        "the row has {found} values, those of several points: write one point a line, or name the \
+         columns in the first row"
+    )]
+    ManyColumns {
+        /// Values found.
+        found: usize,
+    },
     /// A value that has to be a number is none.
     #[error("{found:?} is not a number: write it like -0.25, 1e-3 or nan")]
     NotANumber {

@@ -23,7 +23,7 @@ pub use obj::write_mesh_obj;
 pub use pcd::write_cloud_pcd;
 pub use ply::{write_cloud_ply, write_colored_ply};
 pub use read::{
-    read_bytes, read_cloud, read_cloud_within, read_geometry, read_geometry_within, read_mesh,
-    read_mesh_within,
+    check_extension, read_bytes, read_cloud, read_cloud_within, read_colors_within, read_geometry,
+    read_geometry_within, read_mesh, read_mesh_within, scaled_cloud,
 };
 pub use unit::{LengthUnit, UnknownUnit};

@@ -1,6 +1,7 @@
 //! Wavefront OBJ meshes: vertices and polygons; everything about looks is passed over.
 
 use std::{
+    borrow::Cow,
     io::{self, Write},
     path::Path,
 };
@@ -63,8 +64,9 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
     let mut vertices: Vec<Point3> = Vec::new();
     let mut faces = Faces::default();
     let mut counts = None;
-    while let Some(line) = lines.next_filled() {
-        let line = line.split(|&b| b == b'#').next().unwrap_or_default();
+    while let Some(first) = lines.next_filled() {
+        let whole = continued(first, &mut lines);
+        let line = whole.split(|&b| b == b'#').next().unwrap_or_default();
         let mut line_words = words(line);
         match line_words.next() {
             None => {}
@@ -101,6 +103,16 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
     TriangleMesh::try_new(vertices, faces.triangles)
         // Coordinates and indices were checked where they stand; no faces are all that is left.
         .map_err(|_| Place::Line(1).error(Fault::NoTriangles))
+}
+
+/// A line together with those that a backslash at its end joins to it.
+fn continued<'a>(first: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
+    let mut whole = Cow::Borrowed(first);
+    while let Some(start) = whole.strip_suffix(b"\\") {
+        let rest = lines.next().unwrap_or_default();
+        whole = Cow::Owned([start, b" ", rest].concat());
+    }
+    whole
 }
 
 fn two_counts(line: &[u8]) -> Option<[usize; 2]> {

@@ -113,14 +113,45 @@ pub fn read_geometry_within(
         "stl" => |bytes, limits| stl::parse_within(bytes, limits).map(Geometry::Mesh),
         "obj" => |bytes, limits| obj::parse_within(bytes, limits).map(Geometry::Mesh),
         "ply" => ply::parse_within,
-        _ => return Err(unsupported(path, ".pcd, .ply, .xyz, .txt, .csv, .stl, .obj")),
+        _ => return Err(unsupported(path, EVERYTHING)),
     };
     let factor = unit.in_metres();
     Ok(match read(path, parse, limits)? {
-        Geometry::Cloud(cloud) => Geometry::Cloud(scaled(cloud, factor)),
+        Geometry::Cloud(cloud) => Geometry::Cloud(scaled_cloud(cloud, factor)),
         Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(factor)),
     })
 }
+
+/// Red, green and blue of every row of a cloud; `None` where the file has none.
+///
+/// # Errors
+/// As [`read_cloud`].
+pub fn read_colors_within(
+    path: impl AsRef<Path>,
+    limits: &ReadLimits,
+) -> Result<Option<Vec<[u8; 3]>>, ReadError> {
+    let path = path.as_ref();
+    match extension(path).as_str() {
+        "pcd" => read(path, pcd::colors_within, limits),
+        "ply" => read(path, ply::colors_within, limits),
+        _ => Ok(None),
+    }
+}
+
+/// Whether the extension of a file is one that is read, without a look at the file.
+///
+/// # Errors
+/// When it is not.
+pub fn check_extension(path: impl AsRef<Path>) -> Result<(), ReadError> {
+    let path = path.as_ref();
+    match extension(path).as_str() {
+        "pcd" | "xyz" | "txt" | "csv" | "stl" | "obj" | "ply" => Ok(()),
+        _ => Err(unsupported(path, EVERYTHING)),
+    }
+}
+
+/// What [`read_geometry`] reads.
+const EVERYTHING: &str = ".pcd, .ply, .xyz, .txt, .csv, .stl, .obj";
 
 type Parser<T> = fn(&[u8], &ReadLimits) -> Result<T, FormatError>;
 
@@ -160,7 +191,8 @@ fn unsupported(path: &Path, supported: &'static str) -> ReadError {
     ReadError::Extension { path: path.to_owned(), found: extension(path), supported }
 }
 
-fn scaled(mut cloud: PointCloud, factor: f64) -> PointCloud {
+/// A cloud in another unit: positions, covariances and the place of the sensor times `factor`.
+pub fn scaled_cloud(mut cloud: PointCloud, factor: f64) -> PointCloud {
     cloud.points.iter_mut().for_each(|p| p.coords *= factor);
     let origin = cloud.sensor_pose.translation() * factor;
     cloud.sensor_pose = Pose::from_translation_rotation(origin, *cloud.sensor_pose.rotation());

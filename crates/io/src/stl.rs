@@ -17,7 +17,8 @@ const RECORD: usize = 50;
 /// Reads a mesh from the bytes of an STL file.
 ///
 /// A file is ascii when its first kilobyte is plain text: binary files may begin with `solid` too,
-/// but the count after their 80 bytes of header has a zero byte. Every triangle brings its own
+/// but the count after their 80 bytes of header has a zero byte. So is one with a stray control
+/// character that has the keywords of one and not the length of a binary file. Every triangle brings its own
 /// three vertices; normals are passed over, as the order of the corners says the same.
 ///
 /// # Errors
@@ -36,8 +37,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
     if bytes.is_empty() {
         return Err(Place::Byte(0).error(Fault::Empty));
     }
-    let start = &bytes[..bytes.len().min(1024)];
-    let corners = if start.iter().any(|&b| b.is_ascii_control() && !b.is_ascii_whitespace()) {
+    let corners = if is_binary(bytes) {
         binary_corners(bytes, limits)?
     } else {
         ascii_corners(bytes, limits)?
@@ -49,6 +49,21 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
     TriangleMesh::try_new(corners, triangles)
         // Coordinates were checked where they stand; no triangles are all that is left.
         .map_err(|_| Place::Byte(0).error(Fault::NoTriangles))
+}
+
+/// A binary file has control characters in its first kilobyte, if only a zero byte of its count. So
+/// may an ascii file in its name; it has keywords, and not the length that a binary one says it has.
+fn is_binary(bytes: &[u8]) -> bool {
+    let start = &bytes[..bytes.len().min(1024)];
+    let has_control = start.iter().any(|&b| b.is_ascii_control() && !b.is_ascii_whitespace());
+    let has_keywords = start.trim_ascii_start().starts_with(b"solid")
+        && start.windows(6).any(|word| word == b"vertex");
+    let as_counted = || {
+        let count = bytes.get(HEADER - 4..HEADER)?;
+        let promised = Scalar::U32.read(count, ByteOrder::Little) as usize;
+        Some(HEADER + promised.saturating_mul(RECORD) <= bytes.len())
+    };
+    has_control && !(has_keywords && as_counted() != Some(true))
 }
 
 fn binary_corners(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3>, FormatError> {

@@ -2,6 +2,8 @@
 
 use crate::error::{Fault, FormatError, Place};
 
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Walks through the lines of a file and knows where it is.
 #[derive(Debug, Clone)]
 pub(crate) struct Lines<'a> {
@@ -13,8 +15,10 @@ pub(crate) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
+    /// A byte order mark, as spreadsheets and Windows editors write it, belongs to no line.
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, position: 0, number: 0 }
+        let position = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+        Self { bytes, position, number: 0 }
     }
 
     /// What follows the line handed out last.
@@ -36,13 +40,14 @@ impl<'a> Lines<'a> {
 impl<'a> Iterator for Lines<'a> {
     type Item = &'a [u8];
 
-    /// The next line without the white space around it, carriage return included.
+    /// The next line without the white space around it. Lines end in LF, CRLF or CR alone.
     fn next(&mut self) -> Option<&'a [u8]> {
         let rest = self.rest();
         if rest.is_empty() {
             return None;
         }
-        let (line, taken) = match rest.iter().position(|&b| b == b'\n') {
+        let (line, taken) = match rest.iter().position(|&b| matches!(b, b'\n' | b'\r')) {
+            Some(end) if rest[end..].starts_with(b"\r\n") => (&rest[..end], end + 2),
             Some(end) => (&rest[..end], end + 1),
             None => (rest, rest.len()),
         };
@@ -125,6 +130,9 @@ mod tests {
         assert_eq!((lines.number, lines.rest()), (3, &b"three"[..]));
         assert_eq!(lines.next(), Some(&b"three"[..]));
         assert_eq!(lines.next(), None);
+        let mut old = Lines::new(b"\xef\xbb\xbfone\rtwo\r\rthree\r");
+        assert_eq!(old.by_ref().map(<[u8]>::len).collect::<Vec<_>>(), [3, 3, 0, 5]);
+        assert_eq!((old.number, old.rest()), (4, &b""[..]));
     }
 
     #[test]

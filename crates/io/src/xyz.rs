@@ -9,6 +9,9 @@ use crate::{
     text::{Lines, excerpt, number, parse as parse_number, words},
 };
 
+/// A row without column names has no more numbers than this.
+const MOST_COLUMNS: usize = 20;
+
 /// Reads a point cloud from a table with one point in each line.
 ///
 /// Values are separated by semicolons, or else by commas, or else by white space, as the first
@@ -19,8 +22,8 @@ use crate::{
 ///
 /// # Errors
 /// When there is nothing but comments, a column is missing or named twice, a row is too short, a
-/// value is no number, a covariance is none, or there
-/// are more points than the default [`ReadLimits`] allow.
+/// value is no number, a covariance is none, a row
+/// without column names seems to hold several points, or there are more points than the default [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
     parse_within(bytes, &ReadLimits::default())
 }
@@ -30,8 +33,7 @@ pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
 /// # Errors
 /// As [`parse`].
 pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, FormatError> {
-    // Spreadsheets begin their text files with a byte order mark.
-    let mut lines = Lines::new(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
+    let mut lines = Lines::new(bytes);
     let first = next_row(&mut lines).ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
     let separator = [b';', b','].into_iter().find(|separator| first.contains(separator));
 
@@ -47,14 +49,16 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
     wanted.sort_unstable();
     let expected = wanted.last().map_or(0, |&(column, _)| column + 1);
 
+    let is_named = pending.is_none();
     let mut cloud = CloudBuilder::new(&columns, 0, limits);
+    let mut widest = (0, lines.place());
     while let Some(line) = pending.take().or_else(|| next_row(&mut lines)) {
         let mut row: Row = Default::default();
         let mut targets = wanted.iter().peekable();
         let mut found = 0;
         for value in values(line, separator) {
             match targets.peek() {
-                None => break,
+                None => {}
                 Some(&&(column, slot)) if column == found => {
                     row[slot] = number(value, lines.number, found + 1)?;
                     targets.next();
@@ -67,6 +71,15 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
             return Err(lines.place().error(Fault::RowLength { expected, found }));
         }
         cloud.push(&row, lines.place())?;
+        if found > widest.0 {
+            widest = (found, lines.place());
+        }
+    }
+    let (columns, place) = widest;
+    // Normals, colours and an intensity are columns of a point; more numbers are more points.
+    let are_points = columns > MOST_COLUMNS || cloud.len() == 1 && columns >= 6 && columns % 3 == 0;
+    if !is_named && are_points {
+        return Err(place.error(Fault::ManyColumns { found: columns }));
     }
     Ok(cloud.finish())
 }

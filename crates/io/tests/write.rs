@@ -92,7 +92,7 @@ fn coloured_points_have_the_layout_viewers_expect() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("a.ply");
     let points = [Point3::new(512_700.883, 5_403_547.501, 295.25)];
-    write_colored_ply(&path, &points, &[[1, 2, 3]], Some(&[0.75])).unwrap();
+    write_colored_ply(&path, &points, &[[1, 2, 3]], Some(&[0.75]), &[]).unwrap();
     let bytes = fs::read(&path).unwrap();
     let header = b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\n\
         property double y\nproperty double z\nproperty uchar red\nproperty uchar green\n\
@@ -112,10 +112,10 @@ fn lists_of_different_length_are_refused_and_write_nothing() {
         Err(WriteError::Length { what, found, points: 2, .. }) => (what, found),
         other => panic!("{other:?}"),
     };
-    assert_eq!(length(write_colored_ply(&path, &points, &[[0; 3]], None)), ("colours", 1));
+    assert_eq!(length(write_colored_ply(&path, &points, &[[0; 3]], None, &[])), ("colours", 1));
     let colors = [[0; 3]; 2];
     assert_eq!(
-        length(write_colored_ply(&path, &points, &colors, Some(&[0.0; 3]))),
+        length(write_colored_ply(&path, &points, &colors, Some(&[0.0; 3]), &[])),
         ("probabilities", 3)
     );
     let mut cloud = PointCloud::from_points(points.to_vec());
@@ -171,4 +171,54 @@ fn links_are_followed_and_devices_written_to() {
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     write_atomically("/dev/null", |writer| writer.write_all(b"gone")).unwrap();
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[test]
+fn a_picture_near_the_origin_takes_half_the_bytes_and_may_have_faces() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.ply");
+    let points = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.25, -999.0]].map(Point3::from);
+    write_colored_ply(&path, &points, &[[9; 3]; 3], Some(&[0.5; 3]), &[[0, 1, 2]]).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+    assert_eq!(bytes.len() - end, 3 * (3 * 4 + 3 + 4) + 13);
+    let mesh = read_mesh(&path, LengthUnit::Metres).unwrap();
+    assert_eq!((mesh.vertices(), mesh.triangles()), (&points[..], &[[0, 1, 2]][..]));
+}
+
+#[test]
+fn colours_come_back_from_either_format() {
+    let folder = TempDir::new().unwrap();
+    let read = |name: &str| {
+        cloudtouch_io::read_colors_within(folder.path().join(name), &Default::default()).unwrap()
+    };
+    let colors = [[255, 128, 1], [0, 7, 200]];
+    let points = [Point3::origin(), Point3::new(1.0, 2.0, 3.0)];
+    write_colored_ply(folder.path().join("a.ply"), &points, &colors, None, &[]).unwrap();
+    assert_eq!(read("a.ply"), Some(colors.to_vec()));
+    // As the Point Cloud Library writes them: the bits of a float, or a number that stands for them.
+    let packed = colors.map(|[r, g, b]| u32::from_be_bytes([0, r, g, b]));
+    for (name, kind) in [("u.pcd", "U"), ("f.pcd", "F")] {
+        let header = |data: &str| {
+            format!(
+                "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F {kind}\nWIDTH 2\nHEIGHT 1\nDATA {data}\n"
+            )
+        };
+        let word = |bits: u32| {
+            if kind == "U" { bits.to_string() } else { format!("{:e}", f32::from_bits(bits)) }
+        };
+        let rows: String = packed.iter().map(|&bits| format!("1 2 3 {}\n", word(bits))).collect();
+        fs::write(folder.path().join(name), header("ascii") + &rows).unwrap();
+        assert_eq!(read(name), Some(colors.to_vec()), "{name} ascii");
+        let mut bytes = header("binary").into_bytes();
+        for bits in packed {
+            bytes.extend([0; 12]);
+            // With an opaque alpha, as a float it is no number.
+            bytes.extend((bits | 0xff00_0000).to_le_bytes());
+        }
+        fs::write(folder.path().join(name), bytes).unwrap();
+        assert_eq!(read(name), Some(colors.to_vec()), "{name} binary");
+    }
+    fs::write(folder.path().join("plain.xyz"), "1 2 3\n").unwrap();
+    assert_eq!(read("plain.xyz"), None);
 }

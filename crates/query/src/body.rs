@@ -2,8 +2,11 @@
 
 use std::time::Duration;
 
+use cloudtouch_geom::Pose;
+
 use crate::cloud::Cloud;
 use crate::mesh::Mesh;
+use crate::placement::{Placement, place};
 use crate::shape::Shape;
 
 /// A prepared cloud or mesh, owned.
@@ -53,6 +56,12 @@ impl<'a> BodyRef<'a> {
     /// How long preparation took.
     pub fn prepare_time(&self) -> Duration {
         self.shape().prepare_time()
+    }
+
+    /// Where another body lies in this one at a pose from its file frame into that of this one. Takes
+    /// about a millisecond.
+    pub fn placement(&self, other: BodyRef<'_>, self_from_other: &Pose) -> Placement {
+        place(self.shape(), other.shape(), self_from_other)
     }
 
     pub(crate) fn shape(&self) -> Shape<'a> {

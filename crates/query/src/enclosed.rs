@@ -76,7 +76,7 @@ fn square_of(direction: &Vector3, squares: usize) -> Option<usize> {
 fn sees(cloud: &Prepared, sensor: &Point3, place: &Point3) -> bool {
     let way = place - sensor;
     let length = way.norm();
-    let spacing = cloud.typical_spacing();
+    let spacing = cloud.makeup().spacing;
     cloud.points().iter().all(|point| {
         let offset = point - sensor;
         let along = offset.dot(&way) / length.max(f64::MIN_POSITIVE);

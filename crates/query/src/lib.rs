@@ -4,6 +4,7 @@ mod body;
 mod checks;
 mod classifier;
 mod cloud;
+mod doubts;
 mod enclosed;
 mod error;
 mod exact;
@@ -12,13 +13,17 @@ mod judge;
 mod mesh;
 mod mode;
 pub mod paper;
+mod placement;
 mod query;
 mod range;
 mod record;
 mod report;
+mod safeguards;
 mod search;
 mod shape;
+mod undecided;
 mod unseen;
+mod warning;
 
 pub use body::{Body, BodyRef};
 pub use cloud::{Cloud, CloudSettings};
@@ -35,8 +40,12 @@ pub use mode::Mode;
 pub use paper::{
     PaperBodyRef, PaperCloud, PaperCloudSettings, PaperNoise, PaperQuery, PaperSettings, Pooling,
 };
+pub use placement::Placement;
 pub use query::{Query, QuerySettings};
-pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Undecided, Verdict};
+pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Unseen, Verdict};
+pub use safeguards::Safeguards;
+pub use undecided::Undecided;
+pub use warning::{Warning, Which};
 
 /// The crates below, for users who need their types: a query takes a [`geom::Pose`], a cloud a
 /// [`noise::SensorModel`].

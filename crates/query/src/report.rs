@@ -7,6 +7,8 @@ use serde::Serialize;
 
 use crate::judge::ContactEvidence;
 use crate::mode::Mode;
+use crate::undecided::Undecided;
+use crate::warning::{Warning, Which, spelled};
 
 /// The answer to one query. Serialises to the JSON object of the command-line tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,6 +37,11 @@ pub struct Report {
     pub contacts: Vec<Contact>,
     /// What the probability rests on; `None` on the paper's path, and between two meshes.
     pub evidence: Option<ContactEvidence>,
+    /// How much of a body lies where a single depth image saw nothing; `None` where no body is one.
+    pub unseen: Option<Unseen>,
+    /// Signs of a slip: a unit, a pose or a sensor that is hardly meant.
+    #[serde(serialize_with = "spelled")]
+    pub warnings: Vec<Warning>,
     /// What the answer cost.
     pub stats: Stats,
     /// Seed of the stochastic traversals; 0 on the default path, which draws nothing.
@@ -59,12 +66,15 @@ pub struct Report {
 pub enum Verdict {
     /// The upper bound on the probability is below the reject threshold.
     Free,
-    /// The probability lies between the thresholds.
-    InContact,
+    /// The probability lies between the thresholds: the surfaces may touch, overlap or be apart.
+    /// Still `in_contact` in JSON, the name it had.
+    #[serde(rename = "in_contact")]
+    Uncertain,
     /// The probability is above the accept threshold.
     InCollision,
     /// Some part could not be decided, or was left out without a bound below the reject threshold,
-    /// and the rest does not settle the matter.
+    /// and the rest does not settle the matter; or what was found cannot be believed:
+    /// [`Report::undecided_by`] says why.
     Undecided,
 }
 
@@ -72,27 +82,34 @@ impl fmt::Display for Verdict {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.pad(match self {
             Self::Free => "free",
-            Self::InContact => "in contact",
+            Self::Uncertain => "uncertain",
             Self::InCollision => "in collision",
             Self::Undecided => "undecided",
         })
     }
 }
 
-/// What keeps a query from a decision.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum Undecided {
-    /// An object is mostly behind what a single depth image saw.
-    Hidden,
-    /// The surface of one cloud is all around the other: it is in a hollow space, or within a solid.
-    /// A cloud that knows where its sensor stood tells which.
-    Enclosed,
-    /// A classifier could not be trained.
-    Unsolved,
-    /// What was culled, cut short by a deadline, or too noisy to be told apart could still collide.
-    Bounds,
+/// Where a body's surface lies as the single depth image of the other sees it: shares of the surface,
+/// from 0 to 1. What is in none of them was seen to be empty, or is on a measured surface.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Unseen {
+    /// Whose surface.
+    pub body: Which,
+    /// Behind the back of the camera.
+    pub behind_camera: f64,
+    /// Beside what it looked at.
+    pub outside_view: f64,
+    /// Where no return came from.
+    pub hole: f64,
+    /// Behind a surface that it met.
+    pub behind_returns: f64,
+}
+
+impl Unseen {
+    /// The share that was not seen, for whatever reason.
+    pub fn share(&self) -> f64 {
+        self.behind_camera + self.outside_view + self.hole + self.behind_returns
+    }
 }
 
 /// A gap between two surfaces.

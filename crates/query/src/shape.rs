@@ -3,10 +3,13 @@
 use std::time::Duration;
 
 use cloudtouch_bvh::Tree;
-use cloudtouch_geom::{Pose, Vector3};
+use cloudtouch_geom::{Point3, Pose, Vector3};
 
 use crate::cloud::Prepared;
 use crate::mesh::Mesh;
+
+/// Points of a cloud that stand for all of it, at most.
+const SAMPLES: usize = 500;
 
 /// A prepared cloud of either path, or a mesh.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +33,32 @@ impl<'a> Shape<'a> {
         match self {
             Self::Cloud(cloud) => cloud.len(),
             Self::Mesh(mesh) => 3 * mesh.triangle_count(),
+        }
+    }
+
+    /// Diagonal of the box around the body, m.
+    pub(crate) fn size(&self) -> f64 {
+        let [low, high] = self.corners();
+        (high - low).norm()
+    }
+
+    /// Lowest and highest corner of the body along the axes of its local frame, m.
+    pub(crate) fn corners(&self) -> [Point3; 2] {
+        match self {
+            Self::Cloud(cloud) => cloud.makeup().corners,
+            Self::Mesh(mesh) => mesh.corners_of_box(),
+        }
+    }
+
+    /// At most some hundred places that stand for the whole surface, in the local frame, m.
+    pub(crate) fn samples(&self) -> Vec<Point3> {
+        match self {
+            Self::Cloud(cloud) => {
+                let points = cloud.points();
+                let step = points.len().div_ceil(SAMPLES).max(1);
+                points.iter().step_by(step).copied().collect()
+            }
+            Self::Mesh(mesh) => mesh.samples().to_vec(),
         }
     }
 

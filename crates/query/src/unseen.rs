@@ -1,40 +1,51 @@
-//! Space that was never seen: an object wholly behind the surfaces of a single depth image may be
-//! inside something, and no leaf pair can tell.
+//! Space that was never seen: an object where a single depth image saw nothing may be inside
+//! something, and no search of what was measured can tell.
 
-use cloudtouch_geom::{Point3, Pose};
+use cloudtouch_geom::Pose;
 
-use crate::cloud::Prepared;
+use crate::cloud::{Prepared, Sight};
+use crate::report::Unseen;
 use crate::shape::Shape;
+use crate::warning::Which;
 
-/// How many points stand for a body here.
-const SAMPLES: usize = 100;
-/// An object with this share of its surface behind the scan counts as hidden.
-const HIDDEN_SHARE: f64 = 0.5;
-
-/// Whether either body lies mostly behind what the other, a cloud, saw.
-pub(crate) fn is_either_hidden(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
-    match (a, b) {
-        (Shape::Cloud(cloud), b) if is_hidden(cloud, b, a_from_b) => true,
-        (a, Shape::Cloud(cloud)) => is_hidden(cloud, a, &a_from_b.inverse()),
-        _ => false,
+/// How much of one body lies where the other, a single depth image, saw nothing. Of two images the
+/// larger one looks at the smaller; `None` without any. `a_from_b` maps local frames.
+pub(crate) fn unseen(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> Option<Unseen> {
+    let of_b = || look(image(a)?, b, a_from_b, Which::B);
+    let of_a = || look(image(b)?, a, &a_from_b.inverse(), Which::A);
+    if image(a).is_some() && image(b).is_some() && a.size() < b.size() {
+        of_a()
+    } else {
+        of_b().or_else(of_a)
     }
 }
 
-/// Whether the other body lies mostly behind what `cloud` saw, so that "no surface near" does not
-/// mean "free". False when the cloud is not a single view.
-fn is_hidden(cloud: &Prepared, other: Shape<'_>, cloud_from_other: &Pose) -> bool {
-    let Some(view) = cloud.view() else { return false };
-    let samples = coarse_samples(other);
-    let measured = (cloud.points(), cloud.sensor());
-    let behind = |p: &&Point3| view.is_behind(measured, &cloud_from_other.transform_point(p));
-    let hidden = samples.iter().filter(behind).count();
-    hidden as f64 >= HIDDEN_SHARE * samples.len() as f64
+fn image(body: Shape<'_>) -> Option<&Prepared> {
+    match body {
+        Shape::Cloud(cloud) if cloud.view().is_some() => Some(cloud),
+        _ => None,
+    }
 }
 
-/// Evenly chosen leaves, by their middle: close to the surface and spread over all of it.
-fn coarse_samples(body: Shape<'_>) -> Vec<Point3> {
-    let tree = body.tree();
-    let centers: Vec<Point3> = tree.leaves().map(|leaf| leaf.obb().centre).collect();
-    let step = centers.len().div_ceil(SAMPLES).max(1);
-    centers.into_iter().step_by(step).collect()
+fn look(
+    image: &Prepared,
+    other: Shape<'_>,
+    image_from_other: &Pose,
+    body: Which,
+) -> Option<Unseen> {
+    let sight = image.view()?.sight((image.points(), image.sensor()))?;
+    let samples = other.samples();
+    let mut counts = [0_usize; 4];
+    for sample in &samples {
+        match sight(&image_from_other.transform_point(sample)) {
+            Sight::Seen => {}
+            Sight::BehindCamera => counts[0] += 1,
+            Sight::OutsideView => counts[1] += 1,
+            Sight::Hole => counts[2] += 1,
+            Sight::BehindReturns => counts[3] += 1,
+        }
+    }
+    let [behind_camera, outside_view, hole, behind_returns] =
+        counts.map(|count| count as f64 / samples.len().max(1) as f64);
+    Some(Unseen { body, behind_camera, outside_view, hole, behind_returns })
 }

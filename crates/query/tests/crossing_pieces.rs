@@ -4,7 +4,9 @@ mod common;
 
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, Verdict};
+use cloudtouch::{
+    Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, Undecided, Verdict,
+};
 use cloudtouch_testkit::scene;
 use common::{assert_sound, at, measured, mesh};
 
@@ -36,7 +38,9 @@ fn one_exact_point_on_itself_read_free() {
     let report = ask(&point, &point, &Pose::identity());
     assert_ne!(report.verdict, Verdict::Free, "{report:?}");
     let apart = ask(&point, &point, &at(0.001, 0.0, 0.0));
-    assert_eq!(apart.verdict, Verdict::Free, "{apart:?}");
+    // One point tells of no surface: it is not near, and no more is known.
+    assert!(apart.collision_probability < 0.01, "{apart:?}");
+    assert_eq!(apart.undecided_by, Some(Undecided::NoSurface), "{apart:?}");
 }
 
 /// Between four samples, as far from all of them as can be.

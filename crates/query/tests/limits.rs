@@ -7,7 +7,7 @@ use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings,
-    PrepareError, Query, QueryError, QuerySettings, SubdivisionError, Verdict,
+    PrepareError, Query, QueryError, QuerySettings, Safeguards, SubdivisionError, Verdict,
 };
 
 fn cloud(points: Vec<Point3>) -> Result<Cloud, PrepareError> {
@@ -49,7 +49,9 @@ fn the_largest_float_of_a_camera_was_a_point() {
         points.insert(7, Point3::new(0.1, 0.2, placeholder));
         let a = cloud(points).unwrap();
         assert_eq!((a.len(), a.filter_stages()[0].removed), (100, 1));
-        let query = Query::new(QuerySettings::default()).unwrap();
+        // Hundreds of sizes away are doubted unless they are meant.
+        let safeguards = Safeguards { doubt_units: false, ..Safeguards::default() };
+        let query = Query::new(QuerySettings { safeguards, ..QuerySettings::default() }).unwrap();
         let pose = Pose::from_translation(Vector3::new(50.0, 0.0, 0.0));
         let report = query.run(&a, &a, &pose).unwrap();
         assert!(report.bounds[1] < 0.01, "{placeholder}: {report:?}");

@@ -3,9 +3,9 @@
 mod common;
 
 use cloudtouch::geom::{Point3, TriangleMesh};
-use cloudtouch::{Mode, Verdict};
+use cloudtouch::{Mode, Safeguards, Verdict};
 use cloudtouch_testkit::scene;
-use common::{ask, at, measured, mesh, prepare};
+use common::{AnyQuery, ask, at, measured, mesh, prepare};
 
 /// The mesh with one more vertex, which no face uses.
 fn with_unused(mesh: &TriangleMesh, vertex: Point3) -> TriangleMesh {
@@ -50,7 +50,10 @@ fn a_ground_that_reaches_a_million_kilometres_was_not_there() {
         let cloud = prepare(patch, 0.002, Mode::Calibrated);
         let report = ask(Mode::Calibrated, &ground, &cloud, &at(37.3, -11.9, 0.0));
         assert!(report.collision_probability > 0.5, "{size} m: {report:?}");
-        let above = ask(Mode::Calibrated, &ground, &cloud, &at(37.3, -11.9, 0.05));
+        // Such a ground is doubted unless it is meant.
+        let trusting = Safeguards { doubt_units: false, ..Safeguards::default() };
+        let query = AnyQuery::with(Mode::Calibrated, |by| by.safeguards = trusting, |_| {});
+        let above = query.run(&ground, &cloud, &at(37.3, -11.9, 0.05)).expect("a good pose");
         assert_eq!(above.verdict, Verdict::Free, "over {size} m: {above:?}");
     }
 }

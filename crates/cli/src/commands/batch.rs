@@ -1,28 +1,40 @@
 //! `cloudtouch batch`: many poses; scenes and objects are prepared once.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
+use std::collections::BTreeMap;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Result;
-use cloudtouch::noise::SensorModel;
-use cloudtouch::{PaperQuery, Query, Report};
+use anyhow::{Result, anyhow};
+use cloudtouch::geom::Pose;
+use cloudtouch::{PaperQuery, Placement, Query, Report};
 use cloudtouch_io::write_atomically;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use crate::answer::{Answer as Line, json_error_line};
 use crate::args::{BatchArguments, ModeName};
+use crate::batch_table::Table;
 use crate::body::{self, Body};
 use crate::case_file::{self, Case};
-use crate::load::{self, Role};
-use crate::print;
+use crate::load::{self, Input, Loaded, Role};
+use crate::sensor::SensorChoice;
+use crate::{ordered, output, print, unused};
 
 /// A file in a role seen by a sensor (by its spec, which names it fully).
 type BodyKey = (PathBuf, Role, String);
+type Bodies<C> = BTreeMap<BodyKey, Result<Loaded<C>, String>>;
 
 /// What became of one case: a report, or the reason why there is none.
-type Answer = Result<Report, String>;
+type Answer<'a> = Result<Answered<'a>, String>;
+
+/// A report with where the object was and what the files were taken for.
+struct Answered<'a> {
+    report: Report,
+    placement: Placement,
+    pose: &'a Pose,
+    inputs: [&'a Input; 2],
+}
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -34,55 +46,72 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
 
 fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCode> {
     let file = case_file::read(&arguments.cases, arguments.common.limits.read_limits().bytes)?;
-    let bodies = prepare_all(arguments, file.cases.iter().filter_map(|(_, c)| c.as_ref().ok()));
-    let progress = progress_bar(file.cases.len(), "queries");
-    let answers: Vec<Answer> = file
-        .cases
-        .par_iter()
-        .map(|(_, case)| {
-            let answer = match case {
-                Ok(case) => answer(arguments, query, &bodies, case),
-                Err(error) => Err(format!("{error:#}")),
-            };
-            progress.inc(1);
-            answer
-        })
-        .collect();
-    progress.finish_and_clear();
-
-    let lines = file
-        .cases
-        .iter()
-        .zip(&answers)
-        .map(|((id, _), answer)| match answer {
-            Ok(report) => print::json_line(id, report),
-            Err(error) => print::json_error_line(id, error),
-        })
-        .collect::<Result<Vec<String>>>()?;
+    let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
     if let Some(path) = &arguments.jsonl {
-        write_atomically(path, |out| lines.iter().try_for_each(|line| writeln!(out, "{line}")))?;
+        let files = good().flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
+        let inputs = files.chain([arguments.cases.as_path()]);
+        output::check(path, inputs, arguments.force)?;
     }
-    print::to_stdout(&if arguments.json {
-        lines.iter().map(|line| format!("{line}\n")).collect()
-    } else {
-        table(&file.cases, &answers)
-    })?;
-    let failed = answers.iter().any(Result::is_err);
+    let bodies = prepare_all::<P::Cloud>(arguments, good())?;
+    let progress = progress_bar(file.cases.len(), "queries");
+    let mut table = Table::new(&file.cases);
+    let mut failed = false;
+    let mut write = |jsonl: &mut dyn Write| -> io::Result<()> {
+        if !arguments.json {
+            to_stdout(&table.head())?;
+        }
+        let threads = rayon::current_num_threads();
+        let work = |index: usize| match &file.cases[index].1 {
+            Ok(case) => answer(arguments, query, &bodies, case),
+            Err(error) => Err(format!("{error:#}")),
+        };
+        ordered::for_each(file.cases.len(), threads, work, |index, answer: Answer<'_>| {
+            let (id, case) = &file.cases[index];
+            let line = match &answer {
+                Ok(Answered { report, placement, pose, inputs }) => {
+                    Line { report, placement, pose }.json_line(id, *inputs)
+                }
+                Err(error) => json_error_line(id, error),
+            };
+            let line = line.map_err(io::Error::other)?;
+            failed |= answer.is_err();
+            writeln!(jsonl, "{line}")?;
+            progress.inc(1);
+            let report = answer.as_ref().map(|answered| &answered.report).map_err(String::as_str);
+            progress.suspend(|| {
+                let row = table.row(id, case, report);
+                to_stdout(&if arguments.json { format!("{line}\n") } else { row })
+            })
+        })?;
+        progress.finish_and_clear();
+        if arguments.json { Ok(()) } else { to_stdout(&table.foot()) }
+    };
+    match &arguments.jsonl {
+        Some(path) => write_atomically(path, write)?,
+        None => write(&mut io::sink())?,
+    }
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-fn answer<P: body::Path>(
+fn to_stdout(text: &str) -> io::Result<()> {
+    print::to_stdout(text).map_err(io::Error::other)
+}
+
+fn answer<'a, P: body::Path>(
     arguments: &BatchArguments,
     query: &P,
-    bodies: &BTreeMap<BodyKey, Result<Body<P::Cloud>, String>>,
-    case: &Case,
-) -> Answer {
+    bodies: &'a Bodies<P::Cloud>,
+    case: &'a Case,
+) -> Answer<'a> {
     let [scene, object] = keys(arguments, case).map(|key| match bodies.get(&key) {
-        Some(Ok(body)) => Ok(body),
+        Some(Ok(loaded)) => Ok(loaded),
         Some(Err(error)) => Err(error.clone()),
         None => Err(format!("{}: not prepared", key.0.display())),
     });
-    query.ask(scene?, object?, &case.scene_from_object).map_err(|error| error.to_string())
+    let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
+    let report = query.ask(&scene.body, &object.body, pose).map_err(|error| error.to_string())?;
+    let placement = query.place(&scene.body, &object.body, pose);
+    Ok(Answered { report, placement, pose, inputs: [&scene.input, &object.input] })
 }
 
 fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
@@ -90,41 +119,53 @@ fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
     let named = |path: &Path| {
         let name = path.to_string_lossy();
         let found = arguments.sensor_for.iter().find(|(part, _)| name.contains(part.as_str()));
-        found.map(|(_, sensor)| sensor)
+        found.map(|(_, sensor)| *sensor)
     };
-    let key = |path: &Path, role, given: &Option<SensorModel>, default: &SensorModel| {
-        let sensor = given.as_ref().or(named(path)).unwrap_or(default);
+    let key = |path: &Path, role, given: Option<SensorChoice>, default: SensorChoice| {
+        let sensor = given.or(named(path)).unwrap_or(default);
         (path.to_owned(), role, sensor.to_string())
     };
-    let object_default = common.object_sensor.as_ref().unwrap_or(&common.sensor);
+    let object_default = common.object_sensor.unwrap_or(common.sensor);
+    let given = |sensor: Option<_>| sensor.map(SensorChoice::Stated);
     [
-        key(&case.scene, Role::Scene, &case.scene_sensor, &common.sensor),
-        key(&case.object, Role::Object, &case.object_sensor, object_default),
+        key(&case.scene, Role::Scene, given(case.scene_sensor), common.sensor),
+        key(&case.object, Role::Object, given(case.object_sensor), object_default),
     ]
 }
 
 fn prepare_all<'a, C: body::PreparedCloud>(
     arguments: &BatchArguments,
     cases: impl Iterator<Item = &'a Case>,
-) -> BTreeMap<BodyKey, Result<Body<C>, String>> {
-    let wanted: BTreeSet<BodyKey> = cases.flat_map(|case| keys(arguments, case)).collect();
+) -> Result<Bodies<C>> {
+    let common = &arguments.common;
+    // How many poses are asked of each.
+    let mut wanted: BTreeMap<BodyKey, usize> = BTreeMap::new();
+    for key in cases.flat_map(|case| keys(arguments, case)) {
+        *wanted.entry(key).or_default() += 1;
+    }
     let progress = progress_bar(wanted.len(), "files");
-    let wanted: Vec<BodyKey> = wanted.into_iter().collect();
-    let bodies = wanted
+    let wanted: Vec<(BodyKey, usize)> = wanted.into_iter().collect();
+    let bodies: Bodies<C> = wanted
         .into_par_iter()
-        .map(|key| {
+        .map(|(key, poses)| {
             let (path, role, spec) = &key;
             let body = spec
-                .parse::<SensorModel>()
-                .map_err(anyhow::Error::from)
-                .and_then(|sensor| load::body(path, *role, &sensor, &arguments.common))
+                .parse::<SensorChoice>()
+                .map_err(|error| anyhow!("{error}"))
+                .and_then(|sensor| load::body(path, *role, sensor, common))
+                .and_then(|loaded| loaded.refined_for(poses, common.effort.refine))
                 .map_err(|error| format!("{error:#}"));
             progress.inc(1);
             (key, body)
         })
         .collect();
     progress.finish_and_clear();
-    bodies
+    let loaded = || bodies.values().filter_map(|body| body.as_ref().ok());
+    let is_mesh: Vec<bool> = loaded().map(|l| matches!(l.body, Body::Mesh(_))).collect();
+    if !is_mesh.is_empty() {
+        unused::check(common, &is_mesh)?;
+    }
+    Ok(bodies)
 }
 
 /// Drawn on standard error, and only when that is a terminal.
@@ -132,67 +173,4 @@ fn progress_bar(length: usize, unit: &'static str) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg} ({eta})")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(length as u64).with_style(style).with_message(unit)
-}
-
-/// One line a case, and a line about all of them.
-fn table(cases: &[(String, Result<Case>)], answers: &[Answer]) -> String {
-    let label_of = |case: &Result<Case>| {
-        case.as_ref().ok().and_then(|c| c.label.clone()).unwrap_or("-".to_owned())
-    };
-    let width =
-        |least: usize, texts: &mut dyn Iterator<Item = usize>| texts.fold(least, usize::max);
-    let id_width = width(4, &mut cases.iter().map(|(id, _)| id.chars().count()));
-    let label_width = width(5, &mut cases.iter().map(|(_, c)| label_of(c).chars().count()));
-    let mut text = format!(
-        "{:<id_width$}  {:<label_width$}  {:>5}  {:<14}  {:<12}  {:>14}  {:>10}  scene / object\n",
-        "case", "label", "P", "bounds", "verdict", "clearance (mm)", "time"
-    );
-    // Writing to a string cannot fail.
-    for ((id, case), answer) in cases.iter().zip(answers) {
-        let label = label_of(case);
-        let report = match answer {
-            Ok(report) => report,
-            Err(error) => {
-                let _ = writeln!(text, "{id:<id_width$}  {label:<label_width$}  error: {error}");
-                continue;
-            }
-        };
-        let [low, high] = report.bounds.map(print::probability);
-        let files = case.as_ref().map_or(String::new(), |c| {
-            let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            format!("{} / {}", name(&c.scene), name(&c.object))
-        });
-        let _ = writeln!(
-            text,
-            "{id:<id_width$}  {label:<label_width$}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {files}",
-            print::probability(report.collision_probability),
-            format!("{low} .. {high}"),
-            report.verdict,
-            print::gap_mm(report.clearance_m),
-            report.stats.query_us as f64 / 1e3,
-        );
-    }
-    let reports: Vec<&Report> = answers.iter().filter_map(|a| a.as_ref().ok()).collect();
-    let _ = write!(text, "{} answers, {} errors", reports.len(), answers.len() - reports.len());
-    if !reports.is_empty() {
-        let _ = write!(
-            text,
-            "; median query {:.2} ms, median preparation {:.1} ms",
-            median(reports.iter().map(|r| r.stats.query_us)) / 1e3,
-            median(reports.iter().map(|r| r.stats.prepare_us)) / 1e3,
-        );
-    }
-    text.push('\n');
-    text
-}
-
-fn median(values: impl Iterator<Item = u64>) -> f64 {
-    let mut values: Vec<u64> = values.collect();
-    values.sort_unstable();
-    let middle = values.len() / 2;
-    if values.len() % 2 == 1 {
-        values[middle] as f64
-    } else {
-        0.5 * (values[middle - 1] + values[middle]) as f64
-    }
 }

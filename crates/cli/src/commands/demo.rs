@@ -1,5 +1,6 @@
 //! `cloudtouch demo`: the piano in the room, from free to deep.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -7,12 +8,13 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{PaperQuery, PaperSettings, Query, QuerySettings, Report, Verdict};
-use cloudtouch_io::pcd;
+use cloudtouch::{PaperQuery, PaperSettings, Placement, Query, QuerySettings, Report, Verdict};
+use cloudtouch_io::{LengthUnit, pcd};
 
 use crate::args::{DemoArguments, ModeName};
 use crate::body::{self, Body, PreparedCloud};
-use crate::{case_file, picture, print};
+use crate::load::{Input, Loaded};
+use crate::{case_file, output, picture, print, report_text};
 
 const ROOM: &[u8] = include_bytes!("../../demo/room.pcd");
 const PIANO: &[u8] = include_bytes!("../../demo/piano.pcd");
@@ -23,16 +25,27 @@ const NOISE: f64 = 0.002;
 /// Characters of the bar that shows a probability.
 const BAR: usize = 10;
 
-pub(crate) fn run(arguments: &DemoArguments) -> Result<ExitCode> {
+pub(crate) fn run(arguments: &DemoArguments, shows_work: bool) -> Result<ExitCode> {
+    if let Some(path) = &arguments.ply {
+        output::check(path, [], arguments.force)?;
+    }
     match arguments.mode {
-        ModeName::Calibrated => run_by(&Query::new(QuerySettings::default())?, arguments),
-        ModeName::Paper => run_by(&PaperQuery::new(PaperSettings::default())?, arguments),
+        ModeName::Calibrated => {
+            run_by(&Query::new(QuerySettings::default())?, arguments, shows_work)
+        }
+        ModeName::Paper => {
+            run_by(&PaperQuery::new(PaperSettings::default())?, arguments, shows_work)
+        }
     }
 }
 
-fn run_by<P: body::Path>(query: &P, arguments: &DemoArguments) -> Result<ExitCode> {
-    let (room, piano) = (body(ROOM)?, body(PIANO)?);
-    let poses = poses(query, &room, &piano)?;
+fn run_by<P: body::Path>(
+    query: &P,
+    arguments: &DemoArguments,
+    shows_work: bool,
+) -> Result<ExitCode> {
+    let (room, piano) = (body("room", ROOM)?, body("piano", PIANO)?);
+    let poses = poses(query, &room.body, &piano.body)?;
     let mut text = format!(
         "A grand piano in a furnished room, twelve poses from free to deep. Both are seen as clouds\n\
          with {:.0} mm of noise. The truth is that of the meshes the clouds were sampled from.\n\n\
@@ -43,9 +56,14 @@ fn run_by<P: body::Path>(query: &P, arguments: &DemoArguments) -> Result<ExitCod
     );
     text += &table(&poses);
     if let Some((number, shown)) = most_open(&poses) {
-        let _ = write!(text, "\nPose {number} in full:\n{}\n", print::report(&shown.report));
+        let Answered { room_from_piano: pose, placement, report, .. } = shown;
+        let _ = write!(
+            text,
+            "\nPose {number} in full:\n{}\n",
+            report_text::text(report, placement, shows_work)
+        );
         if let Some(path) = &arguments.ply {
-            picture::write(path, &room, &piano, &shown.room_from_piano, &shown.report)?;
+            picture::write(path, (&room.body, None), (&piano.body, None), pose, report)?;
             let _ = writeln!(text, "picture                {}", path.display());
         }
     }
@@ -59,23 +77,27 @@ struct Answered {
     /// Distance of the meshes, m; in overlap minus the penetration depth.
     truth: f64,
     report: Report,
+    placement: Placement,
 }
 
 impl Answered {
-    /// Whether the verdict says the opposite of the truth; "in contact" takes no side.
+    /// Whether the verdict says the opposite of the truth; "uncertain" takes no side.
     fn is_wrong(&self) -> bool {
         match self.report.verdict {
             Verdict::Free => self.truth < 0.0,
             Verdict::InCollision => self.truth > 0.0,
-            Verdict::InContact | Verdict::Undecided => false,
+            Verdict::Uncertain | Verdict::Undecided => false,
         }
     }
 }
 
-fn body<C: PreparedCloud>(pcd: &[u8]) -> Result<Body<C>> {
+fn body<C: PreparedCloud>(name: &str, pcd: &[u8]) -> Result<Loaded<C>> {
     let cloud = pcd::parse(pcd)?;
     let sensor = SensorModel::Isotropic { std: NOISE };
-    Ok(Body::Cloud(C::prepare(&cloud, sensor, |_, _| {})?))
+    let body = Body::Cloud(C::prepare(&cloud, sensor, |_, _| {})?);
+    let (file, unit) = (name.to_owned(), LengthUnit::Metres.to_string());
+    let input = Input { file, unit, sensor: Some(sensor.to_string()), sensor_because: None };
+    Ok(Loaded { body, input })
 }
 
 /// One after the other, so that the times are those of a single thread.
@@ -89,7 +111,8 @@ fn poses<P: body::Path>(
         let case = case.with_context(|| id.clone())?;
         let truth = case.signed_distance.with_context(|| format!("{id}: no true distance"))?;
         let report = query.ask(room, piano, &case.scene_from_object)?;
-        Ok(Answered { room_from_piano: case.scene_from_object, truth, report })
+        let placement = query.place(room, piano, &case.scene_from_object);
+        Ok(Answered { room_from_piano: case.scene_from_object, truth, report, placement })
     });
     answered.collect()
 }
@@ -121,12 +144,28 @@ fn table(poses: &[Answered]) -> String {
     let settled = count(&|p| matches!(p.report.verdict, Verdict::Free | Verdict::InCollision));
     let _ = writeln!(
         text,
-        "{} right, {wrong} wrong, {} left open. The first queries also pay for the noise model \
-         where they look.",
+        "{} right, {wrong} wrong, {} left open{}.\n\
+         The first queries also pay for the noise model where they look.",
         settled - wrong,
-        poses.len() - settled
+        poses.len() - settled,
+        left_open(poses)
     );
     text
+}
+
+/// How many poses were left open for which reason.
+fn left_open(poses: &[Answered]) -> String {
+    let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
+    for Answered { report, .. } in poses {
+        let reason = match report.verdict {
+            Verdict::Free | Verdict::InCollision => continue,
+            Verdict::Uncertain => "the noise hides whether they touch",
+            Verdict::Undecided => report.undecided_by.map_or("undecided", print::undecided),
+        };
+        *reasons.entry(reason).or_default() += 1;
+    }
+    let each: Vec<String> = reasons.iter().map(|(why, count)| format!("{count}: {why}")).collect();
+    if each.is_empty() { String::new() } else { format!(" ({})", each.join("; ")) }
 }
 
 fn bar(probability: f64) -> String {
@@ -134,7 +173,7 @@ fn bar(probability: f64) -> String {
     "█".repeat(filled) + &"·".repeat(BAR - filled)
 }
 
-/// The pose the clouds tell least about, and its number from 1: one in contact, if any is.
+/// The pose the clouds tell least about, and its number from 1: an uncertain one, if any is.
 fn most_open(poses: &[Answered]) -> Option<(usize, &Answered)> {
     let doubt = |pose: &Answered| (pose.report.collision_probability - 0.5).abs();
     let numbered = poses.iter().enumerate().map(|(index, pose)| (index + 1, pose));

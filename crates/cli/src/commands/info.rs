@@ -2,25 +2,35 @@
 
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use cloudtouch::geom::{Point3, PointCloud, TriangleMesh};
 use cloudtouch::noise::{Neighborhoods, typical_spacing};
-use cloudtouch::{FilterSettings, filter};
+use cloudtouch::{FilterSettings, Mesh, filter};
 use cloudtouch_io::Geometry;
 
 use crate::args::InfoArguments;
-use crate::load::{self, SUSPICIOUS_MESH_SIZE};
+use crate::load::{self, SUSPICIOUS_MESH_SIZE, Units};
 use crate::print;
+use crate::sensor::{Chosen, suggestion};
 
 /// Points whose neighbours tell the spacing.
 const SPACING_SAMPLE: usize = 500;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
-    let text =
-        match load::geometry(&arguments.file, arguments.unit, &arguments.limits.read_limits())? {
-            Geometry::Cloud(cloud) => describe_cloud(&cloud)?,
-            Geometry::Mesh(mesh) => describe_mesh(&mesh),
-        };
+    let units = Units {
+        meshes: arguments.unit.unwrap_or_default(),
+        clouds: arguments.cloud_unit.unwrap_or_default(),
+    };
+    let text = match load::geometry(&arguments.file, units, &arguments.limits.read_limits())? {
+        Geometry::Cloud(_) if arguments.unit.is_some() => {
+            bail!("--unit is for meshes, and this is a cloud: give --cloud-unit")
+        }
+        Geometry::Mesh(_) if arguments.cloud_unit.is_some() => {
+            bail!("--cloud-unit is for clouds, and this is a mesh: give --unit")
+        }
+        Geometry::Cloud(cloud) => describe_cloud(&cloud)?,
+        Geometry::Mesh(mesh) => describe_mesh(&mesh),
+    };
     print::to_stdout(&format!("{}\n{text}\n", arguments.file.display()))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -50,7 +60,8 @@ fn describe_cloud(cloud: &PointCloud) -> Result<String> {
                 "too near    {near} points within 0.1 m of the sensor: placeholders? (--min-range 0.1)"
             ));
         }
-        lines.push(format!("sensor      {}", suggestion(cloud, &low, &high)));
+        let Chosen { sensor, because } = suggestion(cloud);
+        lines.push(format!("sensor      {sensor} ({})", because.unwrap_or_default()));
     }
     Ok(lines.join("\n"))
 }
@@ -62,27 +73,16 @@ fn image(cloud: &PointCloud) -> String {
     }
 }
 
-/// A file does not say which sensor made it: this is a guess from its layout and extent.
-fn suggestion(cloud: &PointCloud, low: &Point3, high: &Point3) -> &'static str {
-    let far_from_origin = low.coords.amax().min(high.coords.amax()) > 1e4;
-    if cloud.covariances.is_some() {
-        "per-point (the file has covariance columns)"
-    } else if far_from_origin {
-        "axes:0.3,0.3,0.15 (map coordinates: an airborne scan?)"
-    } else if cloud.image_size.is_some_and(|(_, height)| height > 1) {
-        "kinect, or iso:0.005 for a stereo camera (a depth image)"
-    } else if (high - low).amax() > 4.0 {
-        "lidar:0.02,0.003 (metres across: a laser scan?)"
-    } else {
-        "iso:0.005 (nothing in the file tells)"
-    }
-}
-
 fn describe_mesh(mesh: &TriangleMesh) -> String {
     let merged = mesh.merged();
     let open = merged.open_edges();
-    let closed = if open == 0 {
+    let prepared = Mesh::prepare(mesh);
+    let closed = if prepared.is_err() {
+        "none: no triangle has an area, nothing collides with it".to_owned()
+    } else if prepared.is_ok_and(|mesh| mesh.is_watertight()) {
         "watertight: inside and outside are defined".to_owned()
+    } else if open == 0 {
+        "closed, but part of it encloses no volume; only its surface collides".to_owned()
     } else {
         format!("open: {open} edges do not join two triangles; only its surface collides")
     };

@@ -5,53 +5,86 @@ use std::process::ExitCode;
 use anyhow::Result;
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{PaperQuery, Query, Verdict};
+use cloudtouch_cli::numbers::Triple;
+use cloudtouch_io::read_colors_within;
+use nalgebra::UnitQuaternion;
 
-use crate::args::{ModeName, QueryArguments, Triple};
-use crate::body::Path;
+use crate::answer::Answer;
+use crate::args::{ModeName, PoseArguments, QueryArguments};
+use crate::body::{Body, Path};
 use crate::load::{self, Role};
-use crate::{picture, pose_file, print};
+use crate::{output, picture, pose_file, print, report_text, unused};
 
-pub(crate) fn run(arguments: &QueryArguments) -> Result<ExitCode> {
+pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
     match common.mode {
-        ModeName::Calibrated => run_by(&Query::new(common.query_settings())?, arguments),
-        ModeName::Paper => run_by(&PaperQuery::new(common.paper_settings())?, arguments),
+        ModeName::Calibrated => {
+            run_by(&Query::new(common.query_settings())?, arguments, shows_work)
+        }
+        ModeName::Paper => {
+            run_by(&PaperQuery::new(common.paper_settings())?, arguments, shows_work)
+        }
     }
 }
 
-fn run_by<P: Path>(query: &P, arguments: &QueryArguments) -> Result<ExitCode> {
+fn run_by<P: Path>(query: &P, arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
-    let pose = pose(arguments)?;
-    let object_sensor = common.object_sensor.as_ref().unwrap_or(&common.sensor);
-    let scene = load::body::<P::Cloud>(&arguments.scene, Role::Scene, &common.sensor, common)?;
-    let object = load::body::<P::Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
-    let report = query.ask(&scene, &object, &pose)?;
+    // What can be told without work comes first.
+    let inputs = [&arguments.scene, &arguments.object].into_iter().chain(&common.robot);
+    inputs.clone().try_for_each(|path| load::check(path))?;
     if let Some(path) = &arguments.ply {
-        picture::write(path, &scene, &object, &pose, &report)?;
+        output::check(path, inputs.map(|input| input.as_path()), arguments.force)?;
+    }
+    let pose = pose(&arguments.pose)?;
+    let object_sensor = common.object_sensor.unwrap_or(common.sensor);
+    let scene = load::body::<P::Cloud>(&arguments.scene, Role::Scene, common.sensor, common)?;
+    let object = load::body::<P::Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
+    let is_mesh = [&scene, &object].map(|loaded| matches!(loaded.body, Body::Mesh(_)));
+    unused::check(common, &is_mesh)?;
+    let scene = scene.refined_for(1, common.effort.refine)?;
+    let object = object.refined_for(1, common.effort.refine)?;
+    let report = query.ask(&scene.body, &object.body, &pose)?;
+    let placement = query.place(&scene.body, &object.body, &pose);
+    if let Some(path) = &arguments.ply {
+        let limits = common.limits.read_limits();
+        let files = [&arguments.scene, &arguments.object];
+        let [of_scene, of_object] = files.map(|file| read_colors_within(file, &limits));
+        let (of_scene, of_object) = (of_scene?, of_object?);
+        let scene = (&scene.body, of_scene.as_deref());
+        let object = (&object.body, of_object.as_deref());
+        picture::write(path, scene, object, &pose, &report)?;
     }
     let text = if arguments.json {
-        print::json_line("query", &report)?
+        let answer = Answer { report: &report, placement: &placement, pose: &pose };
+        answer.json_line("query", [&scene.input, &object.input])?
     } else {
-        [print::body("scene", &scene), print::body("object", &object), print::report(&report)]
-            .join("\n")
+        let mut parts = vec![
+            print::body("scene", &scene),
+            print::body("object", &object),
+            report_text::text(&report, &placement, shows_work),
+        ];
+        if !arguments.pose.is_given() {
+            parts.push("pose                   not given: the identity".to_owned());
+        }
+        parts.join("\n")
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(if arguments.exit_code { exit_code(report.verdict) } else { ExitCode::SUCCESS })
 }
 
-fn pose(arguments: &QueryArguments) -> Result<Pose> {
+fn pose(arguments: &PoseArguments) -> Result<Pose> {
     if let Some(path) = &arguments.pose {
         return pose_file::read(path);
     }
-    let given = |triple: Option<Triple>| triple.map_or([0.0; 3], |Triple(numbers)| numbers);
-    let offset = Vector3::from(given(arguments.translate));
-    Ok(Pose::from_translation_rpy(offset, given(arguments.rotate_rpy)))
+    let offset = arguments.translate.map_or(Vector3::zeros(), |Triple(offset)| offset.into());
+    let turn = arguments.turn().map_or(UnitQuaternion::identity(), |turn| turn.0);
+    Ok(Pose::from_translation_rotation(offset, turn))
 }
 
 fn exit_code(verdict: Verdict) -> ExitCode {
     ExitCode::from(match verdict {
         Verdict::Free => 0,
-        Verdict::InContact => 10,
+        Verdict::Uncertain => 10,
         Verdict::InCollision => 20,
         Verdict::Undecided => 30,
     })

@@ -29,7 +29,7 @@ fn report(report: &Report, settings: &Limits, points: [usize; 2]) {
     match report.verdict {
         Verdict::Free => assert!(high < settings.reject, "free: {report:?}"),
         Verdict::InCollision => assert!(probability > settings.accept, "collision: {report:?}"),
-        Verdict::InContact => assert!(probability >= settings.reject, "contact: {report:?}"),
+        Verdict::Uncertain => assert!(probability >= settings.reject, "contact: {report:?}"),
         Verdict::Undecided => {}
     }
     if let Some(clearance) = report.clearance_m {

@@ -48,12 +48,23 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
             expected: "1 for coordinates and covariances",
         }));
     }
-    let cloud = match header.data {
-        Data::Ascii => parse_ascii(&header, &columns, lines, limits),
-        Data::Binary => parse_binary(&header, &columns, lines, limits),
-        Data::BinaryCompressed => parse_compressed(&header, &columns, lines, limits),
-    }?;
+    let cloud = parse_columns(&header, &columns, lines, limits)?;
     Ok(PointCloud { image_size: header.image_size, sensor_pose: header.sensor_pose, ..cloud })
+}
+
+/// The rows that follow a header; `columns` are the fields for coordinates, and for covariances if
+/// there are any.
+pub(super) fn parse_columns(
+    header: &Header,
+    columns: &[usize],
+    lines: Lines<'_>,
+    limits: &ReadLimits,
+) -> Result<PointCloud, FormatError> {
+    match header.data {
+        Data::Ascii => parse_ascii(header, columns, lines, limits),
+        Data::Binary => parse_binary(header, columns, lines, limits),
+        Data::BinaryCompressed => parse_compressed(header, columns, lines, limits),
+    }
 }
 
 fn parse_ascii(

@@ -45,6 +45,12 @@ impl Header {
     }
 }
 
+impl Property {
+    pub(super) fn is_float(&self) -> bool {
+        matches!(self.kind, Kind::Single(scalar) if scalar.is_float())
+    }
+}
+
 impl Element {
     /// Bytes (binary) or characters (text, with separators) a row takes at least.
     pub(super) fn smallest_row(&self, binary: bool) -> usize {

@@ -37,6 +37,16 @@ pub fn parse(bytes: &[u8]) -> Result<Geometry, FormatError> {
 pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<Geometry, FormatError> {
     let mut lines = Lines::new(bytes);
     let header = header::read(&mut lines)?;
+    parse_body(&header, bytes, lines, limits)
+}
+
+/// What follows a header.
+pub(super) fn parse_body(
+    header: &Header,
+    bytes: &[u8],
+    lines: Lines<'_>,
+    limits: &ReadLimits,
+) -> Result<Geometry, FormatError> {
     let vertex_element = header
         .element("vertex")
         .ok_or_else(|| lines.place().error(Fault::MissingEntry { entry: "element vertex" }))?;
@@ -63,7 +73,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<Geometry, Forma
             _ => skip(element, &mut body)?,
         }
     }
-    check_end(&header, &body)?;
+    check_end(header, &body)?;
     if !is_mesh {
         return Ok(Geometry::Cloud(cloud));
     }

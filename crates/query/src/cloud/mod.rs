@@ -5,6 +5,7 @@ mod accessors;
 mod edge;
 mod join;
 mod lazy;
+mod makeup;
 mod pieces;
 mod prepare;
 mod prepared;
@@ -18,7 +19,9 @@ pub(crate) use accessors::cloud_accessors;
 pub(crate) use edge::{DISC_SPACINGS, Edge, SLOPE};
 #[cfg(test)]
 pub(crate) use join::edges_of;
+pub(crate) use makeup::{Makeup, SensorDoubt};
 pub use prepare::Cloud;
 pub(crate) use prepared::{Preparation, Prepared};
 pub use settings::CloudSettings;
 pub(crate) use surfel::Surfel;
+pub(crate) use view::Sight;

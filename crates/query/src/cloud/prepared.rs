@@ -6,7 +6,6 @@ use cloudtouch_bvh::{LeafBounds, Primitive, Tree, TreeSettings};
 use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
 use cloudtouch_noise::{
     Combination, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, SensorModel, SensorNoise,
-    typical_spacing,
 };
 
 use crate::error::PrepareError;
@@ -14,12 +13,13 @@ use crate::filter::{FilterSettings, StageReport, filter};
 use crate::range::check_points;
 
 use super::edge::DISC_SPACINGS;
+use super::makeup::{Makeup, is_image};
 use super::pieces::Pieces;
 use super::slots::LazySurface;
 use super::view::SingleView;
 
-/// Points whose neighbours tell the typical spacing.
-const SPACING_SAMPLE: usize = 200;
+/// Points with more noise than half the size of their cloud say nothing.
+const MOST_NOISE: f64 = 0.5;
 
 /// What a path prepares a cloud by.
 #[derive(Debug, Clone, Copy)]
@@ -58,6 +58,7 @@ pub(crate) struct Prepared {
     pub(super) noise: NoiseModel,
     pub(super) tree: Tree,
     pub(super) surface: LazySurface,
+    makeup: Makeup,
     view: Option<SingleView>,
     /// Where the sensor stood, in the local frame, where the cloud says so.
     sensor_origin: Option<Point3>,
@@ -98,6 +99,10 @@ impl Prepared {
         let origin = nalgebra::center(&low, &high).coords;
         let points: Vec<Point3> = kept.points.iter().map(|p| p - origin).collect();
         let neighborhoods = Neighborhoods::try_new(points)?;
+        let makeup = Makeup::new(cloud, (by.sensor, &sensor), (&neighborhoods, origin), &stages);
+        if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
+            return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
+        }
         // A surface that is known needs no others to be told from, and one point is as good as the next.
         let is_fitted = by.noise.combination == Combination::SurfacePosterior && normals.is_none();
         let pieces = match is_fitted {
@@ -128,10 +133,7 @@ impl Prepared {
             bounds
         })?;
         // An organised cloud is a depth image: one view, with unseen space behind it.
-        let view = cloud
-            .image_size
-            .filter(|&(width, height)| width > 1 && height > 1)
-            .map(|_| SingleView::new(kept.sensor_origin() - origin));
+        let view = is_image(cloud).then(|| SingleView::new(kept.sensor_origin() - origin));
         // The origin is what a file says that does not know.
         let sensor_origin = Some(kept.sensor_origin())
             .filter(|place| *place != Point3::origin())
@@ -148,6 +150,7 @@ impl Prepared {
             noise,
             tree,
             surface,
+            makeup,
             view,
             sensor_origin,
             prepare_time,
@@ -203,9 +206,14 @@ impl Prepared {
         self.sensor_origin.as_ref()
     }
 
-    /// Distance between neighbouring points, m, as the median of some of them.
-    pub(crate) fn typical_spacing(&self) -> f64 {
-        typical_spacing(&self.neighborhoods, SPACING_SAMPLE)
+    /// What the cloud is like as a whole.
+    pub(crate) fn makeup(&self) -> &Makeup {
+        &self.makeup
+    }
+
+    /// Distance of a place in the local frame to the nearest point, m.
+    pub(crate) fn distance_to(&self, place: &Point3) -> Option<f64> {
+        Some(self.neighborhoods.nearest_to(place, 1).first()?.squared_distance.sqrt())
     }
 
     pub(crate) fn view(&self) -> Option<&SingleView> {

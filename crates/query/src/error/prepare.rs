@@ -13,7 +13,8 @@ use super::filter::FilterError;
 pub enum PrepareError {
     /// No point was left after filtering.
     #[error(
-        "no point is left of {before} after filtering ({stages}): loosen the filter or check the file"
+        "no point is left of {before} after filtering ({stages}): loosen the filter, or check the \
+         file and its unit"
     )]
     NothingLeft {
         /// Points in the input.
@@ -32,6 +33,18 @@ pub enum PrepareError {
         index: usize,
         /// What was found, m.
         value: f64,
+    },
+    /// The noise is so large beside the cloud that its points say nothing.
+    #[error(
+        "the noise is {} m (standard deviation) and the cloud {} m across: give the sensor's noise in \
+         metres, such as iso:0.005 for 5 mm, and the unit of the cloud (--cloud-unit mm)",
+        number(*std), number(*size)
+    )]
+    NoiseBeyondSize {
+        /// Median of the standard deviations, each the largest of its point, m.
+        std: f64,
+        /// Diagonal of the box around the points, m.
+        size: f64,
     },
     /// A given normal is not of length one.
     #[error(

@@ -76,6 +76,14 @@ pub enum SettingsError {
         /// What was given.
         value: f64,
     },
+    /// A share of something is not one.
+    #[error("{name} is {}: give a number from 0 to 1", number(*value))]
+    NotAShare {
+        /// Which setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
     /// A probability or tolerance is not strictly between 0 and 1.
     #[error("{name} is {}: give a number between 0 and 1, ends excluded", number(*value))]
     NotAFraction {

@@ -1,5 +1,6 @@
 //! Triangle meshes prepared for queries: exact surfaces, with an inside where they are closed.
 
+mod coverage;
 mod near;
 mod parts;
 mod prepare;

@@ -1,5 +1,6 @@
 //! From the triangles of a file to a mesh that can be asked.
 
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use cloudtouch_bvh::{Primitive, Tree, TreeSettings};
@@ -17,6 +18,9 @@ use super::winding::Winding;
 /// Triangles in a leaf of a mesh's tree: few, since each may be subdivided many times.
 const MAX_LEAF_TRIANGLES: usize = 8;
 
+/// Places that stand for the surface where only its whole extent matters.
+const SAMPLES: usize = 500;
+
 /// A triangle mesh, ready to be queried in any pose.
 ///
 /// Its surface is exact: its points have no covariance and count as on the wrong side with
@@ -31,6 +35,8 @@ pub struct Mesh {
     pub(super) winding: Winding,
     watertight: bool,
     closed: bool,
+    /// Places that stand for the surface, once they are needed.
+    samples: OnceLock<Vec<Point3>>,
     prepare_time: Duration,
 }
 
@@ -76,7 +82,8 @@ impl Mesh {
         let tree = Tree::build(primitives, &settings)?;
         let winding = Winding::new(triangles);
         let prepare_time = start.elapsed();
-        Ok(Self { origin, surface, tree, winding, watertight, closed, prepare_time })
+        let samples = OnceLock::new();
+        Ok(Self { origin, surface, tree, winding, watertight, closed, samples, prepare_time })
     }
 
     /// Whether every edge joins two triangles, consistently turned, and every part encloses a
@@ -121,6 +128,23 @@ impl Mesh {
         let mut points = sample_region(triangles, &everywhere, max_parts)?;
         points.iter_mut().for_each(|p| *p += self.origin);
         Ok(points)
+    }
+
+    /// The surface as it was prepared, with merged vertices in the file frame, m.
+    pub fn faces(&self) -> (Vec<Point3>, &[[u32; 3]]) {
+        let in_file = |v: &Vector| Point3::new(v.x, v.y, v.z) + self.origin;
+        (self.surface.vertices().iter().map(in_file).collect(), self.surface.indices())
+    }
+
+    /// Some hundred places on the surface in the local frame, m, each for the same area.
+    pub(crate) fn samples(&self) -> &[Point3] {
+        self.samples.get_or_init(|| self.spread(SAMPLES))
+    }
+
+    /// Corners of the box around the surface, along the axes of the local frame, m.
+    pub(crate) fn corners_of_box(&self) -> [Point3; 2] {
+        let around = self.surface.local_aabb();
+        [around.mins, around.maxs].map(|v| Point3::new(v.x, v.y, v.z))
     }
 
     /// Unit normal of a triangle, outward for a watertight mesh; `None` for a degenerate one.

@@ -1,6 +1,9 @@
 //! Anything that can collide on the paper's path.
 
+use cloudtouch_geom::Pose;
+
 use crate::mesh::Mesh;
+use crate::placement::{Placement, place};
 use crate::shape::Shape;
 
 use super::cloud::PaperCloud;
@@ -27,6 +30,12 @@ impl<'a> From<&'a Mesh> for PaperBodyRef<'a> {
 }
 
 impl<'a> PaperBodyRef<'a> {
+    /// Where another body lies in this one at a pose from its file frame into that of this one. Takes
+    /// about a millisecond.
+    pub fn placement(&self, other: PaperBodyRef<'_>, self_from_other: &Pose) -> Placement {
+        place(self.shape(), other.shape(), self_from_other)
+    }
+
     pub(super) fn shape(&self) -> Shape<'a> {
         match *self {
             Self::Cloud(cloud) => Shape::Cloud(cloud.prepared()),

@@ -65,6 +65,7 @@ impl PaperQuery {
             seed: self.settings.seed,
             accept: self.settings.accept,
             reject: self.settings.reject,
+            safeguards: self.settings.safeguards,
             max_contacts: self.settings.max_contacts,
         };
         let bodies = (a.into().shape(), b.into().shape());

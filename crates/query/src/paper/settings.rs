@@ -7,6 +7,7 @@ use cloudtouch_bvh::Traversal;
 use crate::checks::{fraction, positive, thresholds};
 use crate::classifier::ClassifierSettings;
 use crate::error::SettingsError;
+use crate::safeguards::Safeguards;
 
 /// How point probabilities become the probability of a pair of clouds (section 4.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -50,6 +51,8 @@ pub struct PaperSettings {
     /// is trained: the limit is exceeded by milliseconds as a rule. With a limit answers depend on
     /// the speed of the machine.
     pub deadline: Option<Duration>,
+    /// What keeps a pair from reading as free beside the evidence.
+    pub safeguards: Safeguards,
     /// How many contacts are reported at most.
     pub max_contacts: usize,
     /// How many triangles, before and after splitting, the part of a mesh that faces a leaf of a
@@ -75,6 +78,7 @@ impl Default for PaperSettings {
             cull_probability: 1e-6,
             stop_above: 0.999,
             deadline: None,
+            safeguards: Safeguards::default(),
             max_contacts: 16,
             max_mesh_parts: 20_000,
             seed: 0,
@@ -89,6 +93,7 @@ impl PaperSettings {
     /// Names the setting that is out of range, and its value.
     pub fn validate(&self) -> Result<(), SettingsError> {
         thresholds(self.accept, self.reject)?;
+        self.safeguards.validate()?;
         self.classifier().validate()?;
         positive("stop_above", self.stop_above)?;
         fraction("cull_probability", self.cull_probability)

@@ -66,6 +66,7 @@ impl Query {
             seed: 0,
             accept: self.settings.accept,
             reject: self.settings.reject,
+            safeguards: self.settings.safeguards,
             max_contacts: self.settings.max_contacts,
         };
         terms.ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {

@@ -6,6 +6,7 @@ use crate::checks::{fraction, positive, thresholds};
 use crate::classifier::ClassifierSettings;
 use crate::error::SettingsError;
 use crate::judge::Judge;
+use crate::safeguards::Safeguards;
 
 /// All settings of a query on the default path; [`Query::new`](crate::Query::new) checks them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +40,8 @@ pub struct QuerySettings {
     /// do (some seconds) and by `max_mesh_parts`. With a limit answers depend on the speed of the
     /// machine.
     pub deadline: Option<Duration>,
+    /// What keeps a pair from reading as free beside the evidence.
+    pub safeguards: Safeguards,
     /// How many contacts are reported at most.
     pub max_contacts: usize,
     /// How many triangles, before and after splitting, the part of a mesh that faces a leaf of a
@@ -61,6 +64,7 @@ impl Default for QuerySettings {
             relative_gap: 1e-3,
             stop_above: 0.999,
             deadline: None,
+            safeguards: Safeguards::default(),
             max_contacts: 16,
             max_mesh_parts: 20_000,
         }
@@ -76,6 +80,7 @@ impl QuerySettings {
         self.judge.validate()?;
         fraction("prior", self.prior)?;
         thresholds(self.accept, self.reject)?;
+        self.safeguards.validate()?;
         self.classifier().validate()?;
         positive("stop_above", self.stop_above)?;
         Ok(())

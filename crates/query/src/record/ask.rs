@@ -4,14 +4,18 @@ use std::time::{Duration, Instant};
 
 use cloudtouch_geom::{Pose, Vector3};
 
+use crate::doubts::doubts;
 use crate::enclosed::is_enclosed;
 use crate::error::QueryError;
 use crate::mode::Mode;
 use crate::paper::pool;
 use crate::range::bad_entry;
-use crate::report::{Report, Stats, Undecided, Verdict};
+use crate::report::{Report, Stats, Verdict};
+use crate::safeguards::Safeguards;
 use crate::shape::Shape;
-use crate::unseen::is_either_hidden;
+use crate::undecided::Undecided;
+use crate::unseen::unseen;
+use crate::warning::Warning;
 
 use super::estimate::{Estimate, Places};
 use super::evidence::Evidence;
@@ -23,6 +27,7 @@ pub(crate) struct Terms {
     pub seed: u64,
     pub accept: f64,
     pub reject: f64,
+    pub safeguards: Safeguards,
     pub max_contacts: usize,
 }
 
@@ -44,22 +49,25 @@ impl Terms {
         let local = a.local_from(&b, a_from_b);
         let mut evidence = Evidence::default();
         let mut estimate = estimate(start, &local, &mut evidence)?;
-        let unseen = match estimate.probability <= self.accept {
-            true if is_either_hidden(a, b, &local) => Some(Undecided::Hidden),
-            true if is_enclosed(a, b, &local) => Some(Undecided::Enclosed),
-            _ => None,
+        let unseen = unseen(a, b, &local);
+        let warnings = doubts((a, b), &local, unseen.as_ref(), &self.safeguards);
+        let doubt = if estimate.probability <= self.accept {
+            let enclosed = || is_enclosed(a, b, &local).then_some(Undecided::Enclosed);
+            self.doubt(&warnings).or_else(enclosed)
+        } else {
+            None
         };
-        if unseen.is_some() {
-            evidence.stats.undecided += 1;
+        if doubt.is_some() {
             evidence.widen(1.0);
             estimate.bounds[1] = 1.0;
         }
-        let mut report = self.report(evidence, estimate, a.origin());
+        let mut report = self.report(evidence, estimate, a.origin(), doubt);
         if report.verdict == Verdict::Undecided {
             let solved = report.stats.undecided == 0;
             let of_search = if solved { Undecided::Bounds } else { Undecided::Unsolved };
-            report.undecided_by = Some(unseen.unwrap_or(of_search));
+            report.undecided_by = Some(doubt.unwrap_or(of_search));
         }
+        (report.unseen, report.warnings) = (unseen, warnings);
         let micros = |d: Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
         report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
         report.stats.query_us = micros(start.elapsed());
@@ -72,7 +80,20 @@ impl Terms {
         Ok(report)
     }
 
-    fn report(&self, mut evidence: Evidence, estimate: Estimate, origin: Vector3) -> Report {
+    /// The gravest reason not to believe what would read as free.
+    fn doubt(&self, warnings: &[Warning]) -> Option<Undecided> {
+        let counts =
+            |reason: &Undecided| *reason != Undecided::Units || self.safeguards.doubt_units;
+        warnings.iter().filter_map(Warning::undecides).find(counts)
+    }
+
+    fn report(
+        &self,
+        mut evidence: Evidence,
+        estimate: Estimate,
+        origin: Vector3,
+        doubt: Option<Undecided>,
+    ) -> Report {
         let points = evidence.merge_points();
         let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points));
         let Places { mut contacts, clearance, at_least } =
@@ -88,13 +109,15 @@ impl Terms {
         Report {
             collision_probability: estimate.probability,
             bounds: estimate.bounds,
-            verdict: self.verdict(estimate.probability, estimate.bounds[1], stats.undecided),
+            verdict: self.verdict(estimate.probability, estimate.bounds[1], stats.undecided, doubt),
             undecided_by: None,
             log_likelihood_ratio: estimate.log_likelihood_ratio,
             clearance_m: clearance,
             clearance_at_least_m: at_least,
             contacts,
             evidence: estimate.evidence,
+            unseen: None,
+            warnings: Vec::new(),
             stats,
             seed: self.seed,
             mode: self.mode,
@@ -104,10 +127,19 @@ impl Terms {
         }
     }
 
-    fn verdict(&self, probability: f64, upper: f64, undecided: usize) -> Verdict {
+    fn verdict(
+        &self,
+        probability: f64,
+        upper: f64,
+        undecided: usize,
+        doubt: Option<Undecided>,
+    ) -> Verdict {
         let Self { accept, reject, .. } = *self;
         if probability > accept {
             Verdict::InCollision
+        } else if doubt.is_some_and(|reason| reason != Undecided::Unseen) {
+            // The number itself means nothing. Unseen space only keeps a pair from being free.
+            Verdict::Undecided
         } else if upper < reject && undecided == 0 {
             Verdict::Free
         } else if probability < reject || undecided > 0 {
@@ -115,7 +147,7 @@ impl Terms {
             Verdict::Undecided
         } else {
             // NaN would end here too, and not at free.
-            Verdict::InContact
+            Verdict::Uncertain
         }
     }
 }

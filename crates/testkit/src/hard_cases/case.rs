@@ -19,7 +19,8 @@ pub struct HardCase {
     pub covariance_a: Vec<Matrix3>,
     /// One matrix per point of `cloud_b`, m².
     pub covariance_b: Vec<Matrix3>,
-    /// Whether every number is one a caller may pass. Where not, a typed error is the right answer,
+    /// Whether every number is one a caller may pass, and the noise of no whole cloud is larger than
+    /// it. Where not, a typed error is the right answer,
     /// or a filter that says what it dropped; never a panic, and never "free" for no reason.
     pub valid: bool,
     /// Whether the surfaces behind the clouds have a point in common, where that is beyond doubt.

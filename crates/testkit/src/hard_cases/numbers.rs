@@ -47,7 +47,8 @@ pub(super) fn covariances() -> Vec<HardCase> {
             collides: None,
             ..apart("huge-covariance", "noise of 10 m on a scene of 0.2 m: nothing is known")
         }
-        .with_covariance(isotropic(10.0)),
+        .with_covariance(isotropic(10.0))
+        .invalid(),
         HardCase { collides: None, ..mixed },
         HardCase { collides: None, ..one_unknown },
         HardCase { collides: None, ..ladder },

@@ -1,0 +1,108 @@
+//! The table of a batch, a row at a time.
+
+use std::path::Path;
+
+use anyhow::Result;
+use cloudtouch::Report;
+
+use crate::case_file::Case;
+use crate::print;
+
+/// Widths of the columns, and what the last line is made of.
+pub(crate) struct Table {
+    id_width: usize,
+    label_width: usize,
+    answers: usize,
+    errors: usize,
+    query_us: Vec<u64>,
+    prepare_us: Vec<u64>,
+}
+
+impl Table {
+    /// For these cases, of which only names and labels are looked at.
+    pub(crate) fn new(cases: &[(String, Result<Case>)]) -> Self {
+        let width = |texts: &mut dyn Iterator<Item = String>, least: usize| {
+            texts.map(|text| text.chars().count()).fold(least, usize::max)
+        };
+        Self {
+            id_width: width(&mut cases.iter().map(|(id, _)| print::one_line(id)), 4),
+            label_width: width(&mut cases.iter().map(|(_, case)| label(case)), 5),
+            answers: 0,
+            errors: 0,
+            query_us: Vec::new(),
+            prepare_us: Vec::new(),
+        }
+    }
+
+    pub(crate) fn head(&self) -> String {
+        let Self { id_width, label_width, .. } = self;
+        format!(
+            "{:<id_width$}  {:<label_width$}  {:>5}  {:<14}  {:<12}  {:>14}  {:>10}  scene / object\n",
+            "case", "label", "P", "bounds", "verdict", "clearance (mm)", "time"
+        )
+    }
+
+    pub(crate) fn row(
+        &mut self,
+        id: &str,
+        case: &Result<Case>,
+        answer: Result<&Report, &str>,
+    ) -> String {
+        let Self { id_width, label_width, .. } = *self;
+        let start = format!("{:<id_width$}  {:<label_width$}", print::one_line(id), label(case));
+        let report = match answer {
+            Ok(report) => report,
+            Err(error) => {
+                self.errors += 1;
+                return format!("{start}  error: {}\n", print::one_line(error));
+            }
+        };
+        self.answers += 1;
+        self.query_us.push(report.stats.query_us);
+        self.prepare_us.push(report.stats.prepare_us);
+        let [low, high] = report.bounds.map(print::probability);
+        let files = case.as_ref().map_or(String::new(), |c| {
+            let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            format!("{} / {}", name(&c.scene), name(&c.object))
+        });
+        let reason =
+            report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
+        format!(
+            "{start}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {}{reason}\n",
+            print::probability(report.collision_probability),
+            format!("{low} .. {high}"),
+            report.verdict,
+            print::gap_mm(report.clearance_m),
+            report.stats.query_us as f64 / 1e3,
+            print::one_line(&files),
+        )
+    }
+
+    pub(crate) fn foot(&self) -> String {
+        let mut text = format!("{} answers, {} errors", self.answers, self.errors);
+        if self.answers > 0 {
+            text += &format!(
+                "; median query {:.2} ms, median preparation {:.1} ms",
+                median(&self.query_us) / 1e3,
+                median(&self.prepare_us) / 1e3,
+            );
+        }
+        text + "\n"
+    }
+}
+
+fn label(case: &Result<Case>) -> String {
+    let label = case.as_ref().ok().and_then(|case| case.label.as_deref());
+    label.map_or("-".to_owned(), print::one_line)
+}
+
+fn median(values: &[u64]) -> f64 {
+    let mut values = values.to_vec();
+    values.sort_unstable();
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 {
+        values[middle] as f64
+    } else {
+        0.5 * (values[middle - 1] + values[middle]) as f64
+    }
+}

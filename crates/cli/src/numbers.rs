@@ -1,0 +1,153 @@
+//! Numbers as the options spell them: lengths, angles, poses and fractions.
+
+use cloudtouch::geom::{Pose, Vector3};
+use nalgebra::UnitQuaternion;
+
+/// Three finite numbers. A type of its own, since clap takes a bare list for repeated values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Triple(pub [f64; 3]);
+
+/// A turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn(pub UnitQuaternion<f64>);
+
+/// A rigid motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rigid(pub Pose);
+
+/// Radians beyond a whole turn are rather degrees.
+const WHOLE_TURN: f64 = std::f64::consts::TAU;
+
+/// `X,Y,Z`.
+///
+/// # Errors
+/// When there are not three numbers, or one of them is not finite.
+pub fn triple(text: &str) -> Result<Triple, String> {
+    Ok(Triple(numbers(text, "three, as in 0.4,0,-1.2")?))
+}
+
+/// `R,P,Y` in radians: roll, pitch and yaw, in this order about fixed axes.
+///
+/// # Errors
+/// As [`triple`], and when an angle is beyond a whole turn.
+pub fn turn_in_radians(text: &str) -> Result<Turn, String> {
+    let Triple(angles) = triple(text)?;
+    match angles.iter().find(|angle| angle.abs() > WHOLE_TURN + 1e-9) {
+        Some(angle) => Err(format!(
+            "{angle} rad is more than a whole turn: is it in degrees? Then give --rotate-deg {text}"
+        )),
+        None => Ok(from_rpy(angles)),
+    }
+}
+
+/// `R,P,Y` in degrees: roll, pitch and yaw, in this order about fixed axes.
+///
+/// # Errors
+/// As [`triple`].
+pub fn turn_in_degrees(text: &str) -> Result<Turn, String> {
+    let Triple(angles) = triple(text)?;
+    Ok(from_rpy(angles.map(f64::to_radians)))
+}
+
+/// `X,Y,Z,W`, the order of ROS.
+///
+/// # Errors
+/// When there are not four finite numbers of length one, up to the rounding of a text file.
+pub fn quaternion(text: &str) -> Result<Turn, String> {
+    let [x, y, z, w] = numbers(text, "four, x,y,z,w, as in 0,0,0.7071,0.7071")?;
+    let pose = Pose::try_from_quaternion(Vector3::zeros(), [w, x, y, z]);
+    pose.map(|pose| Turn(*pose.rotation())).map_err(|error| error.to_string())
+}
+
+/// `X,Y,Z` in metres, or `X,Y,Z,QX,QY,QZ,QW` with a quaternion in the order of ROS.
+///
+/// # Errors
+/// When there are neither three nor seven finite numbers, or the quaternion is not of length one.
+pub fn rigid(text: &str) -> Result<Rigid, String> {
+    let Some((at, turn)) =
+        text.match_indices(',').nth(2).map(|(i, _)| (&text[..i], &text[i + 1..]))
+    else {
+        let Triple(at) = triple(text)?;
+        return Ok(Rigid(Pose::from_translation(at.into())));
+    };
+    let (Triple(at), Turn(turn)) = (triple(at)?, quaternion(turn)?);
+    Ok(Rigid(Pose::from_translation_rotation(at.into(), turn)))
+}
+
+/// A finite number.
+///
+/// # Errors
+/// When it is none.
+pub fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err(format!("`{text}` is not finite")),
+        Err(_) => Err(format!("`{text}` is not a number")),
+    }
+}
+
+/// A share from 0 to 1.
+///
+/// # Errors
+/// When it is none.
+pub fn share(text: &str) -> Result<f64, String> {
+    let share = finite(text)?;
+    if (0.0..=1.0).contains(&share) { Ok(share) } else { Err("give 0 to 1".to_owned()) }
+}
+
+fn numbers<const N: usize>(text: &str, form: &str) -> Result<[f64; N], String> {
+    let numbers = text.split(',').map(finite).collect::<Result<Vec<f64>, String>>()?;
+    let count = numbers.len();
+    numbers.try_into().map_err(|_| format!("{count} numbers are given: write {form}"))
+}
+
+fn from_rpy(angles: [f64; 3]) -> Turn {
+    Turn(*Pose::from_translation_rpy(Vector3::zeros(), angles).rotation())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_radians_and_quaternions_say_the_same() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let wanted = turn_in_degrees("0,90,0").unwrap();
+        let others = [
+            turn_in_radians("0,1.5707963267948966,0").unwrap(),
+            quaternion(&format!("0,{half},0,{half}")).unwrap(),
+        ];
+        for Turn(other) in others {
+            assert!(wanted.0.angle_to(&other) < 1e-12);
+        }
+        assert_eq!(
+            rigid("1,2,3").unwrap(),
+            Rigid(Pose::from_translation(Vector3::new(1.0, 2.0, 3.0)))
+        );
+        let Rigid(turned) = rigid(&format!("1,2,3,0,{half},0,{half}")).unwrap();
+        assert!(turned.rotation().angle_to(&wanted.0) < 1e-12);
+    }
+
+    #[test]
+    fn ninety_radians_were_taken_for_an_angle() {
+        let error = turn_in_radians("0,90,0").unwrap_err();
+        assert!(error.contains("90 rad") && error.contains("--rotate-deg 0,90,0"), "{error}");
+        assert!(turn_in_radians("0,6.28318530718,0").is_ok());
+    }
+
+    #[test]
+    fn messages_name_what_was_found_and_what_to_write() {
+        for (result, part) in [
+            (triple("1,2").map(|_| ()), "2 numbers are given"),
+            (triple("1,2,nan").map(|_| ()), "`nan` is not finite"),
+            (quaternion("0,0,0").map(|_| ()), "write four"),
+            (quaternion("0,0,0,2").map(|_| ()), "length"),
+            (rigid("1,2,3,4").map(|_| ()), "write four"),
+            (share("5").map(|_| ()), "0 to 1"),
+        ] {
+            let error = result.unwrap_err();
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

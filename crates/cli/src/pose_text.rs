@@ -1,0 +1,56 @@
+//! A pose as sixteen numbers in a text.
+
+use anyhow::{Context as _, Result, bail};
+use cloudtouch::geom::Pose;
+use nalgebra::Matrix4;
+
+/// No message quotes more of a word.
+const EXCERPT: usize = 40;
+
+/// Numbers row by row; brackets, commas and line breaks only separate them, so that a JSON or
+/// numpy matrix can be pasted.
+///
+/// # Errors
+/// When there are not sixteen numbers, or they are no rigid motion.
+pub fn parse(text: &str) -> Result<Pose> {
+    let separator = |c: char| c.is_whitespace() || "[](),;".contains(c);
+    let mut numbers = Vec::new();
+    for (line, content) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        for word in content.split(separator).filter(|w| !w.is_empty()) {
+            let number: f64 = word.parse().with_context(|| {
+                let found: String = word.chars().take(EXCERPT).collect();
+                format!(
+                    "line {}: `{found}` is not a number; write a 4x4 row-major matrix",
+                    line + 1
+                )
+            })?;
+            numbers.push(number);
+        }
+    }
+    if numbers.len() != 16 {
+        bail!("found {} numbers: a pose is a 4x4 row-major matrix, 16 numbers", numbers.len());
+    }
+    Ok(Pose::try_from_matrix(&Matrix4::from_row_slice(&numbers))?)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_rows_with_or_without_brackets() {
+        let plain = "1 0 0 0.5\n0 1 0 0\n0 0 1 -2\n0 0 0 1\n";
+        let json = "[[1,0,0,0.5],[0,1,0,0],[0,0,1,-2],[0,0,0,1]]";
+        assert_eq!(parse(plain).unwrap(), parse(json).unwrap());
+        assert_eq!(parse(plain).unwrap().translation().z, -2.0);
+    }
+
+    #[test]
+    fn says_what_is_wrong_and_where() {
+        let error = parse("1 0 0 0\n0 one 0 0\n").unwrap_err();
+        assert!(format!("{error:#}").contains("line 2: `one`"), "{error:#}");
+        assert!(parse("1 2 3").unwrap_err().to_string().contains("found 3 numbers"));
+        assert!(parse("2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1").is_err());
+    }
+}

@@ -1,0 +1,165 @@
+//! A report for people: what was found, where, how sure, and what to look at twice.
+
+use std::fmt::Write as _;
+
+use cloudtouch::{Placement, Report, Stats, Unseen};
+
+use crate::print::{probability, undecided};
+
+/// A report for people shows this many contacts; JSON has them all.
+const CONTACTS_SHOWN: usize = 5;
+
+/// All that a person wants to know; with what it cost if `shows_work`.
+pub(crate) fn text(report: &Report, placement: &Placement, shows_work: bool) -> String {
+    let mut text = found(report);
+    text.push_str(&place(placement));
+    for warning in &report.warnings {
+        let _ = writeln!(text, "{}", labelled("warning", &warning.to_string()));
+    }
+    if shows_work {
+        text.push_str(&work(&report.stats));
+    }
+    text.truncate(text.trim_end().len());
+    text
+}
+
+/// What is known of surfaces too far apart to be measured.
+fn too_far(at_least_m: Option<f64>) -> String {
+    match at_least_m.filter(|least| *least > 0.0) {
+        Some(least) => format!("clearance              at least {:.1} mm\n", 1e3 * least),
+        None => "clearance              not computed\n".to_owned(),
+    }
+}
+
+/// What was found, in a few lines.
+fn found(report: &Report) -> String {
+    let mut text = String::new();
+    let [low, high] = report.bounds.map(probability);
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "collision probability  {}   (within {low} .. {high})",
+        probability(report.collision_probability)
+    );
+    let reason = report.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
+    let _ = writeln!(text, "{}", labelled("verdict", &format!("{}{reason}", report.verdict)));
+    match report.clearance_m {
+        Some(c) => {
+            let _ = writeln!(
+                text,
+                "clearance              {:+.1} mm{}, std {:.1} mm",
+                1e3 * c.mean,
+                if c.is_bound { " or deeper" } else { "" },
+                1e3 * c.std
+            );
+        }
+        None => text.push_str(&too_far(report.clearance_at_least_m)),
+    }
+    if !report.contacts.is_empty() {
+        text.push_str(
+            "contacts               point (m)                 normal scene to object    P       \
+             gap (mm)\n",
+        );
+    }
+    for contact in report.contacts.iter().take(CONTACTS_SHOWN) {
+        let (p, n) = (contact.point, contact.normal_a_to_b);
+        let _ = writeln!(
+            text,
+            "                       {:7.3} {:7.3} {:7.3}   {:6.2} {:6.2} {:6.2}      {:<7} {:+.1}",
+            p.x,
+            p.y,
+            p.z,
+            n.x,
+            n.y,
+            n.z,
+            probability(contact.probability),
+            1e3 * contact.clearance_m
+        );
+    }
+    if report.contacts.len() > CONTACTS_SHOWN {
+        let more = report.contacts.len() - CONTACTS_SHOWN;
+        let _ = writeln!(text, "                       and {more} more");
+    }
+    if let Some(unseen) = &report.unseen {
+        let _ = writeln!(text, "{}", labelled("unseen", &unseen_words(unseen)));
+    }
+    text
+}
+
+/// Columns that a line has at most, and where its words begin.
+const WIDTH: usize = 100;
+const INDENT: usize = 23;
+
+/// A line of a report, with as many lines after it as its words take.
+fn labelled(label: &str, words: &str) -> String {
+    let mut text = format!("{label:<INDENT$}");
+    let mut column = INDENT;
+    for word in words.split(' ') {
+        let length = word.chars().count();
+        if column > INDENT && column + length > WIDTH {
+            text.truncate(text.trim_end().len());
+            let _ = write!(text, "\n{:INDENT$}", "");
+            column = INDENT;
+        }
+        let _ = write!(text, "{word} ");
+        column += length + 1;
+    }
+    text.truncate(text.trim_end().len());
+    text
+}
+
+fn unseen_words(unseen: &Unseen) -> String {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let all = [
+        ("behind the camera", unseen.behind_camera),
+        ("outside of its view", unseen.outside_view),
+        ("in holes of the image", unseen.hole),
+        ("behind what it saw", unseen.behind_returns),
+    ];
+    let shares: Vec<String> = all
+        .iter()
+        .filter(|(_, share)| *share > 0.0)
+        .map(|(place, share)| format!("{} {place}", percent(*share)))
+        .collect();
+    if shares.is_empty() {
+        return format!("nothing of the {}", unseen.body);
+    }
+    format!("{} of the {}: {}", percent(unseen.share()), unseen.body, shares.join(", "))
+}
+
+fn place(placement: &Placement) -> String {
+    let corner = |p: [f64; 3]| format!("({:.3}, {:.3}, {:.3})", p[0], p[1], p[2]);
+    let [low, high] = placement.object_box.map(corner);
+    let [scene_low, scene_high] = placement.scene_box.map(corner);
+    let gap = if placement.box_gap_m > 0.0 {
+        format!(", {:.3} m outside of it", placement.box_gap_m)
+    } else {
+        String::new()
+    };
+    let nearest = placement.nearest_m.map_or(String::new(), |nearest| {
+        format!("; nearest point about {:.1} mm away", 1e3 * nearest)
+    });
+    let words = format!(
+        "object in {low} to {high} m, scene in {scene_low} to {scene_high} m{gap}{nearest}"
+    );
+    labelled("where", &words) + "\n"
+}
+
+fn work(stats: &Stats) -> String {
+    let done = format!(
+        "{} node pairs, {} leaf pairs; {} settled by a plane, {} kernel solves, {} fallbacks, {} \
+         undecided",
+        stats.nodes_visited,
+        stats.leaf_pairs,
+        stats.linear_certificates,
+        stats.kernel_solves,
+        stats.fallbacks,
+        stats.undecided
+    );
+    let time = format!(
+        "prepare {:.1} ms, query {:.2} ms",
+        stats.prepare_us as f64 / 1e3,
+        stats.query_us as f64 / 1e3
+    );
+    format!("{}\n{}\n", labelled("work", &done), labelled("time", &time))
+}

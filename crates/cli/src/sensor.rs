@@ -1,0 +1,68 @@
+//! Which sensor a cloud is taken to be from: one that is stated, or the one its layout suggests.
+
+use std::fmt;
+use std::str::FromStr;
+
+use cloudtouch::geom::PointCloud;
+use cloudtouch::noise::SensorModel;
+
+/// A sensor as an option states it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum SensorChoice {
+    /// What the layout and the extent of the cloud suggest.
+    Auto,
+    Stated(SensorModel),
+}
+
+/// A sensor, and why it was chosen where nobody stated it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Chosen {
+    pub sensor: SensorModel,
+    pub because: Option<&'static str>,
+}
+
+impl SensorChoice {
+    pub(crate) fn of(self, cloud: &PointCloud) -> Chosen {
+        match self {
+            Self::Stated(sensor) => Chosen { sensor, because: None },
+            Self::Auto => suggestion(cloud),
+        }
+    }
+}
+
+impl FromStr for SensorChoice {
+    type Err = <SensorModel as FromStr>::Err;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        if text.trim() == "auto" { Ok(Self::Auto) } else { text.parse().map(Self::Stated) }
+    }
+}
+
+impl fmt::Display for SensorChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::Stated(sensor) => sensor.fmt(f),
+        }
+    }
+}
+
+/// A file does not say which sensor made it: this is a guess from its layout and extent.
+pub(crate) fn suggestion(cloud: &PointCloud) -> Chosen {
+    let (far_from_origin, extent) = match cloud.bounding_box() {
+        Some((low, high)) => (low.coords.amax().min(high.coords.amax()) > 1e4, (high - low).amax()),
+        None => (false, 0.0),
+    };
+    let (sensor, because) = if cloud.covariances.is_some() {
+        (SensorModel::PerPoint, "the file has covariance columns")
+    } else if far_from_origin {
+        (SensorModel::Axes { stds: [0.3, 0.3, 0.15] }, "map coordinates, as of an airborne scan")
+    } else if cloud.image_size.is_some_and(|(width, height)| width > 1 && height > 1) {
+        (SensorModel::Kinect, "a depth image; a stereo camera is noisier: iso:0.005")
+    } else if extent > 4.0 {
+        (SensorModel::Lidar { range_std: 0.02, beam_rad: 0.003 }, "metres across, as a laser scan")
+    } else {
+        (SensorModel::Isotropic { std: 0.005 }, "nothing in the file tells")
+    };
+    Chosen { sensor, because: Some(because) }
+}

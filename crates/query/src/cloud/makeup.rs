@@ -1,0 +1,155 @@
+//! What a cloud is like as a whole: what queries look at before they believe it.
+
+use cloudtouch_geom::{Point3, PointCloud, Vector3};
+use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing};
+
+use crate::filter::StageReport;
+
+/// Points that spacing, noise and distance are told from, at most.
+const SAMPLE: usize = 200;
+/// Points are on a line when none is farther from it than this share of its length: single precision
+/// is no better.
+const LINE_SHARE: f64 = 1e-6;
+/// A camera sees nothing so far off its axis (cosine): 80°.
+const BESIDE: f64 = 0.17;
+/// A camera with this share of its points beside or behind it stood elsewhere.
+const MOST_BESIDE: f64 = 0.01;
+/// A structured-light camera sees no farther, m: its fit ends at 3 m, its returns at some 8 m.
+const KINECT_RANGE: f64 = 10.0;
+
+/// A sign that the sensor stated did not see the cloud.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum SensorDoubt {
+    /// So large a share of the points is beside or behind the camera.
+    Beside { share: f64 },
+    /// The points are farther away than the sensor sees, m.
+    Range { median: f64, limit: f64 },
+    /// A laser scanner, and the layout of a camera's image.
+    Layout,
+    /// A camera, and no image.
+    NoImage,
+}
+
+/// A cloud as a whole.
+#[derive(Debug)]
+pub(crate) struct Makeup {
+    /// Corners of the box around the points in the local frame, m.
+    pub corners: [Point3; 2],
+    /// Typical distance of neighbours, m; zero for a single point.
+    pub spacing: f64,
+    /// Median of the standard deviations, each the largest of its point, m.
+    pub std: f64,
+    /// Distinct points.
+    pub distinct: usize,
+    /// Whether the points span no surface.
+    pub is_line: bool,
+    /// Share of the rows without return, of a cloud whose layout does not tell where.
+    pub missing: f64,
+    pub sensor_doubts: Vec<SensorDoubt>,
+}
+
+impl Makeup {
+    /// Of the points kept, in the local frame whose origin is given; `cloud` is as it was read.
+    pub(super) fn new(
+        cloud: &PointCloud,
+        (sensor, noise): (&SensorModel, &SensorNoise),
+        (kept, origin): (&Neighborhoods, Vector3),
+        stages: &[StageReport],
+    ) -> Self {
+        let points = kept.points();
+        let step = points.len().div_ceil(SAMPLE).max(1);
+        let std = median((0..points.len()).step_by(step).map(|i| noise[i].max_std()));
+        let missing = stages.iter().find(|s| s.stage == "missing" && !is_image(cloud));
+        Self {
+            corners: corners(points),
+            spacing: typical_spacing(kept, SAMPLE),
+            std,
+            distinct: kept.distinct(),
+            is_line: is_line(points),
+            missing: missing.map_or(0.0, |s| s.removed as f64 / s.before.max(1) as f64),
+            sensor_doubts: sensor_doubts(cloud, sensor, points, origin),
+        }
+    }
+
+    /// Diagonal of the box around the points, m.
+    pub(crate) fn size(&self) -> f64 {
+        (self.corners[1] - self.corners[0]).norm()
+    }
+}
+
+/// Whether the rows of a cloud are those of an image.
+pub(super) fn is_image(cloud: &PointCloud) -> bool {
+    cloud.image_size.is_some_and(|(width, height)| width > 1 && height > 1)
+}
+
+fn corners(points: &[Point3]) -> [Point3; 2] {
+    let first = points.first().copied().unwrap_or_else(Point3::origin);
+    points.iter().fold([first; 2], |[low, high], p| [low.inf(p), high.sup(p)])
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let middle = values.len() / 2;
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(middle).copied().unwrap_or(0.0)
+}
+
+/// Whether the points spread along one direction only, or along none.
+fn is_line(points: &[Point3]) -> bool {
+    let Some(first) = points.first() else { return true };
+    let far = |from: &Point3| {
+        let farther = |p: &Point3, q: &Point3| {
+            let [p, q] = [p, q].map(|r| (r - from).norm_squared());
+            p.total_cmp(&q)
+        };
+        points.iter().copied().max_by(farther).unwrap_or(*first)
+    };
+    let end = far(first);
+    let Some(along) = (far(&end) - end).try_normalize(0.0) else { return true };
+    let length = (far(&end) - end).norm();
+    points.iter().all(|p| (p - end).cross(&along).norm() <= LINE_SHARE * length)
+}
+
+fn sensor_doubts(
+    cloud: &PointCloud,
+    sensor: &SensorModel,
+    points: &[Point3],
+    origin: Vector3,
+) -> Vec<SensorDoubt> {
+    let place = cloud.sensor_origin() - origin;
+    let rays = || points.iter().map(|p| p - place);
+    let mut doubts = Vec::new();
+    match sensor {
+        SensorModel::Kinect | SensorModel::Stereo { .. } => {
+            let share = |axis: Vector3| {
+                let is_beside = |ray: &Vector3| ray.dot(&axis) < BESIDE * ray.norm();
+                rays().filter(is_beside).count() as f64 / points.len().max(1) as f64
+            };
+            // The turn that a file states may be one that its points are not in.
+            let stated = cloud.sensor_pose.transform_vector(&Vector3::z());
+            let share = share(stated).min(share(Vector3::z()));
+            if share > MOST_BESIDE {
+                doubts.push(SensorDoubt::Beside { share });
+            }
+            if !is_image(cloud) {
+                doubts.push(SensorDoubt::NoImage);
+            }
+        }
+        SensorModel::Lidar { .. } if is_image(cloud) => {
+            let forward = rays().filter_map(|ray| ray.try_normalize(0.0)).sum::<Vector3>();
+            let forward = forward.try_normalize(0.0).unwrap_or_else(Vector3::z);
+            if rays().all(|ray| ray.dot(&forward) >= BESIDE * ray.norm()) {
+                doubts.push(SensorDoubt::Layout);
+            }
+        }
+        _ => {}
+    }
+    if *sensor == SensorModel::Kinect {
+        let step = points.len().div_ceil(SAMPLE).max(1);
+        let median = median(rays().step_by(step).map(|ray| ray.norm()));
+        if median > KINECT_RANGE {
+            doubts.push(SensorDoubt::Range { median, limit: KINECT_RANGE });
+        }
+    }
+    doubts
+}

@@ -1,0 +1,118 @@
+//! What speaks against believing that a pair is free, whatever the evidence says: what the bodies are
+//! like, and how they lie to one another.
+
+use cloudtouch_geom::Pose;
+
+use crate::cloud::{Makeup, SensorDoubt};
+use crate::placement::box_gap;
+use crate::report::Unseen;
+use crate::safeguards::Safeguards;
+use crate::shape::Shape;
+use crate::warning::{Warning, Which};
+
+/// No body is so many times as large as the other, ...
+const LARGEST_RATIO: f64 = 1000.0;
+/// ... and no object as its scene.
+const LARGEST_OBJECT_RATIO: f64 = 200.0;
+/// Meshes seldom say their unit. In metres none is so large, m, ...
+const LARGE_MESH: f64 = 100.0;
+/// ... beside a body so many times smaller, ...
+const LARGE_MESH_RATIO: f64 = 100.0;
+/// ... and no object is, m, ...
+const LARGE_OBJECT: f64 = 20.0;
+/// ... in a scene so many times smaller.
+const LARGE_OBJECT_RATIO: f64 = 3.0;
+/// An object is not so many sizes of the larger body away from it.
+const FARTHEST_SIZES: f64 = 100.0;
+
+/// The warnings about a pair, gravest first. `a_from_b` maps local frames.
+pub(crate) fn doubts(
+    (a, b): (Shape<'_>, Shape<'_>),
+    a_from_b: &Pose,
+    unseen: Option<&Unseen>,
+    limits: &Safeguards,
+) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let bodies = [(Which::A, a, b), (Which::B, b, a)];
+    let clouds = || {
+        bodies.into_iter().filter_map(|(body, shape, other)| match shape {
+            Shape::Cloud(cloud) => Some((body, cloud.makeup(), other.size())),
+            Shape::Mesh(_) => None,
+        })
+    };
+    for (body, shape, _) in bodies {
+        if let Shape::Mesh(mesh) = shape
+            && !mesh.has_area()
+        {
+            warnings.push(Warning::NoSurface { body, points: 3 * mesh.triangle_count() });
+        }
+    }
+    for (body, cloud, _) in clouds() {
+        if cloud.is_line {
+            warnings.push(Warning::NoSurface { body, points: cloud.distinct });
+        }
+        if cloud.missing > limits.max_missing {
+            warnings.push(Warning::Missing { body, share: cloud.missing });
+        }
+    }
+    warnings.extend(units((a, b)));
+    warnings.extend(clouds().filter_map(|(body, cloud, size)| scale(body, cloud, size)));
+    warnings.extend(clouds().flat_map(|(body, cloud, _)| sensors(body, cloud)));
+    warnings.extend(apart((a, b), a_from_b));
+    let share = unseen.map_or(0.0, Unseen::share);
+    if let Some(Unseen { body, .. }) = unseen.filter(|_| share > limits.max_unseen) {
+        warnings.push(Warning::Unseen { body: *body, share, limit: limits.max_unseen });
+    }
+    warnings
+}
+
+fn units((a, b): (Shape<'_>, Shape<'_>)) -> Option<Warning> {
+    let of = |body, shape: Shape<'_>, other: Shape<'_>| {
+        let (size_m, other_size_m) = (shape.size(), other.size());
+        let is_mesh = matches!(shape, Shape::Mesh(_));
+        let beyond = |size: f64, ratio: f64| size_m > size && size_m > ratio * other_size_m;
+        // A single point has no size; another warning tells of it.
+        let is_suspicious = other_size_m > 0.0
+            && (beyond(0.0, LARGEST_RATIO)
+                || body == Which::B && beyond(0.0, LARGEST_OBJECT_RATIO)
+                || is_mesh && beyond(LARGE_MESH, LARGE_MESH_RATIO)
+                || is_mesh && body == Which::B && beyond(LARGE_OBJECT, LARGE_OBJECT_RATIO));
+        is_suspicious.then_some(Warning::Units { body, size_m, other_size_m })
+    };
+    of(Which::A, a, b).or_else(|| of(Which::B, b, a))
+}
+
+fn scale(body: Which, cloud: &Makeup, other_size_m: f64) -> Option<Warning> {
+    let Makeup { spacing: spacing_m, std: std_m, .. } = *cloud;
+    if other_size_m == 0.0 {
+        None
+    } else if spacing_m > other_size_m {
+        Some(Warning::Sparse { body, spacing_m, other_size_m })
+    } else if std_m > other_size_m {
+        Some(Warning::Noise { body, std_m, other_size_m })
+    } else {
+        None
+    }
+}
+
+fn sensors(body: Which, cloud: &Makeup) -> impl Iterator<Item = Warning> + '_ {
+    cloud.sensor_doubts.iter().filter_map(move |doubt| match *doubt {
+        SensorDoubt::Beside { share } => Some(Warning::SensorPose { body, share }),
+        SensorDoubt::Range { median, limit } => {
+            Some(Warning::SensorRange { body, range_m: median, limit_m: limit })
+        }
+        SensorDoubt::Layout => Some(Warning::SensorLayout { body }),
+        // Of an object it is taken for granted that it may have a back.
+        SensorDoubt::NoImage => (body == Which::A).then_some(Warning::NoImage { body }),
+    })
+}
+
+fn apart((a, b): (Shape<'_>, Shape<'_>), a_from_b: &Pose) -> Option<Warning> {
+    let gap_m = box_gap(a, b, a_from_b);
+    let larger = a.size().max(b.size());
+    if larger > 0.0 && gap_m > FARTHEST_SIZES * larger {
+        Some(Warning::FarAway { gap_m, size_m: larger })
+    } else {
+        (gap_m > b.size()).then(|| Warning::OutsideScene { gap_m, size_m: a.size() })
+    }
+}

@@ -1,0 +1,39 @@
+//! What is looked at beside the evidence before a pair may read as free.
+
+use crate::error::SettingsError;
+
+/// Limits beyond which a pair that would read as free, or between the thresholds, is undecided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Safeguards {
+    /// Share of a body's surface that may lie where a single depth image saw nothing, 0 to 1; 1 never
+    /// objects.
+    pub max_unseen: f64,
+    /// Share of the rows of a cloud without image layout that may have no return, 0 to 1; 1 never
+    /// objects.
+    pub max_missing: f64,
+    /// Whether sizes and distances that cannot be meant make a pair undecided. They are warned of in
+    /// either case.
+    pub doubt_units: bool,
+}
+
+impl Default for Safeguards {
+    /// 5 % unseen: the fingers of a gripper. A quarter missing. Units are doubted.
+    fn default() -> Self {
+        Self { max_unseen: 0.05, max_missing: 0.25, doubt_units: true }
+    }
+}
+
+impl Safeguards {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// Names the setting that is out of range, and its value.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        for (name, value) in [("max_unseen", self.max_unseen), ("max_missing", self.max_missing)] {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(SettingsError::NotAShare { name, value });
+            }
+        }
+        Ok(())
+    }
+}

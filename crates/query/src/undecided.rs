@@ -1,0 +1,32 @@
+//! What keeps a query from a decision.
+
+use serde::Serialize;
+
+/// Why a verdict is [`Verdict::Undecided`](crate::Verdict::Undecided).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Undecided {
+    /// More of a body's surface than [`Safeguards::max_unseen`](crate::Safeguards::max_unseen) lies
+    /// where the single depth image of the other saw nothing: see [`Unseen`](crate::Unseen).
+    Unseen,
+    /// The surface of one cloud is all around the other: it is in a hollow space, or within a solid.
+    /// A cloud that knows where its sensor stood tells which.
+    Enclosed,
+    /// Sizes or distance of the bodies cannot be meant: one of them is in another unit.
+    Units,
+    /// One body fits between the points of the other.
+    Sparse,
+    /// The noise of a cloud is larger than the other body.
+    Noise,
+    /// The points of a cloud span no surface: they are on a line, or are one.
+    NoSurface,
+    /// Too many rows of a cloud without image layout have no return: where is not known.
+    Missing,
+    /// The sensor stated for a cloud cannot have seen it.
+    Sensor,
+    /// A classifier could not be trained.
+    Unsolved,
+    /// What was culled, cut short by a deadline, or too noisy to be told apart could still collide.
+    Bounds,
+}

@@ -1,0 +1,250 @@
+//! What a report warns of: signs of a slip beside the answer.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::undecided::Undecided;
+
+/// Which of the two bodies of a query; the tool calls the first the scene, the second the object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Which {
+    /// A.
+    #[serde(rename = "scene")]
+    A,
+    /// B.
+    #[serde(rename = "object")]
+    B,
+}
+
+impl fmt::Display for Which {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::A => "scene",
+            Self::B => "object",
+        })
+    }
+}
+
+/// A sign that a file, a unit, a pose or a sensor is not what was meant. Displays as a sentence with
+/// a remedy; in a report it serialises as `{"code","values","words"}`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "code", content = "values", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Warning {
+    /// The points of a cloud, or all corners of each face of a mesh, are on a line: no surface.
+    NoSurface {
+        /// Whose.
+        body: Which,
+        /// How many there are.
+        points: usize,
+    },
+    /// So many rows of a cloud without image layout have no return.
+    Missing {
+        /// Whose.
+        body: Which,
+        /// Share of the rows, 0 to 1.
+        share: f64,
+    },
+    /// Sizes that a scene and an object hardly have.
+    Units {
+        /// Which of them is so large.
+        body: Which,
+        /// Diagonal of its box, m.
+        size_m: f64,
+        /// Diagonal of the other's box, m.
+        other_size_m: f64,
+    },
+    /// The object is so far off that its pose, or a unit, cannot be meant.
+    FarAway {
+        /// Between the two boxes, m.
+        gap_m: f64,
+        /// Diagonal of the larger box, m.
+        size_m: f64,
+    },
+    /// The other body fits between two points of a cloud.
+    Sparse {
+        /// Whose points.
+        body: Which,
+        /// Typical distance of neighbours, m.
+        spacing_m: f64,
+        /// Diagonal of the other's box, m.
+        other_size_m: f64,
+    },
+    /// The noise of a cloud is larger than the other body.
+    Noise {
+        /// Whose noise.
+        body: Which,
+        /// Typical standard deviation, m.
+        std_m: f64,
+        /// Diagonal of the other's box, m.
+        other_size_m: f64,
+    },
+    /// So many points are beside or behind the camera that is said to have seen them.
+    SensorPose {
+        /// Whose.
+        body: Which,
+        /// Share of the points, 0 to 1.
+        share: f64,
+    },
+    /// The sensor does not see so far.
+    SensorRange {
+        /// Whose.
+        body: Which,
+        /// Median distance of the points, m.
+        range_m: f64,
+        /// How far it sees, m.
+        limit_m: f64,
+    },
+    /// A laser scanner is stated for what is laid out as the image of a camera.
+    SensorLayout {
+        /// Whose.
+        body: Which,
+    },
+    /// A camera is stated for a cloud without image layout: what it did not see is not known.
+    NoImage {
+        /// Whose.
+        body: Which,
+    },
+    /// The object is outside of the scene's box.
+    OutsideScene {
+        /// Between the two boxes, m.
+        gap_m: f64,
+        /// Diagonal of the scene's box, m.
+        size_m: f64,
+    },
+    /// Surface of a body lies where the depth image of the other saw nothing.
+    Unseen {
+        /// Whose surface.
+        body: Which,
+        /// Share of it, 0 to 1.
+        share: f64,
+        /// What is allowed.
+        limit: f64,
+    },
+}
+
+impl Warning {
+    /// Why nothing reads as free beside this; `None` where it may.
+    pub(crate) fn undecides(&self) -> Option<Undecided> {
+        match self {
+            Self::NoSurface { .. } => Some(Undecided::NoSurface),
+            Self::Missing { .. } => Some(Undecided::Missing),
+            Self::Units { .. } | Self::FarAway { .. } => Some(Undecided::Units),
+            Self::Sparse { .. } => Some(Undecided::Sparse),
+            Self::Noise { .. } => Some(Undecided::Noise),
+            Self::SensorPose { .. } | Self::SensorRange { .. } => Some(Undecided::Sensor),
+            Self::Unseen { .. } => Some(Undecided::Unseen),
+            Self::SensorLayout { .. } | Self::NoImage { .. } | Self::OutsideScene { .. } => None,
+        }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NoSurface { body, points } => write!(
+                f,
+                "the {body} has {points} distinct points or corners, all on a line: they span no \
+                 surface; check the file"
+            ),
+            Self::Missing { body, share } => write!(
+                f,
+                "{:.0} % of the rows of the {body} have no return, and without an image layout it is \
+                 not known where: give the organised cloud, or drop rows that stand for empty space",
+                100.0 * share
+            ),
+            Self::Units { body, size_m, other_size_m } => write!(
+                f,
+                "the {body} is {} across and the other body {}: is a file in millimetres? (--unit mm \
+                 for meshes, --cloud-unit mm for clouds)",
+                length(size_m),
+                length(other_size_m)
+            ),
+            Self::FarAway { gap_m, size_m } => write!(
+                f,
+                "the object is {} away from a scene {} across: check the pose, its direction and its \
+                 unit (metres), or the units of the files",
+                length(gap_m),
+                length(size_m)
+            ),
+            Self::Sparse { body, spacing_m, other_size_m } => write!(
+                f,
+                "points of the {body} are {} apart and the other body is {} across: it fits between \
+                 them; is a file in millimetres? (--cloud-unit mm, --unit mm)",
+                length(spacing_m),
+                length(other_size_m)
+            ),
+            Self::Noise { body, std_m, other_size_m } => write!(
+                f,
+                "the noise of the {body} is {} and the other body {} across: give the sensor's noise \
+                 in metres",
+                length(std_m),
+                length(other_size_m)
+            ),
+            Self::SensorPose { body, share } => write!(
+                f,
+                "{:.0} % of the points of the {body} are beside or behind the camera stated for it: \
+                 it looks along z of the file; say where it stood (VIEWPOINT, --sensor-pose) if the \
+                 points are in another frame",
+                (100.0 * share).ceil()
+            ),
+            Self::SensorRange { body, range_m, limit_m } => write!(
+                f,
+                "points of the {body} are {} away and its sensor sees no farther than {}: another \
+                 sensor (--sensor auto), or another unit (--cloud-unit)?",
+                length(range_m),
+                length(limit_m)
+            ),
+            Self::SensorLayout { body } => write!(
+                f,
+                "the {body} is laid out as the image of a camera and its sensor is stated as a laser \
+                 scanner: kinect or stereo? (--sensor auto)"
+            ),
+            Self::NoImage { body } => write!(
+                f,
+                "the {body} is of a camera and has no image layout: what the camera did not see \
+                 counts as empty; give the organised cloud"
+            ),
+            Self::OutsideScene { gap_m, size_m } => write!(
+                f,
+                "the object is outside of the scene, {} from its box of {}: is the pose object to \
+                 scene, in metres?",
+                length(gap_m),
+                length(size_m)
+            ),
+            Self::Unseen { body, share, limit } => write!(
+                f,
+                "{:.0} % of the surface of the {body} lies where the camera saw nothing (allowed: \
+                 {:.0} %): look from elsewhere, or raise --max-unseen",
+                (100.0 * share).ceil(),
+                100.0 * limit
+            ),
+        }
+    }
+}
+
+/// A length with as many digits as help.
+fn length(metres: f64) -> String {
+    match metres {
+        m if m < 1.0 => format!("{:.3} m", m),
+        m if m < 100.0 => format!("{:.1} m", m),
+        m if m < 1e6 => format!("{:.0} m", m),
+        m => format!("{m:.1e} m"),
+    }
+}
+
+/// Serialises warnings with their words.
+pub(crate) fn spelled<S: serde::Serializer>(
+    warnings: &[Warning],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Spelled<'a> {
+        #[serde(flatten)]
+        warning: &'a Warning,
+        words: String,
+    }
+    let words = |warning| Spelled { warning, words: Warning::to_string(warning) };
+    serializer.collect_seq(warnings.iter().map(words))
+}

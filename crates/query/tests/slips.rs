@@ -1,0 +1,248 @@
+//! Slips of someone in a hurry: what cannot be meant does not read as free, and the report says why.
+
+mod common;
+
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{
+    Mesh, Mode, PrepareError, Report, Safeguards, Undecided, Unseen, Verdict, Warning,
+};
+use cloudtouch_testkit::camera::DepthCamera;
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::scene;
+use common::{AnyQuery, MODES, Scan, ask, at, measured, mesh};
+
+const NOISE: SensorModel = SensorModel::Isotropic { std: 0.002 };
+
+/// A table of 1 m, its top at z = 0, one point in each square of 2 cm.
+fn table() -> PointCloud {
+    PointCloud::from_points(measured(&scene::plane_patch(1.0), 0.02, 0.002, 1))
+}
+
+fn tool() -> TriangleMesh {
+    scene::cuboid([0.1, 0.1, 0.2])
+}
+
+fn scaled(cloud: &PointCloud, factor: f64) -> PointCloud {
+    let points = cloud.points.iter().map(|p| Point3::from(p.coords * factor)).collect();
+    PointCloud { points, ..cloud.clone() }
+}
+
+fn scan(cloud: &PointCloud, mode: Mode) -> Scan {
+    Scan::of(cloud, NOISE, mode).expect("a good cloud")
+}
+
+/// Both paths say that they cannot tell, for this reason and with a warning of it.
+fn check(
+    cloud: impl Fn(Mode) -> Scan,
+    object: &Mesh,
+    pose: &Pose,
+    reason: Undecided,
+    is_told: impl Fn(&Warning) -> bool,
+) {
+    for mode in MODES {
+        let report = ask(mode, &cloud(mode), object, pose);
+        assert_eq!(report.verdict, Verdict::Undecided, "{mode:?}: {report:?}");
+        assert_eq!((report.undecided_by, report.bounds[1]), (Some(reason), 1.0), "{report:?}");
+        assert!(report.warnings.iter().any(&is_told), "{report:?}");
+        let words: Vec<String> = report.warnings.iter().map(Warning::to_string).collect();
+        assert!(words.iter().all(|w| !w.contains("NaN") && w.contains(' ')), "{words:?}");
+    }
+}
+
+#[test]
+fn what_is_meant_is_free_without_a_warning() {
+    for mode in MODES {
+        let report = ask(mode, &scan(&table(), mode), &mesh(&tool()), &at(0.1, 0.2, 0.2));
+        assert_eq!((report.collision_probability < 0.1, report.warnings.len()), (true, 0));
+        if mode == Mode::Calibrated {
+            assert_eq!(report.verdict, Verdict::Free, "{report:?}");
+        }
+    }
+}
+
+#[test]
+fn a_cloud_in_millimetres_read_free() {
+    let in_mm = |mode| scan(&scaled(&table(), 1000.0), mode);
+    let told = |w: &Warning| matches!(w, Warning::Sparse { .. } | Warning::Units { .. });
+    check(in_mm, &mesh(&tool()), &at(0.1, 0.2, 0.3), Undecided::Units, told);
+}
+
+#[test]
+fn a_mesh_in_millimetres_read_free() {
+    let in_mm = mesh(&tool().scaled(1000.0));
+    let told = |w: &Warning| matches!(w, Warning::Units { size_m, .. } if *size_m > 200.0);
+    check(|mode| scan(&table(), mode), &in_mm, &at(0.1, 0.2, 150.0), Undecided::Units, told);
+}
+
+#[test]
+fn a_pose_in_millimetres_read_free() {
+    let told = |w: &Warning| matches!(w, Warning::FarAway { .. });
+    let in_mm = at(100.0, 200.0, 300.0);
+    check(|mode| scan(&table(), mode), &mesh(&tool()), &in_mm, Undecided::Units, told);
+    // Two metres beside the table nothing is in the way, and the report says so.
+    let beside = ask(
+        Mode::Calibrated,
+        &scan(&table(), Mode::Calibrated),
+        &mesh(&tool()),
+        &at(2.5, 0.0, 0.0),
+    );
+    assert_eq!(beside.verdict, Verdict::Free, "{beside:?}");
+    assert!(matches!(beside.warnings[..], [Warning::OutsideScene { gap_m, .. }] if gap_m > 1.8));
+}
+
+#[test]
+fn units_that_are_meant_all_the_same_are_believed() {
+    let safeguards = Safeguards { doubt_units: false, ..Safeguards::default() };
+    let query = AnyQuery::with(Mode::Calibrated, |by| by.safeguards = safeguards, |_| {});
+    let scene = scan(&table(), Mode::Calibrated);
+    let far = query.run(&scene, &mesh(&tool()), &at(100.0, 200.0, 300.0)).expect("a good pose");
+    assert_eq!((far.verdict, far.warnings.len()), (Verdict::Free, 1));
+}
+
+#[test]
+fn points_that_span_no_surface_read_free() {
+    let told = |w: &Warning| matches!(w, Warning::NoSurface { .. });
+    let line = (0..200).map(|i| Point3::new(0.01 * f64::from(i) - 1.0, 0.3, 0.1)).collect();
+    let same = vec![Point3::new(0.1, 0.2, 0.0); 50];
+    for points in [vec![Point3::new(0.1, 0.2, 0.0)], same, line] {
+        let cloud = PointCloud::from_points(points);
+        check(
+            |mode| scan(&cloud, mode),
+            &mesh(&tool()),
+            &at(0.0, 0.0, 0.5),
+            Undecided::NoSurface,
+            told,
+        );
+    }
+}
+
+#[test]
+fn a_cloud_with_every_third_row_missing_read_free() {
+    let mut cloud = table();
+    cloud.points.iter_mut().step_by(3).for_each(|p| p.x = f64::NAN);
+    let told = |w: &Warning| matches!(w, Warning::Missing { share, .. } if *share > 0.3);
+    check(|mode| scan(&cloud, mode), &mesh(&tool()), &at(0.1, 0.2, 0.3), Undecided::Missing, told);
+}
+
+#[test]
+fn noise_in_millimetres_was_taken_for_metres() {
+    for mode in MODES {
+        let error = Scan::of(&table(), SensorModel::Isotropic { std: 5.0 }, mode).unwrap_err();
+        assert!(matches!(error, PrepareError::NoiseBeyondSize { std: 5.0, .. }), "{error}");
+        assert!(error.to_string().contains("metres"), "{error}");
+    }
+    // Half a metre is less than the table, and more than the tool.
+    let told = |w: &Warning| matches!(w, Warning::Noise { std_m, .. } if *std_m == 0.5);
+    let noisy = |mode| {
+        Scan::of(&table(), SensorModel::Isotropic { std: 0.5 }, mode).expect("a noisy cloud")
+    };
+    for mode in MODES {
+        let report = ask(mode, &noisy(mode), &mesh(&tool()), &at(0.1, 0.2, 0.8));
+        assert_ne!(report.verdict, Verdict::Free, "{mode:?}: {report:?}");
+        assert!(report.warnings.iter().any(told), "{report:?}");
+    }
+}
+
+/// A wall 2 m before the camera with a window of half a metre, and a block of 40 cm before it.
+fn image() -> PointCloud {
+    let wall = |x: f64| scene::moved(&scene::cuboid([1.0, 6.0, 0.02]), &at(x, 0.0, 2.0));
+    let around =
+        ExactMesh::new(&scene::assemble([wall(-0.75), wall(0.75), wall(-1.75), wall(1.75)]));
+    let block = ExactMesh::new(&scene::moved(&scene::cuboid([0.4; 3]), &at(-0.5, 0.0, 1.2)));
+    DepthCamera::default().scan(&[&around, &block], &Pose::identity(), 1)
+}
+
+fn look(pose: &Pose, mode: Mode) -> Report {
+    let cloud = Scan::of(&image(), SensorModel::Kinect, mode).expect("a good image");
+    ask(mode, &cloud, &mesh(&scene::sphere(0.06, 2)), pose)
+}
+
+/// Half of the object at least is unseen for the one reason, and nothing for another.
+#[test]
+fn what_the_camera_did_not_see_read_free() {
+    type Share = fn(&Unseen) -> f64;
+    let cases: [(&str, Pose, Share); 4] = [
+        ("behind the camera", at(0.1, 0.0, -0.8), |u| u.behind_camera),
+        ("beside the view", at(2.2, 0.0, 1.5), |u| u.outside_view),
+        ("before a hole", at(0.0, 0.0, 1.6), |u| u.hole),
+        ("behind the block", at(-0.65, 0.0, 1.7), |u| u.behind_returns),
+    ];
+    for (name, pose, share) in cases {
+        for mode in MODES {
+            let report = look(&pose, mode);
+            let unseen = report.unseen.expect("an image");
+            assert!(share(&unseen) > 0.5, "{name}, {mode:?}: {unseen:?}");
+            assert_eq!(report.verdict, Verdict::Undecided, "{name}, {mode:?}: {report:?}");
+            assert_eq!(report.undecided_by, Some(Undecided::Unseen), "{name}, {mode:?}");
+        }
+    }
+    let before = look(&at(0.6, 0.0, 1.2), Mode::Calibrated);
+    assert_eq!((before.verdict, before.warnings.len()), (Verdict::Free, 0), "{before:?}");
+    assert_eq!(before.unseen.expect("an image").share(), 0.0);
+}
+
+/// Whatever frame the points are in: the camera is where the file says, its turn is seen from them.
+#[test]
+fn a_turned_image_sees_the_same() {
+    let turn = Pose::from_translation_rpy(Vector3::new(1.0, -2.0, 0.5), [0.4, -1.2, 2.5]);
+    let image = image();
+    let points = image.points.iter().map(|p| turn.transform_point(p)).collect();
+    let turned = PointCloud { points, sensor_pose: turn, ..image };
+    let cloud = Scan::of(&turned, SensorModel::Kinect, Mode::Calibrated).expect("a good image");
+    let ball = mesh(&scene::sphere(0.06, 2));
+    for (pose, verdict) in [
+        (at(-0.65, 0.0, 1.7), Verdict::Undecided),
+        (at(0.1, 0.0, -0.8), Verdict::Undecided),
+        (at(0.6, 0.0, 1.2), Verdict::Free),
+    ] {
+        let report = ask(Mode::Calibrated, &cloud, &ball, &turn.after(&pose));
+        assert_eq!(report.verdict, verdict, "{pose:?}: {report:?}");
+    }
+}
+
+#[test]
+fn the_limit_on_what_is_unseen_can_be_set() {
+    let safeguards = Safeguards { max_unseen: 1.0, ..Safeguards::default() };
+    let query = AnyQuery::with(Mode::Calibrated, |by| by.safeguards = safeguards, |_| {});
+    let cloud = Scan::of(&image(), SensorModel::Kinect, Mode::Calibrated).expect("a good image");
+    let ball = mesh(&scene::sphere(0.06, 2));
+    let report = query.run(&cloud, &ball, &at(2.2, 0.0, 1.5)).expect("a good pose");
+    assert_eq!(report.verdict, Verdict::Free, "{report:?}");
+    assert!(report.unseen.expect("an image").outside_view > 0.9);
+}
+
+#[test]
+fn a_sensor_that_cannot_have_seen_the_cloud_read_free() {
+    // The image in a frame with x forward, without a word of where the camera is.
+    let forward = |p: &Point3| Point3::new(p.z, -p.x, -p.y);
+    let image = image();
+    let points = image.points.iter().map(forward).collect();
+    let base = PointCloud { points, ..image };
+    let kinect = |cloud: &PointCloud| {
+        let cloud = cloud.clone();
+        move |mode| Scan::of(&cloud, SensorModel::Kinect, mode).expect("a cloud")
+    };
+    let ball = mesh(&scene::sphere(0.06, 2));
+    let told = |w: &Warning| matches!(w, Warning::SensorPose { share, .. } if *share > 0.1);
+    check(kinect(&base), &ball, &at(1.2, -0.6, 0.0), Undecided::Sensor, told);
+    // A street seen from 70 m.
+    let points = measured(&scene::plane_patch(20.0), 0.3, 0.02, 3);
+    let street: Vec<Point3> = points.iter().map(|p| Point3::new(p.x, p.y, p.z + 70.0)).collect();
+    let told = |w: &Warning| matches!(w, Warning::SensorRange { range_m, .. } if *range_m > 69.0);
+    let car = mesh(&scene::cuboid([3.0; 3]));
+    for mode in MODES {
+        let cloud = kinect(&PointCloud::from_points(street.clone()))(mode);
+        let report = ask(mode, &cloud, &car, &at(0.0, 0.0, 10.0));
+        assert_ne!(report.verdict, Verdict::Free, "{mode:?}: {report:?}");
+        assert!(report.warnings.iter().any(told), "{report:?}");
+    }
+}
+
+#[test]
+fn a_laser_scanner_with_the_image_of_a_camera_is_warned_of() {
+    let sensor = SensorModel::Lidar { range_std: 0.02, beam_rad: 0.003 };
+    let cloud = Scan::of(&image(), sensor, Mode::Calibrated).expect("a cloud");
+    let report = ask(Mode::Calibrated, &cloud, &mesh(&tool()), &at(0.6, 0.0, 1.2));
+    assert!(matches!(report.warnings[..], [Warning::SensorLayout { .. }]), "{report:?}");
+}
