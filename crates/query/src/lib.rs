@@ -33,7 +33,8 @@ pub use judge::{
 pub use mesh::Mesh;
 pub use mode::Mode;
 pub use paper::{
-    PaperBodyRef, PaperCloud, PaperCloudSettings, PaperNoise, PaperQuery, PaperSettings, Pooling,
+    PaperBodyRef, PaperCloud, PaperCloudSettings, PaperModel, PaperNoise, PaperQuery,
+    PaperSettings, Pooling,
 };
 pub use query::{Query, QuerySettings};
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Undecided, Verdict};

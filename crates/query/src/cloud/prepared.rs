@@ -3,10 +3,10 @@
 use std::time::{Duration, Instant};
 
 use cloudtouch_bvh::{LeafBounds, Primitive, Tree, TreeSettings};
-use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
+use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
 use cloudtouch_noise::{
-    Combination, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, SensorModel, SensorNoise,
-    typical_spacing,
+    Combination, MotionNoise, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, Scratch,
+    SensorModel, SensorNoise, typical_spacing,
 };
 
 use crate::error::PrepareError;
@@ -17,6 +17,8 @@ use super::edge::DISC_SPACINGS;
 use super::slots::LazySurface;
 use super::view::SingleView;
 
+/// Relative rounding of an eigenvalue, generously.
+const ROUNDING: f64 = 1e-9;
 /// Points whose neighbours tell the typical spacing.
 const SPACING_SAMPLE: usize = 200;
 
@@ -27,12 +29,15 @@ pub(crate) struct Preparation<'a> {
     pub filter: &'a FilterSettings,
     pub noise: NoiseSettings,
     pub tree: &'a TreeSettings,
+    /// Added to what the sensor makes of position noise.
+    pub motion: MotionNoise,
 }
 
 impl Preparation<'_> {
     /// Checks every field.
     pub(crate) fn validate(&self) -> Result<(), PrepareError> {
         self.sensor.validate()?;
+        self.motion.validate()?;
         self.filter.validate()?;
         self.noise.validate().map_err(NoiseError::from)?;
         Ok(self.tree.validate()?)
@@ -59,6 +64,8 @@ pub(crate) struct Prepared {
     view: Option<SingleView>,
     /// Where the sensor stood, in the local frame, where the cloud says so.
     sensor_origin: Option<Point3>,
+    /// r of the ellipsoid of each point (eq. 11, 12), where they bring their own; else empty.
+    radii: Vec<f64>,
     pub(super) prepare_time: Duration,
 }
 
@@ -88,7 +95,7 @@ impl Prepared {
         // By their rows in the file; the cells of a collision map have none.
         let row = |i: usize| filtered.rows.get(i).copied().unwrap_or(i);
         check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
-        let sensor = by.sensor.covariances(&kept)?;
+        let sensor = moved(by.sensor.covariances(&kept)?, &by.motion, &kept.points);
         let normals = match (&kept.normals, by.noise.combination) {
             (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),
             _ => None,
@@ -109,13 +116,22 @@ impl Prepared {
         let mut tree = Tree::build(primitives, by.tree)?;
         let noise = NoiseModel::try_new(by.noise)?;
         let surface = LazySurface::new(&tree, sensor.len());
+        let mut scratch = Scratch::default();
         tree.set_leaf_bounds(|leaf| {
             let cap = surface.spacing_cap(leaf);
             let reach = DISC_SPACINGS * cap;
             let mut bounds = LeafBounds { std: 0.0, shift: 0.0, reach };
             for &index in leaf.primitive_indices() {
-                let point = noise.bounds(&sensor[index as usize], cap);
-                bounds.std = bounds.std.max(point.std);
+                let index = index as usize;
+                let point = noise.bounds(&sensor[index], cap);
+                let std = if point.std.is_finite() {
+                    point.std
+                } else {
+                    // What only the neighbours tell, they are asked for.
+                    let refined = noise.refine(index, &neighborhoods, &sensor, cap, &mut scratch);
+                    refined.point.covariance.max_std() * (1.0 + ROUNDING)
+                };
+                bounds.std = bounds.std.max(std);
                 bounds.shift = bounds.shift.max(point.shift);
             }
             bounds
@@ -142,6 +158,7 @@ impl Prepared {
             surface,
             view,
             sensor_origin,
+            radii: Vec::new(),
             prepare_time,
         })
     }
@@ -187,6 +204,16 @@ impl Prepared {
         self.sensor[index as usize].max_std()
     }
 
+    /// r of the ellipsoid of a point, where it brings one of its own.
+    pub(crate) fn ellipsoid_radius(&self, index: u32) -> Option<f64> {
+        self.radii.get(index as usize).copied()
+    }
+
+    /// Gives each point an ellipsoid of its own.
+    pub(crate) fn set_radii(&mut self, radii: Vec<f64>) {
+        self.radii = radii;
+    }
+
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
     }
@@ -203,6 +230,15 @@ impl Prepared {
     pub(crate) fn view(&self) -> Option<&SingleView> {
         self.view.as_ref()
     }
+}
+
+/// Σ of points that may have moved since they were seen.
+fn moved(sensor: SensorNoise, motion: &MotionNoise, points: &[Point3]) -> SensorNoise {
+    if *motion == MotionNoise::default() {
+        return sensor;
+    }
+    let sum = |(seen, place): (&Covariance, &Point3)| seen.sum(&motion.covariance(place));
+    SensorNoise::from(sensor.iter().zip(points).map(sum).collect::<Vec<_>>())
 }
 
 /// Normals as they are, after a look at them: a `Unit` can be made without a check.

@@ -1,6 +1,7 @@
 //! The cloud of the paper's path.
 
 use cloudtouch_geom::PointCloud;
+use cloudtouch_noise::{NoiseError, RadiusRule};
 
 use crate::cloud::{Prepared, cloud_accessors};
 use crate::error::PrepareError;
@@ -26,9 +27,24 @@ impl PaperCloud {
         cloud: &PointCloud,
         settings: &PaperCloudSettings,
     ) -> Result<Self, PrepareError> {
-        let neighbors = settings.discretization.neighbors;
+        let neighbors = settings.model.discretization.neighbors;
         let area = |near: &_, index| sphere_area(near, index, neighbors);
         Ok(Self { prepared: Prepared::new(cloud, &settings.preparation(), area)? })
+    }
+
+    /// Gives each point a κ of its own, in place of that of the query (eq. 11, 12): the probability
+    /// with which it is to lie on its side, one for each point kept, in their order.
+    ///
+    /// # Errors
+    /// When there are not as many as points, or one is outside the range of the rule.
+    pub fn with_kappas(mut self, kappas: &[f64], rule: RadiusRule) -> Result<Self, PrepareError> {
+        if kappas.len() != self.len() {
+            return Err(PrepareError::KappaCount { points: self.len(), kappas: kappas.len() });
+        }
+        let radii: Result<Vec<f64>, NoiseError> =
+            kappas.iter().map(|&kappa| rule.radius(kappa)).collect();
+        self.prepared.set_radii(radii?);
+        Ok(self)
     }
 }
 

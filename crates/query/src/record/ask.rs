@@ -13,6 +13,7 @@ use crate::report::{Report, Stats, Undecided, Verdict};
 use crate::shape::Shape;
 use crate::unseen::is_either_hidden;
 
+use super::closeness::Closeness;
 use super::estimate::{Estimate, Places};
 use super::evidence::Evidence;
 
@@ -24,6 +25,8 @@ pub(crate) struct Terms {
     pub accept: f64,
     pub reject: f64,
     pub max_contacts: usize,
+    /// Which points the noisy-or counts.
+    pub closeness: Closeness,
 }
 
 impl Terms {
@@ -74,7 +77,7 @@ impl Terms {
 
     fn report(&self, mut evidence: Evidence, estimate: Estimate, origin: Vector3) -> Report {
         let points = evidence.merge_points();
-        let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points));
+        let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points, &self.closeness));
         let Places { mut contacts, clearance, at_least } =
             estimate.places.unwrap_or_else(|| Places {
                 contacts: evidence.top_contacts(self.max_contacts),
