@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
-use cloudtouch::geom::Pose;
+use cloudtouch::geom::{Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Mesh, SelfMesh};
 use cloudtouch_io::{Geometry, LengthUnit, ReadLimits, read_geometry_within, read_mesh_within};
@@ -29,41 +29,58 @@ pub(crate) fn body<C: PreparedCloud>(
     sensor: &SensorModel,
     common: &CommonArguments,
 ) -> Result<Body<C>> {
-    let prepared = match geometry(path, common.unit, &common.limits.read_limits())? {
-        Geometry::Mesh(mesh) => {
-            let mesh = Mesh::prepare(&mesh).with_context(|| named(path))?;
-            if common.unit == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
-                tracing::warn!(
-                    "{}: the mesh is {:.0} m across: if the file is in millimetres, give --unit mm",
-                    path.display(),
-                    mesh.size()
-                );
-            }
-            Body::Mesh(mesh)
-        }
-        Geometry::Cloud(cloud) => {
-            if cloud.covariances.is_some() && *sensor != SensorModel::PerPoint {
-                tracing::warn!(
-                    "{}: its covariance columns are passed over for the sensor {sensor}: give \
-                     --sensor per-point to use them",
-                    path.display()
-                );
-            }
-            let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
-            let prepared = C::prepare(&cloud, *sensor, |filter, sensor| {
-                common.change(filter);
-                if role == Role::Scene {
-                    filter.robot = robot;
-                    filter.collision_map = common.collision_map;
-                    if let Some(resolution) = common.collision_map {
-                        *sensor = SensorModel::Grid { resolution };
-                    }
+    bodies(&[path], role, sensor, common)
+}
+
+/// Reads files and prepares them as one body: several scans of one frame, or one mesh.
+pub(crate) fn bodies<C: PreparedCloud>(
+    paths: &[&Path],
+    role: Role,
+    sensor: &SensorModel,
+    common: &CommonArguments,
+) -> Result<Body<C>> {
+    let name = || paths.iter().map(|path| named(path)).collect::<Vec<_>>().join(", ");
+    let mut scans = Vec::new();
+    for path in paths {
+        match geometry(path, common.unit, &common.limits.read_limits())? {
+            Geometry::Mesh(mesh) if paths.len() == 1 => return mesh_body(path, &mesh, common),
+            Geometry::Mesh(_) => bail!("{}: is a mesh: only scans make one scene", named(path)),
+            Geometry::Cloud(cloud) => {
+                if cloud.covariances.is_some() && *sensor != SensorModel::PerPoint {
+                    tracing::warn!(
+                        "{}: its covariance columns are passed over for the sensor {sensor}: give \
+                         --sensor per-point to use them",
+                        path.display()
+                    );
                 }
-            });
-            Body::Cloud(prepared.with_context(|| named(path))?)
+                scans.push(cloud);
+            }
         }
-    };
-    Ok(prepared)
+    }
+    let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
+    let prepared = C::prepare(&scans, *sensor, common.settings.as_ref(), |filter, sensor| {
+        common.change(filter);
+        if role == Role::Scene {
+            filter.robot = robot;
+            filter.collision_map = common.collision_map;
+            if let Some(resolution) = common.collision_map {
+                *sensor = SensorModel::Grid { resolution };
+            }
+        }
+    });
+    Ok(Body::Cloud(prepared.with_context(name)?))
+}
+
+fn mesh_body<C>(path: &Path, mesh: &TriangleMesh, common: &CommonArguments) -> Result<Body<C>> {
+    let mesh = Mesh::prepare(mesh).with_context(|| named(path))?;
+    if common.unit == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
+        tracing::warn!(
+            "{}: the mesh is {:.0} m across: if the file is in millimetres, give --unit mm",
+            path.display(),
+            mesh.size()
+        );
+    }
+    Ok(Body::Mesh(mesh))
 }
 
 /// Reads a cloud, which is in metres, or a mesh in `unit`.

@@ -6,7 +6,9 @@ mod commands;
 mod load;
 mod picture;
 mod pose_file;
+mod per_point;
 mod print;
+mod settings_file;
 
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
         Command::Batch(arguments) => commands::batch::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Demo(arguments) => commands::demo::run(arguments),
+        Command::Settings => commands::settings::run(),
     };
     outcome.unwrap_or_else(|error| {
         // When standard error is gone too, the exit code still tells.

@@ -8,6 +8,7 @@ use cloudtouch::{Clearance, Report, StageReport, Verdict};
 use serde::Serialize;
 
 use crate::body::{Body, PreparedCloud};
+use crate::per_point::Details;
 
 /// Prints a whole answer.
 ///
@@ -30,6 +31,8 @@ struct Line<'a> {
     id: &'a str,
     #[serde(flatten)]
     report: &'a Report,
+    #[serde(flatten)]
+    details: &'a Details<'a>,
 }
 
 /// A case without an answer.
@@ -40,7 +43,15 @@ struct ErrorLine<'a> {
 }
 
 pub(crate) fn json_line(id: &str, report: &Report) -> Result<String> {
-    Ok(serde_json::to_string(&Line { id, report })?)
+    detailed_json_line(id, report, &Details::default())
+}
+
+pub(crate) fn detailed_json_line(
+    id: &str,
+    report: &Report,
+    details: &Details<'_>,
+) -> Result<String> {
+    Ok(serde_json::to_string(&Line { id, report, details })?)
 }
 
 pub(crate) fn json_error_line(id: &str, error: &str) -> Result<String> {

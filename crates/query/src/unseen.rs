@@ -21,13 +21,21 @@ pub(crate) fn is_either_hidden(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> b
 }
 
 /// Whether the other body lies mostly behind what `cloud` saw, so that "no surface near" does not
-/// mean "free". False when the cloud is not a single view.
+/// mean "free". False when the cloud has no depth image. Of several, one that looked into the space
+/// before its surfaces tells that it is empty.
 fn is_hidden(cloud: &Prepared, other: Shape<'_>, cloud_from_other: &Pose) -> bool {
-    let Some(view) = cloud.view() else { return false };
+    if cloud.views().is_empty() {
+        return false;
+    }
     let samples = coarse_samples(other);
     let measured = (cloud.points(), cloud.sensor());
-    let behind = |p: &&Point3| view.is_behind(measured, &cloud_from_other.transform_point(p));
-    let hidden = samples.iter().filter(behind).count();
+    let is_hidden = |p: &&Point3| {
+        let place = cloud_from_other.transform_point(p);
+        let told: Vec<bool> =
+            cloud.views().iter().filter_map(|view| view.is_behind(measured, &place)).collect();
+        !told.is_empty() && told.iter().all(|is_behind| *is_behind)
+    };
+    let hidden = samples.iter().filter(is_hidden).count();
     hidden as f64 >= HIDDEN_SHARE * samples.len() as f64
 }
 

@@ -75,7 +75,7 @@ impl Answered {
 fn body<C: PreparedCloud>(pcd: &[u8]) -> Result<Body<C>> {
     let cloud = pcd::parse(pcd)?;
     let sensor = SensorModel::Isotropic { std: NOISE };
-    Ok(Body::Cloud(C::prepare(&cloud, sensor, |_, _| {})?))
+    Ok(Body::Cloud(C::prepare(&[cloud], sensor, None, |_, _| {})?))
 }
 
 /// One after the other, so that the times are those of a single thread.

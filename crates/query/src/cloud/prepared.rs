@@ -2,18 +2,16 @@
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{LeafBounds, Primitive, Tree, TreeSettings};
-use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
-use cloudtouch_noise::{
-    Combination, MotionNoise, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, Scratch,
-    SensorModel, SensorNoise, typical_spacing,
-};
+use cloudtouch_bvh::{LeafBounds, Primitive, Tree};
+use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
+use cloudtouch_noise::{Neighborhoods, NoiseModel, Scratch, SensorNoise, typical_spacing};
 
 use crate::error::PrepareError;
-use crate::filter::{FilterSettings, StageReport, filter};
-use crate::range::check_points;
+use crate::filter::StageReport;
 
 use super::edge::DISC_SPACINGS;
+use super::preparation::Preparation;
+use super::scans::Scans;
 use super::slots::LazySurface;
 use super::view::SingleView;
 
@@ -21,28 +19,6 @@ use super::view::SingleView;
 const ROUNDING: f64 = 1e-9;
 /// Points whose neighbours tell the typical spacing.
 const SPACING_SAMPLE: usize = 200;
-
-/// What a path prepares a cloud by.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Preparation<'a> {
-    pub sensor: &'a SensorModel,
-    pub filter: &'a FilterSettings,
-    pub noise: NoiseSettings,
-    pub tree: &'a TreeSettings,
-    /// Added to what the sensor makes of position noise.
-    pub motion: MotionNoise,
-}
-
-impl Preparation<'_> {
-    /// Checks every field.
-    pub(crate) fn validate(&self) -> Result<(), PrepareError> {
-        self.sensor.validate()?;
-        self.motion.validate()?;
-        self.filter.validate()?;
-        self.noise.validate().map_err(NoiseError::from)?;
-        Ok(self.tree.validate()?)
-    }
-}
 
 /// A noisy cloud, ready to be queried in any pose, from many threads at once. Each path wraps it in
 /// a type of its own.
@@ -61,47 +37,35 @@ pub(crate) struct Prepared {
     pub(super) noise: NoiseModel,
     pub(super) tree: Tree,
     pub(super) surface: LazySurface,
-    view: Option<SingleView>,
-    /// Where the sensor stood, in the local frame, where the cloud says so.
-    sensor_origin: Option<Point3>,
+    /// Depth images that it was seen in.
+    views: Vec<SingleView>,
+    /// Where sensors stood, in the local frame, where the scans say so.
+    sensor_origins: Vec<Point3>,
     /// r of the ellipsoid of each point (eq. 11, 12), where they bring their own; else empty.
     radii: Vec<f64>,
     pub(super) prepare_time: Duration,
 }
 
 impl Prepared {
-    /// Filters a cloud, models its sensor, and builds its index and tree. `weigh` says how much
-    /// surface each of the points kept stands for in the coverage of a node.
+    /// Filters scans of one frame, models their sensors, and builds one index and tree over them, by
+    /// the noise model and tree of the first. `weigh` says how much surface each of the points kept
+    /// stands for in the coverage of a node.
     pub(crate) fn new(
-        cloud: &PointCloud,
-        by: &Preparation<'_>,
+        scans: &[(&PointCloud, Preparation<'_>)],
         weigh: impl Fn(&Neighborhoods, usize) -> f64,
     ) -> Result<Self, PrepareError> {
         let start = Instant::now();
-        let span = tracing::debug_span!("prepare_cloud", points = cloud.len());
+        let count: usize = scans.iter().map(|(scan, _)| scan.len()).sum();
+        let span = tracing::debug_span!("prepare_cloud", points = count);
         let _entered = span.enter();
-        by.validate()?;
-        let filtered = filter(cloud, by.filter)?;
-        let stages = filtered.stages;
-        let kept = filtered.cloud;
-        let Some((low, high)) = kept.bounding_box() else {
-            let removed: Vec<String> =
-                stages.iter().map(|s| format!("{} removed {}", s.stage, s.removed)).collect();
-            return Err(PrepareError::NothingLeft {
-                before: cloud.len(),
-                stages: removed.join(", "),
-            });
+        let all = Scans::of(scans)?;
+        let (Some((low, high)), Some((_, by))) = (corners(&all.points), scans.first()) else {
+            let stages = "no scan was given".to_owned();
+            return Err(PrepareError::NothingLeft { before: count, stages });
         };
-        // By their rows in the file; the cells of a collision map have none.
-        let row = |i: usize| filtered.rows.get(i).copied().unwrap_or(i);
-        check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
-        let sensor = moved(by.sensor.covariances(&kept)?, &by.motion, &kept.points);
-        let normals = match (&kept.normals, by.noise.combination) {
-            (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),
-            _ => None,
-        };
+        let sensor = all.noise;
         let origin = nalgebra::center(&low, &high).coords;
-        let points: Vec<Point3> = kept.points.iter().map(|p| p - origin).collect();
+        let points: Vec<Point3> = all.points.iter().map(|p| p - origin).collect();
         let neighborhoods = Neighborhoods::try_new(points)?;
         let primitives = neighborhoods
             .points()
@@ -136,28 +100,20 @@ impl Prepared {
             }
             bounds
         })?;
-        // An organised cloud is a depth image: one view, with unseen space behind it.
-        let view = cloud
-            .image_size
-            .filter(|&(width, height)| width > 1 && height > 1)
-            .map(|_| SingleView::new(kept.sensor_origin() - origin));
-        // The origin is what a file says that does not know.
-        let sensor_origin = Some(kept.sensor_origin())
-            .filter(|place| *place != Point3::origin())
-            .map(|place| place - origin);
+        let view = |(sensor, points): (Point3, _)| SingleView::new(sensor - origin, points);
         let prepare_time = start.elapsed();
         Ok(Self {
             origin,
             sensor,
-            normals,
-            rows: filtered.rows,
-            stages,
+            normals: all.normals,
+            rows: all.rows,
+            stages: all.stages,
             neighborhoods,
             noise,
             tree,
             surface,
-            view,
-            sensor_origin,
+            views: all.images.into_iter().map(view).collect(),
+            sensor_origins: all.origins.iter().map(|place| place - origin).collect(),
             radii: Vec::new(),
             prepare_time,
         })
@@ -218,8 +174,8 @@ impl Prepared {
         &self.tree
     }
 
-    pub(crate) fn sensor_origin(&self) -> Option<&Point3> {
-        self.sensor_origin.as_ref()
+    pub(crate) fn sensor_origins(&self) -> &[Point3] {
+        &self.sensor_origins
     }
 
     /// Distance between neighbouring points, m, as the median of some of them.
@@ -227,29 +183,13 @@ impl Prepared {
         typical_spacing(&self.neighborhoods, SPACING_SAMPLE)
     }
 
-    pub(crate) fn view(&self) -> Option<&SingleView> {
-        self.view.as_ref()
+    pub(crate) fn views(&self) -> &[SingleView] {
+        &self.views
     }
 }
 
-/// Σ of points that may have moved since they were seen.
-fn moved(sensor: SensorNoise, motion: &MotionNoise, points: &[Point3]) -> SensorNoise {
-    if *motion == MotionNoise::default() {
-        return sensor;
-    }
-    let sum = |(seen, place): (&Covariance, &Point3)| seen.sum(&motion.covariance(place));
-    SensorNoise::from(sensor.iter().zip(points).map(sum).collect::<Vec<_>>())
-}
-
-/// Normals as they are, after a look at them: a `Unit` can be made without a check.
-fn checked(normals: &[UnitVector3]) -> Result<Vec<UnitVector3>, PrepareError> {
-    let checked = |(index, normal): (usize, &UnitVector3)| {
-        let is_unit = (normal.norm() - 1.0).abs() < 1e-6;
-        if is_unit {
-            Ok(*normal)
-        } else {
-            Err(PrepareError::Normal { index, normal: normal.into_inner() })
-        }
-    };
-    normals.iter().enumerate().map(checked).collect()
+/// Lowest and highest corner of some points; `None` without any.
+fn corners(points: &[Point3]) -> Option<(Point3, Point3)> {
+    let &first = points.first()?;
+    Some(points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p))))
 }

@@ -6,7 +6,7 @@ use cloudtouch_noise::{Combination, MotionNoise, NoiseSettings, PosteriorSetting
 use crate::error::PrepareError;
 use crate::filter::FilterSettings;
 
-use super::prepared::Preparation;
+use super::preparation::Preparation;
 
 /// Sensor, cleaning, surface posterior and tree of one cloud.
 #[derive(Debug, Clone)]

@@ -1,5 +1,6 @@
 //! A single depth image: what lies behind its surfaces was never seen.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use cloudtouch_geom::{Point3, Vector3};
@@ -19,6 +20,8 @@ const CLEARLY: f64 = 3.0;
 pub(crate) struct SingleView {
     /// In the cloud's local frame, m.
     sensor_origin: Point3,
+    /// Which points of the cloud are those of the image.
+    points: Range<usize>,
     rays: OnceLock<Option<Rays>>,
 }
 
@@ -31,31 +34,30 @@ struct Rays {
 }
 
 impl SingleView {
-    pub(super) fn new(sensor_origin: Point3) -> Self {
-        Self { sensor_origin, rays: OnceLock::new() }
+    pub(super) fn new(sensor_origin: Point3, points: Range<usize>) -> Self {
+        Self { sensor_origin, points, rays: OnceLock::new() }
     }
 
-    /// Whether the sensor looked along the ray to `point` and met a surface clearly before it
-    /// (by three standard deviations of the `noise` of the points `measured`). All in the cloud's
-    /// local frame.
+    /// Whether the sensor, which looked along the ray to `point`, met a surface clearly before it
+    /// (by three standard deviations of the `noise` of the points `measured`, which are all of the
+    /// cloud); `None` where it did not look. All in the cloud's local frame.
     pub(crate) fn is_behind(
         &self,
         (measured, noise): (&[Point3], &SensorNoise),
         point: &Point3,
-    ) -> bool {
-        let Some(rays) = self.rays.get_or_init(|| self.measure(measured)) else {
-            return false;
-        };
+    ) -> Option<bool> {
+        let measure = || self.measure(&measured[self.points.clone()]);
+        let rays = self.rays.get_or_init(measure).as_ref()?;
         let offset = point - self.sensor_origin;
         let range = offset.norm();
         if range == 0.0 {
-            return false;
+            return None;
         }
         let direction = Point3::from(offset / range);
-        rays.directions.nearest_to(&direction, 1).first().is_some_and(|n| {
-            let margin = CLEARLY * noise[n.index].std_bound();
-            n.squared_distance.sqrt() <= rays.tolerance && range > rays.ranges[n.index] + margin
-        })
+        let nearest = rays.directions.nearest_to(&direction, 1);
+        let ray = nearest.first().filter(|n| n.squared_distance.sqrt() <= rays.tolerance)?;
+        let margin = CLEARLY * noise[self.points.start + ray.index].std_bound();
+        Some(range > rays.ranges[ray.index] + margin)
     }
 
     fn measure(&self, measured: &[Point3]) -> Option<Rays> {

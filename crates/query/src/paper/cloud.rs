@@ -27,9 +27,23 @@ impl PaperCloud {
         cloud: &PointCloud,
         settings: &PaperCloudSettings,
     ) -> Result<Self, PrepareError> {
-        let neighbors = settings.model.discretization.neighbors;
+        Self::merge(&[(cloud, settings)])
+    }
+
+    /// The same of several scans of one frame, such as those of several sensors: each is filtered,
+    /// and has its noise, by its own settings and the pose of its own sensor. The model is that of
+    /// the first, but for the motion.
+    ///
+    /// Rows and filter stages are counted on from scan to scan. Space is taken for hidden where one
+    /// depth image has a surface before it and no other looked into it.
+    ///
+    /// # Errors
+    /// When there is no scan, or as [`Self::prepare`] for one of them.
+    pub fn merge(scans: &[(&PointCloud, &PaperCloudSettings)]) -> Result<Self, PrepareError> {
+        let neighbors = scans.first().map_or(0, |(_, by)| by.model.discretization.neighbors);
         let area = |near: &_, index| sphere_area(near, index, neighbors);
-        Ok(Self { prepared: Prepared::new(cloud, &settings.preparation(), area)? })
+        let scans: Vec<_> = scans.iter().map(|&(scan, by)| (scan, by.preparation())).collect();
+        Ok(Self { prepared: Prepared::new(&scans, area)? })
     }
 
     /// Gives each point a κ of its own, in place of that of the query (eq. 11, 12): the probability
@@ -70,7 +84,7 @@ mod tests {
         let cloud = PointCloud::from_points(points);
         let settings = PaperCloudSettings::new(SensorModel::Isotropic { std: 0.01 });
         let by_area = PaperCloud::prepare(&cloud, &settings).unwrap();
-        let by_number = Prepared::new(&cloud, &settings.preparation(), |_, _| 1.0).unwrap();
+        let by_number = Prepared::new(&[(&cloud, settings.preparation())], |_, _| 1.0).unwrap();
         let leakage = |cloud: &Prepared| 1.0 - cloud.tree().root().unwrap().coverage();
         let (by_area, by_number) = (leakage(by_area.prepared()), leakage(&by_number));
         // Of 125 points 98 lie on faces, each with at least half a chance of being outside.
