@@ -213,8 +213,8 @@ pub(crate) struct CommonArguments {
     /// Free below this probability, 0 to 0.5 [0.1]
     #[arg(long, value_name = "B", value_parser = parse_reject, help_heading = "Estimate")]
     pub reject: Option<f64>,
-    /// Paper: all its settings (see `cloudtouch settings`); options given here come first
-    #[arg(long, value_name = "FILE.toml", value_parser = settings_file::read,
+    /// Paper: its settings, as `cloudtouch settings` prints them
+    #[arg(long, value_name = "FILE", value_parser = settings_file::read,
           help_heading = "Estimate")]
     pub settings: Option<Settings>,
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]

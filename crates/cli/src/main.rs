@@ -4,9 +4,9 @@ mod args;
 mod body;
 mod commands;
 mod load;
+mod per_point;
 mod picture;
 mod pose_file;
-mod per_point;
 mod print;
 mod settings_file;
 

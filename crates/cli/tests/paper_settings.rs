@@ -7,8 +7,17 @@ use support::{Inputs, Run};
 
 const PAPER: [&str; 3] = ["--json", "--mode", "paper"];
 
+/// With the box a millimetre above the floor.
 fn ask(inputs: &Inputs, more: &[&str]) -> Value {
-    inputs.query_at(0.103, &[&PAPER[..], more].concat()).quiet(0).json_lines()[0].clone()
+    inputs.query_at(0.101, &[&PAPER[..], more].concat()).quiet(0).json_lines()[0].clone()
+}
+
+/// With more settings of a query, amended so far that the answer is in doubt.
+fn ask_with(inputs: &Inputs, settings: &str, more: &[&str]) -> Value {
+    let amended = "[query]\nscaling = \"leaf_pair\"\nmesh_points = \"as_dense_as_cloud\"\n";
+    let settings = format!("{amended}{settings}");
+    inputs.write("one.toml", &settings);
+    ask(inputs, &[&["--settings", "one.toml"], more].concat())
 }
 
 /// What was said of a wrong use.
@@ -39,18 +48,17 @@ fn the_printed_settings_are_read_back_and_change_nothing() {
 #[test]
 fn a_parameter_study_needs_no_rust() {
     let inputs = Inputs::new();
-    let with = |text: &str| {
-        inputs.write("one.toml", text);
-        ask(&inputs, &["--settings", "one.toml"])
-    };
+    let with = |text: &str| ask_with(&inputs, text, &[]);
     let usual = with("");
-    let all = "[query]\nstop_above = 1.0\ntraversal = \"certified\"\n";
+    let all = "stop_above = 1.0\ntraversal = \"certified\"\n";
     let pairs = |text: &str| number(&with(&format!("{all}{text}")), "/stats/leaf_pairs");
     assert!(pairs("[cloud.tree]\nmax_leaf_points = 10") > pairs(""));
-    for change in ["kernel = \"linear\"", "kappa = 0.999", "kernel = { gaussian = { gamma = 300.0 } }"] {
-        let changed = with(&format!("[query]\n{change}\n"));
+    for change in
+        ["kernel = \"linear\"", "kappa = 0.999", "kernel = { gaussian = { gamma = 300.0 } }"]
+    {
+        let changed = with(change);
         let probability = |report: &Value| number(report, "/collision_probability");
-        assert!((probability(&changed) - probability(&usual)).abs() > 1e-9, "{change}: {changed}");
+        assert!((probability(&changed) - probability(&usual)).abs() > 1e-3, "{change}: {changed}");
     }
     // An option of the command line comes first.
     inputs.write("one.toml", "[query]\nseed = 7\naccept = 0.8\n");
@@ -74,9 +82,9 @@ fn a_wrong_file_or_mode_is_refused() {
 #[test]
 fn points_and_classifiers_are_told_on_request() {
     let inputs = Inputs::new();
-    let plain = ask(&inputs, &[]);
+    let plain = ask_with(&inputs, "", &[]);
     assert!(plain.get("points").is_none() && plain.get("classifiers").is_none());
-    let told = ask(&inputs, &["--points", "--explain"]);
+    let told = ask_with(&inputs, "", &["--points", "--explain"]);
     let of_floor = told["points"]["a"].as_array().unwrap();
     let largest = of_floor.iter().map(|pair| pair[1].as_f64().unwrap()).fold(0.0, f64::max);
     assert!(!of_floor.is_empty() && largest <= number(&told, "/max_probability"));
@@ -87,14 +95,15 @@ fn points_and_classifiers_are_told_on_request() {
     }
     assert_eq!(first["v"].as_array().unwrap().len(), 3);
     // On the default path too, where no classifier is told.
-    let by_default = inputs.query_at(0.103, &["--json", "--points"]).quiet(0).json_lines()[0].clone();
+    let by_default =
+        inputs.query_at(0.101, &["--json", "--points"]).quiet(0).json_lines()[0].clone();
     assert!(by_default["points"]["a"].is_array(), "{by_default}");
 }
 
 #[test]
 fn a_table_has_a_row_for_each_point() {
     let inputs = Inputs::new();
-    let answer = ask(&inputs, &["--points", "--csv", "points.csv"]);
+    let answer = ask_with(&inputs, "", &["--points", "--csv", "points.csv"]);
     let table = std::fs::read_to_string(inputs.path("points.csv")).unwrap();
     let rows: Vec<&str> = table.lines().collect();
     // The box is a mesh: exact, without points of its own.
@@ -111,12 +120,13 @@ fn several_scans_make_one_scene() {
     let one = inputs.query_at(0.3, &["--json"]).quiet(0);
     assert_eq!(one.json_lines()[0]["verdict"], "free");
     // Another scan of the scene: a shelf where the box is put.
-    let row = |i: i32| format!("{} {} 0.3", 0.05 * f64::from(i % 9 - 4), 0.05 * f64::from(i / 9 - 4));
+    let row =
+        |i: i32| format!("{} {} 0.3", 0.05 * f64::from(i % 9 - 4), 0.05 * f64::from(i / 9 - 4));
     inputs.write("shelf.xyz", &(0..81).map(row).collect::<Vec<_>>().join("\n"));
-    for mode in ["calibrated", "paper"] {
-        let more = ["--also", "shelf.xyz", "--json", "--mode", mode];
-        let both = inputs.query_at(0.3, &more).quiet(0);
-        assert_eq!(both.json_lines()[0]["verdict"], "in_collision", "{mode}");
+    inputs.write("dense.toml", "[query]\nmesh_points = \"as_dense_as_cloud\"\n");
+    for mode in [&["--mode", "calibrated"][..], &["--mode", "paper", "--settings", "dense.toml"]] {
+        let both = inputs.query_at(0.3, &[&["--also", "shelf.xyz", "--json"], mode].concat());
+        assert_eq!(both.quiet(0).json_lines()[0]["verdict"], "in_collision", "{mode:?}");
     }
     let text = inputs.query_at(0.3, &["--also", "shelf.xyz"]).quiet(0).stdout();
     assert!(text.contains("522 points"), "{text}");
@@ -125,9 +135,9 @@ fn several_scans_make_one_scene() {
 #[test]
 fn each_row_of_the_scene_may_have_its_kappa() {
     let inputs = Inputs::new();
-    let usual = ask(&inputs, &[]);
+    let usual = ask_with(&inputs, "", &[]);
     inputs.write("kappas.txt", &"0.999\n".repeat(441));
-    let wide = ask(&inputs, &["--kappas", "kappas.txt"]);
+    let wide = ask_with(&inputs, "", &["--kappas", "kappas.txt"]);
     assert_ne!(wide["collision_probability"], usual["collision_probability"]);
     inputs.write("few.txt", "0.9\n");
     let refused = inputs.query_at(0.1, &[&PAPER[..], &["--kappas", "few.txt"]].concat());

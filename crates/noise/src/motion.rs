@@ -56,7 +56,8 @@ mod tests {
     #[test]
     fn a_turn_moves_far_points_across_their_lever() {
         let about = [1.0, 0.0, 0.0];
-        let motion = MotionNoise { rotation_std: [0.0, 0.0, 0.01], about, ..MotionNoise::default() };
+        let motion =
+            MotionNoise { rotation_std: [0.0, 0.0, 0.01], about, ..MotionNoise::default() };
         let std = |place: Point3, along: Vector3| motion.covariance(&place).std_along(&along);
         // Half a metre from the axis: 5 mm about it, nothing towards it or along it.
         let place = Point3::new(1.5, 0.0, 0.3);

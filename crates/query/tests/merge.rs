@@ -18,11 +18,11 @@ fn views() -> [PointCloud; 2] {
     let place = |mesh: TriangleMesh, z| ExactMesh::new(&scene::moved(&mesh, &at(0.0, 0.0, z)));
     let block = place(scene::cuboid([0.5; 3]), 1.5);
     let walls = [place(scene::plane_patch(6.0), -0.5), place(scene::plane_patch(6.0), 3.5)];
-    let from = [
-        Pose::identity(),
-        Pose::from_translation_rpy(Vector3::new(0.0, 0.0, 3.0), [0.0, PI, 0.0]),
-    ];
-    from.map(|pose| DepthCamera::default().scan(&[&block, &walls[0], &walls[1]], &pose, 1).transformed(&pose))
+    let from =
+        [Pose::identity(), Pose::from_translation_rpy(Vector3::new(0.0, 0.0, 3.0), [0.0, PI, 0.0])];
+    from.map(|pose| {
+        DepthCamera::default().scan(&[&block, &walls[0], &walls[1]], &pose, 1).transformed(&pose)
+    })
 }
 
 fn scans(clouds: &[PointCloud]) -> [Scan; 2] {
@@ -45,12 +45,15 @@ fn what_is_hidden_from_one_sensor_is_free_where_another_looked() {
     let behind = at(0.0, 0.0, 2.3);
     let within = at(0.0, 0.0, 1.5);
     for ((one, both), mode) in scans(&views[..1]).iter().zip(&scans(&views)).zip(MODES) {
-        let verdict = |scan: &Scan, pose: &Pose| -> Report { ask(mode, scan, Asked::from(&ball), pose) };
+        let verdict =
+            |scan: &Scan, pose: &Pose| -> Report { ask(mode, scan, Asked::from(&ball), pose) };
         assert_eq!(verdict(one, &behind).verdict, Verdict::Undecided);
         let seen = verdict(both, &behind);
-        assert!(seen.collision_probability < 0.1 && seen.undecided_by.is_none_or(|by| {
-            by != cloudtouch::Undecided::Hidden
-        }), "{seen:?}");
+        assert!(
+            seen.collision_probability < 0.1
+                && seen.undecided_by.is_none_or(|by| { by != cloudtouch::Undecided::Hidden }),
+            "{seen:?}"
+        );
         // Inside the block neither looked.
         assert_eq!(verdict(both, &within).verdict, Verdict::Undecided);
         assert_eq!(both.len(), one.len() + scans(&views[1..])[0].len());
@@ -61,7 +64,9 @@ fn what_is_hidden_from_one_sensor_is_free_where_another_looked() {
 #[test]
 fn each_scan_has_the_noise_of_its_own_sensor() {
     let points = |z: f64| -> Vec<Point3> {
-        (0..400).map(|i| Point3::new(0.01 * f64::from(i % 20), 0.01 * f64::from(i / 20), z)).collect()
+        (0..400)
+            .map(|i| Point3::new(0.01 * f64::from(i % 20), 0.01 * f64::from(i / 20), z))
+            .collect()
     };
     let [low, high] = [0.0, 0.5].map(|z| PointCloud::from_points(points(z)));
     let [sharp, blurred] =

@@ -5,7 +5,9 @@ mod common;
 use cloudtouch::bvh::TreeSettings;
 use cloudtouch::geom::PointCloud;
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{PaperCloud, PaperCloudSettings, PaperModel, PaperQuery, PaperSettings, bvh::Traversal};
+use cloudtouch::{
+    PaperCloud, PaperCloudSettings, PaperModel, PaperQuery, PaperSettings, bvh::Traversal,
+};
 use cloudtouch_testkit::scene;
 use common::{at, measured};
 

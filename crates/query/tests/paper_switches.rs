@@ -32,7 +32,8 @@ fn floor_and_ball(change: impl Fn(&mut PaperCloudSettings)) -> [PaperCloud; 2] {
 }
 
 fn ask(clouds: &[PaperCloud; 2], pose: &Pose, settings: PaperSettings) -> Report {
-    let report = PaperQuery::new(settings).expect("good settings").run(&clouds[0], &clouds[1], pose);
+    let report =
+        PaperQuery::new(settings).expect("good settings").run(&clouds[0], &clouds[1], pose);
     let report = report.expect("a finite pose");
     assert_sound(&report);
     report
@@ -193,8 +194,8 @@ fn without_a_cap_isolated_points_are_not_culled_by_one() {
         let ball = cloud(measured(&scene::sphere(0.05, 3), 0.015, STD, 2), |_| {});
         let traversal = Traversal::Certified;
         let settings = PaperSettings { traversal, ..PaperSettings::default() };
-        // 15 cm from the ball, and known to half a metre.
-        ask(&[floor, ball], &at(0.0, 0.0, 0.8), settings).stats.leaf_pairs
+        // Two metres from the ball, and known to half a metre.
+        ask(&[floor, ball], &at(0.0, 0.0, 2.6), settings).stats.leaf_pairs
     };
     assert_eq!(leaf_pairs(true), 0);
     assert!(leaf_pairs(false) > 0);

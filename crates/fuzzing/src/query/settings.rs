@@ -46,7 +46,11 @@ pub(super) fn paper_settings(u: &mut Unstructured<'_>) -> Result<PaperSettings> 
         plane_first: u.arbitrary()?,
         distrust_noise: u.arbitrary()?,
         points_inside: u.arbitrary()?,
-        mesh_points: if u.arbitrary()? { MeshPoints::AsDenseAsCloud } else { MeshPoints::FourPerTriangle },
+        mesh_points: if u.arbitrary()? {
+            MeshPoints::AsDenseAsCloud
+        } else {
+            MeshPoints::FourPerTriangle
+        },
         relative_gap: setting(u, usual.relative_gap, 1e-9, 1.0)?,
         traversal: *u.choose(&traversals)?,
         cull_probability: setting(u, usual.cull_probability, 0.0, 1.0)?,

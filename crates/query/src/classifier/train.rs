@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
-    Class, Classifier, Problem, Rung, Sample, Settings, Solution, Solver, Status,
-    Undetermined, UnitBox, balanced_penalties,
+    Class, Classifier, Problem, Rung, Sample, Settings, Solution, Solver, Status, Undetermined,
+    UnitBox, balanced_penalties,
 };
 
 use crate::report::Stats;
@@ -80,11 +80,7 @@ fn is_open(solution: &Solution) -> bool {
     )
 }
 
-fn samples(
-    points: &PairPoints,
-    unit_box: &UnitBox,
-    settings: &ClassifierSettings,
-) -> Vec<Sample> {
+fn samples(points: &PairPoints, unit_box: &UnitBox, settings: &ClassifierSettings) -> Vec<Sample> {
     let (penalty_a, penalty_b) = if settings.is_balanced {
         balanced_penalties(settings.penalty, points.a.len(), points.b.len())
     } else {

@@ -82,7 +82,9 @@ impl Scans {
         all.noise = match <[SensorNoise; 1]>::try_from(noise) {
             // Which may take no room per point.
             Ok([only]) => only,
-            Err(each) => each.iter().flat_map(SensorNoise::iter).copied().collect::<Vec<_>>().into(),
+            Err(each) => {
+                each.iter().flat_map(SensorNoise::iter).copied().collect::<Vec<_>>().into()
+            }
         };
         Ok(all)
     }

@@ -40,7 +40,9 @@ mod tests {
                 mean: Point3::new(0.01 * f64::from(i), 0.0, z),
                 covariance: Covariance::isotropic(0.004 * 0.004),
             };
-            (0..12).map(|i| PairPoint { index: Some(i), point: at(i), spacing: 0.01, radius: None }).collect()
+            (0..12)
+                .map(|i| PairPoint { index: Some(i), point: at(i), spacing: 0.01, radius: None })
+                .collect()
         };
         PairPoints { a: row(gap), b: row(0.0), ..PairPoints::default() }
     }

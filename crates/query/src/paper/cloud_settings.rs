@@ -84,11 +84,7 @@ pub struct PaperCloudSettings {
 impl PaperCloudSettings {
     /// The settings that suit a sensor.
     pub fn new(sensor: SensorModel) -> Self {
-        Self {
-            filter: FilterSettings::for_sensor(&sensor),
-            sensor,
-            model: PaperModel::default(),
-        }
+        Self { filter: FilterSettings::for_sensor(&sensor), sensor, model: PaperModel::default() }
     }
 
     /// Those with our amendments.

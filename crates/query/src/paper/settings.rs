@@ -62,7 +62,9 @@ pub struct PaperSettings {
     pub pooling: Pooling,
     /// When points are close to each other, for the noisy-or.
     pub closeness: Closeness,
-    /// The kernel, its width γ (above 0) per squared length of the unit box.
+    /// The kernel, its width γ (above 0) per squared length of the unit box. 5 to 20 suits a leaf pair
+    /// that fills it; where the scene does, such a kernel is wide, and calls collisions early, while
+    /// one that is narrower than the samples are apart (γ in the thousands) misses them.
     pub kernel: Kernel,
     /// What is scaled to the unit box.
     pub scaling: Scaling,

@@ -77,7 +77,8 @@ impl Terms {
 
     fn report(&self, mut evidence: Evidence, estimate: Estimate, origin: Vector3) -> Report {
         let points = evidence.merge_points();
-        let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points, &self.closeness));
+        let (max_probability, noisy_or_probability) =
+            (pool::max(points), pool::noisy_or(points, &self.closeness));
         let Places { mut contacts, clearance, at_least } =
             estimate.places.unwrap_or_else(|| Places {
                 contacts: evidence.top_contacts(self.max_contacts),
