@@ -1,11 +1,6 @@
 //! `cargo xtask ci`: every check, in order, each with its time; stops at the first failure.
 
-use std::{
-    io::{BufRead, BufReader},
-    path::Path,
-    process::{Command, ExitStatus, Stdio},
-    time::Instant,
-};
+use std::{path::Path, process::Command, time::Instant};
 
 use anyhow::{Context, Result, ensure};
 
@@ -13,37 +8,29 @@ use cloudtouch_evaluation::sweep;
 
 use crate::{fixtures, tidy};
 
-/// Not published, so not packaged.
-const UNPUBLISHED: [&str; 5] = [
-    "cloudtouch-testkit",
-    "cloudtouch-evaluation",
-    "cloudtouch-fuzzing",
-    "cloudtouch-benches",
-    "xtask",
-];
-
-/// Runs every step. Tests come last, and the last line sums them up.
+/// Runs every step; tests come last.
 pub(crate) fn run(root: &Path) -> Result<()> {
-    step("fmt", "cargo fmt --all -- --check", || cargo(root, "fmt --all -- --check"))?;
+    let cargo = |name: &str, arguments: &str| {
+        step(name, &format!("cargo {arguments}"), || succeed(&mut command(root, arguments)))
+    };
+    cargo("fmt", "fmt --all -- --check")?;
     step("tidy", "cargo xtask tidy", || tidy::run(root))?;
-    step("fixtures", "cargo xtask fixtures --check", || fixtures::check(root))?;
+    step("fixtures", "cargo xtask fixtures --check", || fixtures::run(root, true))?;
     // The lock file holds: what is checked is what was committed, and no network is needed.
-    let clippy = "clippy --locked --workspace --all-targets -- -D warnings";
-    step("clippy", &format!("cargo {clippy}"), || cargo(root, clippy))?;
+    cargo("clippy", "clippy --locked --workspace --all-targets -- -D warnings")?;
     // The tool is left out: its binary and the library it wraps would share one page.
     let doc = "doc --locked --workspace --exclude cloudtouch-cli --no-deps";
     step("doc", &format!("RUSTDOCFLAGS='-D warnings' cargo {doc}"), || {
         succeed(command(root, doc).env("RUSTDOCFLAGS", "-D warnings"))
     })?;
-    let benches = "check --locked --package cloudtouch-benches --benches";
-    step("benches", &format!("cargo {benches}"), || cargo(root, benches))?;
-    let exclude: String = UNPUBLISHED.iter().map(|name| format!(" --exclude {name}")).collect();
-    let package = format!("package --locked --workspace{exclude} --allow-dirty --no-verify");
-    step("package", &format!("cargo {package}"), || cargo(root, &package))?;
+    cargo("benches", "check --locked --package cloudtouch-benches --benches")?;
+    let unpublished = tidy::unpublished(root)?;
+    let exclude: String = unpublished.iter().map(|name| format!(" --exclude {name}")).collect();
+    cargo("package", &format!("package --locked --workspace{exclude} --allow-dirty --no-verify"))?;
     step("sweep", "cargo xtask sweep --short", sweep::check)?;
     let test = "test --locked --workspace --no-fail-fast";
     step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
-        cargo_test(root, test)
+        succeed(command(root, test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
     })
 }
 
@@ -63,15 +50,8 @@ fn command(root: &Path, arguments: &str) -> Command {
     command
 }
 
-fn cargo(root: &Path, arguments: &str) -> Result<()> {
-    succeed(&mut command(root, arguments))
-}
-
 fn succeed(command: &mut Command) -> Result<()> {
-    judge(command.status().context("start cargo")?)
-}
-
-fn judge(status: ExitStatus) -> Result<()> {
+    let status = command.status().context("start cargo")?;
     ensure!(status.success(), "cargo ended with {status}");
     Ok(())
 }
@@ -79,30 +59,6 @@ fn judge(status: ExitStatus) -> Result<()> {
 /// Property tests draw their cases from this seed, so that one commit always gets one verdict;
 /// `cargo test` by hand draws new ones each time.
 const PROPERTY_SEED: &str = "2011";
-
-/// Runs the tests, passes their output on line by line and counts.
-fn cargo_test(root: &Path, arguments: &str) -> Result<()> {
-    let mut child = command(root, arguments)
-        .env("PROPTEST_RNG_SEED", PROPERTY_SEED)
-        .stdout(Stdio::piped())
-        .spawn()
-        .context("start cargo test")?;
-    // Of lines such as `test result: ok. 3 passed; 0 failed; ...`.
-    let (mut passed, mut failed) = (0_u64, 0_u64);
-    for line in BufReader::new(child.stdout.take().context("the output of cargo test")?).lines() {
-        let line = line.context("read the output of cargo test")?;
-        println!("{line}");
-        let words: Vec<&str> = line.split_whitespace().collect();
-        if let ["test", "result:", _, of_passed, "passed;", of_failed, ..] = words[..] {
-            passed += of_passed.parse().unwrap_or(0);
-            failed += of_failed.parse().unwrap_or(0);
-        }
-    }
-    println!("tests: {passed} passed, {failed} failed");
-    judge(child.wait().context("wait for cargo test")?)?;
-    ensure!(passed > 0, "no test ran");
-    Ok(())
-}
 
 #[cfg(test)]
 mod tests {

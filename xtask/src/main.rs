@@ -52,8 +52,7 @@ fn main() -> anyhow::Result<()> {
         Task::BenchReport(arguments) => performance::run(&root, &arguments),
         Task::Growth(arguments) => growth::run(&root, &arguments),
         Task::Settings(arguments) => settings::run(&root, &arguments),
-        Task::Fixtures { check: true } => fixtures::check(&root),
-        Task::Fixtures { check: false } => fixtures::write(&root),
+        Task::Fixtures { check } => fixtures::run(&root, check),
     }
 }
 

@@ -8,16 +8,22 @@ mod text;
 
 use std::{fs, path::Path};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 
 /// Prints every violation and fails when there is one.
 pub(crate) fn run(root: &Path) -> Result<()> {
     let violations = violations(root)?;
-    if violations.is_empty() {
-        println!("tidy: nothing to complain about");
-        return Ok(());
-    }
-    bail!("{} violations\n  {}", violations.len(), violations.join("\n  "))
+    let count = violations.len();
+    ensure!(count == 0, "{count} violations\n  {}", violations.join("\n  "));
+    println!("tidy: nothing to complain about");
+    Ok(())
+}
+
+/// The members that do not go to the registry.
+pub(crate) fn unpublished(root: &Path) -> Result<Vec<String>> {
+    let mut manifests = manifest::read_all(root)?;
+    manifests.retain(|manifest| !manifest.is_published());
+    Ok(manifests.iter().map(|manifest| manifest.name().to_owned()).collect())
 }
 
 fn violations(root: &Path) -> Result<Vec<String>> {

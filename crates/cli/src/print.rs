@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 
 use anyhow::{Context, Result};
-use cloudtouch::{Clearance, Report, StageReport, Verdict};
+use cloudtouch::{Clearance, Report, StageReport};
 use serde::Serialize;
 
 use crate::body::{Body, PreparedCloud};
@@ -58,15 +58,6 @@ pub(crate) fn json_error_line(id: &str, error: &str) -> Result<String> {
     Ok(serde_json::to_string(&ErrorLine { id, error })?)
 }
 
-pub(crate) fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Free => "free",
-        Verdict::InContact => "in contact",
-        Verdict::InCollision => "in collision",
-        Verdict::Undecided => "undecided",
-    }
-}
-
 /// A probability with the digits that mean something.
 pub(crate) fn probability(p: f64) -> String {
     if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
@@ -98,7 +89,7 @@ pub(crate) fn report(report: &Report) -> String {
         "collision probability  {}   (within {low} .. {high})",
         probability(report.collision_probability)
     );
-    let _ = writeln!(text, "verdict                {}", verdict(report.verdict));
+    let _ = writeln!(text, "verdict                {}", report.verdict);
     match report.clearance_m {
         Some(c) => {
             let _ = writeln!(

@@ -1,15 +1,13 @@
 //! What was asked, what is true, and what each method said: one table for every sweep.
 
-use std::{path::Path, time::Instant};
+use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 use cloudtouch::{ContactEvidence, Report};
-use cloudtouch_io::write_atomically;
-use serde::Serialize;
+use cloudtouch_testkit::family::Kind;
 
 /// What the moving body is given as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Pair {
     /// Two observed clouds.
     CloudCloud,
@@ -30,20 +28,8 @@ impl Pair {
     }
 }
 
-/// What a family of scenes is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    /// What users meet.
-    Ordinary,
-    /// Chosen to be hard.
-    Adversarial,
-    /// With meshes of real things, where their files are.
-    Real,
-}
-
 /// How a scene was observed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Condition {
     /// Points of each cloud.
     pub points: usize,
@@ -52,7 +38,7 @@ pub struct Condition {
 }
 
 /// One pose of one draw of a scene, and what is true there.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Question {
     /// Generator of the scene.
     pub family: &'static str,
@@ -75,7 +61,7 @@ pub struct Question {
 }
 
 /// What a method says of a question.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Said {
     /// Larger = more likely a collision; any monotone scale.
     pub score: f64,
@@ -102,14 +88,10 @@ impl From<&Report> for Said {
 }
 
 impl Said {
-    /// A score alone.
-    pub fn score(score: f64, micros: f64) -> Self {
+    /// A score alone, since when it was sought.
+    pub fn score(score: f64, start: Instant) -> Self {
+        let micros = 1e6 * start.elapsed().as_secs_f64();
         Self { score, probability: None, bounds: None, evidence: None, micros }
-    }
-
-    /// Touching or not.
-    pub fn yes_or_no(touch: bool, start: Instant) -> Self {
-        Self::score(f64::from(u8::from(touch)), 1e6 * start.elapsed().as_secs_f64())
     }
 
     fn check(&self) -> Result<()> {
@@ -122,82 +104,45 @@ impl Said {
     }
 }
 
-/// Questions, and for every method its answers to them.
-#[derive(Debug, Default)]
+/// A question, and what every method says of it, in the order of their names; `None` where it was not
+/// asked or has no answer.
+pub type Row = (Question, Vec<Option<Said>>);
+
+/// Questions with the answers of several methods.
+#[derive(Debug)]
 pub struct Answers {
+    /// Names of the methods.
+    pub methods: Vec<String>,
     /// All questions.
-    pub questions: Vec<Question>,
-    /// Name of a method and its answers, one for each question; `None` where it was not asked.
-    pub methods: Vec<(String, Vec<Option<Said>>)>,
+    pub rows: Vec<Row>,
 }
 
 impl Answers {
-    /// Appends a question with the answers of some methods.
+    /// Appends a question with its answers.
     ///
     /// # Errors
     /// When an answer is none: a NaN, a probability outside of [0, 1], bounds in the wrong order.
-    pub fn push(&mut self, question: Question, said: &[(String, Said)]) -> Result<()> {
-        let before = self.questions.len();
-        for (name, said) in said {
-            said.check().with_context(|| format!("{name} on {question:?}"))?;
-            if !self.methods.iter().any(|(known, _)| known == name) {
-                self.methods.push((name.clone(), vec![None; before]));
-            }
+    pub fn push(&mut self, (question, said): Row) -> Result<()> {
+        for (name, said) in self.methods.iter().zip(&said) {
+            let sound = said.as_ref().map_or(Ok(()), Said::check);
+            sound.with_context(|| format!("{name} on {question:?}"))?;
         }
-        for (name, answers) in &mut self.methods {
-            answers.push(said.iter().find(|(n, _)| n == name).map(|(_, said)| *said));
-        }
-        self.questions.push(question);
+        self.rows.push((question, said));
         Ok(())
     }
 
     /// The families asked about, in the order of the questions.
     pub fn families(&self) -> Vec<&'static str> {
-        let mut families = Vec::new();
-        for question in &self.questions {
-            if !families.contains(&question.family) {
-                families.push(question.family);
-            }
-        }
+        let mut families: Vec<_> = self.rows.iter().map(|(question, _)| question.family).collect();
+        // One is asked about after the other.
+        families.dedup();
         families
     }
 
-    /// Names of the methods that answered.
-    pub fn names(&self) -> Vec<&str> {
-        self.methods.iter().map(|(name, _)| name.as_str()).collect()
+    /// Where the answers of a method stand in each row; `None` when there is no such method.
+    pub fn index(&self, method: &str) -> Option<usize> {
+        self.methods.iter().position(|name| name == method)
     }
-
-    /// Answers of a method; `None` when there is no such method.
-    pub fn said(&self, method: &str) -> Option<&[Option<Said>]> {
-        self.methods.iter().find(|(name, _)| name == method).map(|(_, said)| said.as_slice())
-    }
-
-    /// Writes a line of JSON for every answer.
-    ///
-    /// # Errors
-    /// When the file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<()> {
-        write_atomically(path, |out| {
-            for (i, question) in self.questions.iter().enumerate() {
-                for (method, said) in &self.methods {
-                    let Some(said) = said[i] else { continue };
-                    serde_json::to_writer(&mut *out, &Line { question, method, said })?;
-                    out.write_all(b"\n")?;
-                }
-            }
-            Ok(())
-        })
-        .with_context(|| format!("write {}", path.display()))
-    }
-}
-
-#[derive(Serialize)]
-struct Line<'a> {
-    #[serde(flatten)]
-    question: &'a Question,
-    method: &'a str,
-    #[serde(flatten)]
-    said: Said,
 }
 
 #[cfg(test)]
@@ -220,30 +165,17 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_method_that_was_not_asked_has_no_answer() {
-        let mut answers = Answers::default();
-        let said = |p| Said { probability: Some(p), ..Said::score(p, 1.0) };
-        answers.push(question("a", 0, 0, true), &[("x".into(), said(0.5))]).unwrap();
-        let both = [("y".into(), said(0.2)), ("x".into(), said(0.1))];
-        answers.push(question("b", 0, 0, true), &both).unwrap();
-        assert_eq!(answers.said("x").unwrap().iter().flatten().count(), 2);
-        assert_eq!(answers.said("y").unwrap()[0], None);
-        assert_eq!(answers.said("y").unwrap()[1], Some(said(0.2)));
-        assert_eq!(answers.families(), ["a", "b"]);
-    }
-
-    #[test]
     fn what_is_no_answer_is_refused() {
-        let said = Said::score(0.0, 1.0);
+        let said = Said::score(0.0, Instant::now());
         for bad in [
             Said { score: f64::NAN, ..said },
             Said { probability: Some(1.01), ..said },
             Said { probability: Some(f64::NAN), ..said },
             Said { bounds: Some([0.6, 0.5]), ..said },
         ] {
-            let mut answers = Answers::default();
-            assert!(answers.push(question("a", 0, 0, true), &[("x".into(), bad)]).is_err());
-            assert!(answers.questions.is_empty());
+            let mut answers = Answers { methods: vec!["x".into()], rows: Vec::new() };
+            assert!(answers.push((question("a", 0, 0, true), vec![Some(bad)])).is_err());
+            assert!(answers.rows.is_empty());
         }
     }
 }

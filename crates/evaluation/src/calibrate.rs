@@ -1,6 +1,6 @@
 //! `cargo xtask calibrate`: the surfaces that turn evidence into a probability.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeMap, path::Path};
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -38,9 +38,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let gathering = |ours: Ours| Asked::always(ours.gathering_everything());
     let methods = [gathering(Ours::new(OURS)?), gathering(Ours::oracle(ORACLE)?)];
     let answers = ask(&Plan::evidence(draws, poses), &methods)?;
-    let folder = root.join("target/sweep");
-    fs::create_dir_all(&folder)?;
-    answers.write(&folder.join("evidence.jsonl"))?;
     let without_each = |method: &str| -> Result<BTreeMap<String, Judge>> {
         let without =
             |family: &'static str| Ok((family.to_owned(), fit(&answers, method, Some(family))?));
@@ -58,11 +55,12 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
 
 /// Fitted on all families but one, on clouds and on meshes alike.
 fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> {
-    let said = answers.said(method).with_context(|| format!("{method} did not answer"))?;
+    let method = answers.index(method).with_context(|| format!("{method} did not answer"))?;
     let mut records: Vec<(ContactEvidence, bool)> = Vec::new();
-    for (question, said) in answers.questions.iter().zip(said) {
+    for (question, said) in &answers.rows {
         if without != Some(question.family) {
-            let evidence = said.and_then(|s| s.evidence).context("an answer without evidence")?;
+            let evidence =
+                said[method].and_then(|s| s.evidence).context("an answer without evidence")?;
             records.push((evidence, question.collides));
         }
     }
@@ -71,13 +69,17 @@ fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> 
 
 /// The surface over geometry first; then, where that leaves doubt, how the classifier revises it.
 fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
+    // Fewer deviations make a collision more probable: the axis is turned round, and back again.
+    let mut nearness = DEVIATION_KNOTS.map(|z| -z);
+    nearness.reverse();
     let mut geometry: Vec<SurfaceSample> =
-        records.iter().map(|(e, collides)| ([e.deviations, e.crossing], *collides)).collect();
+        records.iter().map(|(e, collides)| ([-e.deviations, e.crossing], *collides)).collect();
     geometry.extend(within());
-    let deviations = Axis { knots: &DEVIATION_KNOTS, rises: false, usual: 3.0 };
-    let crossing = Axis { knots: &CROSSING_KNOTS, rises: true, usual: 1.0 };
-    let mut judge = Judge::default();
-    keep(&mut judge.by_geometry, &fit_surface(&geometry, deviations, crossing, false));
+    let nearness = Axis { knots: nearness, usual: 3.0 };
+    let crossing = Axis { knots: CROSSING_KNOTS, usual: 1.0 };
+    let mut by_geometry = fit_surface(&geometry, nearness, crossing, false);
+    by_geometry.reverse();
+    let mut judge = Judge { by_geometry, ..Judge::default() };
     let doubtful = |(e, collides): &(ContactEvidence, bool)| -> Option<SurfaceSample> {
         let by_geometry = judge.log_odds_by_geometry(e.deviations, e.crossing);
         let [least, .., most] = DOUBT_KNOTS;
@@ -86,9 +88,9 @@ fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
         is_doubtful.then_some(([by_geometry, e.ln_misclassified()?], *collides))
     };
     let in_doubt: Vec<SurfaceSample> = records.iter().filter_map(doubtful).collect();
-    let doubt = Axis { knots: &DOUBT_KNOTS, rises: true, usual: 1.0 };
-    let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, rises: true, usual: 0.2 };
-    keep(&mut judge.revised, &fit_surface(&in_doubt, doubt, misclassified, true));
+    let doubt = Axis { knots: DOUBT_KNOTS, usual: 1.0 };
+    let misclassified = Axis { knots: MISCLASSIFIED_KNOTS, usual: 0.2 };
+    judge.revised = fit_surface(&in_doubt, doubt, misclassified, true);
     judge.validate()?;
     Ok(judge)
 }
@@ -99,14 +101,9 @@ fn within() -> impl Iterator<Item = SurfaceSample> {
     const CLEARLY_INSIDE: f64 = -4.0;
     const WEIGHT: usize = 100;
     let inside = DEVIATION_KNOTS.into_iter().filter(|&z| z <= CLEARLY_INSIDE);
-    let places = inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| [z, crossing]));
+    let places =
+        inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| [-z, crossing]));
     places.flat_map(|place| std::iter::repeat_n((place, true), WEIGHT))
-}
-
-fn keep<const N: usize, const M: usize>(values: &mut [[f64; M]; N], fitted: &[Vec<f64>]) {
-    for (row, fitted) in values.iter_mut().zip(fitted) {
-        row.copy_from_slice(fitted);
-    }
 }
 
 #[cfg(test)]

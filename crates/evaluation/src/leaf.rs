@@ -1,5 +1,6 @@
 //! Leaf problems: two small clouds with a known gap, and how a query poses them to the solver.
 
+use cloudtouch::QuerySettings;
 use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, Vector3, seed};
 use cloudtouch_svm::{Class, Sample, UnitBox, balanced_penalties};
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
@@ -56,13 +57,10 @@ pub fn samples(
     [of(a, Class::A, penalty_a), of(b, Class::B, penalty_b)].concat()
 }
 
-/// The same as a query poses them: in their unit box, with penalties balanced. None of nothing.
-pub fn posed(
-    sides: [&[UncertainPoint]; 2],
-    radius: f64,
-    penalty: f64,
-) -> Option<(UnitBox, Vec<Sample>)> {
+/// The same as a default query poses them: in their unit box, with penalties balanced. None of nothing.
+pub fn posed(sides: [&[UncertainPoint]; 2], radius: f64) -> Option<(UnitBox, Vec<Sample>)> {
     let [a, b] = sides;
+    let penalty = QuerySettings::default().penalty;
     let unit_box = UnitBox::around(a.iter().chain(b))?;
     let all = samples(sides, radius, balanced_penalties(penalty, a.len(), b.len()).into());
     Some((unit_box, all.iter().map(|sample| unit_box.sample_inside(sample)).collect()))

@@ -9,7 +9,7 @@ use cloudtouch_testkit::family::Family;
 use crate::{
     answers::Pair,
     measures::Measure,
-    methods::{Method, Ours, Paper},
+    methods::{Ours, Paper},
     page::{self, Page, Section},
     sweep::{Asked, Judged, Plan, SEED, ask},
     table::Table,
@@ -41,17 +41,19 @@ pub struct Arguments {
 /// When a query fails or the page cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update_docs } = *arguments;
-    let settings = changes()?;
-    let paper = Paper::new("mode paper");
-    let names: Vec<String> = settings.iter().map(Method::name).chain([paper.name()]).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let asked: Vec<Asked> =
-        settings.into_iter().map(Asked::always).chain([Asked::always(paper)]).collect();
+    let changed = |(name, change): (&str, Change)| -> Result<Asked> {
+        let mut ours = Ours::new(name)?;
+        change(&mut ours);
+        Ok(Asked::always(ours))
+    };
+    let mut asked: Vec<Asked> = SETTINGS.into_iter().map(changed).collect::<Result<_>>()?;
+    asked.push(Asked::always(Paper::new("mode paper")));
     let plan = Plan {
         pairs: vec![Pair::CloudCloud],
         ..Plan::of(FAMILIES.map(Into::into).to_vec(), draws, poses, POINTS, STD)
     };
     let answers = ask(&plan, &asked)?;
+    let names: Vec<&str> = answers.methods.iter().map(String::as_str).collect();
     let judged = Judged::pick(&answers, &names, |_| true);
     let (count, collisions) = judged.counts();
     let introduction = format!(
@@ -70,42 +72,35 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     page.write(&page::folder(root, update_docs))
 }
 
+/// A setting that is changed.
+type Change = fn(&mut Ours);
+
 /// The defaults first, then one change at a time.
-fn changes() -> Result<Vec<Ours>> {
-    let mut all = vec![Ours::new(DEFAULT)?];
-    let mut change = |name: String, edit: &dyn Fn(&mut Ours)| -> Result<()> {
-        let mut ours = Ours::new(&name)?;
-        edit(&mut ours);
-        all.push(ours);
-        Ok(())
-    };
-    for points in [20, 40] {
-        change(format!("n_max {points}"), &|ours| ours.tree.max_leaf_points = points)?;
-    }
-    for gap in [1e-1, 1e-2] {
-        change(format!("tolerance {gap:.0e}"), &|ours| ours.query.relative_gap = gap)?;
-    }
-    for gamma in [1.0, 3.0, 20.0, 40.0] {
-        change(format!("γ {gamma}"), &|ours| ours.query.gamma = gamma)?;
-    }
-    for penalty in [1.0, 10.0, 1000.0] {
-        change(format!("C {penalty}"), &|ours| ours.query.penalty = penalty)?;
-    }
-    change("γ 1, C 1".into(), &|ours| (ours.query.gamma, ours.query.penalty) = (1.0, 1.0))?;
-    Ok(all)
-}
+const SETTINGS: [(&str, Change); 13] = [
+    (DEFAULT, |_| {}),
+    ("n_max 20", |ours| ours.tree.max_leaf_points = 20),
+    ("n_max 40", |ours| ours.tree.max_leaf_points = 40),
+    ("tolerance 1e-1", |ours| ours.query.relative_gap = 1e-1),
+    ("tolerance 1e-2", |ours| ours.query.relative_gap = 1e-2),
+    ("γ 1", |ours| ours.query.gamma = 1.0),
+    ("γ 3", |ours| ours.query.gamma = 3.0),
+    ("γ 20", |ours| ours.query.gamma = 20.0),
+    ("γ 40", |ours| ours.query.gamma = 40.0),
+    ("C 1", |ours| ours.query.penalty = 1.0),
+    ("C 10", |ours| ours.query.penalty = 10.0),
+    ("C 1000", |ours| ours.query.penalty = 1000.0),
+    ("γ 1, C 1", |ours| (ours.query.gamma, ours.query.penalty) = (1.0, 1.0)),
+];
 
 fn table(judged: &Judged<'_>, names: &[&str]) -> Table {
-    let measures = [Measure::Brier, Measure::Auc];
-    let measured = judged.measure(&measures);
     let header = "setting, median (ms), p95 (ms), Brier, minus default, AUC, minus default";
     let mut table = Table::new(header.split(", "));
     for name in names {
         let mut row = vec![(*name).to_owned()];
         row.extend([0.5, 0.95].map(|share| format!("{:.2}", judged.query_ms(name, share))));
-        for measure in measures {
-            row.push(measured.estimate(name, measure).map_or("–".into(), |e| e.to_string()));
-            row.push(measured.compared(name, DEFAULT, measure));
+        for measure in [Measure::Brier, Measure::Auc] {
+            row.push(judged.estimate(name, measure).to_string());
+            row.push(judged.compared(name, DEFAULT, measure));
         }
         table.row(row);
     }

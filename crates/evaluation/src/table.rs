@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use cloudtouch::Verdict;
-
 /// Rows under a header; [`Display`](fmt::Display) writes Markdown.
 #[derive(Debug, Clone)]
 pub struct Table {
@@ -62,16 +60,6 @@ pub fn small(value: f64) -> String {
 /// Lower and upper bound of a probability.
 pub fn bounds([low, high]: [f64; 2]) -> String {
     format!("{} .. {}", probability(low), probability(high))
-}
-
-/// A verdict in words.
-pub fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Free => "free",
-        Verdict::InContact => "in contact",
-        Verdict::InCollision => "in collision",
-        Verdict::Undecided => "undecided",
-    }
 }
 
 #[cfg(test)]

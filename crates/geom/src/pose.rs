@@ -202,6 +202,19 @@ mod tests {
         let mirrored = m.map_with_location(|r, c, v| if r < 3 && c == 0 { -v } else { v });
         assert!(matches!(Pose::try_from_matrix(&mirrored), Err(PoseError::Mirrored { .. })));
         assert!(matches!(Pose::try_from_matrix(&m.transpose()), Err(PoseError::LastRow { .. })));
+        // A scale along one axis, a shear, a rotation that is none, and a place that is nowhere; but
+        // one far away is a place.
+        for (row, column, value, is_fine) in [
+            (1, 1, 1.01, false),
+            (0, 2, 0.1, false),
+            (0, 0, 0.0, false),
+            (2, 3, f64::INFINITY, false),
+            (0, 3, 1e9, true),
+        ] {
+            let mut changed = Matrix4::identity();
+            changed[(row, column)] = value;
+            assert_eq!(Pose::try_from_matrix(&changed).is_ok(), is_fine, "{row} {column} {value}");
+        }
         m[(0, 3)] = f64::NAN;
         assert!(matches!(
             Pose::try_from_matrix(&m),

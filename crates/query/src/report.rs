@@ -1,5 +1,7 @@
 //! What a query answers.
 
+use std::fmt;
+
 use cloudtouch_geom::{Point3, Vector3};
 use serde::Serialize;
 
@@ -64,6 +66,17 @@ pub enum Verdict {
     /// Some part could not be decided, or was left out without a bound below the reject threshold,
     /// and the rest does not settle the matter.
     Undecided,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.pad(match self {
+            Self::Free => "free",
+            Self::InContact => "in contact",
+            Self::InCollision => "in collision",
+            Self::Undecided => "undecided",
+        })
+    }
 }
 
 /// What keeps a query from a decision.

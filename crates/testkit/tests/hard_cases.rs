@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use cloudtouch_geom::{Covariance, Pose};
+use cloudtouch_geom::Covariance;
 use cloudtouch_testkit::{
     brute,
     exact::brute::point_distance,
-    hard_cases::{hard_cases, hard_meshes, hard_poses, hard_problems},
+    hard_cases::{hard_cases, hard_meshes, hard_problems},
 };
 
 #[test]
@@ -65,7 +65,6 @@ fn names_of_the_other_lists_are_unique_too() {
     }
     check(hard_problems().iter().map(|p| p.name));
     check(hard_meshes().iter().map(|m| m.name));
-    check(hard_poses().iter().map(|p| p.name));
 }
 
 #[test]
@@ -77,13 +76,6 @@ fn problems_have_a_radius_for_each_point_and_settings_that_are_allowed() {
     }
     let radii = hard_problems()[0].radii_a.clone();
     assert!(radii.contains(&0.0) && radii.contains(&6.0));
-}
-
-#[test]
-fn poses_are_rigid_where_they_are_said_to_be() {
-    for pose in hard_poses() {
-        assert_eq!(Pose::try_from_matrix(&pose.matrix).is_ok(), pose.valid, "{}", pose.name);
-    }
 }
 
 #[test]

@@ -132,34 +132,27 @@ fn imported(tree: TokenStream, before: &[String]) -> Vec<(String, Names)> {
 
 /// Notes every chain of names, in brackets of any kind too, and what a `use` in a body brings.
 fn mention(tokens: TokenStream, mentions: &mut BTreeSet<Names>) {
-    let mut chain: Names = Vec::new();
-    let mut colons = 0;
+    // Names with nothing but a double colon between them are one word.
+    let mut words = String::new();
     let mut tokens = tokens.into_iter();
     while let Some(token) = tokens.next() {
         match token {
-            TokenTree::Punct(punct) if punct.as_char() == ':' => {
-                colons += 1;
-                continue;
-            }
             TokenTree::Ident(word) if word == "use" => {
                 let tree = tokens.by_ref().take_while(|t| t.to_string() != ";").collect();
                 mentions.extend(imported(tree, &[]).into_iter().map(|(_, path)| path));
             }
-            TokenTree::Ident(word) => {
-                if colons != 2 {
-                    mentions.insert(std::mem::take(&mut chain));
-                }
-                chain.push(word.to_string());
-            }
+            TokenTree::Ident(word) => words += &format!(" {word} "),
+            TokenTree::Punct(punct) => words.push(punct.as_char()),
             TokenTree::Group(group) => {
-                mentions.insert(std::mem::take(&mut chain));
+                words.push(';');
                 mention(group.stream(), mentions);
             }
-            _ => drop(mentions.insert(std::mem::take(&mut chain))),
+            TokenTree::Literal(_) => words.push(';'),
         }
-        colons = 0;
     }
-    mentions.insert(chain);
+    let words = words.replace(" :: ", "::");
+    let chains = words.split(|c: char| c != ':' && c != '_' && !c.is_alphanumeric());
+    mentions.extend(chains.map(|chain| chain.split("::").map(str::to_owned).collect()));
 }
 
 /// The files whose items each file uses, itself left out. A re-export alone uses nothing.

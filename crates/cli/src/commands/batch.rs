@@ -167,7 +167,7 @@ fn table(cases: &[(String, Result<Case>)], answers: &[Answer]) -> String {
             "{id:<id_width$}  {label:<label_width$}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {files}",
             print::probability(report.collision_probability),
             format!("{low} .. {high}"),
-            print::verdict(report.verdict),
+            report.verdict,
             print::gap_mm(report.clearance_m),
             report.stats.query_us as f64 / 1e3,
         );

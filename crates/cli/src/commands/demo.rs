@@ -110,7 +110,7 @@ fn table(poses: &[Answered]) -> String {
             1e3 * pose.truth.abs(),
             print::probability(report.collision_probability),
             bar(report.collision_probability),
-            print::verdict(report.verdict),
+            report.verdict,
             print::gap_mm(report.clearance_m),
             report.stats.query_us as f64 / 1e3,
             if pose.is_wrong() { "  wrong" } else { "" }

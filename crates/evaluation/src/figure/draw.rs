@@ -5,7 +5,7 @@ use std::ops::Range;
 use anyhow::{Result, anyhow};
 use plotters::{coord::Shift, element::PointCollection, prelude::*};
 
-use super::{Axis, Figure, GREY, Kind, Panel, Place};
+use super::{Axis, Figure, GREY, Panel, Place};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -76,8 +76,8 @@ fn looks(figure: &Figure) -> Vec<Look<'_>> {
             looks.push(Look { name, number, color, line: false, points: false });
             number
         });
-        looks[at].points |= matches!(series.kind, Kind::Points | Kind::Curve);
-        looks[at].line |= series.kind != Kind::Points;
+        looks[at].points |= series.points;
+        looks[at].line |= series.line || series.fill.is_some();
     }
     looks
 }
@@ -93,18 +93,16 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         .y_label_area_size(44)
         .build_cartesian_2d(x, y)
         .map_err(failed)?;
-    // Few decades are better than their fractions.
-    let labels = |axis: &Axis| if axis.is_log { 6 } else { 9 };
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.1))
         .x_desc(&panel.x.name)
         .y_desc(&panel.y.name)
-        .x_labels(labels(&panel.x))
-        .y_labels(labels(&panel.y))
-        .x_label_formatter(&|place| panel.x.label(*place))
-        .y_label_formatter(&|place| panel.y.label(*place))
+        .x_labels(9)
+        .y_labels(9)
+        .x_label_formatter(&label)
+        .y_label_formatter(&label)
         .axis_desc_style(FONT)
         .label_style(FONT)
         .draw()
@@ -114,19 +112,17 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         let color = series.color.or(look.map(|look| look.color)).unwrap_or(GREY);
         let number = look.map_or(0, |look| look.number);
         for mark in &series.marks {
-            let places = mark.iter().map(|&(x, y)| (panel.x.place(x), panel.y.place(y)));
-            let places: Vec<Place> =
-                places.filter(|place| place.0.is_finite() && place.1.is_finite()).collect();
-            if matches!(series.kind, Kind::Area | Kind::Band) {
-                let opacity = if series.kind == Kind::Band { 0.25 } else { 1.0 };
+            let is_finite = |place: &Place| place.0.is_finite() && place.1.is_finite();
+            let places: Vec<Place> = mark.iter().copied().filter(is_finite).collect();
+            if let Some(opacity) = series.fill {
                 let area = Polygon::new(places.clone(), color.mix(opacity));
                 chart.draw_series([area]).map_err(failed)?;
             }
-            if matches!(series.kind, Kind::Line | Kind::Curve) {
+            if series.line {
                 let line = PathElement::new(places.clone(), color.stroke_width(2));
                 chart.draw_series([line]).map_err(failed)?;
             }
-            if matches!(series.kind, Kind::Points | Kind::Curve) {
+            if series.points {
                 let marker = |at| marker(number, at, series.size, color.mix(0.8).filled());
                 chart.draw_series(places.into_iter().map(marker)).map_err(failed)?;
             }
@@ -172,37 +168,25 @@ fn draw_legend(area: &Area<'_>, looks: &[Look<'_>]) -> Result<()> {
 }
 
 impl Axis {
-    /// Where a value stands along it; not finite where it cannot be shown.
-    fn place(&self, value: f64) -> f64 {
-        if self.is_log { value.log10() } else { value }
-    }
-
     /// From where to where it reaches when it has to show these values.
     fn reach(&self, values: impl Iterator<Item = f64>) -> Range<f64> {
         if let Some(range) = &self.range {
-            return self.place(range.start)..self.place(range.end);
+            return range.clone();
         }
-        let finite = values.map(|value| self.place(value)).filter(|place| place.is_finite());
+        let finite = values.filter(|value| value.is_finite());
         let (low, high) =
-            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         match high - low {
             width if width > 0.0 => low - 0.05 * width..high + 0.05 * width,
             0.0 => low - 0.5..high + 0.5,
             _ => 0.0..1.0,
         }
     }
+}
 
-    /// What stands at a place, without digits that say nothing.
-    fn label(&self, place: f64) -> String {
-        let value = if self.is_log { 10_f64.powf(place) } else { place };
-        let digits = if self.is_log { (1.0 - place.floor()).clamp(0.0, 9.0) as usize } else { 4 };
-        let text = format!("{value:.digits$}");
-        let text = match text.split_once('.') {
-            Some(_) => text.trim_end_matches('0').trim_end_matches('.'),
-            None => &text,
-        };
-        if text == "-0" { "0".to_owned() } else { text.to_owned() }
-    }
+/// A number at an axis, without digits that say nothing; never −0.
+fn label(value: &f64) -> String {
+    format!("{}", (value * 1e4).round() / 1e4 + 0.0)
 }
 
 /// Plotters' errors borrow from the drawing area, so only their text is kept.
@@ -216,12 +200,10 @@ mod tests {
 
     #[test]
     fn labels_say_what_stands_there_and_what_cannot_be_shown_does_not_widen_an_axis() {
-        let axis = Axis::log("time (ms)");
-        let labels =
-            [1e-3, 0.1, 0.32, 1.0, 3.2, 10.0, 1e6].map(|value| axis.label(axis.place(value)));
-        assert_eq!(labels, ["0.001", "0.1", "0.32", "1", "3.2", "10", "1000000"]);
-        assert_eq!([-1e-17, 0.2, 0.25].map(|v| Axis::unit("share").label(v)), ["0", "0.2", "0.25"]);
-        assert_eq!(axis.reach([0.0, 1.0, 100.0, f64::NAN].into_iter()), -0.1..2.1);
+        let labels = [-1e-17, 0.001, 0.2, 0.25, -3.0, 1e6].map(|value| label(&value));
+        assert_eq!(labels, ["0", "0.001", "0.2", "0.25", "-3", "1000000"]);
+        let values = [0.0, f64::INFINITY, 2.0, f64::NAN];
+        assert_eq!(Axis::linear("x").reach(values.into_iter()), -0.1..2.1);
         assert_eq!(Axis::linear("x").reach([].into_iter()), 0.0..1.0);
         assert_eq!(Axis::linear("x").reach([3.0].into_iter()), 2.5..3.5);
     }
@@ -230,7 +212,7 @@ mod tests {
     fn one_name_is_one_row_of_the_legend_and_neighbours_differ() {
         let of = |name: &str| Series::points(name, [(1.0, 2.0)]);
         let panel = |series| {
-            let (x, y) = (Axis::linear("x"), Axis::log("y"));
+            let (x, y) = (Axis::linear("x"), Axis::linear("y"));
             Panel { title: String::new(), x, y, series }
         };
         let whiskers = Series::whiskers("a", [(1.0, 1.0, 3.0)]);

@@ -9,7 +9,7 @@
 //!     Series::curve("ours", [(2.0, 0.7), (10.0, 1.3)]),
 //!     Series::whiskers("ours", [(2.0, 0.2, 3.7), (10.0, 0.4, 4.8)]),
 //! ];
-//! let (x, y) = (Axis::linear("noise (mm)"), Axis::log("time (ms)"));
+//! let (x, y) = (Axis::linear("noise (mm)"), Axis::linear("time (ms)"));
 //! let panel = Panel { title: "Times".into(), x, y, series };
 //! assert!(Figure::new("Speed", [panel]).svg()?.starts_with("<svg"));
 //! # Ok::<(), anyhow::Error>(())
@@ -58,32 +58,24 @@ pub struct Axis {
     pub(crate) name: String,
     /// Its values; as far as what is drawn where it is not given.
     pub range: Option<Range<f64>>,
-    pub(crate) is_log: bool,
 }
 
 /// Marks of one look.
 #[derive(Debug, Clone)]
 pub struct Series {
     pub(crate) name: String,
-    pub(crate) kind: Kind,
+    /// Whether a line goes through the places of a mark.
+    pub(crate) line: bool,
+    /// Whether there is a marker at each.
+    pub(crate) points: bool,
+    /// Opacity of the area within them.
+    pub(crate) fill: Option<f64>,
     /// What each mark goes through.
     pub(crate) marks: Vec<Vec<Place>>,
     /// Another colour than the next of the palette.
     pub color: Option<RGBColor>,
     /// Half the width of markers, pixels.
     pub size: u32,
-}
-
-/// How the places of a mark are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Line,
-    Points,
-    /// A line with points.
-    Curve,
-    Area,
-    /// An area to see through.
-    Band,
 }
 
 impl Figure {
@@ -97,12 +89,7 @@ impl Figure {
 impl Axis {
     /// Values.
     pub fn linear(name: &str) -> Self {
-        Self { name: name.to_owned(), range: None, is_log: false }
-    }
-
-    /// Values above 0 by their logarithm; others are left out.
-    pub fn log(name: &str) -> Self {
-        Self { is_log: true, ..Self::linear(name) }
+        Self { name: name.to_owned(), range: None }
     }
 
     /// A share or probability.
@@ -112,42 +99,43 @@ impl Axis {
 }
 
 impl Series {
-    fn new(name: &str, kind: Kind, marks: impl IntoIterator<Item = Vec<Place>>) -> Self {
-        let marks = marks.into_iter().collect();
-        Self { name: name.to_owned(), kind, marks, color: None, size: 4 }
+    /// Marks that nothing shows yet.
+    fn new(name: &str, marks: impl IntoIterator<Item = Vec<Place>>) -> Self {
+        let (name, marks) = (name.to_owned(), marks.into_iter().collect());
+        Self { name, line: false, points: false, fill: None, marks, color: None, size: 4 }
     }
 
     /// A line through the places in order.
     pub fn line(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
-        Self::new(name, Kind::Line, [places.into_iter().collect()])
+        Self { line: true, ..Self::new(name, [places.into_iter().collect()]) }
     }
 
     /// A marker at each place.
     pub fn points(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
-        Self::new(name, Kind::Points, [places.into_iter().collect()])
+        Self { points: true, ..Self::new(name, [places.into_iter().collect()]) }
     }
 
     /// A line through the places in order with a marker at each.
     pub fn curve(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
-        Self::new(name, Kind::Curve, [places.into_iter().collect()])
+        Self { points: true, ..Self::line(name, places) }
     }
 
     /// Upright bars of error: x, and y from and to.
     pub fn whiskers(name: &str, spans: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
         let ends = spans.into_iter().map(|(x, low, high)| vec![(x, low), (x, high)]);
-        Self::new(name, Kind::Line, ends)
+        Self { line: true, ..Self::new(name, ends) }
     }
 
-    /// The area between two curves: x, and y from and to.
+    /// The area between two curves, to see through: x, and y from and to.
     pub fn band(name: &str, spans: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
         let spans: Vec<_> = spans.into_iter().collect();
         let back = spans.iter().rev().map(|&(x, _, high)| (x, high));
         let edge = spans.iter().map(|&(x, low, _)| (x, low)).chain(back).collect();
-        Self::new(name, Kind::Band, [edge])
+        Self { fill: Some(0.25), ..Self::new(name, [edge]) }
     }
 
     /// Filled polygons.
     pub fn polygons(name: &str, polygons: impl IntoIterator<Item = Vec<Place>>) -> Self {
-        Self::new(name, Kind::Area, polygons)
+        Self { fill: Some(1.0), ..Self::new(name, polygons) }
     }
 }

@@ -1,16 +1,17 @@
 //! What each method says of every pose under every noise that is added.
 
 use anyhow::{Context, Result};
-use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
-use cloudtouch_testkit::family::Observation;
+use cloudtouch_geom::{PointCloud, Pose, TriangleMesh, seed};
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use rayon::prelude::*;
 
-use super::scan::with_noise;
 use crate::{
     answers::Pair,
-    methods::{Boxes, Distance, Draw, Method, Ours, Paper, Prepared},
+    methods::{Boxes, Distance, Draw, Method, Ours, Paper, Prepared, observed},
 };
 
+/// All randomness of the noise comes from this.
+pub(super) const SEED: u64 = 2011;
 /// Standard deviation of the noise that the scan itself is said to have, m.
 pub(super) const OWN_STD: f64 = 0.005;
 /// Standard deviations of the noise that is added, mm.
@@ -56,9 +57,10 @@ fn of_draw(
     object: &TriangleMesh,
     poses: &[Pose],
 ) -> Result<OfDraw> {
-    let observed = |cloud, std| Observation { cloud, truth: Vec::new(), std };
+    // Those of one draw differ in nothing but their size.
+    let points = add_noise(&scan.points, NoiseKind::Gaussian, added, seed::derive(SEED, 5, draw));
     // Whoever adds noise tells the sensor model.
-    let a = observed(with_noise(scan, added, draw), OWN_STD.hypot(added));
+    let a = observed(PointCloud { points, ..scan.clone() }, OWN_STD.hypot(added));
     // Asked as a mesh; a cloud of it has to be there nevertheless.
     let b = observed(PointCloud::from_points(object.vertices().to_vec()), 0.0);
     let draw = Draw { family: "real scan", a: &a, b: &b, mesh: object };
@@ -68,12 +70,12 @@ fn of_draw(
         &Boxes { side: 0.01 },
         &Distance { smoothed: false },
     ];
-    let prepared: Vec<Box<dyn Prepared>> =
+    let prepared: Vec<Prepared> =
         methods.into_iter().map(|method| method.prepare(&draw)).collect::<Result<_>>()?;
     let all = |pose: &Pose| {
         let mut all = [0.0; METHODS.len()];
         for (said, method) in all.iter_mut().zip(&prepared) {
-            let answer = method.ask(Pair::CloudMesh, pose)?.context("no answer about a mesh")?;
+            let answer = method(Pair::CloudMesh, pose)?.context("no answer about a mesh")?;
             // A score above 0: a box that touches, a point inside.
             *said = answer.probability.unwrap_or(f64::from(u8::from(answer.score > 0.0)));
         }

@@ -2,14 +2,13 @@
 //! the paper's figure 5.
 
 mod answers;
-mod scan;
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Args;
-use cloudtouch_geom::Pose;
-use cloudtouch_io::{LengthUnit, read_mesh};
+use cloudtouch_geom::{Point3, PointCloud, Pose, Vector3};
+use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
 
 use crate::{
     figure::{Axis, Figure, Panel, Series},
@@ -18,8 +17,7 @@ use crate::{
     statistics::quantile,
     table::Table,
 };
-use answers::{ADDED, Answers, METHODS, OWN_STD};
-use scan::SEED;
+use answers::{ADDED, Answers, METHODS, OWN_STD, SEED};
 
 /// Poses that are farther from first contact than this are left out, mm.
 const FARTHEST: f64 = -30.0;
@@ -55,7 +53,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let poses: Vec<Pose> = series.iter().map(|(_, case)| case.pose).collect();
     let placed =
         |pose: &Pose| object.vertices().iter().map(|v| pose.transform_point(v)).collect::<Vec<_>>();
-    let scan = scan::read(&series[0].1.scene, poses.iter().flat_map(placed).collect())?;
+    let scan = read_near(&series[0].1.scene, poses.iter().flat_map(placed).collect())?;
     let answers = Answers::ask(&scan, &object, &poses, arguments.draws)?;
     let introduction = format!(
         "After the paper's figure 5: a gripper, known as a mesh, at {} poses of its approach to a \
@@ -90,6 +88,18 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
             .text(methods(&series, &answers)),
     );
     page.write(&page::folder(root, arguments.update_docs))
+}
+
+/// Reads a depth image and forgets what is farther than 10 cm from a box around these points.
+fn read_near(path: &Path, around: Vec<Point3>) -> Result<PointCloud> {
+    const MARGIN: f64 = 0.1;
+    let mut scan = read_cloud(path)?;
+    let corners = PointCloud::from_points(around).bounding_box().context("nothing to be near")?;
+    let (low, high) = (corners.0.map(|v| v - MARGIN), corners.1.map(|v| v + MARGIN));
+    for point in scan.points.iter_mut().filter(|p| !(low < **p && **p < high)) {
+        *point = Vector3::repeat(f64::NAN).into();
+    }
+    Ok(scan)
 }
 
 /// How far a pose is past first contact, and the smallest signed distance of a measured point.

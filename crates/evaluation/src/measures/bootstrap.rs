@@ -13,9 +13,9 @@ const RESAMPLES: u64 = 300;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
     /// For each answer its pose, counted over all draws.
-    pose_of: Vec<u32>,
+    pub(super) pose_of: Vec<u32>,
     /// For each pose its draw, counted over all families.
-    draw_of: Vec<u32>,
+    pub(super) draw_of: Vec<u32>,
     /// For each family the draws it has.
     draws: Vec<Vec<u32>>,
 }
@@ -43,16 +43,6 @@ impl Clusters {
         clusters
     }
 
-    /// For each answer the number of its pose.
-    pub fn poses(&self) -> &[u32] {
-        &self.pose_of
-    }
-
-    /// How many different poses there are.
-    pub fn pose_count(&self) -> usize {
-        self.draw_of.len()
-    }
-
     /// How often a resample draws each answer: draws of a scene with replacement within each
     /// family, then the poses of a draw. Families stay: they are chosen and no sample of anything.
     fn weights(&self, number: u64) -> Vec<f64> {
@@ -74,6 +64,22 @@ impl Clusters {
             }
         }
         self.pose_of.iter().map(|&pose| of_pose[pose as usize]).collect()
+    }
+
+    /// A statistic, which is a function of the weights of the answers. All statistics are resampled
+    /// with the same weights, so that a difference of two is paired.
+    pub fn estimate(&self, statistic: impl Fn(&[f64]) -> f64 + Sync) -> Estimate {
+        let resample = |number| statistic(&self.weights(number));
+        let mut values: Vec<f64> = (0..RESAMPLES).into_par_iter().map(resample).collect();
+        // Resamples without the statistic (one kind of truth only) say nothing.
+        values.retain(|v| !v.is_nan());
+        values.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let rank = (share * values.len() as f64) as usize;
+            values.get(rank.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+        };
+        let value = statistic(&vec![1.0; self.pose_of.len()]);
+        Estimate { value, low: at(0.025), high: at(0.975) }
     }
 }
 
@@ -117,46 +123,6 @@ impl fmt::Display for Estimate {
     }
 }
 
-/// Estimates of several statistics, each a function of the weights of the answers, resampled
-/// together so that their differences are paired.
-pub struct Replicates {
-    /// For the answers as they are, then for each resample: one value of each statistic.
-    rows: Vec<Vec<f64>>,
-}
-
-impl Replicates {
-    /// Resamples the draws and poses behind the answers.
-    pub fn new(clusters: &Clusters, statistics: impl Fn(&[f64]) -> Vec<f64> + Sync) -> Self {
-        let as_they_are = vec![1.0; clusters.pose_of.len()];
-        let resample = |number| statistics(&clusters.weights(number));
-        let mut rows = vec![statistics(&as_they_are)];
-        rows.extend((0..RESAMPLES).into_par_iter().map(resample).collect::<Vec<_>>());
-        Self { rows }
-    }
-
-    /// One statistic.
-    pub fn estimate(&self, statistic: usize) -> Estimate {
-        self.of(|row| row[statistic])
-    }
-
-    /// One statistic minus another.
-    pub fn difference(&self, first: usize, second: usize) -> Estimate {
-        self.of(|row| row[first] - row[second])
-    }
-
-    /// Resamples without the statistic (one kind of truth only) say nothing.
-    fn of(&self, value: impl Fn(&[f64]) -> f64) -> Estimate {
-        let mut values: Vec<f64> = self.rows[1..].iter().map(|row| value(row)).collect();
-        values.retain(|v| !v.is_nan());
-        values.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let rank = (share * values.len() as f64) as usize;
-            values.get(rank.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
-        };
-        Estimate { value: value(&self.rows[0]), low: at(0.025), high: at(0.975) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,7 +137,7 @@ mod tests {
         // 400 draws of one pose each, values of variance 1/12: ±1.96 √(1/12/400) = ±.0283.
         let values: Vec<f64> = (0..400).map(|i| seed::unit(seed::derive(1, i, 0))).collect();
         let clusters = Clusters::of((0..400).map(|i| ("a", i, 0)));
-        let found = Replicates::new(&clusters, |w| vec![mean(&values, w)]).estimate(0);
+        let found = clusters.estimate(|w| mean(&values, w));
         assert!((found.high - found.low - 2.0 * 0.0283).abs() < 0.009, "{found:?}");
         assert!(found.low < found.value && found.value < found.high);
     }
@@ -181,7 +147,7 @@ mod tests {
         // The same values, but forty answers to each of ten draws agree.
         let values: Vec<f64> = (0..400).map(|i| seed::unit(seed::derive(1, i / 40, 0))).collect();
         let width = |clusters: Clusters| {
-            let found = Replicates::new(&clusters, |w| vec![mean(&values, w)]).estimate(0);
+            let found = clusters.estimate(|w| mean(&values, w));
             found.high - found.low
         };
         let together = width(Clusters::of((0..400).map(|i| ("a", i / 40, i % 40))));
@@ -195,7 +161,7 @@ mod tests {
         let families = ["a", "b", "c"];
         let clusters = Clusters::of((0..30).map(|i| (families[i as usize % 3], i, 0)));
         let values: Vec<f64> = (0..30).map(|i| f64::from(i % 3)).collect();
-        let found = Replicates::new(&clusters, |w| vec![mean(&values, w)]).estimate(0);
+        let found = clusters.estimate(|w| mean(&values, w));
         assert_eq!((found.low, found.high), (1.0, 1.0));
     }
 }

@@ -36,8 +36,8 @@ pub fn calibration_error(sample: &Sample, weights: &[f64]) -> f64 {
 pub fn chance_error(sample: &Sample, clusters: &Clusters, seed: u64) -> f64 {
     let simulated = |simulation| {
         let mut rng = seed::generator(seed::derive(seed, simulation, 0));
-        let draws: Vec<f64> = (0..clusters.pose_count()).map(|_| rng.random()).collect();
-        let answers = sample.probabilities.iter().zip(clusters.poses());
+        let draws: Vec<f64> = (0..clusters.draw_of.len()).map(|_| rng.random()).collect();
+        let answers = sample.probabilities.iter().zip(&clusters.pose_of);
         error_of(answers.map(|(&p, &pose)| (p, draws[pose as usize] < p, 1.0)))
     };
     (0..SIMULATIONS).map(simulated).sum::<f64>() / SIMULATIONS as f64

@@ -7,7 +7,7 @@ mod rank;
 mod sample;
 mod surface;
 
-pub use bootstrap::{Clusters, Estimate, Replicates};
+pub use bootstrap::{Clusters, Estimate};
 pub use calibration::{Bin, brier, calibration_error, chance_error, observed_within, reliability};
 pub use logistic::Logistic;
 pub use rank::{auc, false_stops};
@@ -36,11 +36,6 @@ impl Measure {
             Self::CalibrationError => "ECE".into(),
             Self::FalseStops(rate) => format!("false stops at {} % misses", 100.0 * rate),
         }
-    }
-
-    /// +1 when more is better, else −1.
-    pub fn sign(self) -> f64 {
-        if self == Self::Auc { 1.0 } else { -1.0 }
     }
 
     /// Its value; `weights` say how often each answer counts.

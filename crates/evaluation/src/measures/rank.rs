@@ -6,30 +6,31 @@ use super::Sample;
 /// the ROC curve); NaN without both kinds.
 pub fn auc(sample: &Sample, weights: &[f64]) -> f64 {
     let (mut wins, mut free_below, mut hits_below) = (0.0, 0.0, 0.0);
-    sample.score_groups(weights, |_, hits, free| {
+    for [hits, free] in sample.groups(weights) {
         wins += hits * (free_below + 0.5 * free);
         free_below += free;
         hits_below += hits;
-    });
+    }
     wins / (hits_below * free_below)
 }
 
 /// Share of the free poses stopped at the highest threshold that misses at most `miss_rate` of the
 /// collisions, a pose being stopped when its score is at or above it; NaN without both kinds.
 pub fn false_stops(sample: &Sample, weights: &[f64], miss_rate: f64) -> f64 {
-    let (all_hits, all_free) = sample.totals(weights);
+    let groups: Vec<[f64; 2]> = sample.groups(weights).collect();
+    let [all_hits, all_free] = [0, 1].map(|of| groups.iter().map(|group| group[of]).sum::<f64>());
     // Room for the rounding of miss_rate · all_hits where it should be a whole number.
     let allowed = miss_rate * all_hits + 1e-9;
-    let (mut missed, mut free_below, mut passed) = (0.0, 0.0, f64::NAN);
-    sample.score_groups(weights, |_, hits, free| {
+    let (mut missed, mut free_below) = (0.0, 0.0);
+    for [hits, free] in groups {
         missed += hits;
         // The next threshold up would miss this group too.
-        if missed > allowed && passed.is_nan() {
-            passed = free_below;
+        if missed > allowed {
+            return 1.0 - free_below / all_free;
         }
         free_below += free;
-    });
-    1.0 - passed / all_free
+    }
+    f64::NAN
 }
 
 #[cfg(test)]

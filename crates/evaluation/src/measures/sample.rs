@@ -34,26 +34,15 @@ impl Sample {
         vec![1.0; self.collides.len()]
     }
 
-    /// Goes through the groups of equal score, rising: the score, and the weights of the
-    /// collisions and of the free poses in the group.
-    pub(super) fn score_groups(&self, weights: &[f64], mut visit: impl FnMut(f64, f64, f64)) {
+    /// The groups of equal score, rising: the weights of the collisions and of the free poses.
+    pub(super) fn groups(&self, weights: &[f64]) -> impl Iterator<Item = [f64; 2]> {
         let score = |i: u32| self.scores[i as usize];
-        for group in self.by_score.chunk_by(|&a, &b| score(a) == score(b)) {
-            let (mut hits, mut free) = (0.0, 0.0);
-            for &i in group {
-                *(if self.collides[i as usize] { &mut hits } else { &mut free }) +=
-                    weights[i as usize];
+        self.by_score.chunk_by(move |&a, &b| score(a) == score(b)).map(|group| {
+            let mut of_group = [0.0; 2];
+            for i in group.iter().map(|&i| i as usize) {
+                of_group[usize::from(!self.collides[i])] += weights[i];
             }
-            visit(score(group[0]), hits, free);
-        }
-    }
-
-    /// Weights of all collisions and of all free poses.
-    pub(super) fn totals(&self, weights: &[f64]) -> (f64, f64) {
-        let (mut hits, mut free) = (0.0, 0.0);
-        for (&collides, weight) in self.collides.iter().zip(weights) {
-            *(if collides { &mut hits } else { &mut free }) += weight;
-        }
-        (hits, free)
+            of_group
+        })
     }
 }

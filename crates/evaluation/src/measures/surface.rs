@@ -1,6 +1,8 @@
 //! Log odds as a surface over two numbers: values at knots, straight lines between them, fitted by
 //! penalised maximum likelihood (Newton's method) and monotone.
 
+use std::array;
+
 use cloudtouch::between_knots;
 use nalgebra::{DMatrix, DVector};
 
@@ -17,13 +19,11 @@ const PINNED: f64 = 1e8;
 /// Newton's method is done long before.
 const MOST_STEPS: usize = 100;
 
-/// One of the two numbers.
+/// One of the two numbers; more of it makes the event more probable.
 #[derive(Debug, Clone, Copy)]
-pub struct Axis<'a> {
+pub struct Axis<const N: usize> {
     /// Where the surface has values, ascending.
-    pub knots: &'a [f64],
-    /// Whether more of it makes the event more probable, or less.
-    pub rises: bool,
+    pub knots: [f64; N],
     /// By how much a unit of it changes log odds where hardly a sample is.
     pub usual: f64,
 }
@@ -36,54 +36,45 @@ pub type Sample = ([f64; 2], bool);
 ///
 /// # Panics
 /// When a knot is not finite: then nothing can be solved.
-pub fn fit_surface(
+pub fn fit_surface<const N: usize, const M: usize>(
     samples: &[Sample],
-    rows: Axis<'_>,
-    columns: Axis<'_>,
+    rows: Axis<N>,
+    columns: Axis<M>,
     pins_border: bool,
-) -> Vec<Vec<f64>> {
-    let (n, m) = (rows.knots.len(), columns.knots.len());
+) -> [[f64; M]; N] {
     let shares: Vec<([(usize, f64); 4], bool)> =
-        samples.iter().map(|&(x, came)| (shares(rows, columns, x), came)).collect();
-    let (slopes, bends) = differences(rows, columns);
-    let pins: Vec<usize> = if pins_border { vec![0, n - 1] } else { Vec::new() };
-    let mut values = DVector::zeros(n * m);
+        samples.iter().map(|&(x, came)| (shares(&rows, &columns, x), came)).collect();
+    let differences = differences(&rows, &columns);
+    let pins: &[usize] = if pins_border { &[0, N - 1] } else { &[] };
+    let mut values = DVector::zeros(N * M);
     for _ in 0..MOST_STEPS {
-        let mut hessian = DMatrix::from_diagonal_element(n * m, n * m, RIDGE);
+        let mut hessian = DMatrix::from_diagonal_element(N * M, N * M, RIDGE);
         let mut gradient = RIDGE * &values;
-        for (at, came) in &shares {
-            let log_odds: f64 = at.iter().map(|&(k, w)| w * values[k]).sum();
-            let probability = 1.0 / (1.0 + (-log_odds).exp());
-            let error = probability - f64::from(u8::from(*came));
-            let weight = (probability * (1.0 - probability)).max(1e-9);
-            for &(i, w) in at {
-                gradient[i] += w * error;
-                for &(j, v) in at {
-                    hessian[(i, j)] += w * v * weight;
-                }
-            }
-        }
-        let of_slope = |(terms, usual): &'_ (Terms, f64)| {
-            let rise = value(terms, &values);
-            if rise < 0.0 { (MONOTONE, rise) } else { (WEAK, rise - usual) }
-        };
-        let penalties: Vec<(&Terms, (f64, f64))> = slopes
-            .iter()
-            .map(|slope| (&slope.0, of_slope(slope)))
-            .chain(bends.iter().map(|terms| (terms, (SMOOTHNESS, value(terms, &values)))))
-            .collect();
-        for (terms, (penalty, excess)) in penalties {
+        let mut add = |terms: &[(usize, f64)], slope: f64, curvature: f64| {
             for &(i, w) in terms {
-                gradient[i] += penalty * w * excess;
+                gradient[i] += w * slope;
                 for &(j, v) in terms {
-                    hessian[(i, j)] += penalty * w * v;
+                    hessian[(i, j)] += w * v * curvature;
                 }
             }
+        };
+        for (at, came) in &shares {
+            let probability = 1.0 / (1.0 + (-value(at, &values)).exp());
+            let error = probability - f64::from(u8::from(*came));
+            add(at, error, (probability * (1.0 - probability)).max(1e-9));
         }
-        for &row in &pins {
-            for k in row * m..(row + 1) * m {
-                gradient[k] += PINNED * (values[k] - rows.knots[row]);
-                hessian[(k, k)] += PINNED;
+        for (terms, usual) in &differences {
+            let found = value(terms, &values);
+            let (penalty, excess) = match usual {
+                None => (SMOOTHNESS, found),
+                Some(_) if found < 0.0 => (MONOTONE, found),
+                Some(usual) => (WEAK, found - usual),
+            };
+            add(terms, penalty * excess, penalty);
+        }
+        for &row in pins {
+            for k in row * M..(row + 1) * M {
+                add(&[(k, 1.0)], PINNED * (values[k] - rows.knots[row]), PINNED);
             }
         }
         let step = hessian.cholesky().expect("a positive definite matrix").solve(&gradient);
@@ -94,26 +85,29 @@ pub fn fit_surface(
             break;
         }
     }
-    let mut table: Vec<Vec<f64>> = values.as_slice().chunks(m).map(<[f64]>::to_vec).collect();
-    round(&mut table, rows, columns);
+    let mut table = array::from_fn(|i| array::from_fn(|j| values[i * M + j]));
+    round(&mut table);
     if pins_border {
-        let [least, .., most] = rows.knots else { return table };
-        table.iter_mut().flatten().for_each(|value| *value = value.clamp(*least, *most));
-        table[0].fill(*least);
-        table[n - 1].fill(*most);
+        let [least, most] = [rows.knots[0], rows.knots[N - 1]];
+        table.as_flattened_mut().iter_mut().for_each(|value| *value = value.clamp(least, most));
+        table[0].fill(least);
+        table[N - 1].fill(most);
     }
     table
 }
 
 /// Which values a place between the knots is made from, and how much of each.
-fn shares(rows: Axis<'_>, columns: Axis<'_>, [x, y]: [f64; 2]) -> [(usize, f64); 4] {
-    let m = columns.knots.len();
-    let ((i, s), (j, t)) = (between_knots(rows.knots, x), between_knots(columns.knots, y));
+fn shares<const N: usize, const M: usize>(
+    rows: &Axis<N>,
+    columns: &Axis<M>,
+    [x, y]: [f64; 2],
+) -> [(usize, f64); 4] {
+    let ((i, s), (j, t)) = (between_knots(&rows.knots, x), between_knots(&columns.knots, y));
     [
-        (i * m + j, (1.0 - s) * (1.0 - t)),
-        (i * m + j + 1, (1.0 - s) * t),
-        ((i + 1) * m + j, s * (1.0 - t)),
-        ((i + 1) * m + j + 1, s * t),
+        (i * M + j, (1.0 - s) * (1.0 - t)),
+        (i * M + j + 1, (1.0 - s) * t),
+        ((i + 1) * M + j, s * (1.0 - t)),
+        ((i + 1) * M + j + 1, s * t),
     ]
 }
 
@@ -123,48 +117,43 @@ fn value(terms: &[(usize, f64)], values: &DVector<f64>) -> f64 {
     terms.iter().map(|&(k, w)| w * values[k]).sum()
 }
 
-/// Differences between neighbouring values, positive where they go with the evidence, with what they
-/// usually are, and between neighbouring slopes, scaled by the distances of the knots.
-fn differences(rows: Axis<'_>, columns: Axis<'_>) -> (Vec<(Terms, f64)>, Vec<Terms>) {
-    let (n, m) = (rows.knots.len(), columns.knots.len());
-    let (mut slopes, mut bends) = (Vec::new(), Vec::new());
-    let mut along = |axis: Axis<'_>, k: usize, index: &dyn Fn(usize) -> usize| {
-        let sign = if axis.rises { 1.0 } else { -1.0 };
-        if k + 1 < axis.knots.len() {
-            let usual = axis.usual * (axis.knots[k + 1] - axis.knots[k]);
-            slopes.push((vec![(index(k + 1), sign), (index(k), -sign)], usual));
+/// Differences between neighbouring values with what they usually are, and without that between
+/// neighbouring slopes, scaled by the distances of the knots.
+fn differences<const N: usize, const M: usize>(
+    rows: &Axis<N>,
+    columns: &Axis<M>,
+) -> Vec<(Terms, Option<f64>)> {
+    let mut all = Vec::new();
+    let mut along = |knots: &[f64], usual: f64, k: usize, index: &dyn Fn(usize) -> usize| {
+        let width = |k: usize| knots[k + 1] - knots[k];
+        if k + 1 < knots.len() {
+            let rise = vec![(index(k + 1), 1.0), (index(k), -1.0)];
+            all.push((rise, Some(usual * width(k))));
         }
-        if k > 0 && k + 1 < axis.knots.len() {
-            let [before, after] =
-                [axis.knots[k] - axis.knots[k - 1], axis.knots[k + 1] - axis.knots[k]];
+        if k > 0 && k + 1 < knots.len() {
+            let [before, after] = [width(k - 1), width(k)];
             let mean = 0.5 * (before + after);
             let (low, high) = (mean / before, mean / after);
-            bends.push(vec![(index(k - 1), low), (index(k), -low - high), (index(k + 1), high)]);
+            let bend = vec![(index(k - 1), low), (index(k), -low - high), (index(k + 1), high)];
+            all.push((bend, None));
         }
     };
-    for i in 0..n {
-        for j in 0..m {
-            along(rows, i, &|k| k * m + j);
-            along(columns, j, &|k| i * m + k);
+    for i in 0..N {
+        for j in 0..M {
+            along(&rows.knots, rows.usual, i, &|k| k * M + j);
+            along(&columns.knots, columns.usual, j, &|k| i * M + k);
         }
     }
-    (slopes, bends)
+    all
 }
 
 /// To thousandths, and exactly monotone: what is left of slopes against the evidence is levelled.
-fn round(table: &mut [Vec<f64>], rows: Axis<'_>, columns: Axis<'_>) {
-    let (n, m) = (table.len(), table[0].len());
-    let in_order = |rises: bool, k: usize, n: usize| if rises { k } else { n - 1 - k };
-    for i in 0..n {
-        for j in 0..m {
-            let (i, j) = (in_order(rows.rises, i, n), in_order(columns.rises, j, m));
-            let before = |rises: bool, k: usize, n: usize| {
-                if rises { k.checked_sub(1) } else { Some(k + 1).filter(|&k| k < n) }
-            };
-            let above = before(rows.rises, i, n).map_or(f64::NEG_INFINITY, |i| table[i][j]);
-            let beside = before(columns.rises, j, m).map_or(f64::NEG_INFINITY, |j| table[i][j]);
-            let rounded = (1e3 * table[i][j]).round() / 1e3;
-            table[i][j] = rounded.max(above).max(beside);
+fn round<const M: usize>(table: &mut [[f64; M]]) {
+    for i in 0..table.len() {
+        for j in 0..M {
+            let above = if i > 0 { table[i - 1][j] } else { f64::NEG_INFINITY };
+            let beside = if j > 0 { table[i][j - 1] } else { f64::NEG_INFINITY };
+            table[i][j] = ((1e3 * table[i][j]).round() / 1e3).max(above).max(beside);
         }
     }
 }
@@ -175,8 +164,8 @@ mod tests {
 
     use super::*;
 
-    const ROWS: Axis<'_> = Axis { knots: &[0.0, 1.0, 2.0, 4.0], rises: false, usual: 1.0 };
-    const COLUMNS: Axis<'_> = Axis { knots: &[0.0, 1.0, 3.0], rises: true, usual: 1.0 };
+    const ROWS: Axis<4> = Axis { knots: [0.0, 1.0, 2.0, 4.0], usual: 1.0 };
+    const COLUMNS: Axis<3> = Axis { knots: [0.0, 1.0, 3.0], usual: 1.0 };
 
     fn drawn(log_odds: impl Fn(f64, f64) -> f64) -> Vec<Sample> {
         let unit = |i, k| seed::unit(seed::derive(7, i, k));
@@ -189,10 +178,10 @@ mod tests {
 
     #[test]
     fn a_plane_is_found_again() {
-        let plane = |x: f64, y: f64| 0.5 - 0.8 * x + 1.1 * y;
+        let plane = |x: f64, y: f64| 0.5 + 0.8 * x + 1.1 * y;
         let table = fit_surface(&drawn(plane), ROWS, COLUMNS, false);
-        for (row, &x) in table.iter().zip(ROWS.knots) {
-            for (&found, &y) in row.iter().zip(COLUMNS.knots) {
+        for (row, x) in table.iter().zip(ROWS.knots) {
+            for (&found, y) in row.iter().zip(COLUMNS.knots) {
                 assert!((found - plane(x, y)).abs() < 0.4, "{x} {y}: {found}");
             }
         }
@@ -202,10 +191,9 @@ mod tests {
     fn what_goes_against_the_evidence_is_levelled_and_borders_are_kept() {
         let table = fit_surface(&drawn(|x, y| x - y), ROWS, COLUMNS, false);
         for (row, next) in table.iter().zip(&table[1..]) {
-            assert!(row.is_sorted() && row.iter().zip(next).all(|(a, b)| a >= b), "{table:?}");
+            assert!(row.is_sorted() && row.iter().zip(next).all(|(a, b)| a <= b), "{table:?}");
         }
-        let rising = Axis { rises: true, ..ROWS };
-        let pinned = fit_surface(&drawn(|x, y| x + y), rising, COLUMNS, true);
+        let pinned = fit_surface(&drawn(|x, y| x + y), ROWS, COLUMNS, true);
         assert_eq!((pinned[0][2], pinned[3][0]), (0.0, 4.0));
     }
 }

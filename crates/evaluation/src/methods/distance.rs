@@ -10,7 +10,7 @@ use cloudtouch_noise::{Neighborhoods, NoiseModel, Scratch, typical_spacing};
 use cloudtouch_testkit::family::Observation;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
-use super::{Draw, Method, Prepared, cleaned, micros_since, sensor_of};
+use super::{Draw, Method, Prepared, cleaned, sensor_of};
 use crate::answers::{Pair, Said};
 
 /// Standard deviation of where the surface is along itself between samples, in spacings.
@@ -35,8 +35,6 @@ struct Bodies {
     mesh: Mesh,
     /// Lowest and highest corner of the mesh's box, m.
     mesh_box: [Point3; 2],
-    /// What one unit of distance is for two clouds, and for a cloud and a mesh, m.
-    scales: [f64; 2],
 }
 
 impl Method for Distance {
@@ -44,7 +42,7 @@ impl Method for Distance {
         if self.smoothed { "smoothed distance".into() } else { "distance".into() }
     }
 
-    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let [(a, unit_a), (b, unit_b)] =
             [points(draw.a, self.smoothed)?, points(draw.b, self.smoothed)?];
         let (low, high) = draw.mesh.bounding_box().ok_or_else(|| anyhow!("a mesh of nothing"))?;
@@ -52,13 +50,22 @@ impl Method for Distance {
         let entries: Vec<(u32, [f64; 3])> =
             (0..).zip(&a).map(|(i, p)| (i, p.coords.map(|v| v + 0.0).into())).collect();
         let index = ImmutableKdTree::new_from_entries(&entries);
-        Ok(Box::new(Bodies {
+        let bodies = Bodies {
             index: index.map_err(|e| anyhow!("index: {e}"))?,
             a,
             b,
             mesh: Mesh::prepare(draw.mesh)?,
             mesh_box: [low, high],
-            scales: [unit_a.hypot(unit_b), unit_a].map(|scale| scale.max(1e-9)),
+        };
+        // What one unit of distance is for two clouds, and for a cloud and a mesh, m.
+        let scales = [unit_a.hypot(unit_b), unit_a].map(|scale| scale.max(1e-9));
+        Ok(Box::new(move |pair, a_from_b| {
+            let start = Instant::now();
+            let (distance, scale) = match pair {
+                Pair::CloudCloud => (bodies.to_points(a_from_b), scales[0]),
+                Pair::CloudMesh => (bodies.to_mesh(a_from_b), scales[1]),
+            };
+            Ok(Some(Said::score(-distance / scale, start)))
         }))
     }
 }
@@ -116,17 +123,6 @@ impl Bodies {
     }
 }
 
-impl Prepared for Bodies {
-    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
-        let start = Instant::now();
-        let (distance, scale) = match pair {
-            Pair::CloudCloud => (self.to_points(a_from_b), self.scales[0]),
-            Pair::CloudMesh => (self.to_mesh(a_from_b), self.scales[1]),
-        };
-        Ok(Some(Said::score(-distance / scale, micros_since(start))))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::{Vector3, seed};
@@ -150,7 +146,7 @@ mod tests {
             let along = |k| 0.4 * seed::unit(seed::derive(9, i, k)) - 0.2;
             let offset = Vector3::new(along(0), along(1), 0.3 + along(2));
             let pose = Pose::from_translation_rpy(offset, [along(3), along(4), along(5)]);
-            let said = |pair| prepared.ask(pair, &pose).unwrap().unwrap().score;
+            let said = |pair| prepared(pair, &pose).unwrap().unwrap().score;
             let moved: Vec<Point3> =
                 b.cloud.points.iter().map(|p| pose.transform_point(p)).collect();
             let clouds = brute::minimum_distance(&a.cloud.points, &moved);

@@ -10,8 +10,6 @@ mod paper;
 mod plain_svm;
 mod shapes;
 
-use std::time::Instant;
-
 use anyhow::Result;
 use cloudtouch::{FilterSettings, filter, noise::SensorModel};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
@@ -49,16 +47,16 @@ pub trait Method: Sync {
     ///
     /// # Errors
     /// When the observations cannot be used.
-    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>>;
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared>;
 }
 
-/// A method that knows the two bodies.
-pub trait Prepared {
-    /// What it says of a pose of the moving body; `None` when it does not answer for such a pair.
-    ///
-    /// # Errors
-    /// When it fails, which a sweep does not excuse.
-    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>>;
+/// What a method that knows the two bodies says of a pose of the moving body (`a_from_b`); `None` when
+/// it does not answer for such a pair. It fails where it should not, which a sweep does not excuse.
+pub type Prepared = Box<dyn Fn(Pair, &Pose) -> Result<Option<Said>>>;
+
+/// A cloud with noise of this standard deviation, m, of which nothing else is known.
+pub fn observed(cloud: PointCloud, std: f64) -> Observation {
+    Observation { cloud, truth: Vec::new(), std }
 }
 
 /// How noisy an observation says it is.
@@ -73,8 +71,4 @@ pub fn sensor_of(observation: &Observation) -> SensorModel {
 fn cleaned(observation: &Observation) -> Result<PointCloud> {
     let settings = FilterSettings::for_sensor(&sensor_of(observation));
     Ok(filter(&observation.cloud, &settings)?.cloud)
-}
-
-fn micros_since(start: Instant) -> f64 {
-    1e6 * start.elapsed().as_secs_f64()
 }

@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use cloudtouch::{
-    Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query, QuerySettings,
-    bvh::TreeSettings, noise::SensorModel,
+    BodyRef, Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query,
+    QuerySettings, bvh::TreeSettings, noise::SensorModel,
 };
-use cloudtouch_geom::{PointCloud, Pose, UnitVector3};
+use cloudtouch_geom::{PointCloud, UnitVector3};
 use cloudtouch_testkit::family::Observation;
 
 use super::{Draw, Fitted, Method, Prepared, sensor_of};
@@ -23,10 +23,9 @@ pub struct Ours {
     is_refined: bool,
     /// Whether it is given the points without noise and the true normals.
     sees_truth: bool,
-    /// Whether the classifier is asked everywhere.
-    gathers: bool,
-    classifies: bool,
     fitted: Fitted,
+    /// What is made of a fitted judge.
+    alter: fn(Judge) -> Judge,
 }
 
 impl Ours {
@@ -41,9 +40,8 @@ impl Ours {
             tree: CloudSettings::new(SensorModel::Exact).tree,
             is_refined: false,
             sees_truth: false,
-            gathers: false,
-            classifies: true,
             fitted: Fitted::stored()?,
+            alter: |judge| judge,
         })
     }
 
@@ -57,14 +55,14 @@ impl Ours {
 
     /// The same, gathering all evidence however clear the first of it is.
     pub fn gathering_everything(mut self) -> Self {
-        self.gathers = true;
+        self.alter = |_| doubting();
         self.query.stop_above = 1.0;
         self
     }
 
     /// The same by geometry alone.
     pub fn without_classifier(self) -> Self {
-        Self { classifies: false, ..self }
+        Self { alter: |judge| judge.without_classifier(), ..self }
     }
 
     /// The same, computing the surface of both clouds beforehand.
@@ -107,40 +105,22 @@ fn doubting() -> Judge {
     judge
 }
 
-struct Bodies {
-    query: Query,
-    a: Cloud,
-    b: Cloud,
-    mesh: Mesh,
-}
-
 impl Method for Ours {
     fn name(&self) -> String {
         self.name.clone()
     }
 
-    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
-        let judge = if self.gathers {
-            doubting()
-        } else {
-            self.fitted.to_judge(draw.family, self.sees_truth)
-        };
-        let judge = if self.classifies { judge } else { judge.without_classifier() };
-        Ok(Box::new(Bodies {
-            query: Query::new(QuerySettings { judge, ..self.query })?,
-            a: self.cloud(draw.a)?,
-            b: self.cloud(draw.b)?,
-            mesh: Mesh::prepare(draw.mesh)?,
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
+        let judge = (self.alter)(self.fitted.to_judge(draw.family, self.sees_truth));
+        let query = Query::new(QuerySettings { judge, ..self.query })?;
+        let (a, b) = (self.cloud(draw.a)?, self.cloud(draw.b)?);
+        let mesh = Mesh::prepare(draw.mesh)?;
+        Ok(Box::new(move |pair, a_from_b| {
+            let moving = match pair {
+                Pair::CloudCloud => BodyRef::from(&b),
+                Pair::CloudMesh => BodyRef::from(&mesh),
+            };
+            Ok(Some(Said::from(&query.run(&a, moving, a_from_b)?)))
         }))
-    }
-}
-
-impl Prepared for Bodies {
-    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
-        let report = match pair {
-            Pair::CloudCloud => self.query.run(&self.a, &self.b, a_from_b)?,
-            Pair::CloudMesh => self.query.run(&self.a, &self.mesh, a_from_b)?,
-        };
-        Ok(Some(Said::from(&report)))
     }
 }

@@ -1,8 +1,7 @@
 //! The paper's algorithm at its default settings.
 
 use anyhow::Result;
-use cloudtouch::{Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings};
-use cloudtouch_geom::Pose;
+use cloudtouch::{Mesh, PaperBodyRef, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings};
 use cloudtouch_testkit::family::Observation;
 
 use super::{Draw, Method, Prepared, sensor_of};
@@ -22,37 +21,23 @@ impl Paper {
     }
 }
 
-struct Bodies {
-    query: PaperQuery,
-    a: PaperCloud,
-    b: PaperCloud,
-    mesh: Mesh,
-}
-
 impl Method for Paper {
     fn name(&self) -> String {
         self.name.clone()
     }
 
-    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let cloud = |seen: &Observation| {
             PaperCloud::prepare(&seen.cloud, &PaperCloudSettings::new(sensor_of(seen)))
         };
-        Ok(Box::new(Bodies {
-            query: PaperQuery::new(self.query)?,
-            a: cloud(draw.a)?,
-            b: cloud(draw.b)?,
-            mesh: Mesh::prepare(draw.mesh)?,
+        let query = PaperQuery::new(self.query)?;
+        let (a, b, mesh) = (cloud(draw.a)?, cloud(draw.b)?, Mesh::prepare(draw.mesh)?);
+        Ok(Box::new(move |pair, a_from_b| {
+            let moving = match pair {
+                Pair::CloudCloud => PaperBodyRef::from(&b),
+                Pair::CloudMesh => PaperBodyRef::from(&mesh),
+            };
+            Ok(Some(Said::from(&query.run(&a, moving, a_from_b)?)))
         }))
-    }
-}
-
-impl Prepared for Bodies {
-    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
-        let report = match pair {
-            Pair::CloudCloud => self.query.run(&self.a, &self.b, a_from_b)?,
-            Pair::CloudMesh => self.query.run(&self.a, &self.mesh, a_from_b)?,
-        };
-        Ok(Some(Said::from(&report)))
     }
 }

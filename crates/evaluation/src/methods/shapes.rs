@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use anyhow::{Result, anyhow};
-use cloudtouch_geom::{Point3, Pose, TriangleMesh};
+use cloudtouch_geom::{Point3, TriangleMesh};
 use glamx::DPose3;
 use parry3d_f64::{
     math::Vector,
@@ -25,25 +25,18 @@ pub struct Boxes {
 /// The surfaces that the clouds were drawn from.
 pub struct ExactMeshes(pub [TriangleMesh; 2]);
 
-struct Shapes {
-    a: Box<dyn Shape>,
-    b: Box<dyn Shape>,
-    mesh: TriMesh,
-}
-
 impl Method for Boxes {
     fn name(&self) -> String {
         format!("{:.0} cm boxes", 100.0 * self.side)
     }
 
-    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let around = |points: &[Point3]| -> Box<dyn Shape> {
             let points: Vec<Vector> = points.iter().map(vector).collect();
             Box::new(Voxels::from_points(Vector::splat(self.side), &points))
         };
         let [a, b] = [draw.a, draw.b].map(cleaned);
-        let mesh = trimesh(draw.mesh)?;
-        Ok(Box::new(Shapes { a: around(&a?.points), b: around(&b?.points), mesh }))
+        shapes(around(&a?.points), around(&b?.points), draw.mesh)
     }
 }
 
@@ -52,23 +45,25 @@ impl Method for ExactMeshes {
         "parry3d, exact meshes".into()
     }
 
-    fn prepare(&self, draw: &Draw<'_>) -> Result<Box<dyn Prepared>> {
+    fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let [a, b] = self.0.each_ref().map(trimesh);
-        Ok(Box::new(Shapes { a: Box::new(a?), b: Box::new(b?), mesh: trimesh(draw.mesh)? }))
+        shapes(Box::new(a?), Box::new(b?), draw.mesh)
     }
 }
 
-impl Prepared for Shapes {
-    fn ask(&self, pair: Pair, a_from_b: &Pose) -> Result<Option<Said>> {
+/// Whether they intersect, with the second or with the mesh.
+fn shapes(a: Box<dyn Shape>, b: Box<dyn Shape>, mesh: &TriangleMesh) -> Result<Prepared> {
+    let mesh = trimesh(mesh)?;
+    Ok(Box::new(move |pair, a_from_b| {
         let start = Instant::now();
-        let other: &dyn Shape = match pair {
-            Pair::CloudCloud => &*self.b,
-            Pair::CloudMesh => &self.mesh,
+        let moving: &dyn Shape = match pair {
+            Pair::CloudCloud => &*b,
+            Pair::CloudMesh => &mesh,
         };
         let pose = DPose3::from(*a_from_b.isometry());
-        let touch = intersection_test(&DPose3::IDENTITY, &*self.a, &pose, other)?.intersecting;
-        Ok(Some(Said::yes_or_no(touch, start)))
-    }
+        let touch = intersection_test(&DPose3::IDENTITY, &*a, &pose, moving)?.intersecting;
+        Ok(Some(Said::score(f64::from(u8::from(touch)), start)))
+    }))
 }
 
 fn trimesh(mesh: &TriangleMesh) -> Result<TriMesh> {

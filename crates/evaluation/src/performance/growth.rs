@@ -72,10 +72,10 @@ pub(super) fn measure(scene: &Scene) -> Findings {
     let [tree, all] = slowest;
     let bytes = format!("{largest} points: a prepared cloud holds ≤ 200 bytes a point");
     let targets = vec![
-        Target::at_most(format!("{to}: query, median ≤ 2 × that at 10k"), growth, 2.0, ratio),
-        Target::at_least(format!("{to}: tree ≥ 2 M points/s"), tree, 2e6, rate),
-        Target::at_least(format!("{to}: `Cloud::prepare` ≥ 2 M points/s"), all, 2e6, rate),
-        Target::at_most(bytes, held, 200.0, |held| format!("{held:.0} bytes")),
+        Target::new(format!("{to}: query, median ≤ 2 × that at 10k"), ratio(growth), growth <= 2.0),
+        Target::new(format!("{to}: tree ≥ 2 M points/s"), rate(tree), tree >= 2e6),
+        Target::new(format!("{to}: `Cloud::prepare` ≥ 2 M points/s"), rate(all), all >= 2e6),
+        Target::new(bytes, format!("{held:.0} bytes"), held <= 200.0),
     ];
     Ok((section.text(table), targets))
 }

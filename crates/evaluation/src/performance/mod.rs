@@ -19,7 +19,7 @@ use rayon::ThreadPoolBuilder;
 use crate::{
     page::{self, Page},
     real_scans::cases,
-    targets::{self, Findings},
+    targets::{self, Part},
 };
 use scene::Scene;
 
@@ -57,9 +57,6 @@ SMO gives up on all of them, and the interior point method that takes over is cu
 *Memory*: positions, covariances, boxes and what queries have computed are all kept, in double \
 precision.";
 
-/// A part of a run.
-type Part = fn(&Scene, Option<&Path>) -> Findings;
-
 /// Measures and writes the page with its figures.
 ///
 /// # Errors
@@ -70,19 +67,17 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let data = cases::folder(root, data);
     // Whatever uses rayon gets one thread; the batch brings pools of its own.
     let alone = ThreadPoolBuilder::new().num_threads(1).build().context("start a thread")?;
-    let parts: [(&str, Part); 6] = [
-        ("prepared queries", |scene, _| room::measure(scene)),
-        ("first query", |scene, _| fresh::first_query(scene)),
-        ("depth frames", fresh::frames),
-        ("leaf problems", |scene, _| solvers::measure(scene.seed)),
-        ("larger scenes", |scene, _| growth::measure(scene)),
-        ("batch", |scene, _| batch::measure(scene)),
+    let parts: [Part<'_>; 6] = [
+        ("prepared queries", &|| room::measure(&scene)),
+        ("first query", &|| fresh::first_query(&scene)),
+        ("depth frames", &|| fresh::frames(&scene, data.as_deref())),
+        ("leaf problems", &|| solvers::measure(scene.seed)),
+        ("larger scenes", &|| growth::measure(&scene)),
+        ("batch", &|| batch::measure(&scene)),
     ];
     let command = format!("--poses {poses} --update-docs");
     let names = ("performance", "Performance");
     let page = Page::new(names, ("bench-report", &command), INTRODUCTION, root, SEED);
-    let measured = parts
-        .into_iter()
-        .map(|(name, part)| (name, alone.install(|| part(&scene, data.as_deref()))));
-    targets::report(page, &page::folder(root, update_docs), MISSED, measured).map(drop)
+    let folder = page::folder(root, update_docs);
+    alone.install(|| targets::report(page, &folder, MISSED, &parts)).map(drop)
 }

@@ -69,16 +69,16 @@ fn judged(timed: &[Timed], std: f64) -> Vec<Target> {
     let near = p95(&timed[0].seconds(Some(Class::Near)));
     let at = format!("10k × 10k points, {:.0} mm of noise", 1e3 * std);
     if std == LARGE_STD {
-        return vec![Target::at_most(format!("{at}: near, p95 ≤ 10 ms"), near, 0.01, time)];
+        return vec![Target::new(format!("{at}: near, p95 ≤ 10 ms"), time(near), near <= 0.01)];
     }
     let [ours, theirs] = [0, 3].map(|i| median(&timed[i].seconds(None)));
-    let compared = |r: f64| format!("{} ({} to {})", ratio(r), time(ours), time(theirs));
+    let compared = format!("{} ({} to {})", ratio(ours / theirs), time(ours), time(theirs));
     let [far, deep] = [Class::Far, Class::Deep].map(|c| median(&timed[0].seconds(Some(c))));
     let meshes = format!("{at}: median ≤ 1.0 × parry3d on exact meshes");
     vec![
-        Target::at_most(meshes, ours / theirs, 1.0, compared),
-        Target::at_most(format!("{at}: far, median ≤ 10 µs"), far, 1e-5, time),
-        Target::at_most(format!("{at}: deep, median ≤ 0.5 ms"), deep, 5e-4, time),
-        Target::at_most(format!("{at}: near, p95 ≤ 3 ms"), near, 3e-3, time),
+        Target::new(meshes, compared, ours / theirs <= 1.0),
+        Target::new(format!("{at}: far, median ≤ 10 µs"), time(far), far <= 1e-5),
+        Target::new(format!("{at}: deep, median ≤ 0.5 ms"), time(deep), deep <= 5e-4),
+        Target::new(format!("{at}: near, p95 ≤ 3 ms"), time(near), near <= 3e-3),
     ]
 }

@@ -1,7 +1,7 @@
 //! The piano and the room: meshes, noisy clouds, and poses far from contact, near and deep.
 
 use anyhow::{Context, Result};
-use cloudtouch_geom::{Pose, TriangleMesh, seed::derive};
+use cloudtouch_geom::{PointCloud, TriangleMesh, seed::derive};
 use cloudtouch_testkit::{
     exact::ExactMesh,
     family::Observation,
@@ -11,6 +11,8 @@ use cloudtouch_testkit::{
     surface::{positions, sample_surface},
 };
 use rayon::prelude::*;
+
+use crate::methods::observed;
 
 /// Points of a cloud where nothing else is said.
 pub(super) const POINTS: usize = 10_000;
@@ -32,21 +34,12 @@ pub(super) enum Class {
     Deep,
 }
 
-/// A pose with its exact label.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Posed {
-    pub(super) class: Class,
-    pub(super) collides: bool,
-    /// Maps the frame of the piano into that of the room.
-    pub(super) pose: Pose,
-}
-
 /// What is measured on.
 pub(super) struct Scene {
     room: TriangleMesh,
     pub(super) piano: TriangleMesh,
     /// The kinds of [`TURN`] in turn.
-    pub(super) poses: Vec<Posed>,
+    pub(super) poses: Vec<LabelledPose>,
     /// Everything random comes from this.
     pub(super) seed: u64,
 }
@@ -63,8 +56,8 @@ const TURN: [(Class, bool); 6] = [
 
 impl Class {
     /// None for what lies between the classes.
-    fn of(signed_distance: f64) -> Option<Self> {
-        match signed_distance {
+    pub(super) fn of(pose: &LabelledPose) -> Option<Self> {
+        match pose.signed_distance {
             d if d >= 0.1 => Some(Self::Far),
             d if d.abs() <= 0.02 => Some(Self::Near),
             d if d <= -0.05 => Some(Self::Deep),
@@ -74,10 +67,7 @@ impl Class {
 }
 
 impl Scene {
-    /// Draws so many poses.
-    ///
-    /// # Errors
-    /// When a class of poses cannot be had.
+    /// Draws so many poses; fails when a class of them cannot be had.
     pub(super) fn draw(count: usize, seed: u64) -> Result<Self> {
         let (room, piano) = (scene::room(), scene::piano());
         let exact = [&room, &piano].map(ExactMesh::new);
@@ -86,45 +76,37 @@ impl Scene {
                 |part| poses_near_contact(&exact[0], &exact[1], BATCH, derive(seed, 1, part));
             (4 * number..4 * number + 4).into_par_iter().flat_map_iter(drawn).collect::<Vec<_>>()
         };
-        let mut drawn = (0..2000).flat_map(batch);
+        let mut drawn = (0..2000).flat_map(batch).filter(|pose| Class::of(pose).is_some());
         // What was drawn before its turn.
-        let mut spare: Vec<Posed> = Vec::new();
+        let mut spare: Vec<LabelledPose> = Vec::new();
         let mut next = |turn: (Class, bool)| {
+            let is_wanted =
+                |p: &LabelledPose| Class::of(p) == Some(turn.0) && p.in_collision == turn.1;
             loop {
-                let found = spare.iter().position(|p| (p.class, p.collides) == turn);
-                if let Some(at) = found {
+                if let Some(at) = spare.iter().position(is_wanted) {
                     return Some(spare.remove(at));
                 }
-                let LabelledPose {
-                    scene_from_object: pose,
-                    in_collision: collides,
-                    signed_distance,
-                } = drawn.next()?;
-                spare.extend(Class::of(signed_distance).map(|class| Posed {
-                    class,
-                    collides,
-                    pose,
-                }));
+                spare.push(drawn.next()?);
             }
         };
-        let poses: Option<Vec<Posed>> = (0..count).map(|i| next(TURN[i % TURN.len()])).collect();
+        let poses: Option<Vec<_>> = (0..count).map(|i| next(TURN[i % TURN.len()])).collect();
         let poses = poses.context("too few far, near or deep poses")?;
         Ok(Self { room, piano, poses, seed })
     }
 
     /// The poses of one class.
-    pub(super) fn of(&self, class: Class) -> impl Iterator<Item = &Posed> {
-        self.poses.iter().filter(move |posed| posed.class == class)
+    pub(super) fn of(&self, class: Class) -> impl Iterator<Item = &LabelledPose> {
+        self.poses.iter().filter(move |pose| Class::of(pose) == Some(class))
     }
 
     /// The room in so many points, with noise of this standard deviation (m).
     pub(super) fn room(&self, points: usize, std: f64) -> Observation {
-        observed(&self.room, points, std, derive(self.seed, 2, 0))
+        sampled(&self.room, points, std, derive(self.seed, 2, 0))
     }
 
     /// The piano in [`POINTS`] points.
     pub(super) fn piano(&self, std: f64) -> Observation {
-        observed(&self.piano, POINTS, std, derive(self.seed, 2, 1))
+        sampled(&self.piano, POINTS, std, derive(self.seed, 2, 1))
     }
 
     /// The room's surface in about so many triangles, and the piano's in ten thousand.
@@ -135,12 +117,10 @@ impl Scene {
     }
 }
 
-fn observed(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
-    let samples = sample_surface(mesh, points, stream);
-    let errors = derive(stream, 1, 0);
-    let noisy = add_noise(&positions(&samples), NoiseKind::Gaussian, std, errors);
-    let cloud = cloudtouch_geom::PointCloud::from_points(noisy);
-    Observation { cloud, truth: samples.into_iter().map(Some).collect(), std }
+fn sampled(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
+    let exact = positions(&sample_surface(mesh, points, stream));
+    let noisy = add_noise(&exact, NoiseKind::Gaussian, std, derive(stream, 1, 0));
+    observed(PointCloud::from_points(noisy), std)
 }
 
 #[cfg(test)]
@@ -151,9 +131,9 @@ mod tests {
     fn poses_are_what_they_are_drawn_for() {
         let scene = Scene::draw(7, 3).unwrap();
         let exact = [&scene.room, &scene.piano].map(ExactMesh::new);
-        for (posed, kind) in scene.poses.iter().zip(TURN.into_iter().cycle()) {
-            assert_eq!((posed.class, posed.collides), kind);
-            assert_eq!(exact[0].solids_overlap(&exact[1], &posed.pose), posed.collides);
+        for (pose, (class, collides)) in scene.poses.iter().zip(TURN.into_iter().cycle()) {
+            assert_eq!((Class::of(pose), pose.in_collision), (Some(class), collides));
+            assert_eq!(exact[0].solids_overlap(&exact[1], &pose.scene_from_object), collides);
         }
     }
 }

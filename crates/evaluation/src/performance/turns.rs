@@ -1,9 +1,10 @@
 //! Methods that take turns at every pose: what they say, how long that takes, how often it is wrong.
 
 use anyhow::{Context, Result};
+use cloudtouch_testkit::poses::LabelledPose;
 
 use super::{
-    scene::{Class, Posed},
+    scene::Class,
     timing::{ratio, time, timed, times},
 };
 use crate::{
@@ -26,8 +27,7 @@ pub(super) struct Timed {
 }
 
 struct Answer {
-    class: Class,
-    collides: bool,
+    pose: LabelledPose,
     score: f64,
     /// The least of the repeats, s.
     seconds: f64,
@@ -38,7 +38,7 @@ pub(super) fn take_turns(
     methods: &[&dyn Method],
     draw: &Draw<'_>,
     pair: Pair,
-    poses: &[Posed],
+    poses: &[LabelledPose],
 ) -> Result<Vec<Timed>> {
     let mut prepared = Vec::new();
     let mut all = Vec::new();
@@ -47,11 +47,11 @@ pub(super) fn take_turns(
         prepared.push(ready);
         all.push(Timed { name: method.name(), prepare, answers: Vec::new() });
     }
-    for posed in poses {
+    for pose in poses {
         let mut fastest = vec![(f64::NAN, f64::INFINITY); methods.len()];
         for repeat in 0..=REPEATS {
             for (ready, fastest) in prepared.iter().zip(&mut fastest) {
-                let (said, seconds) = timed(|| ready.ask(pair, &posed.pose))?;
+                let (said, seconds) = timed(|| ready(pair, &pose.scene_from_object))?;
                 fastest.0 = said.context("an answer to such a pair")?.score;
                 if repeat > 0 {
                     fastest.1 = fastest.1.min(seconds);
@@ -59,8 +59,7 @@ pub(super) fn take_turns(
             }
         }
         for (timed, (score, seconds)) in all.iter_mut().zip(fastest) {
-            let Posed { class, collides, .. } = *posed;
-            timed.answers.push(Answer { class, collides, score, seconds });
+            timed.answers.push(Answer { pose: *pose, score, seconds });
         }
     }
     Ok(all)
@@ -68,7 +67,8 @@ pub(super) fn take_turns(
 
 impl Timed {
     fn of(&self, class: Option<Class>) -> impl Iterator<Item = &Answer> {
-        self.answers.iter().filter(move |a| class.is_none_or(|class| a.class == class))
+        let is_of = move |a: &&Answer| class.is_none() || Class::of(&a.pose) == class;
+        self.answers.iter().filter(is_of)
     }
 
     /// Its times at the poses of one class or of all, s.
@@ -78,14 +78,15 @@ impl Timed {
 
     /// Chance that a collision has the higher score.
     pub(super) fn auc(&self, class: Option<Class>) -> f64 {
-        let sample = Sample::of_probabilities(self.of(class).map(|a| (a.score, a.collides)));
+        let sample =
+            Sample::of_probabilities(self.of(class).map(|a| (a.score, a.pose.in_collision)));
         auc(&sample, &sample.ones())
     }
 
     /// Free poses it calls collisions and collisions it calls free, from a score of ½ on.
     fn wrong(&self) -> [usize; 2] {
         [false, true].map(|collides| {
-            let of = self.answers.iter().filter(|a| a.collides == collides);
+            let of = self.answers.iter().filter(|a| a.pose.in_collision == collides);
             of.filter(|a| (a.score >= 0.5) != collides).count()
         })
     }
@@ -115,12 +116,17 @@ pub(super) fn table(all: &[Timed]) -> Table {
 
 #[cfg(test)]
 mod tests {
+    use cloudtouch_geom::Pose;
+
     use super::*;
 
     #[test]
     fn false_stops_and_misses_are_counted_apart() {
-        let answer =
-            |(score, collides)| Answer { class: Class::Near, collides, score, seconds: 1.0 };
+        let answer = |(score, in_collision)| {
+            let scene_from_object = Pose::identity();
+            let pose = LabelledPose { scene_from_object, in_collision, signed_distance: 0.0 };
+            Answer { pose, score, seconds: 1.0 }
+        };
         let answers = [(0.9, false), (0.2, false), (0.6, false), (0.4, true)].map(answer);
         let timed = Timed { name: "t".into(), prepare: 0.0, answers: answers.into() };
         assert_eq!(timed.wrong(), [2, 1]);

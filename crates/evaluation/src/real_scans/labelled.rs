@@ -15,7 +15,7 @@ use super::cases::{self, Labelled};
 use crate::{
     page::Section,
     statistics::quantile,
-    table::{Table, bounds, probability, verdict},
+    table::{Table, bounds, probability},
     targets::{Findings, Target},
 };
 
@@ -138,7 +138,7 @@ fn each(cases: &[Labelled], answers: &[Answer]) -> Table {
             Ok(report) => [
                 probability(report.collision_probability),
                 bounds(report.bounds),
-                verdict(report.verdict).to_owned(),
+                report.verdict.to_string(),
                 report.clearance_m.map_or("-".to_owned(), |c| {
                     format!("{:+.1} ± {:.1}", 1e3 * c.mean, 1e3 * c.std)
                 }),

@@ -12,7 +12,7 @@ use clap::Args;
 
 use crate::{
     page::{self, Page},
-    targets::{self, Findings},
+    targets::{self, Part},
 };
 
 /// What `cargo xtask evaluate` is given.
@@ -29,11 +29,6 @@ pub struct Arguments {
 const INTRODUCTION: &str = "Answers on real point clouds with labelled poses, and along an approach \
 of a gripper to a mug. DIR is the folder of the scans, which are not part of the project.";
 
-type Part = fn(&Path) -> Findings;
-
-const PARTS: [(&str, Part); 2] =
-    [("labelled poses", labelled::evaluate), ("approach", approach::evaluate)];
-
 /// Runs every part, writes the page, and fails when a target is missed.
 ///
 /// # Errors
@@ -44,6 +39,14 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let command = ("evaluate", "--data DIR --update-docs");
     // Nothing is drawn.
     let page = Page::new(names, command, INTRODUCTION, root, 0);
-    let parts = PARTS.into_iter().map(|(name, part)| (name, part(&data)));
-    targets::require(&targets::report(page, &page::folder(root, arguments.update_docs), "", parts)?)
+    let parts: [Part<'_>; 2] = [
+        ("labelled poses", &|| labelled::evaluate(&data)),
+        ("approach", &|| approach::evaluate(&data)),
+    ];
+    targets::require(&targets::report(
+        page,
+        &page::folder(root, arguments.update_docs),
+        "",
+        &parts,
+    )?)
 }

@@ -11,7 +11,6 @@ use i_overlay::{core::fill_rule::FillRule, float::simplify::SimplifyShape};
 use crate::{
     figure::{Axis, Figure, GREY, Panel, Place, RGBColor, Series},
     statistics::quantile,
-    table::verdict,
 };
 
 /// Into the table, as the camera sees it (x right, y down, z forward).
@@ -96,7 +95,7 @@ pub(super) fn figure(
             painted(Series::polygons("contact: place and direction", arrow(&view, report)), BLACK),
         ];
         let p = report.collision_probability;
-        Panel { title: format!("P = {p:.2}: {}", verdict(report.verdict)), x, y, series }
+        Panel { title: format!("P = {p:.2}: {}", report.verdict), x, y, series }
     };
     let title = "How likely does the gripper hit the mug? Three poses, seen from the side";
     let figure = Figure::new(title, shown.iter().map(panel));

@@ -15,7 +15,7 @@ use clap::Args;
 
 use crate::{
     page::{self, Page},
-    targets::{self, Findings},
+    targets::{self, Part},
 };
 
 const INTRODUCTION: &str = "What the solver and whole queries do with input that breaks careless \
@@ -30,12 +30,6 @@ pub struct Arguments {
     update_docs: bool,
 }
 
-type Part = fn() -> Findings;
-
-/// Everything in the order of the page.
-const PARTS: [(&str, Part); 3] =
-    [("solver", solver::measure), ("queries", queries::measure), ("motions", motions::measure)];
-
 /// Runs everything, writes the page, and fails when a target is missed.
 ///
 /// # Errors
@@ -43,6 +37,15 @@ const PARTS: [(&str, Part); 3] =
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let names = ("stability", "Numerical stability");
     let page = Page::new(names, ("stability", "--update-docs"), INTRODUCTION, root, motions::SEED);
-    let parts = PARTS.into_iter().map(|(name, measure)| (name, measure()));
-    targets::require(&targets::report(page, &page::folder(root, arguments.update_docs), "", parts)?)
+    let parts: [Part<'_>; 3] = [
+        ("solver", &solver::measure),
+        ("queries", &queries::measure),
+        ("motions", &motions::measure),
+    ];
+    targets::require(&targets::report(
+        page,
+        &page::folder(root, arguments.update_docs),
+        "",
+        &parts,
+    )?)
 }

@@ -86,7 +86,7 @@ pub(super) fn measure() -> Findings {
     ));
     let target = |(tolerance, allowed): (f64, f64), change: f64| {
         let what = format!("motions: at {tolerance:.0e} P changes by at most {allowed:.0e}");
-        Target::at_most(what, change, allowed, small)
+        Target::new(what, small(change), change <= allowed)
     };
     let targets = [(default, 1e-3), (TIGHTEST, 1e-6)].into_iter().zip(worst);
     Ok((section.text(table), targets.map(|(limit, change)| target(limit, change)).collect()))

@@ -11,7 +11,7 @@ use cloudtouch_testkit::hard_cases::{HardCase, HardMesh, hard_cases, hard_meshes
 use crate::{
     methods::asker,
     page::Section,
-    table::{Table, bounds, probability, small, verdict},
+    table::{Table, bounds, probability, small},
     targets::{Findings, Target},
 };
 
@@ -40,7 +40,7 @@ pub(super) fn measure() -> Findings {
                 Ok((_, 0)) if !valid => faults.push(format!("{name}, {mode}: accepted whole")),
                 Ok((report, _)) => match (report.verdict, truth) {
                     (Verdict::Free, Some(true)) | (Verdict::InCollision, Some(false)) => {
-                        faults.push(format!("{name}, {mode}: {}", verdict(report.verdict)));
+                        faults.push(format!("{name}, {mode}: {}", report.verdict));
                     }
                     (Verdict::Free | Verdict::InCollision, Some(_)) => right += 1,
                     (_, Some(_)) => open += 1,
@@ -91,8 +91,7 @@ fn of_clouds(case: &HardCase, mode: Mode) -> Answer {
 fn of_mesh(case: &HardMesh, mode: Mode) -> Answer {
     let cloud = PointCloud::from_points(case.cloud.clone());
     let mesh = Mesh::prepare(&case.mesh)?;
-    let report = asker(&cloud, case.std, mode)?(&mesh, &Pose::identity())?;
-    Ok((report, 0))
+    Ok((asker(&cloud, case.std, mode)?(&mesh, &Pose::identity())?, 0))
 }
 
 fn with_covariances(points: &[Point3], matrices: &[Matrix3]) -> Result<PointCloud> {
@@ -103,7 +102,7 @@ fn with_covariances(points: &[Point3], matrices: &[Matrix3]) -> Result<PointClou
 fn row(name: String, truth: Option<bool>, [ours, paper]: &[Answer; 2]) -> Vec<String> {
     let truth = truth.map_or("-", |collides| if collides { "collision" } else { "free" });
     let said = |answer: &Answer| match answer {
-        Ok((report, _)) => verdict(report.verdict).to_owned(),
+        Ok((report, _)) => report.verdict.to_string(),
         Err(_) => "refused".to_owned(),
     };
     let mut cells = vec![name, truth.into(), said(ours)];

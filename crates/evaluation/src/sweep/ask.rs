@@ -14,7 +14,7 @@ use super::{
     scenes::Scenes,
 };
 use crate::{
-    answers::{Answers, Condition, Pair, Question, Said},
+    answers::{Answers, Condition, Pair, Question, Row},
     methods::{Draw, Method},
 };
 
@@ -44,15 +44,13 @@ struct Scene<'a> {
     seed: u64,
 }
 
-/// What a method says of one question.
-type Row = (Question, Vec<(String, Said)>);
-
 /// All answers to a plan; the same for any number of threads.
 ///
 /// # Errors
 /// When a method fails or gives what is no answer.
 pub fn ask(plan: &Plan, methods: &[Asked]) -> Result<Answers> {
-    let mut answers = Answers::default();
+    let names = methods.iter().map(|asked| asked.method.name()).collect();
+    let mut answers = Answers { methods: names, rows: Vec::new() };
     for family in &plan.families {
         let scenes: Vec<Scene> =
             (0..plan.draws).into_par_iter().map(|number| scene(plan, family, number)).collect();
@@ -65,10 +63,8 @@ pub fn ask(plan: &Plan, methods: &[Asked]) -> Result<Answers> {
                     .with_context(|| format!("{}, draw {}", family.name, scene.number))
             })
             .collect::<Result<_>>()?;
-        for (question, said) in rows.into_iter().flatten() {
-            answers.push(question, &said)?;
-        }
-        eprintln!("{}: {} answers", family.name, answers.questions.len());
+        rows.into_iter().flatten().try_for_each(|row| answers.push(row))?;
+        eprintln!("{}: {} answers", family.name, answers.rows.len());
     }
     Ok(answers)
 }
@@ -109,10 +105,10 @@ fn of_draw(
                 signed_distance: pose.signed_distance,
                 spacing,
             };
-            (question, Vec::new())
+            (question, vec![None; methods.len()])
         }));
     }
-    for Asked { method, draw_of, pose_of } in methods {
+    for (which, Asked { method, draw_of, pose_of }) in methods.iter().enumerate() {
         if !number.is_multiple_of(*draw_of) {
             continue;
         }
@@ -121,10 +117,8 @@ fn of_draw(
             let number = question.pose as usize;
             if number.is_multiple_of(*pose_of) {
                 let pose = &poses[number].scene_from_object;
-                let answer = prepared
-                    .ask(question.pair, pose)
+                said[which] = prepared(question.pair, pose)
                     .with_context(|| format!("{}, {question:?}", method.name()))?;
-                said.extend(answer.map(|answer| (method.name(), answer)));
             }
         }
     }

@@ -1,8 +1,14 @@
 //! The figures of the pages.
 
-use super::{ORACLE, OURS, judged::Judged, tables::Answered};
+use cloudtouch_testkit::family::Kind;
+
+use super::{
+    ORACLE, OURS,
+    judged::Judged,
+    tables::{is_of, ordinary},
+};
 use crate::{
-    answers::{Kind, Pair, Question},
+    answers::{Answers, Pair, Question},
     figure::{Axis, Figure, Panel, Series},
     measures::reliability,
 };
@@ -11,14 +17,14 @@ use crate::{
 const QUERIES: usize = 100;
 
 /// Observed rate of collisions against stated probability, each kind of pair in a panel.
-pub(super) fn reliability_figure(answered: &Answered<'_>) -> Figure {
+pub(super) fn reliability_figure(answers: &Answers) -> Figure {
     let panel = |pair: Pair| {
         let mut series = vec![Series::line("", [(0.0, 0.0), (1.0, 1.0)])];
         let kinds =
             [("ordinary scenes", Kind::Ordinary), ("adversarial scenes", Kind::Adversarial)];
         for (name, kind) in kinds {
-            let judged = Judged::pick(answered.answers, &[OURS], Answered::is_of(pair, kind));
-            let bins = judged.sample(OURS).map(reliability).unwrap_or_default();
+            let judged = Judged::pick(answers, &[OURS], is_of(pair, kind));
+            let bins = reliability(judged.sample(OURS));
             series.push(Series::curve(name, bins.iter().map(|b| (b.mean, b.observed))));
         }
         let (x, y) = (Axis::unit("stated probability"), Axis::unit("share that collides"));
@@ -28,15 +34,15 @@ pub(super) fn reliability_figure(answered: &Answered<'_>) -> Figure {
 }
 
 /// After the paper's figure 4: probability against distance at two noises.
-pub(super) fn distance_figure(answered: &Answered<'_>) -> Figure {
+pub(super) fn distance_figure(answers: &Answers) -> Figure {
     let panel = |std: f64| {
         let keep = |q: &Question| {
-            Answered::is_of(Pair::CloudCloud, Kind::Ordinary)(q)
+            ordinary(Pair::CloudCloud)(q)
                 && q.condition.points == 10_000
                 && q.condition.std == std
                 && q.signed_distance.abs() < 0.1
         };
-        let judged = Judged::pick(answered.answers, &[OURS, ORACLE], keep);
+        let judged = Judged::pick(answers, &[OURS, ORACLE], keep);
         let step = (judged.counts().0 / QUERIES).max(1);
         let points = |method| {
             let said = judged.questions().iter().zip(judged.said(method)).step_by(step);

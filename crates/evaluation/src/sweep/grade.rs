@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 
 use crate::{
-    answers::{Answers, Pair},
+    answers::{Answers, Pair, Row},
     measures::Logistic,
 };
 
@@ -12,37 +12,32 @@ use crate::{
 ///
 /// So a score is judged by what it is worth to somebody who never saw the family, as our own
 /// probabilities are.
-///
-/// # Errors
-/// When there is nothing to fit on: one family only, or truths that are all alike.
+/// Fails where there is nothing to fit on: one family only, or truths that are all alike.
 pub(super) fn grade(answers: &mut Answers) -> Result<()> {
     let families = answers.families();
-    let Answers { questions, methods } = answers;
-    for (name, said) in methods {
+    let Answers { methods, rows } = answers;
+    for (which, name) in methods.iter().enumerate() {
         // Looked at before any is filled in.
-        let is_bare: Vec<bool> =
-            said.iter().map(|s| s.is_some_and(|s| s.probability.is_none())).collect();
+        let bare = |(i, (_, said)): (usize, &Row)| {
+            said[which].filter(|said| said.probability.is_none()).map(|said| (i, said.score))
+        };
+        let bare: Vec<(usize, f64)> = rows.iter().enumerate().filter_map(bare).collect();
         for (&family, pair) in families.iter().flat_map(|f| Pair::ALL.map(|pair| (f, pair))) {
-            let of = |inside: bool| -> Vec<usize> {
-                let is_wanted = |i: &usize| {
-                    let question = &questions[*i];
-                    is_bare[*i] && question.pair == pair && (question.family == family) == inside
-                };
-                (0..questions.len()).filter(is_wanted).collect()
-            };
-            let (judged, others) = (of(true), of(false));
+            let (judged, others): (Vec<_>, Vec<_>) = bare
+                .iter()
+                .copied()
+                .filter(|(i, _)| rows[*i].0.pair == pair)
+                .partition(|(i, _)| rows[*i].0.family == family);
             if judged.is_empty() {
                 continue;
             }
-            let score = |i: &usize| said[*i].map_or(f64::NAN, |s| s.score);
-            let scores: Vec<Vec<f64>> = others.iter().map(|i| vec![score(i)]).collect();
-            let truths: Vec<bool> = others.iter().map(|&i| questions[i].collides).collect();
+            let (scores, truths): (Vec<f64>, Vec<bool>) =
+                others.into_iter().map(|(i, score)| (score, rows[i].0.collides)).unzip();
             let fit = Logistic::fit(&scores, &truths)
                 .with_context(|| format!("fit {name} for {family} on the other families"))?;
-            let fitted: Vec<f64> = judged.iter().map(|i| fit.probability(&[score(i)])).collect();
-            for (i, probability) in judged.into_iter().zip(fitted) {
-                if let Some(said) = &mut said[i] {
-                    said.probability = Some(probability);
+            for (i, score) in judged {
+                if let Some(said) = &mut rows[i].1[which] {
+                    said.probability = Some(fit.probability(score));
                 }
             }
         }
@@ -52,24 +47,26 @@ pub(super) fn grade(answers: &mut Answers) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Instant;
+
     use super::*;
     use crate::answers::{Said, tests::question};
 
     #[test]
     fn a_family_does_not_change_its_own_fit() {
         let graded = |sign_in_c: f64| {
-            let mut answers = Answers::default();
+            let mut answers = Answers { methods: vec!["x".into()], rows: Vec::new() };
             for (family, sign) in [("a", 1.0), ("b", 1.0), ("c", sign_in_c)] {
                 for pose in 0..60 {
                     // Overlapping scores, larger where it collides, but in c perhaps the other way.
                     let score = sign * (f64::from(pose % 30) / 10.0 + f64::from(pose % 2) - 2.0);
-                    let said = [("x".to_owned(), Said::score(score, 1.0))];
-                    answers.push(question(family, 0, pose, pose % 2 == 1), &said).unwrap();
+                    let said = vec![Some(Said::score(score, Instant::now()))];
+                    answers.push((question(family, 0, pose, pose % 2 == 1), said)).unwrap();
                 }
             }
             grade(&mut answers).unwrap();
-            let said = answers.said("x").unwrap();
-            said.iter().map(|s| s.unwrap().probability.unwrap()).collect::<Vec<f64>>()
+            let said = answers.rows.iter().map(|(_, said)| said[0].unwrap());
+            said.map(|said| said.probability.unwrap()).collect::<Vec<f64>>()
         };
         let (same, other) = (graded(1.0), graded(-1.0));
         // In c the same rule holds as without knowledge of c; in a and b not.

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use super::{agreement, figures, plan::SEED, tables::Answered, targets};
+use cloudtouch_testkit::family::Kind;
+
+use super::{agreement, figures, plan::SEED, tables::is_of, targets};
 use crate::{
-    answers::{Kind, Pair},
+    answers::{Answers, Pair},
     page::{Page, Section},
 };
 
@@ -36,37 +38,37 @@ what chance alone gives a perfect forecaster. Times are medians of queries on cl
 points, prepared once for the poses of a draw, as many at a time as there are cores; the noise model \
 of `calibrated` is computed where queries first come near, so early poses pay for later ones.";
 
-pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>, bounds: Section) -> Page {
-    let names = (("accuracy", "Accuracy, in full"), ("sweep", arguments));
-    let mut page = Page::new(names.0, names.1, INTRODUCTION, root, SEED);
-    page.section(targets::section(answered));
+pub(super) fn page(root: &Path, arguments: &str, answers: &Answers, bounds: Section) -> Page {
+    let title = ("accuracy", "Accuracy, in full");
+    let mut page = Page::new(title, ("sweep", arguments), INTRODUCTION, root, SEED);
+    page.section(targets::section(answers));
     for pair in Pair::ALL {
         let mut section = Section::new(&format!("{}: methods", capitalised(pair)));
         for (name, kind) in [("Ordinary", Kind::Ordinary), ("Adversarial", Kind::Adversarial)] {
-            let keep = Answered::is_of(pair, kind);
-            let rate = answered.base_rate(keep);
+            let keep = is_of(pair, kind);
+            let rate = answers.base_rate(keep);
             section = section
                 .text(format_args!("{name} scenes, {rate}; bold: the interval excludes zero."))
-                .text(answered.methods(keep));
+                .text(answers.by_method(keep));
         }
         page.section(section);
         let section = Section::new(&format!("{}: families", capitalised(pair)));
-        page.section(section.text(answered.families(pair)));
+        page.section(section.text(answers.by_family(pair)));
         let section = Section::new(&format!("{}: noise, ordinary scenes", capitalised(pair)));
-        page.section(section.text(answered.noises(pair)));
+        page.section(section.text(answers.by_noise(pair)));
     }
     let figures = Section::new("Figures")
         .figure(
             "sweep-reliability",
             "Stated probability against observed rate",
-            figures::reliability_figure(answered),
+            figures::reliability_figure(answers),
         )
         .figure(
             "sweep-distance",
             "Probability against distance",
-            figures::distance_figure(answered),
+            figures::distance_figure(answers),
         );
-    page.section(agreement::section(answered));
+    page.section(agreement::section(answers));
     page.section(figures);
     page.section(bounds);
     page

@@ -21,7 +21,7 @@ use anyhow::Result;
 use clap::Args;
 
 pub use ask::{Asked, ask};
-pub use judged::{Judged, Measured};
+pub use judged::Judged;
 pub use plan::{GEOMETRY, ORACLE, OURS, Plan, SEED};
 pub use scenes::Scenes;
 pub use short::run as check;
@@ -30,7 +30,6 @@ use crate::{
     methods::{Boxes, Distance, Ours, Paper, PlainSvm},
     page,
 };
-use tables::Answered;
 
 /// What `cargo xtask sweep` is given.
 #[derive(Args)]
@@ -67,13 +66,10 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let mut answers = ask(&plan, &methods()?)?;
     grade::grade(&mut answers)?;
     let folder = page::folder(root, update_docs);
-    std::fs::create_dir_all(root.join("target/lab"))?;
-    answers.write(&root.join("target/lab/answers.jsonl"))?;
-    let answered = Answered::new(&answers);
     let arguments = format!("--draws {draws} --poses {poses} --update-docs");
     let bounds = bounds::section()?;
-    lab_page::page(root, &arguments, &answered, bounds).write(&folder)?;
-    user_page::page(root, &arguments, &answered).write(&if update_docs {
+    lab_page::page(root, &arguments, &answers, bounds).write(&folder)?;
+    user_page::page(root, &arguments, &answers).write(&if update_docs {
         root.join("docs")
     } else {
         folder.join("user")
@@ -84,7 +80,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
 /// mode and the plain machine every seventh pose, what smooths every point every second draw.
 fn methods() -> Result<Vec<Asked>> {
     let mut paper = Paper::new("paper");
-    // A dense cloud beside a large mesh is to be answered, however long that takes.
+    // A dense cloud beside a large mesh is to be answers, however long that takes.
     paper.query.max_mesh_parts = 1_000_000;
     let smoothed = Asked::always(Distance { smoothed: true });
     let seventh = |asked: Asked| Asked { pose_of: 7, ..asked };

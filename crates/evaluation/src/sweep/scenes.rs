@@ -5,9 +5,7 @@ use std::{path::Path, sync::Arc};
 use anyhow::Result;
 use cloudtouch_geom::TriangleMesh;
 use cloudtouch_io::{LengthUnit, read_mesh};
-use cloudtouch_testkit::family::{self, Family, FamilyScene, Real, RealMeshes};
-
-use crate::answers::Kind;
+use cloudtouch_testkit::family::{Family, FamilyScene, Kind, Real, RealMeshes};
 
 /// A family of scenes.
 #[derive(Clone)]
@@ -22,11 +20,8 @@ pub struct Scenes {
 
 impl From<Family> for Scenes {
     fn from(family: Family) -> Self {
-        let kind = match family.kind() {
-            family::Kind::Ordinary => Kind::Ordinary,
-            family::Kind::Adversarial => Kind::Adversarial,
-        };
-        Self { name: family.name(), kind, scene: Arc::new(move |seed| family.scene(seed)) }
+        let scene = Arc::new(move |seed| family.scene(seed));
+        Self { name: family.name(), kind: family.kind(), scene }
     }
 }
 

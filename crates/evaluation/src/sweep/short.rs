@@ -1,6 +1,6 @@
 //! The short sweep that CI runs: fails when accuracy gets worse than recorded.
 
-use anyhow::{Result, bail};
+use anyhow::{Result, ensure};
 use cloudtouch_testkit::family::Family;
 
 use super::{
@@ -56,10 +56,8 @@ pub fn run() -> Result<()> {
         for (pair, [least_auc, largest_brier]) in Pair::ALL.into_iter().zip(recorded) {
             let keep = |q: &Question| q.family == family.name() && q.pair == pair;
             let judged = Judged::pick(&answers, &[OURS], keep);
-            let value = |measure: Measure| {
-                judged.sample(OURS).map_or(f64::NAN, |s| measure.of(s, &s.ones()))
-            };
-            let (auc, brier) = (value(Measure::Auc), value(Measure::Brier));
+            let [auc, brier] =
+                [Measure::Auc, Measure::Brier].map(|measure| judged.estimate(OURS, measure).value);
             let name = format!("{}, {}", family.name(), pair.name());
             println!(
                 "{name}: AUC {auc:.3} (least {least_auc}), Brier {brier:.3} (most {largest_brier})"
@@ -70,11 +68,7 @@ pub fn run() -> Result<()> {
             }
         }
     }
-    if !worse.is_empty() {
-        bail!(
-            "less accurate than recorded in crates/evaluation/src/sweep/short.rs: {}",
-            worse.join("; ")
-        );
-    }
+    let file = "crates/evaluation/src/sweep/short.rs";
+    ensure!(worse.is_empty(), "less accurate than recorded in {file}: {}", worse.join("; "));
     Ok(())
 }

@@ -1,71 +1,52 @@
 //! The answers by kind of pair, kind of scene, family and noise, as rows of tables.
 
-use cloudtouch_testkit::poses::NEAR;
+use cloudtouch_testkit::{family::Kind, poses::NEAR};
 
 use super::{GEOMETRY, ORACLE, OURS, judged::Judged, plan::STDS};
 use crate::{
-    answers::{Answers, Kind, Pair, Question},
+    answers::{Answers, Pair, Question},
     measures::{Estimate, Measure},
     table::Table,
 };
-
-/// Measured of all poses of a group; AUC also of those near contact.
-const MEASURES: [Measure; 5] = [
-    Measure::Auc,
-    Measure::Brier,
-    Measure::CalibrationError,
-    Measure::FalseStops(0.01),
-    Measure::FalseStops(0.05),
-];
-
-/// All answers of a sweep, with what tables ask of them.
-pub(super) struct Answered<'a> {
-    /// The table of answers.
-    pub answers: &'a Answers,
-    /// Methods other than ours, whole, true or without the classifier.
-    pub alternatives: Vec<&'a str>,
-}
 
 /// Whether a pose is within 3 cm of contact.
 pub(super) fn is_near(question: &Question) -> bool {
     question.signed_distance.abs() < NEAR
 }
 
-/// An estimate, or a dash.
-pub(super) fn shown(estimate: Option<Estimate>) -> String {
-    estimate.map_or("–".into(), |e| e.to_string())
+/// Whether a question is one of a pair about one kind of scenes.
+pub(super) fn is_of(pair: Pair, kind: Kind) -> impl Fn(&Question) -> bool + Copy {
+    move |q: &Question| q.pair == pair && q.kind == kind
 }
 
-impl<'a> Answered<'a> {
-    pub(super) fn new(answers: &'a Answers) -> Self {
-        let mut alternatives = answers.names();
-        alternatives.retain(|name| ![OURS, ORACLE, GEOMETRY].contains(name));
-        Self { answers, alternatives }
-    }
+/// The same about ordinary scenes.
+pub(super) fn ordinary(pair: Pair) -> impl Fn(&Question) -> bool + Copy {
+    is_of(pair, Kind::Ordinary)
+}
 
-    /// A pair's questions about one kind of scenes.
-    pub(super) fn is_of(pair: Pair, kind: Kind) -> impl Fn(&Question) -> bool + Copy {
-        move |q: &Question| q.pair == pair && q.kind == kind
+impl Answers {
+    /// Methods other than ours, whole, true or without the classifier.
+    pub(super) fn alternatives(&self) -> impl Iterator<Item = &str> {
+        let names = self.methods.iter().map(String::as_str);
+        names.filter(|name| ![OURS, ORACLE, GEOMETRY].contains(name))
     }
 
     /// How many questions, how many of them collisions: the base rate.
     pub(super) fn base_rate(&self, keep: impl Fn(&Question) -> bool) -> String {
-        let (count, collisions) = Judged::pick(self.answers, &[OURS], keep).counts();
+        let (count, collisions) = Judged::pick(self, &[OURS], keep).counts();
         let share = 100.0 * collisions as f64 / count as f64;
         format!("{count} answers, {share:.0} % of them to collisions")
     }
 
     /// A row for every method, and by how much its AUC differs from ours on the same questions.
-    pub(super) fn methods(&self, keep: impl Fn(&Question) -> bool + Copy) -> Table {
-        let mut table = Table::new(
-            header("method").into_iter().chain(["AUC minus ours", "query (ms)"].map(String::from)),
-        );
-        for name in self.answers.names() {
+    pub(super) fn by_method(&self, keep: impl Fn(&Question) -> bool + Copy) -> Table {
+        let mut table = headed("method", &["AUC minus ours", "query (ms)"]);
+        for name in &self.methods {
             let mut row = self.row(name, name, keep);
-            let judged = Judged::pick(self.answers, &[name, OURS], keep);
-            row.push(judged.measure(&[Measure::Auc]).compared(name, OURS, Measure::Auc));
+            let judged = Judged::pick(self, &[name, OURS], keep);
+            row.push(judged.compared(name, OURS, Measure::Auc));
             let dense = |q: &Question| keep(q) && q.condition.points == 10_000;
-            let judged = Judged::pick(self.answers, &[name], dense);
+            let judged = Judged::pick(self, &[name], dense);
             row.push(format!("{:.2}", judged.query_ms(name, 0.5)));
             table.row(row);
         }
@@ -73,19 +54,18 @@ impl<'a> Answered<'a> {
     }
 
     /// Ours on every family, judged with constants fitted on the others, and the oracle's AUC.
-    pub(super) fn families(&self, pair: Pair) -> Table {
-        let header = header("family").into_iter().chain(["AUC of the oracle".into()]);
-        let mut table = Table::new(header);
+    pub(super) fn by_family(&self, pair: Pair) -> Table {
+        let mut table = headed("family", &["AUC of the oracle"]);
         for kind in [Kind::Ordinary, Kind::Adversarial, Kind::Real] {
-            for family in self.answers.families() {
-                let keep = move |q: &Question| q.family == family && Self::is_of(pair, kind)(q);
-                if Judged::pick(self.answers, &[OURS], keep).counts().0 == 0 {
+            for family in self.families() {
+                let keep = move |q: &Question| q.family == family && is_of(pair, kind)(q);
+                if Judged::pick(self, &[OURS], keep).counts().0 == 0 {
                     continue;
                 }
                 let is_hard = kind == Kind::Adversarial;
                 let name = if is_hard { format!("({family})") } else { family.to_owned() };
                 let mut row = self.row(&name, OURS, keep);
-                row.push(self.auc(ORACLE, keep));
+                row.push(self.auc(ORACLE, keep).to_string());
                 table.row(row);
             }
         }
@@ -93,16 +73,14 @@ impl<'a> Answered<'a> {
     }
 
     /// Ours by noise, on ordinary scenes, with the oracle and the best alternative.
-    pub(super) fn noises(&self, pair: Pair) -> Table {
-        let extra = ["AUC of the oracle", "best alternative", "its AUC"].map(String::from);
-        let mut table = Table::new(header("noise").into_iter().chain(extra));
+    pub(super) fn by_noise(&self, pair: Pair) -> Table {
+        let mut table = headed("noise", &["AUC of the oracle", "best alternative", "its AUC"]);
         for std in STDS {
-            let keep =
-                |q: &Question| Self::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
+            let keep = |q: &Question| ordinary(pair)(q) && q.condition.std == std;
             let name = format!("{} mm", 1e3 * std);
             let mut row = self.row(&name, OURS, keep);
             let (best, auc) = self.best_alternative(keep);
-            row.extend([self.auc(ORACLE, keep), best.to_owned(), shown(auc)]);
+            row.extend([self.auc(ORACLE, keep).to_string(), best.to_owned(), auc]);
             table.row(row);
         }
         table
@@ -112,49 +90,44 @@ impl<'a> Answered<'a> {
     pub(super) fn best_alternative(
         &self,
         keep: impl Fn(&Question) -> bool + Copy,
-    ) -> (&'a str, Option<Estimate>) {
-        let auc = |name: &'a str| {
-            let judged = Judged::pick(self.answers, &[name], keep);
-            (name, judged.measure(&[Measure::Auc]).estimate(name, Measure::Auc))
-        };
-        let value = |e: &Option<Estimate>| e.map_or(f64::NEG_INFINITY, |e| e.value);
-        let all = self.alternatives.iter().map(|name| auc(name));
-        all.filter(|(_, e)| e.is_some_and(|e| !e.value.is_nan()))
-            .max_by(|(_, a), (_, b)| value(a).total_cmp(&value(b)))
-            .unwrap_or(("none", None))
+    ) -> (&str, String) {
+        let all = self.alternatives().map(|name| (name, self.auc(name, keep)));
+        let best = all
+            .filter(|(_, auc)| !auc.value.is_nan())
+            .max_by(|(_, a), (_, b)| a.value.total_cmp(&b.value));
+        best.map_or(("none", "–".into()), |(name, auc)| (name, auc.to_string()))
     }
 
     fn row(
         &self,
         name: &str,
-        method: &'a str,
+        method: &str,
         keep: impl Fn(&Question) -> bool + Copy,
     ) -> Vec<String> {
-        let all = Judged::pick(self.answers, &[method], keep);
-        let measured = all.measure(&MEASURES);
-        let of = |measure| shown(measured.estimate(method, measure));
-        let chance = all.chance_error(method);
-        let error = measured.estimate(method, Measure::CalibrationError);
-        let error = error.filter(|e| !e.value.is_nan());
+        let judged = Judged::pick(self, &[method], keep);
+        let of = |measure| judged.estimate(method, measure).to_string();
+        let error = judged.estimate(method, Measure::CalibrationError).value;
+        let by_chance = || format!("{error:.3} ({:.3})", judged.chance_error(method));
         vec![
             name.to_owned(),
             of(Measure::Auc),
-            self.auc(method, |q| keep(q) && is_near(q)),
+            self.auc(method, |q| keep(q) && is_near(q)).to_string(),
             of(Measure::Brier),
-            error.map_or("–".into(), |e| format!("{:.3} ({chance:.3})", e.value)),
+            if error.is_nan() { "–".into() } else { by_chance() },
             of(Measure::FalseStops(0.01)),
             of(Measure::FalseStops(0.05)),
         ]
     }
 
-    fn auc(&self, method: &'a str, keep: impl Fn(&Question) -> bool) -> String {
-        let judged = Judged::pick(self.answers, &[method], keep);
-        shown(judged.measure(&[Measure::Auc]).estimate(method, Measure::Auc))
+    /// The AUC of a method on the questions it answers.
+    pub(super) fn auc(&self, method: &str, keep: impl Fn(&Question) -> bool) -> Estimate {
+        Judged::pick(self, &[method], keep).estimate(method, Measure::Auc)
     }
 }
 
-fn header(first: &str) -> Vec<String> {
+/// A table for rows as [`Answers::row`] makes them, with more at their ends.
+fn headed(first: &str, more: &[&str]) -> Table {
     let rest =
         ["AUC", "AUC near", "Brier", "ECE (by chance)", "false stops at 1 % misses", "at 5 %"];
-    std::iter::once(first).chain(rest).map(String::from).collect()
+    Table::new([&[first], &rest[..], more].concat())
 }

@@ -4,33 +4,27 @@ use super::{
     ORACLE, OURS,
     judged::Judged,
     plan::STDS,
-    tables::{Answered, is_near, shown},
+    tables::{is_near, ordinary},
 };
 use crate::{
-    answers::{Kind, Pair, Question},
+    answers::{Answers, Pair, Question},
     measures::{Bin, Measure, observed_within},
     page::Section,
     targets::{self, Target},
 };
 
-/// A number that should be reached on the ordinary families together.
-struct Limit {
-    pair: Pair,
-    near: bool,
-    measure: Measure,
-    limit: f64,
-    /// Only noise up to this counts, m.
-    up_to: f64,
-}
+/// What should be reached on the ordinary families together: of which pair, whether only near
+/// contact, the measure, its limit, and up to which noise, m.
+type Limit = (Pair, bool, Measure, f64, f64);
 
 const LIMITS: [Limit; 7] = [
-    limit(Pair::CloudCloud, false, Measure::Auc, 0.96, 0.02),
-    limit(Pair::CloudCloud, true, Measure::Auc, 0.86, 0.02),
-    limit(Pair::CloudCloud, false, Measure::Brier, 0.08, 0.02),
-    limit(Pair::CloudCloud, false, Measure::CalibrationError, 0.03, 0.02),
-    limit(Pair::CloudMesh, false, Measure::Auc, 0.98, 0.01),
-    limit(Pair::CloudMesh, true, Measure::Auc, 0.94, 0.01),
-    limit(Pair::CloudMesh, false, Measure::CalibrationError, 0.03, 0.02),
+    (Pair::CloudCloud, false, Measure::Auc, 0.96, 0.02),
+    (Pair::CloudCloud, true, Measure::Auc, 0.86, 0.02),
+    (Pair::CloudCloud, false, Measure::Brier, 0.08, 0.02),
+    (Pair::CloudCloud, false, Measure::CalibrationError, 0.03, 0.02),
+    (Pair::CloudMesh, false, Measure::Auc, 0.98, 0.01),
+    (Pair::CloudMesh, true, Measure::Auc, 0.94, 0.01),
+    (Pair::CloudMesh, false, Measure::CalibrationError, 0.03, 0.02),
 ];
 
 /// The largest ECE of one family beyond what chance gives.
@@ -44,18 +38,14 @@ const DEEP_CERTAIN: f64 = 95.0;
 /// What may collide of poses that are stated to do so with a probability below a tenth, %.
 const STATED_FREE: f64 = 4.0;
 
-const fn limit(pair: Pair, near: bool, measure: Measure, limit: f64, up_to: f64) -> Limit {
-    Limit { pair, near, measure, limit, up_to }
-}
-
 /// All targets.
-pub(super) fn section(answered: &Answered<'_>) -> Section {
-    let mut all: Vec<Target> = LIMITS.iter().map(|limit| limited(answered, limit)).collect();
+pub(super) fn section(answers: &Answers) -> Section {
+    let mut all: Vec<Target> = LIMITS.map(|limit| limited(answers, limit)).into();
     for pair in Pair::ALL {
-        all.push(families(answered, pair));
-        all.extend(stated(answered, pair));
-        all.push(deep(answered, pair));
-        all.extend(STDS.map(|std| alternatives(answered, pair, std)));
+        all.push(families(answers, pair));
+        all.extend(stated(answers, pair));
+        all.push(deep(answers, pair));
+        all.extend(STDS.map(|std| alternatives(answers, pair, std)));
     }
     targets::section(&all).text(format_args!(
         "On ordinary scenes. The oracle is `{OURS}` given every sampled point where it truly is \
@@ -64,69 +54,61 @@ pub(super) fn section(answered: &Answered<'_>) -> Section {
     ))
 }
 
-fn limited(answered: &Answered<'_>, limit: &Limit) -> Target {
-    let Limit { pair, near, measure, limit, up_to } = *limit;
-    let keep = |q: &Question| {
-        Answered::is_of(pair, Kind::Ordinary)(q)
-            && q.condition.std <= up_to
-            && (!near || is_near(q))
+fn limited(answers: &Answers, (pair, near, measure, limit, up_to): Limit) -> Target {
+    let keep =
+        |q: &Question| ordinary(pair)(q) && q.condition.std <= up_to && (!near || is_near(q));
+    let judged = Judged::pick(answers, &[OURS, ORACLE], keep);
+    let [ours, oracle] = [OURS, ORACLE].map(|method| judged.estimate(method, measure));
+    // Not a number is not met.
+    let (relation, met) = match measure {
+        Measure::Auc => ("at least", ours.value >= limit),
+        _ => ("at most", ours.value <= limit),
     };
-    let measured = Judged::pick(answered.answers, &[OURS, ORACLE], keep).measure(&[measure]);
-    let [ours, oracle] = [OURS, ORACLE].map(|method| measured.estimate(method, measure));
-    let relation = if measure == Measure::Auc { "at least" } else { "at most" };
     let which = if near { ", near" } else { "" };
     let noise = 1e3 * up_to;
     let name =
         format!("{}{which}, up to {noise} mm: {} {relation} {limit}", pair.name(), measure.name());
-    // Not a number is not met.
-    let met = ours.is_some_and(|e| measure.sign() * (e.value - limit) >= 0.0);
-    Target::new(name, format!("{}; oracle {}", shown(ours), shown(oracle)), met)
+    Target::new(name, format!("{ours}; oracle {oracle}"), met)
 }
 
 /// The family that is calibrated worst.
-fn families(answered: &Answered<'_>, pair: Pair) -> Target {
+fn families(answers: &Answers, pair: Pair) -> Target {
     let error = |family: &'static str| {
-        let keep = |q: &Question| q.family == family && Answered::is_of(pair, Kind::Ordinary)(q);
-        let judged = Judged::pick(answered.answers, &[OURS], keep);
-        let error =
-            judged.sample(OURS).map_or(f64::NAN, |s| Measure::CalibrationError.of(s, &s.ones()));
+        let keep = |q: &Question| q.family == family && ordinary(pair)(q);
+        let judged = Judged::pick(answers, &[OURS], keep);
+        let error = judged.estimate(OURS, Measure::CalibrationError).value;
         (family, error - judged.chance_error(OURS))
     };
-    let all = answered.answers.families().into_iter().map(error).filter(|(_, e)| !e.is_nan());
+    let all = answers.families().into_iter().map(error).filter(|(_, e)| !e.is_nan());
     let worst = all.max_by(|a, b| a.1.total_cmp(&b.1));
     let (family, worst) = worst.unwrap_or(("no family", f64::NAN));
     let what = format!("{}: ECE of every family at most {FAMILY_ERROR} above chance", pair.name());
-    Target::at_most(what, worst, FAMILY_ERROR, |worst| format!("{worst:.3} ({family})"))
+    Target::new(what, format!("{worst:.3} ({family})"), worst <= FAMILY_ERROR)
 }
 
 /// What is observed where a probability is stated.
-fn stated(answered: &Answered<'_>, pair: Pair) -> [Target; 2] {
-    let judged =
-        Judged::pick(answered.answers, &[OURS, ORACLE], Answered::is_of(pair, Kind::Ordinary));
+fn stated(answers: &Answers, pair: Pair) -> [Target; 2] {
+    let judged = Judged::pick(answers, &[OURS, ORACLE], ordinary(pair));
     let within = |low: f64, high: f64, of: fn(Bin) -> f64| {
-        [OURS, ORACLE].map(|method| {
-            judged.sample(method).map_or(f64::NAN, |s| of(observed_within(s, low..high)))
-        })
+        [OURS, ORACLE].map(|method| of(observed_within(judged.sample(method), low..high)))
     };
     let [free, of_oracle] = within(0.0, 0.1, |bin| 100.0 * bin.observed);
     let what = format!("{}: stated below .1, at most {STATED_FREE} % collide", pair.name());
-    let free = Target::at_most(what, free, STATED_FREE, |free| {
-        format!("{free:.1} %; oracle {of_oracle:.1} %")
-    });
+    let measured = format!("{free:.1} %; oracle {of_oracle:.1} %");
+    let free = Target::new(what, measured, free <= STATED_FREE);
     let [off, of_oracle] = within(0.6, 0.95, |bin| bin.observed - bin.mean);
     let what = format!("{}: stated .6 to .95, observed within .07", pair.name());
-    let show = |_| format!("{off:+.3}; oracle {of_oracle:+.3}");
-    [free, Target::at_most(what, off.abs(), 0.07, show)]
+    [free, Target::new(what, format!("{off:+.3}; oracle {of_oracle:+.3}"), off.abs() <= 0.07)]
 }
 
 /// How many deep overlaps are stated to collide with certainty.
-fn deep(answered: &Answered<'_>, pair: Pair) -> Target {
+fn deep(answers: &Answers, pair: Pair) -> Target {
     let keep = |q: &Question| {
-        Answered::is_of(pair, Kind::Ordinary)(q)
+        ordinary(pair)(q)
             && q.condition.std <= DEEP_NOISE
             && q.signed_distance < -DEEP.max(DEEP_SPACINGS * q.spacing)
     };
-    let judged = Judged::pick(answered.answers, &[OURS], keep);
+    let judged = Judged::pick(answers, &[OURS], keep);
     let said = judged.said(OURS);
     let certain = said.iter().filter(|s| s.probability.is_some_and(|p| p >= 0.99)).count();
     let share = 100.0 * certain as f64 / said.len() as f64;
@@ -134,21 +116,19 @@ fn deep(answered: &Answered<'_>, pair: Pair) -> Target {
         "{}: overlaps beyond 5 cm and 3 spacings, up to 10 mm: P ≥ .99 in {DEEP_CERTAIN} %",
         pair.name()
     );
-    Target::at_least(what, share, DEEP_CERTAIN, |share| format!("{share:.0} % of {}", said.len()))
+    Target::new(what, format!("{share:.0} % of {}", said.len()), share >= DEEP_CERTAIN)
 }
 
 /// No alternative ranks significantly better at this noise.
-fn alternatives(answered: &Answered<'_>, pair: Pair, std: f64) -> Target {
-    let keep = |q: &Question| Answered::is_of(pair, Kind::Ordinary)(q) && q.condition.std == std;
-    let is_better = |name: &&str| {
-        let judged = Judged::pick(answered.answers, &[name, OURS], keep);
-        let difference = judged.measure(&[Measure::Auc]).difference(name, OURS, Measure::Auc);
-        difference.is_some_and(|d| d.value > 0.0 && d.excludes_zero())
+fn alternatives(answers: &Answers, pair: Pair, std: f64) -> Target {
+    let keep = |q: &Question| ordinary(pair)(q) && q.condition.std == std;
+    let is_better = |name: &str| {
+        let judged = Judged::pick(answers, &[name, OURS], keep);
+        judged.difference(name, OURS, Measure::Auc).low > 0.0
     };
-    let (best, auc) = answered.best_alternative(keep);
-    let ours = Judged::pick(answered.answers, &[OURS], keep).measure(&[Measure::Auc]);
-    let ours = shown(ours.estimate(OURS, Measure::Auc));
-    let reached = format!("{ours}; best alternative {best}: {}", shown(auc));
+    let (best, auc) = answers.best_alternative(keep);
+    let ours = answers.auc(OURS, keep);
+    let reached = format!("{ours}; best alternative {best}: {auc}");
     let what = format!("{}, {} mm: no alternative ranks better", pair.name(), 1e3 * std);
-    Target::new(what, reached, !answered.alternatives.iter().any(is_better))
+    Target::new(what, reached, !answers.alternatives().any(is_better))
 }

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::{OURS, figures, judged::Judged, plan::SEED, tables::Answered};
+use super::{OURS, figures, judged::Judged, plan::SEED, tables::ordinary};
 use crate::{
-    answers::{Kind, Pair},
-    measures::observed_within,
+    answers::{Answers, Pair},
+    measures::{Bin, observed_within},
     page::{Page, Section},
     table::Table,
 };
@@ -21,9 +21,9 @@ methods, families one by one, intervals and targets are in [the full report](lab
 /// Stated probabilities, in ranges.
 const STATED: [[f64; 2]; 5] = [[0.0, 0.1], [0.1, 0.4], [0.4, 0.6], [0.6, 0.9], [0.9, 1.01]];
 
-pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>) -> Page {
-    let names = (("accuracy", "Accuracy"), ("sweep", arguments));
-    let mut page = Page::new(names.0, names.1, INTRODUCTION, root, SEED);
+pub(super) fn page(root: &Path, arguments: &str, answers: &Answers) -> Page {
+    let title = ("accuracy", "Accuracy");
+    let mut page = Page::new(title, ("sweep", arguments), INTRODUCTION, root, SEED);
     page.section(
         Section::new("How well it tells collisions from free poses")
             .text(
@@ -36,33 +36,34 @@ pub(super) fn page(root: &Path, arguments: &str, answered: &Answered<'_>) -> Pag
                  smoothed points, 1 cm boxes, a plain support vector machine, the paper's method.",
             )
             .text("### Two clouds")
-            .text(answered.noises(Pair::CloudCloud))
+            .text(answers.by_noise(Pair::CloudCloud))
             .text("### A cloud and an exact mesh")
-            .text(answered.noises(Pair::CloudMesh)),
+            .text(answers.by_noise(Pair::CloudMesh)),
     );
     page.section(
         Section::new("What a stated probability is worth")
             .text("The share of poses that collide, of those with such a stated probability.")
-            .text(stated(answered))
+            .text(stated(answers))
             .figure(
                 "accuracy-stated",
                 "Stated probability against observed rate of collisions",
-                figures::reliability_figure(answered),
+                figures::reliability_figure(answers),
             ),
     );
     page
 }
 
-fn stated(answered: &Answered<'_>) -> Table {
+fn stated(answers: &Answers) -> Table {
     let range = |[low, high]: [f64; 2]| format!("{low:.1} to {:.1}", high.min(1.0));
     let mut table = Table::new(std::iter::once("stated".to_owned()).chain(STATED.map(range)));
     for pair in Pair::ALL {
-        let judged = Judged::pick(answered.answers, &[OURS], Answered::is_of(pair, Kind::Ordinary));
+        let judged = Judged::pick(answers, &[OURS], ordinary(pair));
         let cell = |[low, high]: [f64; 2]| {
-            let bin = judged.sample(OURS).map(|s| observed_within(s, low..high));
-            bin.filter(|b| b.count > 0).map_or("–".into(), |b| {
-                format!("{:.2} (mean stated {:.2}, {} answers)", b.observed, b.mean, b.count)
-            })
+            let Bin { mean, observed, count } = observed_within(judged.sample(OURS), low..high);
+            if count == 0 {
+                return "–".to_owned();
+            }
+            format!("{observed:.2} (mean stated {mean:.2}, {count} answers)")
         };
         table.row(std::iter::once(format!("{}: collide", pair.name())).chain(STATED.map(cell)));
     }

@@ -53,6 +53,8 @@ pub enum Kind {
     Ordinary,
     /// Shapes that are hard for a reason: no thickness, two near faces, contact all around.
     Adversarial,
+    /// With meshes of real things, see [`Real`](super::Real).
+    Real,
 }
 
 impl Family {

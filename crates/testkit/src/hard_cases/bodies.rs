@@ -1,7 +1,6 @@
-//! Meshes and poses as careless exporters write them.
+//! Meshes as careless exporters write them.
 
 use cloudtouch_geom::{Point3, TriangleMesh, Vector3};
-use nalgebra::Matrix4;
 
 use super::case::patch;
 use crate::{
@@ -26,19 +25,6 @@ pub struct HardMesh {
     pub valid: bool,
     /// Whether the two surfaces have a point in common, or one is inside the other.
     pub collides: bool,
-}
-
-/// A homogeneous matrix that is to be a pose.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HardPose {
-    /// A short name, unique in the catalogue.
-    pub name: &'static str,
-    /// Why it is hard.
-    pub reason: &'static str,
-    /// The matrix.
-    pub matrix: Matrix4<f64>,
-    /// Whether it is a rigid motion up to the rounding of a text file.
-    pub valid: bool,
 }
 
 /// Standard deviation of the clouds beside the meshes, m.
@@ -83,29 +69,6 @@ pub fn hard_meshes() -> Vec<HardMesh> {
         ),
         case("inside-out", "normals point inwards", turned(&ball), within(0.05), true),
         case("wholly-inside", "surfaces far apart, volumes not", ball, within(0.05), true),
-    ]
-}
-
-/// Matrices with numbers that are not, a scale, a shear, a mirror, and rounding.
-pub fn hard_poses() -> Vec<HardPose> {
-    let identity = Matrix4::<f64>::identity();
-    let with = |name, reason, valid, place: (usize, usize), value: f64| {
-        let mut matrix = identity;
-        matrix[place] = value;
-        HardPose { name, reason, matrix, valid }
-    };
-    let rotation = "not orthonormal: covariances would be scaled along";
-    vec![
-        with("rounded", "written with six digits", true, (0, 1), 1e-6),
-        with("far-translation", "a translation of 1e9 m", true, (0, 3), 1e9),
-        with("scaled", rotation, false, (1, 1), 1.01),
-        with("sheared", rotation, false, (0, 2), 0.1),
-        with("mirrored", "a reflection is no motion", false, (2, 2), -1.0),
-        with("zero-rotation", rotation, false, (0, 0), 0.0),
-        with("projective", "the last row is not 0 0 0 1", false, (3, 0), 0.1),
-        with("nan-rotation", "not a number", false, (1, 2), f64::NAN),
-        with("nan-translation", "not a number", false, (2, 3), f64::NAN),
-        with("infinite-translation", "infinity minus infinity", false, (2, 3), f64::INFINITY),
     ]
 }
 

@@ -7,7 +7,7 @@ mod numbers;
 mod problems;
 mod shapes;
 
-pub use bodies::{HardMesh, HardPose, hard_meshes, hard_poses};
+pub use bodies::{HardMesh, hard_meshes};
 pub use case::HardCase;
 pub use problems::{HardProblem, hard_problems};
 
