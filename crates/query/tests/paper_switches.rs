@@ -50,12 +50,13 @@ fn with(change: impl FnOnce(&mut PaperSettings), gap: f64) -> Report {
 /// not to be had.
 #[test]
 fn each_switch_of_the_classifier_changes_what_is_answered() {
-    let gap = 0.008;
+    let gap = 0.006;
     let printed = with(|_| {}, gap).collision_probability;
-    let changes: [(&str, fn(&mut PaperSettings)); 6] = [
+    let changes: [(&str, fn(&mut PaperSettings)); 7] = [
         ("balanced", |s| s.balanced = true),
         ("scaling", |s| s.scaling = Scaling::LeafPair),
         ("kernel", |s| s.kernel = Kernel::Linear),
+        ("shared points", |s| s.shared_points = false),
         ("penalty", |s| s.penalty = 10.0),
         ("kappa", |s| s.kappa = 0.99),
         ("radius rule", |s| s.radius_rule = RadiusRule::Chebyshev),

@@ -5,6 +5,7 @@ mod accessors;
 mod edge;
 mod join;
 mod lazy;
+mod overlap;
 mod preparation;
 mod prepare;
 mod prepared;

@@ -46,6 +46,12 @@ impl PaperCloud {
         Ok(Self { prepared: Prepared::new(&scans, area)? })
     }
 
+    /// How many points the leaves of the tree hold, one that lies where siblings overlap counted in each
+    /// (section 5): what storage takes.
+    pub fn stored_points(&self) -> usize {
+        self.prepared.stored_points()
+    }
+
     /// Gives each point a κ of its own, in place of that of the query (eq. 11, 12): the probability
     /// with which it is to lie on its side, one for each point kept, in their order.
     ///

@@ -32,18 +32,18 @@ pub(crate) fn gather(
 ) -> Result<Option<PairPoints>, SubdivisionError> {
     let points = match (a, b) {
         (Shape::Cloud(a), Shape::Cloud(b)) => PairPoints {
-            a: cloud_points(a, leaf_a, &Pose::identity(), stats),
-            b: cloud_points(b, leaf_b, a_from_b, stats),
+            a: cloud_points(a, leaf_a, &Pose::identity(), settings, stats),
+            b: cloud_points(b, leaf_b, a_from_b, settings, stats),
             a_is_mesh: false,
             b_is_mesh: false,
         },
         (Shape::Cloud(cloud), Shape::Mesh(mesh)) => {
-            let near = cloud_points(cloud, leaf_a, &Pose::identity(), stats);
+            let near = cloud_points(cloud, leaf_a, &Pose::identity(), settings, stats);
             let b = mesh_points(mesh, leaf_b, &near, a_from_b, settings)?;
             PairPoints { a: near, b, a_is_mesh: false, b_is_mesh: true }
         }
         (Shape::Mesh(mesh), Shape::Cloud(cloud)) => {
-            let near = cloud_points(cloud, leaf_b, a_from_b, stats);
+            let near = cloud_points(cloud, leaf_b, a_from_b, settings, stats);
             let a = mesh_points(mesh, leaf_a, &near, &Pose::identity(), settings)?;
             PairPoints { a, b: near, a_is_mesh: true, b_is_mesh: false }
         }
@@ -62,9 +62,11 @@ fn cloud_points(
     cloud: &Prepared,
     leaf: NodeId,
     a_from_cloud: &Pose,
+    settings: &PaperSettings,
     stats: &mut Stats,
 ) -> Vec<PairPoint> {
-    let (points, computed) = cloud.leaf(leaf);
+    let (points, computed) =
+        if settings.shared_points { cloud.shared_leaf(leaf) } else { cloud.leaf(leaf) };
     stats.leaves_prepared += usize::from(computed);
     let motion = Motion::from(a_from_cloud);
     let pair_point = |s: &Surfel| PairPoint {

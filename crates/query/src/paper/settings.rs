@@ -95,6 +95,9 @@ pub struct PaperSettings {
     pub distrust_noise: bool,
     /// Which pairs of nodes are descended.
     pub traversal: Traversal,
+    /// Whether a leaf has the points that it shares with its siblings, those within ε of a cut; else
+    /// only boxes overlap.
+    pub shared_points: bool,
     /// Pairs of boxes are culled when no point in them can be more probable than this; between 0
     /// and 1.
     pub cull_probability: f64,
@@ -136,6 +139,7 @@ impl Default for PaperSettings {
             plane_first: false,
             distrust_noise: false,
             traversal: Traversal::Paper,
+            shared_points: true,
             cull_probability: 1e-6,
             stop_above: 0.999,
             deadline: None,
@@ -148,13 +152,14 @@ impl Default for PaperSettings {
 
 impl PaperSettings {
     /// The method with all our amendments: the classifier of a leaf pair scaled to the pair, balanced,
-    /// after a plane was tried, and not believed where the noise is large; meshes as dense as the
-    /// cloud, and known inside.
+    /// after a plane was tried, and not believed where the noise is large; each point in one leaf;
+    /// meshes as dense as the cloud, and known inside.
     pub fn amended() -> Self {
         Self {
             scaling: Scaling::LeafPair,
             balanced: true,
             mesh_points: MeshPoints::AsDenseAsCloud,
+            shared_points: false,
             points_inside: true,
             plane_first: true,
             distrust_noise: true,
