@@ -33,7 +33,7 @@ impl Prepared {
         self.tree.leaves().map(|leaf| self.shared_indices(leaf.id()).len()).sum()
     }
 
-    /// The points within every half that led to a leaf, each widened by ε of what was halved.
+    /// The points within every half that led to a leaf, each widened by half of ε of what was halved.
     fn shared_indices(&self, id: NodeId) -> Vec<u32> {
         let Some(leaf) = self.tree.node(id) else { return Vec::new() };
         let halves: Vec<HalfSpace> = std::iter::successors(Some(leaf), |node| self.parent(node))
@@ -60,7 +60,8 @@ impl Prepared {
         let outward = if axis.dot(&away) < 0.0 { axis } else { -axis };
         let along = |&index: &u32| outward.dot(&self.points()[index as usize].coords);
         let edge = node.primitive_indices().iter().map(along).fold(f64::NEG_INFINITY, f64::max);
-        let wider = self.tree.settings().sibling_overlap * 2.0 * parent.obb().half_extents[0];
+        // Each half reaches half of the overlap over the cut.
+        let wider = self.tree.settings().sibling_overlap * parent.obb().half_extents[0];
         Some(HalfSpace { outward, reach: edge + wider })
     }
 
@@ -98,7 +99,7 @@ mod tests {
         assert_eq!(line(0.0).stored_points(), 64);
         // Halves reach 0.05 · 63 = 3.15 over, three points each; quarters 0.05 · 31 = 1.55, one each,
         // and the cut in the middle cuts them too.
-        let shared = line(0.05);
+        let shared = line(0.1);
         assert_eq!(shared.stored_points(), 64 + 2 * 3 + 4);
         for leaf in shared.tree().leaves() {
             let (surfels, _) = shared.shared_leaf(leaf.id());
