@@ -7,7 +7,7 @@ use cloudtouch::{
 use cloudtouch_geom::{Pose, seed::derive};
 use cloudtouch_testkit::{exact::ExactMesh, poses::poses_near_contact, scene};
 
-use super::{PATHS, SEED, by_paper, sampled};
+use super::clouds::{PATHS, SEED, by_paper, sampled};
 use crate::{
     figure::{Axis, Figure, Panel, Series},
     page::Section,

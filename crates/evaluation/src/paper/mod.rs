@@ -1,5 +1,6 @@
 //! `cargo xtask paper`: the figures of the paper with our data, by its method as printed and by ours.
 
+mod clouds;
 mod distances;
 mod overlap;
 mod surfaces;
@@ -9,17 +10,9 @@ use std::path::Path;
 
 use anyhow::Result;
 use clap::Args;
-use cloudtouch::{PaperCloudSettings, PaperModel, PaperSettings, noise::SensorModel};
-use cloudtouch_geom::{PointCloud, TriangleMesh, seed::derive};
-use cloudtouch_testkit::{
-    noise::{NoiseKind, add_noise},
-    surface::{positions, sample_surface},
-};
 
 use crate::page::{self, Page};
-
-/// Everything random comes from this.
-const SEED: u64 = 2011;
+use clouds::SEED;
 
 /// What `cargo xtask paper` is given.
 #[derive(Debug, Args)]
@@ -54,21 +47,4 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     page.section(distances::section(points, poses)?);
     page.section(times::section(points, poses)?);
     page.write(&page::folder(root, update_docs))
-}
-
-/// The paper's path as printed, and with our amendments.
-const PATHS: [(&str, fn() -> PaperSettings, fn() -> PaperModel); 2] = [
-    ("printed", PaperSettings::default, PaperModel::default),
-    ("amended", PaperSettings::amended, PaperModel::amended),
-];
-
-fn by_paper(std: f64, model: PaperModel) -> PaperCloudSettings {
-    PaperCloudSettings { model, ..PaperCloudSettings::new(SensorModel::Isotropic { std }) }
-}
-
-/// A surface in so many points with normal noise of this standard deviation, m.
-fn sampled(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> PointCloud {
-    let exact = positions(&sample_surface(mesh, points, derive(SEED, 1, stream)));
-    let seed = derive(SEED, 2, stream);
-    PointCloud::from_points(add_noise(&exact, NoiseKind::Gaussian, std, seed))
 }

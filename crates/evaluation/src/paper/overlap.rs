@@ -13,7 +13,7 @@ use cloudtouch_testkit::{
     scene,
 };
 
-use super::{SEED, by_paper, sampled};
+use super::clouds::{SEED, by_paper, sampled};
 use crate::{
     figure::{Axis, Figure, Panel, Series},
     page::Section,

@@ -7,7 +7,7 @@ use cloudtouch::{
 };
 use cloudtouch_geom::{Point3, PointCloud, Pose, seed};
 
-use super::{SEED, by_paper};
+use super::clouds::{SEED, by_paper};
 use crate::{
     figure::{Axis, Figure, Panel, Place, Series},
     page::Section,

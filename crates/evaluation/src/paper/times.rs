@@ -12,7 +12,7 @@ use cloudtouch_testkit::{
 };
 use poisson_reconstruction::PoissonReconstruction;
 
-use super::{PATHS, SEED, by_paper, sampled};
+use super::clouds::{PATHS, SEED, by_paper, sampled};
 use crate::{
     answers::Pair,
     methods::{Draw, ExactMeshes, Method as _, observed},
@@ -51,7 +51,10 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
     let [a, b] = [0, 1].map(|body| Cloud::prepare(&clouds[body], &by));
     let (a, b, prepare) = (a?, b?, start.elapsed().as_secs_f64());
     let query = Query::new(QuerySettings::default())?;
-    row(&mut table, "default", prepare, &poses, |pose| Ok(drop(query.run(&a, &b, pose)?)))?;
+    row(&mut table, "default", prepare, &poses, |pose| {
+        query.run(&a, &b, pose)?;
+        Ok(())
+    })?;
 
     for (name, settings, model) in PATHS {
         let by = by_paper(STD, model());
@@ -59,7 +62,10 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
         let [a, b] = [0, 1].map(|body| PaperCloud::prepare(&clouds[body], &by));
         let (a, b, prepare) = (a?, b?, start.elapsed().as_secs_f64());
         let query = PaperQuery::new(settings())?;
-        row(&mut table, name, prepare, &poses, |pose| Ok(drop(query.run(&a, &b, pose)?)))?;
+        row(&mut table, name, prepare, &poses, |pose| {
+            query.run(&a, &b, pose)?;
+            Ok(())
+        })?;
     }
 
     let fine = [0, 1].map(|body| scene::subdivide_to_max_edge(&meshes[body], EDGES[body]));

@@ -113,7 +113,7 @@ impl<'a> Asked<'a> {
 #[derive(Debug, Clone)]
 pub(crate) enum AnyQuery {
     Calibrated(Box<Query>),
-    Paper(PaperQuery),
+    Paper(Box<PaperQuery>),
 }
 
 impl AnyQuery {
@@ -132,7 +132,7 @@ impl AnyQuery {
             Mode::Paper => {
                 let mut settings = PaperSettings::amended();
                 paper(&mut settings);
-                Self::Paper(PaperQuery::new(settings).expect("good settings"))
+                Self::Paper(Box::new(PaperQuery::new(settings).expect("good settings")))
             }
         }
     }
