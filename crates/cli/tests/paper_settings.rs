@@ -14,8 +14,10 @@ fn ask(inputs: &Inputs, more: &[&str]) -> Value {
 
 /// With more settings of a query, amended so far that the answer is in doubt.
 fn ask_with(inputs: &Inputs, settings: &str, more: &[&str]) -> Value {
-    let amended = "[query]\nscaling = \"leaf_pair\"\nmesh_points = \"as_dense_as_cloud\"\n";
-    let settings = format!("{amended}{settings}");
+    let amended = "[query]\nshared_points = false\nmesh_points = \"as_dense_as_cloud\"\n";
+    let kernel = "kernel = { gaussian = { gamma = 1000.0 } }\n";
+    let kernel = if settings.contains("kernel") { "" } else { kernel };
+    let settings = format!("{amended}{kernel}{settings}");
     inputs.write("one.toml", &settings);
     ask(inputs, &[&["--settings", "one.toml"], more].concat())
 }

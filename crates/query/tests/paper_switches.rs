@@ -53,7 +53,8 @@ fn each_switch_of_the_classifier_changes_what_is_answered() {
     // Resting on the floor's noise, and clearer: not each matters everywhere.
     let gaps = [0.004, 0.006, 0.008];
     let printed = gaps.map(|gap| with(|_| {}, gap).collision_probability);
-    let changes: [(&str, fn(&mut PaperSettings)); 7] = [
+    type Change = (&'static str, fn(&mut PaperSettings));
+    let changes: [Change; 7] = [
         ("balanced", |s| s.balanced = true),
         ("scaling", |s| s.scaling = Scaling::LeafPair),
         ("kernel", |s| s.kernel = Kernel::Linear),
