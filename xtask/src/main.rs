@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use cloudtouch_evaluation::{
-    calibrate, growth, performance, real_scans, settings, stability, sweep,
+    calibrate, growth, paper, performance, real_scans, settings, stability, sweep,
 };
 
 /// Project tasks.
@@ -30,6 +30,8 @@ enum Task {
     BenchReport(performance::Arguments),
     /// Answers to fixed poses in a real scan while noise is added to it.
     Growth(growth::Arguments),
+    /// The figures of the paper with our data, by its method as printed and by ours.
+    Paper(paper::Arguments),
     /// Query time against error, one setting changed at a time.
     Settings(settings::Arguments),
     /// Makes the files of fixtures/ anew.
@@ -51,6 +53,7 @@ fn main() -> anyhow::Result<()> {
         Task::Stability(arguments) => stability::run(&root, &arguments),
         Task::BenchReport(arguments) => performance::run(&root, &arguments),
         Task::Growth(arguments) => growth::run(&root, &arguments),
+        Task::Paper(arguments) => paper::run(&root, &arguments),
         Task::Settings(arguments) => settings::run(&root, &arguments),
         Task::Fixtures { check } => fixtures::run(&root, check),
     }

@@ -3,6 +3,7 @@
 mod circles;
 mod layers;
 mod manifest;
+mod map;
 mod modules;
 mod text;
 
@@ -34,10 +35,30 @@ fn violations(root: &Path) -> Result<Vec<String>> {
     for path in files(root, root)? {
         found.extend(check_file(root, &path)?);
     }
+    found.extend(check_map(root)?);
     if !root.join("CHANGELOG.md").is_file() {
         found.push("CHANGELOG.md is missing".into());
     }
     Ok(found)
+}
+
+/// What the map from the paper to the code names and is not there.
+fn check_map(root: &Path) -> Result<Vec<String>> {
+    let read =
+        |path: &str| fs::read_to_string(root.join(path)).with_context(|| format!("read {path}"));
+    let paths: Vec<String> = ["crates", "xtask"]
+        .into_iter()
+        .map(|folder| files(root, &root.join(folder)))
+        .collect::<Result<Vec<_>>>()?
+        .concat();
+    let sources = paths.iter().filter(|path| path.ends_with(".rs"));
+    let texts = sources.map(|path| Ok((path.as_str(), read(path)?))).collect::<Result<Vec<_>>>()?;
+    let names = map::declared(texts.iter().map(|(path, text)| (*path, text.as_str())));
+    let has_path = |path: &str| {
+        let below = |folder: &str| root.join(folder).join(path.trim_end_matches('/')).exists();
+        below("crates") || below("")
+    };
+    Ok(map::check(&read(map::PAGE)?, &names, has_path))
 }
 
 fn check_file(root: &Path, path: &str) -> Result<Vec<String>> {

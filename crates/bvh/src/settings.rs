@@ -7,6 +7,8 @@ use crate::TreeError;
 /// The defaults are a starting point: 40 points a leaf is what the classifier likes, the others
 /// follow the ranges of section 5 of the paper.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct TreeSettings {
     /// A node with more primitives than this is split (n_max); at least 1. No leaf ever exceeds it.
     pub max_leaf_points: usize,
@@ -54,6 +56,8 @@ impl TreeSettings {
 ///
 /// Overlapping boxes always are. In all three the outcome bounds what was culled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Traversal {
     /// As printed (section 5): with probability 1 − P_cov(1) P_cov(2), however far apart they are.
     Paper,

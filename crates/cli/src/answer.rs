@@ -6,6 +6,7 @@ use cloudtouch::{Placement, Report};
 use serde::Serialize;
 
 use crate::load::Input;
+use crate::per_point::Details;
 
 /// A report with where the object was.
 pub(crate) struct Answer<'a> {
@@ -13,6 +14,8 @@ pub(crate) struct Answer<'a> {
     pub placement: &'a Placement,
     /// Object to scene.
     pub pose: &'a Pose,
+    /// What was asked for beyond that.
+    pub details: Details<'a>,
 }
 
 /// An answer with the name of its case: one line of JSON.
@@ -21,6 +24,8 @@ struct Line<'a> {
     id: &'a str,
     #[serde(flatten)]
     report: &'a Report,
+    #[serde(flatten)]
+    details: &'a Details<'a>,
     placement: &'a Placement,
     pose: [[f64; 4]; 4],
     scene: &'a Input,
@@ -42,7 +47,8 @@ impl Answer<'_> {
     pub(crate) fn json_line(&self, id: &str, [scene, object]: [&Input; 2]) -> Result<String> {
         let matrix = self.pose.isometry().to_homogeneous();
         let pose = std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]));
-        let Self { report, placement, .. } = self;
-        Ok(serde_json::to_string(&Line { id, report, placement, pose, scene, object })?)
+        let Self { report, placement, details, .. } = self;
+        let line = Line { id, report, details, placement, pose, scene, object };
+        Ok(serde_json::to_string(&line)?)
     }
 }

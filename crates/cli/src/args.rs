@@ -11,6 +11,7 @@ use cloudtouch_cli::numbers::{self, Rigid};
 use cloudtouch_io::{LengthUnit, ReadLimits};
 
 use crate::sensor::SensorChoice;
+use crate::settings_file::{self, Settings};
 
 pub(crate) use caution::Refine;
 use caution::{CautionArguments, EffortArguments};
@@ -53,9 +54,9 @@ impl Arguments {
     /// Refuses options that contradict one another; the message names them.
     pub(crate) fn check(&self) -> Result<(), String> {
         match &self.command {
-            Command::Query(arguments) => arguments.common.check(),
-            Command::Batch(arguments) => arguments.common.check(),
-            Command::Info(_) | Command::Demo(_) => Ok(()),
+            Command::Query(arguments) => arguments.check(),
+            Command::Batch(arguments) => arguments.common.check(&[]),
+            Command::Info(_) | Command::Demo(_) | Command::Settings => Ok(()),
         }
     }
 
@@ -77,13 +78,15 @@ impl Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// One object in one scene at one pose
-    Query(QueryArguments),
+    Query(Box<QueryArguments>),
     /// Many poses from a case file; scenes and objects are prepared once
     Batch(BatchArguments),
     /// What a cloud or mesh file holds, and which sensor suits it
     Info(InfoArguments),
     /// The piano in the room, from free to deep; needs no file
     Demo(DemoArguments),
+    /// All settings of the paper's mode with their defaults, as a file for --settings
+    Settings,
 }
 
 #[derive(Debug, Args)]
@@ -98,6 +101,21 @@ pub(crate) struct QueryArguments {
     /// Print the report as one JSON object
     #[arg(long, help_heading = "Output")]
     pub json: bool,
+    /// Add to the JSON the probability of each point, and both ways of pooling them
+    #[arg(long, requires = "json", help_heading = "Output")]
+    pub points: bool,
+    /// Paper: add to the JSON each classifier trained, with f, xi, alpha, v and b
+    #[arg(long, requires = "json", help_heading = "Output")]
+    pub explain: bool,
+    /// Write the points of both clouds with their probabilities as a table
+    #[arg(long, value_name = "OUT.csv", help_heading = "Output")]
+    pub csv: Option<PathBuf>,
+    /// Another scan of the same scene, in the same frame; repeatable
+    #[arg(long, value_name = "FILE", help_heading = "Files")]
+    pub also: Vec<PathBuf>,
+    /// Paper: text file with one kappa for each row of the scene
+    #[arg(long, value_name = "FILE", conflicts_with = "also", help_heading = "Files")]
+    pub kappas: Option<PathBuf>,
     /// Exit with 0 free, 10 uncertain, 20 in collision, 30 undecided
     #[arg(long, help_heading = "Output")]
     pub exit_code: bool,
@@ -109,6 +127,13 @@ pub(crate) struct QueryArguments {
     pub force: bool,
     #[command(flatten)]
     pub common: CommonArguments,
+}
+
+impl QueryArguments {
+    fn check(&self) -> Result<(), String> {
+        let of_the_paper = [("--explain", self.explain), ("--kappas", self.kappas.is_some())];
+        self.common.check(&of_the_paper)
+    }
 }
 
 #[derive(Debug, Args)]
@@ -205,14 +230,16 @@ pub(crate) struct CommonArguments {
     /// How to estimate: calibrated, or paper (as printed)
     #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated, help_heading = "Estimate")]
     pub mode: ModeName,
-    /// In collision above this probability, 0.5 to 1
-    #[arg(long, value_name = "A", default_value_t = 0.9, value_parser = parse_accept,
+    /// In collision above this probability, 0.5 to 1 [0.9]
+    #[arg(long, value_name = "A", value_parser = parse_accept, help_heading = "Estimate")]
+    pub accept: Option<f64>,
+    /// Free below this probability, 0 to 0.5 [0.1]
+    #[arg(long, value_name = "B", value_parser = parse_reject, help_heading = "Estimate")]
+    pub reject: Option<f64>,
+    /// Paper: its settings, as `cloudtouch settings` prints them
+    #[arg(long, value_name = "FILE", value_parser = settings_file::read,
           help_heading = "Estimate")]
-    pub accept: f64,
-    /// Free below this probability, 0 to 0.5
-    #[arg(long, value_name = "B", default_value_t = 0.1, value_parser = parse_reject,
-          help_heading = "Estimate")]
-    pub reject: f64,
+    pub settings: Option<Settings>,
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
     #[arg(long, value_name = "P", value_parser = parse_prior, help_heading = "Estimate")]
     pub prior: Option<f64>,
@@ -256,32 +283,37 @@ impl CommonArguments {
     pub(crate) fn query_settings(&self) -> QuerySettings {
         let usual = QuerySettings::default();
         QuerySettings {
-            accept: self.accept,
-            reject: self.reject,
+            accept: self.accept.unwrap_or(usual.accept),
+            reject: self.reject.unwrap_or(usual.reject),
             prior: self.prior.unwrap_or(usual.prior),
             deadline: self.effort.deadline(),
-            safeguards: self.caution.safeguards(),
+            safeguards: self.caution.safeguards(usual.safeguards),
             ..usual
         }
     }
 
     pub(crate) fn paper_settings(&self) -> PaperSettings {
-        let usual = PaperSettings::default();
+        let usual = self.settings.map_or_else(PaperSettings::default, |file| file.query);
         PaperSettings {
-            accept: self.accept,
-            reject: self.reject,
+            accept: self.accept.unwrap_or(usual.accept),
+            reject: self.reject.unwrap_or(usual.reject),
             pooling: self.pooling.map_or(usual.pooling, Pooling::from),
             seed: self.seed.unwrap_or(usual.seed),
-            deadline: self.effort.deadline(),
-            safeguards: self.caution.safeguards(),
+            deadline: self.effort.deadline().or(usual.deadline),
+            safeguards: self.caution.safeguards(usual.safeguards),
             ..usual
         }
     }
 
-    /// Refuses options that the mode has no use for.
-    fn check(&self) -> Result<(), String> {
-        let of_the_paper = [("--pooling", self.pooling.is_some()), ("--seed", self.seed.is_some())];
-        match of_the_paper.into_iter().find(|(_, is_given)| *is_given) {
+    /// Refuses options that the mode has no use for; `more` are of the paper's mode, and whether they
+    /// are given.
+    fn check(&self, more: &[(&str, bool)]) -> Result<(), String> {
+        let of_the_paper = [
+            ("--pooling", self.pooling.is_some()),
+            ("--seed", self.seed.is_some()),
+            ("--settings", self.settings.is_some()),
+        ];
+        match of_the_paper.iter().chain(more).find(|(_, is_given)| *is_given) {
             Some((name, _)) if self.mode == ModeName::Calibrated => Err(format!(
                 "{name} has no effect in the calibrated mode: leave it out, or give --mode paper"
             )),

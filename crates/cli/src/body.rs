@@ -1,12 +1,16 @@
 //! Prepared bodies of either path, and what the commands ask of both paths alike.
 
+use anyhow::{Context as _, Result, bail};
 use cloudtouch::geom::{Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
+use cloudtouch::paper::{LeafClassifier, RadiusRule};
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, FilterSettings, Mesh, PaperBodyRef, PaperCloud,
     PaperCloudSettings, PaperQuery, Placement, PrepareError, Query, QueryError, Report,
     StageReport,
 };
+
+use crate::settings_file::Settings;
 
 /// A cloud prepared for one of the paths, or a mesh.
 #[allow(clippy::large_enum_variant, reason = "there are a few, each far larger on the heap")]
@@ -17,15 +21,19 @@ pub(crate) enum Body<C> {
 
 /// A prepared cloud of one of the paths.
 pub(crate) trait PreparedCloud: Sized + Send + Sync {
-    /// Prepares a cloud by the defaults for its sensor, as `change` leaves filter and sensor.
+    /// Prepares scans of one frame by the defaults for their sensor and what a settings file says, as
+    /// `change` leaves filter and sensor.
     fn prepare(
-        cloud: &PointCloud,
+        scans: &[PointCloud],
         sensor: SensorModel,
+        file: Option<&Settings>,
         change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
     ) -> Result<Self, PrepareError>;
 
     /// With its surface computed everywhere, where that changes the time of a query.
     fn refined(self) -> Result<Self, PrepareError>;
+    /// With a κ for each row of the file; the default path has none.
+    fn with_kappas(self, by_row: &[f64], rule: RadiusRule) -> Result<Self>;
 
     /// The kept points in the file's frame, m.
     fn points(&self) -> Vec<Point3>;
@@ -52,6 +60,16 @@ pub(crate) trait Path: Sync {
         scene_from_object: &Pose,
     ) -> Result<Report, QueryError>;
 
+    /// The same with the classifiers trained, of which the default path tells none.
+    fn explain(
+        &self,
+        scene: &Body<Self::Cloud>,
+        object: &Body<Self::Cloud>,
+        scene_from_object: &Pose,
+    ) -> Result<(Report, Vec<LeafClassifier>), QueryError> {
+        Ok((self.ask(scene, object, scene_from_object)?, Vec::new()))
+    }
+
     /// Where the object lies in the scene.
     fn place(
         &self,
@@ -63,16 +81,25 @@ pub(crate) trait Path: Sync {
 
 /// The clouds of the two paths have no trait in common, and the same functions.
 macro_rules! prepared_cloud {
-    ($cloud:ty, $settings:ty, $refine:expr) => {
+    ($cloud:ty, $settings:ty, $refine:expr, $by_file:expr, $with_kappas:expr) => {
         impl PreparedCloud for $cloud {
             fn prepare(
-                cloud: &PointCloud,
+                scans: &[PointCloud],
                 sensor: SensorModel,
+                file: Option<&Settings>,
                 change: impl FnOnce(&mut FilterSettings, &mut SensorModel),
             ) -> Result<Self, PrepareError> {
                 let mut settings = <$settings>::new(sensor);
+                let by_file: fn(&mut $settings, &Settings) = $by_file;
+                file.into_iter().for_each(|file| by_file(&mut settings, file));
                 change(&mut settings.filter, &mut settings.sensor);
-                Self::prepare(cloud, &settings)
+                let scans: Vec<_> = scans.iter().map(|scan| (scan, &settings)).collect();
+                Self::merge(&scans)
+            }
+
+            fn with_kappas(self, by_row: &[f64], rule: RadiusRule) -> Result<Self> {
+                let with_kappas: fn(Self, &[f64], RadiusRule) -> Result<Self> = $with_kappas;
+                with_kappas(self, by_row, rule)
             }
 
             fn refined(self) -> Result<Self, PrepareError> {
@@ -98,9 +125,23 @@ macro_rules! prepared_cloud {
     };
 }
 
-prepared_cloud!(Cloud, CloudSettings, Cloud::refined);
-// The paper's algorithm has no use for it.
-prepared_cloud!(PaperCloud, PaperCloudSettings, Ok);
+prepared_cloud!(Cloud, CloudSettings, Cloud::refined, |_, _| (), |_, _, _| {
+    bail!("kappas are of the paper's mode")
+});
+prepared_cloud!(
+    PaperCloud,
+    PaperCloudSettings,
+    // The paper's algorithm has no use for a surface.
+    Ok,
+    |settings, file| settings.model = file.cloud,
+    |cloud, by_row, rule| {
+        let kappa = |&row: &usize| by_row.get(row).copied();
+        let kept: Option<Vec<f64>> = cloud.rows().iter().map(kappa).collect();
+        let kept = kept.filter(|kept| kept.len() == cloud.len());
+        let kept = kept.context("the file of kappas needs a line for each row of the scene")?;
+        Ok(cloud.with_kappas(&kept, rule)?)
+    }
+);
 
 impl<'a> From<&'a Body<Cloud>> for BodyRef<'a> {
     fn from(body: &'a Body<Cloud>) -> Self {
@@ -152,6 +193,15 @@ impl Path for PaperQuery {
         scene_from_object: &Pose,
     ) -> Result<Report, QueryError> {
         self.run(scene, object, scene_from_object)
+    }
+
+    fn explain(
+        &self,
+        scene: &Body<PaperCloud>,
+        object: &Body<PaperCloud>,
+        scene_from_object: &Pose,
+    ) -> Result<(Report, Vec<LeafClassifier>), QueryError> {
+        Self::explain(self, scene, object, scene_from_object)
     }
 
     fn place(

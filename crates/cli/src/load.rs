@@ -66,10 +66,26 @@ pub(crate) fn body<C: PreparedCloud>(
     sensor: SensorChoice,
     common: &CommonArguments,
 ) -> Result<Loaded<C>> {
-    match geometry(path, Units::of(common), &common.limits.read_limits())? {
-        Geometry::Mesh(mesh) => of_mesh(path, role, &mesh, common),
-        Geometry::Cloud(cloud) => of_cloud(path, role, cloud, sensor, common),
+    bodies(&[path], role, sensor, common)
+}
+
+/// Reads files and prepares them as one body: several scans of one frame, or one mesh.
+pub(crate) fn bodies<C: PreparedCloud>(
+    paths: &[&Path],
+    role: Role,
+    sensor: SensorChoice,
+    common: &CommonArguments,
+) -> Result<Loaded<C>> {
+    let mut scans = Vec::new();
+    for path in paths {
+        match geometry(path, Units::of(common), &common.limits.read_limits())? {
+            Geometry::Mesh(mesh) if paths.len() == 1 => return of_mesh(path, role, &mesh, common),
+            Geometry::Mesh(_) => bail!("{}: is a mesh: only scans make one scene", named(path)),
+            Geometry::Cloud(cloud) => scans.push(cloud),
+        }
     }
+    let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
+    of_clouds(&names.join(", "), role, scans, sensor, common)
 }
 
 fn of_mesh<C>(
@@ -104,28 +120,30 @@ fn of_mesh<C>(
     Ok(Loaded { body: Body::Mesh(mesh), input })
 }
 
-fn of_cloud<C: PreparedCloud>(
-    path: &Path,
+/// The sensor of several scans is that chosen for the first.
+fn of_clouds<C: PreparedCloud>(
+    name: &str,
     role: Role,
-    mut cloud: PointCloud,
+    mut scans: Vec<PointCloud>,
     sensor: SensorChoice,
     common: &CommonArguments,
 ) -> Result<Loaded<C>> {
     if role == Role::Scene
         && let Some(Rigid(pose)) = common.sensor_pose
     {
-        cloud.sensor_pose = pose;
+        ensure!(scans.len() == 1, "{name}: --sensor-pose is for one scan, and these are several");
+        scans.iter_mut().for_each(|scan| scan.sensor_pose = pose);
     }
-    let Chosen { sensor, because } = sensor.of(&cloud);
-    if cloud.covariances.is_some() && sensor != SensorModel::PerPoint {
+    let first = scans.first().with_context(|| format!("{name}: no scan"))?;
+    let Chosen { sensor, because } = sensor.of(first);
+    if scans.iter().any(|scan| scan.covariances.is_some()) && sensor != SensorModel::PerPoint {
         tracing::warn!(
-            "{}: its covariance columns are passed over for the sensor {sensor}: give \
-             --sensor per-point to use them",
-            path.display()
+            "{name}: its covariance columns are passed over for the sensor {sensor}: give \
+             --sensor per-point to use them"
         );
     }
     let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
-    let prepared = C::prepare(&cloud, sensor, |filter, sensor| {
+    let prepared = C::prepare(&scans, sensor, common.settings.as_ref(), |filter, sensor| {
         common.change(filter);
         if role == Role::Scene {
             filter.robot = robot;
@@ -136,12 +154,12 @@ fn of_cloud<C: PreparedCloud>(
         }
     });
     let input = Input {
-        file: named(path),
+        file: name.to_owned(),
         unit: common.cloud_unit.unwrap_or_default().to_string(),
         sensor: Some(sensor.to_string()),
         sensor_because: because,
     };
-    Ok(Loaded { body: Body::Cloud(prepared.with_context(|| named(path))?), input })
+    Ok(Loaded { body: Body::Cloud(prepared.with_context(|| name.to_owned())?), input })
 }
 
 /// What the coordinates of files are in.

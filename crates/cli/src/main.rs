@@ -8,11 +8,13 @@ mod commands;
 mod load;
 mod ordered;
 mod output;
+mod per_point;
 mod picture;
 mod pose_file;
 mod print;
 mod report_text;
 mod sensor;
+mod settings_file;
 mod unused;
 
 use std::io::{IsTerminal as _, Write as _};
@@ -43,6 +45,7 @@ fn main() -> ExitCode {
         Command::Batch(arguments) => commands::batch::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Demo(arguments) => commands::demo::run(arguments, shows_work),
+        Command::Settings => commands::settings::run(),
     };
     outcome.unwrap_or_else(|error| {
         // When standard error is gone too, the exit code still tells.

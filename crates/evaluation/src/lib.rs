@@ -13,6 +13,7 @@ pub mod machine;
 pub mod measures;
 pub mod methods;
 pub mod page;
+pub mod paper;
 pub mod performance;
 pub mod real_scans;
 pub mod settings;

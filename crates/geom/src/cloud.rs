@@ -60,6 +60,21 @@ impl PointCloud {
         }
     }
 
+    /// The same cloud in the frame that `pose` maps its own into: points, covariances, normals and
+    /// where the sensor was.
+    #[must_use]
+    pub fn transformed(&self, pose: &Pose) -> Self {
+        let turned = |c: &Covariance| c.rotated(pose.rotation());
+        let unit = |n: &UnitVector3| UnitVector3::new_normalize(pose.transform_vector(n));
+        Self {
+            points: self.points.iter().map(|p| pose.transform_point(p)).collect(),
+            covariances: self.covariances.as_ref().map(|all| all.iter().map(turned).collect()),
+            normals: self.normals.as_ref().map(|all| all.iter().map(unit).collect()),
+            sensor_pose: pose.after(&self.sensor_pose),
+            image_size: self.image_size,
+        }
+    }
+
     /// Lowest and highest corner of the finite points; `None` when there is none.
     pub fn bounding_box(&self) -> Option<(Point3, Point3)> {
         bounding_box(self.points.iter().filter(|p| p.iter().all(|v| v.is_finite())))
@@ -73,6 +88,25 @@ fn pick<T: Copy>(all: &[T], indices: &[usize]) -> Vec<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_transformed_cloud_takes_its_sensor_along() {
+        let pose = Pose::from_translation_rpy([1.0, 2.0, 3.0].into(), [0.3, 0.2, 0.1]);
+        let cloud = PointCloud {
+            covariances: Some(vec![Covariance::diagonal([4.0, 1.0, 1.0])]),
+            normals: Some(vec![UnitVector3::new_normalize([1.0, 0.0, 0.0].into())]),
+            image_size: Some((1, 1)),
+            ..PointCloud::from_points(vec![Point3::new(0.5, 0.0, 0.0)])
+        };
+        let moved = cloud.transformed(&pose);
+        let normal = moved.normals.as_ref().unwrap()[0];
+        let ray = moved.points[0] - moved.sensor_origin();
+        assert!((ray - 0.5 * normal.into_inner()).norm() < 1e-15);
+        assert!((moved.covariances.as_ref().unwrap()[0].std_along(&normal) - 2.0).abs() < 1e-12);
+        let back = moved.transformed(&pose.inverse());
+        assert!((back.points[0] - cloud.points[0]).norm() < 1e-15);
+        assert_eq!(back.image_size, cloud.image_size);
+    }
 
     #[test]
     fn bounding_box_passes_over_missing_returns() {

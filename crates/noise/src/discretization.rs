@@ -9,19 +9,25 @@ use crate::settings_error::{SettingsError, check_at_least_one, check_positive};
 
 /// Which points the sums of eq. 17 run over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Summed {
     /// The k nearest other positions: how far apart samples are, the second moment about a point of
     /// those around it.
-    #[default]
     Neighbors,
     /// All points of the cloud and the point itself, as printed. The point itself adds the weight 1 to
     /// the denominator, points beyond the k-th to both: on a square lattice, at the default settings, Ψ is
     /// 11 % smaller. Each position counts once, and weights below 2⁻⁵³ are left out.
+    #[default]
     AllPoints,
 }
 
 /// How the discretization covariance Ψᵢ is taken from the neighbours (eq. 17).
+///
+/// By default as printed; k and τ, which are not, are ours.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Discretization {
     /// k, the size of the neighbourhood. 12 by default: about two rings of neighbours, the second
     /// of which hardly counts.
@@ -32,11 +38,15 @@ pub struct Discretization {
     pub width: f64,
     /// Which points the sums run over.
     pub summed: Summed,
+    /// Whether no standard deviation of Ψᵢ exceeds the cap that
+    /// [`NoiseModel::refine`](crate::NoiseModel::refine) is given: an isolated point far from all
+    /// others is then not taken for a surface that reaches to them. Not printed, and off by default.
+    pub is_capped: bool,
 }
 
 impl Default for Discretization {
     fn default() -> Self {
-        Self { neighbors: 12, width: 2.0, summed: Summed::Neighbors }
+        Self { neighbors: 12, width: 2.0, summed: Summed::AllPoints, is_capped: false }
     }
 }
 
@@ -123,6 +133,10 @@ fn weighted_scatter(
 mod tests {
     use super::*;
 
+    /// Sums over the nearest neighbours.
+    const NEAREST: Discretization =
+        Discretization { neighbors: 12, width: 2.0, summed: Summed::Neighbors, is_capped: false };
+
     fn line(xs: &[f64]) -> Neighborhoods {
         Neighborhoods::try_new(xs.iter().map(|&x| Point3::new(x, 0.0, 0.0)).collect()).unwrap()
     }
@@ -131,7 +145,7 @@ mod tests {
     fn matches_the_formula_by_hand() {
         // From x = 0: neighbours at 1 and -2, so R = 2, k = 2, and the width is 1 · 2/√2.
         let cloud = line(&[0.0, 1.0, -2.0, 50.0]);
-        let settings = Discretization { neighbors: 2, width: 1.0, ..Discretization::default() };
+        let settings = Discretization { neighbors: 2, width: 1.0, ..NEAREST };
         let psi = discretization(&cloud, 0, &settings).unwrap().unwrap();
         let (near, far) = ((-1.0_f64 / 2.0).exp(), (-4.0_f64 / 2.0).exp());
         let expected = (near * 1.0 + far * 4.0) / (near + far);
@@ -145,7 +159,7 @@ mod tests {
     fn the_printed_sums_run_over_all_points_and_the_point_itself() {
         let xs = [0.0, 1.0, -2.0, 2.5, 50.0];
         let cloud = line(&xs);
-        let settings = Discretization { neighbors: 2, width: 1.0, summed: Summed::AllPoints };
+        let settings = Discretization { neighbors: 2, width: 1.0, ..Discretization::default() };
         let psi = discretization(&cloud, 0, &settings).unwrap().unwrap();
         let weight = |x: f64| (-x * x / 2.0).exp();
         let total: f64 = xs.iter().map(|&x| weight(x)).sum();
@@ -157,7 +171,7 @@ mod tests {
     #[test]
     fn narrow_weights_leave_the_nearest_neighbour() {
         let cloud = line(&[0.0, 1.0, -2.0]);
-        let settings = Discretization { neighbors: 2, width: 1e-3, ..Discretization::default() };
+        let settings = Discretization { neighbors: 2, width: 1e-3, ..NEAREST };
         let psi = discretization(&cloud, 0, &settings).unwrap().unwrap();
         assert!((psi.upper_triangle()[0] - 1.0).abs() < 1e-12);
     }

@@ -46,9 +46,10 @@ impl NoiseModel {
 
     /// Mean and covariance of the surface point behind point `index`.
     ///
-    /// `sensor` holds the position noise of all points. Neither the local spacing nor any
-    /// discretization standard deviation counts as larger than `spacing_cap` (m, not negative,
-    /// infinity for no cap), so that [`bounds`](Self::bounds) holds.
+    /// `sensor` holds the position noise of all points. The local spacing never counts as larger
+    /// than `spacing_cap` (m, not negative, infinity for no cap), and no discretization standard
+    /// deviation does where [`is_capped`](crate::Discretization::is_capped) says so: on that
+    /// [`bounds`](Self::bounds) rests.
     ///
     /// With [`Combination::SurfacePosterior`] the covariance is v n nᵀ + t² (I − n nᵀ), n the normal
     /// and t the disc of 0.35 spacings, widened by the noise where it is uncertain which way the
@@ -193,13 +194,17 @@ impl NoiseModel {
     }
 
     /// Upper bounds on what [`refine`](Self::refine) does to a point with this position noise,
-    /// whatever its neighbours.
+    /// whatever its neighbours; infinite for `Convolution` without a cap on Ψ, where only the
+    /// neighbours tell.
     pub fn bounds(&self, sensor: &Covariance, spacing_cap: f64) -> Bounds {
         let sigma = sensor.max_std();
         let widened = |part: f64| sigma.hypot(part * spacing_cap) * (1.0 + ROUNDING);
         match self.settings.combination {
             Combination::Precision => Bounds { shift: 0.0, std: widened(0.0) },
-            Combination::Convolution => Bounds { shift: 0.0, std: widened(1.0) },
+            Combination::Convolution if self.settings.discretization.is_capped => {
+                Bounds { shift: 0.0, std: widened(1.0) }
+            }
+            Combination::Convolution => Bounds { shift: 0.0, std: f64::INFINITY },
             Combination::SurfacePosterior => {
                 let settings = &self.settings.posterior;
                 Bounds {
@@ -210,7 +215,7 @@ impl NoiseModel {
         }
     }
 
-    /// Ψᵢ within the cap; `None` without neighbours.
+    /// Ψᵢ, within the cap where it has one; `None` without neighbours.
     fn sampling_error(
         &self,
         index: usize,
@@ -220,6 +225,7 @@ impl NoiseModel {
     ) -> Option<Covariance> {
         let settings = &self.settings.discretization;
         let nearest = &scratch.neighbors[..scratch.neighbors.len().min(settings.neighbors)];
-        sampling_error(neighborhoods, index, nearest, settings).map(|psi| limited(psi, spacing_cap))
+        let psi = sampling_error(neighborhoods, index, nearest, settings)?;
+        Some(if settings.is_capped { limited(psi, spacing_cap) } else { psi })
     }
 }

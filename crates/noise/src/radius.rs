@@ -4,6 +4,32 @@ use cloudtouch_geom::normal;
 
 use crate::error::NoiseError;
 
+/// How the probability κ with which a point is to lie on its side becomes the radius r of its
+/// ellipsoid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum RadiusRule {
+    /// r = Φ⁻¹(κ), κ in [½, 1): points are normal (eq. 11).
+    #[default]
+    Gaussian,
+    /// r = √(κ/(1−κ)), κ in [0, 1): whatever the distribution (eq. 12).
+    Chebyshev,
+}
+
+impl RadiusRule {
+    /// r, in standard deviations.
+    ///
+    /// # Errors
+    /// When κ is outside the range of the rule.
+    pub fn radius(self, kappa: f64) -> Result<f64, NoiseError> {
+        match self {
+            Self::Gaussian => radius_gaussian(kappa),
+            Self::Chebyshev => radius_chebyshev(kappa),
+        }
+    }
+}
+
 /// The ellipsoid radius for Gaussian points: r = Φ⁻¹(κ) (eq. 11), in standard deviations.
 ///
 /// `kappa` is the probability with which a point is to lie on its side of the surface, in

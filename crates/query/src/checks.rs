@@ -20,6 +20,15 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), SettingsErr
     }
 }
 
+/// Whether a setting is a finite number that is not negative.
+pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<(), SettingsError> {
+    if value >= 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(SettingsError::Negative { name, value })
+    }
+}
+
 /// Whether a setting is between 0 and 1, ends excluded.
 pub(crate) fn fraction(name: &'static str, value: f64) -> Result<(), SettingsError> {
     if value > 0.0 && value < 1.0 {

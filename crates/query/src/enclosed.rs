@@ -54,7 +54,7 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
     }
     let filled = is_filled.iter().filter(|filled| **filled).count();
     filled as f64 >= CLOSED * is_filled.len() as f64
-        && !cloud.sensor_origin().is_some_and(|sensor| sees(cloud, sensor, place))
+        && !cloud.sensor_origins().iter().any(|sensor| sees(cloud, sensor, place))
 }
 
 /// Which square of the cube around the origin a direction passes; `None` for none.

@@ -38,7 +38,8 @@ pub use judge::{
 pub use mesh::Mesh;
 pub use mode::Mode;
 pub use paper::{
-    PaperBodyRef, PaperCloud, PaperCloudSettings, PaperNoise, PaperQuery, PaperSettings, Pooling,
+    PaperBodyRef, PaperCloud, PaperCloudSettings, PaperModel, PaperNoise, PaperQuery,
+    PaperSettings, Pooling,
 };
 pub use placement::Placement;
 pub use query::{Query, QuerySettings};

@@ -183,7 +183,7 @@ pub struct Stats {
 ///
 /// Points that are not listed were culled or are below [`POINT_FLOOR`](crate::POINT_FLOOR). A body
 /// that is a mesh has no entries.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PointProbabilities {
     /// Points of A.
     pub a: Vec<(usize, f64)>,

@@ -1,9 +1,12 @@
 //! What is looked at beside the evidence before a pair may read as free.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::SettingsError;
 
 /// Limits beyond which a pair that would read as free, or between the thresholds, is undecided.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Safeguards {
     /// Share of a body's surface that may lie where a single depth image saw nothing, 0 to 1; 1 never
     /// objects.

@@ -22,7 +22,7 @@ pub(crate) fn unseen(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> Option<Unse
 
 fn image(body: Shape<'_>) -> Option<&Prepared> {
     match body {
-        Shape::Cloud(cloud) if cloud.view().is_some() => Some(cloud),
+        Shape::Cloud(cloud) if !cloud.views().is_empty() => Some(cloud),
         _ => None,
     }
 }
@@ -33,16 +33,22 @@ fn look(
     image_from_other: &Pose,
     body: Which,
 ) -> Option<Unseen> {
-    let sight = image.view()?.sight((image.points(), image.sensor()))?;
+    let measured = (image.points(), image.sensor());
+    let sights: Vec<_> = image.views().iter().filter_map(|view| view.sight(measured)).collect();
+    if sights.is_empty() {
+        return None;
+    }
     let samples = other.samples();
     let mut counts = [0_usize; 4];
     for sample in &samples {
-        match sight(&image_from_other.transform_point(sample)) {
-            Sight::Seen => {}
-            Sight::BehindCamera => counts[0] += 1,
-            Sight::OutsideView => counts[1] += 1,
-            Sight::Hole => counts[2] += 1,
-            Sight::BehindReturns => counts[3] += 1,
+        let place = image_from_other.transform_point(sample);
+        // Of several images, the one that knows most of a place tells.
+        match sights.iter().map(|sight| sight(&place)).min() {
+            None | Some(Sight::Seen) => {}
+            Some(Sight::BehindCamera) => counts[0] += 1,
+            Some(Sight::OutsideView) => counts[1] += 1,
+            Some(Sight::Hole) => counts[2] += 1,
+            Some(Sight::BehindReturns) => counts[3] += 1,
         }
     }
     let [behind_camera, outside_view, hole, behind_returns] =

@@ -85,9 +85,9 @@ fn a_mesh_that_a_dense_cloud_would_split_millions_of_times_is_an_error() {
     // The default path takes the triangle as it is.
     let by_default = Query::new(QuerySettings::default()).unwrap().run(&a, &b, &Pose::identity());
     assert_eq!(by_default.unwrap().verdict, Verdict::Free);
-    let settings = PaperCloudSettings::new(SensorModel::Exact);
+    let settings = PaperCloudSettings::amended(SensorModel::Exact);
     let a = PaperCloud::prepare(&PointCloud::from_points(points), &settings).unwrap();
-    let certified = PaperSettings { traversal: Traversal::Certified, ..PaperSettings::default() };
+    let certified = PaperSettings { traversal: Traversal::Certified, ..PaperSettings::amended() };
     // In its plane: exact points that are apart from it need no classifier.
     let within = Pose::from_translation(Vector3::new(0.0, 0.0, 0.001));
     let by_the_paper = PaperQuery::new(certified).unwrap().run(&a, &b, &within);

@@ -5,14 +5,16 @@ mod common;
 use cloudtouch::bvh::TreeSettings;
 use cloudtouch::geom::PointCloud;
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings, bvh::Traversal};
+use cloudtouch::{
+    PaperCloud, PaperCloudSettings, PaperModel, PaperQuery, PaperSettings, bvh::Traversal,
+};
 use cloudtouch_testkit::scene;
 use common::{at, measured};
 
 /// How many leaf pairs a floor and a ball in overlap take, with trees split like this.
 fn leaf_pairs(tree: TreeSettings) -> usize {
     let settings = PaperCloudSettings {
-        tree,
+        model: PaperModel { tree, ..PaperModel::default() },
         ..PaperCloudSettings::new(SensorModel::Isotropic { std: 0.002 })
     };
     let cloud = |mesh, seed| {
@@ -23,7 +25,7 @@ fn leaf_pairs(tree: TreeSettings) -> usize {
     let query = PaperQuery::new(PaperSettings {
         traversal: Traversal::Certified,
         stop_above: 1.0,
-        ..PaperSettings::default()
+        ..PaperSettings::amended()
     });
     let report = query.expect("good settings").run(&floor, &ball, &at(0.0, 0.0, 0.045));
     report.expect("a finite pose").stats.leaf_pairs

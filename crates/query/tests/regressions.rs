@@ -32,12 +32,12 @@ fn dome(radius: f64, count: usize) -> Vec<Point3> {
 fn nested(covariance: impl Fn(&Point3) -> Covariance) -> (PaperCloud, PaperCloud) {
     let cloud = |points: Vec<Point3>| {
         let covariances = points.iter().map(&covariance).collect();
-        let mut settings = PaperCloudSettings::new(SensorModel::PerPoint);
-        settings.tree.max_leaf_points = 150;
-        settings.tree.min_leaf_points = 150;
+        let mut settings = PaperCloudSettings::amended(SensorModel::PerPoint);
+        settings.model.tree.max_leaf_points = 150;
+        settings.model.tree.min_leaf_points = 150;
         // Noise and sampling added: the paper's own combination would hide noise that is larger
         // than the sampling.
-        settings.noise = PaperNoise::Convolution;
+        settings.model.noise = PaperNoise::Convolution;
         let cloud =
             PointCloud { covariances: Some(covariances), ..PointCloud::from_points(points) };
         PaperCloud::prepare(&cloud, &settings).expect("a good cloud")
@@ -117,10 +117,8 @@ fn probabilities_of_points_are_those_of_equation_16() {
     let covariance = Covariance::diagonal(stds.map(|s| s * s));
     // About where they were measured: exact up to rounding. The deepest is certain to be inside, so
     // that no leaf pair is asked as well.
-    let settings = PaperCloudSettings {
-        noise: PaperNoise::Convolution,
-        ..PaperCloudSettings::new(SensorModel::PerPoint)
-    };
+    let mut settings = PaperCloudSettings::amended(SensorModel::PerPoint);
+    settings.model.noise = PaperNoise::Convolution;
     let cloud = PointCloud {
         covariances: Some(vec![covariance; 10]),
         ..PointCloud::from_points(points.clone())

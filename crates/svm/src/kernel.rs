@@ -5,6 +5,7 @@ use cloudtouch_geom::{Point3, Vector3};
 /// The kernel k(x, y) of the classifier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Kernel {
     /// k = x·y: the surface is a plane.
     Linear,

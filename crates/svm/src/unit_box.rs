@@ -57,6 +57,12 @@ impl UnitBox {
         Some(Self { centre, scale })
     }
 
+    /// The same place with another scale, in box lengths per metre: for many pairs alike.
+    #[must_use]
+    pub fn with_scale(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
     /// Box lengths per metre: a gradient inside times this is the gradient outside.
     pub fn scale(&self) -> f64 {
         self.scale

@@ -10,25 +10,24 @@ use cloudtouch_cli::numbers;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Caution")]
 pub(crate) struct CautionArguments {
-    /// Undecided when more of an object is unseen, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value_t = Safeguards::default().max_unseen,
-          value_parser = numbers::share)]
-    max_unseen: f64,
-    /// Undecided when more rows are missing, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value_t = Safeguards::default().max_missing,
-          value_parser = numbers::share)]
-    max_missing: f64,
+    /// Undecided when more of an object is unseen, 0 to 1 [default: 0.05]
+    #[arg(long, value_name = "SHARE", value_parser = numbers::share)]
+    max_unseen: Option<f64>,
+    /// Undecided when more rows are missing, 0 to 1 [default: 0.25]
+    #[arg(long, value_name = "SHARE", value_parser = numbers::share)]
+    max_missing: Option<f64>,
     /// Sizes and distances are meant: warn of them, and decide all the same
     #[arg(long)]
     trust_units: bool,
 }
 
 impl CautionArguments {
-    pub(crate) fn safeguards(&self) -> Safeguards {
+    /// What is given in place of what is usual.
+    pub(crate) fn safeguards(&self, usual: Safeguards) -> Safeguards {
         Safeguards {
-            max_unseen: self.max_unseen,
-            max_missing: self.max_missing,
-            doubt_units: !self.trust_units,
+            max_unseen: self.max_unseen.unwrap_or(usual.max_unseen),
+            max_missing: self.max_missing.unwrap_or(usual.max_missing),
+            doubt_units: usual.doubt_units && !self.trust_units,
         }
     }
 }

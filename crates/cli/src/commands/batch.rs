@@ -18,6 +18,7 @@ use crate::batch_table::Table;
 use crate::body::{self, Body};
 use crate::case_file::{self, Case};
 use crate::load::{self, Input, Loaded, Role};
+use crate::per_point::Details;
 use crate::sensor::SensorChoice;
 use crate::{ordered, output, print, unused};
 
@@ -69,7 +70,8 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
             let (id, case) = &file.cases[index];
             let line = match &answer {
                 Ok(Answered { report, placement, pose, inputs }) => {
-                    Line { report, placement, pose }.json_line(id, *inputs)
+                    Line { report, placement, pose, details: Details::default() }
+                        .json_line(id, *inputs)
                 }
                 Err(error) => json_error_line(id, error),
             };

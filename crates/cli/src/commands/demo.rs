@@ -94,7 +94,7 @@ impl Answered {
 fn body<C: PreparedCloud>(name: &str, pcd: &[u8]) -> Result<Loaded<C>> {
     let cloud = pcd::parse(pcd)?;
     let sensor = SensorModel::Isotropic { std: NOISE };
-    let body = Body::Cloud(C::prepare(&cloud, sensor, |_, _| {})?);
+    let body = Body::Cloud(C::prepare(&[cloud], sensor, None, |_, _| {})?);
     let (file, unit) = (name.to_owned(), LengthUnit::Metres.to_string());
     let input = Input { file, unit, sensor: Some(sensor.to_string()), sensor_because: None };
     Ok(Loaded { body, input })

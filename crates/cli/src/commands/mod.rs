@@ -4,3 +4,4 @@ pub(crate) mod batch;
 pub(crate) mod demo;
 pub(crate) mod info;
 pub(crate) mod query;
+pub(crate) mod settings;

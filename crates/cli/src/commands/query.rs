@@ -1,8 +1,9 @@
 //! `cloudtouch query`: one object in one scene at one pose.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Context as _, Result, bail};
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{PaperQuery, Query, Verdict};
 use cloudtouch_cli::numbers::Triple;
@@ -11,8 +12,9 @@ use nalgebra::UnitQuaternion;
 
 use crate::answer::Answer;
 use crate::args::{ModeName, PoseArguments, QueryArguments};
-use crate::body::{Body, Path};
-use crate::load::{self, Role};
+use crate::body::{self, Body, PreparedCloud};
+use crate::load::{self, Loaded, Role};
+use crate::per_point::{self, Details};
 use crate::{output, picture, pose_file, print, report_text, unused};
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
@@ -27,24 +29,42 @@ pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCo
     }
 }
 
-fn run_by<P: Path>(query: &P, arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
+fn run_by<P: body::Path>(
+    query: &P,
+    arguments: &QueryArguments,
+    shows_work: bool,
+) -> Result<ExitCode> {
     let common = &arguments.common;
     // What can be told without work comes first.
-    let inputs = [&arguments.scene, &arguments.object].into_iter().chain(&common.robot);
+    let inputs = [&arguments.scene, &arguments.object]
+        .into_iter()
+        .chain(&arguments.also)
+        .chain(&arguments.kappas)
+        .chain(&common.robot);
     inputs.clone().try_for_each(|path| load::check(path))?;
-    if let Some(path) = &arguments.ply {
-        output::check(path, inputs.map(|input| input.as_path()), arguments.force)?;
+    for path in arguments.ply.iter().chain(&arguments.csv) {
+        output::check(path, inputs.clone().map(|input| input.as_path()), arguments.force)?;
     }
     let pose = pose(&arguments.pose)?;
     let object_sensor = common.object_sensor.unwrap_or(common.sensor);
-    let scene = load::body::<P::Cloud>(&arguments.scene, Role::Scene, common.sensor, common)?;
+    let scans: Vec<&Path> =
+        std::iter::once(&arguments.scene).chain(&arguments.also).map(PathBuf::as_path).collect();
+    let scene = load::bodies::<P::Cloud>(&scans, Role::Scene, common.sensor, common)?;
+    let scene = with_kappas(scene, arguments)?;
     let object = load::body::<P::Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
     let is_mesh = [&scene, &object].map(|loaded| matches!(loaded.body, Body::Mesh(_)));
     unused::check(common, &is_mesh)?;
     let scene = scene.refined_for(1, common.effort.refine)?;
     let object = object.refined_for(1, common.effort.refine)?;
-    let report = query.ask(&scene.body, &object.body, &pose)?;
+    let (report, classifiers) = if arguments.explain {
+        query.explain(&scene.body, &object.body, &pose)?
+    } else {
+        (query.ask(&scene.body, &object.body, &pose)?, Vec::new())
+    };
     let placement = query.place(&scene.body, &object.body, &pose);
+    if let Some(path) = &arguments.csv {
+        per_point::write_csv(path, &scene.body, &object.body, &pose, &report)?;
+    }
     if let Some(path) = &arguments.ply {
         let limits = common.limits.read_limits();
         let files = [&arguments.scene, &arguments.object];
@@ -55,7 +75,11 @@ fn run_by<P: Path>(query: &P, arguments: &QueryArguments, shows_work: bool) -> R
         picture::write(path, scene, object, &pose, &report)?;
     }
     let text = if arguments.json {
-        let answer = Answer { report: &report, placement: &placement, pose: &pose };
+        let details = Details {
+            points: arguments.points.then(|| (&report).into()),
+            classifiers: arguments.explain.then_some(&classifiers[..]),
+        };
+        let answer = Answer { report: &report, placement: &placement, pose: &pose, details };
         answer.json_line("query", [&scene.input, &object.input])?
     } else {
         let mut parts = vec![
@@ -70,6 +94,21 @@ fn run_by<P: Path>(query: &P, arguments: &QueryArguments, shows_work: bool) -> R
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(if arguments.exit_code { exit_code(report.verdict) } else { ExitCode::SUCCESS })
+}
+
+/// Gives each row of the scene its own κ, where a file says so.
+fn with_kappas<C: PreparedCloud>(
+    scene: Loaded<C>,
+    arguments: &QueryArguments,
+) -> Result<Loaded<C>> {
+    let Some(path) = &arguments.kappas else { return Ok(scene) };
+    let named = || path.display().to_string();
+    let Body::Cloud(cloud) = scene.body else { bail!("{}: the scene is a mesh, exact", named()) };
+    let text = std::fs::read_to_string(path).with_context(named)?;
+    let kappas: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
+    let rule = arguments.common.paper_settings().radius_rule;
+    let cloud = cloud.with_kappas(&kappas.with_context(named)?, rule).with_context(named)?;
+    Ok(Loaded { body: Body::Cloud(cloud), ..scene })
 }
 
 fn pose(arguments: &PoseArguments) -> Result<Pose> {

@@ -2,7 +2,8 @@
 
 use arbitrary::{Result, Unstructured};
 use cloudtouch::bvh::{Traversal, TreeSettings};
-use cloudtouch::noise::{Discretization, SensorModel};
+use cloudtouch::noise::{Discretization, SensorModel, Summed};
+use cloudtouch::paper::{Kernel, MeshPoints, RadiusRule, Scaling};
 use cloudtouch::{
     CloudSettings, FilterSettings, OutlierSettings, PaperCloudSettings, PaperNoise, PaperSettings,
     Pooling, QuerySettings, VeilSettings,
@@ -35,10 +36,21 @@ pub(super) fn paper_settings(u: &mut Unstructured<'_>) -> Result<PaperSettings> 
         accept: setting(u, usual.accept, 0.5, 1.0)?,
         reject: setting(u, usual.reject, 0.0, 0.5)?,
         pooling: if u.arbitrary()? { Pooling::NoisyOr } else { Pooling::Max },
-        gamma: setting(u, usual.gamma, 0.0, 1000.0)?,
+        kernel: kernel(u)?,
+        scaling: if u.arbitrary()? { Scaling::LeafPair } else { Scaling::Scene },
         penalty: setting(u, usual.penalty, 0.0, 1e6)?,
         mesh_penalty_factor: setting(u, usual.mesh_penalty_factor, 0.0, 100.0)?,
-        ellipsoid_radius: setting(u, usual.ellipsoid_radius, 0.0, 10.0)?,
+        kappa: setting(u, usual.kappa, 0.0, 1.0)?,
+        radius_rule: if u.arbitrary()? { RadiusRule::Chebyshev } else { RadiusRule::Gaussian },
+        balanced: u.arbitrary()?,
+        plane_first: u.arbitrary()?,
+        distrust_noise: u.arbitrary()?,
+        points_inside: u.arbitrary()?,
+        mesh_points: if u.arbitrary()? {
+            MeshPoints::AsDenseAsCloud
+        } else {
+            MeshPoints::FourPerTriangle
+        },
         relative_gap: setting(u, usual.relative_gap, 1e-9, 1.0)?,
         traversal: *u.choose(&traversals)?,
         cull_probability: setting(u, usual.cull_probability, 0.0, 1.0)?,
@@ -47,6 +59,13 @@ pub(super) fn paper_settings(u: &mut Unstructured<'_>) -> Result<PaperSettings> 
         max_mesh_parts: count(u, usual.max_mesh_parts)?,
         seed: u.arbitrary::<u16>()?.into(),
         ..usual
+    })
+}
+
+fn kernel(u: &mut Unstructured<'_>) -> Result<Kernel> {
+    Ok(match u.arbitrary()? {
+        true => Kernel::Linear,
+        false => Kernel::Gaussian { gamma: setting(u, 10.0, 0.0, 1000.0)? },
     })
 }
 
@@ -69,15 +88,16 @@ pub(super) fn paper_cloud_settings(u: &mut Unstructured<'_>) -> Result<PaperClou
     }
     change_filter(u, &mut settings.filter)?;
     if u.arbitrary()? {
-        settings.noise = PaperNoise::Convolution;
+        settings.model.noise = PaperNoise::Convolution;
     }
-    let usual = settings.discretization;
-    settings.discretization = Discretization {
+    let usual = settings.model.discretization;
+    settings.model.discretization = Discretization {
+        summed: if u.arbitrary()? { Summed::Neighbors } else { Summed::AllPoints },
+        is_capped: u.arbitrary()?,
         neighbors: count(u, usual.neighbors)?,
         width: setting(u, usual.width, 0.0, 10.0)?,
-        ..usual
     };
-    settings.tree = tree(u)?;
+    settings.model.tree = tree(u)?;
     Ok(settings)
 }
 

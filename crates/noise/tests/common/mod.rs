@@ -4,7 +4,7 @@
 pub(crate) mod sigma;
 use cloudtouch_geom::{Covariance, Point3, Vector3, seed};
 use cloudtouch_noise::{
-    Combination, Neighborhoods, NoiseModel, NoiseSettings, Refined, SensorNoise,
+    Combination, Discretization, Neighborhoods, NoiseModel, NoiseSettings, Refined, SensorNoise,
 };
 
 /// A number in [0, 1) that depends on `stream` and `index` alone.
@@ -55,7 +55,10 @@ pub(crate) fn noisy(points: &[Point3], std: f64, stream: u64) -> Vec<Point3> {
 }
 
 pub(crate) fn model(combination: Combination) -> NoiseModel {
-    NoiseModel::try_new(NoiseSettings { combination, ..NoiseSettings::default() }).expect("valid")
+    // Without a cap on Ψ there is no bound to test.
+    let discretization = Discretization { is_capped: true, ..Discretization::default() };
+    let settings = NoiseSettings { combination, discretization, ..NoiseSettings::default() };
+    NoiseModel::try_new(settings).expect("valid")
 }
 
 /// The same noise in every direction at every point.

@@ -11,4 +11,4 @@ pub(crate) use clock::Clock;
 pub(crate) use pair::{PairAnswer, PairPoint, PairPoints, centroid};
 pub(crate) use settings::ClassifierSettings;
 pub(crate) use surface::Surface;
-pub(crate) use train::by_kernel;
+pub(crate) use train::{Trained, by_kernel};

@@ -15,12 +15,19 @@ pub(crate) struct PairPoint {
     pub point: UncertainPoint,
     /// Distance between samples there, m.
     pub spacing: f64,
+    /// r of its ellipsoid, where it brings one of its own.
+    pub radius: Option<f64>,
 }
 
 impl From<&Surfel> for PairPoint {
     /// A piece of surface that is in the local frame of A already.
     fn from(surfel: &Surfel) -> Self {
-        Self { index: Some(surfel.index), point: surfel.point, spacing: surfel.spacing }
+        Self {
+            index: Some(surfel.index),
+            point: surfel.point,
+            spacing: surfel.spacing,
+            radius: None,
+        }
     }
 }
 

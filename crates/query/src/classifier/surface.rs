@@ -4,7 +4,7 @@ use cloudtouch_geom::{Point3, UncertainPoint, Vector3, normal};
 use cloudtouch_svm::{Class, Classifier, Separation};
 
 /// A separating surface in the local frame of A, metres.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Surface {
     /// A plane.
     Plane(Separation),

@@ -4,14 +4,14 @@ use std::ops::ControlFlow;
 
 use cloudtouch_geom::UncertainPoint;
 use cloudtouch_svm::{
-    Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Solver, Status,
-    Undetermined, UnitBox, balanced_penalties,
+    Class, Classifier, Problem, Rung, Sample, Settings, Solution, Solver, Status, Undetermined,
+    UnitBox, balanced_penalties,
 };
 
 use crate::report::Stats;
 
 use super::clock::Clock;
-use super::pair::{PairAnswer, PairPoints};
+use super::pair::{PairAnswer, PairPoint, PairPoints};
 use super::settings::ClassifierSettings;
 use super::surface::Surface;
 
@@ -23,6 +23,18 @@ const TRUSTED_STD: f64 = 0.05;
 /// How much tighter a problem is solved that leaves open whether there is a surface, or where.
 const TIGHTER: f64 = 1e-2;
 
+/// What training a classifier gave.
+#[derive(Debug)]
+pub(crate) struct Trained {
+    pub answer: PairAnswer,
+    /// Multipliers in the unit box, those of A first; `None` where no problem could be posed.
+    pub solution: Option<Solution>,
+}
+
+impl Trained {
+    const UNDECIDED: Self = Self { answer: PairAnswer::Undecided, solution: None };
+}
+
 /// Trains a classifier and reads the probabilities off it.
 ///
 /// An answer that the first solution leaves open is solved again, tighter; left open still, or cut
@@ -32,16 +44,18 @@ pub(crate) fn by_kernel(
     settings: &ClassifierSettings,
     clock: &Clock,
     stats: &mut Stats,
-) -> PairAnswer {
+) -> Trained {
     stats.kernel_solves += 1;
     let all: Vec<UncertainPoint> = points.a.iter().chain(&points.b).map(|p| p.point).collect();
-    let Some(unit_box) = UnitBox::around(&all) else { return PairAnswer::Undecided };
-    let samples = samples(points, &all, &unit_box, settings);
-    let kernel = Kernel::Gaussian { gamma: settings.gamma };
-    let Ok(problem) = Problem::try_new(&samples, kernel) else { return PairAnswer::Undecided };
+    let Some(unit_box) = UnitBox::around(&all) else { return Trained::UNDECIDED };
+    let unit_box = settings.scale.map_or(unit_box, |scale| unit_box.with_scale(scale));
+    let samples = samples(points, &unit_box, settings);
+    let Ok(problem) = Problem::try_new(&samples, settings.kernel) else {
+        return Trained::UNDECIDED;
+    };
     let solver = |relative_gap| Solver::try_new(Settings { relative_gap, ..Settings::default() });
     let both = [settings.relative_gap, TIGHTER * settings.relative_gap].map(solver);
-    let [Ok(mut loose), Ok(mut tight)] = both else { return PairAnswer::Undecided };
+    let [Ok(mut loose), Ok(mut tight)] = both else { return Trained::UNDECIDED };
     let mut look = |_: &_| {
         if clock.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
@@ -53,7 +67,8 @@ pub(crate) fn by_kernel(
     }
     stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
     stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
-    read(&problem, &solution, unit_box, sides)
+    let answer = read(&problem, &solution, unit_box, sides, settings.distrusts_noise);
+    Trained { answer, solution: Some(solution) }
 }
 
 /// Whether a loose tolerance may be why nothing is determined: it cannot tell a small w from none, nor
@@ -65,23 +80,21 @@ fn is_open(solution: &Solution) -> bool {
     )
 }
 
-fn samples(
-    points: &PairPoints,
-    all: &[UncertainPoint],
-    unit_box: &UnitBox,
-    settings: &ClassifierSettings,
-) -> Vec<Sample> {
-    let (penalty_a, penalty_b) =
-        balanced_penalties(settings.penalty, points.a.len(), points.b.len());
+fn samples(points: &PairPoints, unit_box: &UnitBox, settings: &ClassifierSettings) -> Vec<Sample> {
+    let (penalty_a, penalty_b) = if settings.is_balanced {
+        balanced_penalties(settings.penalty, points.a.len(), points.b.len())
+    } else {
+        (settings.penalty, settings.penalty)
+    };
     let factor = |is_mesh: bool| if is_mesh { settings.mesh_penalty_factor } else { 1.0 };
     let of_a = (Class::A, penalty_a * factor(points.a_is_mesh));
     let of_b = (Class::B, penalty_b * factor(points.b_is_mesh));
-    let sample = |(i, &point): (usize, &UncertainPoint)| {
+    let sample = |(i, of): (usize, &PairPoint)| {
         let (class, penalty) = if i < points.a.len() { of_a } else { of_b };
-        let radius = settings.ellipsoid_radius;
-        unit_box.sample_inside(&Sample { point, class, radius, penalty })
+        let radius = of.radius.unwrap_or(settings.ellipsoid_radius);
+        unit_box.sample_inside(&Sample { point: of.point, class, radius, penalty })
     };
-    all.iter().enumerate().map(sample).collect()
+    points.a.iter().chain(&points.b).enumerate().map(sample).collect()
 }
 
 fn read(
@@ -89,6 +102,7 @@ fn read(
     solution: &Solution,
     unit_box: UnitBox,
     (a, b): (&[UncertainPoint], &[UncertainPoint]),
+    distrusts_noise: bool,
 ) -> PairAnswer {
     if solution.status == Status::Collapsed {
         return PairAnswer::Indistinct;
@@ -97,9 +111,10 @@ fn read(
         return PairAnswer::Undecided;
     };
     let surface = Surface::Kernel(classifier.outside(unit_box));
-    let std = typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale();
+    let is_noisy = distrusts_noise
+        && typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale() > TRUSTED_STD;
     match PairAnswer::of(surface, a, b) {
-        Some(answer) if std > TRUSTED_STD && answer.largest() < 0.5 => PairAnswer::Indistinct,
+        Some(answer) if is_noisy && answer.largest() < 0.5 => PairAnswer::Indistinct,
         Some(answer) => answer,
         None => PairAnswer::Undecided,
     }

@@ -49,25 +49,23 @@ pub(crate) struct Makeup {
 }
 
 impl Makeup {
-    /// Of the points kept, in the local frame whose origin is given; `cloud` is as it was read.
+    /// Of the points kept, in the local frame, and what was told of their scans.
     pub(super) fn new(
-        cloud: &PointCloud,
-        (sensor, noise): (&SensorModel, &SensorNoise),
-        (kept, origin): (&Neighborhoods, Vector3),
-        stages: &[StageReport],
+        (kept, noise): (&Neighborhoods, &SensorNoise),
+        missing: f64,
+        sensor_doubts: Vec<SensorDoubt>,
     ) -> Self {
         let points = kept.points();
         let step = points.len().div_ceil(SAMPLE).max(1);
         let std = median((0..points.len()).step_by(step).map(|i| noise[i].max_std()));
-        let missing = stages.iter().find(|s| s.stage == "missing" && !is_image(cloud));
         Self {
             corners: corners(points),
             spacing: typical_spacing(kept, SAMPLE),
             std,
             distinct: kept.distinct(),
             is_line: is_line(points),
-            missing: missing.map_or(0.0, |s| s.removed as f64 / s.before.max(1) as f64),
-            sensor_doubts: sensor_doubts(cloud, sensor, points, origin),
+            missing,
+            sensor_doubts,
         }
     }
 
@@ -80,6 +78,12 @@ impl Makeup {
 /// Whether the rows of a cloud are those of an image.
 pub(super) fn is_image(cloud: &PointCloud) -> bool {
     cloud.image_size.is_some_and(|(width, height)| width > 1 && height > 1)
+}
+
+/// Share of the rows of a scan without return, where its layout does not tell where they would be.
+pub(super) fn missing(scan: &PointCloud, stages: &[StageReport]) -> f64 {
+    let stage = stages.iter().find(|s| s.stage == "missing" && !is_image(scan));
+    stage.map_or(0.0, |s| s.removed as f64 / s.before.max(1) as f64)
 }
 
 fn corners(points: &[Point3]) -> [Point3; 2] {
@@ -110,13 +114,13 @@ fn is_line(points: &[Point3]) -> bool {
     points.iter().all(|p| (p - end).cross(&along).norm() <= LINE_SHARE * length)
 }
 
-fn sensor_doubts(
+/// Whether the sensor can have seen the points that were kept of a scan.
+pub(super) fn sensor_doubts(
     cloud: &PointCloud,
     sensor: &SensorModel,
     points: &[Point3],
-    origin: Vector3,
 ) -> Vec<SensorDoubt> {
-    let place = cloud.sensor_origin() - origin;
+    let place = cloud.sensor_origin();
     let rays = || points.iter().map(|p| p - place);
     let mut doubts = Vec::new();
     match sensor {

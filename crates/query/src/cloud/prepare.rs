@@ -26,9 +26,22 @@ impl Cloud {
     /// When nothing is left after filtering, a coordinate is beyond 1e10 m, a covariance is not one,
     /// or a setting is out of range.
     pub fn prepare(cloud: &PointCloud, settings: &CloudSettings) -> Result<Self, PrepareError> {
+        Self::merge(&[(cloud, settings)])
+    }
+
+    /// The same of several scans of one frame, such as those of several sensors: each is filtered,
+    /// and has its noise, by its own settings and the pose of its own sensor. The posterior and the
+    /// tree are those of the first.
+    ///
+    /// Rows and filter stages are counted on from scan to scan. Space is taken for hidden where one
+    /// depth image has a surface before it and no other looked into it.
+    ///
+    /// # Errors
+    /// When there is no scan, or as [`Self::prepare`] for one of them.
+    pub fn merge(scans: &[(&PointCloud, &CloudSettings)]) -> Result<Self, PrepareError> {
+        let scans: Vec<_> = scans.iter().map(|&(scan, by)| (scan, by.preparation())).collect();
         // The certified traversal goes by bounds, not by coverage: any weight would do.
-        let prepared = Prepared::new(cloud, &settings.preparation(), |_, _| 1.0)?;
-        Ok(Self { prepared })
+        Ok(Self { prepared: Prepared::new(&scans, |_, _| 1.0)? })
     }
 
     /// Computes the surface at every point, on all threads of the pool, and fits the tree to it.

@@ -2,43 +2,25 @@
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{LeafBounds, Primitive, Tree, TreeSettings};
+use cloudtouch_bvh::{LeafBounds, Primitive, Tree};
 use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
-use cloudtouch_noise::{
-    Combination, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, SensorModel, SensorNoise,
-};
+use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 
 use crate::error::PrepareError;
-use crate::filter::{FilterSettings, StageReport, filter};
-use crate::range::check_points;
+use crate::filter::StageReport;
 
 use super::edge::DISC_SPACINGS;
-use super::makeup::{Makeup, is_image};
+use super::makeup::Makeup;
 use super::pieces::Pieces;
+use super::preparation::Preparation;
+use super::scans::Scans;
 use super::slots::LazySurface;
 use super::view::SingleView;
 
 /// Points with more noise than half the size of their cloud say nothing.
 const MOST_NOISE: f64 = 0.5;
-
-/// What a path prepares a cloud by.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Preparation<'a> {
-    pub sensor: &'a SensorModel,
-    pub filter: &'a FilterSettings,
-    pub noise: NoiseSettings,
-    pub tree: &'a TreeSettings,
-}
-
-impl Preparation<'_> {
-    /// Checks every field.
-    pub(crate) fn validate(&self) -> Result<(), PrepareError> {
-        self.sensor.validate()?;
-        self.filter.validate()?;
-        self.noise.validate().map_err(NoiseError::from)?;
-        Ok(self.tree.validate()?)
-    }
-}
+/// Relative rounding of an eigenvalue, generously.
+const ROUNDING: f64 = 1e-9;
 
 /// A noisy cloud, ready to be queried in any pose, from many threads at once. Each path wraps it in
 /// a type of its own.
@@ -59,52 +41,43 @@ pub(crate) struct Prepared {
     pub(super) tree: Tree,
     pub(super) surface: LazySurface,
     makeup: Makeup,
-    view: Option<SingleView>,
-    /// Where the sensor stood, in the local frame, where the cloud says so.
-    sensor_origin: Option<Point3>,
+    /// Depth images that it was seen in.
+    views: Vec<SingleView>,
+    /// Where sensors stood, in the local frame, where the scans say so.
+    sensor_origins: Vec<Point3>,
+    /// r of the ellipsoid of each point (eq. 11, 12), where they bring their own; else empty.
+    radii: Vec<f64>,
     pub(super) prepare_time: Duration,
 }
 
 impl Prepared {
-    /// Filters a cloud, models its sensor, and builds its index and tree. `weigh` says how much
-    /// surface each of the points kept stands for in the coverage of a node.
+    /// Filters scans of one frame, models their sensors, and builds one index and tree over them, by
+    /// the noise model and tree of the first. `weigh` says how much surface each of the points kept
+    /// stands for in the coverage of a node.
     pub(crate) fn new(
-        cloud: &PointCloud,
-        by: &Preparation<'_>,
+        scans: &[(&PointCloud, Preparation<'_>)],
         weigh: impl Fn(&Neighborhoods, usize) -> f64,
     ) -> Result<Self, PrepareError> {
         let start = Instant::now();
-        let span = tracing::debug_span!("prepare_cloud", points = cloud.len());
+        let count: usize = scans.iter().map(|(scan, _)| scan.len()).sum();
+        let span = tracing::debug_span!("prepare_cloud", points = count);
         let _entered = span.enter();
-        by.validate()?;
-        let filtered = filter(cloud, by.filter)?;
-        let stages = filtered.stages;
-        let kept = filtered.cloud;
-        let Some((low, high)) = kept.bounding_box() else {
-            let removed: Vec<String> =
-                stages.iter().map(|s| format!("{} removed {}", s.stage, s.removed)).collect();
-            return Err(PrepareError::NothingLeft {
-                before: cloud.len(),
-                stages: removed.join(", "),
-            });
+        let all = Scans::of(scans)?;
+        let (Some((low, high)), Some((_, by))) = (corners(&all.points), scans.first()) else {
+            let stages = "no scan was given".to_owned();
+            return Err(PrepareError::NothingLeft { before: count, stages });
         };
-        // By their rows in the file; the cells of a collision map have none.
-        let row = |i: usize| filtered.rows.get(i).copied().unwrap_or(i);
-        check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
-        let sensor = by.sensor.covariances(&kept)?;
-        let normals = match (&kept.normals, by.noise.combination) {
-            (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),
-            _ => None,
-        };
+        let sensor = all.noise;
         let origin = nalgebra::center(&low, &high).coords;
-        let points: Vec<Point3> = kept.points.iter().map(|p| p - origin).collect();
+        let points: Vec<Point3> = all.points.iter().map(|p| p - origin).collect();
         let neighborhoods = Neighborhoods::try_new(points)?;
-        let makeup = Makeup::new(cloud, (by.sensor, &sensor), (&neighborhoods, origin), &stages);
+        let makeup = Makeup::new((&neighborhoods, &sensor), all.missing, all.sensor_doubts);
         if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
             return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
         }
         // A surface that is known needs no others to be told from, and one point is as good as the next.
-        let is_fitted = by.noise.combination == Combination::SurfacePosterior && normals.is_none();
+        let is_fitted =
+            by.noise.combination == Combination::SurfacePosterior && all.normals.is_none();
         let pieces = match is_fitted {
             true => Pieces::chosen(&neighborhoods, &sensor)?,
             false => Pieces::all(),
@@ -121,38 +94,43 @@ impl Prepared {
         let mut tree = Tree::build(primitives, by.tree)?;
         let noise = NoiseModel::try_new(by.noise)?;
         let surface = LazySurface::new(&tree, indices.len());
+        let mut scratch = Scratch::default();
         tree.set_leaf_bounds(|leaf| {
             let cap = surface.spacing_cap(leaf);
             let reach = DISC_SPACINGS * cap;
             let mut bounds = LeafBounds { std: 0.0, shift: 0.0, reach };
             for &piece in leaf.primitive_indices() {
-                let point = noise.bounds(&sensor[indices[piece as usize]], cap);
-                bounds.std = bounds.std.max(point.std);
+                let index = indices[piece as usize];
+                let point = noise.bounds(&sensor[index], cap);
+                let std = if point.std.is_finite() {
+                    point.std
+                } else {
+                    // What only the neighbours tell, they are asked for.
+                    let refined = noise.refine(index, &neighborhoods, &sensor, cap, &mut scratch);
+                    refined.point.covariance.max_std() * (1.0 + ROUNDING)
+                };
+                bounds.std = bounds.std.max(std);
                 bounds.shift = bounds.shift.max(point.shift);
             }
             bounds
         })?;
-        // An organised cloud is a depth image: one view, with unseen space behind it.
-        let view = is_image(cloud).then(|| SingleView::new(kept.sensor_origin() - origin));
-        // The origin is what a file says that does not know.
-        let sensor_origin = Some(kept.sensor_origin())
-            .filter(|place| *place != Point3::origin())
-            .map(|place| place - origin);
+        let view = |(sensor, points): (Point3, _)| SingleView::new(sensor - origin, points);
         let prepare_time = start.elapsed();
         Ok(Self {
             origin,
             sensor,
-            normals,
-            rows: filtered.rows,
-            stages,
+            normals: all.normals,
+            rows: all.rows,
+            stages: all.stages,
             neighborhoods,
             pieces,
             noise,
             tree,
             surface,
             makeup,
-            view,
-            sensor_origin,
+            views: all.images.into_iter().map(view).collect(),
+            sensor_origins: all.origins.iter().map(|place| place - origin).collect(),
+            radii: Vec::new(),
             prepare_time,
         })
     }
@@ -198,12 +176,22 @@ impl Prepared {
         self.sensor[index as usize].max_std()
     }
 
+    /// r of the ellipsoid of a point, where it brings one of its own.
+    pub(crate) fn ellipsoid_radius(&self, index: u32) -> Option<f64> {
+        self.radii.get(index as usize).copied()
+    }
+
+    /// Gives each point an ellipsoid of its own.
+    pub(crate) fn set_radii(&mut self, radii: Vec<f64>) {
+        self.radii = radii;
+    }
+
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
     }
 
-    pub(crate) fn sensor_origin(&self) -> Option<&Point3> {
-        self.sensor_origin.as_ref()
+    pub(crate) fn sensor_origins(&self) -> &[Point3] {
+        &self.sensor_origins
     }
 
     /// What the cloud is like as a whole.
@@ -216,20 +204,13 @@ impl Prepared {
         Some(self.neighborhoods.nearest_to(place, 1).first()?.squared_distance.sqrt())
     }
 
-    pub(crate) fn view(&self) -> Option<&SingleView> {
-        self.view.as_ref()
+    pub(crate) fn views(&self) -> &[SingleView] {
+        &self.views
     }
 }
 
-/// Normals as they are, after a look at them: a `Unit` can be made without a check.
-fn checked(normals: &[UnitVector3]) -> Result<Vec<UnitVector3>, PrepareError> {
-    let checked = |(index, normal): (usize, &UnitVector3)| {
-        let is_unit = (normal.norm() - 1.0).abs() < 1e-6;
-        if is_unit {
-            Ok(*normal)
-        } else {
-            Err(PrepareError::Normal { index, normal: normal.into_inner() })
-        }
-    };
-    normals.iter().enumerate().map(checked).collect()
+/// Lowest and highest corner of some points; `None` without any.
+fn corners(points: &[Point3]) -> Option<(Point3, Point3)> {
+    let &first = points.first()?;
+    Some(points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p))))
 }

@@ -1,12 +1,12 @@
 //! How a cloud of the default path is prepared.
 
 use cloudtouch_bvh::TreeSettings;
-use cloudtouch_noise::{Combination, NoiseSettings, PosteriorSettings, SensorModel};
+use cloudtouch_noise::{Combination, MotionNoise, NoiseSettings, PosteriorSettings, SensorModel};
 
 use crate::error::PrepareError;
 use crate::filter::FilterSettings;
 
-use super::prepared::Preparation;
+use super::preparation::Preparation;
 
 /// Sensor, cleaning, surface posterior and tree of one cloud.
 #[derive(Debug, Clone)]
@@ -55,6 +55,7 @@ impl CloudSettings {
                 ..NoiseSettings::default()
             },
             tree: &self.tree,
+            motion: MotionNoise::default(),
         }
     }
 }

@@ -16,6 +16,8 @@ const REGION_POINTS: usize = 40;
 pub(super) struct LazySurface {
     pub surfels: Vec<OnceLock<Box<Surfel>>>,
     pub leaves: Vec<OnceLock<Vec<Surfel>>>,
+    /// Of leaves with what they share.
+    pub shared: Vec<OnceLock<Vec<Surfel>>>,
     pub edges: Vec<OnceLock<Vec<Edge>>>,
     /// What the spacing of each of them is limited to, m.
     pub spacing_caps: Vec<f64>,
@@ -33,6 +35,7 @@ impl LazySurface {
         Self {
             surfels: slots(pieces),
             leaves: slots(tree.node_slots()),
+            shared: slots(tree.node_slots()),
             edges: slots(tree.node_slots()),
             spacing_caps,
         }

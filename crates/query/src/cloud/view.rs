@@ -4,6 +4,7 @@
 //! measured directions: a query looks at hundreds of them.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use cloudtouch_geom::{Point3, Vector3};
@@ -22,19 +23,19 @@ const PANORAMA: f64 = 0.17;
 const MOST_CELLS: f64 = 1e7;
 const MOST_COLUMNS: f64 = 1e4;
 
-/// What a camera knows of a place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What a camera knows of a place; what comes first is known better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Sight {
     /// It looked there and beyond, and met nothing on the way.
     Seen,
-    /// The place is behind the camera's back.
-    BehindCamera,
-    /// The place is beside what it looked at.
-    OutsideView,
-    /// No return came from there.
-    Hole,
     /// It met a surface before the place.
     BehindReturns,
+    /// No return came from there.
+    Hole,
+    /// The place is beside what it looked at.
+    OutsideView,
+    /// The place is behind the camera's back.
+    BehindCamera,
 }
 
 /// Where the sensor stood, and the raster of its view once that is needed.
@@ -42,12 +43,14 @@ pub(crate) enum Sight {
 pub(crate) struct SingleView {
     /// In the cloud's local frame, m.
     sensor_origin: Point3,
+    /// Which points of the cloud are those of the image.
+    points: Range<usize>,
     raster: OnceLock<Option<Raster>>,
 }
 
 impl SingleView {
-    pub(super) fn new(sensor_origin: Point3) -> Self {
-        Self { sensor_origin, raster: OnceLock::new() }
+    pub(super) fn new(sensor_origin: Point3, points: Range<usize>) -> Self {
+        Self { sensor_origin, points, raster: OnceLock::new() }
     }
 
     /// What the camera knows of places, all in the cloud's local frame, given what it measured and
@@ -56,7 +59,11 @@ impl SingleView {
         &'a self,
         measured: (&[Point3], &SensorNoise),
     ) -> Option<impl Fn(&Point3) -> Sight + 'a> {
-        let raster = self.raster.get_or_init(|| Raster::new(&self.sensor_origin, measured));
+        let raster = self.raster.get_or_init(|| {
+            let (points, noise) = measured;
+            let own = self.points.clone().map(|index| (points[index], noise[index].std_bound()));
+            Raster::new(&self.sensor_origin, own)
+        });
         let raster = raster.as_ref()?;
         Some(move |place: &Point3| raster.sight(&(place - self.sensor_origin)))
     }
@@ -75,15 +82,16 @@ struct Raster {
 }
 
 impl Raster {
-    fn new(origin: &Point3, (points, noise): (&[Point3], &SensorNoise)) -> Option<Self> {
-        let rays: Vec<(usize, Vector3)> = points.iter().map(|p| p - origin).enumerate().collect();
-        let lens = Lens::of(rays.iter().map(|(_, ray)| ray))?;
-        let placed: Vec<(usize, f64, [f64; 2])> = rays
+    /// Of the points measured, each with an upper bound of its standard deviations, m.
+    fn new(origin: &Point3, measured: impl Iterator<Item = (Point3, f64)>) -> Option<Self> {
+        let rays: Vec<(Vector3, f64)> = measured.map(|(p, std)| (p - origin, std)).collect();
+        let lens = Lens::of(rays.iter().map(|(ray, _)| ray))?;
+        let placed: Vec<(f64, [f64; 2])> = rays
             .iter()
-            .filter_map(|(index, ray)| Some((*index, ray.norm(), lens.project(ray)?)))
+            .filter_map(|(ray, std)| Some((ray.norm() + CLEARLY * std, lens.project(ray)?)))
             .collect();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for (_, _, at) in &placed {
+        for (_, at) in &placed {
             for axis in 0..2 {
                 low[axis] = low[axis].min(at[axis]);
                 high[axis] = high[axis].max(at[axis]);
@@ -102,8 +110,7 @@ impl Raster {
         let size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
         let mut raster =
             Self { lens, low, pitch, size, clearly_behind: vec![0.0; size[0] * size[1]] };
-        for (index, range, at) in placed {
-            let behind = range + CLEARLY * noise[index].std_bound();
+        for (behind, at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
                 raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
             }
@@ -242,7 +249,7 @@ mod tests {
         for turn in [[0.0; 3], [0.7, -1.1, 2.9], [-2.0, 0.3, 0.4]] {
             let turned = Pose::from_translation_rpy(Vector3::zeros(), turn);
             let points: Vec<Point3> = seen.iter().map(|p| turned.transform_point(p)).collect();
-            let view = SingleView::new(Point3::origin());
+            let view = SingleView::new(Point3::origin(), 0..points.len());
             let sight = view.sight((&points, &noise)).expect("points with directions");
             for index in 0..700 {
                 let unit = |k: u64| 2.0 * seed::unit(seed::derive(7, index, k)) - 1.0;

@@ -56,6 +56,14 @@ pub enum PrepareError {
         /// The normal given.
         normal: Vector3,
     },
+    /// There are not as many κ as points.
+    #[error("the cloud kept {points} points and is given {kappas} kappas: give one for each")]
+    KappaCount {
+        /// Points that the filter kept.
+        points: usize,
+        /// What was given.
+        kappas: usize,
+    },
     /// The cleaning pipeline was asked for something impossible.
     #[error(transparent)]
     Filter(#[from] FilterError),

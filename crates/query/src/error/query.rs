@@ -84,6 +84,22 @@ pub enum SettingsError {
         /// What was given.
         value: f64,
     },
+    /// A setting is negative or not finite.
+    #[error("{name} is {}: give a finite number that is not negative", number(*value))]
+    Negative {
+        /// Which setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The probability mass of the ellipsoids is out of the range of its rule.
+    #[error("kappa is {}: the rule needs a number {range}", number(*kappa))]
+    Kappa {
+        /// What was given.
+        kappa: f64,
+        /// The range it must be in.
+        range: &'static str,
+    },
     /// A probability or tolerance is not strictly between 0 and 1.
     #[error("{name} is {}: give a number between 0 and 1, ends excluded", number(*value))]
     NotAFraction {

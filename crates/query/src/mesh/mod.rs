@@ -10,4 +10,4 @@ mod subdivide;
 mod winding;
 
 pub use prepare::Mesh;
-pub(crate) use subdivide::{SampleRegion, sample_region};
+pub(crate) use subdivide::{SampleRegion, four_per_triangle, sample_region};

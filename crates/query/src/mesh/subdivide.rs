@@ -49,6 +49,15 @@ pub(crate) fn sample_region(
     Ok(samples.points)
 }
 
+/// Corners and centroid of every triangle, those that are shared once (section 4.5 as printed).
+pub(crate) fn four_per_triangle(triangles: impl IntoIterator<Item = [Point3; 3]>) -> Vec<Point3> {
+    let four =
+        |[a, b, c]: [Point3; 3]| [a, b, c, Point3::from((a.coords + b.coords + c.coords) / 3.0)];
+    let mut points: Vec<Point3> = triangles.into_iter().flat_map(four).collect();
+    merge_repeated(&mut points);
+    points
+}
+
 /// Samples in the making.
 struct Samples<'a> {
     region: &'a SampleRegion,

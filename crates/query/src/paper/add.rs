@@ -4,7 +4,7 @@ use cloudtouch_geom::Pose;
 
 use crate::CONTACT_FLOOR;
 use crate::classifier::{PairAnswer, PairPoint, PairPoints};
-use crate::record::{CORRELATION_SPACINGS, Evidence, PointProbability, Side};
+use crate::record::{Evidence, PointProbability, Side};
 use crate::report::Contact;
 use crate::shape::Shape;
 
@@ -51,7 +51,7 @@ fn pair_point(side: Side, point: &PairPoint, probability: f64) -> PointProbabili
         index: point.index,
         position: point.point.mean,
         probability,
-        correlation_length: CORRELATION_SPACINGS * point.spacing,
+        spacing: point.spacing,
     }
 }
 

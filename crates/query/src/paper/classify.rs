@@ -1,30 +1,24 @@
 //! One leaf pair: the kernel classifier, unless a plane is certain.
 
-use crate::classifier::{ClassifierSettings, Clock, PairAnswer, PairPoints, by_kernel};
+use crate::classifier::{PairAnswer, PairPoints, Trained, by_kernel};
 use crate::report::Stats;
 
 use super::plane::{Plane, by_plane};
+use super::task::Task;
 
-/// The kernel classifier's answer. A plane that keeps every point below 1e-6 would say the same
-/// sooner; one that does not stands in where the classifier has no answer.
-pub(crate) fn classify(
-    points: &PairPoints,
-    settings: &ClassifierSettings,
-    clock: &Clock,
-    stats: &mut Stats,
-) -> PairAnswer {
-    let plane = match by_plane(points) {
-        Plane::Certain(plane) => {
-            stats.linear_certificates += 1;
-            return plane;
-        }
-        Plane::Doubtful(plane) => Some(plane),
-        Plane::None => None,
-    };
-    let kernel = by_kernel(points, settings, clock, stats);
-    match (plane, kernel) {
-        (Some(plane), PairAnswer::Indistinct | PairAnswer::Undecided) => plane,
-        (_, kernel) => kernel,
+/// The kernel classifier's answer. Where a plane is tried first, one that keeps every point below 1e-6
+/// would say the same sooner; one that does not stands in where the classifier has no answer.
+pub(super) fn classify(points: &PairPoints, task: &Task<'_>, stats: &mut Stats) -> Trained {
+    let plane = if task.settings.plane_first { by_plane(points) } else { Plane::None };
+    let by_plane = |answer| Trained { answer, solution: None };
+    if let Plane::Certain(answer) = plane {
+        stats.linear_certificates += 1;
+        return by_plane(answer);
+    }
+    let kernel = by_kernel(points, &task.classifier, &task.clock, stats);
+    match (plane, &kernel.answer) {
+        (Plane::Doubtful(plane), PairAnswer::Indistinct | PairAnswer::Undecided) => by_plane(plane),
+        _ => kernel,
     }
 }
 
@@ -32,10 +26,12 @@ pub(crate) fn classify(
 mod tests {
     use std::time::{Duration, Instant};
 
+    use cloudtouch_bvh::TraversalSettings;
     use cloudtouch_geom::{Covariance, Point3, UncertainPoint};
 
     use super::*;
-    use crate::classifier::{PairPoint, Surface};
+    use crate::classifier::{ClassifierSettings, Clock, PairPoint, Surface};
+    use crate::paper::PaperSettings;
 
     /// Two rows of points along x, A above B by `gap`, m.
     fn rows(gap: f64) -> PairPoints {
@@ -44,7 +40,9 @@ mod tests {
                 mean: Point3::new(0.01 * f64::from(i), 0.0, z),
                 covariance: Covariance::isotropic(0.004 * 0.004),
             };
-            (0..12).map(|i| PairPoint { index: Some(i), point: at(i), spacing: 0.01 }).collect()
+            (0..12)
+                .map(|i| PairPoint { index: Some(i), point: at(i), spacing: 0.01, radius: None })
+                .collect()
         };
         PairPoints { a: row(gap), b: row(0.0), ..PairPoints::default() }
     }
@@ -55,10 +53,18 @@ mod tests {
         let settings = ClassifierSettings { penalty: 1e-4, ..ClassifierSettings::default() };
         let clock = Clock::new(Instant::now(), None);
         let (points, stats) = (rows(0.02), &mut Stats::default());
-        let trained = by_kernel(&points, &settings, &clock, stats);
+        let trained = by_kernel(&points, &settings, &clock, stats).answer;
         assert!(matches!(trained, PairAnswer::Undecided), "{trained:?}");
-        // What the plane says stands.
-        let answer = classify(&points, &settings, &clock, stats);
+        // What the plane says stands, where one was asked.
+        let answer = |plane_first, stats: &mut Stats| {
+            let of_paper = PaperSettings { plane_first, ..PaperSettings::default() };
+            let traversal = TraversalSettings::default();
+            let task = Task { settings: &of_paper, classifier: settings, traversal, clock };
+            classify(&points, &task, stats).answer
+        };
+        let printed = answer(false, stats);
+        assert!(matches!(printed, PairAnswer::Undecided), "{printed:?}");
+        let answer = answer(true, stats);
         let PairAnswer::Separated { surface: Surface::Plane(_), .. } = answer else {
             panic!("{answer:?}");
         };
@@ -69,7 +75,7 @@ mod tests {
         let settings = ClassifierSettings::default();
         let stats = &mut Stats::default();
         let over = Clock::new(Instant::now(), Some(Duration::ZERO));
-        let cut_short = by_kernel(&rows(0.005), &settings, &over, stats);
+        let cut_short = by_kernel(&rows(0.005), &settings, &over, stats).answer;
         assert!(matches!(cut_short, PairAnswer::Undecided), "{cut_short:?}");
     }
 }

@@ -1,6 +1,7 @@
 //! The cloud of the paper's path.
 
 use cloudtouch_geom::PointCloud;
+use cloudtouch_noise::{NoiseError, RadiusRule};
 
 use crate::cloud::{Prepared, cloud_accessors};
 use crate::error::PrepareError;
@@ -26,9 +27,44 @@ impl PaperCloud {
         cloud: &PointCloud,
         settings: &PaperCloudSettings,
     ) -> Result<Self, PrepareError> {
-        let neighbors = settings.discretization.neighbors;
+        Self::merge(&[(cloud, settings)])
+    }
+
+    /// The same of several scans of one frame, such as those of several sensors: each is filtered,
+    /// and has its noise, by its own settings and the pose of its own sensor. The model is that of
+    /// the first, but for the motion.
+    ///
+    /// Rows and filter stages are counted on from scan to scan. Space is taken for hidden where one
+    /// depth image has a surface before it and no other looked into it.
+    ///
+    /// # Errors
+    /// When there is no scan, or as [`Self::prepare`] for one of them.
+    pub fn merge(scans: &[(&PointCloud, &PaperCloudSettings)]) -> Result<Self, PrepareError> {
+        let neighbors = scans.first().map_or(0, |(_, by)| by.model.discretization.neighbors);
         let area = |near: &_, index| sphere_area(near, index, neighbors);
-        Ok(Self { prepared: Prepared::new(cloud, &settings.preparation(), area)? })
+        let scans: Vec<_> = scans.iter().map(|&(scan, by)| (scan, by.preparation())).collect();
+        Ok(Self { prepared: Prepared::new(&scans, area)? })
+    }
+
+    /// How many points the leaves of the tree hold, one that lies where siblings overlap counted in each
+    /// (section 5): what storage takes.
+    pub fn stored_points(&self) -> usize {
+        self.prepared.stored_points()
+    }
+
+    /// Gives each point a κ of its own, in place of that of the query (eq. 11, 12): the probability
+    /// with which it is to lie on its side, one for each point kept, in their order.
+    ///
+    /// # Errors
+    /// When there are not as many as points, or one is outside the range of the rule.
+    pub fn with_kappas(mut self, kappas: &[f64], rule: RadiusRule) -> Result<Self, PrepareError> {
+        if kappas.len() != self.len() {
+            return Err(PrepareError::KappaCount { points: self.len(), kappas: kappas.len() });
+        }
+        let radii: Result<Vec<f64>, NoiseError> =
+            kappas.iter().map(|&kappa| rule.radius(kappa)).collect();
+        self.prepared.set_radii(radii?);
+        Ok(self)
     }
 }
 
@@ -54,7 +90,7 @@ mod tests {
         let cloud = PointCloud::from_points(points);
         let settings = PaperCloudSettings::new(SensorModel::Isotropic { std: 0.01 });
         let by_area = PaperCloud::prepare(&cloud, &settings).unwrap();
-        let by_number = Prepared::new(&cloud, &settings.preparation(), |_, _| 1.0).unwrap();
+        let by_number = Prepared::new(&[(&cloud, settings.preparation())], |_, _| 1.0).unwrap();
         let leakage = |cloud: &Prepared| 1.0 - cloud.tree().root().unwrap().coverage();
         let (by_area, by_number) = (leakage(by_area.prepared()), leakage(&by_number));
         // Of 125 points 98 lie on faces, each with at least half a chance of being outside.

@@ -121,13 +121,16 @@ fn extent(points: &PairPoints) -> f64 {
 mod tests {
     use std::time::Instant;
 
+    use cloudtouch_bvh::TraversalSettings;
     use cloudtouch_geom::{Covariance, Pose, UncertainPoint, seed};
     use proptest::prelude::*;
 
     use super::*;
     use crate::classifier::{ClassifierSettings, Clock, by_kernel};
     use crate::mode::Mode;
+    use crate::paper::PaperSettings;
     use crate::paper::classify::classify;
+    use crate::paper::task::Task;
     use crate::report::Stats;
 
     const SPACING: f64 = 0.02;
@@ -143,7 +146,7 @@ mod tests {
                 let at = Point3::new(x, y, z + noise * 2.0 * random(2));
                 let covariance = Covariance::diagonal([noise, noise, 2.0 * noise].map(|s| s * s));
                 let point = UncertainPoint { mean: at, covariance }.transformed(&pose);
-                PairPoint { index: Some(i as u32), point, spacing: SPACING }
+                PairPoint { index: Some(i as u32), point, spacing: SPACING, radius: None }
             };
             (0..25).map(place).collect()
         };
@@ -161,8 +164,13 @@ mod tests {
         let stats = &mut Stats::default();
         let clock = Clock::new(Instant::now(), None);
         match mode {
-            Mode::Calibrated => by_kernel(points, &settings, &clock, stats),
-            Mode::Paper => classify(points, &settings, &clock, stats),
+            Mode::Calibrated => by_kernel(points, &settings, &clock, stats).answer,
+            Mode::Paper => {
+                let of_paper = PaperSettings { plane_first: true, ..PaperSettings::default() };
+                let traversal = TraversalSettings::default();
+                let task = Task { settings: &of_paper, classifier: settings, traversal, clock };
+                classify(points, &task, stats).answer
+            }
         }
     }
 

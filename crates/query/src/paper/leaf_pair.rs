@@ -4,11 +4,13 @@ use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Pose, UncertainPoint, normal};
 
 use crate::classifier::{PairPoint, PairPoints, centroid};
-use crate::cloud::Prepared;
+use crate::cloud::{Prepared, Surfel};
 use crate::error::SubdivisionError;
-use crate::mesh::{Mesh, SampleRegion, sample_region};
+use crate::mesh::{Mesh, SampleRegion, four_per_triangle, sample_region};
 use crate::report::Stats;
 use crate::shape::Shape;
+
+use super::settings::{MeshPoints, PaperSettings};
 
 /// Around a cloud leaf a mesh is sampled this many spacings farther than the leaf reaches.
 const MARGIN_SPACINGS: f64 = 2.0;
@@ -20,29 +22,29 @@ const MARGIN_DEVIATIONS: f64 = 4.75;
 /// `None` when a side has no point: a mesh leaf whose triangles do not come near the cloud leaf.
 ///
 /// # Errors
-/// When a mesh takes more than `max_parts` parts to be sampled as densely as the cloud.
+/// When a mesh takes more parts than allowed to be sampled as densely as the cloud.
 pub(crate) fn gather(
     (a, leaf_a): (Shape<'_>, NodeId),
     (b, leaf_b): (Shape<'_>, NodeId),
     a_from_b: &Pose,
-    max_parts: usize,
+    settings: &PaperSettings,
     stats: &mut Stats,
 ) -> Result<Option<PairPoints>, SubdivisionError> {
     let points = match (a, b) {
         (Shape::Cloud(a), Shape::Cloud(b)) => PairPoints {
-            a: cloud_points(a, leaf_a, &Pose::identity(), stats),
-            b: cloud_points(b, leaf_b, a_from_b, stats),
+            a: cloud_points(a, leaf_a, &Pose::identity(), settings, stats),
+            b: cloud_points(b, leaf_b, a_from_b, settings, stats),
             a_is_mesh: false,
             b_is_mesh: false,
         },
         (Shape::Cloud(cloud), Shape::Mesh(mesh)) => {
-            let near = cloud_points(cloud, leaf_a, &Pose::identity(), stats);
-            let b = mesh_points(mesh, leaf_b, &near, a_from_b, max_parts)?;
+            let near = cloud_points(cloud, leaf_a, &Pose::identity(), settings, stats);
+            let b = mesh_points(mesh, leaf_b, &near, a_from_b, settings)?;
             PairPoints { a: near, b, a_is_mesh: false, b_is_mesh: true }
         }
         (Shape::Mesh(mesh), Shape::Cloud(cloud)) => {
-            let near = cloud_points(cloud, leaf_b, a_from_b, stats);
-            let a = mesh_points(mesh, leaf_a, &near, &Pose::identity(), max_parts)?;
+            let near = cloud_points(cloud, leaf_b, a_from_b, settings, stats);
+            let a = mesh_points(mesh, leaf_a, &near, &Pose::identity(), settings)?;
             PairPoints { a, b: near, a_is_mesh: true, b_is_mesh: false }
         }
         // Two meshes are tested exactly and never come here.
@@ -60,32 +62,43 @@ fn cloud_points(
     cloud: &Prepared,
     leaf: NodeId,
     a_from_cloud: &Pose,
+    settings: &PaperSettings,
     stats: &mut Stats,
 ) -> Vec<PairPoint> {
-    let (points, computed) = cloud.leaf(leaf);
+    let (points, computed) =
+        if settings.shared_points { cloud.shared_leaf(leaf) } else { cloud.leaf(leaf) };
     stats.leaves_prepared += usize::from(computed);
     let motion = Motion::from(a_from_cloud);
-    points.iter().map(|s| PairPoint::from(&s.moved(&motion))).collect()
+    let pair_point = |s: &Surfel| PairPoint {
+        radius: cloud.ellipsoid_radius(s.index),
+        ..PairPoint::from(&s.moved(&motion))
+    };
+    points.iter().map(pair_point).collect()
 }
 
-/// Samples the triangles of a mesh leaf where they come near points of a cloud, as densely.
+/// The points that stand for the triangles of a mesh leaf; where they are to be as dense as those of
+/// a cloud, only those that come near it.
 fn mesh_points(
     mesh: &Mesh,
     leaf: NodeId,
     near: &[PairPoint],
     a_from_mesh: &Pose,
-    max_parts: usize,
+    settings: &PaperSettings,
 ) -> Result<Vec<PairPoint>, SubdivisionError> {
     let Some(region) = region_around(near, &a_from_mesh.inverse()) else { return Ok(Vec::new()) };
     let indices = mesh.tree().leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
     let triangles = indices.iter().map(|&t| mesh.corners(t as usize));
-    let points = sample_region(triangles, &region, max_parts)?;
+    let points = match settings.mesh_points {
+        MeshPoints::FourPerTriangle => four_per_triangle(triangles),
+        MeshPoints::AsDenseAsCloud => sample_region(triangles, &region, settings.max_mesh_parts)?,
+    };
     Ok(points
         .iter()
         .map(|p| PairPoint {
             index: None,
             point: UncertainPoint::exact(a_from_mesh.transform_point(p)),
             spacing: region.spacing,
+            radius: None,
         })
         .collect())
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use cloudtouch_bvh::{Flow, NodeId, Traversal, TraversalSettings, traverse};
 use cloudtouch_geom::Pose;
 
+use crate::classifier::{PairPoints, Trained};
 use crate::error::QueryError;
 use crate::record::Evidence;
 use crate::shape::Shape;
@@ -14,12 +15,14 @@ use super::classify::classify;
 use super::leaf_pair::{bound_left_out, gather};
 use super::task::Task;
 
-/// Classifies the pairs of leaves that the traversal descends to and bounds the others.
+/// Classifies the pairs of leaves that the traversal descends to and bounds the others; `on_trained`
+/// is shown each pair with its answer.
 pub(super) fn traverse_leaf_pairs(
     (a, b): (Shape<'_>, Shape<'_>),
     a_from_b: &Pose,
     task: &Task<'_>,
     evidence: &mut Evidence,
+    mut on_trained: impl FnMut(&PairPoints, &Trained),
 ) -> Result<(), QueryError> {
     let settings = task.settings;
     // As printed, but for pairs that no probability can come from.
@@ -30,8 +33,7 @@ pub(super) fn traverse_leaf_pairs(
     let outcome = traverse(a.tree(), b.tree(), a_from_b, traversal, seed, |pair| {
         looked_at.insert((pair.a, pair.b));
         let stats = &mut evidence.stats;
-        let max_parts = settings.max_mesh_parts;
-        let points = match gather((a, pair.a), (b, pair.b), a_from_b, max_parts, stats) {
+        let points = match gather((a, pair.a), (b, pair.b), a_from_b, settings, stats) {
             Ok(Some(points)) => points,
             Ok(None) => {
                 evidence.widen(bound_left_out());
@@ -43,8 +45,9 @@ pub(super) fn traverse_leaf_pairs(
             }
         };
         stats.leaf_pairs += 1;
-        let answer = classify(&points, &task.classifier, &task.clock, stats);
-        add_pair((a, b, a_from_b), &points, &answer, evidence);
+        let trained = classify(&points, task, stats);
+        on_trained(&points, &trained);
+        add_pair((a, b, a_from_b), &points, &trained.answer, evidence);
         let is_enough = evidence.largest() > settings.stop_above || task.clock.is_over();
         if is_enough { Flow::Stop } else { next }
     })?;

@@ -21,6 +21,7 @@ mod classify;
 mod cloud;
 mod cloud_settings;
 mod contacts;
+mod explain;
 mod inside;
 mod leaf_pair;
 mod leaf_pairs;
@@ -34,6 +35,11 @@ mod weights;
 
 pub use body::PaperBodyRef;
 pub use cloud::PaperCloud;
-pub use cloud_settings::{PaperCloudSettings, PaperNoise};
+pub use cloud_settings::{PaperCloudSettings, PaperModel, PaperNoise};
+pub use explain::{ClassifiedPoint, LeafClassifier};
 pub use run::PaperQuery;
-pub use settings::{PaperSettings, Pooling};
+pub use settings::{MeshPoints, PaperSettings, Pooling, Scaling};
+
+pub use crate::record::Closeness;
+pub use cloudtouch_noise::RadiusRule;
+pub use cloudtouch_svm::Kernel;

@@ -1,20 +1,16 @@
 //! From point probabilities to the probability of a pair of clouds (section 4.4 of the paper).
 
-use crate::record::PointProbability;
-
-/// Points below this share of the largest probability add nothing but noise.
-pub(crate) const SHARE_OF_MAX: f64 = 0.8;
+use crate::record::{Closeness, PointProbability};
 
 /// The largest probability; 0 without points.
 pub(crate) fn max(points: &[PointProbability]) -> f64 {
     points.iter().map(|p| p.probability).fold(0.0, f64::max)
 }
 
-/// 1 − Π(1 − P) over points with P ≥ 0.8·max, thinned so that no two are closer than their
-/// correlation length: neighbours on one surface are not independent witnesses, and over all
+/// 1 − Π(1 − P) over points with P near the largest, thinned so that no two are close: neighbours on one surface are not independent witnesses, and over all
 /// points the product goes to 0 however small each P is.
-pub(crate) fn noisy_or(points: &[PointProbability]) -> f64 {
-    let floor = SHARE_OF_MAX * max(points);
+pub(crate) fn noisy_or(points: &[PointProbability], closeness: &Closeness) -> f64 {
+    let floor = closeness.share_of_max * max(points);
     if floor == 0.0 {
         return 0.0;
     }
@@ -29,7 +25,7 @@ pub(crate) fn noisy_or(points: &[PointProbability]) -> f64 {
     for point in likely {
         let is_new = witnesses.iter().all(|w| {
             (w.position - point.position).norm()
-                >= w.correlation_length.max(point.correlation_length)
+                >= closeness.spacings * w.spacing.max(point.spacing)
         });
         if is_new {
             witnesses.push(point);
@@ -41,9 +37,14 @@ pub(crate) fn noisy_or(points: &[PointProbability]) -> f64 {
 
 /// Upper bound on [`noisy_or`] when `total` points at most were left out, none of them more
 /// probable than `rest`.
-pub(crate) fn noisy_or_bound(points: &[PointProbability], rest: f64, total: usize) -> f64 {
-    let pooled = noisy_or(points);
-    if rest < SHARE_OF_MAX * max(points) {
+pub(crate) fn noisy_or_bound(
+    points: &[PointProbability],
+    closeness: &Closeness,
+    rest: f64,
+    total: usize,
+) -> f64 {
+    let pooled = noisy_or(points, closeness);
+    if rest < closeness.share_of_max * max(points) {
         return pooled;
     }
     1.0 - (1.0 - pooled) * (1.0 - rest).powf(total as f64)
@@ -56,22 +57,24 @@ mod tests {
     use super::*;
     use crate::record::Side;
 
+    const USUAL: Closeness = Closeness { share_of_max: 0.8, spacings: 3.0 };
+
     fn point(x: f64, probability: f64) -> PointProbability {
         PointProbability {
             side: Side::A,
             index: None,
             position: Point3::new(x, 0.0, 0.0),
             probability,
-            correlation_length: 0.1,
+            spacing: 0.1 / 3.0,
         }
     }
 
     #[test]
     fn neighbours_count_once_and_distant_points_add_up() {
-        assert_eq!(noisy_or(&[]), 0.0);
-        let together = noisy_or(&[point(0.0, 0.5), point(0.01, 0.5), point(0.02, 0.45)]);
+        assert_eq!(noisy_or(&[], &USUAL), 0.0);
+        let together = noisy_or(&[point(0.0, 0.5), point(0.01, 0.5), point(0.02, 0.45)], &USUAL);
         assert_eq!(together, 0.5);
-        let apart = noisy_or(&[point(0.0, 0.5), point(1.0, 0.5)]);
+        let apart = noisy_or(&[point(0.0, 0.5), point(1.0, 0.5)], &USUAL);
         assert_eq!(apart, 0.75);
         assert_eq!(max(&[point(0.0, 0.2), point(1.0, 0.5)]), 0.5);
     }
@@ -79,9 +82,9 @@ mod tests {
     #[test]
     fn what_was_left_out_widens_only_when_it_could_count() {
         let found = [point(0.0, 0.5)];
-        assert_eq!(noisy_or_bound(&found, 0.3, 100), 0.5);
-        assert!(noisy_or_bound(&found, 0.45, 100) > 0.99);
-        let nothing = noisy_or_bound(&[], 1e-6, 1000);
+        assert_eq!(noisy_or_bound(&found, &USUAL, 0.3, 100), 0.5);
+        assert!(noisy_or_bound(&found, &USUAL, 0.45, 100) > 0.99);
+        let nothing = noisy_or_bound(&[], &USUAL, 1e-6, 1000);
         assert!((nothing / 1e-3 - 1.0).abs() < 1e-3, "{nothing}");
     }
 
@@ -91,6 +94,6 @@ mod tests {
         let mut points: Vec<_> = (0..1000).map(|i| point(f64::from(i), 0.01)).collect();
         points.push(point(-5.0, 0.3));
         // One subtraction each way rounds once.
-        assert!((noisy_or(&points) - 0.3).abs() < 1e-15);
+        assert!((noisy_or(&points, &USUAL) - 0.3).abs() < 1e-15);
     }
 }

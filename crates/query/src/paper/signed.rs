@@ -3,7 +3,7 @@
 use cloudtouch_geom::{Point3, Pose, Vector3};
 
 use crate::CONTACT_FLOOR;
-use crate::record::{CORRELATION_SPACINGS, Evidence, PointProbability, Side};
+use crate::record::{Evidence, PointProbability, Side};
 use crate::report::{Clearance, Contact};
 
 /// A point of the cloud at its signed distance from the mesh.
@@ -39,7 +39,7 @@ pub(super) fn add_signed_points(
             index: Some(point.index),
             position: a_from_cloud.transform_point(&point.position),
             probability: point.probability,
-            correlation_length: CORRELATION_SPACINGS * point.spacing,
+            spacing: point.spacing,
         });
         let clearance = Clearance { mean: point.distance, std: point.std, is_bound: false };
         evidence.add_clearance(point.probability, clearance);

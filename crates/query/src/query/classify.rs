@@ -87,7 +87,7 @@ pub(super) fn ask_classifier(
             all = all.or_more(Misclassified::indistinct(count));
             continue;
         }
-        let of_patch = match by_kernel(&points, &task.classifier, &task.clock, stats) {
+        let of_patch = match by_kernel(&points, &task.classifier, &task.clock, stats).answer {
             PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(&b).sum()),
             PairAnswer::Undecided => Misclassified::undecided(count),
             PairAnswer::Indistinct => Misclassified::indistinct(count),

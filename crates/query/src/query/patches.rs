@@ -104,6 +104,7 @@ fn around(
                 index: None,
                 point: UncertainPoint::exact(a_from_body.transform_point(point)),
                 spacing: seed.spacing,
+                radius: None,
             })
             .collect(),
     })

@@ -1,6 +1,6 @@
 //! What geometry says of single points, for pictures and planners.
 
-use crate::record::{CORRELATION_SPACINGS, Evidence, PointProbability, Side};
+use crate::record::{Evidence, PointProbability, Side};
 use crate::search::{Found, Leaf, NoisyLeaf};
 
 /// Adds the points of every leaf that was looked at; none is more probable than the collision is.
@@ -21,7 +21,7 @@ fn add_leaf(side: Side, leaf: &NoisyLeaf<'_>, collision: f64, evidence: &mut Evi
             index: Some(surfel.index),
             position: surfel.point.mean,
             probability: probability.min(collision),
-            correlation_length: CORRELATION_SPACINGS * surfel.spacing,
+            spacing: surfel.spacing,
         });
     }
 }

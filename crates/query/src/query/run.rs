@@ -8,7 +8,7 @@ use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::{QueryError, SettingsError};
 use crate::mode::Mode;
-use crate::record::Terms;
+use crate::record::{Closeness, Terms};
 use crate::report::Report;
 
 use super::estimate::estimate;
@@ -68,6 +68,7 @@ impl Query {
             reject: self.settings.reject,
             safeguards: self.settings.safeguards,
             max_contacts: self.settings.max_contacts,
+            closeness: Closeness::default(),
         };
         terms.ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
             estimate((a, b), local, &self.task(start), evidence)

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use cloudtouch_svm::Kernel;
+
 use crate::checks::{fraction, positive, thresholds};
 use crate::classifier::ClassifierSettings;
 use crate::error::SettingsError;
@@ -82,17 +84,21 @@ impl QuerySettings {
         thresholds(self.accept, self.reject)?;
         self.safeguards.validate()?;
         self.classifier().validate()?;
+        positive("ellipsoid_radius", self.ellipsoid_radius)?;
         positive("stop_above", self.stop_above)?;
         Ok(())
     }
 
     pub(crate) fn classifier(&self) -> ClassifierSettings {
         ClassifierSettings {
-            gamma: self.gamma,
+            kernel: Kernel::Gaussian { gamma: self.gamma },
             penalty: self.penalty,
+            is_balanced: true,
             mesh_penalty_factor: self.mesh_penalty_factor,
             ellipsoid_radius: self.ellipsoid_radius,
             relative_gap: self.relative_gap,
+            scale: None,
+            distrusts_noise: true,
         }
     }
 }

@@ -17,6 +17,7 @@ use crate::undecided::Undecided;
 use crate::unseen::unseen;
 use crate::warning::Warning;
 
+use super::closeness::Closeness;
 use super::estimate::{Estimate, Places};
 use super::evidence::Evidence;
 
@@ -29,6 +30,8 @@ pub(crate) struct Terms {
     pub reject: f64,
     pub safeguards: Safeguards,
     pub max_contacts: usize,
+    /// Which points the noisy-or counts.
+    pub closeness: Closeness,
 }
 
 impl Terms {
@@ -95,7 +98,8 @@ impl Terms {
         doubt: Option<Undecided>,
     ) -> Report {
         let points = evidence.merge_points();
-        let (max_probability, noisy_or_probability) = (pool::max(points), pool::noisy_or(points));
+        let (max_probability, noisy_or_probability) =
+            (pool::max(points), pool::noisy_or(points, &self.closeness));
         let Places { mut contacts, clearance, at_least } =
             estimate.places.unwrap_or_else(|| Places {
                 contacts: evidence.top_contacts(self.max_contacts),

@@ -37,7 +37,7 @@ impl Evidence {
             index: None,
             position: Point3::origin(),
             probability: 1.0,
-            correlation_length: 0.0,
+            spacing: 0.0,
         });
     }
 

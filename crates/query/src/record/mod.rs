@@ -1,11 +1,13 @@
 //! What a query has gathered, whichever path it goes, and the report made from it.
 
 mod ask;
+mod closeness;
 mod estimate;
 mod evidence;
 mod point;
 
 pub(crate) use ask::Terms;
+pub use closeness::Closeness;
 pub(crate) use estimate::{Estimate, Places};
 pub(crate) use evidence::Evidence;
-pub(crate) use point::{CORRELATION_SPACINGS, PointProbability, Side};
+pub(crate) use point::{PointProbability, Side};

@@ -2,9 +2,6 @@
 
 use cloudtouch_geom::Point3;
 
-/// Points nearer than this many spacings share the samples their position was estimated from.
-pub(crate) const CORRELATION_SPACINGS: f64 = 3.0;
-
 /// Which body a point belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Side {
@@ -21,6 +18,6 @@ pub(crate) struct PointProbability {
     /// In the local frame of A.
     pub position: Point3,
     pub probability: f64,
-    /// Points nearer than this to each other tell the same story, m.
-    pub correlation_length: f64,
+    /// Distance between samples there, m.
+    pub spacing: f64,
 }

@@ -17,7 +17,8 @@ pub(crate) enum Scan {
 }
 
 impl Scan {
-    /// Prepares a cloud with the default settings of a path.
+    /// Prepares a cloud with the settings of a path for ordinary use: the paper's with our amendments, for
+    /// what the printed ones do is tested apart.
     pub(crate) fn of(
         cloud: &PointCloud,
         sensor: SensorModel,
@@ -28,7 +29,7 @@ impl Scan {
                 Self::Calibrated(Cloud::prepare(cloud, &CloudSettings::new(sensor))?)
             }
             Mode::Paper => {
-                Self::Paper(PaperCloud::prepare(cloud, &PaperCloudSettings::new(sensor))?)
+                Self::Paper(PaperCloud::prepare(cloud, &PaperCloudSettings::amended(sensor))?)
             }
         })
     }
@@ -112,11 +113,11 @@ impl<'a> Asked<'a> {
 #[derive(Debug, Clone)]
 pub(crate) enum AnyQuery {
     Calibrated(Box<Query>),
-    Paper(PaperQuery),
+    Paper(Box<PaperQuery>),
 }
 
 impl AnyQuery {
-    /// With the default settings but for these.
+    /// With the settings for ordinary use but for these.
     pub(crate) fn with(
         mode: Mode,
         calibrated: impl FnOnce(&mut QuerySettings),
@@ -129,9 +130,9 @@ impl AnyQuery {
                 Self::Calibrated(Box::new(Query::new(settings).expect("good settings")))
             }
             Mode::Paper => {
-                let mut settings = PaperSettings::default();
+                let mut settings = PaperSettings::amended();
                 paper(&mut settings);
-                Self::Paper(PaperQuery::new(settings).expect("good settings"))
+                Self::Paper(Box::new(PaperQuery::new(settings).expect("good settings")))
             }
         }
     }

@@ -1,0 +1,31 @@
+//! Clouds that the figures are drawn from, and the two ways of the paper's path.
+
+use cloudtouch::{PaperCloudSettings, PaperModel, PaperSettings, noise::SensorModel};
+use cloudtouch_geom::{PointCloud, TriangleMesh, seed::derive};
+use cloudtouch_testkit::{
+    noise::{NoiseKind, add_noise},
+    surface::{positions, sample_surface},
+};
+
+/// Everything random comes from this.
+pub(super) const SEED: u64 = 2011;
+
+/// A name, and the settings of queries and clouds.
+type Variant = (&'static str, fn() -> PaperSettings, fn() -> PaperModel);
+
+/// The paper's path as printed, and with our amendments.
+pub(super) const PATHS: [Variant; 2] = [
+    ("printed", PaperSettings::default, PaperModel::default),
+    ("amended", PaperSettings::amended, PaperModel::amended),
+];
+
+pub(super) fn by_paper(std: f64, model: PaperModel) -> PaperCloudSettings {
+    PaperCloudSettings { model, ..PaperCloudSettings::new(SensorModel::Isotropic { std }) }
+}
+
+/// A surface in so many points with normal noise of this standard deviation, m.
+pub(super) fn sampled(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> PointCloud {
+    let exact = positions(&sample_surface(mesh, points, derive(SEED, 1, stream)));
+    let seed = derive(SEED, 2, stream);
+    PointCloud::from_points(add_noise(&exact, NoiseKind::Gaussian, std, seed))
+}

@@ -1,0 +1,128 @@
+//! What sensors delivered, made ready: scans filtered, each with the noise of its sensor, and put
+//! together in one frame.
+
+use std::ops::Range;
+
+use cloudtouch_geom::{Covariance, Point3, PointCloud, UnitVector3};
+use cloudtouch_noise::{Combination, MotionNoise, SensorNoise};
+
+use crate::error::PrepareError;
+use crate::filter::{StageReport, filter};
+use crate::range::check_points;
+
+use super::makeup::{SensorDoubt, is_image, missing, sensor_doubts};
+use super::preparation::Preparation;
+
+/// Scans in one frame.
+#[derive(Debug)]
+pub(super) struct Scans {
+    pub points: Vec<Point3>,
+    /// Position noise of each point.
+    pub noise: SensorNoise,
+    /// Where they are to be used, and every scan has them.
+    pub normals: Option<Vec<UnitVector3>>,
+    /// Of each point its row, counted on through the scans; empty after a collision map.
+    pub rows: Vec<usize>,
+    pub stages: Vec<StageReport>,
+    /// Where sensors stood, of scans that say so.
+    pub origins: Vec<Point3>,
+    /// The largest share of rows without return of a scan whose layout does not tell where.
+    pub missing: f64,
+    /// Signs that a sensor did not see its scan.
+    pub sensor_doubts: Vec<SensorDoubt>,
+    /// Scans that are depth images: where the sensor stood, and which points are its.
+    pub images: Vec<(Point3, Range<usize>)>,
+}
+
+impl Scans {
+    pub(super) fn of(scans: &[(&PointCloud, Preparation<'_>)]) -> Result<Self, PrepareError> {
+        let mut all = Self {
+            points: Vec::new(),
+            noise: SensorNoise::from(Vec::new()),
+            normals: None,
+            rows: Vec::new(),
+            stages: Vec::new(),
+            origins: Vec::new(),
+            missing: 0.0,
+            sensor_doubts: Vec::new(),
+            images: Vec::new(),
+        };
+        let mut normals = Some(Vec::new());
+        let mut noise = Vec::new();
+        let (mut first_row, mut have_rows) = (0, true);
+        for &(scan, by) in scans {
+            by.validate()?;
+            let filtered = filter(scan, by.filter)?;
+            let kept = filtered.cloud;
+            if kept.is_empty() {
+                return Err(nothing_left(scan.len(), &filtered.stages));
+            }
+            // By their rows in the file; the cells of a collision map have none.
+            let row = |i: usize| first_row + filtered.rows.get(i).copied().unwrap_or(i);
+            check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
+            noise.push(moved(by.sensor.covariances(&kept)?, &by.motion, &kept.points));
+            match (&kept.normals, by.noise.combination) {
+                (Some(of_scan), Combination::SurfacePosterior) => {
+                    let of_scan = checked(of_scan)?;
+                    normals.iter_mut().for_each(|all| all.extend(&of_scan));
+                }
+                _ => normals = None,
+            }
+            all.missing = all.missing.max(missing(scan, &filtered.stages));
+            all.sensor_doubts.extend(sensor_doubts(scan, by.sensor, &kept.points));
+            // An organised cloud is a depth image: one view, with unseen space behind it.
+            if is_image(scan) {
+                let range = all.points.len()..all.points.len() + kept.len();
+                all.images.push((kept.sensor_origin(), range));
+            }
+            // The origin is what a file says that does not know.
+            let origin = Some(kept.sensor_origin()).filter(|place| *place != Point3::origin());
+            all.origins.extend(origin);
+            have_rows &= !filtered.rows.is_empty();
+            all.rows.extend(filtered.rows.iter().map(|row| first_row + row));
+            all.stages.extend(filtered.stages);
+            all.points.extend(kept.points);
+            first_row += scan.len();
+        }
+        if !have_rows {
+            all.rows.clear();
+        }
+        all.normals = normals;
+        all.noise = match <[SensorNoise; 1]>::try_from(noise) {
+            // Which may take no room per point.
+            Ok([only]) => only,
+            Err(each) => {
+                each.iter().flat_map(SensorNoise::iter).copied().collect::<Vec<_>>().into()
+            }
+        };
+        Ok(all)
+    }
+}
+
+fn nothing_left(before: usize, stages: &[StageReport]) -> PrepareError {
+    let removed: Vec<String> =
+        stages.iter().map(|s| format!("{} removed {}", s.stage, s.removed)).collect();
+    PrepareError::NothingLeft { before, stages: removed.join(", ") }
+}
+
+/// Σ of points that may have moved since they were seen.
+fn moved(noise: SensorNoise, motion: &MotionNoise, points: &[Point3]) -> SensorNoise {
+    if *motion == MotionNoise::default() {
+        return noise;
+    }
+    let sum = |(seen, place): (&Covariance, &Point3)| seen.sum(&motion.covariance(place));
+    SensorNoise::from(noise.iter().zip(points).map(sum).collect::<Vec<_>>())
+}
+
+/// Normals as they are, after a look at them: a `Unit` can be made without a check.
+fn checked(normals: &[UnitVector3]) -> Result<Vec<UnitVector3>, PrepareError> {
+    let checked = |(index, normal): (usize, &UnitVector3)| {
+        let is_unit = (normal.norm() - 1.0).abs() < 1e-6;
+        if is_unit {
+            Ok(*normal)
+        } else {
+            Err(PrepareError::Normal { index, normal: normal.into_inner() })
+        }
+    };
+    normals.iter().enumerate().map(checked).collect()
+}

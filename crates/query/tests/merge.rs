@@ -1,0 +1,100 @@
+//! Several scans of one frame, each with its sensor and where that stood, in one map.
+
+mod common;
+
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{
+    Cloud, CloudSettings, PaperCloud, PaperCloudSettings, PrepareError, Report, Verdict,
+};
+use cloudtouch_testkit::camera::DepthCamera;
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::scene;
+use common::{Asked, MODES, Scan, ask, at, mesh};
+use std::f64::consts::PI;
+
+/// A block of half a metre between two cameras that look at each other, walls behind both.
+fn views() -> [PointCloud; 2] {
+    let place = |mesh: TriangleMesh, z| ExactMesh::new(&scene::moved(&mesh, &at(0.0, 0.0, z)));
+    let block = place(scene::cuboid([0.5; 3]), 1.5);
+    let walls = [place(scene::plane_patch(6.0), -0.5), place(scene::plane_patch(6.0), 3.5)];
+    let from =
+        [Pose::identity(), Pose::from_translation_rpy(Vector3::new(0.0, 0.0, 3.0), [0.0, PI, 0.0])];
+    from.map(|pose| {
+        DepthCamera::default().scan(&[&block, &walls[0], &walls[1]], &pose, 1).transformed(&pose)
+    })
+}
+
+fn scans(clouds: &[PointCloud]) -> [Scan; 2] {
+    let by = CloudSettings::new(SensorModel::Kinect);
+    let scans: Vec<_> = clouds.iter().map(|cloud| (cloud, &by)).collect();
+    let by_paper = PaperCloudSettings::amended(SensorModel::Kinect);
+    let of_paper: Vec<_> = clouds.iter().map(|cloud| (cloud, &by_paper)).collect();
+    [
+        Scan::Calibrated(Cloud::merge(&scans).expect("good scans")),
+        Scan::Paper(PaperCloud::merge(&of_paper).expect("good scans")),
+    ]
+}
+
+/// One cloud had one origin: what one camera could not see was unseen, whatever another saw there.
+#[test]
+fn what_is_hidden_from_one_sensor_is_free_where_another_looked() {
+    let views = views();
+    let ball = mesh(&scene::sphere(0.08, 2));
+    // Behind the block for the first camera, before it for the second.
+    let behind = at(0.0, 0.0, 2.3);
+    let within = at(0.0, 0.0, 1.5);
+    for ((one, both), mode) in scans(&views[..1]).iter().zip(&scans(&views)).zip(MODES) {
+        let verdict =
+            |scan: &Scan, pose: &Pose| -> Report { ask(mode, scan, Asked::from(&ball), pose) };
+        assert_eq!(verdict(one, &behind).verdict, Verdict::Undecided);
+        let seen = verdict(both, &behind);
+        assert!(
+            seen.collision_probability < 0.1
+                && seen.undecided_by.is_none_or(|by| { by != cloudtouch::Undecided::Hidden }),
+            "{seen:?}"
+        );
+        // Inside the block neither looked.
+        assert_eq!(verdict(both, &within).verdict, Verdict::Undecided);
+        assert_eq!(both.len(), one.len() + scans(&views[1..])[0].len());
+    }
+}
+
+/// Each scan keeps the noise of its own sensor, and the rows are counted on.
+#[test]
+fn each_scan_has_the_noise_of_its_own_sensor() {
+    let points = |z: f64| -> Vec<Point3> {
+        (0..400)
+            .map(|i| Point3::new(0.01 * f64::from(i % 20), 0.01 * f64::from(i / 20), z))
+            .collect()
+    };
+    let [low, high] = [0.0, 0.5].map(|z| PointCloud::from_points(points(z)));
+    let [sharp, blurred] =
+        [0.001, 0.05].map(|std| CloudSettings::new(SensorModel::Isotropic { std }));
+    let plate = Cloud::prepare(&low, &sharp).expect("a good cloud");
+    let probability = |low_by: &CloudSettings, high_by: &CloudSettings, z| {
+        let map = Cloud::merge(&[(&low, low_by), (&high, high_by)]).expect("good scans");
+        assert_eq!(map.rows(), (0..800).collect::<Vec<_>>());
+        let query = cloudtouch::Query::new(cloudtouch::QuerySettings::default()).expect("good");
+        query.run(&map, &plate, &at(0.0, 0.0, z)).expect("a finite pose").collision_probability
+    };
+    for (z, is_low) in [(0.02, true), (0.52, false)] {
+        let near_blurred = if is_low {
+            probability(&blurred, &sharp, z)
+        } else {
+            probability(&sharp, &blurred, z)
+        };
+        let near_sharp = if is_low {
+            probability(&sharp, &blurred, z)
+        } else {
+            probability(&blurred, &sharp, z)
+        };
+        assert!(near_blurred > near_sharp + 0.01, "{near_blurred} and {near_sharp} at {z}");
+    }
+}
+
+#[test]
+fn no_scan_is_no_map() {
+    assert!(matches!(Cloud::merge(&[]), Err(PrepareError::NothingLeft { before: 0, .. })));
+    assert!(matches!(PaperCloud::merge(&[]), Err(PrepareError::NothingLeft { before: 0, .. })));
+}
