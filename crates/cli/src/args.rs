@@ -80,7 +80,7 @@ pub(crate) enum Command {
     /// One object in one scene at one pose
     Query(Box<QueryArguments>),
     /// Many poses from a case file; scenes and objects are prepared once
-    Batch(BatchArguments),
+    Batch(Box<BatchArguments>),
     /// What a cloud or mesh file holds, and which sensor suits it
     Info(InfoArguments),
     /// The piano in the room, from free to deep; needs no file

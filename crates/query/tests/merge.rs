@@ -51,7 +51,7 @@ fn what_is_hidden_from_one_sensor_is_free_where_another_looked() {
         let seen = verdict(both, &behind);
         assert!(
             seen.collision_probability < 0.1
-                && seen.undecided_by.is_none_or(|by| { by != cloudtouch::Undecided::Hidden }),
+                && seen.undecided_by.is_none_or(|by| { by != cloudtouch::Undecided::Unseen }),
             "{seen:?}"
         );
         // Inside the block neither looked.
