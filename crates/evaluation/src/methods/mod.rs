@@ -15,7 +15,7 @@ use cloudtouch::{FilterSettings, filter, noise::SensorModel};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::Observation;
 
-pub use asker::asker;
+pub use asker::{Way, asker};
 pub use distance::Distance;
 pub use fitted::Fitted;
 pub use ours::Ours;

@@ -4,16 +4,14 @@
 use std::path::Path;
 
 use anyhow::Result;
-use cloudtouch::{
-    Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, noise::SensorModel,
-};
+use cloudtouch::{Cloud, CloudSettings, Mesh, Query, QuerySettings, Report, noise::SensorModel};
 use cloudtouch_geom::{Point3, Pose};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
 
 use super::{cases, side_view};
 use crate::{
     figure::{Axis, Figure, Panel, Series},
-    methods::asker,
+    methods::{Way, asker},
     page::Section,
     targets::{Findings, Target},
 };
@@ -24,11 +22,11 @@ const NOISE_OF_PROBABILITY: f64 = 0.05;
 const CONTACT_REACH: f64 = 0.015;
 /// Standard deviation that the sensor is said to have, m, and the mode. The first run is checked:
 /// the scan has about that noise.
-const RUNS: [(f64, Mode, &str); 4] = [
-    (0.005, Mode::Calibrated, "calibrated, sensor of 5 mm"),
-    (0.002, Mode::Calibrated, "calibrated, sensor of 2 mm"),
-    (0.015, Mode::Calibrated, "calibrated, sensor of 15 mm"),
-    (0.005, Mode::Paper, "paper, sensor of 5 mm"),
+const RUNS: [(f64, Way, &str); 4] = [
+    (0.005, Way::Calibrated, "calibrated, sensor of 5 mm"),
+    (0.002, Way::Calibrated, "calibrated, sensor of 2 mm"),
+    (0.015, Way::Calibrated, "calibrated, sensor of 15 mm"),
+    (0.005, Way::Printed, "paper, sensor of 5 mm"),
 ];
 /// How far past first contact the pictured poses are, mm.
 const PICTURED: [f64; 3] = [-30.0, -2.0, 40.0];
@@ -41,8 +39,8 @@ pub(super) fn evaluate(data: &Path) -> Findings {
     let object = read_mesh(&series[0].1.object, LengthUnit::Metres)?;
     let mesh = Mesh::prepare(&object)?;
     let mut answers: Vec<Vec<Report>> = Vec::new();
-    for (std, mode, _) in RUNS {
-        let ask = asker(&scan, std, mode)?;
+    for (std, way, _) in RUNS {
+        let ask = asker(&scan, std, way)?;
         answers.push(poses.iter().map(|pose| ask(&mesh, pose)).collect::<Result<_>>()?);
     }
 
