@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use cloudtouch::Report;
-use cloudtouch::geom::{Point3, Pose};
+use cloudtouch::geom::{Point3, Pose, bounding_box};
 use cloudtouch_io::write_colored_ply;
 
 use crate::body::{Body, PreparedCloud};
@@ -100,10 +100,7 @@ impl Picture {
 }
 
 fn extent(points: &[Point3]) -> f64 {
-    let Some(&first) = points.first() else { return 0.0 };
-    let (low, high) =
-        points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
-    (high - low).norm()
+    bounding_box(points).map_or(0.0, |(low, high)| (high - low).norm())
 }
 
 fn blend(from: Color, to: Color, share: f64) -> Color {

@@ -57,7 +57,7 @@ pub(crate) fn suggestion(cloud: &PointCloud) -> Chosen {
         (SensorModel::PerPoint, "the file has covariance columns")
     } else if far_from_origin {
         (SensorModel::Axes { stds: [0.3, 0.3, 0.15] }, "map coordinates, as of an airborne scan")
-    } else if cloud.image_size.is_some_and(|(width, height)| width > 1 && height > 1) {
+    } else if cloud.is_image() {
         (SensorModel::Kinect, "a depth image; a stereo camera is noisier: iso:0.005")
     } else if extent > 4.0 {
         (SensorModel::Lidar { range_std: 0.02, beam_rad: 0.003 }, "metres across, as a laser scan")

@@ -75,6 +75,11 @@ impl PointCloud {
         }
     }
 
+    /// Whether its rows are those of an image: a depth image as its camera delivers it.
+    pub fn is_image(&self) -> bool {
+        self.image_size.is_some_and(|(width, height)| width > 1 && height > 1)
+    }
+
     /// Lowest and highest corner of the finite points; `None` when there is none.
     pub fn bounding_box(&self) -> Option<(Point3, Point3)> {
         bounding_box(self.points.iter().filter(|p| p.iter().all(|v| v.is_finite())))

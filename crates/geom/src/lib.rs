@@ -20,6 +20,7 @@ mod unit;
 mod vectors;
 
 pub use axis_form::AxisForm;
+pub use bounding_box::bounding_box;
 pub use cloud::PointCloud;
 pub use covariance::Covariance;
 pub use covariance_error::CovarianceError;

@@ -65,8 +65,7 @@ impl Nearest<'_> {
     fn of(&mut self, index: u32) -> [u32; NEIGHBORS] {
         *self.known.entry(index).or_insert_with(|| {
             let mut nearest = [index; NEIGHBORS];
-            let pieces = self.cloud.pieces.neighborhoods(&self.cloud.neighborhoods);
-            let found = pieces.nearest(index as usize, NEIGHBORS);
+            let found = self.cloud.near_pieces().nearest(index as usize, NEIGHBORS);
             for (slot, neighbor) in nearest.iter_mut().zip(found) {
                 *slot = neighbor.index as u32;
             }

@@ -27,7 +27,7 @@ impl Prepared {
     /// The surface at the points measured nearest to a place in the local frame.
     pub(crate) fn surfels_near(&self, place: &Point3, count: usize) -> Vec<Surfel> {
         let mut scratch = Scratch::default();
-        let nearest = self.pieces.neighborhoods(&self.neighborhoods).nearest_to(place, count);
+        let nearest = self.near_pieces().nearest_to(place, count);
         nearest.iter().map(|near| *self.surfel(near.index as u32, &mut scratch)).collect()
     }
 

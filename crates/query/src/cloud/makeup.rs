@@ -49,8 +49,9 @@ pub(crate) struct Makeup {
 }
 
 impl Makeup {
-    /// Of the points kept, in the local frame, and what was told of their scans.
+    /// Of the points kept and the box around them, in the local frame, and what was told of their scans.
     pub(super) fn new(
+        corners: [Point3; 2],
         (kept, noise): (&Neighborhoods, &SensorNoise),
         missing: f64,
         sensor_doubts: Vec<SensorDoubt>,
@@ -59,7 +60,7 @@ impl Makeup {
         let step = points.len().div_ceil(SAMPLE).max(1);
         let std = median((0..points.len()).step_by(step).map(|i| noise[i].max_std()));
         Self {
-            corners: corners(points),
+            corners,
             spacing: typical_spacing(kept, SAMPLE),
             std,
             distinct: kept.distinct(),
@@ -75,20 +76,10 @@ impl Makeup {
     }
 }
 
-/// Whether the rows of a cloud are those of an image.
-pub(super) fn is_image(cloud: &PointCloud) -> bool {
-    cloud.image_size.is_some_and(|(width, height)| width > 1 && height > 1)
-}
-
 /// Share of the rows of a scan without return, where its layout does not tell where they would be.
 pub(super) fn missing(scan: &PointCloud, stages: &[StageReport]) -> f64 {
-    let stage = stages.iter().find(|s| s.stage == "missing" && !is_image(scan));
+    let stage = stages.iter().find(|s| s.stage == "missing" && !scan.is_image());
     stage.map_or(0.0, |s| s.removed as f64 / s.before.max(1) as f64)
-}
-
-fn corners(points: &[Point3]) -> [Point3; 2] {
-    let first = points.first().copied().unwrap_or_else(Point3::origin);
-    points.iter().fold([first; 2], |[low, high], p| [low.inf(p), high.sup(p)])
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {
@@ -135,11 +126,11 @@ pub(super) fn sensor_doubts(
             if share > MOST_BESIDE {
                 doubts.push(SensorDoubt::Beside { share });
             }
-            if !is_image(cloud) {
+            if !cloud.is_image() {
                 doubts.push(SensorDoubt::NoImage);
             }
         }
-        SensorModel::Lidar { .. } if is_image(cloud) => {
+        SensorModel::Lidar { .. } if cloud.is_image() => {
             let forward = rays().filter_map(|ray| ray.try_normalize(0.0)).sum::<Vector3>();
             let forward = forward.try_normalize(0.0).unwrap_or_else(Vector3::z);
             if rays().all(|ray| ray.dot(&forward) >= BESIDE * ray.norm()) {

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use cloudtouch_bvh::{LeafBounds, Primitive, Tree};
-use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3};
+use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3, bounding_box};
 use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 
 use crate::error::PrepareError;
@@ -63,7 +63,7 @@ impl Prepared {
         let span = tracing::debug_span!("prepare_cloud", points = count);
         let _entered = span.enter();
         let all = Scans::of(scans)?;
-        let (Some((low, high)), Some((_, by))) = (corners(&all.points), scans.first()) else {
+        let (Some((low, high)), Some((_, by))) = (bounding_box(&all.points), scans.first()) else {
             let stages = "no scan was given".to_owned();
             return Err(PrepareError::NothingLeft { before: count, stages });
         };
@@ -71,7 +71,12 @@ impl Prepared {
         let origin = nalgebra::center(&low, &high).coords;
         let points: Vec<Point3> = all.points.iter().map(|p| p - origin).collect();
         let neighborhoods = Neighborhoods::try_new(points)?;
-        let makeup = Makeup::new((&neighborhoods, &sensor), all.missing, all.sensor_doubts);
+        let makeup = Makeup::new(
+            [low - origin, high - origin],
+            (&neighborhoods, &sensor),
+            all.missing,
+            all.sensor_doubts,
+        );
         if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
             return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
         }
@@ -186,6 +191,11 @@ impl Prepared {
         self.radii = radii;
     }
 
+    /// Which pieces of surface are near which, by their numbers in the tree.
+    pub(super) fn near_pieces(&self) -> &Neighborhoods {
+        self.pieces.neighborhoods(&self.neighborhoods)
+    }
+
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
     }
@@ -207,10 +217,4 @@ impl Prepared {
     pub(crate) fn views(&self) -> &[SingleView] {
         &self.views
     }
-}
-
-/// Lowest and highest corner of some points; `None` without any.
-fn corners(points: &[Point3]) -> Option<(Point3, Point3)> {
-    let &first = points.first()?;
-    Some(points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p))))
 }

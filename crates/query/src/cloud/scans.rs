@@ -10,7 +10,7 @@ use crate::error::PrepareError;
 use crate::filter::{StageReport, filter};
 use crate::range::check_points;
 
-use super::makeup::{SensorDoubt, is_image, missing, sensor_doubts};
+use super::makeup::{SensorDoubt, missing, sensor_doubts};
 use super::preparation::Preparation;
 
 /// Scans in one frame.
@@ -71,7 +71,7 @@ impl Scans {
             all.missing = all.missing.max(missing(scan, &filtered.stages));
             all.sensor_doubts.extend(sensor_doubts(scan, by.sensor, &kept.points));
             // An organised cloud is a depth image: one view, with unseen space behind it.
-            if is_image(scan) {
+            if scan.is_image() {
                 let range = all.points.len()..all.points.len() + kept.len();
                 all.images.push((kept.sensor_origin(), range));
             }
