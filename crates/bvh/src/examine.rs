@@ -5,7 +5,7 @@ use cloudtouch_geom::{Motion, Pose, Vector3, seed};
 use crate::gap::signed_gap_up_to;
 use crate::leakage::{Side, gap_aware_probability, gap_of, paper_probability, plane_deviations};
 use crate::node::NodeData;
-use crate::{Obb, Traversal, TraversalSettings, Tree};
+use crate::{Traversal, TraversalSettings, Tree};
 
 /// What is known of a pair of nodes.
 #[derive(Debug, Clone, Copy)]
@@ -15,20 +15,12 @@ pub(crate) struct Examined {
     /// See [`crate::LeafPair`].
     pub(crate) gap: f64,
     pub(crate) axis: Vector3,
-    /// How far apart the surfaces are at least, m; negative where they may cross.
-    pub(crate) apart: f64,
     /// How many standard deviations from a point of either to the middle of the gap, at least; minus
-    /// infinity where the surfaces may cross.
+    /// infinity where the boxes overlap.
     pub(crate) deviations: f64,
     /// Small is urgent: negative for an overlap, relative to the smaller node, else the gap, m.
     pub(crate) urgency: f64,
     pub(crate) descend: bool,
-}
-
-impl Examined {
-    pub(crate) fn may_cross(&self) -> bool {
-        self.deviations == f64::NEG_INFINITY
-    }
 }
 
 /// Tests single pairs: everything that stays the same during one traversal.
@@ -73,17 +65,14 @@ impl<'a> Examiner<'a> {
             // What is drawn depends on the gap.
             Traversal::Paper | Traversal::GapAware => f64::INFINITY,
         };
-        let between =
-            signed_gap_up_to(&self.shape(a), &self.shape(b).moved(&self.a_from_b), enough);
-        let apart = between.signed - slack;
+        let between = signed_gap_up_to(&a.obb, &b.obb.moved(&self.a_from_b), enough);
+        let gap = between.signed - slack;
         let axis = between.axis;
         let axis_in_b = self.a_from_b.vector_back(&axis);
-        // Along the axis that parts the surfaces most the points are farther apart by their reach.
-        let gap = apart + self.reach(a, &axis) + self.reach(b, &axis_in_b);
         let std_a = a.bounds.std_along(&a.obb.axes, &axis);
         let std_b = b.bounds.std_along(&b.obb.axes, &axis_in_b);
         let deviations =
-            if apart < 0.0 { f64::NEG_INFINITY } else { plane_deviations(gap, std_a.max(std_b)) };
+            if gap < 0.0 { f64::NEG_INFINITY } else { plane_deviations(gap, std_a.max(std_b)) };
         let reach = |node: &NodeData| node.obb.radius() + node.bounds.shift;
         let size = reach(a).min(reach(b));
         let urgency = if gap < 0.0 && size > 0.0 { gap / size } else { gap };
@@ -102,18 +91,7 @@ impl<'a> Examiner<'a> {
                         self.draw(gap_aware_probability(gap, sides()), id_a, id_b)
                     }
                 });
-        Examined { a: id_a, b: id_b, gap, axis, apart, deviations, urgency, descend }
-    }
-
-    /// The box of what may not overlap: of the surfaces where crossings are told apart, else of the
-    /// points.
-    fn shape(&self, node: &NodeData) -> Obb {
-        if self.settings.crossings { node.surface_box() } else { node.obb }
-    }
-
-    /// How much farther than the box of the points that box reaches along a unit vector, m.
-    fn reach(&self, node: &NodeData, direction: &Vector3) -> f64 {
-        if self.settings.crossings { node.reach_along(direction) } else { 0.0 }
+        Examined { a: id_a, b: id_b, gap, axis, deviations, urgency, descend }
     }
 
     /// Whether an event of this probability happens to this pair of nodes under this seed.

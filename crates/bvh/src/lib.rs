@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod apart;
 mod bounding;
 mod bounds;
 mod build;
@@ -17,6 +18,7 @@ mod primitive;
 mod refit;
 mod remove;
 mod settings;
+mod surfaces;
 mod traverse;
 mod tree;
 mod validate;
@@ -31,6 +33,7 @@ pub use node::NodeId;
 pub use obb::Obb;
 pub use primitive::Primitive;
 pub use settings::{Traversal, TraversalSettings, TreeSettings};
+pub use surfaces::{SurfaceFlow, SurfaceOutcome, SurfacePair, visit_surfaces};
 pub use traverse::{Flow, LeafPair, Outcome, traverse};
 pub use tree::Tree;
 pub use view::Node;

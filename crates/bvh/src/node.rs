@@ -2,8 +2,6 @@
 
 use std::sync::OnceLock;
 
-use cloudtouch_geom::Vector3;
-
 use crate::bounds::SpreadBounds;
 use crate::{Moments, Obb};
 
@@ -34,17 +32,4 @@ pub(crate) struct NodeData {
     pub(crate) start: u32,
     pub(crate) count: u32,
     pub(crate) in_use: bool,
-}
-
-impl NodeData {
-    /// The box that holds the surface its primitives stand for.
-    pub(crate) fn surface_box(&self) -> Obb {
-        Obb { half_extents: self.obb.half_extents + self.bounds.axis_reach, ..self.obb }
-    }
-
-    /// How much farther than the box of the points that of the surface reaches along a unit vector,
-    /// m.
-    pub(crate) fn reach_along(&self, direction: &Vector3) -> f64 {
-        self.obb.axes.tr_mul(direction).abs().dot(&self.bounds.axis_reach)
-    }
 }

@@ -22,9 +22,6 @@ pub struct LeafPair {
     /// Unit vector of the axis along which the surfaces are farthest apart, in the frame of the
     /// first tree, toward the second.
     pub axis: Vector3,
-    /// Whether the surfaces the points stand for may cross: their boxes, grown by their reach too,
-    /// overlap.
-    pub may_cross: bool,
     /// No point of either leaf has a higher collision probability than this: Φ(−gap/(2σ)) where the
     /// surfaces are apart, else 1.
     pub bound: f64,
@@ -38,9 +35,6 @@ pub enum Flow {
     /// On to the next pair whose [`LeafPair::bound`] is above this: the caller knows of a point as
     /// probable, or does not care for less. What is left out counts as culled.
     Above(f64),
-    /// The same in standard deviations: on to the next pair with fewer than these from its points to
-    /// the middle of its gap, or whose surfaces may cross.
-    Within(f64),
     /// No further pairs.
     Stop,
 }
@@ -60,12 +54,6 @@ pub struct Outcome {
     /// No point below a culled pair has a higher collision probability than this: the largest
     /// Φ(−δ/(2σ)) of them, 0 when none was culled.
     pub culled_bound: f64,
-    /// That bound in standard deviations, δ/(2σ): infinite when none was culled, minus infinity when
-    /// the surfaces of one may cross.
-    pub culled_deviations: f64,
-    /// The surfaces below a culled pair are at least so far apart, m; negative where they may cross,
-    /// infinite when none was culled.
-    pub culled_gap: f64,
     /// Whether the caller stopped it.
     pub stopped: bool,
     /// The same bound for the pairs that were left when the caller stopped; 0 when none was.
@@ -80,8 +68,6 @@ impl Default for Outcome {
             leaf_pairs: 0,
             culled: 0,
             culled_bound: 0.0,
-            culled_deviations: f64::INFINITY,
-            culled_gap: f64::INFINITY,
             stopped: false,
             pending_bound: 0.0,
         }
@@ -136,10 +122,11 @@ fn walk(
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return outcome };
     let examiner = Examiner::new(a, b, root_a, root_b, *a_from_b, *settings, seed);
     let mut queue = BinaryHeap::new();
+    // δ/(2σ), the least of what was culled.
+    let mut culled_deviations = f64::INFINITY;
     let mut cull = |pair: &Examined, outcome: &mut Outcome| {
         outcome.culled += 1;
-        outcome.culled_deviations = outcome.culled_deviations.min(pair.deviations);
-        outcome.culled_gap = outcome.culled_gap.min(pair.apart);
+        culled_deviations = culled_deviations.min(pair.deviations);
         on_culled(pair);
     };
     let mut found = vec![(root_a, root_b)];
@@ -164,7 +151,6 @@ fn walk(
             match visit(LeafPair::from(pair)) {
                 Flow::Continue => {}
                 Flow::Above(bound) => wanted_within = wanted_within.min(-normal::quantile(bound)),
-                Flow::Within(deviations) => wanted_within = wanted_within.min(deviations),
                 Flow::Stop => {
                     outcome.stopped = true;
                     let deviations = queue.iter().map(|Candidate(pair)| pair.deviations);
@@ -174,15 +160,14 @@ fn walk(
             }
         }
     }
-    outcome.culled_bound = bound_at(outcome.culled_deviations);
+    outcome.culled_bound = bound_at(culled_deviations);
     outcome
 }
 
 impl From<Examined> for LeafPair {
     fn from(pair: Examined) -> Self {
         let Examined { a, b, gap, axis, deviations, .. } = pair;
-        let (a, b, may_cross) = (NodeId(a), NodeId(b), pair.may_cross());
-        Self { a, b, gap, axis, may_cross, bound: bound_at(deviations) }
+        Self { a: NodeId(a), b: NodeId(b), gap, axis, bound: bound_at(deviations) }
     }
 }
 
@@ -348,16 +333,7 @@ mod tests {
         let candidate = |urgency, a, b| {
             let deviations = f64::NEG_INFINITY;
             let axis = Vector3::x();
-            Candidate(Examined {
-                a,
-                b,
-                gap: urgency,
-                apart: urgency,
-                axis,
-                deviations,
-                urgency,
-                descend: true,
-            })
+            Candidate(Examined { a, b, gap: urgency, axis, deviations, urgency, descend: true })
         };
         let mut queue: BinaryHeap<_> = [
             candidate(0.1, 0, 0),

@@ -276,55 +276,6 @@ fn identical_clouds_far_from_the_origin_find_themselves() {
     assert_eq!((outcome.leaf_pairs, outcome.culled_bound), (0, 0.0));
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
-
-    /// Two points whose surfaces, balls here, have a place in common are in a pair that is visited,
-    /// whether the reach was said by leaf or by point.
-    #[test]
-    fn surfaces_that_may_cross_are_visited(
-        streams in (0..1000_u64, 0..1000_u64),
-        offset in prop::array::uniform3(-0.5..0.5_f64),
-        angles in prop::array::uniform3(-3.1..3.1_f64),
-        reach in prop::array::uniform2(0.0..0.15_f64),
-        by_leaf in any::<bool>(),
-    ) {
-        let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
-        let mut trees = [(streams.0, 150), (streams.1 + 1000, 120)]
-            .map(|(stream, count)| small_leaves(bumpy_sheet(stream, count, Vector3::zeros())));
-        for (tree, reach) in trees.iter_mut().zip(reach) {
-            if by_leaf {
-                tree.set_leaf_bounds(|_| LeafBounds { std: 0.0, shift: 0.0, reach }).unwrap();
-            } else {
-                let extent = Covariance::isotropic(reach * reach);
-                tree.set_extents(vec![extent; tree.index_count()]).unwrap();
-            }
-            tree.validate().unwrap();
-        }
-        let [a, b] = &trees;
-        // Nothing but crossings is looked for.
-        let settings =
-            TraversalSettings { crossings: true, cull_deviations: 0.0, ..Default::default() };
-        let mut visited = std::collections::BTreeSet::new();
-        traverse(a, b, &pose, &settings, 0, |pair| {
-            if pair.may_cross {
-                visited.insert((pair.a, pair.b));
-            }
-            Flow::Continue
-        })
-        .unwrap();
-        for i in 0..a.index_count() {
-            for j in 0..b.index_count() {
-                let from = a.primitive(i).unwrap().centroid();
-                let to = pose.transform_point(&b.primitive(j).unwrap().centroid());
-                let leaves = (a.leaf_of(i).unwrap(), b.leaf_of(j).unwrap());
-                let apart = (to - from).norm() > reach[0] + reach[1];
-                prop_assert!(apart || visited.contains(&leaves), "{i} and {j} share a place");
-            }
-        }
-    }
-}
-
 #[test]
 fn one_extent_for_every_index() {
     let mut tree = small_leaves(bumpy_sheet(1, 20, Vector3::zeros()));

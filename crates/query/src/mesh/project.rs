@@ -1,7 +1,7 @@
 //! The nearest place on a mesh, and how far it is.
 
 use cloudtouch_geom::Point3;
-use parry3d_f64::query::PointQueryWithLocation;
+use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 
 use super::prepare::{Mesh, vector};
 use super::side::Side;
@@ -43,6 +43,14 @@ impl Mesh {
         let distance = (point - nearest).norm();
         let signed_distance = if self.encloses(point) { -distance } else { distance };
         Projection { point: nearest, triangle: Some(triangle as usize), signed_distance }
+    }
+
+    /// Whether every place within a distance (m) of this one, in the local frame, is outside.
+    pub(crate) fn is_clear_of(&self, local: &Point3, distance: f64) -> bool {
+        let near = |p: &Point3| {
+            self.surface().project_local_point_with_max_dist(vector(p), false, distance).is_some()
+        };
+        self.distance_to_box(local) >= distance || !(self.encloses(local) || near(local))
     }
 
     /// Whether a place in the local frame is inside. A bucket surrounds more than three quarters of

@@ -1,6 +1,6 @@
 //! On which side of a mesh a place is.
 
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::{Point3, Vector3};
 
 use super::prepare::Mesh;
 use super::winding::FarRadii;
@@ -61,9 +61,20 @@ impl Mesh {
     }
 
     fn is_off_box(&self, local: &Point3) -> bool {
+        self.distance_to_box(local) > 0.0
+    }
+
+    /// Distance of a place in the local frame to the box around the mesh, m; 0 within.
+    pub(super) fn distance_to_box(&self, local: &Point3) -> f64 {
         let aabb = self.surface().local_aabb();
-        let [low, high] = [aabb.mins, aabb.maxs].map(|v| Point3::new(v.x, v.y, v.z));
-        (0..3).any(|i| local[i] < low[i] || local[i] > high[i])
+        let beyond = |p: f64, low: f64, high: f64| (low - p).max(p - high).max(0.0);
+        let (low, high) = (aabb.mins, aabb.maxs);
+        Vector3::new(
+            beyond(local.x, low.x, high.x),
+            beyond(local.y, low.y, high.y),
+            beyond(local.z, low.z, high.z),
+        )
+        .norm()
     }
 }
 
@@ -72,7 +83,7 @@ mod tests {
     use std::io::Write;
     use std::time::{Duration, Instant};
 
-    use cloudtouch_geom::{TriangleMesh, Vector3, seed};
+    use cloudtouch_geom::{TriangleMesh, seed};
     use cloudtouch_testkit::scene;
 
     use super::*;

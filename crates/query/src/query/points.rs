@@ -3,19 +3,25 @@
 use crate::record::{Evidence, PointProbability, Side};
 use crate::search::{Found, Leaf, NoisyLeaf};
 
-/// Adds the points of every leaf that was looked at; none is more probable than the collision is.
+/// Adds the points that were looked for; none is more probable than the collision is.
 pub(super) fn add_points(found: &Found<'_>, collision: f64, evidence: &mut Evidence) {
+    let within = found.deviations_of_interest();
     for (side, leaves) in [(Side::A, &found.leaves_a), (Side::B, &found.leaves_b)] {
         for leaf in leaves.values() {
             if let Leaf::Noisy(leaf) = leaf {
-                add_leaf(side, leaf, collision, evidence);
+                add_leaf(side, leaf, (within, collision), evidence);
             }
         }
     }
 }
 
-fn add_leaf(side: Side, leaf: &NoisyLeaf<'_>, collision: f64, evidence: &mut Evidence) {
-    for (surfel, probability) in leaf.probabilities() {
+fn add_leaf(
+    side: Side,
+    leaf: &NoisyLeaf<'_>,
+    (within, collision): (f64, f64),
+    evidence: &mut Evidence,
+) {
+    for (surfel, probability) in leaf.probabilities(within) {
         evidence.add_point(PointProbability {
             side,
             index: Some(surfel.index),

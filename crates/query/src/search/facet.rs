@@ -93,7 +93,25 @@ pub(super) struct Whitening {
 }
 
 impl Whitening {
-    pub(super) fn of(covariance: &Covariance) -> Self {
+    pub(super) fn of(surfel: &Surfel) -> Self {
+        match surfel.normal {
+            Some(normal) => Self::of_disc(&normal, &surfel.point.covariance),
+            None => Self::of_any(&surfel.point.covariance),
+        }
+    }
+
+    /// Of one that is the same in all directions across a unit vector, as where a surface is known.
+    fn of_disc(normal: &Vector3, covariance: &Covariance) -> Self {
+        let across = covariance.variance_along(normal);
+        let along = 0.5 * (covariance.matrix().trace() - across);
+        let [across, along] = [across, along].map(|v| v.max(0.0).sqrt().max(LEAST_STD));
+        let of = |across: f64, along: f64| {
+            Matrix3::from_diagonal_element(along) + normal * normal.transpose() * (across - along)
+        };
+        Self { root: of(across, along), inverse: of(across.recip(), along.recip()) }
+    }
+
+    fn of_any(covariance: &Covariance) -> Self {
         let (variances, axes) = covariance.eigen();
         let stds = variances.map(|v| v.max(0.0).sqrt().max(LEAST_STD));
         let along = |stds: Vector3| axes * Matrix3::from_diagonal(&stds) * axes.transpose();
@@ -179,7 +197,7 @@ mod tests {
                 normal: None,
             };
             let facet = Facet::new(0, [a, b, c].map(Point3::from));
-            let whitening = Whitening::of(&covariance);
+            let whitening = Whitening::of_any(&covariance);
             let (squared, way) = facet.squared_deviations(&surfel, &whitening, 1e6).unwrap();
             prop_assert!(facet.height(&(surfel.point.mean + way)).abs() < 1e-9);
             let back = whitening.apply(&way).norm_squared();
@@ -203,8 +221,22 @@ mod tests {
     }
 
     #[test]
+    fn lengths_in_deviations_of_a_disc_are_those_of_any_covariance() {
+        for (normal, stds) in
+            [(Vector3::new(1.0, 2.0, -2.0) / 3.0, [0.01, 0.4]), (Vector3::y(), [0.3, 0.1])]
+        {
+            let covariance = Covariance::from_axis(&unit(&normal).unwrap(), stds[0], stds[1]);
+            let (disc, any) =
+                (Whitening::of_disc(&normal, &covariance), Whitening::of_any(&covariance));
+            assert!(
+                (disc.root - any.root).norm() < 1e-12 && (disc.inverse - any.inverse).norm() < 1e-9
+            );
+        }
+    }
+
+    #[test]
     fn exact_pieces_at_one_place_are_no_deviations_apart() {
-        let whitening = Whitening::of(&Covariance::zero());
+        let whitening = Whitening::of_any(&Covariance::zero());
         let surfel = Surfel {
             index: 0,
             point: UncertainPoint::exact(Point3::new(0.2, 0.3, 0.0)),

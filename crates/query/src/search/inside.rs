@@ -77,7 +77,7 @@ fn deepest(
         }
         let obb = node.obb();
         let middle = mesh_from_cloud.transform_point(&obb.centre);
-        if mesh.project(&middle).signed_distance >= obb.radius() + node.shift() {
+        if mesh.is_clear_of(&middle, obb.radius() + node.shift()) {
             return Visit::Prune;
         }
         if node.is_leaf() {
@@ -111,6 +111,9 @@ impl Looked {
         cloud_from_mesh: &Pose,
     ) {
         let at = mesh_from_cloud.transform_point(&surfel.point.mean);
+        if !mesh.encloses(&at) {
+            return;
+        }
         let projection = mesh.project(&at);
         let depth = -projection.signed_distance;
         let deviations = depth / surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);

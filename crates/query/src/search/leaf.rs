@@ -139,8 +139,7 @@ impl<'a> NoisyLeaf<'a> {
     /// Lengths in the standard deviations of each surfel, beside what is changed with them.
     pub(super) fn whitened(&mut self) -> (&[Surfel], &[Whitening], &mut [f64]) {
         if self.whitenings.is_empty() {
-            self.whitenings =
-                self.surfels.iter().map(|s| Whitening::of(&s.point.covariance)).collect();
+            self.whitenings = self.surfels.iter().map(Whitening::of).collect();
         }
         (&self.surfels, &self.whitenings, &mut self.squared)
     }
@@ -162,10 +161,12 @@ impl<'a> NoisyLeaf<'a> {
     }
 
     /// How likely each piece is to collide, by geometry: halfway between two equally well known
-    /// pieces a plane is z/√2 deviations from either.
-    pub(crate) fn probabilities(&self) -> impl Iterator<Item = (&Surfel, f64)> {
-        let of = |(&squared, &crossing): (&f64, &f64)| {
-            let is_near = squared < MOST_DEVIATIONS.powi(2);
+    /// pieces a plane is z/√2 deviations from either. Beyond `within` deviations only some are known,
+    /// and none counts.
+    pub(crate) fn probabilities(&self, within: f64) -> impl Iterator<Item = (&Surfel, f64)> {
+        let within = within.min(MOST_DEVIATIONS).powi(2);
+        let of = move |(&squared, &crossing): (&f64, &f64)| {
+            let is_near = squared < within;
             let by_gap = if is_near { probability_at(squared.sqrt()) } else { 0.0 };
             by_gap.max(crossing)
         };

@@ -2,8 +2,6 @@
 
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 
-use crate::judge::MOST_DEVIATIONS;
-
 use super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use super::meeting::squared_deviations;
 
@@ -29,29 +27,31 @@ impl Nearest {
     }
 }
 
-/// `None` where all have [`MOST_DEVIATIONS`] or more. Notes for every noisy piece what is its least.
-pub(super) fn nearest_pieces(a: &mut Leaf<'_>, b: &mut Leaf<'_>) -> Option<Nearest> {
+/// `None` where all have so many deviations or more. Notes for every noisy piece what is its least,
+/// where that is less.
+pub(super) fn nearest_pieces(a: &mut Leaf<'_>, b: &mut Leaf<'_>, within: f64) -> Option<Nearest> {
+    let within = within * within;
     match (a, b) {
-        (Leaf::Noisy(a), Leaf::Noisy(b)) => between_noisy(a, b),
-        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b),
-        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a).map(Nearest::swapped),
+        (Leaf::Noisy(a), Leaf::Noisy(b)) => between_noisy(a, b, within),
+        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b, within),
+        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a, within).map(Nearest::swapped),
         // Two meshes are tested exactly and never come here.
         (Leaf::Exact(_), Leaf::Exact(_)) => None,
     }
 }
 
-fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>) -> Option<Nearest> {
-    let mut least = MOST_DEVIATIONS.powi(2);
+fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>, within: f64) -> Option<Nearest> {
+    let mut least = within;
     let mut nearest = None;
     let mut most_of_b = b.squared.iter().copied().fold(0.0, f64::max);
     for (on_a, least_of_a) in a.surfels.iter().zip(&mut a.squared) {
-        let limit = least_of_a.max(most_of_b);
+        let limit = least_of_a.max(most_of_b).min(within);
         let reach = (limit * (on_a.most_variance + b.ball.variance)).sqrt();
         if !b.ball.is_within(&on_a.point.mean, reach) {
             continue;
         }
         for (on_b, least_of_b) in b.surfels.iter().zip(&mut b.squared) {
-            let limit = least_of_b.max(*least_of_a);
+            let limit = least_of_b.max(*least_of_a).min(within);
             let Some(squared) = squared_deviations(on_a, on_b, limit) else { continue };
             *least_of_a = least_of_a.min(squared);
             *least_of_b = least_of_b.min(squared);
@@ -73,17 +73,18 @@ fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>) -> Option<Nearest
 }
 
 /// From the pieces of a cloud to those of a mesh.
-fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf) -> Option<Nearest> {
-    let mut least = MOST_DEVIATIONS.powi(2);
+fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf, within: f64) -> Option<Nearest> {
+    let mut least = within;
     let mut nearest = None;
     let (surfels, whitenings, squared) = noisy.whitened();
     for ((surfel, whitening), least_of_it) in surfels.iter().zip(whitenings).zip(squared) {
-        let reach = (*least_of_it * surfel.most_variance).sqrt();
+        let limit = least_of_it.min(within);
+        let reach = (limit * surfel.most_variance).sqrt();
         if !exact.ball.is_within(&surfel.point.mean, reach) {
             continue;
         }
         for facet in &exact.facets {
-            let found = facet.squared_deviations(surfel, whitening, *least_of_it);
+            let found = facet.squared_deviations(surfel, whitening, least_of_it.min(within));
             let Some((squared, way)) = found else { continue };
             *least_of_it = squared;
             if squared < least {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cloudtouch_bvh::{Flow, LeafPair, NodeId, TraversalSettings, traverse};
+use cloudtouch_bvh::{NodeId, SurfaceFlow, SurfacePair, visit_surfaces};
 use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
 
 use crate::body::BodyRef;
@@ -20,8 +20,10 @@ use super::leaf::{Leaf, NoisyLeaf};
 use super::meeting::Meeting;
 use super::nearest::{Nearest, nearest_pieces};
 
-/// Places that are more than this many deviations above the least are not looked at.
-const DEVIATIONS_OF_INTEREST: f64 = 1.5;
+/// Places that are more than this many deviations above the least are not looked at ...
+const FURTHER_DEVIATIONS: f64 = 1.5;
+/// ... nor those beyond this, which have no contact that is reported.
+const CLEARLY_FREE: f64 = 3.5;
 
 /// Where the pieces of two leaves are least apart.
 #[derive(Debug, Clone, Copy)]
@@ -59,55 +61,47 @@ pub(crate) fn search<'a>(
 ) -> Result<Found<'a>, QueryError> {
     let mut found =
         Found { deviations: MOST_DEVIATIONS, at_least: f64::INFINITY, ..Found::default() };
-    let cull_deviations = found.relevant_half_gap();
-    let settings =
-        TraversalSettings { crossings: true, cull_deviations, ..TraversalSettings::default() };
     let motion = Motion::from(a_from_b);
-    // A certified traversal draws nothing: any seed will do.
-    let outcome = traverse(a.shape().tree(), b.shape().tree(), a_from_b, &settings, 0, |pair| {
+    let trees = (a.shape().tree(), b.shape().tree());
+    let outcome = visit_surfaces(trees, a_from_b, MOST_DEVIATIONS, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), &motion, &pair, stats);
         if is_enough(found.deviations, found.crossings.last_clearness()) {
-            return Flow::Stop;
+            return SurfaceFlow::Stop;
         }
-        Flow::Within(found.relevant_half_gap())
+        SurfaceFlow::Within(found.deviations_of_interest())
     })?;
     stats.nodes_visited += outcome.nodes_visited;
-    let left_out = if outcome.stopped { f64::NEG_INFINITY } else { outcome.culled_gap };
-    found.at_least = found.at_least.min(left_out);
-    found.is_complete = !outcome.stopped && outcome.culled_deviations >= found.relevant_half_gap();
+    found.at_least = found.at_least.min(outcome.apart);
+    found.is_complete = !outcome.stopped;
     Ok(found)
 }
 
 impl<'a> Found<'a> {
-    /// Places with more deviations than this change nothing.
+    /// Places with more deviations than this change nothing: where all are as good as free, only the
+    /// least counts.
     pub(crate) fn deviations_of_interest(&self) -> f64 {
-        (self.deviations + DEVIATIONS_OF_INTEREST).min(MOST_DEVIATIONS)
-    }
-
-    /// The same from a point to the middle of a gap: with standard deviations up to σ on both sides of
-    /// a gap of δ there are δ/(√2σ) deviations between the points, of which it takes δ/(2σ).
-    fn relevant_half_gap(&self) -> f64 {
-        self.deviations_of_interest() / std::f64::consts::SQRT_2
+        self.deviations.max((self.deviations + FURTHER_DEVIATIONS).min(CLEARLY_FREE))
     }
 
     fn add(
         &mut self,
         (a, b): (BodyRef<'a>, BodyRef<'a>),
         a_from_b: &Motion,
-        pair: &LeafPair,
+        pair: &SurfacePair,
         stats: &mut Stats,
     ) {
+        let most = self.deviations_of_interest();
         let leaf_a = self.leaves_a.entry(pair.a);
         let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, stats));
         let leaf_b = self.leaves_b.entry(pair.b);
         let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(a_from_b), stats));
         self.at_least = self.at_least.min(leaf_a.distance(leaf_b));
-        let nearest = nearest_pieces(leaf_a, leaf_b);
+        let nearest = (pair.deviations < most).then(|| nearest_pieces(leaf_a, leaf_b, most));
         if pair.may_cross {
             cross((a, b), a_from_b, pair, (leaf_a, leaf_b), &mut self.crossings);
         }
-        let Some(nearest) = nearest else { return };
+        let Some(nearest) = nearest.flatten() else { return };
         self.deviations = self.deviations.min(nearest.squared.sqrt());
         if let Some(meeting) = Meeting::of(&nearest.a, &nearest.b) {
             let toward_b = leaf_b.middle() - leaf_a.middle();
@@ -119,7 +113,7 @@ impl<'a> Found<'a> {
 fn cross<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Motion,
-    pair: &LeafPair,
+    pair: &SurfacePair,
     leaves: (&mut Leaf<'a>, &mut Leaf<'a>),
     crossings: &mut Crossings,
 ) {

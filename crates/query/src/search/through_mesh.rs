@@ -39,9 +39,12 @@ impl Outline {
         let mut all = Through { above: 0.0, below: 0.0, off: f64::INFINITY, place: self.middle };
         for facet in facets {
             let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
-            if corners.iter().all(|c| c.z > self.radius)
-                || corners.iter().all(|c| c.z < -self.radius)
-            {
+            // Most facets about a disc are on one side of the cylinder over it.
+            let is_aside = |k: usize| {
+                corners.iter().all(|c| c[k] > self.radius)
+                    || corners.iter().all(|c| c[k] < -self.radius)
+            };
+            if (0..3).any(is_aside) {
                 continue;
             }
             let heights = |all: &mut Through, z: f64| {

@@ -1,0 +1,258 @@
+//! Which leaves of two trees have surfaces that may touch: pairs best first, and a bound on the rest.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use cloudtouch_geom::{Motion, Pose};
+
+use crate::apart::{Apart, Between, MovedBox};
+use crate::node::NodeData;
+use crate::{NodeId, Tree, TreeError};
+
+/// Two leaves whose surfaces may touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfacePair {
+    /// Leaf of the first tree.
+    pub a: NodeId,
+    /// Leaf of the second tree.
+    pub b: NodeId,
+    /// The Mahalanobis distance between a point of the one and a point of the other is at least this,
+    /// shifts and spreads as in [`Tree::set_leaf_bounds`].
+    pub deviations: f64,
+    /// Whether the surfaces the points stand for may cross: their boxes, grown by their reach too,
+    /// overlap.
+    pub may_cross: bool,
+}
+
+/// Whether to go on after a pair of leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SurfaceFlow {
+    /// On to the next pair with fewer deviations than these, or whose surfaces may cross.
+    Within(f64),
+    /// No further pairs.
+    Stop,
+}
+
+/// What a search among surfaces did, and what the part it left out could hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceOutcome {
+    /// Node pairs whose boxes were tested.
+    pub nodes_visited: usize,
+    /// Pairs of leaves handed to the caller.
+    pub leaf_pairs: usize,
+    /// The points of pairs that were left out have at least so many deviations between them: infinite
+    /// when none was left out, 0 when the caller stopped.
+    pub deviations: f64,
+    /// Their surfaces are at least so far apart, m: infinite when none was left out, minus infinity
+    /// when the caller stopped.
+    pub apart: f64,
+    /// Whether the caller stopped it.
+    pub stopped: bool,
+}
+
+/// Visits the pairs of leaves, one of each tree, with fewer than `within` deviations between their
+/// points or whose surfaces may cross.
+///
+/// `a_from_b` maps the frame of `b` into that of `a`; it may change between calls, the trees need
+/// not. Best first: overlapping pairs before disjoint ones, among the former the deepest overlap
+/// relative to the smaller node (in metres the large nodes would all come before the first leaf),
+/// among the latter the fewest deviations; ties by node name. Of a pair the larger node is descended.
+///
+/// Along a unit vector n across which two boxes are g apart and their points have standard deviations
+/// up to σ and τ, no two of these have less than g/√(σ² + τ²) deviations between them: the bound is the
+/// largest over the normals of the faces. Gaps are reduced by the shifts of both nodes and by the
+/// rounding of the pose.
+///
+/// An empty tree has no pairs, and nothing was left out; it is for the caller to say what that means.
+///
+/// # Errors
+/// When the pose is not finite.
+pub fn visit_surfaces(
+    (a, b): (&Tree, &Tree),
+    a_from_b: &Pose,
+    within: f64,
+    mut visit: impl FnMut(SurfacePair) -> SurfaceFlow,
+) -> Result<SurfaceOutcome, TreeError> {
+    if let Some(value) = a_from_b.non_finite_entry() {
+        return Err(TreeError::Pose { value });
+    }
+    let mut outcome = SurfaceOutcome {
+        nodes_visited: 0,
+        leaf_pairs: 0,
+        deviations: f64::INFINITY,
+        apart: f64::INFINITY,
+        stopped: false,
+    };
+    let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(outcome) };
+    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b);
+    let mut within = within;
+    pairs.test_roots(root_a, root_b, within, &mut outcome);
+    while let Some(pair) = pairs.queue.pop() {
+        if pair.apart.deviations >= within && !pairs.may_cross(&pair) {
+            outcome.leave_out(&pair.apart);
+            continue;
+        }
+        if pairs.test_narrower(&pair, within, &mut outcome) {
+            continue;
+        }
+        outcome.leaf_pairs += 1;
+        let may_cross = pairs.may_cross(&pair);
+        let deviations = pair.apart.deviations;
+        match visit(SurfacePair { a: NodeId(pair.a), b: NodeId(pair.b), deviations, may_cross }) {
+            SurfaceFlow::Within(limit) => within = within.min(limit),
+            SurfaceFlow::Stop => {
+                (outcome.deviations, outcome.apart) = (0.0, f64::NEG_INFINITY);
+                outcome.stopped = true;
+                break;
+            }
+        }
+    }
+    Ok(outcome)
+}
+
+impl SurfaceOutcome {
+    fn leave_out(&mut self, apart: &Apart) {
+        self.deviations = self.deviations.min(apart.deviations);
+        self.apart = self.apart.min(apart.surfaces);
+    }
+}
+
+/// The pairs that wait, and what they are tested by.
+struct Pairs<'a> {
+    a: &'a Tree,
+    b: &'a Tree,
+    a_from_b: Motion,
+    /// How far the pose can misplace a box by rounding, m.
+    rounding: f64,
+    queue: BinaryHeap<Candidate>,
+    /// Boxes of B in the frame of A: pairs that share a node share its box.
+    moved: Vec<MovedBox>,
+}
+
+impl<'a> Pairs<'a> {
+    fn new((a, root_a): (&'a Tree, u32), (b, root_b): (&'a Tree, u32), a_from_b: &Pose) -> Self {
+        let reach = |root: &NodeData| root.obb.centre.coords.norm() + 3.0 * root.obb.radius();
+        let size = reach(&a.nodes[root_a as usize])
+            + reach(&b.nodes[root_b as usize])
+            + a_from_b.translation().norm();
+        Self {
+            a,
+            b,
+            a_from_b: Motion::from(a_from_b),
+            rounding: 16.0 * f64::EPSILON * size,
+            queue: BinaryHeap::with_capacity(256),
+            moved: Vec::with_capacity(256),
+        }
+    }
+
+    fn nodes(&self, pair: &Candidate) -> (&'a NodeData, &'a NodeData) {
+        (&self.a.nodes[pair.a as usize], &self.b.nodes[pair.b as usize])
+    }
+
+    /// Moves the box of a node of B, and says where it is kept.
+    fn moved(&mut self, b: u32) -> u32 {
+        self.moved.push(MovedBox::new(&self.b.nodes[b as usize].obb, &self.a_from_b));
+        (self.moved.len() - 1) as u32
+    }
+
+    fn test_roots(&mut self, a: u32, b: u32, within: f64, outcome: &mut SurfaceOutcome) {
+        let box_of_b = self.moved(b);
+        self.test((a, b), box_of_b, within, outcome);
+    }
+
+    /// Tests a pair, and queues it where it is wanted.
+    fn test(
+        &mut self,
+        (a, b): (u32, u32),
+        box_of_b: u32,
+        within: f64,
+        outcome: &mut SurfaceOutcome,
+    ) {
+        outcome.nodes_visited += 1;
+        let (of_a, of_b) = (&self.a.nodes[a as usize], &self.b.nodes[b as usize]);
+        let moved = &self.moved[box_of_b as usize];
+        let between = Between::new(of_a, (of_b, moved), self.rounding);
+        let apart = between.by_faces();
+        let squared_size =
+            || of_a.obb.half_extents.norm_squared().min(of_b.obb.half_extents.norm_squared());
+        let urgency = match apart.points < 0.0 {
+            // A box without size is overlapped as much as can be.
+            true => (apart.points / squared_size().sqrt()).max(f64::MIN),
+            false => apart.deviations,
+        };
+        let may_cross = || apart.surfaces < 0.0 && !between.edges_part_surfaces();
+        if apart.deviations >= within && !may_cross() {
+            outcome.leave_out(&apart);
+        } else {
+            self.queue.push(Candidate { a, b, box_of_b, apart, urgency });
+        }
+    }
+
+    /// Tests the pairs one step down, by splitting the larger node; whether there were any: not of two
+    /// leaves.
+    fn test_narrower(
+        &mut self,
+        pair: &Candidate,
+        within: f64,
+        outcome: &mut SurfaceOutcome,
+    ) -> bool {
+        let (a, b) = self.nodes(pair);
+        let a_is_larger = || a.obb.half_extents.norm_squared() >= b.obb.half_extents.norm_squared();
+        match (a.children, b.children) {
+            (None, None) => return false,
+            (Some(children), of_b) if of_b.is_none() || a_is_larger() => {
+                for child in children {
+                    self.test((child, pair.b), pair.box_of_b, within, outcome);
+                }
+            }
+            (_, of_b) => {
+                for child in of_b.into_iter().flatten() {
+                    let box_of_child = self.moved(child);
+                    self.test((pair.a, child), box_of_child, within, outcome);
+                }
+            }
+        }
+        true
+    }
+
+    /// Whether the boxes of the surfaces overlap: what the normals of their faces leave open, the
+    /// directions across two edges decide.
+    fn may_cross(&self, pair: &Candidate) -> bool {
+        let (a, b) = self.nodes(pair);
+        let moved = &self.moved[pair.box_of_b as usize];
+        pair.apart.surfaces < 0.0
+            && !Between::new(a, (b, moved), self.rounding).edges_part_surfaces()
+    }
+}
+
+/// A pair in the queue; the greatest comes out first.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    a: u32,
+    b: u32,
+    box_of_b: u32,
+    apart: Apart,
+    /// Small is urgent: negative for an overlap, relative to the smaller node, else deviations.
+    urgency: f64,
+}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (other.urgency.total_cmp(&self.urgency))
+            .then_with(|| (other.a, other.b).cmp(&(self.a, self.b)))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Candidate {}
