@@ -10,7 +10,8 @@ use crate::node::NodeData;
 /// What the normals of the faces of two boxes say of what is in them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Apart {
-    /// The Mahalanobis distance between a point of either is at least this; 0 where boxes overlap.
+    /// The Mahalanobis distance between a point of either, less a margin, is at least this; 0 where boxes
+    /// are not beyond it.
     pub(crate) deviations: f64,
     /// The boxes of the points are at least so far apart, m; negative in overlap.
     pub(crate) points: f64,
@@ -80,13 +81,13 @@ impl<'a> Between<'a> {
 
     /// Bounds by the six normals of faces.
     #[inline]
-    pub(crate) fn by_faces(&self) -> Apart {
+    pub(crate) fn by_faces(&self, margin: f64) -> Apart {
         let c = &self.cosines;
         let turned = [0, 1, 2].map(|j| [c[0][j], c[1][j], c[2][j]]);
         let mut apart =
             Apart { deviations: 0.0, points: f64::NEG_INFINITY, surfaces: f64::NEG_INFINITY };
-        self.along_axes((self.a, self.b), &self.offset[0], c, &mut apart);
-        self.along_axes((self.b, self.a), &self.offset[1], &turned, &mut apart);
+        self.along_axes((self.a, self.b), (&self.offset[0], c), margin, &mut apart);
+        self.along_axes((self.b, self.a), (&self.offset[1], &turned), margin, &mut apart);
         apart.deviations = apart.deviations.sqrt();
         apart
     }
@@ -96,8 +97,8 @@ impl<'a> Between<'a> {
     fn along_axes(
         &self,
         (own, other): (&NodeData, &NodeData),
-        offset: &Array,
-        cosines: &[Array; 3],
+        (offset, cosines): (&Array, &[Array; 3]),
+        margin: f64,
         apart: &mut Apart,
     ) {
         for k in 0..3 {
@@ -110,7 +111,7 @@ impl<'a> Between<'a> {
             let reach = own.bounds.axis_reach[k] + along(&other.bounds.axis_reach);
             let std = along(&other.bounds.axis_std).min(other.bounds.max_std);
             let variance = own.bounds.axis_std[k] * own.bounds.axis_std[k] + std * std;
-            let positive = points.max(0.0);
+            let positive = (points - margin).max(0.0);
             // Nothing over nothing, of exact points that touch, is no bound: `max` passes over NaN.
             apart.deviations = apart.deviations.max(positive * positive / variance);
             apart.points = apart.points.max(points);

@@ -33,7 +33,7 @@ pub use node::NodeId;
 pub use obb::Obb;
 pub use primitive::Primitive;
 pub use settings::{Traversal, TraversalSettings, TreeSettings};
-pub use surfaces::{SurfaceFlow, SurfaceOutcome, SurfacePair, visit_surfaces};
+pub use surfaces::{Sought, SurfaceFlow, SurfaceOutcome, SurfacePair, visit_surfaces};
 pub use traverse::{Flow, LeafPair, Outcome, traverse};
 pub use tree::Tree;
 pub use view::Node;

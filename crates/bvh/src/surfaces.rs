@@ -17,11 +17,23 @@ pub struct SurfacePair {
     /// Leaf of the second tree.
     pub b: NodeId,
     /// The Mahalanobis distance between a point of the one and a point of the other is at least this,
-    /// shifts and spreads as in [`Tree::set_leaf_bounds`].
+    /// shifts and spreads as in [`Tree::set_leaf_bounds`]; 0 where boxes are not beyond the margin.
     pub deviations: f64,
-    /// Whether the surfaces the points stand for may cross: their boxes, grown by their reach too,
-    /// overlap.
+    /// Whether surfaces are looked for that may cross, and these may: their boxes, grown by their reach
+    /// too, overlap.
     pub may_cross: bool,
+}
+
+/// What is looked for between two trees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sought {
+    /// Points with fewer deviations between them than these.
+    pub within: f64,
+    /// How far apart points may be and still count as at one place, m: deviations are of what is
+    /// beyond it.
+    pub margin: f64,
+    /// Whether surfaces that may cross are looked for too.
+    pub crossings: bool,
 }
 
 /// Whether to go on after a pair of leaves.
@@ -50,8 +62,7 @@ pub struct SurfaceOutcome {
     pub stopped: bool,
 }
 
-/// Visits the pairs of leaves, one of each tree, with fewer than `within` deviations between their
-/// points or whose surfaces may cross.
+/// Visits the pairs of leaves, one of each tree, that may hold what is sought.
 ///
 /// `a_from_b` maps the frame of `b` into that of `a`; it may change between calls, the trees need
 /// not. Best first: overlapping pairs before disjoint ones, among the former the deepest overlap
@@ -59,22 +70,27 @@ pub struct SurfaceOutcome {
 /// among the latter the fewest deviations; ties by node name. Of a pair the larger node is descended.
 ///
 /// Along a unit vector n across which two boxes are g apart and their points have standard deviations
-/// up to σ and τ, no two of these have less than g/√(σ² + τ²) deviations between them: the bound is the
-/// largest over the normals of the faces. Gaps are reduced by the shifts of both nodes and by the
-/// rounding of the pose.
+/// up to σ and τ, no two of these have less than (g − m)/√(σ² + τ²) deviations between them, m the
+/// margin: the bound is the largest over the normals of the faces. Gaps are reduced by the shifts of
+/// both nodes and by the rounding of the pose.
 ///
 /// An empty tree has no pairs, and nothing was left out; it is for the caller to say what that means.
 ///
 /// # Errors
-/// When the pose is not finite.
+/// When the pose or the margin is not finite, or the margin is negative.
 pub fn visit_surfaces(
     (a, b): (&Tree, &Tree),
     a_from_b: &Pose,
-    within: f64,
+    sought: Sought,
     mut visit: impl FnMut(SurfacePair) -> SurfaceFlow,
 ) -> Result<SurfaceOutcome, TreeError> {
     if let Some(value) = a_from_b.non_finite_entry() {
         return Err(TreeError::Pose { value });
+    }
+    let Sought { mut within, margin, .. } = sought;
+    if !(0.0..f64::INFINITY).contains(&margin) {
+        let expected = "a length in metres, at least 0";
+        return Err(TreeError::Setting { name: "margin", value: margin, expected });
     }
     let mut outcome = SurfaceOutcome {
         nodes_visited: 0,
@@ -84,8 +100,7 @@ pub fn visit_surfaces(
         stopped: false,
     };
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(outcome) };
-    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b);
-    let mut within = within;
+    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought);
     pairs.test_roots(root_a, root_b, within, &mut outcome);
     while let Some(pair) = pairs.queue.pop() {
         if pair.apart.deviations >= within && !pairs.may_cross(&pair) {
@@ -122,6 +137,7 @@ struct Pairs<'a> {
     a: &'a Tree,
     b: &'a Tree,
     a_from_b: Motion,
+    sought: Sought,
     /// How far the pose can misplace a box by rounding, m.
     rounding: f64,
     queue: BinaryHeap<Candidate>,
@@ -130,7 +146,12 @@ struct Pairs<'a> {
 }
 
 impl<'a> Pairs<'a> {
-    fn new((a, root_a): (&'a Tree, u32), (b, root_b): (&'a Tree, u32), a_from_b: &Pose) -> Self {
+    fn new(
+        (a, root_a): (&'a Tree, u32),
+        (b, root_b): (&'a Tree, u32),
+        a_from_b: &Pose,
+        sought: Sought,
+    ) -> Self {
         let reach = |root: &NodeData| root.obb.centre.coords.norm() + 3.0 * root.obb.radius();
         let size = reach(&a.nodes[root_a as usize])
             + reach(&b.nodes[root_b as usize])
@@ -139,6 +160,7 @@ impl<'a> Pairs<'a> {
             a,
             b,
             a_from_b: Motion::from(a_from_b),
+            sought,
             rounding: 16.0 * f64::EPSILON * size,
             queue: BinaryHeap::with_capacity(256),
             moved: Vec::with_capacity(256),
@@ -172,15 +194,17 @@ impl<'a> Pairs<'a> {
         let (of_a, of_b) = (&self.a.nodes[a as usize], &self.b.nodes[b as usize]);
         let moved = &self.moved[box_of_b as usize];
         let between = Between::new(of_a, (of_b, moved), self.rounding);
-        let apart = between.by_faces();
+        let apart = between.by_faces(self.sought.margin);
         let squared_size =
             || of_a.obb.half_extents.norm_squared().min(of_b.obb.half_extents.norm_squared());
-        let urgency = match apart.points < 0.0 {
+        let beyond = apart.points - self.sought.margin;
+        let urgency = match beyond < 0.0 {
             // A box without size is overlapped as much as can be.
-            true => (apart.points / squared_size().sqrt()).max(f64::MIN),
+            true => (beyond / squared_size().sqrt()).max(f64::MIN),
             false => apart.deviations,
         };
-        let may_cross = || apart.surfaces < 0.0 && !between.edges_part_surfaces();
+        let may_cross =
+            || self.sought.crossings && apart.surfaces < 0.0 && !between.edges_part_surfaces();
         if apart.deviations >= within && !may_cross() {
             outcome.leave_out(&apart);
         } else {
@@ -220,7 +244,8 @@ impl<'a> Pairs<'a> {
     fn may_cross(&self, pair: &Candidate) -> bool {
         let (a, b) = self.nodes(pair);
         let moved = &self.moved[pair.box_of_b as usize];
-        pair.apart.surfaces < 0.0
+        self.sought.crossings
+            && pair.apart.surfaces < 0.0
             && !Between::new(a, (b, moved), self.rounding).edges_part_surfaces()
     }
 }

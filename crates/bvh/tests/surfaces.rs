@@ -6,8 +6,8 @@ mod common;
 use std::collections::BTreeSet;
 
 use cloudtouch_bvh::{
-    LeafBounds, NodeId, Primitive, SurfaceFlow, SurfaceOutcome, Tree, TreeError, TreeSettings,
-    visit_surfaces,
+    LeafBounds, NodeId, Primitive, Sought, SurfaceFlow, SurfaceOutcome, Tree, TreeError,
+    TreeSettings, visit_surfaces,
 };
 use cloudtouch_geom::{
     Covariance, Motion, Point3, Pose, UncertainPoint, UnitVector3, Vector3, seed,
@@ -32,12 +32,16 @@ fn discs(stream: u64, count: usize) -> Vec<Primitive> {
     bumpy_sheet(stream, count, Vector3::zeros()).into_iter().enumerate().map(disc).collect()
 }
 
+fn sought(within: f64) -> Sought {
+    Sought { within, margin: 0.0, crossings: true }
+}
+
 type Pairs = BTreeSet<(NodeId, NodeId)>;
 
 /// The leaf pairs visited, and among these those that may cross.
 fn visited((a, b): (&Tree, &Tree), pose: &Pose, within: f64) -> (Pairs, Pairs, SurfaceOutcome) {
     let (mut all, mut crossing) = (BTreeSet::new(), BTreeSet::new());
-    let outcome = visit_surfaces((a, b), pose, within, |pair| {
+    let outcome = visit_surfaces((a, b), pose, sought(within), |pair| {
         assert!(all.insert((pair.a, pair.b)), "visited twice");
         assert!(pair.may_cross || pair.deviations < within);
         if pair.may_cross {
@@ -127,7 +131,8 @@ proptest! {
 fn who_stops_is_told_nothing_of_the_rest() {
     let tree = small_leaves(bumpy_sheet(1, 100, Vector3::zeros()));
     let outcome =
-        visit_surfaces((&tree, &tree), &Pose::identity(), 6.0, |_| SurfaceFlow::Stop).unwrap();
+        visit_surfaces((&tree, &tree), &Pose::identity(), sought(6.0), |_| SurfaceFlow::Stop)
+            .unwrap();
     assert!(outcome.stopped);
     assert_eq!(
         (outcome.leaf_pairs, outcome.deviations, outcome.apart),
@@ -152,6 +157,7 @@ fn a_pose_that_is_not_finite_is_refused_and_an_empty_tree_has_no_pairs() {
     let (all, _, outcome) = visited((&empty, &some), &Pose::identity(), 6.0);
     assert_eq!((all.len(), outcome.deviations, outcome.stopped), (0, f64::INFINITY, false));
     let bad = Pose::from_translation(Vector3::new(f64::NAN, 0.0, 0.0));
-    let error = visit_surfaces((&some, &some), &bad, 6.0, |_| SurfaceFlow::Stop).unwrap_err();
+    let error =
+        visit_surfaces((&some, &some), &bad, sought(6.0), |_| SurfaceFlow::Stop).unwrap_err();
     assert!(matches!(error, TreeError::Pose { .. }));
 }

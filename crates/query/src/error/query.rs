@@ -120,6 +120,12 @@ pub enum QueryError {
         /// What was found.
         value: f64,
     },
+    /// A margin that no two bodies can keep.
+    #[error("the margin is {}: give a length in metres, finite and not negative", number(*value))]
+    Margin {
+        /// What was given.
+        value: f64,
+    },
     /// A mesh cannot be sampled as densely as the cloud that it faces.
     #[error(transparent)]
     Subdivision(#[from] SubdivisionError),

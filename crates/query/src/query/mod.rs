@@ -10,6 +10,8 @@ mod run;
 mod settings;
 mod spots;
 mod task;
+mod within;
 
 pub use run::Query;
 pub use settings::QuerySettings;
+pub use within::Within;

@@ -36,12 +36,13 @@ impl Query {
         &self.settings
     }
 
+    pub(super) fn clock(&self, start: Instant) -> Clock {
+        Clock::new(start, self.settings.deadline)
+    }
+
     fn task(&self, start: Instant) -> Task<'_> {
-        Task {
-            settings: &self.settings,
-            classifier: self.settings.classifier(),
-            clock: Clock::new(start, self.settings.deadline),
-        }
+        let classifier = self.settings.classifier();
+        Task { settings: &self.settings, classifier, clock: self.clock(start) }
     }
 
     /// How likely it is that the surfaces behind two bodies collide.

@@ -4,9 +4,7 @@ use cloudtouch_geom::{Covariance, Matrix3, Motion, Point3, Vector3};
 
 use crate::cloud::Surfel;
 
-/// No coordinate is known better than this, m: what keeps exact pieces at one place from dividing
-/// nothing by nothing.
-pub(super) const LEAST_STD: f64 = 1e-12;
+use super::meeting::{LEAST_STD, beyond};
 
 /// A triangle in the local frame of A.
 #[derive(Debug, Clone, Copy)]
@@ -61,6 +59,24 @@ impl Facet {
             (to - from).cross(&(place - from)).dot(&normal) >= 0.0
         };
         (0..3).all(is_inside).then_some(Pierced { place, heights })
+    }
+
+    /// How many deviations a surfel is from being within a margin (m) of the facet; negative where it is
+    /// within it: across the plane that separates them best, or along the shortest way.
+    pub(super) fn deviations_beyond(
+        &self,
+        surfel: &Surfel,
+        whitening: &Whitening,
+        margin: f64,
+    ) -> f64 {
+        let mean = surfel.point.mean;
+        let covariance = surfel.point.covariance.matrix();
+        let offsets = self.corners.map(|corner| corner - mean);
+        let whitened = nearest_to_origin(&offsets.map(|offset| whitening.apply(&offset)));
+        let separating = whitening.apply(&whitened);
+        let by_plane = beyond((&covariance, &whitening.undo(&whitened)), &separating, margin);
+        let shortest = nearest_to_origin(&offsets);
+        by_plane.max(beyond((&covariance, &shortest), &shortest, margin))
     }
 
     /// Squared Mahalanobis distance from a surfel to the nearest place of the facet and the way

@@ -4,7 +4,9 @@ use cloudtouch_geom::{Matrix3, Point3, UncertainPoint, Vector3, normal};
 
 use crate::cloud::Surfel;
 
-use super::facet::LEAST_STD;
+/// No coordinate is known better than this, m: what keeps exact pieces at one place from dividing
+/// nothing by nothing.
+pub(super) const LEAST_STD: f64 = 1e-12;
 
 /// Where two pieces of surface would meet.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +40,37 @@ pub(super) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) -> Option<f
     let joint = a.point.covariance.sum(&b.point.covariance);
     let squared = offset.dot(&solve(&joint.matrix(), &offset)?);
     (squared < limit).then_some(squared.max(0.0))
+}
+
+/// How many deviations two pieces are from being within a margin (m): the largest of
+/// (n·δ − m)/√(nᵀΣn) over a few directions n, which none can exceed; negative where they are within
+/// it. `None` where that is not below `limit`. Without a margin it is the Mahalanobis distance.
+pub(super) fn deviations_beyond(a: &Surfel, b: &Surfel, margin: f64, limit: f64) -> Option<f64> {
+    let offset = b.point.mean - a.point.mean;
+    let reach = margin + limit.max(0.0) * (a.most_variance + b.most_variance).sqrt();
+    if offset.norm_squared() > reach * reach {
+        return None;
+    }
+    let joint = a.point.covariance.sum(&b.point.covariance).matrix();
+    let beyond = beyond((&joint, &offset), &solve(&joint, &offset)?, margin);
+    (beyond < limit).then_some(beyond)
+}
+
+/// (n·δ − m)/√(nᵀΣn), the larger of two: across what separates the pieces best, Σ⁻¹δ, and along the way
+/// between them.
+pub(super) fn beyond(
+    (joint, offset): (&Matrix3, &Vector3),
+    weighted: &Vector3,
+    margin: f64,
+) -> f64 {
+    let along = |direction: &Vector3| {
+        let variance = direction.dot(&(joint * direction)) + LEAST_STD.powi(2);
+        (offset.dot(direction) - margin * direction.norm()) / variance.sqrt()
+    };
+    // Pieces at one place have neither direction: all that can be said is that they are within it.
+    let scale = |v: &Vector3| v.try_normalize(0.0);
+    let known = [scale(weighted), scale(offset)].into_iter().flatten().map(|n| along(&n));
+    known.reduce(f64::max).unwrap_or(f64::NEG_INFINITY)
 }
 
 impl Meeting {
@@ -94,6 +127,19 @@ mod tests {
         let squared = squared_deviations(&a, &b, 100.0).unwrap();
         assert!((squared - 4.0).abs() < 1e-12);
         assert_eq!(squared_deviations(&a, &b, 3.9), None);
+    }
+
+    #[test]
+    fn a_margin_takes_what_it_is_off_the_gap_and_none_takes_nothing() {
+        let a = disc(Point3::origin(), Vector3::z(), 0.03, 0.35);
+        let b = disc(Point3::new(0.01, 0.0, 0.1), Vector3::z(), 0.04, 0.35);
+        let of = |margin| deviations_beyond(&a, &b, margin, 100.0).unwrap();
+        let plain = squared_deviations(&a, &b, 100.0).unwrap().sqrt();
+        assert!((of(0.0) - plain).abs() < 1e-9);
+        assert!((of(0.05) - 1.0).abs() < 0.02, "{}", of(0.05));
+        assert!((of(0.2) + 2.0).abs() < 0.05, "{}", of(0.2));
+        assert_eq!(deviations_beyond(&a, &b, 0.05, 0.9), None);
+        assert_eq!(deviations_beyond(&a, &a, 0.05, 9.0), Some(f64::NEG_INFINITY));
     }
 
     #[test]

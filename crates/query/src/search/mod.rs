@@ -4,6 +4,7 @@
 //! It gathers how far apart the surfaces are in standard deviations, how clearly one passes through
 //! the other, and how deep a cloud is inside a closed mesh.
 
+mod beyond;
 mod crossing;
 mod crossings;
 mod facet;
@@ -15,6 +16,7 @@ mod nearest;
 mod run;
 mod through_mesh;
 
+pub(crate) use beyond::least_beyond;
 pub(crate) use crossing::Crossing;
 pub(crate) use inside::{Inside, look_inside};
 pub(crate) use leaf::{Leaf, NoisyLeaf};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use cloudtouch_bvh::{NodeId, SurfaceFlow, SurfacePair, visit_surfaces};
+use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, SurfacePair, visit_surfaces};
 use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
 
 use crate::body::BodyRef;
@@ -63,7 +63,8 @@ pub(crate) fn search<'a>(
         Found { deviations: MOST_DEVIATIONS, at_least: f64::INFINITY, ..Found::default() };
     let motion = Motion::from(a_from_b);
     let trees = (a.shape().tree(), b.shape().tree());
-    let outcome = visit_surfaces(trees, a_from_b, MOST_DEVIATIONS, |pair| {
+    let sought = Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: true };
+    let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), &motion, &pair, stats);
         if is_enough(found.deviations, found.crossings.last_clearness()) {

@@ -1,0 +1,109 @@
+//! How likely two bodies are within a margin of each other.
+
+use std::time::Instant;
+
+use cloudtouch_geom::Pose;
+use serde::Serialize;
+
+use crate::body::BodyRef;
+use crate::error::QueryError;
+use crate::judge::{ContactEvidence, probability};
+use crate::report::Report;
+use crate::search::least_beyond;
+
+use super::run::Query;
+
+/// How likely two surfaces are within a margin of each other; the collision is the margin of nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Within {
+    /// The margin, m.
+    pub margin_m: f64,
+    /// Probability that the distance of the two underlying surfaces is below the margin.
+    pub probability: f64,
+    /// Lower and upper bound on it, as [`Report::bounds`]; the probability lies within.
+    pub bounds: [f64; 2],
+}
+
+impl Query {
+    /// How likely the surfaces behind two bodies are within `margin` metres of each other: the
+    /// answer to [`Self::run`], and this.
+    ///
+    /// Never less likely than a collision, to the bit as likely without a margin, and never less
+    /// likely with a larger one. By geometry alone: the classifier, which is asked about the collision, says
+    /// nothing of distances. What [`Self::run`] says of surface that no point stands for holds here
+    /// too.
+    ///
+    /// ```
+    /// use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+    /// use cloudtouch::noise::SensorModel;
+    /// use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings};
+    ///
+    /// let sheet = |z: f64| -> Vec<Point3> {
+    ///     (0..400).map(|i| Point3::new(0.01 * (i % 20) as f64, 0.01 * (i / 20) as f64, z)).collect()
+    /// };
+    /// let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+    /// let prepare = |z| Cloud::prepare(&PointCloud::from_points(sheet(z)), &settings);
+    /// let (table, plate) = (prepare(0.0)?, prepare(0.05)?);
+    /// let query = Query::new(QuerySettings::default())?;
+    /// let here = Pose::identity();
+    /// let (report, near) = query.within(&table, &plate, &here, 0.03)?;
+    /// let (_, far) = query.within(&table, &plate, &here, 0.07)?;
+    /// assert!(report.collision_probability < 0.01 && near.probability < 0.01);
+    /// assert!(far.probability > 0.99);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the margin is negative or not finite, and those of [`Self::run`].
+    pub fn within<'a>(
+        &self,
+        a: impl Into<BodyRef<'a>>,
+        b: impl Into<BodyRef<'a>>,
+        a_from_b: &Pose,
+        margin: f64,
+    ) -> Result<(Report, Within), QueryError> {
+        if !(0.0..f64::INFINITY).contains(&margin) {
+            return Err(QueryError::Margin { value: margin });
+        }
+        let (a, b) = (a.into(), b.into());
+        let report = self.run(a, b, a_from_b)?;
+        let within = self.beyond_collision((a, b), a_from_b, margin, &report)?;
+        Ok((report, within))
+    }
+
+    /// What a margin adds to the report on a pair.
+    pub(super) fn beyond_collision(
+        &self,
+        (a, b): (BodyRef<'_>, BodyRef<'_>),
+        a_from_b: &Pose,
+        margin: f64,
+        report: &Report,
+    ) -> Result<Within, QueryError> {
+        let known = report.collision_probability;
+        let plain = Within { margin_m: margin, probability: known, bounds: report.bounds };
+        if margin == 0.0 {
+            return Ok(plain);
+        }
+        let [low, high] = report.bounds;
+        let Some(ContactEvidence { deviations, crossing, .. }) = report.evidence else {
+            // Two meshes are exact.
+            let is_within = report.clearance_m.is_none_or(|gap| gap.mean < margin);
+            let least = if is_within { 1.0 } else { 0.0_f64 };
+            let probability = known.max(least);
+            return Ok(Within { probability, bounds: [low.max(least), high.max(least)], ..plain });
+        };
+        let settings = self.settings();
+        let of = |beyond: f64| {
+            let log_odds = settings.judge.log_odds_by_geometry(beyond.min(deviations), crossing);
+            probability(log_odds, settings.prior)
+        };
+        let clock = self.clock(Instant::now());
+        let is_enough = |beyond: f64| of(beyond) > settings.stop_above || clock.is_over();
+        let local = a.shape().local_from(&b.shape(), a_from_b);
+        let mut stats = report.stats;
+        let found = least_beyond((a, b), &local, margin, is_enough, &mut stats)?;
+        let least = of(found.deviations);
+        let high = if found.is_complete { high.max(least) } else { 1.0 };
+        Ok(Within { probability: known.max(least), bounds: [low.max(least), high], ..plain })
+    }
+}

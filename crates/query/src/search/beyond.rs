@@ -1,0 +1,95 @@
+//! How many deviations two bodies are from being within a margin of each other.
+
+use std::collections::BTreeMap;
+
+use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, visit_surfaces};
+use cloudtouch_geom::{Motion, Pose};
+
+use crate::body::BodyRef;
+use crate::error::QueryError;
+use crate::judge::MOST_DEVIATIONS;
+use crate::report::Stats;
+
+use super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
+use super::meeting::deviations_beyond;
+
+/// What a search beyond a margin found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Beyond {
+    /// The least deviations between two pieces of surface that are more than the margin apart;
+    /// negative, down to −[`MOST_DEVIATIONS`], where two are clearly within it.
+    pub deviations: f64,
+    /// Whether what was left out cannot have fewer.
+    pub is_complete: bool,
+}
+
+/// Looks for the two pieces that are most clearly within a margin (m) of each other, until
+/// `is_enough` of the deviations found.
+pub(crate) fn least_beyond<'a>(
+    (a, b): (BodyRef<'a>, BodyRef<'a>),
+    a_from_b: &Pose,
+    margin: f64,
+    is_enough: impl Fn(f64) -> bool,
+    stats: &mut Stats,
+) -> Result<Beyond, QueryError> {
+    let mut least = MOST_DEVIATIONS;
+    let motion = Motion::from(a_from_b);
+    let trees = (a.shape().tree(), b.shape().tree());
+    let sought = Sought { within: MOST_DEVIATIONS, margin, crossings: false };
+    let mut leaves: (BTreeMap<NodeId, Leaf<'a>>, BTreeMap<NodeId, Leaf<'a>>) = Default::default();
+    let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
+        stats.leaf_pairs += 1;
+        let leaf_a = leaves.0.entry(pair.a);
+        let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, stats));
+        let leaf_b = leaves.1.entry(pair.b);
+        let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(&motion), stats));
+        least = least_of(leaf_a, leaf_b, margin, least).max(-MOST_DEVIATIONS);
+        if is_enough(least) || least <= -MOST_DEVIATIONS {
+            return SurfaceFlow::Stop;
+        }
+        SurfaceFlow::Within(least)
+    })?;
+    stats.nodes_visited += outcome.nodes_visited;
+    let is_complete = !outcome.stopped || least <= -MOST_DEVIATIONS;
+    Ok(Beyond { deviations: least, is_complete })
+}
+
+/// The least deviations beyond the margin of two pieces of two leaves; `most` where none has fewer.
+fn least_of(a: &mut Leaf<'_>, b: &mut Leaf<'_>, margin: f64, most: f64) -> f64 {
+    match (a, b) {
+        (Leaf::Noisy(a), Leaf::Noisy(b)) => between_noisy(a, b, margin, most),
+        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b, margin, most),
+        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a, margin, most),
+        // Two meshes are tested exactly and never come here.
+        (Leaf::Exact(_), Leaf::Exact(_)) => most,
+    }
+}
+
+fn between_noisy(a: &NoisyLeaf<'_>, b: &NoisyLeaf<'_>, margin: f64, most: f64) -> f64 {
+    let mut least = most;
+    for on_a in a.surfels.iter() {
+        let reach = margin + least.max(0.0) * (on_a.most_variance + b.ball.variance).sqrt();
+        if !b.ball.is_within(&on_a.point.mean, reach) {
+            continue;
+        }
+        for on_b in b.surfels.iter() {
+            least = deviations_beyond(on_a, on_b, margin, least).unwrap_or(least);
+        }
+    }
+    least
+}
+
+fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf, margin: f64, most: f64) -> f64 {
+    let mut least = most;
+    let (surfels, whitenings, _) = noisy.whitened();
+    for (surfel, whitening) in surfels.iter().zip(whitenings) {
+        let reach = margin + least.max(0.0) * surfel.most_variance.sqrt();
+        if !exact.ball.is_within(&surfel.point.mean, reach) {
+            continue;
+        }
+        for facet in &exact.facets {
+            least = least.min(facet.deviations_beyond(surfel, whitening, margin));
+        }
+    }
+    least
+}

@@ -1,0 +1,87 @@
+//! How likely two bodies are within a margin of each other.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test helper fails")]
+
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySettings};
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::{scene, surface};
+use proptest::prelude::*;
+
+fn cloud(mesh: &TriangleMesh, count: usize, std: f64, seed: u64) -> Body {
+    let samples = surface::positions(&surface::sample_surface(mesh, count, seed));
+    let points: Vec<Point3> = add_noise(&samples, NoiseKind::Gaussian, std, seed);
+    let settings = CloudSettings::new(SensorModel::Isotropic { std });
+    Body::Cloud(Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap())
+}
+
+fn box_mesh() -> TriangleMesh {
+    scene::cuboid([0.2; 3])
+}
+
+/// A cloud or a mesh of the same box.
+fn body(is_mesh: bool, count: usize, std: f64, seed: u64) -> Body {
+    match is_mesh {
+        true => Body::Mesh(Mesh::prepare(&box_mesh()).unwrap()),
+        false => cloud(&box_mesh(), count, std, seed),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+
+    #[test]
+    fn a_larger_margin_is_never_less_likely_and_none_is_the_collision(
+        kinds in any::<[bool; 2]>(),
+        std in 0.0005_f64..0.01,
+        offset in prop::array::uniform3(-0.3..0.3_f64),
+        turn in -3.0..3.0_f64,
+        margins in prop::array::uniform3(0.0..0.3_f64),
+        seed in any::<u64>(),
+    ) {
+        let (a, b) = (body(kinds[0], 1000, std, seed), body(kinds[1], 1000, std, !seed));
+        let pose = Pose::from_translation_rpy(Vector3::from(offset), [turn, 0.2, 0.0]);
+        let query = Query::new(QuerySettings::default()).unwrap();
+        let (report, none) = query.within(&a, &b, &pose, 0.0).unwrap();
+        prop_assert_eq!(none.probability.to_bits(), report.collision_probability.to_bits());
+        prop_assert_eq!(none.bounds, report.bounds);
+        let mut margins = margins;
+        margins.sort_by(f64::total_cmp);
+        let mut known = none;
+        for margin in margins {
+            let (_, within) = query.within(&a, &b, &pose, margin).unwrap();
+            let [low, high] = within.bounds;
+            prop_assert!(low <= within.probability && within.probability <= high, "{within:?}");
+            prop_assert!(within.probability >= known.probability, "{known:?} {within:?}");
+            known = within;
+        }
+    }
+}
+
+/// Three spacings of the samples below, m: where a surface ends is known to about one.
+const SPACINGS: f64 = 0.019;
+
+#[test]
+fn a_gap_is_within_margins_that_are_clearly_wider_and_not_within_narrower_ones() {
+    let query = Query::new(QuerySettings::default()).unwrap();
+    for kinds in [[false, false], [false, true], [true, false], [true, true]] {
+        let (a, b) = (body(kinds[0], 6000, 0.001, 1), body(kinds[1], 6000, 0.001, 2));
+        for gap in [0.03, 0.06, 0.1] {
+            let pose = Pose::from_translation(Vector3::new(0.01, -0.02, 0.2 + gap));
+            let of = |margin: f64| query.within(&a, &b, &pose, margin).unwrap().1.probability;
+            let (narrower, wider) = (of(gap - SPACINGS), of(gap + SPACINGS));
+            assert!(narrower < 0.1 && wider > 0.9, "{kinds:?} {gap}: {narrower} {wider}");
+        }
+    }
+}
+
+#[test]
+fn no_margin_is_negative_or_unknown() {
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let a = body(true, 0, 0.0, 1);
+    for value in [-0.01, f64::NAN, f64::INFINITY] {
+        let error = query.within(&a, &a, &Pose::identity(), value).unwrap_err();
+        assert!(matches!(error, QueryError::Margin { .. }), "{error}");
+        assert!(error.to_string().contains("give a length in metres"), "{error}");
+    }
+}
