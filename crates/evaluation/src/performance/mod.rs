@@ -4,6 +4,7 @@
 mod batch;
 mod fresh;
 mod growth;
+pub mod probe;
 mod room;
 mod scene;
 mod solvers;
