@@ -1,5 +1,7 @@
 //! Ours: the default, with any setting changed, and the oracle.
 
+use std::time::Instant;
+
 use anyhow::Result;
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query,
@@ -26,6 +28,8 @@ pub struct Ours {
     fitted: Fitted,
     /// What is made of a fitted judge.
     alter: fn(Judge) -> Judge,
+    /// What is asked: how likely the bodies are within this distance of each other, m.
+    margin: f64,
 }
 
 impl Ours {
@@ -42,6 +46,7 @@ impl Ours {
             sees_truth: false,
             fitted: Fitted::stored()?,
             alter: |judge| judge,
+            margin: 0.0,
         })
     }
 
@@ -63,6 +68,11 @@ impl Ours {
     /// The same by geometry alone.
     pub fn without_classifier(self) -> Self {
         Self { alter: |judge| judge.without_classifier(), ..self }
+    }
+
+    /// The same, asked how likely the bodies are within a margin (m) of each other.
+    pub fn within(self, margin: f64) -> Self {
+        Self { margin, ..self }
     }
 
     /// The same, computing the surface of both clouds beforehand.
@@ -115,12 +125,19 @@ impl Method for Ours {
         let query = Query::new(QuerySettings { judge, ..self.query })?;
         let (a, b) = (self.cloud(draw.a)?, self.cloud(draw.b)?);
         let mesh = Mesh::prepare(draw.mesh)?;
+        let margin = self.margin;
         Ok(Box::new(move |pair, a_from_b| {
             let moving = match pair {
                 Pair::CloudCloud => BodyRef::from(&b),
                 Pair::CloudMesh => BodyRef::from(&mesh),
             };
-            Ok(Some(Said::from(&query.run(&a, moving, a_from_b)?)))
+            if margin == 0.0 {
+                return Ok(Some(Said::from(&query.run(&a, moving, a_from_b)?)));
+            }
+            let start = Instant::now();
+            let (_, within) = query.within(&a, moving, a_from_b, margin)?;
+            let (probability, bounds) = (Some(within.probability), Some(within.bounds));
+            Ok(Some(Said { probability, bounds, ..Said::score(within.deviations, start) }))
         }))
     }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::judge::{ContactEvidence, probability};
+use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
 use crate::report::Report;
 use crate::search::least_beyond;
 
@@ -22,6 +22,9 @@ pub struct Within {
     pub probability: f64,
     /// Lower and upper bound on it, as [`Report::bounds`]; the probability lies within.
     pub bounds: [f64; 2],
+    /// How many standard deviations the nearest pieces of surface are from being within the margin,
+    /// from 6 down to −6, which is clearly within it.
+    pub deviations: f64,
 }
 
 impl Query {
@@ -80,18 +83,21 @@ impl Query {
         report: &Report,
     ) -> Result<Within, QueryError> {
         let known = report.collision_probability;
-        let plain = Within { margin_m: margin, probability: known, bounds: report.bounds };
-        if margin == 0.0 {
-            return Ok(plain);
-        }
         let [low, high] = report.bounds;
+        let at_least = |least: f64, high: f64, deviations: f64| {
+            let bounds = [low.max(least), high.max(least)];
+            Within { margin_m: margin, probability: known.max(least), bounds, deviations }
+        };
         let Some(ContactEvidence { deviations, crossing, .. }) = report.evidence else {
             // Two meshes are exact.
             let is_within = report.clearance_m.is_none_or(|gap| gap.mean < margin);
-            let least = if is_within { 1.0 } else { 0.0_f64 };
-            let probability = known.max(least);
-            return Ok(Within { probability, bounds: [low.max(least), high.max(least)], ..plain });
+            let (least, deviations) =
+                if is_within { (1.0, -MOST_DEVIATIONS) } else { (0.0, MOST_DEVIATIONS) };
+            return Ok(at_least(least, high, deviations));
         };
+        if margin == 0.0 {
+            return Ok(at_least(0.0, high, deviations));
+        }
         let settings = self.settings();
         let of = |beyond: f64| {
             let log_odds = settings.judge.log_odds_by_geometry(beyond.min(deviations), crossing);
@@ -102,8 +108,7 @@ impl Query {
         let local = a.shape().local_from(&b.shape(), a_from_b);
         let mut stats = report.stats;
         let found = least_beyond((a, b), &local, margin, is_enough, &mut stats)?;
-        let least = of(found.deviations);
-        let high = if found.is_complete { high.max(least) } else { 1.0 };
-        Ok(Within { probability: known.max(least), bounds: [low.max(least), high], ..plain })
+        let high = if found.is_complete { high } else { 1.0 };
+        Ok(at_least(of(found.deviations), high, found.deviations.min(deviations)))
     }
 }
