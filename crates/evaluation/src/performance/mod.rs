@@ -4,7 +4,6 @@
 mod batch;
 mod fresh;
 mod growth;
-pub mod probe;
 mod room;
 mod scene;
 mod solvers;
