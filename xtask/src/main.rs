@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use cloudtouch_evaluation::{
-    calibrate, growth, paper, performance, real_scans, settings, stability, sweep,
+    calibrate, growth, motion, paper, performance, real_scans, settings, stability, sweep,
 };
 
 /// Project tasks.
@@ -32,6 +32,8 @@ enum Task {
     Growth(growth::Arguments),
     /// The figures of the paper with our data, by its method as printed and by ours.
     Paper(paper::Arguments),
+    /// How well stated margins are.
+    Motion(motion::Arguments),
     /// Query time against error, one setting changed at a time.
     Settings(settings::Arguments),
     /// Makes the files of fixtures/ anew.
@@ -54,6 +56,7 @@ fn main() -> anyhow::Result<()> {
         Task::BenchReport(arguments) => performance::run(&root, &arguments),
         Task::Growth(arguments) => growth::run(&root, &arguments),
         Task::Paper(arguments) => paper::run(&root, &arguments),
+        Task::Motion(arguments) => motion::run(&root, &arguments),
         Task::Settings(arguments) => settings::run(&root, &arguments),
         Task::Fixtures { check } => fixtures::run(&root, check),
     }

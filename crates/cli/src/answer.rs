@@ -6,6 +6,7 @@ use cloudtouch::{Placement, Report};
 use serde::Serialize;
 
 use crate::load::Input;
+use crate::margin::Nearness;
 use crate::per_point::Details;
 
 /// A report with where the object was.
@@ -16,6 +17,7 @@ pub(crate) struct Answer<'a> {
     pub pose: &'a Pose,
     /// What was asked for beyond that.
     pub details: Details<'a>,
+    pub nearness: Option<Nearness>,
 }
 
 /// An answer with the name of its case: one line of JSON.
@@ -47,8 +49,11 @@ impl Answer<'_> {
     pub(crate) fn json_line(&self, id: &str, [scene, object]: [&Input; 2]) -> Result<String> {
         let matrix = self.pose.isometry().to_homogeneous();
         let pose = std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]));
-        let Self { report, placement, details, .. } = self;
+        let Self { report, placement, details, nearness, .. } = self;
         let line = Line { id, report, details, placement, pose, scene, object };
-        Ok(serde_json::to_string(&line)?)
+        let Some(nearness) = nearness else { return Ok(serde_json::to_string(&line)?) };
+        let mut line = serde_json::to_value(&line)?;
+        nearness.add_to(&mut line);
+        Ok(line.to_string())
     }
 }

@@ -243,6 +243,9 @@ pub(crate) struct CommonArguments {
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
     #[arg(long, value_name = "P", value_parser = parse_prior, help_heading = "Estimate")]
     pub prior: Option<f64>,
+    /// Calibrated: also how likely the bodies are nearer than this, and between what distances
+    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Estimate")]
+    pub margin: Option<f64>,
     /// Paper: how point probabilities make one: max, or noisy-or [max]
     #[arg(long, value_enum, hide_possible_values = true, help_heading = "Estimate")]
     pub pooling: Option<PoolingName>,
@@ -317,6 +320,9 @@ impl CommonArguments {
             Some((name, _)) if self.mode == ModeName::Calibrated => Err(format!(
                 "{name} has no effect in the calibrated mode: leave it out, or give --mode paper"
             )),
+            _ if self.mode == ModeName::Paper && self.margin.is_some() => {
+                Err("--margin has no effect in the paper's mode: leave it out".to_owned())
+            }
             _ if self.mode == ModeName::Paper && self.prior.is_some() => {
                 Err("--prior has no effect in the paper's mode: leave it out".to_owned())
             }

@@ -10,6 +10,7 @@ use cloudtouch::{
     StageReport,
 };
 
+use crate::margin::{Nearness, SHARE};
 use crate::settings_file::Settings;
 
 /// A cloud prepared for one of the paths, or a mesh.
@@ -68,6 +69,18 @@ pub(crate) trait Path: Sync {
         scene_from_object: &Pose,
     ) -> Result<(Report, Vec<LeafClassifier>), QueryError> {
         Ok((self.ask(scene, object, scene_from_object)?, Vec::new()))
+    }
+
+    /// How likely they are within a margin (m) of each other; `None` on the paper's path, which knows
+    /// no distances.
+    fn nearness(
+        &self,
+        _scene: &Body<Self::Cloud>,
+        _object: &Body<Self::Cloud>,
+        _scene_from_object: &Pose,
+        _margin: f64,
+    ) -> Result<Option<Nearness>, QueryError> {
+        Ok(None)
     }
 
     /// Where the object lies in the scene.
@@ -171,6 +184,18 @@ impl Path for Query {
         scene_from_object: &Pose,
     ) -> Result<Report, QueryError> {
         self.run(scene, object, scene_from_object)
+    }
+
+    fn nearness(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &Pose,
+        margin: f64,
+    ) -> Result<Option<Nearness>, QueryError> {
+        let (_, within) = self.within(scene, object, scene_from_object, margin)?;
+        let interval = self.clearance_interval(scene, object, scene_from_object, SHARE)?;
+        Ok(Some(Nearness { within, interval }))
     }
 
     fn place(

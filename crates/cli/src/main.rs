@@ -6,6 +6,7 @@ mod batch_table;
 mod body;
 mod commands;
 mod load;
+mod margin;
 mod ordered;
 mod output;
 mod per_point;

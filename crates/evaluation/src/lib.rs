@@ -12,6 +12,7 @@ pub mod leaf;
 pub mod machine;
 pub mod measures;
 pub mod methods;
+pub mod motion;
 pub mod page;
 pub mod paper;
 pub mod performance;

@@ -33,7 +33,7 @@ pub use filter::{
 };
 pub use judge::{
     CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
-    between_knots,
+    WITHIN_KNOTS, between_knots,
 };
 pub use mesh::Mesh;
 pub use mode::Mode;

@@ -36,6 +36,14 @@ impl<'a> Shape<'a> {
         }
     }
 
+    /// Distance between neighbouring samples, m; a mesh is known everywhere.
+    pub(crate) fn spacing(&self) -> f64 {
+        match self {
+            Self::Cloud(cloud) => cloud.makeup().spacing,
+            Self::Mesh(_) => 0.0,
+        }
+    }
+
     /// Diagonal of the box around the body, m.
     pub(crate) fn size(&self) -> f64 {
         let [low, high] = self.corners();

@@ -76,6 +76,25 @@ fn a_gap_is_within_margins_that_are_clearly_wider_and_not_within_narrower_ones()
 }
 
 #[test]
+fn an_interval_holds_the_gap_and_starts_at_nothing_in_a_collision() {
+    let query = Query::new(QuerySettings::default()).unwrap();
+    for kinds in [[false, false], [false, true], [true, true]] {
+        let (a, b) = (body(kinds[0], 6000, 0.001, 1), body(kinds[1], 6000, 0.001, 2));
+        let at = |gap: f64| Pose::from_translation(Vector3::new(0.01, -0.02, 0.2 + gap));
+        let [low, high] = query.clearance_interval(&a, &b, &at(0.06), 0.9).unwrap();
+        assert!(
+            low <= 0.061 && high >= 0.059 && high - low < 2.0 * SPACINGS,
+            "{kinds:?} {low} {high}"
+        );
+        assert_eq!(query.clearance_interval(&a, &b, &at(-0.05), 0.9).unwrap(), [0.0; 2]);
+        assert!(matches!(
+            query.clearance_interval(&a, &b, &at(0.0), 1.0),
+            Err(QueryError::Share { .. })
+        ));
+    }
+}
+
+#[test]
 fn no_margin_is_negative_or_unknown() {
     let query = Query::new(QuerySettings::default()).unwrap();
     let a = body(true, 0, 0.0, 1);

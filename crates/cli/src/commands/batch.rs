@@ -18,6 +18,7 @@ use crate::batch_table::Table;
 use crate::body::{self, Body};
 use crate::case_file::{self, Case};
 use crate::load::{self, Input, Loaded, Role};
+use crate::margin::Nearness;
 use crate::per_point::Details;
 use crate::sensor::SensorChoice;
 use crate::{ordered, output, print, unused};
@@ -35,6 +36,7 @@ struct Answered<'a> {
     placement: Placement,
     pose: &'a Pose,
     inputs: [&'a Input; 2],
+    nearness: Option<Nearness>,
 }
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
@@ -69,9 +71,9 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
         ordered::for_each(file.cases.len(), threads, work, |index, answer: Answer<'_>| {
             let (id, case) = &file.cases[index];
             let line = match &answer {
-                Ok(Answered { report, placement, pose, inputs }) => {
-                    Line { report, placement, pose, details: Details::default() }
-                        .json_line(id, *inputs)
+                Ok(Answered { report, placement, pose, inputs, nearness }) => {
+                    let (details, nearness) = (Details::default(), *nearness);
+                    Line { report, placement, pose, details, nearness }.json_line(id, *inputs)
                 }
                 Err(error) => json_error_line(id, error),
             };
@@ -113,7 +115,13 @@ fn answer<'a, P: body::Path>(
     let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
     let report = query.ask(&scene.body, &object.body, pose).map_err(|error| error.to_string())?;
     let placement = query.place(&scene.body, &object.body, pose);
-    Ok(Answered { report, placement, pose, inputs: [&scene.input, &object.input] })
+    let nearness = match arguments.common.margin {
+        Some(margin) => query
+            .nearness(&scene.body, &object.body, pose, margin)
+            .map_err(|error| error.to_string())?,
+        None => None,
+    };
+    Ok(Answered { report, placement, pose, inputs: [&scene.input, &object.input], nearness })
 }
 
 fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {

@@ -62,6 +62,10 @@ fn run_by<P: body::Path>(
         (query.ask(&scene.body, &object.body, &pose)?, Vec::new())
     };
     let placement = query.place(&scene.body, &object.body, &pose);
+    let nearness = match common.margin {
+        Some(margin) => query.nearness(&scene.body, &object.body, &pose, margin)?,
+        None => None,
+    };
     if let Some(path) = &arguments.csv {
         per_point::write_csv(path, &scene.body, &object.body, &pose, &report)?;
     }
@@ -79,7 +83,8 @@ fn run_by<P: body::Path>(
             points: arguments.points.then(|| (&report).into()),
             classifiers: arguments.explain.then_some(&classifiers[..]),
         };
-        let answer = Answer { report: &report, placement: &placement, pose: &pose, details };
+        let answer =
+            Answer { report: &report, placement: &placement, pose: &pose, details, nearness };
         answer.json_line("query", [&scene.input, &object.input])?
     } else {
         let mut parts = vec![
@@ -87,6 +92,7 @@ fn run_by<P: body::Path>(
             print::body("object", &object),
             report_text::text(&report, &placement, shows_work),
         ];
+        parts.extend(nearness.map(|nearness| nearness.text()));
         if !arguments.pose.is_given() {
             parts.push("pose                   not given: the identity".to_owned());
         }

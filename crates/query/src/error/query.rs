@@ -126,6 +126,12 @@ pub enum QueryError {
         /// What was given.
         value: f64,
     },
+    /// An interval that holds nothing, or everything.
+    #[error("the share of an interval is {}: give a number between 0 and 1, ends excluded", number(*value))]
+    Share {
+        /// What was given.
+        value: f64,
+    },
     /// A mesh cannot be sampled as densely as the cloud that it faces.
     #[error(transparent)]
     Subdivision(#[from] SubdivisionError),

@@ -6,6 +6,7 @@
 
 mod fitted;
 mod grid;
+mod within;
 
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,8 @@ use crate::error::SettingsError;
 
 use grid::Grid;
 pub use grid::between_knots;
+pub use within::WITHIN_KNOTS;
+pub(crate) use within::log_odds_within;
 
 /// Deviations beyond this say no more than these, and no fewer below: what is looked for.
 pub(crate) const MOST_DEVIATIONS: f64 = 6.0;

@@ -4,6 +4,7 @@ mod batch;
 mod classify;
 mod contacts;
 mod estimate;
+mod interval;
 mod patches;
 mod points;
 mod run;

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
+use crate::judge::{ContactEvidence, MOST_DEVIATIONS, log_odds_within, probability};
 use crate::report::Report;
 use crate::search::least_beyond;
 
@@ -99,8 +99,11 @@ impl Query {
             return Ok(at_least(0.0, high, deviations));
         }
         let settings = self.settings();
+        let spacing = a.shape().spacing().max(b.shape().spacing());
         let of = |beyond: f64| {
-            let log_odds = settings.judge.log_odds_by_geometry(beyond.min(deviations), crossing);
+            let beyond = beyond.min(deviations);
+            let collision = settings.judge.log_odds_by_geometry(beyond, crossing);
+            let log_odds = log_odds_within(beyond, margin, spacing, collision);
             probability(log_odds, settings.prior)
         };
         let clock = self.clock(Instant::now());

@@ -1,0 +1,47 @@
+//! What `--margin` adds to an answer.
+
+use cloudtouch::Within;
+use serde_json::{Value, json};
+
+use crate::print::probability;
+
+/// The share of the interval that is told of a clearance: what it is below and above is as likely.
+pub(crate) const SHARE: f64 = 0.9;
+
+/// How likely the bodies are within a margin, and between what distances they lie.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Nearness {
+    pub within: Within,
+    /// Ends of the interval, m.
+    pub interval: [f64; 2],
+}
+
+impl Nearness {
+    /// Puts both into an answer in JSON.
+    pub(crate) fn add_to(&self, answer: &mut Value) {
+        let [q05, q95] = self.interval;
+        let at_least = answer["clearance_at_least_m"].take();
+        answer["clearance_at_least_m"] = at_least.clone();
+        if answer["clearance_m"].is_null() {
+            answer["clearance_m"] = json!({ "mean": null, "std": null, "is_bound": false });
+        }
+        let clearance = &mut answer["clearance_m"];
+        clearance["at_least"] = at_least;
+        clearance["q05"] = json!(q05);
+        clearance["q95"] = json!(q95);
+        answer["margin"] = json!(self.within);
+    }
+
+    /// A line for people.
+    pub(crate) fn text(&self) -> String {
+        let Within { margin_m, bounds, .. } = self.within;
+        let [low, high] = bounds.map(probability);
+        let [q05, q95] = self.interval.map(|m| 1e3 * m);
+        let label = format!("P(nearer than {:.0} mm)", 1e3 * margin_m);
+        let of = probability(self.within.probability);
+        format!(
+            "{label:<22} {of}   (within {low} .. {high}); {:.0} % between {q05:.1} and {q95:.1} mm",
+            100.0 * SHARE
+        )
+    }
+}

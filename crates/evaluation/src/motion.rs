@@ -1,0 +1,197 @@
+//! `cargo xtask motion`: how well stated what goes beyond the collision at one pose is.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use cloudtouch::WITHIN_KNOTS;
+
+use crate::{
+    answers::{Answers, Pair},
+    measures::{
+        Axis, Clusters, Sample, SurfaceSample, calibration_error, chance_error, fit_surface,
+    },
+    methods::Ours,
+    page::{self, Page, Section},
+    sweep::{Asked, Plan, SEED, ask},
+    table::Table,
+    targets::{self, Findings, Target},
+};
+
+/// What `cargo xtask motion` is given.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Draws of each family
+    #[arg(long, default_value_t = 3)]
+    draws: u32,
+    /// Poses of each draw
+    #[arg(long, default_value_t = 20)]
+    poses: usize,
+    /// Fit the log odds of margins to other draws first, and print them
+    #[arg(long)]
+    fit: bool,
+    /// Write docs/lab/motion.md; else it goes to target/lab/
+    #[arg(long)]
+    update_docs: bool,
+}
+
+/// Margins asked about, m.
+const MARGINS: [f64; 3] = [0.01, 0.03, 0.1];
+/// What is stated of a margin may be wrong by this much on average.
+const MOST_ERROR: f64 = 0.05;
+
+const INTRODUCTION: &str = "What a query says of margins, judged against the exact distance of the \
+surfaces on generated scenes.";
+
+const MARGIN: &str = "The bodies of the sweep's scenes, at its poses and noises, asked how likely they \
+are nearer to one another than a margin. *Nearer*: share of the poses where the exact surfaces are. \
+*ECE*: expected calibration error with what chance alone makes of it taken off, as for collisions; \
+*worst family*: the same of the ordinary family where it is largest. The log odds of margins were \
+fitted on other draws of the same families, at 3 and 10 cm.";
+
+/// Fits where asked to, measures, and writes the page.
+///
+/// # Errors
+/// When a query fails or the page cannot be written.
+pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
+    let Arguments { draws, poses, fit, update_docs } = *arguments;
+    if fit {
+        println!("{:?}", fit_margins(&answers(Plan::evidence(draws, poses))?)?);
+    }
+    let command = format!("--draws {draws} --poses {poses} --update-docs");
+    let page = Page::new(("motion", "Margins"), ("motion", &command), INTRODUCTION, root, SEED);
+    let measure = || margins(&answers(Plan::full(draws, poses))?);
+    targets::report(page, &page::folder(root, update_docs), "", &[("margins", &measure)])?;
+    Ok(())
+}
+
+fn answers(mut plan: Plan) -> Result<Answers> {
+    // Coarse clouds at one noise only: they take as long and say the same.
+    plan.conditions.retain(|c| c.std > 0.0 && (c.points == 10_000 || c.std == 0.002));
+    let method = |margin: f64| Ok(Asked::always(Ours::new(&name(margin))?.within(margin)));
+    let methods: Vec<Asked> = MARGINS.into_iter().map(method).collect::<Result<_>>()?;
+    ask(&plan, &methods)
+}
+
+fn name(margin: f64) -> String {
+    format!("{:.0} cm", 100.0 * margin)
+}
+
+/// Log odds at the knots, by answers about the wider margins.
+fn fit_margins(answers: &Answers) -> Result<[f64; WITHIN_KNOTS.len()]> {
+    let mut samples: Vec<SurfaceSample> = Vec::new();
+    for margin in MARGINS.into_iter().skip(1) {
+        let method = answers.index(&name(margin)).context("a margin that was asked about")?;
+        for (question, said) in &answers.rows {
+            let deviations = said[method].context("an answer")?.score;
+            samples.push(([-deviations, 0.0], question.signed_distance < margin));
+        }
+    }
+    let mut nearness = WITHIN_KNOTS.map(|z| -z);
+    nearness.reverse();
+    let only = Axis { knots: [0.0, 1.0], usual: 0.0 };
+    let mut fitted = fit_surface(&samples, Axis { knots: nearness, usual: 2.0 }, only, false);
+    fitted.reverse();
+    Ok(fitted.map(|[value, _]| value))
+}
+
+fn margins(answers: &Answers) -> Findings {
+    let mut table =
+        Table::new(["pair", "margin", "poses", "nearer", "ECE", "worst family", "its ECE"]);
+    let mut targets = Vec::new();
+    for pair in Pair::ALL {
+        for margin in MARGINS {
+            let of = |family: Option<&str>| judged(answers, pair, margin, family);
+            let (count, nearer, error) = of(None)?;
+            let mut worst = ("", f64::NEG_INFINITY);
+            for family in answers.families() {
+                let (count, _, error) = of(Some(family))?;
+                if count > 0 && error > worst.1 {
+                    worst = (family, error);
+                }
+            }
+            table.row([
+                pair.name().to_owned(),
+                name(margin),
+                count.to_string(),
+                format!("{nearer:.2}"),
+                format!("{error:.3}"),
+                worst.0.to_owned(),
+                format!("{:.3}", worst.1),
+            ]);
+            let what = format!("{}, {}: ECE ≤ {MOST_ERROR}", pair.name(), name(margin));
+            targets.push(Target::new(what, format!("{error:.3}"), error <= MOST_ERROR));
+        }
+    }
+    Ok((Section::new("Margins").text(MARGIN).text(table), targets))
+}
+
+/// How many answers of ordinary scenes there are, the share of poses that are within the margin, and the
+/// calibration error without chance.
+fn judged(
+    answers: &Answers,
+    pair: Pair,
+    margin: f64,
+    family: Option<&str>,
+) -> Result<(usize, f64, f64)> {
+    let method = answers.index(&name(margin)).context("a margin that was asked about")?;
+    let is_asked = |question: &crate::answers::Question| {
+        question.pair == pair
+            && question.kind == cloudtouch_testkit::family::Kind::Ordinary
+            && family.is_none_or(|family| family == question.family)
+    };
+    let rows: Vec<_> = answers.rows.iter().filter(|(question, _)| is_asked(question)).collect();
+    let said = rows.iter().filter_map(|(question, said)| {
+        Some((said[method]?.probability?, question.signed_distance < margin))
+    });
+    let sample = Sample::of_probabilities(said);
+    let clusters = Clusters::of(rows.iter().map(|(q, _)| (q.family, q.draw, q.pose)));
+    let nearer = rows.iter().filter(|(q, _)| q.signed_distance < margin).count();
+    let error = calibration_error(&sample, &sample.ones()) - chance_error(&sample, &clusters, SEED);
+    Ok((rows.len(), nearer as f64 / rows.len() as f64, error.max(0.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::answers::{Said, tests::question};
+
+    fn answers(stated: f64) -> Answers {
+        let mut answers = Answers { methods: MARGINS.map(name).to_vec(), rows: Vec::new() };
+        for pose in 0..200 {
+            // A tenth of them is 2 cm apart, the others half a metre.
+            let distance = if pose % 10 == 0 { 0.02 } else { 0.5 };
+            let said = |margin: f64| {
+                let score = (distance - margin) / 0.01;
+                let probability =
+                    if margin == 0.03 { stated } else { f64::from(distance < margin) };
+                Some(Said {
+                    probability: Some(probability),
+                    ..Said::score(score, std::time::Instant::now())
+                })
+            };
+            let question = crate::answers::Question {
+                signed_distance: distance,
+                ..question("a", 0, pose, false)
+            };
+            answers.push((question, MARGINS.map(said).to_vec())).unwrap();
+        }
+        answers
+    }
+
+    #[test]
+    fn what_is_stated_as_often_as_it_comes_has_no_error_and_else_the_difference() {
+        let error = |stated| judged(&answers(stated), Pair::CloudCloud, 0.03, None).unwrap();
+        assert_eq!((error(0.1).0, error(0.1).1), (200, 0.1));
+        assert!(error(0.1).2 < 0.01 && (error(0.6).2 - 0.5).abs() < 0.05);
+    }
+
+    #[test]
+    fn fitted_log_odds_fall_with_deviations() {
+        let fitted = fit_margins(&answers(0.1)).unwrap();
+        assert!(
+            fitted.is_sorted_by(|a, b| a >= b) && fitted[0] > 2.0 && fitted[8] < -2.0,
+            "{fitted:?}"
+        );
+    }
+}

@@ -1,0 +1,87 @@
+//! Between what distances two bodies lie, from how likely they are within margins.
+
+use cloudtouch_geom::Pose;
+
+use crate::body::BodyRef;
+use crate::error::QueryError;
+use crate::placement::Placement;
+use crate::report::Report;
+
+use super::run::Query;
+
+/// The ends of an interval are told this well, relative to themselves.
+const PRECISION: f64 = 1e-3;
+/// Nothing is told finer, m.
+const FINEST: f64 = 1e-5;
+
+impl Query {
+    /// Between what distances (m) the surfaces lie with a probability of `share`, as likely to be
+    /// nearer than the first as farther than the second: the margins that [`Self::within`] finds so
+    /// likely. 0 where a collision alone is.
+    ///
+    /// # Errors
+    /// When the share is not between 0 and 1, and those of [`Self::run`].
+    pub fn clearance_interval<'a>(
+        &self,
+        a: impl Into<BodyRef<'a>>,
+        b: impl Into<BodyRef<'a>>,
+        a_from_b: &Pose,
+        share: f64,
+    ) -> Result<[f64; 2], QueryError> {
+        if !(share > 0.0 && share < 1.0) {
+            return Err(QueryError::Share { value: share });
+        }
+        let bodies = (a.into(), b.into());
+        let report = self.run(bodies.0, bodies.1, a_from_b)?;
+        let below = 0.5 * (1.0 - share);
+        let low = self.margin_of(bodies, a_from_b, &report, below)?;
+        Ok([low, self.margin_of(bodies, a_from_b, &report, 1.0 - below)?.max(low)])
+    }
+
+    /// The least margin within which the bodies are with this probability.
+    fn margin_of(
+        &self,
+        bodies: (BodyRef<'_>, BodyRef<'_>),
+        a_from_b: &Pose,
+        report: &Report,
+        wanted: f64,
+    ) -> Result<f64, QueryError> {
+        let is_likely = |margin: f64| -> Result<bool, QueryError> {
+            let within = self.beyond_collision(bodies, a_from_b, margin, report)?;
+            Ok(within.probability >= wanted)
+        };
+        if is_likely(0.0)? {
+            return Ok(0.0);
+        }
+        // Beyond the far corners of both boxes there is no surface: there doubling ends.
+        let most = span(bodies.0.placement(bodies.1, a_from_b));
+        let mut high = FINEST;
+        while !is_likely(high)? {
+            if high > most {
+                return Ok(most);
+            }
+            high *= 4.0;
+        }
+        let mut low = 0.25 * high;
+        while high - low > PRECISION * high + FINEST {
+            let middle = 0.5 * (low + high);
+            if is_likely(middle)? {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Ok(high)
+    }
+}
+
+/// The longest way from a corner of the boxes of both bodies to another, m.
+fn span(placement: Placement) -> f64 {
+    let boxes = [placement.scene_box, placement.object_box];
+    let along = |k: usize| {
+        let low = boxes.iter().map(|b| b[0][k]).fold(f64::INFINITY, f64::min);
+        let high = boxes.iter().map(|b| b[1][k]).fold(f64::NEG_INFINITY, f64::max);
+        high - low
+    };
+    along(0).hypot(along(1)).hypot(along(2))
+}
