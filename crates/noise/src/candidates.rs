@@ -1,9 +1,10 @@
 //! A first plane that outliers and second faces cannot bend: the best supported of a few.
 
-use cloudtouch_geom::{Matrix3, Vector3};
+use cloudtouch_geom::Vector3;
 
+use crate::lanes::Lanes;
 use crate::patch::{Patch, Plane};
-use crate::smallest_axis::smallest_axis;
+use crate::reweight::plane_of_sums;
 
 /// Planes are laid through the point and each pair of this many nearest neighbours.
 const PAIRED: usize = 8;
@@ -21,68 +22,113 @@ const OWN_VOTES: f64 = 4.0;
 /// The plane with the most support among the nearest neighbours; `None` when they are too few or
 /// all on one line with the point.
 ///
-/// Candidates pass through three places, so that one of them is likely to lie in one face even
-/// where two meet: the point and two neighbours, or three neighbours, since the point itself may be
-/// the outlier. With them goes the least-squares plane of the voters, which is the better start
-/// where noise exceeds the spacing.
+/// That is the least-squares plane where it misses nobody. Else candidates are laid through three
+/// places, so that one of them is likely to lie in one face even where two meet: the point and two
+/// neighbours, or three neighbours, since the point itself may be the outlier.
 pub(crate) fn best_candidate(patch: &Patch) -> Option<Plane> {
-    let voters = patch.nearest(patch.offsets.len().min(VOTERS));
-    let scale = patch.largest_own_variance();
-    let mut best = None;
-    let mut best_cost = f64::INFINITY;
-    let mut consider = |plane: Plane| {
-        let cost = disagreement(&voters, &plane, scale, best_cost);
-        if cost < best_cost {
-            best_cost = cost;
-            best = Some(plane);
+    let voters = patch.nearest(VOTERS);
+    let mut vote = Vote::new(&voters);
+    if let Some(plane) = least_squares(&voters) {
+        if vote.is_unanimous(&plane) {
+            return Some(plane);
         }
-    };
-    if let Some(plane) = least_squares(voters.offsets) {
-        consider(plane);
+        vote.consider(plane);
     }
-    let nearest = |count: usize| &voters.offsets[..voters.offsets.len().min(count)];
-    let paired = nearest(PAIRED);
+    let offsets: [Vector3; PAIRED] =
+        std::array::from_fn(|i| if i < voters.len() { voters.offset(i) } else { Vector3::zeros() });
+    let paired = &offsets[..voters.len().min(PAIRED)];
     for (j, b) in paired.iter().enumerate() {
         for a in &paired[..j] {
             if let Some(normal) = across(a, b) {
-                consider(Plane { normal, height: 0.0 });
+                vote.consider(Plane { normal, height: 0.0 });
             }
         }
     }
-    let tripled = nearest(TRIPLED);
+    let tripled = &paired[..paired.len().min(TRIPLED)];
     for (j, c) in tripled.iter().enumerate() {
         for (i, b) in tripled[..j].iter().enumerate() {
             for a in &tripled[..i] {
                 if let Some(normal) = across(&(b - a), &(c - a)) {
-                    consider(Plane { normal, height: normal.dot(a) });
+                    vote.consider(Plane { normal, height: normal.dot(a) });
                 }
             }
         }
     }
-    best
+    vote.best
 }
 
-/// The truncated negative log-likelihood of the voters, given up once it reaches `enough`.
-///
-/// The logarithm matters where noise depends on direction: without it a plane facing the noisy
-/// direction explains anything. `scale` makes it at most zero, so that an outlier costs the same
-/// whatever the plane.
-fn disagreement(voters: &Patch, plane: &Plane, scale: f64, enough: f64) -> f64 {
-    let variance = voters.own_variance(&plane.normal);
-    let narrowness = (variance / scale).ln();
-    let (inverse, most) = (1.0 / variance, CUT * CUT);
-    let floor = narrowness * voters.offsets.len() as f64;
-    // The plane is to be the one the point is on, unless the point is far beyond its noise.
-    let mut cost = capped(plane.height * plane.height * inverse, OWN_VOTES * most);
-    for offset in voters.offsets {
-        let residual = plane.normal.dot(offset) - plane.height;
-        cost += capped(residual * residual * inverse + narrowness, most);
-        // Every term left is at least the narrowness, and all of them together at least `floor`.
-        if cost + floor.min(0.0) >= enough {
-            return f64::INFINITY;
+/// The plane that costs least of those considered.
+struct Vote<'a> {
+    voters: &'a Patch<'a>,
+    /// The largest variance of the point along any normal, m².
+    scale: f64,
+    /// The variance along all normals with its narrowness, where it does not depend on them.
+    same: Option<(f64, f64)>,
+    best: Option<Plane>,
+    best_cost: f64,
+}
+
+impl<'a> Vote<'a> {
+    fn new(voters: &'a Patch<'a>) -> Self {
+        let scale = voters.largest_own_variance();
+        let same = voters.isotropic_own_variance().map(|v| (v, (v / scale).ln()));
+        Self { voters, scale, same, best: None, best_cost: f64::INFINITY }
+    }
+
+    fn consider(&mut self, plane: Plane) {
+        let cost = self.disagreement(&plane);
+        if cost < self.best_cost {
+            self.best_cost = cost;
+            self.best = Some(plane);
         }
     }
-    cost
+
+    /// The variance of residuals from a plane, and the logarithm of what part it is of the largest.
+    fn variance(&self, plane: &Plane) -> (f64, f64) {
+        self.same.unwrap_or_else(|| {
+            let variance = self.voters.own_variance(&plane.normal);
+            (variance, (variance / self.scale).ln())
+        })
+    }
+
+    /// Whether a plane misses neither the point nor a voter.
+    fn is_unanimous(&self, plane: &Plane) -> bool {
+        let (variance, _) = self.variance(plane);
+        let most = CUT * CUT * variance;
+        let worst = self.voters.groups().fold(Lanes::ZERO, |worst, (_, offsets, present)| {
+            let residuals = plane.residuals(offsets);
+            worst.max(residuals * residuals * present)
+        });
+        plane.height * plane.height <= most && worst.0.iter().all(|worst| *worst <= most)
+    }
+
+    /// The truncated negative log-likelihood of the voters; infinite where it is more than that of
+    /// the best so far.
+    ///
+    /// The logarithm matters where noise depends on direction: without it a plane facing the noisy
+    /// direction explains anything. `scale` makes it at most zero, so that an outlier costs the same
+    /// whatever the plane.
+    fn disagreement(&self, plane: &Plane) -> f64 {
+        let (variance, narrowness) = self.variance(plane);
+        let (inverse, most) = (1.0 / variance, CUT * CUT);
+        // The plane is to be the one the point is on, unless the point is far beyond its noise.
+        let own = capped(plane.height * plane.height * inverse, OWN_VOTES * most);
+        let costs = |offsets: &[Lanes; 3]| {
+            let residuals = plane.residuals(offsets);
+            residuals * residuals * inverse + Lanes::splat(narrowness)
+        };
+        let flat = self.voters.groups().fold(Lanes::ZERO, |sum, (_, offsets, present)| {
+            sum + costs(offsets).min(Lanes::splat(most)) * present
+        });
+        // No cost is less than its flat part.
+        if own + flat.sum() > self.best_cost {
+            return f64::INFINITY;
+        }
+        let total = self.voters.groups().fold(Lanes::ZERO, |sum, (_, offsets, present)| {
+            sum + costs(offsets).map(|cost| capped(cost, most)) * present
+        });
+        own + total.sum()
+    }
 }
 
 /// The cost up to the cap, and hardly more beyond it.
@@ -102,13 +148,18 @@ fn across(a: &Vector3, b: &Vector3) -> Option<Vector3> {
     (squared > 1e-6 * a.norm_squared() * b.norm_squared()).then(|| cross / squared.sqrt())
 }
 
-fn least_squares(offsets: &[Vector3]) -> Option<Plane> {
-    let count = offsets.len() as f64;
-    let centre = offsets.iter().sum::<Vector3>() / count;
-    let scatter = offsets
-        .iter()
-        .map(|offset| (offset - centre) * (offset - centre).transpose())
-        .sum::<Matrix3>();
-    let normal = smallest_axis(&scatter)?;
-    Some(Plane { normal, height: normal.dot(&centre) })
+fn least_squares(voters: &Patch) -> Option<Plane> {
+    let mut first = [Lanes::ZERO; 3];
+    let mut second = [Lanes::ZERO; 6];
+    // Where there is no neighbour the offsets are zero, which adds nothing, or another's.
+    for (_, offsets, present) in voters.groups() {
+        let [x, y, z] = offsets.map(|values| values * present);
+        for (sum, value) in first.iter_mut().zip([x, y, z]) {
+            *sum += value;
+        }
+        for (sum, product) in second.iter_mut().zip([x * x, x * y, x * z, y * y, y * z, z * z]) {
+            *sum += product;
+        }
+    }
+    plane_of_sums(voters.len() as f64, first.map(Lanes::sum), second.map(Lanes::sum))
 }

@@ -1,10 +1,12 @@
 #![doc = include_str!("../README.md")]
 
+mod block;
 mod candidates;
 mod discretization;
 mod error;
 mod finite;
 mod grid;
+mod lanes;
 mod limited;
 mod model;
 mod motion;
@@ -16,7 +18,9 @@ mod posterior_settings;
 mod radius;
 mod ranging;
 mod refined;
+mod regression;
 mod representatives;
+mod reweight;
 mod scratch;
 mod sensor;
 mod sensor_model;
@@ -26,6 +30,7 @@ mod settings;
 mod settings_error;
 mod smallest_axis;
 mod spacing;
+mod spatial_order;
 mod surface;
 mod wide;
 

@@ -15,7 +15,8 @@ use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::settings::{Combination, NoiseSettings};
 use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
-use crate::surface::MOST_NEIGHBORS;
+use crate::spatial_order::spatial_order;
+use crate::patch::MOST_NEIGHBORS;
 
 /// Turns measured points into uncertain surface points.
 ///
@@ -103,7 +104,8 @@ impl NoiseModel {
             Combination::SurfacePosterior => MOST_NEIGHBORS,
             _ => self.settings.discretization.neighbors.max(SPACING_NEIGHBORS),
         };
-        neighborhoods.nearest_into(index, count, &mut scratch.neighbors);
+        let Scratch { block, neighbors, .. } = scratch;
+        block.nearest_into(neighborhoods, &points[index], count, true, neighbors);
         let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
         let unfitted = |covariance| Refined {
             point: UncertainPoint { mean: points[index], covariance },
@@ -150,12 +152,19 @@ impl NoiseModel {
         sensor: &SensorNoise,
         spacing_cap: f64,
     ) -> Vec<Refined> {
-        (0..neighborhoods.points().len())
-            .into_par_iter()
-            .map_init(Scratch::default, |scratch, index| {
-                self.refine(index, neighborhoods, sensor, spacing_cap, scratch)
+        // One after the other where they are near one another, so that they share a block.
+        let order = spatial_order(neighborhoods.points());
+        let refined: Vec<Refined> = order
+            .par_iter()
+            .map_init(Scratch::default, |scratch, &index| {
+                self.refine(index as usize, neighborhoods, sensor, spacing_cap, scratch)
             })
-            .collect()
+            .collect();
+        let mut places = vec![0; order.len()];
+        for (place, &index) in order.iter().enumerate() {
+            places[index as usize] = place;
+        }
+        places.into_iter().map(|place| refined[place]).collect()
     }
 
     /// Mean and covariance of a surface point whose normal is known, not fitted: the point stays

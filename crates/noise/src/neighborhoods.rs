@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 use cloudtouch_geom::Point3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
@@ -31,6 +32,8 @@ pub struct Neighborhoods {
     points: Vec<Point3>,
     distinct: usize,
     tree: ImmutableKdTree<f64, 3>,
+    /// Tells it from any other while somebody keeps this.
+    id: Arc<()>,
 }
 
 impl Neighborhoods {
@@ -51,7 +54,7 @@ impl Neighborhoods {
         let tree = ImmutableKdTree::new_from_entries(&entries).map_err(|error| {
             NoiseError::Index { points: points.len(), reason: error.to_string() }
         })?;
-        Ok(Self { points, distinct: entries.len(), tree })
+        Ok(Self { points, distinct: entries.len(), tree, id: Arc::default() })
     }
 
     /// The points it was built from, in the order given.
@@ -62,6 +65,11 @@ impl Neighborhoods {
     /// How many different finite positions there are.
     pub fn distinct(&self) -> usize {
         self.distinct
+    }
+
+    /// The same for no other index that is still in use.
+    pub(crate) fn id(&self) -> &Arc<()> {
+        &self.id
     }
 
     /// The `k` positions nearest to point `index` other than its own, fewer when there are fewer,
@@ -107,7 +115,7 @@ impl Neighborhoods {
     }
 
     /// The positions within a distance of a place, in no order.
-    fn hits_within(&self, place: &Point3, squared_distance: f64) -> Vec<Neighbor> {
+    pub(crate) fn hits_within(&self, place: &Point3, squared_distance: f64) -> Vec<Neighbor> {
         let query: [f64; 3] = place.coords.into();
         // The slack keeps the tree's box tests, which round, from losing one.
         let within = self
@@ -123,7 +131,15 @@ impl Neighborhoods {
             .collect()
     }
 
-    fn search(&self, place: &Point3, k: usize, leave_out_place: bool, found: &mut Vec<Neighbor>) {
+    /// The distance of the position that is `k`-th nearest to a place, or of the last, m.
+    pub(crate) fn distance_of_nearest(&self, place: &Point3, k: usize) -> f64 {
+        let Some(wanted) = NonZeroUsize::new(k.min(self.distinct)) else { return 0.0 };
+        let query: [f64; 3] = place.coords.into();
+        let nearest = self.tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(wanted).execute();
+        nearest.iter().map(|hit| hit.distance).fold(0.0, f64::max).sqrt()
+    }
+
+    pub(crate) fn search(&self, place: &Point3, k: usize, leave_out_place: bool, found: &mut Vec<Neighbor>) {
         found.clear();
         // One more than asked for shows whether a tie was cut, and one more makes up for `place`.
         let wanted = self.distinct.min(k.saturating_add(1 + usize::from(leave_out_place)));
@@ -154,7 +170,7 @@ impl Neighborhoods {
     }
 }
 
-fn in_order(a: &Neighbor, b: &Neighbor) -> Ordering {
+pub(crate) fn in_order(a: &Neighbor, b: &Neighbor) -> Ordering {
     a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
 }
 

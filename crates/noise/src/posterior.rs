@@ -2,15 +2,16 @@
 
 use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
 
+use crate::lanes::{Lanes, WIDTH};
 use crate::neighborhoods::Neighborhoods;
-use crate::patch::Patch;
+use crate::patch::{MOST_NEIGHBORS, Patch};
 use crate::posterior_settings::PosteriorSettings;
 use crate::refined::Refined;
 use crate::representatives::Representatives;
 use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::spacing::{SPACING_NEIGHBORS, is_noisy, spacing_around, spacing_of_rank};
-use crate::surface::{MOST_NEIGHBORS, Surface, fit_surface};
+use crate::surface::{Surface, fit_surface};
 use crate::wide::wide_surface;
 
 /// A neighbour so many standard deviations off the surface is not a sample of it.
@@ -39,7 +40,7 @@ pub(crate) fn posterior(
     let wide = is_noisy(&sensor[index], around)
         .then(|| wide_surface(index, neighborhoods, sensor, around, scratch))
         .flatten();
-    let Scratch { neighbors, patch, wide_neighbors, wide_patch } = scratch;
+    let Scratch { neighbors, patch, wide_neighbors, wide_patch, .. } = scratch;
     let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
     let surface = wide.or_else(|| fit_surface(&patch))?;
     let spacing = match representatives {
@@ -106,20 +107,29 @@ fn share(a: f64, b: f64) -> f64 {
 fn tangential_spacing(patch: &Patch, surface: &Surface) -> Option<f64> {
     let mut nearest = [f64::INFINITY; SPACING_NEIGHBORS];
     let mut count = 0;
-    for (offset, variance) in patch.with_variances(&surface.normal) {
-        let (residual, reach) = surface.residual_and_reach(offset);
-        let allowed = SAMPLE_OFFSET.powi(2) * (variance + surface.expected_error);
-        if residual * residual <= allowed {
-            count += 1;
-            let last = SPACING_NEIGHBORS - 1;
-            if reach < nearest[last] {
-                let place = nearest.partition_point(|&r| r <= reach);
-                nearest[place..].rotate_right(1);
-                nearest[place] = reach;
+    let precisions = patch.precisions(&surface.normal);
+    let allowance = SAMPLE_OFFSET * SAMPLE_OFFSET * surface.expected_error;
+    for (group, offsets, present) in patch.groups() {
+        let [residual, reach] = surface.squared_residual_and_reach(offsets);
+        let precision = precisions.group(group);
+        let excess = (residual - Lanes::splat(allowance)) * precision;
+        for lane in 0..WIDTH {
+            if present.0[lane] > 0.0 && excess.0[lane] <= SAMPLE_OFFSET * SAMPLE_OFFSET {
+                count += 1;
+                insert(&mut nearest, reach.0[lane]);
             }
         }
     }
     let rank = count.min(SPACING_NEIGHBORS);
-    let reach = *nearest.get(rank.checked_sub(1)?)?;
-    Some(spacing_of_rank(reach, rank))
+    let squared = *nearest.get(rank.checked_sub(1)?)?;
+    Some(spacing_of_rank(squared.sqrt(), rank))
+}
+
+/// Keeps the least values in order.
+fn insert(least: &mut [f64; SPACING_NEIGHBORS], value: f64) {
+    if value < least[SPACING_NEIGHBORS - 1] {
+        let place = least.partition_point(|&kept| kept <= value);
+        least[place..].rotate_right(1);
+        least[place] = value;
+    }
 }

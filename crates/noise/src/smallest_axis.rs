@@ -7,8 +7,7 @@ use cloudtouch_geom::{Matrix3, Vector3};
 /// The unit eigenvector of the smallest eigenvalue of a symmetric positive semidefinite matrix,
 /// of either sign; `None` where no axis stands out, as for a ball or a line.
 ///
-/// The eigenvalue comes from the trigonometric formula, which is accurate for one that stands
-/// apart, and the axis from the cross product of two rows of M − λI: a third of the time of an
+/// The eigenvalue is a root of the characteristic polynomial, and the axis from the cross product of two rows of M − λI: a third of the time of an
 /// iterative decomposition.
 pub(crate) fn smallest_axis(matrix: &Matrix3) -> Option<Vector3> {
     let mean = matrix.trace() / 3.0;
@@ -22,9 +21,11 @@ pub(crate) fn smallest_axis(matrix: &Matrix3) -> Option<Vector3> {
     if spread < f64::EPSILON {
         return None;
     }
-    let half_determinant = (0.5 * (deviator / spread).determinant()).clamp(-1.0, 1.0);
-    let angle = half_determinant.acos() / 3.0 + 2.0 * FRAC_PI_3;
-    let smallest = 1.0 + 2.0 * spread * angle.cos();
+    let smallest = least_root(&scaled).unwrap_or_else(|| {
+        let half_determinant = (0.5 * (deviator / spread).determinant()).clamp(-1.0, 1.0);
+        let angle = half_determinant.acos() / 3.0 + 2.0 * FRAC_PI_3;
+        1.0 + 2.0 * spread * angle.cos()
+    });
     let shifted = scaled - Matrix3::identity() * smallest;
     let [a, b, c] = [0, 1, 2].map(|row| Vector3::from(shifted.row(row).transpose()));
     let longest = [a.cross(&b), b.cross(&c), c.cross(&a)]
@@ -34,6 +35,35 @@ pub(crate) fn smallest_axis(matrix: &Matrix3) -> Option<Vector3> {
     // rounding the two smallest are equal.
     let length = longest.norm();
     (length > GAP * spread * spread).then(|| longest / length)
+}
+
+/// Newton steps before the trigonometric formula is asked.
+const STEPS: usize = 7;
+/// A step so small, of a root whose scale is one, ends the search: the next would be its square.
+const LAST_STEP: f64 = 1e-9;
+
+/// The smallest eigenvalue of a semidefinite matrix of trace 3, by Newton's method on its
+/// characteristic polynomial; `None` where that converges slowly, as for two equal eigenvalues.
+///
+/// From zero up to the smallest root the polynomial is increasing and concave, so no step goes too
+/// far. For a flat patch the first one is almost all.
+fn least_root(m: &Matrix3) -> Option<f64> {
+    let [xx, xy, xz] = [m[(0, 0)], m[(0, 1)], m[(0, 2)]];
+    let [yy, yz, zz] = [m[(1, 1)], m[(1, 2)], m[(2, 2)]];
+    let [minor_x, minor_y, minor_z] = [yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy];
+    let minors = minor_x + minor_y + minor_z;
+    let determinant = xx * minor_x - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    let mut root = 0.0;
+    for _ in 0..STEPS {
+        let value = ((root - 3.0) * root + minors) * root - determinant;
+        let slope = (3.0 * root - 6.0) * root + minors;
+        let step = -value / slope;
+        root += step;
+        if step.abs() < LAST_STEP {
+            return Some(root);
+        }
+    }
+    None
 }
 
 /// Least product of the two gaps, relative to the spread squared. Where two eigenvalues are equal the

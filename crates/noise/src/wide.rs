@@ -3,9 +3,10 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use crate::neighborhoods::Neighborhoods;
+use crate::patch::MOST_NEIGHBORS;
 use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
-use crate::surface::{MOST_NEIGHBORS, Surface, fit_surface};
+use crate::surface::{Surface, fit_surface};
 
 /// Among as many neighbours from farther away: every fourth or sixteenth of four or sixteen times as
 /// many.
