@@ -2,9 +2,9 @@
 
 use cloudtouch_geom::Vector3;
 
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Machine};
 use crate::patch::{Patch, Plane};
-use crate::reweight::plane_of_sums;
+use crate::reweight::{plane_of_sums, sums};
 
 /// Planes are laid through the point and each pair of this many nearest neighbours.
 const PAIRED: usize = 8;
@@ -25,18 +25,21 @@ const OWN_VOTES: f64 = 4.0;
 /// That is the least-squares plane where it misses nobody. Else candidates are laid through three
 /// places, so that one of them is likely to lie in one face even where two meet: the point and two
 /// neighbours, or three neighbours, since the point itself may be the outlier.
-pub(crate) fn best_candidate(patch: &Patch) -> Option<Plane> {
+#[inline(always)]
+pub(crate) fn best_candidate<S: Machine>(machine: S, patch: &Patch) -> Option<Plane> {
     let voters = patch.nearest(VOTERS);
-    let mut vote = Vote::new(&voters);
-    if let Some(plane) = least_squares(&voters) {
+    let mut vote = Vote::new(machine, &voters);
+    if let Some(plane) = least_squares(machine, &voters) {
         if vote.is_unanimous(&plane) {
             return Some(plane);
         }
         vote.consider(plane);
     }
-    let offsets: [Vector3; PAIRED] =
-        std::array::from_fn(|i| if i < voters.len() { voters.offset(i) } else { Vector3::zeros() });
-    let paired = &offsets[..voters.len().min(PAIRED)];
+    let mut offsets = [Vector3::zeros(); PAIRED];
+    let paired = &mut offsets[..voters.len().min(PAIRED)];
+    for (i, offset) in paired.iter_mut().enumerate() {
+        *offset = voters.offset(i);
+    }
     for (j, b) in paired.iter().enumerate() {
         for a in &paired[..j] {
             if let Some(normal) = across(a, b) {
@@ -58,7 +61,8 @@ pub(crate) fn best_candidate(patch: &Patch) -> Option<Plane> {
 }
 
 /// The plane that costs least of those considered.
-struct Vote<'a> {
+struct Vote<'a, S> {
+    machine: S,
     voters: &'a Patch<'a>,
     /// The largest variance of the point along any normal, m².
     scale: f64,
@@ -68,13 +72,15 @@ struct Vote<'a> {
     best_cost: f64,
 }
 
-impl<'a> Vote<'a> {
-    fn new(voters: &'a Patch<'a>) -> Self {
+impl<'a, S: Machine> Vote<'a, S> {
+    #[inline(always)]
+    fn new(machine: S, voters: &'a Patch<'a>) -> Self {
         let scale = voters.largest_own_variance();
         let same = voters.isotropic_own_variance().map(|v| (v, (v / scale).ln()));
-        Self { voters, scale, same, best: None, best_cost: f64::INFINITY }
+        Self { machine, voters, scale, same, best: None, best_cost: f64::INFINITY }
     }
 
+    #[inline(always)]
     fn consider(&mut self, plane: Plane) {
         let cost = self.disagreement(&plane);
         if cost < self.best_cost {
@@ -84,6 +90,7 @@ impl<'a> Vote<'a> {
     }
 
     /// The variance of residuals from a plane, and the logarithm of what part it is of the largest.
+    #[inline(always)]
     fn variance(&self, plane: &Plane) -> (f64, f64) {
         self.same.unwrap_or_else(|| {
             let variance = self.voters.own_variance(&plane.normal);
@@ -92,14 +99,19 @@ impl<'a> Vote<'a> {
     }
 
     /// Whether a plane misses neither the point nor a voter.
+    #[inline(always)]
     fn is_unanimous(&self, plane: &Plane) -> bool {
+        let machine = self.machine;
         let (variance, _) = self.variance(plane);
         let most = CUT * CUT * variance;
-        let worst = self.voters.groups().fold(Lanes::ZERO, |worst, (_, offsets, present)| {
-            let residuals = plane.residuals(offsets);
-            worst.max(residuals * residuals * present)
-        });
-        plane.height * plane.height <= most && worst.0.iter().all(|worst| *worst <= most)
+        let mut beyond = Lanes::zero(machine);
+        for group in 0..self.voters.groups() {
+            let offsets = self.voters.group(machine, group);
+            let present = self.voters.present(machine, group);
+            let residuals = plane.residuals(machine, offsets);
+            beyond += (residuals * residuals * present - Lanes::splat(machine, most)).not_negative();
+        }
+        plane.height * plane.height <= most && beyond.sum() == 0.0
     }
 
     /// The truncated negative log-likelihood of the voters; infinite where it is more than that of
@@ -108,26 +120,36 @@ impl<'a> Vote<'a> {
     /// The logarithm matters where noise depends on direction: without it a plane facing the noisy
     /// direction explains anything. `scale` makes it at most zero, so that an outlier costs the same
     /// whatever the plane.
+    #[inline(always)]
     fn disagreement(&self, plane: &Plane) -> f64 {
+        let machine = self.machine;
         let (variance, narrowness) = self.variance(plane);
         let (inverse, most) = (1.0 / variance, CUT * CUT);
         // The plane is to be the one the point is on, unless the point is far beyond its noise.
         let own = capped(plane.height * plane.height * inverse, OWN_VOTES * most);
-        let costs = |offsets: &[Lanes; 3]| {
-            let residuals = plane.residuals(offsets);
-            residuals * residuals * inverse + Lanes::splat(narrowness)
-        };
-        let flat = self.voters.groups().fold(Lanes::ZERO, |sum, (_, offsets, present)| {
-            sum + costs(offsets).min(Lanes::splat(most)) * present
-        });
-        // No cost is less than its flat part.
-        if own + flat.sum() > self.best_cost {
+        // How much less the voters cost than if all of them missed the plane.
+        let mut spared = Lanes::zero(machine);
+        let spare = Lanes::splat(machine, most - narrowness);
+        for group in 0..self.voters.groups() {
+            let offsets = self.voters.group(machine, group);
+            let present = self.voters.present(machine, group);
+            let residuals = plane.residuals(machine, offsets);
+            spared += (spare - residuals * residuals * inverse).not_negative() * present;
+        }
+        // What a miss costs beyond the cap comes to this.
+        let least = own + most * self.voters.len() as f64 - spared.sum();
+        if least > self.best_cost {
             return f64::INFINITY;
         }
-        let total = self.voters.groups().fold(Lanes::ZERO, |sum, (_, offsets, present)| {
-            sum + costs(offsets).map(|cost| capped(cost, most)) * present
-        });
-        own + total.sum()
+        let mut tails = Lanes::zero(machine);
+        for group in 0..self.voters.groups() {
+            let offsets = self.voters.group(machine, group);
+            let present = self.voters.present(machine, group);
+            let residuals = plane.residuals(machine, offsets);
+            let cost = residuals * residuals * inverse + Lanes::splat(machine, narrowness);
+            tails += Lanes::load(machine, cost.stored().map(|cost| tail(cost, most))) * present;
+        }
+        least + tails.sum()
     }
 }
 
@@ -136,24 +158,36 @@ impl<'a> Vote<'a> {
 /// Where samples are far sharper than their spacing every plane misses all voters but those it was
 /// laid through. Planes that cost the same to the last bit would be told apart by rounding, and the
 /// surface would jump when the cloud is moved.
+#[inline(always)]
 fn capped(cost: f64, most: f64) -> f64 {
-    if cost <= most { cost } else { most + TAIL * (cost - most) / cost }
+    cost.min(most) + tail(cost, most)
+}
+
+/// What a cost comes to beyond its cap.
+#[inline(always)]
+fn tail(cost: f64, most: f64) -> f64 {
+    if cost <= most { 0.0 } else { TAIL * (cost - most) / cost }
 }
 
 /// The direction across two others; `None` when they are nearly parallel, which would leave a
 /// direction of rounding error.
+#[inline(always)]
 fn across(a: &Vector3, b: &Vector3) -> Option<Vector3> {
     let cross = a.cross(b);
     let squared = cross.norm_squared();
     (squared > 1e-6 * a.norm_squared() * b.norm_squared()).then(|| cross / squared.sqrt())
 }
 
-fn least_squares(voters: &Patch) -> Option<Plane> {
-    let mut first = [Lanes::ZERO; 3];
-    let mut second = [Lanes::ZERO; 6];
+#[inline(always)]
+fn least_squares<S: Machine>(machine: S, voters: &Patch) -> Option<Plane> {
+    let mut first = [Lanes::zero(machine); 3];
+    let mut second = [Lanes::zero(machine); 6];
     // Where there is no neighbour the offsets are zero, which adds nothing, or another's.
-    for (_, offsets, present) in voters.groups() {
-        let [x, y, z] = offsets.map(|values| values * present);
+    for group in 0..voters.groups() {
+        let offsets = voters.group(machine, group);
+        let present = voters.present(machine, group);
+        let [x, y, z] = offsets;
+        let [x, y, z] = [x * present, y * present, z * present];
         for (sum, value) in first.iter_mut().zip([x, y, z]) {
             *sum += value;
         }
@@ -161,5 +195,5 @@ fn least_squares(voters: &Patch) -> Option<Plane> {
             *sum += product;
         }
     }
-    plane_of_sums(voters.len() as f64, first.map(Lanes::sum), second.map(Lanes::sum))
+    plane_of_sums(voters.len() as f64, sums(first), sums(second))
 }

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Covariance, Vector3};
 
-use crate::lanes::{Lanes, WIDTH};
+use crate::lanes::{Lanes, Machine, Stored, WIDTH};
 
 /// The most neighbours a patch can hold.
 pub(crate) const MOST_NEIGHBORS: usize = 60;
@@ -13,13 +13,13 @@ pub(crate) const GROUPS: usize = MOST_NEIGHBORS / WIDTH + 1;
 /// where there are no more.
 #[derive(Debug, Clone)]
 pub(crate) struct Offsets {
-    pub(crate) groups: [[Lanes; 3]; GROUPS],
+    groups: [[Stored; 3]; GROUPS],
     count: usize,
 }
 
 impl Default for Offsets {
     fn default() -> Self {
-        Self { groups: [[Lanes::ZERO; 3]; GROUPS], count: 0 }
+        Self { groups: [[[0.0; WIDTH]; 3]; GROUPS], count: 0 }
     }
 }
 
@@ -39,7 +39,7 @@ impl Offsets {
 
     fn put(&mut self, index: usize, offset: Vector3) {
         for (lanes, value) in self.groups[index / WIDTH].iter_mut().zip(offset.iter()) {
-            lanes.0[index % WIDTH] = *value;
+            lanes[index % WIDTH] = *value;
         }
     }
 
@@ -47,7 +47,7 @@ impl Offsets {
     pub(crate) fn get(&self, index: usize) -> Vector3 {
         let [x, y, z] = self.groups[index / WIDTH];
         let lane = index % WIDTH;
-        Vector3::new(x.0[lane], y.0[lane], z.0[lane])
+        Vector3::new(x[lane], y[lane], z[lane])
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -80,15 +80,15 @@ pub(crate) enum PatchNoise<'a> {
 /// The inverse variances of neighbours along a direction, 1/m².
 pub(crate) enum Precisions {
     Same(f64),
-    Each([Lanes; GROUPS]),
+    Each([Stored; GROUPS]),
 }
 
 impl Precisions {
     #[inline(always)]
-    pub(crate) fn group(&self, group: usize) -> Lanes {
+    pub(crate) fn group<S: Machine>(&self, machine: S, group: usize) -> Lanes<S> {
         match self {
-            Self::Same(precision) => Lanes::splat(*precision),
-            Self::Each(all) => all[group],
+            Self::Same(precision) => Lanes::splat(machine, *precision),
+            Self::Each(all) => Lanes::load(machine, all[group]),
         }
     }
 }
@@ -105,9 +105,9 @@ pub(crate) struct Plane {
 impl Plane {
     /// How far places are above it, m.
     #[inline(always)]
-    pub(crate) fn residuals(&self, [x, y, z]: &[Lanes; 3]) -> Lanes {
+    pub(crate) fn residuals<S: Machine>(&self, machine: S, [x, y, z]: [Lanes<S>; 3]) -> Lanes<S> {
         let n = &self.normal;
-        *x * n.x + *y * n.y + *z * n.z - Lanes::splat(self.height)
+        x * n.x + y * n.y + z * n.z - Lanes::splat(machine, self.height)
     }
 }
 
@@ -141,16 +141,24 @@ impl<'a> Patch<'a> {
         self.offsets.get(index)
     }
 
-    /// The vectors to the neighbours, with a one in every lane that holds one and a zero in the
-    /// others, by group.
+    /// How many groups of lanes they take.
     #[inline(always)]
-    pub(crate) fn groups(&self) -> impl Iterator<Item = (usize, &'a [Lanes; 3], Lanes)> + use<'a> {
-        let count = self.count;
-        let groups = &self.offsets.groups[..count.div_ceil(WIDTH)];
-        groups.iter().enumerate().map(move |(group, offsets)| {
-            let left = (count - group * WIDTH).min(WIDTH);
-            (group, offsets, Lanes(PRESENT[left - 1]))
-        })
+    pub(crate) fn groups(&self) -> usize {
+        self.count.div_ceil(WIDTH)
+    }
+
+    /// The vectors to the neighbours of a group: x, y and z.
+    #[inline(always)]
+    pub(crate) fn group<S: Machine>(&self, machine: S, group: usize) -> [Lanes<S>; 3] {
+        let [x, y, z] = self.offsets.groups[group];
+        [Lanes::load(machine, x), Lanes::load(machine, y), Lanes::load(machine, z)]
+    }
+
+    /// Ones in the lanes of a group that hold a neighbour, zeros in the others.
+    #[inline(always)]
+    pub(crate) fn present<S: Machine>(&self, machine: S, group: usize) -> Lanes<S> {
+        let left = (self.count - group * WIDTH).min(WIDTH);
+        Lanes::load(machine, PRESENT[left - 1])
     }
 
     /// The inverse of the variances that residuals of the neighbours along a unit normal are judged
@@ -161,9 +169,9 @@ impl<'a> Patch<'a> {
         match self.noise {
             PatchNoise::Uniform(noise) => Precisions::Same(along(noise)),
             PatchNoise::Each(all) => {
-                let mut precisions = [Lanes::ZERO; GROUPS];
+                let mut precisions = [[0.0; WIDTH]; GROUPS];
                 for (index, noise) in all[..self.count].iter().enumerate() {
-                    precisions[index / WIDTH].0[index % WIDTH] = along(noise);
+                    precisions[index / WIDTH][index % WIDTH] = along(noise);
                 }
                 Precisions::Each(precisions)
             }

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
 
-use crate::lanes::{Lanes, WIDTH};
+use crate::lanes::{Kernel, Lanes, Machine, WIDTH, run};
 use crate::neighborhoods::Neighborhoods;
 use crate::patch::{MOST_NEIGHBORS, Patch};
 use crate::posterior_settings::PosteriorSettings;
@@ -105,18 +105,40 @@ fn share(a: f64, b: f64) -> f64 {
 /// The spacing of the samples on the surface, noise across it left out: the sixth least distance
 /// across the normal among the neighbours near the surface; `None` when there is none.
 fn tangential_spacing(patch: &Patch, surface: &Surface) -> Option<f64> {
+    run(Spacing { patch, surface })
+}
+
+struct Spacing<'a> {
+    patch: &'a Patch<'a>,
+    surface: &'a Surface,
+}
+
+impl Kernel for Spacing<'_> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn run<S: Machine>(self, machine: S) -> Option<f64> {
+        tangential(machine, self.patch, self.surface)
+    }
+}
+
+#[inline(always)]
+fn tangential<S: Machine>(machine: S, patch: &Patch, surface: &Surface) -> Option<f64> {
     let mut nearest = [f64::INFINITY; SPACING_NEIGHBORS];
     let mut count = 0;
     let precisions = patch.precisions(&surface.normal);
     let allowance = SAMPLE_OFFSET * SAMPLE_OFFSET * surface.expected_error;
-    for (group, offsets, present) in patch.groups() {
-        let [residual, reach] = surface.squared_residual_and_reach(offsets);
-        let precision = precisions.group(group);
-        let excess = (residual - Lanes::splat(allowance)) * precision;
+    for group in 0..patch.groups() {
+        let offsets = patch.group(machine, group);
+        let present = patch.present(machine, group);
+        let [residual, reach] = surface.squared_residual_and_reach(machine, offsets);
+        let precision = precisions.group(machine, group);
+        let excess = (residual - Lanes::splat(machine, allowance)) * precision;
+        let [present, excess, reach] = [present.stored(), excess.stored(), reach.stored()];
         for lane in 0..WIDTH {
-            if present.0[lane] > 0.0 && excess.0[lane] <= SAMPLE_OFFSET * SAMPLE_OFFSET {
+            if present[lane] > 0.0 && excess[lane] <= SAMPLE_OFFSET * SAMPLE_OFFSET {
                 count += 1;
-                insert(&mut nearest, reach.0[lane]);
+                insert(&mut nearest, reach[lane]);
             }
         }
     }
@@ -126,6 +148,7 @@ fn tangential_spacing(patch: &Patch, surface: &Surface) -> Option<f64> {
 }
 
 /// Keeps the least values in order.
+#[inline(always)]
 fn insert(least: &mut [f64; SPACING_NEIGHBORS], value: f64) {
     if value < least[SPACING_NEIGHBORS - 1] {
         let place = least.partition_point(|&kept| kept <= value);

@@ -2,9 +2,9 @@
 
 use cloudtouch_geom::Vector3;
 
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Machine};
 use crate::patch::Patch;
-use crate::reweight::tukey;
+use crate::reweight::{sums, tukey};
 
 /// The cut of the weights an answer is measured with, in standard deviations.
 pub(crate) const FINAL_CUT: f64 = 3.0;
@@ -22,6 +22,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    #[inline(always)]
     pub(crate) fn new(normal: Vector3) -> Self {
         // The axis least along the normal gives the best conditioned tangent.
         let axis = Vector3::ith(normal.iamin(), 1.0);
@@ -31,9 +32,10 @@ impl Frame {
 
     /// Two coordinates across the normal and the height along it.
     #[inline(always)]
-    pub(crate) fn coordinates(&self, [x, y, z]: &[Lanes; 3]) -> [Lanes; 3] {
-        let along = |axis: &Vector3| *x * axis.x + *y * axis.y + *z * axis.z;
-        [along(&self.tangents[0]), along(&self.tangents[1]), along(&self.normal)]
+    pub(crate) fn coordinates<S: Machine>(&self, [x, y, z]: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
+        let [s, t] = &self.tangents;
+        let n = &self.normal;
+        [x * s.x + y * s.y + z * s.z, x * t.x + y * t.y + z * t.z, x * n.x + y * n.y + z * n.z]
     }
 }
 
@@ -43,9 +45,14 @@ pub(crate) type Coefficients = [f64; 4];
 /// How far places at these coordinates, of which the first two have the squares q, are above a
 /// surface, m.
 #[inline(always)]
-pub(crate) fn residuals([a, b, z]: [Lanes; 3], q: Lanes, coefficients: &Coefficients) -> Lanes {
+pub(crate) fn residuals<S: Machine>(
+    machine: S,
+    [a, b, z]: [Lanes<S>; 3],
+    q: Lanes<S>,
+    coefficients: &Coefficients,
+) -> Lanes<S> {
     let [c0, c1, c2, c3] = *coefficients;
-    z - (Lanes::splat(c0) + a * c1 + b * c2 + q * c3)
+    z - (Lanes::splat(machine, c0) + a * c1 + b * c2 + q * c3)
 }
 
 /// Weighted sums over the neighbours of 1, a, b, q = a²+b², z and their products.
@@ -64,19 +71,22 @@ struct Moments {
 
 impl Moments {
     /// Weighs the neighbours by their agreement with a surface of these coefficients.
-    fn of(patch: &Patch, frame: &Frame, coefficients: &Coefficients) -> Self {
+    #[inline(always)]
+    fn of<S: Machine>(machine: S, patch: &Patch, frame: &Frame, coefficients: &Coefficients) -> Self {
         let own = patch.own_variance(&frame.normal);
         let precisions = patch.precisions(&frame.normal);
         let inverse_cut = 1.0 / (FINAL_CUT * FINAL_CUT);
-        let [mut total, mut agreed, mut agreed_squared] = [Lanes::ZERO; 3];
-        let mut first = [Lanes::ZERO; 4];
-        let mut second = [[Lanes::ZERO; 4]; 4];
-        for (group, offsets, present) in patch.groups() {
-            let precision = precisions.group(group);
+        let [mut total, mut agreed, mut agreed_squared] = [Lanes::zero(machine); 3];
+        let mut first = [Lanes::zero(machine); 4];
+        let mut second = [[Lanes::zero(machine); 4]; 4];
+        for group in 0..patch.groups() {
+            let offsets = patch.group(machine, group);
+            let present = patch.present(machine, group);
+            let precision = precisions.group(machine, group);
             let [a, b, z] = frame.coordinates(offsets);
             let q = a * a + b * b;
-            let residual = residuals([a, b, z], q, coefficients);
-            let agreement = tukey(residual * residual * precision * inverse_cut) * present;
+            let residual = residuals(machine, [a, b, z], q, coefficients);
+            let agreement = tukey(machine, residual * residual * precision * inverse_cut) * present;
             let weight = agreement * precision * own;
             total += weight;
             agreed += agreement;
@@ -91,8 +101,9 @@ impl Moments {
             }
         }
         let weight = total.sum();
-        let mean = first.map(|sum| sum.sum() / weight);
-        let mut product = second.map(|row| row.map(Lanes::sum));
+        let mean = sums(first).map(|sum| sum / weight);
+        let [on_a, on_b, on_q, on_z] = second;
+        let mut product = [sums(on_a), sums(on_b), sums(on_q), sums(on_z)];
         for r in 0..4 {
             for c in r..4 {
                 product[r][c] -= weight * mean[r] * mean[c];
@@ -104,6 +115,7 @@ impl Moments {
 
     /// Regression of the height on a, b and 1, and on q after these; `s2` is the point's own
     /// variance. `None` when the neighbours do not determine a plane.
+    #[inline(always)]
     fn regress(&self, s2: f64) -> Option<Regression> {
         let [a, b, q, z] = self.mean;
         let [[aa, ab, aq, az], [_, bb, bq, bz], [_, _, qq, qz], [_, _, _, zz]] = self.product;
@@ -162,13 +174,15 @@ impl Moments {
 
 /// Fits a surface to the neighbours, weighted by their agreement with one of these coefficients.
 /// `None` when they do not determine a plane.
-pub(crate) fn regress(
+#[inline(always)]
+pub(crate) fn regress<S: Machine>(
+    machine: S,
     patch: &Patch,
     frame: &Frame,
     coefficients: &Coefficients,
 ) -> Option<Regression> {
     let s2 = patch.own_variance(&frame.normal);
-    Moments::of(patch, frame, coefficients).regress(s2)
+    Moments::of(machine, patch, frame, coefficients).regress(s2)
 }
 
 /// Two surfaces through the same neighbours, and what is known of the errors of their heights at the

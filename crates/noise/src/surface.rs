@@ -4,7 +4,7 @@
 use cloudtouch_geom::UnitVector3;
 
 use crate::candidates::best_candidate;
-use crate::lanes::Lanes;
+use crate::lanes::{Kernel, Lanes, Machine, run};
 use crate::patch::{Patch, Plane};
 use crate::regression::{Coefficients, FINAL_CUT, Frame, regress, residuals};
 use crate::reweight::reweighted;
@@ -47,11 +47,15 @@ impl Surface {
     /// The squared distances of places from the surface along the normal of the fit, and from the
     /// point across it, m²; the places are relative to the point.
     #[inline(always)]
-    pub(crate) fn squared_residual_and_reach(&self, offsets: &[Lanes; 3]) -> [Lanes; 2] {
+    pub(crate) fn squared_residual_and_reach<S: Machine>(
+        &self,
+        machine: S,
+        offsets: [Lanes<S>; 3],
+    ) -> [Lanes<S>; 2] {
         let coordinates = self.frame.coordinates(offsets);
         let [a, b, _] = coordinates;
         let reach = a * a + b * b;
-        let residual = residuals(coordinates, reach, &self.coefficients);
+        let residual = residuals(machine, coordinates, reach, &self.coefficients);
         [residual * residual, reach]
     }
 }
@@ -64,8 +68,24 @@ impl Surface {
 /// other sizes say about height and normal comes with it. `None` when no size determines a plane: too
 /// few neighbours, or all about one line.
 pub(crate) fn fit_surface(patch: &Patch) -> Option<Surface> {
+    run(Fit(patch))
+}
+
+struct Fit<'a>(&'a Patch<'a>);
+
+impl Kernel for Fit<'_> {
+    type Output = Option<Surface>;
+
+    #[inline(always)]
+    fn run<S: Machine>(self, machine: S) -> Option<Surface> {
+        fitted(machine, self.0)
+    }
+}
+
+#[inline(always)]
+fn fitted<S: Machine>(machine: S, patch: &Patch) -> Option<Surface> {
     let available = patch.len();
-    let mut plane = best_candidate(patch)?;
+    let mut plane = best_candidate(machine, patch)?;
     let mut best: Option<Surface> = None;
     let mut tried = [None; SIZES.len()];
     for (trial, size) in tried.iter_mut().zip(SIZES) {
@@ -75,8 +95,8 @@ pub(crate) fn fit_surface(patch: &Patch) -> Option<Surface> {
         }
         let nearest = patch.nearest(size);
         let cuts = if best.is_none() { &CUTS[..] } else { &CUTS[2..] };
-        if let Some(refined) = cuts.iter().try_fold(plane, |p, cut| reweighted(&nearest, &p, *cut))
-            && let Some(surface) = measured(&nearest, &refined)
+        if let Some(refined) = refined(machine, &nearest, plane, cuts)
+            && let Some(surface) = measured(machine, &nearest, &refined)
         {
             plane = refined;
             *trial = Some(surface);
@@ -93,8 +113,24 @@ pub(crate) fn fit_surface(patch: &Patch) -> Option<Surface> {
     Some(Surface { disagreement, tilt, ..best })
 }
 
+/// The plane after a pass by each cut.
+#[inline(always)]
+fn refined<S: Machine>(
+    machine: S,
+    patch: &Patch,
+    mut plane: Plane,
+    cuts: &[f64],
+) -> Option<Plane> {
+    // Not by an iterator, whose methods would be compiled without vector instructions.
+    for &cut in cuts {
+        plane = reweighted(machine, patch, &plane, cut)?;
+    }
+    Some(plane)
+}
+
 /// Less by more than rounding: errors that stand at the variance of the point itself differ by nothing
 /// else, and a choice among them would change when the cloud is moved.
+#[inline(always)]
 fn is_better(error: f64, than: f64) -> bool {
     error < than * (1.0 - 1e-9)
 }
@@ -103,6 +139,7 @@ fn is_better(error: f64, than: f64) -> bool {
 /// squared sine; both on average.
 ///
 /// Next to a crease each size rounds it off differently and none of the fits notices.
+#[inline(always)]
 fn disagreement(best: &Surface, tried: &[Option<Surface>]) -> (f64, f64) {
     let normal = best.normal.into_inner();
     let mut count = 0.0;
@@ -117,11 +154,12 @@ fn disagreement(best: &Surface, tried: &[Option<Surface>]) -> (f64, f64) {
 }
 
 /// Height and expected squared error of the surface at the point.
-fn measured(patch: &Patch, plane: &Plane) -> Option<Surface> {
+#[inline(always)]
+fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surface> {
     let frame = Frame::new(plane.normal);
-    let first = regress(patch, &frame, &[plane.height, 0.0, 0.0, 0.0])?;
+    let first = regress(machine, patch, &frame, &[plane.height, 0.0, 0.0, 0.0])?;
     // Weights about the plane drop what curves away from it, so the curved surface gets its own.
-    let second = regress(patch, &frame, &first.curved);
+    let second = regress(machine, patch, &frame, &first.curved);
     let mut best = (first.flat, first.flat_error);
     if let Some(second) = second
         && let Some(error) = second.curved_error
