@@ -5,7 +5,7 @@ use std::sync::Arc;
 use cloudtouch_geom::Point3;
 
 use crate::finite::is_finite;
-use crate::neighborhoods::{Neighbor, Neighborhoods, in_order};
+use crate::positions::{Neighbor, Positions, in_order};
 
 /// How far a block reaches beyond the neighbours it was made for, in distances of the last of them.
 const REACH: f64 = 1.75;
@@ -41,7 +41,7 @@ impl Block {
     /// order of distance, then index; fewer when there are fewer. A place that is not finite has none.
     pub(crate) fn nearest_into(
         &mut self,
-        cloud: &Neighborhoods,
+        cloud: &Positions,
         place: &Point3,
         k: usize,
         leave_out_place: bool,
@@ -72,7 +72,7 @@ impl Block {
     }
 
     /// Holds what is within a distance of a place from now on; whether there can be anything.
-    fn fill(&mut self, cloud: &Neighborhoods, place: &Point3, radius: f64) -> bool {
+    fn fill(&mut self, cloud: &Positions, place: &Point3, radius: f64) -> bool {
         self.indices.clear();
         self.coordinates.iter_mut().for_each(Vec::clear);
         (self.centre, self.radius) = (*place, radius);
@@ -95,7 +95,7 @@ impl Block {
     /// Takes the neighbours out of the block; whether it holds all of them.
     fn take(
         &mut self,
-        cloud: &Neighborhoods,
+        cloud: &Positions,
         place: &Point3,
         k: usize,
         leave_out_place: bool,

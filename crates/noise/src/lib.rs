@@ -2,6 +2,7 @@
 
 mod block;
 mod candidates;
+mod density;
 mod discretization;
 mod error;
 mod finite;
@@ -13,6 +14,7 @@ mod motion;
 mod neighborhoods;
 mod parallel;
 mod patch;
+mod positions;
 mod posterior;
 mod posterior_settings;
 mod radius;
@@ -32,6 +34,8 @@ mod smallest_axis;
 mod spacing;
 mod spatial_order;
 mod surface;
+mod thinned;
+mod typical_spacing;
 mod wide;
 
 /// Points, covariances, clouds and poses.
@@ -41,7 +45,8 @@ pub use error::NoiseError;
 pub use grid::quantize_to_grid;
 pub use model::NoiseModel;
 pub use motion::MotionNoise;
-pub use neighborhoods::{Neighbor, Neighborhoods};
+pub use neighborhoods::Neighborhoods;
+pub use positions::Neighbor;
 pub use posterior_settings::{PosteriorSettings, SurfaceError};
 pub use radius::{RadiusRule, radius_chebyshev, radius_gaussian};
 pub use ranging::{Kinect, Lidar, StereoCamera};
@@ -53,4 +58,4 @@ pub use sensor_model::SensorModel;
 pub use sensor_noise::SensorNoise;
 pub use settings::{Combination, NoiseSettings};
 pub use settings_error::SettingsError;
-pub use spacing::typical_spacing;
+pub use typical_spacing::typical_spacing;

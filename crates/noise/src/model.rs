@@ -1,7 +1,6 @@
 //! From a measured point and its neighbourhood to an uncertain surface point.
 
 use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
-use rayon::prelude::*;
 
 use crate::discretization::sampling_error;
 use crate::error::NoiseError;
@@ -15,7 +14,7 @@ use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::settings::{Combination, NoiseSettings};
 use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
-use crate::spatial_order::spatial_order;
+use crate::spatial_order::in_spatial_order;
 use crate::patch::MOST_NEIGHBORS;
 
 /// Turns measured points into uncertain surface points.
@@ -105,7 +104,7 @@ impl NoiseModel {
             _ => self.settings.discretization.neighbors.max(SPACING_NEIGHBORS),
         };
         let Scratch { block, neighbors, .. } = scratch;
-        block.nearest_into(neighborhoods, &points[index], count, true, neighbors);
+        block.nearest_into(neighborhoods.positions(), &points[index], count, true, neighbors);
         let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
         let unfitted = |covariance| Refined {
             point: UncertainPoint { mean: points[index], covariance },
@@ -152,19 +151,9 @@ impl NoiseModel {
         sensor: &SensorNoise,
         spacing_cap: f64,
     ) -> Vec<Refined> {
-        // One after the other where they are near one another, so that they share a block.
-        let order = spatial_order(neighborhoods.points());
-        let refined: Vec<Refined> = order
-            .par_iter()
-            .map_init(Scratch::default, |scratch, &index| {
-                self.refine(index as usize, neighborhoods, sensor, spacing_cap, scratch)
-            })
-            .collect();
-        let mut places = vec![0; order.len()];
-        for (place, &index) in order.iter().enumerate() {
-            places[index as usize] = place;
-        }
-        places.into_iter().map(|place| refined[place]).collect()
+        in_spatial_order(neighborhoods.points(), |index, scratch| {
+            self.refine(index, neighborhoods, sensor, spacing_cap, scratch)
+        })
     }
 
     /// Mean and covariance of a surface point whose normal is known, not fitted: the point stays

@@ -40,15 +40,19 @@ pub(crate) fn posterior(
     let wide = is_noisy(&sensor[index], around)
         .then(|| wide_surface(index, neighborhoods, sensor, around, scratch))
         .flatten();
-    let Scratch { neighbors, patch, wide_neighbors, wide_patch, .. } = scratch;
+    let Scratch { neighbors, patch, kept_block, wide_neighbors, wide_patch, .. } = scratch;
     let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
     let surface = wide.or_else(|| fit_surface(&patch))?;
     let spacing = match representatives {
         None => tangential_spacing(&patch, &surface)?,
         Some(kept) => {
-            kept.nearest_to_into(&points[index], 1 + MOST_NEIGHBORS, wide_neighbors);
-            let others = wide_neighbors.iter().filter(|near| points[near.index] != points[index]);
-            let others = wide_patch.patch(index, others, points, sensor, around);
+            let (positions, in_cloud) = kept.positions();
+            let found = &mut *wide_neighbors;
+            kept_block.nearest_into(positions, &points[index], MOST_NEIGHBORS, true, found);
+            for near in found.iter_mut() {
+                near.index = in_cloud(near.index);
+            }
+            let others = wide_patch.patch(index, found.iter(), points, sensor, around);
             // One alone stands for no more than its noise.
             let alone = sensor[index].max_std();
             tangential_spacing(&others, &surface).unwrap_or(alone)

@@ -3,8 +3,8 @@
 use cloudtouch_geom::{Covariance, Point3};
 
 use crate::block::Block;
-use crate::neighborhoods::Neighbor;
 use crate::patch::{Offsets, Patch, PatchNoise};
+use crate::positions::Neighbor;
 use crate::sensor_noise::SensorNoise;
 
 /// Buffers reused from one refinement to the next; holds no results.
@@ -14,6 +14,10 @@ pub struct Scratch {
     pub(crate) block: Block,
     pub(crate) neighbors: Vec<Neighbor>,
     pub(crate) patch: Buffers,
+    /// Of the thinned clouds.
+    pub(crate) wide_blocks: [Block; 2],
+    /// Of the representatives.
+    pub(crate) kept_block: Block,
     /// The same of a wider neighbourhood.
     pub(crate) wide_neighbors: Vec<Neighbor>,
     pub(crate) wide_patch: Buffers,

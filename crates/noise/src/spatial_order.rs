@@ -1,15 +1,32 @@
 //! An order in which points that follow one another are near one another.
 
 use cloudtouch_geom::{Point3, bounding_box};
+use rayon::prelude::*;
 
 use crate::finite::is_finite;
 
 /// Bits of each coordinate that count.
 const BITS: u32 = 10;
 
+/// What a function makes of every point, by its index, on all threads of the pool. It is called for
+/// points near one another in turn, with buffers that may keep what they have in common.
+pub(crate) fn in_spatial_order<B: Default, T: Send + Copy>(
+    points: &[Point3],
+    of: impl Fn(usize, &mut B) -> T + Sync,
+) -> Vec<T> {
+    let order = spatial_order(points);
+    let made: Vec<T> =
+        order.par_iter().map_init(B::default, |buffers, &index| of(index as usize, buffers)).collect();
+    let mut places = vec![0; order.len()];
+    for (place, &index) in order.iter().enumerate() {
+        places[index as usize] = place;
+    }
+    places.into_iter().map(|place| made[place]).collect()
+}
+
 /// The indices of points, along a curve of Morton through the box around them; those that are not
 /// finite come first.
-pub(crate) fn spatial_order(points: &[Point3]) -> Vec<u32> {
+fn spatial_order(points: &[Point3]) -> Vec<u32> {
     let finite = points.iter().filter(|point| is_finite(point));
     let (low, high) = bounding_box(finite).unwrap_or_default();
     let longest = (high - low).max();

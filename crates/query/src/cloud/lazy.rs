@@ -13,12 +13,16 @@ const ROUNDING: f64 = 1e-9;
 impl Prepared {
     /// The surface at the points of a node, and whether this call computed it.
     pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
+        self.leaf_with(id, &mut Scratch::default())
+    }
+
+    /// [`Self::leaf`] with buffers that leaves nearby were computed with.
+    pub(super) fn leaf_with(&self, id: NodeId, scratch: &mut Scratch) -> (&[Surfel], bool) {
         let mut computed = false;
         let surfels = self.surface.leaves[id.index()].get_or_init(|| {
             computed = true;
             let Some(leaf) = self.tree.node(id) else { return Vec::new() };
-            let mut scratch = Scratch::default();
-            let surfel = |&piece: &u32| *self.surfel(piece, &mut scratch);
+            let surfel = |&piece: &u32| *self.surfel(piece, scratch);
             leaf.primitive_indices().iter().map(surfel).collect()
         });
         (surfels, computed)

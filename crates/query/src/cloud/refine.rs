@@ -20,8 +20,8 @@ impl Prepared {
     pub(super) fn refine(&mut self) -> Result<(), PrepareError> {
         let start = std::time::Instant::now();
         let leaves: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
-        leaves.par_iter().for_each(|&leaf| {
-            self.leaf(leaf);
+        leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
+            self.leaf_with(leaf, scratch);
         });
         leaves.par_iter().for_each(|&leaf| {
             self.leaf_edges(leaf);

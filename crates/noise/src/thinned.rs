@@ -1,0 +1,43 @@
+//! A part of a cloud, evenly taken, that stands for it where a fit needs no more.
+
+use crate::density::{Density, densest_first};
+use crate::finite::is_finite;
+use crate::positions::Positions;
+
+/// Some of the positions of a cloud.
+#[derive(Debug)]
+pub(crate) struct Thinned {
+    /// Their indices in the cloud.
+    indices: Vec<u32>,
+    positions: Positions,
+}
+
+impl Thinned {
+    /// Every fourth and every sixteenth position, in order of density: dense places and sparse ones
+    /// keep their part, and neither the frame nor the order of the points matters.
+    pub(crate) fn fourth_and_sixteenth(cloud: &Positions) -> Vec<Self> {
+        let points = cloud.points();
+        let mut order = densest_first(&Density::everywhere(cloud));
+        order.retain(|&index| is_finite(&points[index as usize]));
+        // Copies of a position have the same neighbours, and so stand together.
+        order.dedup_by(|later, first| points[*later as usize] == points[*first as usize]);
+        [4, 16].into_iter().filter_map(|step| Self::every(step, cloud, &order)).collect()
+    }
+
+    fn every(step: usize, cloud: &Positions, order: &[u32]) -> Option<Self> {
+        let mut indices: Vec<u32> = order.iter().copied().skip(step / 2).step_by(step).collect();
+        indices.sort_unstable();
+        let points = indices.iter().map(|&index| cloud.points()[index as usize]).collect();
+        // Points that could be indexed before can be again.
+        Some(Self { indices, positions: Positions::try_new(points).ok()? })
+    }
+
+    pub(crate) fn positions(&self) -> &Positions {
+        &self.positions
+    }
+
+    /// The index in the cloud of one of them.
+    pub(crate) fn index(&self, place: usize) -> usize {
+        self.indices[place] as usize
+    }
+}
