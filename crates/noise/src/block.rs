@@ -5,15 +5,20 @@ use std::sync::Arc;
 use cloudtouch_geom::Point3;
 
 use crate::finite::is_finite;
+use crate::lanes::{Kernel, Lanes, Machine, Stored, WIDTH, run};
 use crate::positions::{Neighbor, Positions, in_order};
 
-/// How far a block reaches beyond the neighbours it was made for, in distances of the last of them.
-const REACH: f64 = 1.75;
+/// A block is made so wide that on a surface it holds about so many positions: enough for the
+/// neighbours of many places.
+const HELD: f64 = 190.0;
+/// Its radius in distances of the last neighbour asked for, at least and at most.
+const REACH: [f64; 2] = [1.5, 4.5];
 /// The neighbours of the next point are looked for up to so many distances of the last neighbour of
 /// the one before.
 const SEARCHED: f64 = 1.12;
-/// A block holds at most so many times the neighbours asked for, else it is made smaller.
-const MOST_TIMES: usize = 8;
+/// A block made by the reach of the last place has at most so many positions, else the reach is
+/// measured.
+const MOST_HELD: usize = 600;
 /// The slack that takes up rounding of distances: a block is complete up to a little less.
 const ROUNDING: f64 = 1e-9;
 
@@ -30,9 +35,8 @@ pub(crate) struct Block {
     /// Distance of the last neighbour found, m.
     reach: f64,
     indices: Vec<u32>,
-    coordinates: [Vec<f64>; 3],
-    /// Of each position from the place in question, m².
-    squares: Vec<f64>,
+    /// Their coordinates in lanes.
+    groups: Vec<[Stored; 3]>,
     sorted: Sorted,
 }
 
@@ -51,93 +55,98 @@ impl Block {
         if k == 0 || !is_finite(place) {
             return;
         }
+        let wanted = k + usize::from(leave_out_place);
         let is_same = self.cloud.as_ref().is_some_and(|id| Arc::ptr_eq(id, cloud.id()));
-        if !(is_same && self.take(cloud, place, k, leave_out_place, found)) {
-            let guess = if is_same { REACH * self.reach } else { 0.0 };
+        if !(is_same && self.take(place, wanted, found)) {
+            let reach = if is_same { self.reach } else { 0.0 };
             self.cloud = Some(cloud.id().clone());
-            let wanted = k + usize::from(leave_out_place);
-            if !self.fill(cloud, place, guess) || self.indices.len() > MOST_TIMES * wanted
-                || !self.take(cloud, place, k, leave_out_place, found)
-            {
-                let last = cloud.distance_of_nearest(place, wanted);
-                self.fill(cloud, place, REACH * last);
-                if !self.take(cloud, place, k, leave_out_place, found) {
-                    // Not even the neighbours are told apart by their distances.
-                    found.clear();
+            let [least, most] = REACH;
+            let times = (HELD / wanted as f64).sqrt().clamp(least, most);
+            self.fill(cloud, place, times * reach);
+            if self.indices.len() > MOST_HELD || !self.take(place, wanted, found) {
+                self.fill(cloud, place, times * cloud.distance_of_nearest(place, wanted));
+                if !self.take(place, wanted, found) {
+                    // Positions so near one another that their distances are zero.
                     cloud.search(place, k, leave_out_place, found);
                 }
             }
         }
+        if leave_out_place {
+            let mut near = found.iter().take_while(|near| near.squared_distance == 0.0);
+            if let Some(own) = near.position(|near| cloud.points()[near.index] == *place) {
+                found.remove(own);
+            }
+        }
+        found.truncate(k);
         self.reach = found.last().map_or(0.0, |last| last.squared_distance.sqrt());
     }
 
-    /// Holds what is within a distance of a place from now on; whether there can be anything.
-    fn fill(&mut self, cloud: &Positions, place: &Point3, radius: f64) -> bool {
+    /// Holds what is within a distance of a place from now on, which may be nothing.
+    fn fill(&mut self, cloud: &Positions, place: &Point3, radius: f64) {
         self.indices.clear();
-        self.coordinates.iter_mut().for_each(Vec::clear);
+        self.groups.clear();
         (self.centre, self.radius) = (*place, radius);
-        if radius <= 0.0 {
-            return false;
+        if !(radius > 0.0) {
+            return;
         }
         for near in cloud.hits_within(place, radius * radius) {
+            let (group, lane) = (self.indices.len() / WIDTH, self.indices.len() % WIDTH);
+            if lane == 0 {
+                // Lanes without a position are infinitely far away.
+                self.groups.push([[f64::INFINITY; WIDTH]; 3]);
+            }
             self.indices.push(near.index as u32);
             let position = cloud.points()[near.index];
-            for (values, value) in self.coordinates.iter_mut().zip(position.iter()) {
-                values.push(*value);
+            for (lanes, value) in self.groups[group].iter_mut().zip(position.iter()) {
+                lanes[lane] = *value;
             }
         }
         if self.indices.len() == cloud.distinct() {
             self.radius = f64::INFINITY;
         }
-        true
     }
 
-    /// Takes the neighbours out of the block; whether it holds all of them.
-    fn take(
-        &mut self,
-        cloud: &Positions,
-        place: &Point3,
-        k: usize,
-        leave_out_place: bool,
-        found: &mut Vec<Neighbor>,
-    ) -> bool {
+    /// Takes the neighbours out of the block, one at the place itself among them; whether it holds
+    /// so many, or else all there are.
+    fn take(&mut self, place: &Point3, wanted: usize, found: &mut Vec<Neighbor>) -> bool {
         let complete = (self.radius * (1.0 - ROUNDING) - (place - self.centre).norm()).max(0.0);
-        let searched = SEARCHED * self.reach;
-        self.measure(place);
         let is_whole = self.radius == f64::INFINITY;
         // Most of the time a little farther than for the last point is far enough.
-        for within in [searched, complete] {
-            let within = within.min(complete);
-            self.sorted.clear();
-            for (&index, &square) in self.indices.iter().zip(&self.squares) {
-                self.sorted.push_if(square <= within * within, index, square);
-            }
-            let has_place = leave_out_place
-                && self.sorted.hits().any(|hit| {
-                    hit.squared_distance == 0.0 && cloud.points()[hit.index] == *place
-                });
-            let others = self.sorted.len() - usize::from(has_place);
-            if others >= k || (is_whole && within == complete) {
-                self.sorted.finish(within * within, found);
-                if has_place {
-                    found.retain(|near| {
-                        near.squared_distance > 0.0 || cloud.points()[near.index] != *place
-                    });
-                }
-                found.truncate(k);
+        for within in [SEARCHED * self.reach, complete] {
+            let most = within.min(complete).powi(2);
+            run(Select { block: self, place, most });
+            if self.sorted.len() >= wanted || (is_whole && within == complete) {
+                self.sorted.finish(most, found);
                 return true;
             }
         }
         false
     }
+}
 
-    fn measure(&mut self, place: &Point3) {
-        let [x, y, z] = &self.coordinates;
-        self.squares.clear();
-        self.squares.extend(x.iter().zip(y).zip(z).map(|((x, y), z)| {
-            let [dx, dy, dz] = [x - place.x, y - place.y, z - place.z];
-            dx * dx + dy * dy + dz * dz
-        }));
+/// Selects what is within a squared distance of a place.
+struct Select<'a> {
+    block: &'a mut Block,
+    place: &'a Point3,
+    most: f64,
+}
+
+impl Kernel for Select<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Machine>(self, machine: S) {
+        let Self { block: Block { groups, indices, sorted, .. }, place, most } = self;
+        sorted.clear(indices.len());
+        for (group, indices) in groups.iter().zip(indices.chunks(WIDTH)) {
+            let [x, y, z] = *group;
+            let from = |values, value| Lanes::load(machine, values) - Lanes::splat(machine, value);
+            let [x, y, z] = [from(x, place.x), from(y, place.y), from(z, place.z)];
+            let squares = (x * x + y * y + z * z).stored();
+            for (index, square) in indices.iter().zip(squares) {
+                sorted.push_if(square <= most, *index, square);
+            }
+        }
     }
 }
 
@@ -155,25 +164,24 @@ struct Sorted {
 }
 
 impl Sorted {
-    fn clear(&mut self) {
+    /// Forgets them, and makes room for so many.
+    #[inline(always)]
+    fn clear(&mut self, room: usize) {
         self.count = 0;
+        if self.hits.len() < room {
+            self.hits.resize(room, Neighbor { index: 0, squared_distance: 0.0 });
+        }
     }
 
     fn len(&self) -> usize {
         self.count
     }
 
-    fn hits(&self) -> impl Iterator<Item = &Neighbor> {
-        self.hits[..self.count].iter()
-    }
-
     /// Adds a neighbour, or not, without a branch: which it is is hard to foresee.
     #[inline(always)]
     fn push_if(&mut self, is_hit: bool, index: u32, squared_distance: f64) {
-        let hit = Neighbor { index: index as usize, squared_distance };
-        match self.hits.get_mut(self.count) {
-            Some(slot) => *slot = hit,
-            None => self.hits.push(hit),
+        if let Some(slot) = self.hits.get_mut(self.count) {
+            *slot = Neighbor { index: index as usize, squared_distance };
         }
         self.count += usize::from(is_hit);
     }
@@ -204,11 +212,17 @@ impl Sorted {
         for at in 1..sorted.len() {
             let hit = sorted[at];
             let mut to = at;
-            while to > 0 && in_order(&hit, &sorted[to - 1]).is_lt() {
+            while to > 0 && is_before(&hit, &sorted[to - 1]) {
                 sorted[to] = sorted[to - 1];
                 to -= 1;
             }
             sorted[to] = hit;
         }
     }
+}
+
+/// [`in_order`] for squares, which are neither negative nor NaN.
+fn is_before(a: &Neighbor, b: &Neighbor) -> bool {
+    a.squared_distance < b.squared_distance
+        || (a.squared_distance == b.squared_distance && a.index < b.index)
 }

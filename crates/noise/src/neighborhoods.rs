@@ -6,6 +6,7 @@ use cloudtouch_geom::Point3;
 
 use crate::error::NoiseError;
 use crate::positions::{Neighbor, Positions};
+use crate::scratch::Scratch;
 use crate::thinned::Thinned;
 
 /// An index over a cloud that answers which points are nearest.
@@ -58,6 +59,21 @@ impl Neighborhoods {
         let mut found = Vec::new();
         self.nearest_into(index, k, &mut found);
         found
+    }
+
+    /// [`Self::nearest`] with buffers: many times as fast for points near the last one.
+    ///
+    /// # Panics
+    /// When `index` is out of range.
+    pub fn nearest_with<'a>(
+        &self,
+        index: usize,
+        k: usize,
+        scratch: &'a mut Scratch,
+    ) -> &'a [Neighbor] {
+        let Scratch { block, neighbors, .. } = scratch;
+        block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
+        neighbors
     }
 
     /// The `k` positions nearest to any place, fewer when there are fewer, in order of distance,

@@ -146,11 +146,32 @@ fn distinct_entries(points: &[Point3]) -> Vec<(u32, [f64; 3])> {
         // Adding zero turns -0 into 0, which is the same place.
         .map(|(index, point)| (index, point.coords.map(|v| v + 0.0).into()))
         .collect();
-    entries.sort_unstable_by(|(i, a), (j, b)| {
-        let [x, y, z] = [0, 1, 2].map(|axis| a[axis].total_cmp(&b[axis]));
-        x.then(y).then(z).then(i.cmp(j))
-    });
-    entries.dedup_by(|later, first| later.1 == first.1);
-    entries.sort_unstable_by_key(|entry| entry.0);
+    // Equal positions have equal keys; different ones hardly ever have, so most of the time there is
+    // nothing to be looked at twice.
+    let mut keys: Vec<(u64, u32)> =
+        entries.iter().zip(0..).map(|((_, position), place)| (key(position), place)).collect();
+    keys.sort_unstable();
+    let mut is_copy = vec![false; entries.len()];
+    for equal in keys.chunk_by_mut(|a, b| a.0 == b.0).filter(|equal| equal.len() > 1) {
+        let entry = |place: u32| &entries[place as usize].1;
+        equal.sort_by(|&(_, i), &(_, j)| {
+            let [x, y, z] = [0, 1, 2].map(|axis| entry(i)[axis].total_cmp(&entry(j)[axis]));
+            x.then(y).then(z).then(i.cmp(&j))
+        });
+        for pair in equal.windows(2) {
+            is_copy[pair[1].1 as usize] = entry(pair[0].1) == entry(pair[1].1);
+        }
+    }
+    let mut is_copy = is_copy.into_iter();
+    entries.retain(|_| is_copy.next() == Some(false));
     entries
+}
+
+/// A number that is the same for the same position.
+fn key(position: &[f64; 3]) -> u64 {
+    // Multipliers without a pattern: 2⁶⁴ over the golden ratio, made odd.
+    let mixed = |state: u64, value: f64| {
+        (state ^ value.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29)
+    };
+    position.iter().fold(0, |state, &value| mixed(state, value))
 }

@@ -23,8 +23,8 @@ impl Prepared {
         leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
             self.leaf_with(leaf, scratch);
         });
-        leaves.par_iter().for_each(|&leaf| {
-            self.leaf_edges(leaf);
+        leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
+            self.leaf_edges_with(leaf, scratch);
         });
         let mut extents = vec![Covariance::zero(); self.surface.surfels.len()];
         for leaf in self.tree.leaves() {
