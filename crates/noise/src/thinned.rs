@@ -25,7 +25,7 @@ impl Thinned {
     }
 
     fn every(step: usize, cloud: &Positions, order: &[u32]) -> Option<Self> {
-        let mut indices: Vec<u32> = order.iter().copied().skip(step / 2).step_by(step).collect();
+        let mut indices: Vec<u32> = order.iter().copied().skip(step - 1).step_by(step).collect();
         indices.sort_unstable();
         let points = indices.iter().map(|&index| cloud.points()[index as usize]).collect();
         // Points that could be indexed before can be again.
