@@ -19,7 +19,9 @@ const RUNS: usize = 5;
 
 fn main() {
     let large = std::env::args().any(|argument| argument == "large");
-    println!("cloud, points, prepare (M points/s), prepare and refine (ms), noise model (µs/point), of points");
+    println!(
+        "cloud, points, prepare (M points/s), prepare and refine (ms), noise model (µs/point), of points"
+    );
     measure("room, 2 mm", &room(10_000), NOISE);
     for noise in [0.01, 0.02] {
         measure(&format!("3 mm spacing, {} mm", noise * 1e3), &dense(noise), noise);
@@ -70,7 +72,12 @@ fn model(near: &Neighborhoods, sensor: &SensorNoise, runs: usize) -> (f64, usize
                 for &index in chosen.indices() {
                     let index = index as usize;
                     black_box(model.refine_representative(
-                        index, near, &chosen, sensor, f64::INFINITY, &mut scratch,
+                        index,
+                        near,
+                        &chosen,
+                        sensor,
+                        f64::INFINITY,
+                        &mut scratch,
                     ));
                 }
             });

@@ -74,9 +74,7 @@ impl Tree {
 }
 
 /// Moments and box of primitives, given by their corners.
-pub(crate) fn fitted<'a>(
-    primitives: impl Iterator<Item = &'a [Point3]> + Clone,
-) -> (Moments, Obb) {
+pub(crate) fn fitted<'a>(primitives: impl Iterator<Item = &'a [Point3]> + Clone) -> (Moments, Obb) {
     let moments = Moments::of(primitives.clone());
     let obb = Obb::enclosing(moments.axes(), moments.mean, primitives.flatten());
     (moments, obb)

@@ -54,9 +54,12 @@ impl Parts {
         let Self { all, keys, sorted, .. } = self;
         let parts = &mut all[range];
         keys.clear();
-        keys.extend(parts.iter().zip(0..).map(|(part, place)| {
-            (axis.dot(&(part.centroid - mean)), part.index, place)
-        }));
+        keys.extend(
+            parts
+                .iter()
+                .zip(0..)
+                .map(|(part, place)| (axis.dot(&(part.centroid - mean)), part.index, place)),
+        );
         // The sign of an eigenvector is arbitrary and an odd count halves unevenly; letting the
         // longer tail point up makes the partition independent of the frame.
         if keys.iter().map(|(key, ..)| key * key * key).sum::<f64>() < 0.0 {

@@ -109,7 +109,8 @@ impl<'a, S: Machine> Vote<'a, S> {
             let offsets = self.voters.group(machine, group);
             let present = self.voters.present(machine, group);
             let residuals = plane.residuals(machine, offsets);
-            beyond += (residuals * residuals * present - Lanes::splat(machine, most)).not_negative();
+            beyond +=
+                (residuals * residuals * present - Lanes::splat(machine, most)).not_negative();
         }
         plane.height * plane.height <= most && beyond.sum() == 0.0
     }

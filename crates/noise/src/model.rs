@@ -7,6 +7,7 @@ use crate::error::NoiseError;
 use crate::limited::limited;
 use crate::neighborhoods::Neighborhoods;
 use crate::parallel::parallel;
+use crate::patch::MOST_NEIGHBORS;
 use crate::posterior::{disc, posterior};
 use crate::refined::{Bounds, Refined};
 use crate::representatives::Representatives;
@@ -15,7 +16,6 @@ use crate::sensor_noise::SensorNoise;
 use crate::settings::{Combination, NoiseSettings};
 use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
 use crate::spatial_order::in_spatial_order;
-use crate::patch::MOST_NEIGHBORS;
 
 /// Turns measured points into uncertain surface points.
 ///

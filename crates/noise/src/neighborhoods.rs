@@ -88,5 +88,4 @@ impl Neighborhoods {
     pub(crate) fn nearest_into(&self, index: usize, k: usize, found: &mut Vec<Neighbor>) {
         self.positions.search(&self.points()[index], k, true, found);
     }
-
 }

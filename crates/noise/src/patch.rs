@@ -67,6 +67,8 @@ pub(crate) struct Patch<'a> {
     own_noise: &'a Covariance,
     /// The least variance a residual is judged by, m².
     floor: f64,
+    /// The precision of all along all normals, where neither matters, 1/m².
+    same: Option<f64>,
 }
 
 /// Σⱼ of each neighbour.
@@ -124,7 +126,11 @@ impl<'a> Patch<'a> {
         spacing: f64,
     ) -> Self {
         let floor = (FLOOR_PER_SPACING * spacing).powi(2);
-        Self { offsets, count: offsets.len(), noise, own_noise, floor }
+        let same = match noise {
+            PatchNoise::Uniform(noise) => noise.isotropic_variance().map(|v| 1.0 / v.max(floor)),
+            PatchNoise::Each(_) => None,
+        };
+        Self { offsets, count: offsets.len(), noise, own_noise, floor, same }
     }
 
     /// The first `count` neighbours only, if there are as many.
@@ -165,6 +171,9 @@ impl<'a> Patch<'a> {
     /// by.
     #[inline(always)]
     pub(crate) fn precisions(&self, normal: &Vector3) -> Precisions {
+        if let Some(precision) = self.same {
+            return Precisions::Same(precision);
+        }
         let along = |noise: &Covariance| 1.0 / noise.variance_along(normal).max(self.floor);
         match self.noise {
             PatchNoise::Uniform(noise) => Precisions::Same(along(noise)),
@@ -180,7 +189,8 @@ impl<'a> Patch<'a> {
 
     /// The variance of the point itself along a unit normal, by the same measure.
     pub(crate) fn own_variance(&self, normal: &Vector3) -> f64 {
-        self.own_noise.variance_along(normal).max(self.floor)
+        let isotropic = self.own_noise.isotropic_variance();
+        isotropic.unwrap_or_else(|| self.own_noise.variance_along(normal)).max(self.floor)
     }
 
     /// An upper bound of [`Self::own_variance`] over all normals.

@@ -103,7 +103,13 @@ impl Positions {
 
     /// The `k` positions nearest to a place, with or without one at the place itself, in order of
     /// distance, then index.
-    pub(crate) fn search(&self, place: &Point3, k: usize, leave_out_place: bool, found: &mut Vec<Neighbor>) {
+    pub(crate) fn search(
+        &self,
+        place: &Point3,
+        k: usize,
+        leave_out_place: bool,
+        found: &mut Vec<Neighbor>,
+    ) {
         found.clear();
         // One more than asked for shows whether a tie was cut, and one more makes up for `place`.
         let wanted = self.distinct.min(k.saturating_add(1 + usize::from(leave_out_place)));

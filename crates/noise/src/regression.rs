@@ -72,7 +72,12 @@ struct Moments {
 impl Moments {
     /// Weighs the neighbours by their agreement with a surface of these coefficients.
     #[inline(always)]
-    fn of<S: Machine>(machine: S, patch: &Patch, frame: &Frame, coefficients: &Coefficients) -> Self {
+    fn of<S: Machine>(
+        machine: S,
+        patch: &Patch,
+        frame: &Frame,
+        coefficients: &Coefficients,
+    ) -> Self {
         let own = patch.own_variance(&frame.normal);
         let precisions = patch.precisions(&frame.normal);
         let inverse_cut = 1.0 / (FINAL_CUT * FINAL_CUT);
@@ -101,7 +106,8 @@ impl Moments {
             }
         }
         let weight = total.sum();
-        let mean = sums(first).map(|sum| sum / weight);
+        let per_weight = 1.0 / weight;
+        let mean = sums(first).map(|sum| sum * per_weight);
         let [on_a, on_b, on_q, on_z] = second;
         let mut product = [sums(on_a), sums(on_b), sums(on_q), sums(on_z)];
         for r in 0..4 {
@@ -129,8 +135,9 @@ impl Moments {
         if !(least * MOST_TILT_VARIANCE > s2 && degrees > 0.5) {
             return None;
         }
+        let [aa_over, ab_over, bb_over] = [aa, ab, bb].map(|entry| entry / determinant);
         let solve = |on_a: f64, on_b: f64| {
-            [(bb * on_a - ab * on_b) / determinant, (aa * on_b - ab * on_a) / determinant]
+            [bb_over * on_a - ab_over * on_b, aa_over * on_b - ab_over * on_a]
         };
         let slope = solve(az, bz);
         let centre = solve(a, b);
@@ -144,7 +151,8 @@ impl Moments {
         let flat_height = z - slope[0] * a - slope[1] * b;
         let flat_squares = (zz - slope[0] * az - slope[1] * bz).max(0.0);
         // What the residuals vary by beyond the noise, and how far that is by chance.
-        let beyond = |squares: f64| squares / (TUKEY_VARIANCE * self.agreement) - s2;
+        let per_agreement = 1.0 / (TUKEY_VARIANCE * self.agreement);
+        let beyond = |squares: f64| squares * per_agreement - s2;
         let chance = s2 * (2.0 / degrees).sqrt();
         let leverage = 1.0 / self.weight + centre[0] * a + centre[1] * b;
         let curved_squares = (flat_squares - curvature * curve_product).max(0.0);
@@ -211,4 +219,3 @@ impl HeightError {
         self.leverage + self.bend + 2.0 * (self.beyond - self.chance).max(0.0)
     }
 }
-

@@ -25,7 +25,8 @@ pub(crate) fn reweighted<S: Machine>(
         let present = patch.present(machine, group);
         let precision = precisions.group(machine, group);
         let residual = plane.residuals(machine, offsets);
-        let weight = tukey(machine, residual * residual * precision * inverse_cut) * precision * present;
+        let weight =
+            tukey(machine, residual * residual * precision * inverse_cut) * precision * present;
         let [x, y, z] = offsets;
         let weighted = [weight * x, weight * y, weight * z];
         total += weight;
@@ -75,4 +76,81 @@ pub(crate) fn sums<S: Machine, const N: usize>(lanes: [Lanes<S>; N]) -> [f64; N]
 pub(crate) fn tukey<S: Machine>(machine: S, ratio: Lanes<S>) -> Lanes<S> {
     let rest = (Lanes::splat(machine, 1.0) - ratio).not_negative();
     rest * rest
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::Covariance;
+    use proptest::prelude::*;
+    use pulp::Scalar256b;
+
+    use super::*;
+    use crate::lanes::{Kernel, run};
+    use crate::patch::{Offsets, PatchNoise};
+
+    struct Reweight<'a>(&'a Patch<'a>, &'a Plane);
+
+    impl Kernel for Reweight<'_> {
+        type Output = Option<Plane>;
+
+        #[inline(always)]
+        fn run<S: Machine>(self, machine: S) -> Option<Plane> {
+            reweighted(machine, self.0, self.1, 3.0)
+        }
+    }
+
+    /// The same, neighbour by neighbour.
+    fn plainly(
+        places: &[Vector3],
+        noise: &[Covariance],
+        floor: f64,
+        plane: &Plane,
+    ) -> Option<Plane> {
+        let (mut total, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
+        for (place, noise) in places.iter().zip(noise) {
+            let variance = noise.variance_along(&plane.normal).max(floor);
+            let residual = plane.normal.dot(place) - plane.height;
+            let rest = (1.0 - residual * residual / variance / 9.0).max(0.0);
+            let weight = rest * rest / variance;
+            total += weight;
+            first += place * weight;
+            second += place * place.transpose() * weight;
+        }
+        let centre = first / total;
+        let normal = smallest_axis(&(second / total - centre * centre.transpose()))?;
+        Some(Plane { normal, height: normal.dot(&centre) })
+    }
+
+    proptest! {
+        /// The plane is that of plain sums within 1e-9, and the same to the bit with and without
+        /// vector instructions.
+        #[test]
+        fn lanes_sum_up_what_one_after_the_other_does(
+            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 4..61),
+            variances in prop::array::uniform3(0.01..0.1_f64),
+            is_uniform in any::<bool>(),
+            tilt in -0.2..0.2_f64,
+        ) {
+            let places: Vec<Vector3> =
+                places.iter().map(|&[x, y, z]| Vector3::new(x, y, 0.2 * z)).collect();
+            let mut offsets = Offsets::default();
+            offsets.set(places.iter().copied());
+            let noise: Vec<Covariance> = (0..places.len())
+                .map(|i| Covariance::diagonal(variances).scaled(if is_uniform { 1.0 } else { 1.0 + i as f64 }))
+                .collect();
+            let by = if is_uniform { PatchNoise::Uniform(&noise[0]) } else { PatchNoise::Each(&noise) };
+            let patch = Patch::new(&offsets, by, &noise[0], 0.5);
+            let plane = Plane { normal: Vector3::new(tilt, 0.0, 1.0).normalize(), height: 0.01 };
+            let floor = (0.03_f64 * 0.5).powi(2);
+            let found = run(Reweight(&patch, &plane));
+            let portable = Reweight(&patch, &plane).run(Scalar256b);
+            let bits = |p: Plane| [p.normal.x, p.normal.y, p.normal.z, p.height].map(f64::to_bits);
+            prop_assert_eq!(found.map(bits), portable.map(bits));
+            if let (Some(found), Some(plain)) = (found, plainly(&places, &noise, floor, &plane)) {
+                let sign = found.normal.dot(&plain.normal).signum();
+                prop_assert!((found.normal - plain.normal * sign).norm() < 1e-9);
+                prop_assert!((found.height - plain.height * sign).abs() < 1e-9);
+            }
+        }
+    }
 }

@@ -15,8 +15,10 @@ pub(crate) fn in_spatial_order<B: Default, T: Send + Copy>(
     of: impl Fn(usize, &mut B) -> T + Sync,
 ) -> Vec<T> {
     let order = spatial_order(points);
-    let made: Vec<T> =
-        order.par_iter().map_init(B::default, |buffers, &index| of(index as usize, buffers)).collect();
+    let made: Vec<T> = order
+        .par_iter()
+        .map_init(B::default, |buffers, &index| of(index as usize, buffers))
+        .collect();
     let mut places = vec![0; order.len()];
     for (place, &index) in order.iter().enumerate() {
         places[index as usize] = place;
@@ -50,4 +52,29 @@ fn spread(value: u32) -> u32 {
     value = (value | value << 8) & 0x0300_F00F;
     value = (value | value << 4) & 0x030C_30C3;
     (value | value << 2) & 0x0924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_comes_once_and_neighbours_follow() {
+        let mut points: Vec<Point3> = (0..4096)
+            .map(|i| Point3::new(f64::from(i * 37 % 64), f64::from(i / 64), 5.0))
+            .collect();
+        points[17] = Point3::new(f64::NAN, 0.0, 0.0);
+        let mut order = spatial_order(&points);
+        let steps = order.windows(2).map(|pair| {
+            let [p, q] = [pair[0], pair[1]].map(|i| points[i as usize]);
+            (p - q).norm()
+        });
+        let long = steps.filter(|step| !(*step < 8.0)).count();
+        assert!(long < 100, "{long} long steps");
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..4096));
+        let same = in_spatial_order(&points, |index, (): &mut ()| index);
+        assert!(same.into_iter().eq(0..4096));
+        assert!(spatial_order(&[]).is_empty());
+    }
 }

@@ -41,3 +41,46 @@ impl Thinned {
         self.indices[place] as usize
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Point3, seed};
+
+    use super::*;
+
+    fn cloud(copies: usize) -> Positions {
+        let place = |i: u64| Point3::from([0, 1, 2].map(|k| seed::unit(seed::derive(2, i, k))));
+        Positions::try_new((0..1600).map(place).cycle().take(1600 * copies).collect()).unwrap()
+    }
+
+    fn places(thinned: &Thinned) -> Vec<Point3> {
+        let mut places = thinned.positions().points().to_vec();
+        places.sort_by(|p, q| p.x.total_cmp(&q.x));
+        places
+    }
+
+    /// A cloud stored twice is the cloud.
+    #[test]
+    fn copies_do_not_count() {
+        let (once, twice) = (cloud(1), cloud(2));
+        let thin = |cloud| Thinned::fourth_and_sixteenth(cloud);
+        for (once, twice) in thin(&once).iter().zip(&thin(&twice)) {
+            assert_eq!(places(once), places(twice));
+        }
+        assert_eq!(thin(&once)[0].positions().distinct(), 400);
+        assert_eq!(thin(&once)[1].positions().distinct(), 100);
+    }
+
+    #[test]
+    fn the_same_are_taken_of_points_in_another_order() {
+        let points = cloud(1).points().to_vec();
+        let reversed = Positions::try_new(points.iter().rev().copied().collect()).unwrap();
+        for (a, b) in Thinned::fourth_and_sixteenth(&cloud(1))
+            .iter()
+            .zip(&Thinned::fourth_and_sixteenth(&reversed))
+        {
+            assert_eq!(places(a), places(b));
+            assert_eq!(a.positions().points()[3], cloud(1).points()[a.index(3)]);
+        }
+    }
+}

@@ -41,7 +41,13 @@ pub(crate) fn wide_surface(
                 near.index = thinned.index(near.index);
             }
             let others = wide_neighbors.iter().filter(|near| points[near.index] != points[index]);
-            fit_surface(&wide_patch.patch(index, others.take(MOST_NEIGHBORS), points, sensor, spacing))
+            fit_surface(&wide_patch.patch(
+                index,
+                others.take(MOST_NEIGHBORS),
+                points,
+                sensor,
+                spacing,
+            ))
         };
         let Some((mut wide, at)) = settled(points[index], place, around) else { continue };
         place = at;
