@@ -37,7 +37,7 @@ impl Tree {
         let mut tree = Self {
             settings: *settings,
             primitives,
-            refined: vec![None; count],
+            refined: Vec::new(),
             extents: Vec::new(),
             leaf_of: vec![None; count],
             order: (0..count as u32).collect(),

@@ -86,7 +86,7 @@ impl Block {
         self.indices.clear();
         self.groups.clear();
         (self.centre, self.radius) = (*place, radius);
-        if !(radius > 0.0) {
+        if radius <= 0.0 {
             return;
         }
         for near in cloud.hits_within(place, radius * radius) {

@@ -80,6 +80,7 @@ pub(crate) enum PatchNoise<'a> {
 }
 
 /// The inverse variances of neighbours along a direction, 1/m².
+#[expect(clippy::large_enum_variant, reason = "one at a time, for one pass over the neighbours")]
 pub(crate) enum Precisions {
     Same(f64),
     Each([Stored; GROUPS]),

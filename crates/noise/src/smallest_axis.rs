@@ -23,8 +23,7 @@ pub(crate) fn smallest_axis(matrix: &Matrix3) -> Option<Vector3> {
     let [dx, dy, dz] = [xx - 1.0, yy - 1.0, zz - 1.0];
     let squares = dx * dx + dy * dy + dz * dz + 2.0 * (xy * xy + xz * xz + yz * yz);
     let spread_squared = squares / 6.0;
-    // Written so that NaN, which scales beyond the range give, has none either.
-    if !(spread_squared >= f64::EPSILON * f64::EPSILON) {
+    if spread_squared.is_nan() || spread_squared < f64::EPSILON * f64::EPSILON {
         return None;
     }
     let entries = [xx, xy, xz, yy, yz, zz];

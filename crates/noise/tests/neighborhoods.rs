@@ -27,7 +27,8 @@ fn brute_force(
 fn check_all(points: &[Point3], k: usize) {
     let index = Neighborhoods::try_new(points.to_vec()).expect("an index");
     // Buffers that have seen another cloud, and each point in turn, near or far.
-    let other = Neighborhoods::try_new(points.iter().map(|p| p + Vector3::x()).collect()).unwrap();
+    let moved = points.iter().map(|p| p + Vector3::x()).collect();
+    let other = Neighborhoods::try_new(moved).expect("an index");
     let mut scratch = Scratch::default();
     for (i, place) in points.iter().enumerate() {
         if place.coords.iter().all(|v| v.is_finite()) {
