@@ -17,7 +17,12 @@ impl Thinned {
     /// keep their part, and neither the frame nor the order of the points matters.
     pub(crate) fn fourth_and_sixteenth(cloud: &Positions) -> Vec<Self> {
         let points = cloud.points();
-        let mut order = densest_first(&Density::everywhere(cloud));
+        let mut found = Vec::new();
+        // One after the other: whoever waits here for other threads may be given another point to
+        // refine meanwhile, which would wait for this.
+        let densities: Vec<Density> =
+            (0..points.len()).map(|index| Density::around(cloud, index, &mut found)).collect();
+        let mut order = densest_first(&densities);
         order.retain(|&index| is_finite(&points[index as usize]));
         // Copies of a position have the same neighbours, and so stand together.
         order.dedup_by(|later, first| points[*later as usize] == points[*first as usize]);
