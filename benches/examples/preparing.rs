@@ -42,7 +42,7 @@ fn measure(name: &str, cloud: &PointCloud, std: f64) {
     let settings = CloudSettings::new(SensorModel::Isotropic { std });
     let prepare = || Cloud::prepare(cloud, &settings).expect("a usable cloud");
     let runs = if cloud.len() > 100_000 { 2 } else { RUNS };
-    let preparing = least(runs, || prepare());
+    let preparing = least(runs, prepare);
     let refining = least(runs, || prepare().refined().expect("in range"));
     let near = Neighborhoods::try_new(cloud.points.clone()).expect("finite points");
     let sensor = SensorModel::Isotropic { std }.covariances(cloud).expect("a sensor");
