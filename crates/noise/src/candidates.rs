@@ -22,7 +22,7 @@ const OWN_VOTES: f64 = 4.0;
 /// The plane with the most support among the nearest neighbours; `None` when they are too few or
 /// all on one line with the point.
 ///
-/// That is the least-squares plane where it misses nobody. Else candidates are laid through three
+/// That is the least-squares plane where it misses nobody and noise is the same in all directions. Else candidates are laid through three
 /// places, so that one of them is likely to lie in one face even where two meet: the point and two
 /// neighbours, or three neighbours, since the point itself may be the outlier.
 #[inline(always)]
@@ -30,7 +30,8 @@ pub(crate) fn best_candidate<S: Machine>(machine: S, patch: &Patch) -> Option<Pl
     let voters = patch.nearest(VOTERS);
     let mut vote = Vote::new(machine, &voters);
     if let Some(plane) = least_squares(machine, &voters) {
-        if vote.is_unanimous(&plane) {
+        // Along a noisy direction nothing misses a plane, and that says little for it.
+        if vote.same.is_some() && vote.is_unanimous(&plane) {
             return Some(plane);
         }
         vote.consider(plane);
