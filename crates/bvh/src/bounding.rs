@@ -21,6 +21,7 @@ impl Tree {
         mut bounds_of: impl FnMut(Node<'_>) -> LeafBounds,
     ) -> Result<(), TreeError> {
         let mut refined = self.refined.clone();
+        refined.resize(self.primitives.len(), None);
         for leaf in self.leaves() {
             let bounds = bounds_of(leaf);
             let is_length = |value: f64| value >= 0.0 && value.is_finite();
@@ -55,7 +56,7 @@ impl Tree {
             return Err(TreeError::Count { expected, found });
         }
         self.extents = extents;
-        self.refined.fill(None);
+        self.refined = Vec::new();
         self.update_bounds(self.root);
         Ok(())
     }
@@ -64,7 +65,8 @@ impl Tree {
     pub(crate) fn bounds_of_primitive(&self, index: u32, axes: &Matrix3) -> SpreadBounds {
         let index = index as usize;
         let extent = self.extents.get(index);
-        SpreadBounds::of(&self.primitives[index], self.refined[index], extent, axes)
+        let refined = self.refined.get(index).copied().flatten();
+        SpreadBounds::of(&self.primitives[index], refined, extent, axes)
     }
 
     /// Recomputes the bounds of everything below `from` and of itself, children before parents.

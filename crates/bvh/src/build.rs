@@ -3,10 +3,11 @@
 
 use std::sync::OnceLock;
 
-use cloudtouch_geom::Vector3;
+use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
 use crate::bounds::SpreadBounds;
 use crate::node::NodeData;
+use crate::parts::Parts;
 use crate::{Moments, Obb, Primitive, Tree, TreeError, TreeSettings};
 
 /// Indices are 32 bit.
@@ -36,7 +37,7 @@ impl Tree {
         let mut tree = Self {
             settings: *settings,
             primitives,
-            refined: vec![None; count],
+            refined: Vec::new(),
             extents: Vec::new(),
             leaf_of: vec![None; count],
             order: (0..count as u32).collect(),
@@ -75,18 +76,29 @@ impl Tree {
     /// Splits a fitted leaf, and its halves, as often as the settings ask for; then sets the
     /// bounds of what is below it.
     pub(crate) fn subdivide(&mut self, leaf: u32) {
+        let start = self.nodes[leaf as usize].start;
+        let mut parts = Parts::of(&self.primitives, self.indices_of(leaf));
         let mut stack = vec![leaf];
         while let Some(id) = stack.pop() {
+            let node = &self.nodes[id as usize];
+            let range = (node.start - start) as usize..(node.start - start + node.count) as usize;
             if self.should_split(id, self.fitted_variation(id)) {
-                let children = self.split(id);
-                self.fit_children(id, children);
+                let middle = range.start + range.len() / 2;
+                let NodeData { obb, moments, .. } = &self.nodes[id as usize];
+                parts.halve(range.clone(), &obb.axes.column(0).into_owned(), &moments.mean);
+                let children = self.halves(id);
+                let ranges = [range.start..middle, middle..range.end];
+                let fitted = ranges.map(|range| parts.fitted(&self.primitives, range));
+                self.set_children(id, children, fitted);
                 stack.extend(children);
             } else {
-                let node = &self.nodes[id as usize];
-                for &index in &self.order[node.start as usize..][..node.count as usize] {
-                    self.leaf_of[index as usize] = Some(id);
+                for part in &parts.all[range] {
+                    self.leaf_of[part.index as usize] = Some(id);
                 }
             }
+        }
+        for (slot, part) in self.order[start as usize..].iter_mut().zip(&parts.all) {
+            *slot = part.index;
         }
         self.update_bounds(Some(leaf));
     }
@@ -107,31 +119,10 @@ impl Tree {
         if total > 0.0 { smallest / total } else { 0.0 }
     }
 
-    /// Halves the range of a node (of at least two primitives) at the median along the first box
-    /// axis and returns two new, unfitted children.
-    fn split(&mut self, id: u32) -> [u32; 2] {
-        let NodeData { obb, moments, start, count, .. } = &self.nodes[id as usize];
-        let (mean, start, count) = (moments.mean, *start, *count);
-        let axis = obb.axes.column(0).into_owned();
-        let range = &mut self.order[start as usize..][..count as usize];
-        let mut keys: Vec<(f64, u32)> = range
-            .iter()
-            .map(|&i| (axis.dot(&(self.primitives[i as usize].centroid() - mean)), i))
-            .collect();
-        // The sign of an eigenvector is arbitrary and an odd count halves unevenly; letting the
-        // longer tail point up makes the partition independent of the frame.
-        if keys.iter().map(|(key, _)| key * key * key).sum::<f64>() < 0.0 {
-            for (key, _) in &mut keys {
-                *key = -*key;
-            }
-        }
+    /// Gives a node (of at least two primitives) two new, unfitted children and returns them.
+    fn halves(&mut self, id: u32) -> [u32; 2] {
+        let NodeData { start, count, .. } = self.nodes[id as usize];
         let half = count / 2;
-        keys.select_nth_unstable_by(half as usize, |a, b| {
-            a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1))
-        });
-        for (slot, (_, index)) in range.iter_mut().zip(keys) {
-            *slot = index;
-        }
         let left = self.new_node(Some(id), start, half);
         let right = self.new_node(Some(id), start + half, count - half);
         self.nodes[id as usize].children = Some([left, right]);
@@ -140,10 +131,13 @@ impl Tree {
 
     /// A leaf over a range of `order`, not fitted yet.
     pub(crate) fn new_node(&mut self, parent: Option<u32>, start: u32, count: u32) -> u32 {
-        let moments = Moments::of(&self.primitives, &[]);
         let node = NodeData {
-            obb: Obb { centre: moments.mean, axes: moments.axes(), half_extents: Vector3::zeros() },
-            moments,
+            obb: Obb {
+                centre: Point3::origin(),
+                axes: Matrix3::identity(),
+                half_extents: Vector3::zeros(),
+            },
+            moments: Moments::NONE,
             outside: OnceLock::new(),
             bounds: SpreadBounds::NONE,
             parent,

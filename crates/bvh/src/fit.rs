@@ -1,7 +1,7 @@
 //! Fits moments and box of a node to its primitives; used by build and refit alike, so
 //! that a refit tree has the boxes a builder would give the same partition.
 
-use cloudtouch_geom::Vector3;
+use cloudtouch_geom::{Point3, Vector3};
 
 use crate::{Moments, Obb, Tree};
 
@@ -14,10 +14,20 @@ impl Tree {
         }
     }
 
-    /// Fits both children of a node and lets their boxes overlap.
-    pub(crate) fn fit_children(&mut self, parent: u32, [left, right]: [u32; 2]) {
-        let (left_moments, mut left_box) = self.fitted(left);
-        let (right_moments, mut right_box) = self.fitted(right);
+    /// Fits both children of a node.
+    pub(crate) fn fit_children(&mut self, parent: u32, children: [u32; 2]) {
+        let fitted = children.map(|child| self.fitted(child));
+        self.set_children(parent, children, fitted);
+    }
+
+    /// Gives both children of a node their shapes and lets their boxes overlap.
+    pub(crate) fn set_children(
+        &mut self,
+        parent: u32,
+        [left, right]: [u32; 2],
+        fitted: [(Moments, Obb); 2],
+    ) {
+        let [(left_moments, mut left_box), (right_moments, mut right_box)] = fitted;
         let parent = &self.nodes[parent as usize].obb;
         let axis: Vector3 = parent.axes.column(0).into_owned();
         let wanted = self.settings.sibling_overlap * 2.0 * parent.half_extents[0];
@@ -31,11 +41,12 @@ impl Tree {
     }
 
     fn fitted(&self, id: u32) -> (Moments, Obb) {
-        let indices = self.indices_of(id);
-        let moments = Moments::of(&self.primitives, indices);
-        let corners = indices.iter().flat_map(|&i| self.primitives[i as usize].corners());
-        let obb = Obb::enclosing(moments.axes(), moments.mean, corners);
-        (moments, obb)
+        fitted(self.corners_of(id))
+    }
+
+    /// The corners of each primitive of a node.
+    fn corners_of(&self, id: u32) -> impl Iterator<Item = &[Point3]> + Clone {
+        self.indices_of(id).iter().map(|&i| self.primitives[i as usize].corners())
     }
 
     fn set_shape(&mut self, id: u32, moments: Moments, obb: Obb) {
@@ -49,7 +60,7 @@ impl Tree {
     pub(crate) fn update_up(&mut self, from: u32) {
         for id in self.path_up(from) {
             let moments = match self.nodes[id as usize].children {
-                None => Moments::of(&self.primitives, self.indices_of(id)),
+                None => Moments::of(self.corners_of(id)),
                 Some([left, right]) => {
                     self.nodes[left as usize].moments.merged(&self.nodes[right as usize].moments)
                 }
@@ -60,6 +71,13 @@ impl Tree {
             node.outside.take();
         }
     }
+}
+
+/// Moments and box of primitives, given by their corners.
+pub(crate) fn fitted<'a>(primitives: impl Iterator<Item = &'a [Point3]> + Clone) -> (Moments, Obb) {
+    let moments = Moments::of(primitives.clone());
+    let obb = Obb::enclosing(moments.axes(), moments.mean, primitives.flatten());
+    (moments, obb)
 }
 
 /// Grows two boxes toward one another along `axis`, `low` upward and `high` downward by the same

@@ -19,7 +19,6 @@ impl Tree {
             return Err(TreeError::TooMany { count: index + 1 });
         }
         self.primitives.push(primitive);
-        self.refined.push(None);
         self.leaf_of.push(None);
         let Some(root) = self.root else {
             self.order.push(index as u32);

@@ -14,6 +14,7 @@ mod leakage;
 mod moments;
 mod node;
 mod obb;
+mod parts;
 mod primitive;
 mod refit;
 mod remove;

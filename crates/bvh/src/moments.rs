@@ -3,7 +3,7 @@
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, Vector3};
 
-use crate::Primitive;
+use crate::primitive::centroid;
 
 /// How many primitives there are, and how their positions spread.
 ///
@@ -19,26 +19,38 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// The moments of the primitives named by `indices`; zero when there are none.
-    pub(crate) fn of(primitives: &[Primitive], indices: &[u32]) -> Self {
-        let Some(&first) = indices.first() else {
-            return Self { count: 0, mean: Point3::origin(), covariance: Covariance::zero() };
-        };
-        let named = || indices.iter().map(|&i| &primitives[i as usize]);
-        let origin = primitives[first as usize].centroid();
-        let sum: Vector3 = named().map(|primitive| primitive.centroid() - origin).sum();
-        let mean = origin + sum / indices.len() as f64;
-        let mut scatter = Matrix3::zeros();
-        for primitive in named() {
-            let corners = primitive.corners();
+    /// Of nothing.
+    pub(crate) const NONE: Self =
+        Self { count: 0, mean: Point3::new(0.0, 0.0, 0.0), covariance: Covariance::zero() };
+
+    /// The moments of primitives, given by their corners; zero when there are none.
+    pub(crate) fn of<'a>(primitives: impl Iterator<Item = &'a [Point3]> + Clone) -> Self {
+        let Some(first) = primitives.clone().next() else { return Self::NONE };
+        let origin = centroid(first);
+        let mut count = 0;
+        let mut sum = Vector3::zeros();
+        for corners in primitives.clone() {
+            count += 1;
+            sum += centroid(corners) - origin;
+        }
+        let mean = origin + sum / count as f64;
+        let [mut xx, mut xy, mut xz, mut yy, mut yz, mut zz] = [0.0; 6];
+        for corners in primitives {
             let share = 1.0 / corners.len() as f64;
             for corner in corners {
                 let offset = corner - mean;
-                scatter += offset * (offset.transpose() * share);
+                let part = offset * share;
+                xx += part.x * offset.x;
+                xy += part.x * offset.y;
+                xz += part.x * offset.z;
+                yy += part.y * offset.y;
+                yz += part.y * offset.z;
+                zz += part.z * offset.z;
             }
         }
-        let covariance = Covariance::from_symmetric(&(scatter / indices.len() as f64));
-        Self { count: indices.len(), mean, covariance }
+        let scatter = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        let covariance = Covariance::from_symmetric(&(scatter / count as f64));
+        Self { count, mean, covariance }
     }
 
     /// The moments of both sets together (Chan's update).
@@ -78,7 +90,14 @@ impl Moments {
 mod tests {
     use cloudtouch_geom::UncertainPoint;
 
+    use crate::Primitive;
+
     use super::*;
+
+    /// The moments of those named by indices.
+    fn of(primitives: &[Primitive], indices: &[u32]) -> Moments {
+        Moments::of(indices.iter().map(|&i| primitives[i as usize].corners()))
+    }
 
     fn points(count: usize, offset: Vector3) -> Vec<Primitive> {
         (0..count as u64)
@@ -94,8 +113,8 @@ mod tests {
     fn merging_equals_computing_at_once() {
         let all = points(70, Vector3::zeros());
         let indices: Vec<u32> = (0..70).collect();
-        let whole = Moments::of(&all, &indices);
-        let merged = Moments::of(&all, &indices[..13]).merged(&Moments::of(&all, &indices[13..]));
+        let whole = of(&all, &indices);
+        let merged = of(&all, &indices[..13]).merged(&of(&all, &indices[13..]));
         assert_eq!(merged.count, 70);
         assert!((merged.mean - whole.mean).norm() < 1e-14);
         assert!((merged.covariance.matrix() - whole.covariance.matrix()).amax() < 1e-14);
@@ -104,8 +123,8 @@ mod tests {
     #[test]
     fn millions_of_metres_away_keep_the_spread() {
         let indices: Vec<u32> = (0..200).collect();
-        let near = Moments::of(&points(200, Vector3::zeros()), &indices);
-        let far = Moments::of(&points(200, Vector3::new(5e6, -4e6, 100.0)), &indices);
+        let near = of(&points(200, Vector3::zeros()), &indices);
+        let far = of(&points(200, Vector3::new(5e6, -4e6, 100.0)), &indices);
         // Coordinates of 5e6 are rounded to 1e-9, so variances of 1e-5 keep about five digits.
         assert!((far.variation() / near.variation() - 1.0).abs() < 1e-5);
     }
@@ -114,14 +133,14 @@ mod tests {
     fn variation_tells_flat_from_round() {
         let corner = |x, y, z| Primitive::point(UncertainPoint::exact(Point3::new(x, y, z)));
         let flat = [corner(0.0, 0.0, 0.0), corner(1.0, 0.0, 0.0), corner(0.0, 2.0, 0.0)];
-        assert!(Moments::of(&flat, &[0, 1, 2]).variation() < 1e-15);
-        assert_eq!(Moments::of(&flat, &[1]).variation(), 0.0);
+        assert!(of(&flat, &[0, 1, 2]).variation() < 1e-15);
+        assert_eq!(of(&flat, &[1]).variation(), 0.0);
         let round: Vec<_> = [(1.0, 0), (-1.0, 0), (1.0, 1), (-1.0, 1), (1.0, 2), (-1.0, 2)]
             .map(|(sign, axis)| {
                 Primitive::point(UncertainPoint::exact(Point3::from(Vector3::ith(axis, sign))))
             })
             .into();
-        let even = Moments::of(&round, &[0, 1, 2, 3, 4, 5]).variation();
+        let even = of(&round, &[0, 1, 2, 3, 4, 5]).variation();
         assert!((even - 1.0 / 3.0).abs() < 1e-12);
     }
 }

@@ -43,10 +43,7 @@ impl Primitive {
 
     /// The mean of a point, the centroid of a triangle.
     pub fn centroid(&self) -> Point3 {
-        match self {
-            Self::Point { point, .. } => point.mean,
-            Self::Triangle([p, q, r]) => p + ((q - p) + (r - p)) / 3.0,
-        }
+        centroid(self.corners())
     }
 
     /// The given weight of a point, the area of a triangle (m²).
@@ -88,5 +85,14 @@ impl Primitive {
             }
         }
         Ok(())
+    }
+}
+
+/// The centroid of a point or of the three corners of a triangle.
+pub(crate) fn centroid(corners: &[Point3]) -> Point3 {
+    match corners {
+        [p, q, r] => p + ((q - p) + (r - p)) / 3.0,
+        [point, ..] => *point,
+        [] => Point3::origin(),
     }
 }

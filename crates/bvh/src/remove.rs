@@ -19,7 +19,9 @@ impl Tree {
             .ok_or(TreeError::NoSuchPrimitive { index })?;
         let primitive = self.primitives[index];
         self.leaf_of[index] = None;
-        self.refined[index] = None;
+        if let Some(refined) = self.refined.get_mut(index) {
+            *refined = None;
+        }
         self.close_gap(leaf, index as u32);
         if self.nodes[leaf as usize].count > 0 {
             self.update_up(leaf);

@@ -15,7 +15,7 @@ pub struct Tree {
     pub(crate) settings: TreeSettings,
     /// By index; removed ones keep their slot.
     pub(crate) primitives: Vec<Primitive>,
-    /// By index: the bounds set for the refinement of a primitive.
+    /// By index: the bounds set for the refinement of a primitive; shorter when none were set.
     pub(crate) refined: Vec<Option<LeafBounds>>,
     /// By index: how far the surface of a primitive reaches; shorter when none was set.
     pub(crate) extents: Vec<Covariance>,

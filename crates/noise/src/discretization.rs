@@ -4,7 +4,8 @@
 use cloudtouch_geom::{Covariance, Matrix3, Point3};
 
 use crate::error::NoiseError;
-use crate::neighborhoods::{Neighbor, Neighborhoods};
+use crate::neighborhoods::Neighborhoods;
+use crate::positions::Neighbor;
 use crate::settings_error::{SettingsError, check_at_least_one, check_positive};
 
 /// Which points the sums of eq. 17 run over.
@@ -98,7 +99,7 @@ pub(crate) fn sampling_error(
         // Relative to the nearest, so that narrow weights do not all vanish; it cancels out.
         Summed::Neighbors => sum(nearest, 0.0, first.squared_distance),
         Summed::AllPoints => {
-            let all = neighborhoods.within(index, variance * LEAST_WEIGHT.ln().abs());
+            let all = neighborhoods.positions().within(index, variance * LEAST_WEIGHT.ln().abs());
             sum(&all, 1.0, 0.0)
         }
     })

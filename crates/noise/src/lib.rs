@@ -1,22 +1,28 @@
 #![doc = include_str!("../README.md")]
 
+mod block;
 mod candidates;
+mod density;
 mod discretization;
 mod error;
 mod finite;
 mod grid;
+mod lanes;
 mod limited;
 mod model;
 mod motion;
 mod neighborhoods;
 mod parallel;
 mod patch;
+mod positions;
 mod posterior;
 mod posterior_settings;
 mod radius;
 mod ranging;
 mod refined;
+mod regression;
 mod representatives;
+mod reweight;
 mod scratch;
 mod sensor;
 mod sensor_model;
@@ -26,7 +32,10 @@ mod settings;
 mod settings_error;
 mod smallest_axis;
 mod spacing;
+mod spatial_order;
 mod surface;
+mod thinned;
+mod typical_spacing;
 mod wide;
 
 /// Points, covariances, clouds and poses.
@@ -36,7 +45,8 @@ pub use error::NoiseError;
 pub use grid::quantize_to_grid;
 pub use model::NoiseModel;
 pub use motion::MotionNoise;
-pub use neighborhoods::{Neighbor, Neighborhoods};
+pub use neighborhoods::Neighborhoods;
+pub use positions::Neighbor;
 pub use posterior_settings::{PosteriorSettings, SurfaceError};
 pub use radius::{RadiusRule, radius_chebyshev, radius_gaussian};
 pub use ranging::{Kinect, Lidar, StereoCamera};
@@ -48,4 +58,4 @@ pub use sensor_model::SensorModel;
 pub use sensor_noise::SensorNoise;
 pub use settings::{Combination, NoiseSettings};
 pub use settings_error::SettingsError;
-pub use spacing::typical_spacing;
+pub use typical_spacing::typical_spacing;

@@ -1,13 +1,13 @@
 //! From a measured point and its neighbourhood to an uncertain surface point.
 
 use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
-use rayon::prelude::*;
 
 use crate::discretization::sampling_error;
 use crate::error::NoiseError;
 use crate::limited::limited;
 use crate::neighborhoods::Neighborhoods;
 use crate::parallel::parallel;
+use crate::patch::MOST_NEIGHBORS;
 use crate::posterior::{disc, posterior};
 use crate::refined::{Bounds, Refined};
 use crate::representatives::Representatives;
@@ -15,7 +15,7 @@ use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::settings::{Combination, NoiseSettings};
 use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
-use crate::surface::MOST_NEIGHBORS;
+use crate::spatial_order::in_spatial_order;
 
 /// Turns measured points into uncertain surface points.
 ///
@@ -103,7 +103,8 @@ impl NoiseModel {
             Combination::SurfacePosterior => MOST_NEIGHBORS,
             _ => self.settings.discretization.neighbors.max(SPACING_NEIGHBORS),
         };
-        neighborhoods.nearest_into(index, count, &mut scratch.neighbors);
+        let Scratch { block, neighbors, .. } = scratch;
+        block.nearest_into(neighborhoods.positions(), &points[index], count, true, neighbors);
         let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
         let unfitted = |covariance| Refined {
             point: UncertainPoint { mean: points[index], covariance },
@@ -150,12 +151,9 @@ impl NoiseModel {
         sensor: &SensorNoise,
         spacing_cap: f64,
     ) -> Vec<Refined> {
-        (0..neighborhoods.points().len())
-            .into_par_iter()
-            .map_init(Scratch::default, |scratch, index| {
-                self.refine(index, neighborhoods, sensor, spacing_cap, scratch)
-            })
-            .collect()
+        in_spatial_order(neighborhoods.points(), |index, scratch| {
+            self.refine(index, neighborhoods, sensor, spacing_cap, scratch)
+        })
     }
 
     /// Mean and covariance of a surface point whose normal is known, not fitted: the point stays

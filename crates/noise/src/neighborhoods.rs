@@ -1,25 +1,13 @@
-//! The neighbours of a point: a k-d tree over the distinct positions of a cloud.
+//! The neighbours of a point.
 
-use std::cmp::Ordering;
-use std::num::NonZeroUsize;
+use std::sync::OnceLock;
 
 use cloudtouch_geom::Point3;
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
 use crate::error::NoiseError;
-use crate::finite::is_finite;
-
-/// Squares of differences of such coordinates, and sums of three, are still finite.
-const LARGEST_COORDINATE: f64 = 1e150;
-
-/// A nearby point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Neighbor {
-    /// Its index in the cloud.
-    pub index: usize,
-    /// Its squared distance, m².
-    pub squared_distance: f64,
-}
+use crate::positions::{Neighbor, Positions};
+use crate::scratch::Scratch;
+use crate::thinned::Thinned;
 
 /// An index over a cloud that answers which points are nearest.
 ///
@@ -28,9 +16,9 @@ pub struct Neighbor {
 /// are not finite are nobody's neighbour. Thousands of points sharing a coordinate do no harm.
 #[derive(Debug)]
 pub struct Neighborhoods {
-    points: Vec<Point3>,
-    distinct: usize,
-    tree: ImmutableKdTree<f64, 3>,
+    positions: Positions,
+    /// A part of them, for fits to many; made when first asked for.
+    thinned: OnceLock<Vec<Thinned>>,
 }
 
 impl Neighborhoods {
@@ -40,28 +28,26 @@ impl Neighborhoods {
     /// When there are more points than an index can hold (2³² − 1), or a finite coordinate is
     /// beyond 1e150, where squared distances overflow.
     pub fn try_new(points: Vec<Point3>) -> Result<Self, NoiseError> {
-        if u32::try_from(points.len()).is_err() {
-            return Err(NoiseError::TooManyPoints { points: points.len() });
-        }
-        let too_far = |p: &Point3| is_finite(p) && p.coords.amax() > LARGEST_COORDINATE;
-        if let Some(index) = points.iter().position(too_far) {
-            return Err(NoiseError::CoordinateRange { index, point: points[index] });
-        }
-        let entries = distinct_entries(&points);
-        let tree = ImmutableKdTree::new_from_entries(&entries).map_err(|error| {
-            NoiseError::Index { points: points.len(), reason: error.to_string() }
-        })?;
-        Ok(Self { points, distinct: entries.len(), tree })
+        Ok(Self { positions: Positions::try_new(points)?, thinned: OnceLock::new() })
     }
 
     /// The points it was built from, in the order given.
     pub fn points(&self) -> &[Point3] {
-        &self.points
+        self.positions.points()
     }
 
     /// How many different finite positions there are.
     pub fn distinct(&self) -> usize {
-        self.distinct
+        self.positions.distinct()
+    }
+
+    pub(crate) fn positions(&self) -> &Positions {
+        &self.positions
+    }
+
+    /// A fourth and a sixteenth of them.
+    pub(crate) fn thinned(&self) -> &[Thinned] {
+        self.thinned.get_or_init(|| Thinned::fourth_and_sixteenth(&self.positions))
     }
 
     /// The `k` positions nearest to point `index` other than its own, fewer when there are fewer,
@@ -75,102 +61,31 @@ impl Neighborhoods {
         found
     }
 
+    /// [`Self::nearest`] with buffers: many times as fast for points near the last one.
+    ///
+    /// # Panics
+    /// When `index` is out of range.
+    pub fn nearest_with<'a>(
+        &self,
+        index: usize,
+        k: usize,
+        scratch: &'a mut Scratch,
+    ) -> &'a [Neighbor] {
+        let Scratch { block, neighbors, .. } = scratch;
+        block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
+        neighbors
+    }
+
     /// The `k` positions nearest to any place, fewer when there are fewer, in order of distance,
     /// then index. A place that is not finite has none.
     pub fn nearest_to(&self, place: &Point3, k: usize) -> Vec<Neighbor> {
         let mut found = Vec::new();
-        self.nearest_to_into(place, k, &mut found);
+        self.positions.search(place, k, false, &mut found);
         found
-    }
-
-    /// [`Self::nearest_to`] into a buffer, whose old content is dropped.
-    pub(crate) fn nearest_to_into(&self, place: &Point3, k: usize, found: &mut Vec<Neighbor>) {
-        self.search(place, k, false, found);
     }
 
     /// [`Self::nearest`] into a buffer, whose old content is dropped.
     pub(crate) fn nearest_into(&self, index: usize, k: usize, found: &mut Vec<Neighbor>) {
-        self.search(&self.points[index], k, true, found);
+        self.positions.search(&self.points()[index], k, true, found);
     }
-
-    /// Every position within a distance of point `index` other than its own, in order of distance,
-    /// then index.
-    pub(crate) fn within(&self, index: usize, squared_distance: f64) -> Vec<Neighbor> {
-        let place = self.points[index];
-        if !is_finite(&place) {
-            return Vec::new();
-        }
-        let mut found = self.hits_within(&place, squared_distance);
-        found.retain(|near| self.points[near.index] != place);
-        found.sort_unstable_by(in_order);
-        found
-    }
-
-    /// The positions within a distance of a place, in no order.
-    fn hits_within(&self, place: &Point3, squared_distance: f64) -> Vec<Neighbor> {
-        let query: [f64; 3] = place.coords.into();
-        // The slack keeps the tree's box tests, which round, from losing one.
-        let within = self
-            .tree
-            .query(&query)
-            .within::<SquaredEuclidean<f64>>(squared_distance * (1.0 + 1e-9))
-            .unsorted()
-            .execute();
-        within
-            .iter()
-            .filter(|hit| hit.distance <= squared_distance)
-            .map(|hit| Neighbor { index: hit.item as usize, squared_distance: hit.distance })
-            .collect()
-    }
-
-    fn search(&self, place: &Point3, k: usize, leave_out_place: bool, found: &mut Vec<Neighbor>) {
-        found.clear();
-        // One more than asked for shows whether a tie was cut, and one more makes up for `place`.
-        let wanted = self.distinct.min(k.saturating_add(1 + usize::from(leave_out_place)));
-        let Some(wanted) = NonZeroUsize::new(wanted).filter(|_| k > 0 && is_finite(place)) else {
-            return;
-        };
-        let query: [f64; 3] = place.coords.into();
-        let take = |item: u32, squared_distance: f64| {
-            let index = item as usize;
-            let left_out = leave_out_place && self.points[index] == *place;
-            (!left_out).then_some(Neighbor { index, squared_distance })
-        };
-        let nearest = self.tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(wanted).execute();
-        found.extend(nearest.iter().filter_map(|hit| take(hit.item, hit.distance)));
-        if let (Some(last), Some(next)) = (found.get(k - 1), found.get(k))
-            && last.squared_distance == next.squared_distance
-        {
-            // Which of the tied ones the tree returned is its own affair, so all of them are
-            // fetched.
-            let all = self.hits_within(place, last.squared_distance);
-            found.clear();
-            found.extend(
-                all.iter().filter_map(|near| take(near.index as u32, near.squared_distance)),
-            );
-        }
-        found.sort_unstable_by(in_order);
-        found.truncate(k);
-    }
-}
-
-fn in_order(a: &Neighbor, b: &Neighbor) -> Ordering {
-    a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
-}
-
-/// Every finite position once, with the lowest index that has it, in the order of these indices.
-fn distinct_entries(points: &[Point3]) -> Vec<(u32, [f64; 3])> {
-    let mut entries: Vec<(u32, [f64; 3])> = (0_u32..)
-        .zip(points)
-        .filter(|(_, point)| is_finite(point))
-        // Adding zero turns -0 into 0, which is the same place.
-        .map(|(index, point)| (index, point.coords.map(|v| v + 0.0).into()))
-        .collect();
-    entries.sort_unstable_by(|(i, a), (j, b)| {
-        let [x, y, z] = [0, 1, 2].map(|axis| a[axis].total_cmp(&b[axis]));
-        x.then(y).then(z).then(i.cmp(j))
-    });
-    entries.dedup_by(|later, first| later.1 == first.1);
-    entries.sort_unstable_by_key(|entry| entry.0);
-    entries
 }

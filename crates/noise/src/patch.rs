@@ -2,17 +2,73 @@
 
 use cloudtouch_geom::{Covariance, Vector3};
 
+use crate::lanes::{Lanes, Machine, Stored, WIDTH};
+
+/// The most neighbours a patch can hold.
+pub(crate) const MOST_NEIGHBORS: usize = 60;
+/// Groups of lanes that these and one more take.
+pub(crate) const GROUPS: usize = MOST_NEIGHBORS / WIDTH + 1;
+
+/// Vectors xⱼ − xᵢ to neighbours in order of distance, m: x, y and z in lanes of their own; zero
+/// where there are no more.
+#[derive(Debug, Clone)]
+pub(crate) struct Offsets {
+    groups: [[Stored; 3]; GROUPS],
+    count: usize,
+}
+
+impl Default for Offsets {
+    fn default() -> Self {
+        Self { groups: [[[0.0; WIDTH]; 3]; GROUPS], count: 0 }
+    }
+}
+
+impl Offsets {
+    /// Takes others instead, as many as there is room for.
+    pub(crate) fn set(&mut self, offsets: impl Iterator<Item = Vector3>) {
+        let mut count = 0;
+        for offset in offsets.take(GROUPS * WIDTH) {
+            self.put(count, offset);
+            count += 1;
+        }
+        self.count = count;
+        for rest in count..count.next_multiple_of(WIDTH) {
+            self.put(rest, Vector3::zeros());
+        }
+    }
+
+    fn put(&mut self, index: usize, offset: Vector3) {
+        for (lanes, value) in self.groups[index / WIDTH].iter_mut().zip(offset.iter()) {
+            lanes[index % WIDTH] = *value;
+        }
+    }
+
+    /// One of them.
+    pub(crate) fn get(&self, index: usize) -> Vector3 {
+        let [x, y, z] = self.groups[index / WIDTH];
+        let lane = index % WIDTH;
+        Vector3::new(x[lane], y[lane], z[lane])
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.count
+    }
+}
+
 /// Neighbours in order of distance, relative to the point they surround.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Patch<'a> {
-    /// xⱼ − xᵢ, m.
-    pub(crate) offsets: &'a [Vector3],
+    offsets: &'a Offsets,
+    /// How many of them count.
+    count: usize,
     /// Σⱼ of each of them.
     noise: PatchNoise<'a>,
     /// Σᵢ of the point itself.
     own_noise: &'a Covariance,
     /// The least variance a residual is judged by, m².
     floor: f64,
+    /// The precision of all along all normals, where neither matters, 1/m².
+    same: Option<f64>,
 }
 
 /// Σⱼ of each neighbour.
@@ -23,11 +79,19 @@ pub(crate) enum PatchNoise<'a> {
     Each(&'a [Covariance]),
 }
 
-impl PatchNoise<'_> {
-    fn nearest(&self, count: usize) -> Self {
+/// The inverse variances of neighbours along a direction, 1/m².
+#[expect(clippy::large_enum_variant, reason = "one at a time, for one pass over the neighbours")]
+pub(crate) enum Precisions {
+    Same(f64),
+    Each([Stored; GROUPS]),
+}
+
+impl Precisions {
+    #[inline(always)]
+    pub(crate) fn group<S: Machine>(&self, machine: S, group: usize) -> Lanes<S> {
         match self {
-            Self::Uniform(covariance) => Self::Uniform(covariance),
-            Self::Each(all) => Self::Each(&all[..count]),
+            Self::Same(precision) => Lanes::splat(machine, *precision),
+            Self::Each(all) => Lanes::load(machine, all[group]),
         }
     }
 }
@@ -41,6 +105,15 @@ pub(crate) struct Plane {
     pub(crate) height: f64,
 }
 
+impl Plane {
+    /// How far places are above it, m.
+    #[inline(always)]
+    pub(crate) fn residuals<S: Machine>(&self, machine: S, [x, y, z]: [Lanes<S>; 3]) -> Lanes<S> {
+        let n = &self.normal;
+        x * n.x + y * n.y + z * n.z - Lanes::splat(machine, self.height)
+    }
+}
+
 /// Even a noise-free surface bends between its samples: residuals of this part of the spacing
 /// are taken for nothing.
 const FLOOR_PER_SPACING: f64 = 0.03;
@@ -48,42 +121,90 @@ const FLOOR_PER_SPACING: f64 = 0.03;
 impl<'a> Patch<'a> {
     /// Neighbours about a point whose local spacing is `spacing`, m.
     pub(crate) fn new(
-        offsets: &'a [Vector3],
+        offsets: &'a Offsets,
         noise: PatchNoise<'a>,
         own_noise: &'a Covariance,
         spacing: f64,
     ) -> Self {
-        Self { offsets, noise, own_noise, floor: (FLOOR_PER_SPACING * spacing).powi(2) }
-    }
-
-    /// The first `count` neighbours only.
-    pub(crate) fn nearest(&self, count: usize) -> Self {
-        Self { offsets: &self.offsets[..count], noise: self.noise.nearest(count), ..*self }
-    }
-
-    /// Offsets of the neighbours with the variances their residuals along a unit normal are
-    /// judged by, m².
-    pub(crate) fn with_variances(
-        &self,
-        normal: &Vector3,
-    ) -> impl Iterator<Item = (&'a Vector3, f64)> {
-        let (normal, floor) = (*normal, self.floor);
-        let along = move |noise: &Covariance| noise.variance_along(&normal).max(floor);
-        let (same, each) = match self.noise {
-            PatchNoise::Uniform(covariance) => (along(covariance), None),
-            PatchNoise::Each(all) => (floor, Some(all)),
+        let floor = (FLOOR_PER_SPACING * spacing).powi(2);
+        let same = match noise {
+            PatchNoise::Uniform(noise) => noise.isotropic_variance().map(|v| 1.0 / v.max(floor)),
+            PatchNoise::Each(_) => None,
         };
-        let variance = move |i: usize| each.map_or(same, |all| along(&all[i]));
-        self.offsets.iter().enumerate().map(move |(i, offset)| (offset, variance(i)))
+        Self { offsets, count: offsets.len(), noise, own_noise, floor, same }
+    }
+
+    /// The first `count` neighbours only, if there are as many.
+    pub(crate) fn nearest(&self, count: usize) -> Self {
+        Self { count: count.min(self.count), ..*self }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.count
+    }
+
+    /// The vector to one of the neighbours, m.
+    pub(crate) fn offset(&self, index: usize) -> Vector3 {
+        self.offsets.get(index)
+    }
+
+    /// How many groups of lanes they take.
+    #[inline(always)]
+    pub(crate) fn groups(&self) -> usize {
+        self.count.div_ceil(WIDTH)
+    }
+
+    /// The vectors to the neighbours of a group: x, y and z.
+    #[inline(always)]
+    pub(crate) fn group<S: Machine>(&self, machine: S, group: usize) -> [Lanes<S>; 3] {
+        let [x, y, z] = self.offsets.groups[group];
+        [Lanes::load(machine, x), Lanes::load(machine, y), Lanes::load(machine, z)]
+    }
+
+    /// Ones in the lanes of a group that hold a neighbour, zeros in the others.
+    #[inline(always)]
+    pub(crate) fn present<S: Machine>(&self, machine: S, group: usize) -> Lanes<S> {
+        let left = (self.count - group * WIDTH).min(WIDTH);
+        Lanes::load(machine, PRESENT[left - 1])
+    }
+
+    /// The inverse of the variances that residuals of the neighbours along a unit normal are judged
+    /// by.
+    #[inline(always)]
+    pub(crate) fn precisions(&self, normal: &Vector3) -> Precisions {
+        if let Some(precision) = self.same {
+            return Precisions::Same(precision);
+        }
+        let along = |noise: &Covariance| 1.0 / noise.variance_along(normal).max(self.floor);
+        match self.noise {
+            PatchNoise::Uniform(noise) => Precisions::Same(along(noise)),
+            PatchNoise::Each(all) => {
+                let mut precisions = [[0.0; WIDTH]; GROUPS];
+                for (index, noise) in all[..self.count].iter().enumerate() {
+                    precisions[index / WIDTH][index % WIDTH] = along(noise);
+                }
+                Precisions::Each(precisions)
+            }
+        }
     }
 
     /// The variance of the point itself along a unit normal, by the same measure.
     pub(crate) fn own_variance(&self, normal: &Vector3) -> f64 {
-        self.own_noise.variance_along(normal).max(self.floor)
+        let isotropic = self.own_noise.isotropic_variance();
+        isotropic.unwrap_or_else(|| self.own_noise.variance_along(normal)).max(self.floor)
     }
 
     /// An upper bound of [`Self::own_variance`] over all normals.
     pub(crate) fn largest_own_variance(&self) -> f64 {
         self.own_noise.std_bound().powi(2).max(self.floor)
     }
+
+    /// [`Self::own_variance`] where it is the same along all normals.
+    pub(crate) fn isotropic_own_variance(&self) -> Option<f64> {
+        self.own_noise.isotropic_variance().map(|variance| variance.max(self.floor))
+    }
 }
+
+/// By how many lanes of a group hold a neighbour, less one.
+const PRESENT: [[f64; WIDTH]; WIDTH] =
+    [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 1.0, 0.0], [1.0; WIDTH]];

@@ -2,15 +2,16 @@
 
 use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
 
+use crate::lanes::{Kernel, Lanes, Machine, WIDTH, run};
 use crate::neighborhoods::Neighborhoods;
-use crate::patch::Patch;
+use crate::patch::{MOST_NEIGHBORS, Patch};
 use crate::posterior_settings::PosteriorSettings;
 use crate::refined::Refined;
 use crate::representatives::Representatives;
 use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::spacing::{SPACING_NEIGHBORS, is_noisy, spacing_around, spacing_of_rank};
-use crate::surface::{MOST_NEIGHBORS, Surface, fit_surface};
+use crate::surface::{Surface, fit_surface};
 use crate::wide::wide_surface;
 
 /// A neighbour so many standard deviations off the surface is not a sample of it.
@@ -39,15 +40,19 @@ pub(crate) fn posterior(
     let wide = is_noisy(&sensor[index], around)
         .then(|| wide_surface(index, neighborhoods, sensor, around, scratch))
         .flatten();
-    let Scratch { neighbors, patch, wide_neighbors, wide_patch } = scratch;
+    let Scratch { neighbors, patch, kept_block, wide_neighbors, wide_patch, .. } = scratch;
     let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
     let surface = wide.or_else(|| fit_surface(&patch))?;
     let spacing = match representatives {
         None => tangential_spacing(&patch, &surface)?,
         Some(kept) => {
-            kept.nearest_to_into(&points[index], 1 + MOST_NEIGHBORS, wide_neighbors);
-            let others = wide_neighbors.iter().filter(|near| points[near.index] != points[index]);
-            let others = wide_patch.patch(index, others, points, sensor, around);
+            let (positions, in_cloud) = kept.positions();
+            let found = &mut *wide_neighbors;
+            kept_block.nearest_into(positions, &points[index], MOST_NEIGHBORS, true, found);
+            for near in found.iter_mut() {
+                near.index = in_cloud(near.index);
+            }
+            let others = wide_patch.patch(index, found.iter(), points, sensor, around);
             // One alone stands for no more than its noise.
             let alone = sensor[index].max_std();
             tangential_spacing(&others, &surface).unwrap_or(alone)
@@ -104,22 +109,54 @@ fn share(a: f64, b: f64) -> f64 {
 /// The spacing of the samples on the surface, noise across it left out: the sixth least distance
 /// across the normal among the neighbours near the surface; `None` when there is none.
 fn tangential_spacing(patch: &Patch, surface: &Surface) -> Option<f64> {
+    run(Spacing { patch, surface })
+}
+
+struct Spacing<'a> {
+    patch: &'a Patch<'a>,
+    surface: &'a Surface,
+}
+
+impl Kernel for Spacing<'_> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn run<S: Machine>(self, machine: S) -> Option<f64> {
+        tangential(machine, self.patch, self.surface)
+    }
+}
+
+#[inline(always)]
+fn tangential<S: Machine>(machine: S, patch: &Patch, surface: &Surface) -> Option<f64> {
     let mut nearest = [f64::INFINITY; SPACING_NEIGHBORS];
     let mut count = 0;
-    for (offset, variance) in patch.with_variances(&surface.normal) {
-        let (residual, reach) = surface.residual_and_reach(offset);
-        let allowed = SAMPLE_OFFSET.powi(2) * (variance + surface.expected_error);
-        if residual * residual <= allowed {
-            count += 1;
-            let last = SPACING_NEIGHBORS - 1;
-            if reach < nearest[last] {
-                let place = nearest.partition_point(|&r| r <= reach);
-                nearest[place..].rotate_right(1);
-                nearest[place] = reach;
+    let precisions = patch.precisions(&surface.normal);
+    let allowance = SAMPLE_OFFSET * SAMPLE_OFFSET * surface.expected_error;
+    for group in 0..patch.groups() {
+        let offsets = patch.group(machine, group);
+        let present = patch.present(machine, group);
+        let [residual, reach] = surface.squared_residual_and_reach(machine, offsets);
+        let precision = precisions.group(machine, group);
+        let excess = (residual - Lanes::splat(machine, allowance)) * precision;
+        let [present, excess, reach] = [present.stored(), excess.stored(), reach.stored()];
+        for lane in 0..WIDTH {
+            if present[lane] > 0.0 && excess[lane] <= SAMPLE_OFFSET * SAMPLE_OFFSET {
+                count += 1;
+                insert(&mut nearest, reach[lane]);
             }
         }
     }
     let rank = count.min(SPACING_NEIGHBORS);
-    let reach = *nearest.get(rank.checked_sub(1)?)?;
-    Some(spacing_of_rank(reach, rank))
+    let squared = *nearest.get(rank.checked_sub(1)?)?;
+    Some(spacing_of_rank(squared.sqrt(), rank))
+}
+
+/// Keeps the least values in order.
+#[inline(always)]
+fn insert(least: &mut [f64; SPACING_NEIGHBORS], value: f64) {
+    if value < least[SPACING_NEIGHBORS - 1] {
+        let place = least.partition_point(|&kept| kept <= value);
+        least[place..].rotate_right(1);
+        least[place] = value;
+    }
 }

@@ -1,12 +1,13 @@
 //! Where samples are far denser than their noise, a few stand for all.
 
 use cloudtouch_geom::Point3;
-use rayon::prelude::*;
 
+use crate::density::{Density, densest_first};
 use crate::error::NoiseError;
-use crate::neighborhoods::{Neighbor, Neighborhoods};
+use crate::neighborhoods::Neighborhoods;
+use crate::positions::Positions;
 use crate::sensor_noise::SensorNoise;
-use crate::spacing::{SPACING_NEIGHBORS, is_noisy, spacing_around};
+use crate::spacing::is_noisy;
 
 /// A representative stands for the points up to so many spacings from it, and for none beyond the
 /// standard deviation of the noise.
@@ -63,13 +64,9 @@ impl Representatives {
         &self.near
     }
 
-    /// The nearest to a place, by their indices in the cloud, into a buffer, whose old content is
-    /// dropped.
-    pub(crate) fn nearest_to_into(&self, place: &Point3, k: usize, found: &mut Vec<Neighbor>) {
-        self.near.nearest_to_into(place, k, found);
-        for near in found {
-            near.index = self.indices[near.index] as usize;
-        }
+    /// Their positions, and the index in the cloud of one of these.
+    pub(crate) fn positions(&self) -> (&Positions, impl Fn(usize) -> usize + '_) {
+        (self.near.positions(), |place| self.indices[place] as usize)
     }
 }
 
@@ -77,30 +74,29 @@ impl Representatives {
 fn is_crowded(cloud: &Neighborhoods, sensor: &SensorNoise) -> bool {
     let count = cloud.points().len();
     let sampled = count.min(SAMPLE);
+    let mut found = Vec::new();
+    let mut spacing = |index| Density::around(cloud.positions(), index, &mut found).spacing;
     let noisy = (0..sampled)
         .map(|s| s * count / sampled)
-        .filter(|&index| is_noisy(&sensor[index], Around::of(cloud, index).spacing))
+        .filter(|&index| is_noisy(&sensor[index], spacing(index)))
         .count();
     noisy as f64 > NOISY_SHARE * sampled as f64
 }
 
 fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
-    let count = cloud.points().len();
-    let around: Vec<Around> =
-        (0..count).into_par_iter().map(|index| Around::of(cloud, index)).collect();
-    let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by(|&i, &j| around[i].squares.total_cmp(&around[j].squares).then(i.cmp(&j)));
-    let mut is_represented = vec![false; count];
+    let densities = Density::everywhere(cloud.positions());
+    let mut is_represented = vec![false; densities.len()];
     let mut chosen = Vec::new();
-    for index in order {
-        if is_represented[index] {
+    for index in densest_first(&densities) {
+        let at = index as usize;
+        if is_represented[at] {
             continue;
         }
-        chosen.push(index as u32);
-        let (noise, spacing) = (&sensor[index], around[index].spacing);
+        chosen.push(index);
+        let (noise, spacing) = (&sensor[at], densities[at].spacing);
         if is_noisy(noise, spacing) {
             let reach = noise.max_std().min(REACH_SPACINGS * spacing);
-            for near in cloud.within(index, reach * reach) {
+            for near in cloud.positions().within(at, reach * reach) {
                 let noise = sensor[near.index].max_std();
                 is_represented[near.index] |= near.squared_distance <= noise * noise;
             }
@@ -108,24 +104,4 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
     }
     chosen.sort_unstable();
     chosen
-}
-
-/// How dense the samples are about a point.
-struct Around {
-    /// The distance between them, m; infinite for one alone.
-    spacing: f64,
-    /// The sum of the squared distances of the nearest, m². Two points that are each other's sixth
-    /// neighbour have the same spacing, but not the same sum: which comes first must not hang on
-    /// rounding.
-    squares: f64,
-}
-
-impl Around {
-    fn of(cloud: &Neighborhoods, index: usize) -> Self {
-        let near = cloud.nearest(index, SPACING_NEIGHBORS);
-        Self {
-            spacing: spacing_around(&near).unwrap_or(f64::INFINITY),
-            squares: near.iter().map(|near| near.squared_distance).sum(),
-        }
-    }
 }

@@ -1,16 +1,23 @@
 //! Memory that refinement works in.
 
-use cloudtouch_geom::{Covariance, Point3, Vector3};
+use cloudtouch_geom::{Covariance, Point3};
 
-use crate::neighborhoods::Neighbor;
-use crate::patch::{Patch, PatchNoise};
+use crate::block::Block;
+use crate::patch::{Offsets, Patch, PatchNoise};
+use crate::positions::Neighbor;
 use crate::sensor_noise::SensorNoise;
 
 /// Buffers reused from one refinement to the next; holds no results.
 #[derive(Debug, Default)]
 pub struct Scratch {
+    /// Of the cloud, about the last point.
+    pub(crate) block: Block,
     pub(crate) neighbors: Vec<Neighbor>,
     pub(crate) patch: Buffers,
+    /// Of the thinned clouds.
+    pub(crate) wide_blocks: [Block; 2],
+    /// Of the representatives.
+    pub(crate) kept_block: Block,
     /// The same of a wider neighbourhood.
     pub(crate) wide_neighbors: Vec<Neighbor>,
     pub(crate) wide_patch: Buffers,
@@ -18,7 +25,7 @@ pub struct Scratch {
 
 #[derive(Debug, Default)]
 pub(crate) struct Buffers {
-    offsets: Vec<Vector3>,
+    offsets: Offsets,
     /// Empty where it is the same for all.
     noise: Vec<Covariance>,
 }
@@ -33,8 +40,7 @@ impl Buffers {
         sensor: &'a SensorNoise,
         spacing: f64,
     ) -> Patch<'a> {
-        self.offsets.clear();
-        self.offsets.extend(neighbors.clone().map(|n| points[n.index] - points[index]));
+        self.offsets.set(neighbors.clone().map(|n| points[n.index] - points[index]));
         let noise = if let Some(covariance) = sensor.as_uniform() {
             PatchNoise::Uniform(covariance)
         } else {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use cloudtouch_geom::Covariance;
 
-use crate::neighborhoods::{Neighbor, Neighborhoods};
+use crate::positions::Neighbor;
 
 /// The neighbour whose distance gives the spacing: enough to average over direction, few enough
 /// to stay local.
@@ -12,30 +12,6 @@ pub(crate) const SPACING_NEIGHBORS: usize = 6;
 
 /// Where the noise is more than this many spacings the nearest neighbours are all noise.
 const NOISY_SPACINGS: f64 = 1.35;
-
-/// The typical spacing of a cloud, m: the median over `sample` points, evenly spread over the
-/// indices, of dₖ √(π/k) with dₖ the distance to the sixth neighbour.
-///
-/// On a surface with one sample in every square of side h it is about h. Noise larger than the
-/// spacing thickens the surface and makes it too large. Zero when no sampled point has a
-/// neighbour; all points are sampled when there are fewer than `sample`.
-pub fn typical_spacing(neighborhoods: &Neighborhoods, sample: usize) -> f64 {
-    let count = neighborhoods.points().len();
-    let sample = sample.min(count);
-    let mut found = Vec::new();
-    let mut spacings = Vec::with_capacity(sample);
-    for s in 0..sample {
-        // The product fits: an index holds at most 2³² points.
-        let index = (s as u64 * count as u64 / sample as u64) as usize;
-        neighborhoods.nearest_into(index, SPACING_NEIGHBORS, &mut found);
-        spacings.extend(spacing_around(&found));
-    }
-    if spacings.is_empty() {
-        return 0.0;
-    }
-    let middle = spacings.len() / 2;
-    *spacings.select_nth_unstable_by(middle, f64::total_cmp).1
-}
 
 /// The local spacing from neighbours in order of distance; `None` without any.
 pub(crate) fn spacing_around(neighbors: &[Neighbor]) -> Option<f64> {

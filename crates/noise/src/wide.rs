@@ -2,21 +2,24 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
+use cloudtouch_geom::Point3;
+
 use crate::neighborhoods::Neighborhoods;
+use crate::patch::MOST_NEIGHBORS;
 use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
-use crate::surface::{MOST_NEIGHBORS, Surface, fit_surface};
+use crate::surface::{Surface, fit_surface};
 
-/// Among as many neighbours from farther away: every fourth or sixteenth of four or sixteen times as
-/// many.
-const STRIDES: [usize; 2] = [4, 16];
-/// How often a wider neighbourhood is gathered.
+/// How often a wider neighbourhood is gathered at most.
 const PASSES: usize = 3;
+/// A move of which the square is less than this part of the squared error expected is none.
+const SETTLED: f64 = 0.25;
 /// A wider patch may have this many times the variance.
 const WIDER: f64 = 2.0;
 
 /// The surface by neighbours from farther away, where the nearest are all noise: the widest fit that
-/// is not plainly worse than a narrower one. `None` where none of them determines a plane.
+/// is not plainly worse than a narrower one. Among as many neighbours, of a fourth and of a sixteenth
+/// of the cloud. `None` where none of them determines a plane.
 pub(crate) fn wide_surface(
     index: usize,
     neighborhoods: &Neighborhoods,
@@ -24,10 +27,30 @@ pub(crate) fn wide_surface(
     spacing: f64,
     scratch: &mut Scratch,
 ) -> Option<Surface> {
+    let points = neighborhoods.points();
+    let Scratch { wide_blocks, wide_neighbors, wide_patch, .. } = scratch;
     let mut found: Option<Surface> = None;
-    for stride in STRIDES {
-        let wide = strided_surface(stride, index, neighborhoods, sensor, spacing, scratch);
-        let Some(mut wide) = wide else { continue };
+    let mut place = points[index];
+    for (thinned, block) in neighborhoods.thinned().iter().zip(wide_blocks) {
+        let around = |place: &Point3| {
+            // One more than are used, for the point itself is the measurement, not a part of what it
+            // is held against.
+            let most = MOST_NEIGHBORS + 1;
+            block.nearest_into(thinned.positions(), place, most, false, wide_neighbors);
+            for near in wide_neighbors.iter_mut() {
+                near.index = thinned.index(near.index);
+            }
+            let others = wide_neighbors.iter().filter(|near| points[near.index] != points[index]);
+            fit_surface(&wide_patch.patch(
+                index,
+                others.take(MOST_NEIGHBORS),
+                points,
+                sensor,
+                spacing,
+            ))
+        };
+        let Some((mut wide, at)) = settled(points[index], place, around) else { continue };
+        place = at;
         // Residuals of twice as many neighbours hide less.
         if found.is_some() {
             wide.hidden *= FRAC_1_SQRT_2;
@@ -39,29 +62,24 @@ pub(crate) fn wide_surface(
     found
 }
 
-/// The surface by every `stride`-th of as many times more neighbours. What is nearest to a displaced
-/// point agrees with it more than it should, so they are gathered again about where the surface
-/// seems to be.
-fn strided_surface(
-    stride: usize,
-    index: usize,
-    neighborhoods: &Neighborhoods,
-    sensor: &SensorNoise,
-    spacing: f64,
-    scratch: &mut Scratch,
-) -> Option<Surface> {
-    let points = neighborhoods.points();
-    let Scratch { wide_neighbors, wide_patch, .. } = scratch;
-    let mut place = points[index];
+/// The surface of a point by what is about a place, and where it is. What is nearest to a displaced
+/// point agrees with it more than it should, so the neighbours are gathered again about where the
+/// surface seems to be, until it moves by less than it is known.
+fn settled(
+    point: Point3,
+    mut place: Point3,
+    mut around: impl FnMut(&Point3) -> Option<Surface>,
+) -> Option<(Surface, Point3)> {
     let mut found = None;
     for _ in 0..PASSES {
-        neighborhoods.nearest_to_into(&place, stride * MOST_NEIGHBORS, wide_neighbors);
-        // The point itself is the measurement, not a part of what it is held against.
-        let every = (wide_neighbors.iter().skip(stride - 1).step_by(stride))
-            .filter(|near| points[near.index] != points[index]);
-        let surface = fit_surface(&wide_patch.patch(index, every, points, sensor, spacing))?;
-        place = points[index] + surface.normal.into_inner() * surface.height;
-        found = Some(surface);
+        let surface = around(&place)?;
+        let at = point + surface.normal.into_inner() * surface.height;
+        let moved = (at - place).norm_squared();
+        place = at;
+        found = Some((surface, place));
+        if moved < SETTLED * surface.expected_error {
+            break;
+        }
     }
     found
 }

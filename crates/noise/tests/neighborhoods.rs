@@ -1,7 +1,7 @@
 //! The index against brute force, on clouds that break k-d trees.
 
-use cloudtouch_geom::Point3;
-use cloudtouch_noise::{Neighbor, Neighborhoods, NoiseError, typical_spacing};
+use cloudtouch_geom::{Point3, Vector3, seed};
+use cloudtouch_noise::{Neighbor, Neighborhoods, NoiseError, Scratch, typical_spacing};
 use proptest::prelude::*;
 
 /// The reference: every other position once, sorted by distance, then index.
@@ -26,12 +26,22 @@ fn brute_force(
 
 fn check_all(points: &[Point3], k: usize) {
     let index = Neighborhoods::try_new(points.to_vec()).expect("an index");
+    // Buffers that have seen another cloud, and each point in turn, near or far.
+    let moved = points.iter().map(|p| p + Vector3::x()).collect();
+    let other = Neighborhoods::try_new(moved).expect("an index");
+    let mut scratch = Scratch::default();
     for (i, place) in points.iter().enumerate() {
         if place.coords.iter().all(|v| v.is_finite()) {
-            assert_eq!(index.nearest(i, k), brute_force(points, place, true, k), "point {i}");
+            let nearest = brute_force(points, place, true, k);
+            assert_eq!(index.nearest(i, k), nearest, "point {i}");
+            assert_eq!(index.nearest_with(i, k, &mut scratch), nearest, "point {i} by a block");
+            if i % 7 == 0 {
+                other.nearest_with(i, k, &mut scratch);
+            }
             assert_eq!(index.nearest_to(place, k), brute_force(points, place, false, k));
         } else {
             assert!(index.nearest(i, k).is_empty());
+            assert!(index.nearest_with(i, k, &mut scratch).is_empty());
         }
     }
 }
@@ -82,6 +92,30 @@ fn brute_force_fast(points: &[Point3], i: usize, k: usize) -> Vec<Neighbor> {
     });
     all.truncate(k);
     all
+}
+
+/// A dense patch beside a sparse one, walked through and jumped about: blocks that are too small, too
+/// large, and left behind.
+#[test]
+fn blocks_find_what_single_searches_find() {
+    let points: Vec<Point3> = (0..3000)
+        .map(|i| {
+            let draw = |k| seed::unit(seed::derive(11, i, k));
+            let size = if i % 3 == 0 { 10.0 } else { 0.5 };
+            Point3::new(size * draw(0), size * draw(1), 0.01 * draw(2))
+        })
+        .collect();
+    let index = Neighborhoods::try_new(points.clone()).unwrap();
+    let mut walk: Vec<usize> = (0..points.len()).collect();
+    walk.sort_by(|&i, &j| points[i].x.total_cmp(&points[j].x));
+    for k in [1, 8, 60, 240] {
+        let mut scratch = Scratch::default();
+        for &i in
+            walk.iter().step_by(7).chain((0..points.len()).step_by(53).collect::<Vec<_>>().iter())
+        {
+            assert_eq!(index.nearest_with(i, k, &mut scratch), index.nearest(i, k), "point {i}");
+        }
+    }
 }
 
 #[test]

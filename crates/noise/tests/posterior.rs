@@ -228,3 +228,26 @@ fn the_cap_limits_the_spacing_and_the_disc() {
     assert_eq!(refined.spacing, 0.005);
     assert!((refined.point.covariance.max_std() - 0.35 * 0.005).abs() < 1e-12);
 }
+
+/// Thinned clouds are made by whichever thread needs one first, amid the others.
+#[test]
+fn dense_clouds_are_refined_alike_by_one_thread_and_many() {
+    let measured = noisy(&plane(0.1, 0.002, 1).points, 0.015, 7);
+    let sensor = isotropic(0.015, &measured);
+    let by = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| refine_all(&model(Combination::SurfacePosterior), &measured, &sensor))
+    };
+    let one = by(1);
+    for _ in 0..5 {
+        assert_eq!(one, by(4));
+    }
+    // Nor does it matter which are asked for, and in which order.
+    let hoods = Neighborhoods::try_new(measured.clone()).unwrap();
+    let model = model(Combination::SurfacePosterior);
+    let mut scratch = Scratch::default();
+    for index in (0..measured.len()).rev().step_by(41) {
+        let alone = model.refine(index, &hoods, &sensor, f64::INFINITY, &mut scratch);
+        assert_eq!(alone, one[index]);
+    }
+}

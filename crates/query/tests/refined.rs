@@ -55,6 +55,15 @@ proptest! {
 }
 
 #[test]
+fn refining_twice_is_refining_once() {
+    let query = Query::new(QuerySettings::default()).expect("default settings");
+    let pose = Pose::from_translation(Vector3::new(0.0, 0.0, 0.055));
+    let [once, twice] = [refined(pair(0.01, 0.002)), refined(refined(pair(0.01, 0.002)))]
+        .map(|[a, b]| query.run(&a, &b, &pose).expect("finite poses").collision_probability);
+    assert_eq!(once, twice);
+}
+
+#[test]
 fn refined_clouds_meet_meshes_as_before() {
     let query = Query::new(QuerySettings::default()).unwrap();
     let ball = mesh(&scene::sphere(0.05, 3));

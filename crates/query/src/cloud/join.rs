@@ -15,9 +15,14 @@ const NEIGHBORS: usize = 8;
 impl Prepared {
     /// The edges that start or end at a point of a leaf.
     pub(crate) fn leaf_edges(&self, id: NodeId) -> &[Edge] {
+        self.leaf_edges_with(id, &mut Scratch::default())
+    }
+
+    /// [`Self::leaf_edges`] with buffers that leaves nearby were joined with.
+    pub(super) fn leaf_edges_with(&self, id: NodeId, scratch: &mut Scratch) -> &[Edge] {
         self.surface.edges[id.index()].get_or_init(|| {
             let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
-            edges_of(self, leaf.primitive_indices())
+            edges_of(self, leaf.primitive_indices(), scratch)
         })
     }
 }
@@ -26,20 +31,19 @@ impl Prepared {
 /// which has the same edge.
 ///
 /// Only points that are among each other's nearest are joined, so that both leaves agree.
-pub(crate) fn edges_of(cloud: &Prepared, indices: &[u32]) -> Vec<Edge> {
+pub(crate) fn edges_of(cloud: &Prepared, indices: &[u32], scratch: &mut Scratch) -> Vec<Edge> {
     let places: BTreeMap<u32, usize> = indices.iter().copied().zip(0..).collect();
-    let mut scratch = Scratch::default();
     let mut nearest = Nearest { cloud, known: BTreeMap::new() };
     let mut edges = Vec::new();
     for (&p, &place) in &places {
-        for q in nearest.of(p) {
+        for q in nearest.of(p, scratch) {
             let other = places.get(&q).copied();
             let is_second = other.is_some() && q < p;
-            if q == p || is_second || !nearest.of(q).contains(&p) {
+            if q == p || is_second || !nearest.of(q, scratch).contains(&p) {
                 continue;
             }
-            let from = *cloud.surfel(p, &mut scratch);
-            let to = *cloud.surfel(q, &mut scratch);
+            let from = *cloud.surfel(p, scratch);
+            let to = *cloud.surfel(q, scratch);
             if runs_along(&from, &to) {
                 edges.push(Edge {
                     ends: [from.point.mean, to.point.mean],
@@ -62,10 +66,10 @@ struct Nearest<'a> {
 
 impl Nearest<'_> {
     /// With fewer neighbours the point itself fills the rest, to which no edge leads.
-    fn of(&mut self, index: u32) -> [u32; NEIGHBORS] {
+    fn of(&mut self, index: u32, scratch: &mut Scratch) -> [u32; NEIGHBORS] {
         *self.known.entry(index).or_insert_with(|| {
             let mut nearest = [index; NEIGHBORS];
-            let found = self.cloud.near_pieces().nearest(index as usize, NEIGHBORS);
+            let found = self.cloud.near_pieces().nearest_with(index as usize, NEIGHBORS, scratch);
             for (slot, neighbor) in nearest.iter_mut().zip(found) {
                 *slot = neighbor.index as u32;
             }

@@ -13,12 +13,16 @@ const ROUNDING: f64 = 1e-9;
 impl Prepared {
     /// The surface at the points of a node, and whether this call computed it.
     pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
+        self.leaf_with(id, &mut Scratch::default())
+    }
+
+    /// [`Self::leaf`] with buffers that leaves nearby were computed with.
+    pub(super) fn leaf_with(&self, id: NodeId, scratch: &mut Scratch) -> (&[Surfel], bool) {
         let mut computed = false;
         let surfels = self.surface.leaves[id.index()].get_or_init(|| {
             computed = true;
             let Some(leaf) = self.tree.node(id) else { return Vec::new() };
-            let mut scratch = Scratch::default();
-            let surfel = |&piece: &u32| *self.surfel(piece, &mut scratch);
+            let surfel = |&piece: &u32| *self.surfel(piece, scratch);
             leaf.primitive_indices().iter().map(surfel).collect()
         });
         (surfels, computed)
@@ -33,24 +37,38 @@ impl Prepared {
 
     /// The surface at one piece.
     pub(super) fn surfel(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
-        self.surface.surfels[piece as usize].get_or_init(|| {
-            let index = self.pieces.index(piece);
-            let cap = self.surface.spacing_caps[piece as usize];
-            let near = &self.neighborhoods;
-            let refined = match self.normals.as_ref().map(|normals| normals[index]) {
-                Some(normal) => {
-                    let sensor = &self.sensor[index];
-                    self.noise.with_normal(index, normal, near, sensor, cap, scratch)
-                }
-                None => {
-                    let measured = (&self.noise, near, &self.sensor);
-                    self.pieces.refine(piece, measured, cap, scratch)
-                }
-            };
-            let (point, spacing) = (refined.point, refined.spacing);
-            let normal = refined.normal.map(UnitVector3::into_inner);
-            let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
-            Box::new(Surfel { index: index as u32, point, spacing, most_variance, normal })
-        })
+        match self.surface.surfels.get(piece as usize) {
+            Some(slot) => slot.get_or_init(|| Box::new(self.fitted(piece, scratch))),
+            None => self.kept(piece),
+        }
+    }
+
+    /// The surface at one piece of a refined cloud, whose leaves hold all of them.
+    fn kept(&self, piece: u32) -> &Surfel {
+        let leaf = self.tree.leaf_of(piece as usize).and_then(|id| self.tree.leaf(id));
+        let leaf = leaf.expect("no piece is ever removed");
+        let place = leaf.primitive_indices().iter().position(|&own| own == piece);
+        &self.leaf(leaf.id()).0[place.expect("a leaf holds its pieces")]
+    }
+
+    /// Computes the surface at one piece.
+    fn fitted(&self, piece: u32, scratch: &mut Scratch) -> Surfel {
+        let index = self.pieces.index(piece);
+        let cap = self.surface.spacing_caps[piece as usize];
+        let near = &self.neighborhoods;
+        let refined = match self.normals.as_ref().map(|normals| normals[index]) {
+            Some(normal) => {
+                let sensor = &self.sensor[index];
+                self.noise.with_normal(index, normal, near, sensor, cap, scratch)
+            }
+            None => {
+                let measured = (&self.noise, near, &self.sensor);
+                self.pieces.refine(piece, measured, cap, scratch)
+            }
+        };
+        let (point, spacing) = (refined.point, refined.spacing);
+        let normal = refined.normal.map(UnitVector3::into_inner);
+        let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
+        Surfel { index: index as u32, point, spacing, most_variance, normal }
     }
 }

@@ -1,7 +1,7 @@
 //! The surface everywhere at once, and the tree fitted to it: for bodies that are queried often.
 
 use cloudtouch_bvh::{NodeId, Primitive};
-use cloudtouch_geom::{Covariance, UnitVector3};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3};
 use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
@@ -20,23 +20,25 @@ impl Prepared {
     pub(super) fn refine(&mut self) -> Result<(), PrepareError> {
         let start = std::time::Instant::now();
         let leaves: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
-        leaves.par_iter().for_each(|&leaf| {
-            self.leaf(leaf);
+        leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
+            self.leaf_with(leaf, scratch);
         });
-        leaves.par_iter().for_each(|&leaf| {
-            self.leaf_edges(leaf);
+        leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
+            self.leaf_edges_with(leaf, scratch);
         });
-        let mut extents = vec![Covariance::zero(); self.surface.surfels.len()];
+        // Every leaf has copies of its own.
+        self.surface.surfels = Vec::new();
+        let pieces = self.surface.spacing_caps.len();
+        let mut extents = vec![Covariance::zero(); pieces];
+        let mut primitives =
+            vec![Primitive::point(UncertainPoint::exact(Point3::origin())); pieces];
         for leaf in self.tree.leaves() {
             let surfels = self.leaf(leaf.id()).0.iter().zip(self.near_halves(leaf.id()));
             for (&piece, (surfel, edges)) in leaf.primitive_indices().iter().zip(surfels) {
                 extents[piece as usize] = extent(surfel, edges);
+                primitives[piece as usize] = Primitive::point(surfel.point);
             }
         }
-        let mut scratch = Scratch::default();
-        let primitives: Vec<Primitive> = (0..self.surface.surfels.len() as u32)
-            .map(|piece| Primitive::point(self.surfel(piece, &mut scratch).point))
-            .collect();
         self.tree.refit(&primitives)?;
         self.tree.set_extents(extents)?;
         self.prepare_time += start.elapsed();

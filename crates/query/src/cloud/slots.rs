@@ -14,6 +14,7 @@ const REGION_POINTS: usize = 40;
 /// pure function of the cloud, so it does not matter which thread fills it.
 #[derive(Debug)]
 pub(super) struct LazySurface {
+    /// None once all leaves hold theirs.
     pub surfels: Vec<OnceLock<Box<Surfel>>>,
     pub leaves: Vec<OnceLock<Vec<Surfel>>>,
     /// Of leaves with what they share.

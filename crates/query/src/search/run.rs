@@ -206,7 +206,7 @@ mod tests {
         let motion = Motion::from(a_from_cloud);
         let indices: Vec<u32> =
             cloud.tree().leaves().flat_map(|leaf| leaf.primitive_indices().to_vec()).collect();
-        let edges = edges_of(cloud.prepared(), &indices);
+        let edges = edges_of(cloud.prepared(), &indices, &mut cloudtouch_noise::Scratch::default());
         (
             surfels.map(|s| s.moved(&motion)).collect(),
             edges.iter().map(|e| e.moved(&motion)).collect(),

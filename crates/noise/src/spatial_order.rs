@@ -1,0 +1,80 @@
+//! An order in which points that follow one another are near one another.
+
+use cloudtouch_geom::{Point3, bounding_box};
+use rayon::prelude::*;
+
+use crate::finite::is_finite;
+
+/// Bits of each coordinate that count.
+const BITS: u32 = 10;
+
+/// What a function makes of every point, by its index, on all threads of the pool. It is called for
+/// points near one another in turn, with buffers that may keep what they have in common.
+pub(crate) fn in_spatial_order<B: Default, T: Send + Copy>(
+    points: &[Point3],
+    of: impl Fn(usize, &mut B) -> T + Sync,
+) -> Vec<T> {
+    let order = spatial_order(points);
+    let made: Vec<T> = order
+        .par_iter()
+        .map_init(B::default, |buffers, &index| of(index as usize, buffers))
+        .collect();
+    let mut places = vec![0; order.len()];
+    for (place, &index) in order.iter().enumerate() {
+        places[index as usize] = place;
+    }
+    places.into_iter().map(|place| made[place]).collect()
+}
+
+/// The indices of points, along a curve of Morton through the box around them; those that are not
+/// finite come first.
+fn spatial_order(points: &[Point3]) -> Vec<u32> {
+    let finite = points.iter().filter(|point| is_finite(point));
+    let (low, high) = bounding_box(finite).unwrap_or_default();
+    let longest = (high - low).max();
+    let scale = f64::from((1 << BITS) - 1) / longest;
+    let scale = if scale.is_finite() { scale } else { 0.0 };
+    let key = |point: &Point3| {
+        // What is not a number becomes zero.
+        let [x, y, z] = [0, 1, 2].map(|axis| spread(((point[axis] - low[axis]) * scale) as u32));
+        x << 2 | y << 1 | z
+    };
+    let mut keyed: Vec<u64> =
+        (0..).zip(points).map(|(index, point)| u64::from(key(point)) << 32 | index).collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|keyed| keyed as u32).collect()
+}
+
+/// The lowest bits of a number with two zeros before each.
+fn spread(value: u32) -> u32 {
+    let mut value = value & ((1 << BITS) - 1);
+    value = (value | value << 16) & 0x0300_00FF;
+    value = (value | value << 8) & 0x0300_F00F;
+    value = (value | value << 4) & 0x030C_30C3;
+    (value | value << 2) & 0x0924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_comes_once_and_neighbours_follow() {
+        let mut points: Vec<Point3> = (0..4096)
+            .map(|i| Point3::new(f64::from(i * 37 % 64), f64::from(i / 64), 5.0))
+            .collect();
+        points[17] = Point3::new(f64::NAN, 0.0, 0.0);
+        let mut order = spatial_order(&points);
+        let steps = order.windows(2).map(|pair| {
+            let [p, q] = [pair[0], pair[1]].map(|i| points[i as usize]);
+            (p - q).norm()
+        });
+        let long = steps.filter(|step| step.is_nan() || *step >= 8.0).count();
+        assert!(long < 100, "{long} long steps");
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..4096));
+        let same = in_spatial_order(&points, |index, (): &mut ()| index);
+        assert!(same.into_iter().eq(0..4096));
+        assert!(spatial_order(&[]).is_empty());
+    }
+}

@@ -1,0 +1,28 @@
+//! How far apart the samples of a cloud are.
+
+use crate::neighborhoods::Neighborhoods;
+use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
+
+/// The typical spacing of a cloud, m: the median over `sample` points, evenly spread over the
+/// indices, of dₖ √(π/k) with dₖ the distance to the sixth neighbour.
+///
+/// On a surface with one sample in every square of side h it is about h. Noise larger than the
+/// spacing thickens the surface and makes it too large. Zero when no sampled point has a
+/// neighbour; all points are sampled when there are fewer than `sample`.
+pub fn typical_spacing(neighborhoods: &Neighborhoods, sample: usize) -> f64 {
+    let count = neighborhoods.points().len();
+    let sample = sample.min(count);
+    let mut found = Vec::new();
+    let mut spacings = Vec::with_capacity(sample);
+    for s in 0..sample {
+        // The product fits: an index holds at most 2³² points.
+        let index = (s as u64 * count as u64 / sample as u64) as usize;
+        neighborhoods.nearest_into(index, SPACING_NEIGHBORS, &mut found);
+        spacings.extend(spacing_around(&found));
+    }
+    if spacings.is_empty() {
+        return 0.0;
+    }
+    let middle = spacings.len() / 2;
+    *spacings.select_nth_unstable_by(middle, f64::total_cmp).1
+}
