@@ -107,10 +107,9 @@ impl Query {
             probability(log_odds, settings.prior)
         };
         let clock = self.clock(Instant::now());
-        let is_enough = |beyond: f64| of(beyond) > settings.stop_above || clock.is_over();
         let local = a.shape().local_from(&b.shape(), a_from_b);
         let mut stats = report.stats;
-        let found = least_beyond((a, b), &local, margin, is_enough, &mut stats)?;
+        let found = least_beyond((a, b), &local, margin, &clock, &mut stats)?;
         let high = if found.is_complete { high } else { 1.0 };
         Ok(at_least(of(found.deviations), high, found.deviations.min(deviations)))
     }

@@ -6,6 +6,7 @@ use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, visit_surfaces};
 use cloudtouch_geom::{Motion, Pose};
 
 use crate::body::BodyRef;
+use crate::classifier::Clock;
 use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
@@ -23,13 +24,13 @@ pub(crate) struct Beyond {
     pub is_complete: bool,
 }
 
-/// Looks for the two pieces that are most clearly within a margin (m) of each other, until
-/// `is_enough` of the deviations found.
+/// Looks for the two pieces that are most clearly within a margin (m) of each other, until the time is
+/// over. It does not end when two are likely enough: a wider margin could then be found less likely.
 pub(crate) fn least_beyond<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
     margin: f64,
-    is_enough: impl Fn(f64) -> bool,
+    clock: &Clock,
     stats: &mut Stats,
 ) -> Result<Beyond, QueryError> {
     let mut least = MOST_DEVIATIONS;
@@ -44,7 +45,7 @@ pub(crate) fn least_beyond<'a>(
         let leaf_b = leaves.1.entry(pair.b);
         let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(&motion), stats));
         least = least_of(leaf_a, leaf_b, margin, least).max(-MOST_DEVIATIONS);
-        if is_enough(least) || least <= -MOST_DEVIATIONS {
+        if clock.is_over() || least <= -MOST_DEVIATIONS {
             return SurfaceFlow::Stop;
         }
         SurfaceFlow::Within(least)
