@@ -1,0 +1,52 @@
+//! `--margin`: how likely two bodies are nearer than a distance, and between what distances they lie.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use support::{Inputs, case_at, case_file};
+
+#[test]
+fn a_margin_is_answered_in_json_and_in_words() {
+    let inputs = Inputs::new();
+    let line = inputs.query_at(0.1, &["--margin", "0.2", "--json"]).quiet(0).json_lines().remove(0);
+    assert_eq!(line["margin"]["margin_m"], 0.2, "{line}");
+    let probability = line["margin"]["probability"].as_f64().unwrap();
+    let bounds: Vec<f64> =
+        line["margin"]["bounds"].as_array().unwrap().iter().map(|b| b.as_f64().unwrap()).collect();
+    assert!(bounds[0] <= probability && probability <= bounds[1], "{line}");
+    assert!(probability >= line["collision_probability"].as_f64().unwrap(), "{line}");
+    let of = |key: &str| line["clearance_m"][key].as_f64().unwrap();
+    assert!(of("q05") <= of("q95") && line["clearance_m"].get("at_least").is_some(), "{line}");
+    let words = inputs.query_at(0.1, &["--margin", "0.2"]).quiet(0).stdout();
+    assert!(words.contains("P(nearer than 200 mm)"), "{words}");
+    // Nothing more than was asked for.
+    let plain = inputs.query_at(0.1, &["--json"]).quiet(0).json_lines().remove(0);
+    assert!(plain.get("margin").is_none() && plain["clearance_m"].get("q05").is_none(), "{plain}");
+    let keys = |line: &serde_json::Value| -> Vec<String> {
+        line.as_object().unwrap().keys().filter(|key| *key != "margin").cloned().collect()
+    };
+    assert_eq!(keys(&line), keys(&plain));
+}
+
+#[test]
+fn a_margin_of_nothing_is_the_collision_and_a_batch_answers_too() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &case_file(&[0.5, 0.1].map(|z| case_at("a", z))));
+    let lines =
+        inputs.run(&["batch", "cases.json", "--json", "--margin", "0"]).quiet(0).json_lines();
+    assert_eq!(lines.len(), 2);
+    for line in lines {
+        assert_eq!(line["margin"]["probability"], line["collision_probability"], "{line}");
+        assert_eq!(line["margin"]["bounds"], line["bounds"], "{line}");
+    }
+}
+
+#[test]
+fn a_margin_that_no_bodies_can_keep_is_refused() {
+    let inputs = Inputs::new();
+    for (margin, words) in [("-0.01", "0 or more"), ("NaN", "finite"), ("wide", "number")] {
+        let refused = inputs.query_at(0.1, &[&format!("--margin={margin}")]);
+        assert!(refused.code() == 2 && refused.stderr().contains(words), "{}", refused.stderr());
+    }
+    let paper = inputs.query_at(0.1, &["--margin", "0.01", "--mode", "paper"]);
+    assert!(paper.code() == 2 && paper.stderr().contains("--margin"), "{}", paper.stderr());
+}
