@@ -56,8 +56,7 @@ fitted on other draws of the same families, at 3 and 10 cm.";
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, fit, update_docs } = *arguments;
     if fit {
-        let fitted = fit_margins(&answers(Plan::evidence(draws, poses))?)?;
-        println!("{:?}", fitted.map(|value| (1e3 * value).round() / 1e3));
+        println!("{:?}", fit_margins(&answers(Plan::evidence(draws, poses))?)?);
     }
     let command = format!("--draws {draws} --poses {poses} --update-docs");
     let page = Page::new(("motion", "Margins"), ("motion", &command), INTRODUCTION, root, SEED);
