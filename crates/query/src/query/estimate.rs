@@ -13,6 +13,7 @@ use crate::search::{Found, Inside, look_inside, search};
 use super::classify::{Misclassified, ask_classifier};
 use super::contacts::{clearance, contacts};
 use super::points::add_points;
+use super::settings::Detail;
 use super::spots::spots;
 use super::task::Task;
 
@@ -33,9 +34,14 @@ pub(super) fn estimate(
     stats.nodes_visited += looked.nodes_visited;
     stats.leaves_prepared += looked.leaves_prepared;
     let depth = looked.deepest.map_or(0.0, |inside| inside.deviations);
+    let of = |log_odds| probability(log_odds, settings.prior);
     let is_enough = |deviations: f64, clearness: f64| {
         let log_odds = judge.log_odds_by_geometry(deviations - depth, clearness.ln_1p());
-        probability(log_odds, settings.prior) > settings.stop_above || task.clock.is_over()
+        // More evidence only raises the odds; what a classifier could take off them is taken off.
+        let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
+        of(log_odds) > settings.stop_above
+            || settings.detail == Detail::Verdict && is_decided()
+            || task.clock.is_over()
     };
     let found = search((a, b), a_from_b, is_enough, stats)?;
     let deviations = (found.deviations - depth).max(-MOST_DEVIATIONS);
@@ -44,25 +50,37 @@ pub(super) fn estimate(
     let by_geometry = judge.log_odds_by_geometry(deviations, crossing);
     let is_complete = found.is_complete && !looked.is_cut_short;
 
-    let misclassified = if is_complete && judge.is_open(by_geometry) {
+    // Whatever a classifier says, the verdict is the same.
+    let is_settled = || {
+        of(judge.revise(by_geometry, f64::INFINITY)) < settings.reject
+            || of(judge.revise(by_geometry, 0.0)) > settings.accept
+    };
+    let is_open = judge.is_open(by_geometry);
+    let is_wanted = is_open && !(settings.detail == Detail::Verdict && is_settled());
+    let misclassified = if is_complete && is_wanted {
         ask_classifier((a, b), a_from_b, &found, by_geometry, task, &mut evidence.stats)?
     } else {
         Misclassified::NOT_ASKED
     };
-    let of = |log_odds| probability(log_odds, settings.prior);
     let [low, high] = misclassified.bounds.map(|count| of(judge.revise(by_geometry, count)));
     let log_odds = misclassified.log_odds(judge, by_geometry);
     // More evidence only raises the odds; what was not looked at may be any.
     let bounds = [low, if is_complete { high } else { 1.0 }];
 
     let probability = of(log_odds);
-    add_points(&found, probability, evidence);
+    let is_full = settings.detail == Detail::Full;
+    if is_full {
+        add_points(&found, probability, evidence);
+    }
+    let places = || places((a, b), &found, looked.deepest.as_ref(), probability, task);
+    let at_least = Some(found.at_least).filter(|least| least.is_finite());
+    let without = || Places { at_least, ..Places::default() };
     Ok(Estimate {
         probability,
         bounds,
         evidence: Some(ContactEvidence { misclassified: misclassified.value, ..of_geometry }),
         log_likelihood_ratio: Some(log_odds),
-        places: Some(places((a, b), &found, looked.deepest.as_ref(), probability, task)),
+        places: Some(if is_full { places() } else { without() }),
     })
 }
 

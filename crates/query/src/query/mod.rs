@@ -14,5 +14,5 @@ mod task;
 mod within;
 
 pub use run::Query;
-pub use settings::QuerySettings;
+pub use settings::{Detail, QuerySettings};
 pub use within::Within;

@@ -10,6 +10,21 @@ use crate::error::SettingsError;
 use crate::judge::Judge;
 use crate::safeguards::Safeguards;
 
+/// How much of an answer is wanted: the less, the sooner it comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Detail {
+    /// The verdict: a search ends when the probability is surely above `accept`, and no classifier is
+    /// asked that cannot change it. The probability is one of those that lead to that verdict, and its
+    /// bounds are as wide as that leaves them. Without contacts, clearance and points.
+    Verdict,
+    /// The probability with its bounds, the same bits as in a full report. Without contacts, clearance
+    /// and points.
+    Probability,
+    /// The whole report.
+    #[default]
+    Full,
+}
+
 /// All settings of a query on the default path; [`Query::new`](crate::Query::new) checks them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuerySettings {
@@ -35,6 +50,8 @@ pub struct QuerySettings {
     pub relative_gap: f64,
     /// The search ends when a collision is this certain; 1 never ends it early.
     pub stop_above: f64,
+    /// How much of the answer is wanted.
+    pub detail: Detail,
     /// How long a query may search. What was not looked at by then raises the upper bound, to 1 as a
     /// rule, and is no guess. The clock is looked at before each leaf pair and each classifier,
     /// and while one is trained: the limit is exceeded by milliseconds as a rule. What a leaf pair takes
@@ -65,6 +82,7 @@ impl Default for QuerySettings {
             ellipsoid_radius: 1.0,
             relative_gap: 1e-3,
             stop_above: 0.999,
+            detail: Detail::Full,
             deadline: None,
             safeguards: Safeguards::default(),
             max_contacts: 16,

@@ -1,0 +1,49 @@
+//! Less detail comes sooner and says nothing else.
+#![allow(clippy::unwrap_used, reason = "a panic is how a test helper fails")]
+
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Body, Cloud, CloudSettings, Detail, Mesh, Query, QuerySettings, Verdict};
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::{scene, surface};
+use proptest::prelude::*;
+
+fn cloud(mesh: &TriangleMesh, std: f64, seed: u64) -> Body {
+    let samples = surface::positions(&surface::sample_surface(mesh, 1200, seed));
+    let points: Vec<Point3> = add_noise(&samples, NoiseKind::Gaussian, std, seed);
+    let settings = CloudSettings::new(SensorModel::Isotropic { std });
+    Body::Cloud(Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) })]
+
+    #[test]
+    fn a_verdict_alone_is_that_of_the_report_and_a_probability_alone_is_the_same_bits(
+        is_mesh in any::<bool>(),
+        std in 0.0005_f64..0.01,
+        offset in prop::array::uniform3(-0.3..0.3_f64),
+        turn in -3.0..3.0_f64,
+        thresholds in (0.0_f64..0.5, 0.5_f64..1.0),
+        seed in any::<u64>(),
+    ) {
+        let shape = scene::cuboid([0.2; 3]);
+        let a = cloud(&shape, std, seed);
+        let b = if is_mesh { Body::Mesh(Mesh::prepare(&shape).unwrap()) } else { cloud(&shape, std, !seed) };
+        let pose = Pose::from_translation_rpy(Vector3::from(offset), [turn, 0.2, 0.0]);
+        let (reject, accept) = thresholds;
+        let of = |detail: Detail| {
+            let settings = QuerySettings { detail, accept, reject, ..QuerySettings::default() };
+            Query::new(settings).unwrap().run(&a, &b, &pose).unwrap()
+        };
+        let (full, number, verdict) = (of(Detail::Full), of(Detail::Probability), of(Detail::Verdict));
+        prop_assert_eq!(number.collision_probability.to_bits(), full.collision_probability.to_bits());
+        prop_assert_eq!((number.bounds, number.verdict), (full.bounds, full.verdict));
+        prop_assert!(number.contacts.is_empty() && number.clearance_m.is_none());
+        prop_assert_eq!(verdict.verdict, full.verdict);
+        let [low, high] = verdict.bounds;
+        prop_assert!(low <= full.collision_probability && full.collision_probability <= high);
+        // What is in collision for sure is not free for less.
+        prop_assert!(full.verdict != Verdict::InCollision || verdict.collision_probability > accept);
+    }
+}
