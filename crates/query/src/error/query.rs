@@ -126,6 +126,16 @@ pub enum QueryError {
         /// What was given.
         value: f64,
     },
+    /// A covariance that no pose can have.
+    #[error(
+        "the covariance of the pose has {}: it must be finite, symmetric and without negative \
+         eigenvalue (m², m rad, rad²)",
+        number(*value)
+    )]
+    PoseCovariance {
+        /// What was found: an entry, a difference across the diagonal, or an eigenvalue.
+        value: f64,
+    },
     /// An interval that holds nothing, or everything.
     #[error("the share of an interval is {}: give a number between 0 and 1, ends excluded", number(*value))]
     Share {

@@ -11,8 +11,10 @@ mod run;
 mod settings;
 mod spots;
 mod task;
+mod uncertain;
 mod within;
 
 pub use run::Query;
 pub use settings::{Detail, QuerySettings};
+pub use uncertain::{PoseDistribution, UnderPoses};
 pub use within::Within;

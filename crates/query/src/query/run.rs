@@ -12,7 +12,7 @@ use crate::record::{Closeness, Terms};
 use crate::report::Report;
 
 use super::estimate::estimate;
-use super::settings::QuerySettings;
+use super::settings::{Detail, QuerySettings};
 use super::task::Task;
 
 /// A checked set of settings that answers queries; cheap to copy, shared by threads.
@@ -34,6 +34,11 @@ impl Query {
     /// The settings, as checked.
     pub fn settings(&self) -> &QuerySettings {
         &self.settings
+    }
+
+    /// The same with more or less said.
+    pub(super) fn with_detail(&self, detail: Detail) -> Self {
+        Self { settings: QuerySettings { detail, ..self.settings } }
     }
 
     pub(super) fn clock(&self, start: Instant) -> Clock {
