@@ -132,6 +132,9 @@ pub(crate) struct QueryArguments {
 impl QueryArguments {
     fn check(&self) -> Result<(), String> {
         let of_the_paper = [("--explain", self.explain), ("--kappas", self.kappas.is_some())];
+        if self.common.mode == ModeName::Paper && self.pose.pose_std.is_some() {
+            return Err("--pose-std has no effect in the paper's mode: leave it out".to_owned());
+        }
         self.common.check(&of_the_paper)
     }
 }

@@ -6,8 +6,8 @@ use cloudtouch::noise::SensorModel;
 use cloudtouch::paper::{LeafClassifier, RadiusRule};
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, FilterSettings, Mesh, PaperBodyRef, PaperCloud,
-    PaperCloudSettings, PaperQuery, Placement, PrepareError, Query, QueryError, Report,
-    StageReport,
+    PaperCloudSettings, PaperPoseDistribution, Placement, PoseDistribution, PrepareError, Query,
+    QueryError, Report, StageReport, UnderPoses,
 };
 
 use crate::margin::{Nearness, SHARE};
@@ -80,6 +80,16 @@ pub(crate) trait Path: Sync {
         _scene_from_object: &Pose,
         _margin: f64,
     ) -> Result<Option<Nearness>, QueryError> {
+        Ok(None)
+    }
+
+    /// How likely a collision is over all poses that may be; `None` on the paper's path.
+    fn uncertain(
+        &self,
+        _scene: &Body<Self::Cloud>,
+        _object: &Body<Self::Cloud>,
+        _scene_from_object: &PoseDistribution,
+    ) -> Result<Option<UnderPoses>, QueryError> {
         Ok(None)
     }
 
@@ -196,6 +206,15 @@ impl Path for Query {
         let (_, within) = self.within(scene, object, scene_from_object, margin)?;
         let interval = self.clearance_interval(scene, object, scene_from_object, SHARE)?;
         Ok(Some(Nearness { within, interval }))
+    }
+
+    fn uncertain(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &PoseDistribution,
+    ) -> Result<Option<UnderPoses>, QueryError> {
+        Ok(Some(self.run_uncertain(scene, object, scene_from_object)?.1))
     }
 
     fn place(

@@ -26,6 +26,25 @@ pub fn triple(text: &str) -> Result<Triple, String> {
     Ok(Triple(numbers(text, "three, as in 0.4,0,-1.2")?))
 }
 
+/// Standard deviations of a pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseStd(pub [f64; 6]);
+
+/// `X,Y,Z,R,P,Y`: standard deviations along the axes of the object, m, and about them, rad.
+///
+/// # Errors
+/// When there are not six finite numbers, one is negative, or an angle beyond half a turn.
+pub fn pose_std(text: &str) -> Result<PoseStd, String> {
+    let stds: [f64; 6] = numbers(text, "six, as in 0.005,0.005,0.005,0.01,0.01,0.01")?;
+    if let Some(std) = stds.iter().find(|std| **std < 0.0) {
+        return Err(format!("{std} is negative: a standard deviation is 0 or more"));
+    }
+    match stds[3..].iter().find(|angle| **angle > 0.5 * WHOLE_TURN) {
+        Some(angle) => Err(format!("{angle} rad is more than half a turn: is it in degrees?")),
+        None => Ok(PoseStd(stds)),
+    }
+}
+
 /// `R,P,Y` in radians: roll, pitch and yaw, in this order about fixed axes.
 ///
 /// # Errors

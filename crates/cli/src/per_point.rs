@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Result;
 use cloudtouch::geom::{Point3, Pose};
 use cloudtouch::paper::LeafClassifier;
-use cloudtouch::{PointProbabilities, Report};
+use cloudtouch::{PointProbabilities, Report, UnderPoses};
 use cloudtouch_io::write_atomically;
 use serde::Serialize;
 
@@ -36,6 +36,9 @@ impl<'a> From<&'a Report> for Points<'a> {
 pub(crate) struct Details<'a> {
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub points: Option<Points<'a>>,
+    /// Over all poses that may be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pose_uncertainty: Option<UnderPoses>,
     /// Every classifier trained (eq. 10 to 16).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub classifiers: Option<&'a [LeafClassifier]>,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use cloudtouch::{Placement, Report, Stats, Unseen};
+use cloudtouch::{Placement, Report, Stats, UnderPoses, Unseen};
 
 use crate::print::{probability, undecided};
 
@@ -21,6 +21,18 @@ pub(crate) fn text(report: &Report, placement: &Placement, shows_work: bool) -> 
     }
     text.truncate(text.trim_end().len());
     text
+}
+
+/// A line about all poses that may be.
+pub(crate) fn over_poses(under: &UnderPoses) -> String {
+    let [low, high] = under.bounds.map(probability);
+    let of = probability(under.probability);
+    let poses = if under.poses == 1 {
+        "none of them comes near".to_owned()
+    } else {
+        format!("{} poses", under.poses)
+    };
+    labelled("over uncertain poses", &format!("{of}   (within {low} .. {high}; {poses})"))
 }
 
 /// What is known of surfaces too far apart to be measured.

@@ -1,4 +1,4 @@
-//! `--margin`: how likely two bodies are nearer than a distance, and between what distances they lie.
+//! `--margin` and `--pose-std`: how near two bodies are, and what an uncertain pose makes of it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod support;
@@ -37,6 +37,30 @@ fn a_margin_of_nothing_is_the_collision_and_a_batch_answers_too() {
     for line in lines {
         assert_eq!(line["margin"]["probability"], line["collision_probability"], "{line}");
         assert_eq!(line["margin"]["bounds"], line["bounds"], "{line}");
+    }
+}
+
+#[test]
+fn an_uncertain_pose_is_answered_over_all_that_it_may_be() {
+    let inputs = Inputs::new();
+    let ask = |more: &[&str]| inputs.query_at(0.1, more).quiet(0);
+    let line = ask(&["--pose-std", "0.05,0.05,0.05,0.1,0.1,0.1", "--json"]).json_lines().remove(0);
+    let under = &line["pose_uncertainty"];
+    let bounds = under["bounds"].as_array().unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let probability = number(&under["probability"]);
+    assert!(number(&bounds[0]) <= probability && probability <= number(&bounds[1]), "{line}");
+    assert!(under["poses"].as_u64().unwrap() > 1 && number(&under["std_error"]) >= 0.0, "{line}");
+    // A pose that is known is the plain answer.
+    let known = ask(&["--pose-std", "0,0,0,0,0,0", "--json"]).json_lines().remove(0);
+    assert_eq!(known["pose_uncertainty"]["probability"], known["collision_probability"], "{known}");
+    let words = ask(&["--pose-std", "0.05,0,0,0,0,0"]).stdout();
+    assert!(words.contains("over uncertain poses"), "{words}");
+    for (stds, why) in
+        [("0.1,0.1", "six"), ("-0.1,0,0,0,0,0", "negative"), ("0,0,0,90,0,0", "degrees")]
+    {
+        let refused = inputs.query_at(0.1, &[&format!("--pose-std={stds}")]);
+        assert!(refused.code() == 2 && refused.stderr().contains(why), "{}", refused.stderr());
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use cloudtouch_cli::numbers::{self, Triple, Turn};
+use cloudtouch_cli::numbers::{self, PoseStd, Triple, Turn};
 
 /// Where the object is in the scene.
 #[derive(Debug, Args)]
@@ -28,6 +28,9 @@ pub(crate) struct PoseArguments {
     #[arg(long, value_name = "X,Y,Z,W", value_parser = numbers::quaternion,
           allow_hyphen_values = true)]
     pub quaternion: Option<Turn>,
+    /// How well it is known: standard deviations along the axes of the object, m, and about them, rad
+    #[arg(long, value_name = "X,Y,Z,R,P,Y", value_parser = numbers::pose_std)]
+    pub pose_std: Option<PoseStd>,
 }
 
 impl PoseArguments {

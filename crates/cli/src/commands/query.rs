@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context as _, Result, bail};
 use cloudtouch::geom::{Pose, Vector3};
-use cloudtouch::{PaperQuery, Query, Verdict};
-use cloudtouch_cli::numbers::Triple;
+use cloudtouch::{PaperQuery, PoseDistribution, Query, Verdict};
+use cloudtouch_cli::numbers::{PoseStd, Triple};
 use cloudtouch_io::read_colors_within;
 use nalgebra::UnitQuaternion;
 
@@ -66,6 +66,13 @@ fn run_by<P: body::Path>(
         Some(margin) => query.nearness(&scene.body, &object.body, &pose, margin)?,
         None => None,
     };
+    let pose_uncertainty = match arguments.pose.pose_std {
+        Some(PoseStd(stds)) => {
+            let poses = PoseDistribution::from_std(pose, stds);
+            query.uncertain(&scene.body, &object.body, &poses)?
+        }
+        None => None,
+    };
     if let Some(path) = &arguments.csv {
         per_point::write_csv(path, &scene.body, &object.body, &pose, &report)?;
     }
@@ -81,6 +88,7 @@ fn run_by<P: body::Path>(
     let text = if arguments.json {
         let details = Details {
             points: arguments.points.then(|| (&report).into()),
+            pose_uncertainty,
             classifiers: arguments.explain.then_some(&classifiers[..]),
         };
         let answer =
@@ -93,6 +101,7 @@ fn run_by<P: body::Path>(
             report_text::text(&report, &placement, shows_work),
         ];
         parts.extend(nearness.map(|nearness| nearness.text()));
+        parts.extend(pose_uncertainty.as_ref().map(report_text::over_poses));
         if !arguments.pose.is_given() {
             parts.push("pose                   not given: the identity".to_owned());
         }
