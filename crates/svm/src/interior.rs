@@ -7,6 +7,7 @@
 use cloudtouch_geom::Vector3;
 use nalgebra::Vector4;
 
+use crate::ball::clip_to_ball;
 use crate::bias::Slack;
 use crate::cone::{Scaling, longest_step, product, quotient};
 use crate::newton::Newton;
@@ -28,6 +29,18 @@ const STEP: f64 = 0.99;
 /// Multipliers start from at least this over the squared reach of the samples in feature space, where
 /// penalties allow it: two classes so far apart take multipliers of 2 over their squared distance.
 const START: f64 = 10.0;
+
+/// Beyond this relative gap a dual point is no start: its multipliers are of the wrong size.
+const FAR: f64 = 0.4;
+/// A start beside a dual point that has not led to the tolerance by then leads nowhere.
+const NEAR_ITERATIONS: usize = 15;
+/// Products with s and ξ that the start beside a dual point has at least, over the mean of the gap.
+/// Larger ones are better centred, but further from what SMO has found.
+const LEVEL: f64 = 0.02;
+/// And the share of the penalty that it keeps from a bound at most.
+const MARGIN: f64 = 0.1;
+/// How far inside of its cone a multiplier starts at least, as a share of it.
+const LEAST_INSIDE: f64 = 1e-3;
 
 /// The iterate: one cone pair and one bound pair for each point.
 struct Iterate<'a> {
@@ -61,64 +74,97 @@ pub(crate) struct Reached<'a> {
 
 /// Solves the dual to `relative_gap`, or as far as rounding and `allowed` iterations let it.
 ///
-/// `typical` is a guess at the mean of the multipliers: each iteration changes them by a bounded
-/// factor, so that large penalties take many iterations from a small start.
+/// It starts beside the point of SMO or, where that is far from the optimum or leads nowhere, cold.
 pub(crate) fn solve<'a>(
-    problem: &'a Problem,
+    so_far: &State<'a>,
     relative_gap: f64,
-    typical: f64,
     allowed: usize,
     tools: &mut Tools<'_, '_>,
 ) -> Reached<'a> {
+    let problem = so_far.problem;
     let Some(mut newton) = Newton::of(problem) else {
         return Reached { state: None, iterations: 0, status: Status::TooLarge };
     };
-    let reaches = problem.points.iter().map(|p| problem.kernel.squared_reach(&p.x));
-    let start = (START / reaches.fold(0.0, f64::max)).min(f64::MAX);
-    let mut at = Iterate::start(problem, typical.max(start));
     let mut slack = Slack::default();
-    let mut best: Option<(Vec<Vector4<f64>>, f64)> = None;
-    let mut worse = 0;
-    let allowed = allowed.min(MAX_ITERATIONS);
-    let mut status = Status::IterationLimit;
-    let mut iterations = 0;
-    while iterations < allowed {
-        newton.product(&at.z, &mut at.moved);
-        let certificate = at.certificate(&mut slack);
-        let gap = certificate.relative_gap();
-        let violation = || largest_violation(&problem.points, |i| at.violation(i));
-        let stop =
-            tools.watch.shows_stop(Rung::InteriorPoint, iterations, &certificate, violation);
-        if gap.is_finite() && best.as_ref().is_none_or(|(_, least)| gap < *least) {
-            best = Some((at.z.clone(), gap));
-            worse = 0;
-        } else {
-            worse += 1;
+    let mut run = Run { best: None, iterations: 0 };
+    if let Some(near) = Iterate::near(so_far, &mut newton, &mut slack) {
+        let allowed = allowed.min(NEAR_ITERATIONS);
+        let status = run.go_on(near, &mut newton, &mut slack, relative_gap, allowed, tools);
+        if matches!(status, Status::Converged | Status::Cancelled) {
+            return run.end(status, problem, tools);
         }
-        let least = best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
-        let end = if least <= relative_gap {
-            Some(Status::Converged)
-        } else if stop {
-            Some(Status::Cancelled)
-        } else if worse >= MAX_STALLED && least <= NEAR {
-            Some(Status::Stalled)
-        } else {
-            // A scaling or a factor that fails is rounding too.
-            at.step(&mut newton).is_none().then_some(Status::Stalled)
-        };
-        if let Some(end) = end {
-            status = end;
-            break;
-        }
-        iterations += 1;
     }
-    let state = best.map(|(z, _)| {
-        let duals = z.iter().map(|z| (z[0], Vector3::new(z[1], z[2], z[3])));
-        State::from_duals(problem, Numbers::default(), duals, tools.rows)
-    });
-    let status =
-        if state.is_none() && status == Status::Stalled { Status::NotFinite } else { status };
-    Reached { state, iterations, status }
+    let reaches = problem.points.iter().map(|p| problem.kernel.squared_reach(&p.x));
+    let least = (START / reaches.fold(0.0, f64::max)).min(f64::MAX);
+    // Where SMO got stuck its multipliers are of the right size, if nothing more: an iteration changes
+    // them by a bounded factor, so that large penalties take many from a small start.
+    let sum: f64 = (0..problem.len()).map(|i| so_far.numbers.alpha.at(i)).sum();
+    let start = Iterate::start(problem, least.max(sum / problem.len() as f64));
+    let allowed = (run.iterations + MAX_ITERATIONS).min(allowed);
+    let status = run.go_on(start, &mut newton, &mut slack, relative_gap, allowed, tools);
+    run.end(status, problem, tools)
+}
+
+/// The iterations so far, and the best multipliers among them with their gap.
+struct Run {
+    best: Option<(Vec<Vector4<f64>>, f64)>,
+    iterations: usize,
+}
+
+impl Run {
+    /// Iterates from a start, and says how that ended.
+    fn go_on(
+        &mut self,
+        mut at: Iterate<'_>,
+        newton: &mut Newton,
+        slack: &mut Slack,
+        relative_gap: f64,
+        allowed: usize,
+        tools: &mut Tools<'_, '_>,
+    ) -> Status {
+        let mut worse = 0;
+        while self.iterations < allowed {
+            newton.product(&at.z, &mut at.moved);
+            let certificate = at.certificate(slack);
+            let gap = certificate.relative_gap();
+            let violation = || largest_violation(&at.problem.points, |i| at.violation(i));
+            let stop = tools.watch.shows_stop(
+                Rung::InteriorPoint,
+                self.iterations,
+                &certificate,
+                violation,
+            );
+            if gap.is_finite() && self.best.as_ref().is_none_or(|(_, least)| gap < *least) {
+                self.best = Some((at.z.clone(), gap));
+                worse = 0;
+            } else {
+                worse += 1;
+            }
+            let least = self.best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
+            if least <= relative_gap {
+                return Status::Converged;
+            }
+            if stop {
+                return Status::Cancelled;
+            }
+            // A scaling or a factor that fails is rounding too.
+            if worse >= MAX_STALLED && least <= NEAR || at.step(newton).is_none() {
+                return Status::Stalled;
+            }
+            self.iterations += 1;
+        }
+        Status::IterationLimit
+    }
+
+    fn end<'a>(self, status: Status, problem: &'a Problem, tools: &mut Tools<'_, '_>) -> Reached<'a> {
+        let state = self.best.map(|(z, _)| {
+            let duals = z.iter().map(|z| (z[0], tail(z)));
+            State::from_duals(problem, Numbers::default(), duals, tools.rows)
+        });
+        let nothing = state.is_none() && status == Status::Stalled;
+        let status = if nothing { Status::NotFinite } else { status };
+        Reached { state, iterations: self.iterations, status }
+    }
 }
 
 impl<'a> Iterate<'a> {
@@ -145,6 +191,63 @@ impl<'a> Iterate<'a> {
             moved: vec![Vector4::zeros(); points.len()],
             scalings: Vec::with_capacity(points.len()),
         }
+    }
+
+    /// Well inside the cones beside a dual point that is not far from the optimum, with s, ξ and b that
+    /// leave nothing of Q z − e − s + ξ + b c; `None` when it is far.
+    ///
+    /// With b and the excesses y − cb of the certificate, ξ = (y − cb)₊ + δ and
+    /// s = (|g| + (y − cb)₋ + δ, g) do: complementarity is then the gap and δΣC.
+    fn near(so_far: &State<'a>, newton: &mut Newton, slack: &mut Slack) -> Option<Self> {
+        let problem = so_far.problem;
+        let points = &problem.points;
+        let mut at = Self::start(problem, 1.0);
+        for (i, z) in at.z.iter_mut().enumerate() {
+            let p = so_far.numbers.p(i);
+            *z = Vector4::new(so_far.numbers.alpha.at(i), p.x, p.y, p.z);
+        }
+        newton.product(&at.z, &mut at.moved);
+        let certificate = at.certificate(slack);
+        if certificate.relative_gap() > FAR {
+            return None;
+        }
+        let penalties: f64 = points.iter().map(|p| p.penalty).sum();
+        let level = LEVEL * certificate.gap / (2 * points.len()) as f64;
+        let floor = certificate.gap / penalties;
+        let mut totals = [0.0; 2];
+        for (i, point) in points.iter().enumerate() {
+            let (norm, excess) = at.excess(i, certificate.bias);
+            let [above, below] = [excess, -excess].map(|e| e.max(0.0) + floor);
+            let off = |slack: f64| (level / slack).min(MARGIN * point.penalty);
+            let alpha = at.z[i][0].max(off(below)).min(point.penalty - off(above));
+            let inside = (below / (below + norm)).clamp(LEAST_INSIDE, 0.5);
+            let p = clip_to_ball(&tail(&at.z[i]), alpha * (1.0 - inside));
+            at.z[i] = Vector4::new(alpha, p.x, p.y, p.z);
+            totals[usize::from(point.sign < 0.0)] += alpha;
+        }
+        let lighter = totals[0].min(totals[1]);
+        for (i, point) in points.iter().enumerate() {
+            at.z[i] *= lighter / totals[usize::from(point.sign < 0.0)];
+            at.u[i] = point.penalty - at.z[i][0];
+        }
+        newton.product(&at.z, &mut at.moved);
+        let certificate = at.certificate(slack);
+        let floor = certificate.gap / penalties;
+        at.bias = certificate.bias;
+        for i in 0..points.len() {
+            let (norm, excess) = at.excess(i, certificate.bias);
+            let [above, below] = [excess, -excess].map(|e| e.max(0.0) + floor);
+            at.s[i] = at.moved[i];
+            at.s[i][0] = norm + below;
+            at.xi[i] = above;
+        }
+        Some(at)
+    }
+
+    /// |T∇f₀| and y − cb.
+    fn excess(&self, i: usize, bias: f64) -> (f64, f64) {
+        let norm = tail(&self.moved[i]).norm();
+        (norm, 1.0 - self.moved[i][0] + norm - self.problem.points[i].sign * bias)
     }
 
     /// Of these multipliers as they are: every iterate keeps Σcα = 0 up to rounding.

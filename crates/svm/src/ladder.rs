@@ -131,9 +131,7 @@ fn fall_back<'a>(
     let Some(allowed) = work::interior_iterations(problem) else {
         return (None, Status::TooLarge);
     };
-    // Where SMO got stuck its multipliers are of the right size, if nothing more.
-    let typical = (0..problem.len()).map(|i| so_far.numbers.alpha.at(i)).sum::<f64>() / problem.len() as f64;
-    let found = interior::solve(problem, relative_gap, typical, allowed, tools);
+    let found = interior::solve(so_far, relative_gap, allowed, tools);
     tools.effort.interior_iterations += found.iterations;
     (found.state, found.status)
 }
