@@ -19,8 +19,7 @@ pub(crate) struct Pair {
 /// second-order gain; `None` when no pair violates the optimality conditions beyond rounding.
 pub(crate) fn choose_pair(state: &State<'_>, rows: &mut KernelRows) -> Option<Pair> {
     let arch = pulp::Arch::new();
-    let (i, highest) =
-        arch.dispatch(Riser { problem: state.problem, numbers: &state.numbers })?;
+    let (i, highest) = arch.dispatch(Riser { problem: state.problem, numbers: &state.numbers })?;
     rows.ensure(state.problem, i);
     let (j, gain) = arch.dispatch(Partner {
         problem: state.problem,
@@ -111,9 +110,8 @@ impl pulp::NullaryFnOnce for Partner<'_> {
             let missing = Lane::splat(highest) - value;
             // Duplicates have no curvature: the step between them runs to a bound.
             let least = f64::MIN_POSITIVE;
-            let curvature = Lane::from_fn(|l| {
-                if curvature.0[l] > least { curvature.0[l] } else { least }
-            });
+            let curvature =
+                Lane::from_fn(|l| if curvature.0[l] > least { curvature.0[l] } else { least });
             let gain = missing * missing / curvature;
             let may = |l: usize| room.0[l] > 0.0 && value.0[l] < threshold;
             best.see(k, Lane::from_fn(|l| if may(l) { gain.0[l] } else { 0.0 }));

@@ -11,37 +11,23 @@ use crate::problem::{PreparedPoint, Problem};
 /// Dual variables beyond which the dense matrix is not built (46 MB, and seconds an iteration).
 const MAX_VARIABLES: usize = 2400;
 
-/// One scalar variable of the dual: a multiplier, or a component of a cone vector.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Variable {
-    pub(crate) point: usize,
-    /// `None` for α, the eigen-axis for a component of p.
-    pub(crate) axis: Option<usize>,
-}
-
-impl Variable {
-    /// Its place in (α, p).
-    pub(crate) fn slot(&self) -> usize {
-        self.axis.map_or(0, |axis| axis + 1)
+/// Where the variables of each point begin, and where those of the last end: its multiplier, then a
+/// component of its cone vector for each axis; axes without variance come last and have none.
+pub(crate) fn begins(problem: &Problem) -> Vec<usize> {
+    let mut begins = vec![0];
+    let mut end = 0;
+    for point in &problem.points {
+        end += 1 + point.t.iter().filter(|t| **t > 0.0).count();
+        begins.push(end);
     }
-}
-
-/// The variables of the dual; axes without variance have none.
-pub(crate) fn variables(problem: &Problem) -> Vec<Variable> {
-    let mut all = Vec::new();
-    for (index, point) in problem.points.iter().enumerate() {
-        all.push(Variable { point: index, axis: None });
-        let axes = (0..3).filter(|&axis| point.t[axis] > 0.0);
-        all.extend(axes.map(|axis| Variable { point: index, axis: Some(axis) }));
-    }
-    all
+    begins
 }
 
 /// The Gram matrix B of the dual's quadratic form (full, symmetric), of feature vectors relative to
 /// that of the centre: with Σcα = 0 that is the same form, and it keeps its digits where the kernel is
 /// wide. `None` when it is too large.
-pub(crate) fn gram(problem: &Problem, variables: &[Variable]) -> Option<Mat<f64>> {
-    let size = variables.len();
+pub(crate) fn gram(problem: &Problem, begins: &[usize]) -> Option<Mat<f64>> {
+    let size = begins[problem.len()];
     if size > MAX_VARIABLES {
         return None;
     }
@@ -59,23 +45,17 @@ pub(crate) fn gram(problem: &Problem, variables: &[Variable]) -> Option<Mat<f64>
         })
         .collect();
     let mut matrix = Mat::zeros(size, size);
-    let mut column = 0;
     for (j, of_j) in features.iter().enumerate() {
         problem.kernel.reduced_row(&of_j.point.x, &problem.places, row.lanes_mut());
-        let columns = column..column + of_j.count();
-        let mut begin = 0;
         for (i, of_i) in features[..=j].iter().enumerate() {
             let block = of_i.products(of_j, &problem.kernel, row.at(i));
-            let rows = begin..begin + of_i.count();
-            for (b, column) in columns.clone().enumerate() {
-                for (a, row) in rows.clone().enumerate() {
+            for (b, column) in (begins[j]..begins[j + 1]).enumerate() {
+                for (a, row) in (begins[i]..begins[i + 1]).enumerate() {
                     matrix[(row, column)] = block[(a, b)];
                     matrix[(column, row)] = block[(a, b)];
                 }
             }
-            begin = rows.end;
         }
-        column = columns.end;
     }
     Some(matrix)
 }
@@ -89,11 +69,6 @@ struct Features<'a> {
 }
 
 impl Features<'_> {
-    /// Axes without variance come last, and have none.
-    fn count(&self) -> usize {
-        1 + self.point.t.iter().filter(|t| **t > 0.0).count()
-    }
-
     /// The inner products with the features of another point, `reduced` being the kernel of the two.
     fn products(&self, other: &Self, kernel: &Kernel, reduced: f64) -> Matrix4<f64> {
         let (i, j) = (self.point, other.point);
@@ -106,8 +81,7 @@ impl Features<'_> {
             }
         };
         let mut block = Matrix4::zeros();
-        block[(0, 0)] =
-            i.sign * j.sign * (reduced - self.reduced_at_zero - other.reduced_at_zero);
+        block[(0, 0)] = i.sign * j.sign * (reduced - self.reduced_at_zero - other.reduced_at_zero);
         block.fixed_view_mut::<1, 3>(0, 1).copy_from(&(of_j * i.sign).transpose());
         block.fixed_view_mut::<3, 1>(1, 0).copy_from(&(of_i * j.sign));
         let axes = i.factor * j.factor.transpose();
@@ -129,43 +103,6 @@ fn turned_difference(kernel: &Kernel, reduced: f64, d: &Vector3) -> Vector3 {
     match *kernel {
         Kernel::Linear => Vector3::zeros(),
         Kernel::Gaussian { gamma } => d * (-2.0 * gamma * (1.0 + reduced)),
-    }
-}
-
-/// y = B z for the whole matrix, four columns at a time.
-pub(crate) fn product(matrix: &Mat<f64>, z: &[f64], y: &mut [f64]) {
-    pulp::Arch::new().dispatch(Product { matrix, z, y });
-}
-
-struct Product<'a> {
-    matrix: &'a Mat<f64>,
-    z: &'a [f64],
-    y: &'a mut [f64],
-}
-
-impl pulp::NullaryFnOnce for Product<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { matrix, z, y } = self;
-        let size = y.len();
-        y.fill(0.0);
-        let mut column = 0;
-        while column + 4 <= size {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|k| &matrix.col_as_slice(column + k)[..size]);
-            let [za, zb, zc, zd] = [0, 1, 2, 3].map(|k| z[column + k]);
-            for row in 0..size {
-                y[row] += (a[row] * za + b[row] * zb) + (c[row] * zc + d[row] * zd);
-            }
-            column += 4;
-        }
-        for column in column..size {
-            let (a, za) = (&matrix.col_as_slice(column)[..size], z[column]);
-            for row in 0..size {
-                y[row] += a[row] * za;
-            }
-        }
     }
 }
 
@@ -209,29 +146,23 @@ mod tests {
         let samples: Vec<Sample> = (0..5).map(sample).collect();
         for kernel in [Kernel::Linear, Kernel::Gaussian { gamma: 0.3 }] {
             let problem = Problem::try_new(&samples, kernel).unwrap();
-            let variables = variables(&problem);
-            assert_eq!(variables.len(), 16);
-            let matrix = gram(&problem, &variables).unwrap();
-            let term = |v: &Variable| {
-                let point = &problem.points[v.point];
-                match v.axis {
-                    None => (point.x, point.sign, Vector3::zeros()),
-                    Some(axis) => (point.x, 0.0, point.factor.row(axis).transpose()),
+            let begins = begins(&problem);
+            assert_eq!(begins, [0, 4, 8, 9, 12, 16]);
+            let matrix = gram(&problem, &begins).unwrap();
+            let term = |k: usize| {
+                let i = begins.partition_point(|begin| *begin <= k) - 1;
+                let point = &problem.points[i];
+                match k - begins[i] {
+                    0 => (point.x, point.sign, Vector3::zeros()),
+                    axis => (point.x, 0.0, point.factor.row(axis - 1).transpose()),
                 }
             };
-            for (row, to) in variables.iter().map(term).enumerate() {
-                for (column, from) in variables.iter().map(term).enumerate() {
+            for (row, to) in (0..16).map(term).enumerate() {
+                for (column, from) in (0..16).map(term).enumerate() {
                     let (f, g) = centred_influence(&kernel, &from.0, &to.0, from.1, &from.2);
                     let expected = to.1 * f + to.2.dot(&g);
                     assert!((matrix[(row, column)] - expected).abs() < 1e-14, "{row}, {column}");
                 }
-            }
-            let z: Vec<f64> = (0..16).map(|k| f64::from(k % 5) - 1.7).collect();
-            let mut y = vec![0.0; 16];
-            product(&matrix, &z, &mut y);
-            for row in 0..16 {
-                let expected: f64 = (0..16).map(|k| matrix[(row, k)] * z[k]).sum();
-                assert!((y[row] - expected).abs() < 1e-13);
             }
         }
     }
@@ -250,12 +181,13 @@ mod tests {
         let samples: Vec<Sample> = (0..5).map(sample).collect();
         for gamma in [1e-18, 1e-9, 1.0] {
             let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
-            let variables = variables(&problem);
-            let matrix = gram(&problem, &variables).unwrap();
-            let size = (0..variables.len()).map(|i| matrix[(i, i)]).fold(0.0, f64::max);
+            let begins = begins(&problem);
+            let matrix = gram(&problem, &begins).unwrap();
+            let count = matrix.nrows();
+            let size = (0..count).map(|i| matrix[(i, i)]).fold(0.0, f64::max);
             for x in 0..20_u32 {
                 let z: Vec<f64> =
-                    (0..variables.len()).map(|i| f64::from((x + 1) * i as u32 % 7) - 3.0).collect();
+                    (0..count).map(|i| f64::from((x + 1) * i as u32 % 7) - 3.0).collect();
                 let value: f64 = (0..z.len())
                     .map(|i| (0..z.len()).map(|j| z[i] * matrix[(i, j)] * z[j]).sum::<f64>())
                     .sum();

@@ -156,7 +156,12 @@ impl Run {
         Status::IterationLimit
     }
 
-    fn end<'a>(self, status: Status, problem: &'a Problem, tools: &mut Tools<'_, '_>) -> Reached<'a> {
+    fn end<'a>(
+        self,
+        status: Status,
+        problem: &'a Problem,
+        tools: &mut Tools<'_, '_>,
+    ) -> Reached<'a> {
         let state = self.best.map(|(z, _)| {
             let duals = z.iter().map(|z| (z[0], tail(z)));
             State::from_duals(problem, Numbers::default(), duals, tools.rows)
@@ -275,8 +280,7 @@ impl<'a> Iterate<'a> {
         let pairs = (0..n).map(|i| self.z[i].dot(&self.s[i]) + self.u[i] * self.xi[i]);
         let complementarity = pairs.sum::<f64>() / (2 * n) as f64;
         let square = |i: usize| product(&self.scalings[i].lambda, &self.scalings[i].lambda);
-        let predictor =
-            self.direction(newton, |i| -square(i), |i| -self.u[i] * self.xi[i])?;
+        let predictor = self.direction(newton, |i| -square(i), |i| -self.u[i] * self.xi[i])?;
         let target = complementarity * (1.0 - self.longest(&predictor)).powi(3);
         let cone = |i: usize| {
             let (w, z, s) = (&self.scalings[i], &predictor.z[i], &predictor.s[i]);

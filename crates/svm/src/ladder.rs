@@ -159,11 +159,16 @@ fn ask_clarabel<'a>(
         Err(status) => return (None, status),
     };
     tools.effort.clarabel_iterations += dual.iterations;
-    let mut state = State::from_duals(problem, Numbers::default(), dual.alpha.into_iter().zip(dual.p), tools.rows);
+    let mut state = State::from_duals(
+        problem,
+        Numbers::default(),
+        dual.alpha.into_iter().zip(dual.p),
+        tools.rows,
+    );
     let certificate = state.certificate();
-    tools.watch.shows_stop(Rung::Clarabel, dual.iterations, &certificate, || {
-        state.largest_violation()
-    });
+    tools
+        .watch
+        .shows_stop(Rung::Clarabel, dual.iterations, &certificate, || state.largest_violation());
     // Its own tolerance is not that of the gap.
     let reached = certificate.relative_gap() <= relative_gap;
     let end = match (reached, dual.status) {
@@ -211,9 +216,7 @@ fn conclude(reached: &Reached<'_>, settings: &Settings, tools: &Tools<'_, '_>) -
     Solution {
         alpha: samples().map(|(i, _)| state.numbers.alpha.at(i)).collect(),
         v: samples().map(|(i, point)| point.axes * state.numbers.p(i) * point.radius).collect(),
-        displacement: samples()
-            .map(|(i, point)| point.displacement(&state.numbers.p(i)))
-            .collect(),
+        displacement: samples().map(|(i, point)| point.displacement(&state.numbers.p(i))).collect(),
         bias: certificate.bias,
         bias_interval,
         bias_spread: bias_spread(state, bias_interval),

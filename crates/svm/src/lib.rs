@@ -3,6 +3,7 @@
 mod ball;
 mod bias;
 mod bounds;
+mod cholesky;
 mod choose;
 #[cfg(feature = "clarabel")]
 mod clarabel_dual;

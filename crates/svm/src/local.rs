@@ -49,7 +49,8 @@ impl<'a> Local<'a> {
 
     fn feel_itself(&mut self, a: f64, s: &Vector3) {
         let x = &self.problem.points[self.index].x;
-        let (df, dg) = self.problem.kernel.influence(x, x, self.problem.kernel.reduced_own(x), a, s);
+        let (df, dg) =
+            self.problem.kernel.influence(x, x, self.problem.kernel.reduced_own(x), a, s);
         self.f += df;
         self.gradient += dg;
         self.change.a += a;

@@ -1,107 +1,102 @@
 //! The linear system of an interior point iteration: Q + H with the border c for the bias.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::{factor, solve};
-use faer::{Mat, Par};
 use nalgebra::Vector4;
 
+use crate::cholesky::Panels;
 use crate::cone::Scaling;
-use crate::gram::{self, gram, variables};
+use crate::gram::{begins, gram};
+use crate::lanes::Lane;
 use crate::problem::Problem;
+
+/// What is added to the diagonal, over its largest entry, until the factor exists: with duplicates and
+/// at tiny gaps rounding makes the matrix indefinite. The step is then less exact, and the next one
+/// starts from what it has left.
+const SHIFTS: [f64; 4] = [0.0, 1e-14, 1e-13, 1e-12];
 
 /// The matrices, and memory for their factor.
 pub(crate) struct Newton {
     /// Where the variables of each point begin, and where those of the last end.
     begins: Vec<usize>,
-    quadratic: Mat<f64>,
-    factor: Mat<f64>,
-    memory: MemBuffer,
+    quadratic: Panels,
+    /// The largest entry on its diagonal.
+    largest: f64,
+    factor: Panels,
     /// c of each multiplier.
-    labels: Mat<f64>,
+    labels: Vec<f64>,
     /// The solution for the labels on the right.
-    toward_bias: Mat<f64>,
+    toward_bias: Vec<f64>,
     /// Their product.
     border: f64,
-    column: Mat<f64>,
-    flat: Vec<f64>,
+    column: Vec<f64>,
+    moved: Vec<f64>,
+    memory: Vec<Lane>,
 }
 
 impl Newton {
     /// `None` when the problem is too large.
     pub(crate) fn of(problem: &Problem) -> Option<Self> {
-        let variables = variables(problem);
-        let size = variables.len();
-        let quadratic = gram(problem, &variables)?;
-        let firsts = variables.iter().enumerate().filter(|(_, v)| v.axis.is_none());
-        let begins: Vec<usize> = firsts.map(|(k, _)| k).chain([size]).collect();
-        let mut labels = Mat::zeros(size, 1);
+        let begins = begins(problem);
+        let quadratic = gram(problem, &begins)?;
+        let size = quadratic.nrows();
+        let mut labels = vec![0.0; size];
         for (point, begin) in problem.points.iter().zip(&begins) {
-            labels[(*begin, 0)] = point.sign;
+            labels[*begin] = point.sign;
         }
-        let scratch =
-            factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default());
         Some(Self {
             begins,
-            factor: Mat::zeros(size, size),
-            quadratic,
-            memory: MemBuffer::new(scratch),
-            toward_bias: Mat::zeros(size, 1),
+            largest: (0..size).map(|k| quadratic[(k, k)]).fold(0.0, f64::max),
+            quadratic: Panels::new(size, |row, column| quadratic[(row, column)]),
+            factor: Panels::default(),
+            toward_bias: vec![0.0; size],
             labels,
             border: 0.0,
-            column: Mat::zeros(size, 1),
-            flat: vec![0.0; size],
+            column: vec![0.0; size],
+            moved: vec![0.0; size],
+            memory: Vec::new(),
         })
     }
 
     /// Q z, point by point.
     pub(crate) fn product(&mut self, z: &[Vector4<f64>], moved: &mut [Vector4<f64>]) {
-        let Self { begins, quadratic, flat, column, .. } = self;
-        for (i, z) in z.iter().enumerate() {
-            let range = begins[i]..begins[i + 1];
-            let count = range.len();
-            flat[range].copy_from_slice(&z.as_slice()[..count]);
-        }
-        let product = column.col_as_slice_mut(0);
-        gram::product(quadratic, flat, product);
-        scatter(begins, product, moved);
+        gather(&self.begins, |i| z[i], &mut self.column);
+        self.quadratic.product(&self.column, &mut self.moved, &mut self.memory);
+        scatter(&self.begins, &self.moved, moved);
     }
 
-    /// Factors Q + H, with ξ/u of each point's bound; `None` when rounding has made it indefinite.
+    /// Factors Q + H, with ξ/u of each point's bound; `None` when rounding has made it indefinite, and
+    /// more than rounding on its diagonal does not mend that.
     pub(crate) fn factor(
         &mut self,
         scalings: &[Scaling],
         bound: impl Fn(usize) -> f64,
     ) -> Option<()> {
-        let size = self.flat.len();
-        // The lower triangle is all that the factor is made of.
-        for column in 0..size {
-            let from = &self.quadratic.col_as_slice(column)[column..];
-            self.factor.col_as_slice_mut(column)[column..].copy_from_slice(from);
+        let positive = SHIFTS.into_iter().any(|shift| {
+            self.fill(scalings, &bound, shift * self.largest);
+            self.factor.factor().is_some()
+        });
+        if !positive {
+            return None;
         }
+        self.toward_bias.copy_from_slice(&self.labels);
+        self.factor.solve(&mut self.toward_bias, &mut self.memory);
+        self.border = dot(&self.labels, &self.toward_bias);
+        Some(())
+    }
+
+    /// Q + H + shift·I.
+    fn fill(&mut self, scalings: &[Scaling], bound: impl Fn(usize) -> f64, shift: f64) {
+        self.factor.copy_from(&self.quadratic);
         for (i, scaling) in scalings.iter().enumerate() {
             let (begin, end) = (self.begins[i], self.begins[i + 1]);
             let mut h = scaling.squared();
             h[(0, 0)] += bound(i);
             for column in begin..end {
-                let lower = &mut self.factor.col_as_slice_mut(column)[column..end];
-                for (k, value) in lower.iter_mut().enumerate() {
-                    *value += h[(column - begin + k, column - begin)];
+                *self.factor.entry(column, column) += shift;
+                for row in column..end {
+                    *self.factor.entry(row, column) += h[(row - begin, column - begin)];
                 }
             }
         }
-        factor::cholesky_in_place(
-            self.factor.as_mut(),
-            Default::default(),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-            Default::default(),
-        )
-        .ok()?;
-        self.toward_bias.copy_from(&self.labels);
-        let stack = MemStack::new(&mut self.memory);
-        solve::solve_in_place(self.factor.as_ref(), self.toward_bias.as_mut(), Par::Seq, stack);
-        self.border = dot(&self.labels, &self.toward_bias);
-        Some(())
     }
 
     /// The step of the multipliers, and that of the bias, that the right side asks for.
@@ -109,24 +104,23 @@ impl Newton {
         &mut self,
         right: impl Fn(usize) -> Vector4<f64>,
     ) -> (Vec<Vector4<f64>>, f64) {
-        let points = self.begins.len() - 1;
-        let column = self.column.col_as_slice_mut(0);
-        for i in 0..points {
-            let range = self.begins[i]..self.begins[i + 1];
-            let count = range.len();
-            column[range].copy_from_slice(&right(i).as_slice()[..count]);
-        }
-        let stack = MemStack::new(&mut self.memory);
-        solve::solve_in_place(self.factor.as_ref(), self.column.as_mut(), Par::Seq, stack);
+        gather(&self.begins, right, &mut self.column);
+        self.factor.solve(&mut self.column, &mut self.memory);
         let bias = dot(&self.labels, &self.column) / self.border;
-        let toward_bias = self.toward_bias.col_as_slice(0);
-        let solution = self.column.col_as_slice_mut(0);
-        for (value, toward_bias) in solution.iter_mut().zip(toward_bias) {
+        for (value, toward_bias) in self.column.iter_mut().zip(&self.toward_bias) {
             *value -= toward_bias * bias;
         }
-        let mut z = vec![Vector4::zeros(); points];
-        scatter(&self.begins, solution, &mut z);
+        let mut z = vec![Vector4::zeros(); self.begins.len() - 1];
+        scatter(&self.begins, &self.column, &mut z);
         (z, bias)
+    }
+}
+
+/// Takes from the blocks what their points have variables for.
+fn gather(begins: &[usize], block: impl Fn(usize) -> Vector4<f64>, column: &mut [f64]) {
+    for i in 0..begins.len() - 1 {
+        let values = &mut column[begins[i]..begins[i + 1]];
+        values.copy_from_slice(&block(i).as_slice()[..values.len()]);
     }
 }
 
@@ -138,6 +132,6 @@ fn scatter(begins: &[usize], column: &[f64], blocks: &mut [Vector4<f64>]) {
     }
 }
 
-fn dot(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
-    a.col_as_slice(0).iter().zip(b.col_as_slice(0)).map(|(a, b)| a * b).sum()
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -65,21 +65,22 @@ pub(crate) fn improve(
         let running = state.certificate();
         let gap = running.relative_gap();
         history.push((steps, gap));
-        let end = if tools.watch.shows_stop(Rung::Smo, steps, &running, || state.largest_violation()) {
-            Status::Cancelled
-        } else if !running.is_finite() {
-            Status::NotFinite
-        } else if stuck {
-            Status::Stalled
-        } else if steps >= limits.max_steps {
-            Status::StepLimit
-        } else if gap <= limits.relative_gap {
-            Status::Converged
-        } else if limits.predict && hopeless(&history, limits, n) {
-            Status::SlowProgress
-        } else {
-            continue;
-        };
+        let end =
+            if tools.watch.shows_stop(Rung::Smo, steps, &running, || state.largest_violation()) {
+                Status::Cancelled
+            } else if !running.is_finite() {
+                Status::NotFinite
+            } else if stuck {
+                Status::Stalled
+            } else if steps >= limits.max_steps {
+                Status::StepLimit
+            } else if gap <= limits.relative_gap {
+                Status::Converged
+            } else if limits.predict && hopeless(&history, limits, n) {
+                Status::SlowProgress
+            } else {
+                continue;
+            };
         state.recompute(tools.rows);
         let fresh = state.certificate();
         let reached = fresh.relative_gap() <= limits.relative_gap;

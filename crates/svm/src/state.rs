@@ -209,10 +209,7 @@ pub(crate) fn certify(
 
 /// By how much the optimality conditions are missed, given α and y of each sample: by the values that
 /// b must have for the points that may rise and those that may fall.
-pub(crate) fn largest_violation(
-    points: &[PreparedPoint],
-    at: impl Fn(usize) -> (f64, f64),
-) -> f64 {
+pub(crate) fn largest_violation(points: &[PreparedPoint], at: impl Fn(usize) -> (f64, f64)) -> f64 {
     let mut highest = f64::NEG_INFINITY;
     let mut lowest = f64::INFINITY;
     for (i, point) in points.iter().enumerate() {
