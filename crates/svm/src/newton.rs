@@ -8,18 +8,16 @@ use crate::gram::{begins, gram};
 use crate::lanes::Lane;
 use crate::problem::Problem;
 
-/// What is added to the diagonal, over its largest entry, until the factor exists: with duplicates and
-/// at tiny gaps rounding makes the matrix indefinite. The step is then less exact, and the next one
-/// starts from what it has left.
-const SHIFTS: [f64; 4] = [0.0, 1e-14, 1e-13, 1e-12];
+/// By what share the diagonal is raised until the factor exists: near the boundary of a cone the entries
+/// of H cancel to its small eigenvalues, and rounding makes the matrix indefinite. The step is then
+/// less exact, and the next one starts from what it has left.
+const RAISES: [f64; 5] = [0.0, 1e-15, 1e-14, 1e-13, 1e-12];
 
 /// The matrices, and memory for their factor.
 pub(crate) struct Newton {
     /// Where the variables of each point begin, and where those of the last end.
     begins: Vec<usize>,
     quadratic: Panels,
-    /// The largest entry on its diagonal.
-    largest: f64,
     factor: Panels,
     /// c of each multiplier.
     labels: Vec<f64>,
@@ -44,7 +42,6 @@ impl Newton {
         }
         Some(Self {
             begins,
-            largest: (0..size).map(|k| quadratic[(k, k)]).fold(0.0, f64::max),
             quadratic: Panels::new(size, |row, column| quadratic[(row, column)]),
             factor: Panels::default(),
             toward_bias: vec![0.0; size],
@@ -70,8 +67,8 @@ impl Newton {
         scalings: &[Scaling],
         bound: impl Fn(usize) -> f64,
     ) -> Option<()> {
-        let positive = SHIFTS.into_iter().any(|shift| {
-            self.fill(scalings, &bound, shift * self.largest);
+        let positive = RAISES.into_iter().any(|raise| {
+            self.fill(scalings, &bound, 1.0 + raise);
             self.factor.factor().is_some()
         });
         if !positive {
@@ -83,18 +80,18 @@ impl Newton {
         Some(())
     }
 
-    /// Q + H + shift·I.
-    fn fill(&mut self, scalings: &[Scaling], bound: impl Fn(usize) -> f64, shift: f64) {
+    /// Q + H, its diagonal times a factor.
+    fn fill(&mut self, scalings: &[Scaling], bound: impl Fn(usize) -> f64, raise: f64) {
         self.factor.copy_from(&self.quadratic);
         for (i, scaling) in scalings.iter().enumerate() {
             let (begin, end) = (self.begins[i], self.begins[i + 1]);
             let mut h = scaling.squared();
             h[(0, 0)] += bound(i);
             for column in begin..end {
-                *self.factor.entry(column, column) += shift;
                 for row in column..end {
                     *self.factor.entry(row, column) += h[(row - begin, column - begin)];
                 }
+                *self.factor.entry(column, column) *= raise;
             }
         }
     }
