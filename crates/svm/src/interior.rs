@@ -122,7 +122,7 @@ impl Run {
         allowed: usize,
         tools: &mut Tools<'_, '_>,
     ) -> Status {
-        let mut worse = 0;
+        let (mut least, mut worse) = (f64::INFINITY, 0);
         while self.iterations < allowed {
             newton.product(&at.z, &mut at.moved);
             let certificate = at.certificate(slack);
@@ -136,14 +136,13 @@ impl Run {
             );
             if gap.is_finite() && self.best.as_ref().is_none_or(|(_, least)| gap < *least) {
                 self.best = Some((at.z.clone(), gap));
-                worse = 0;
-            } else {
-                worse += 1;
             }
-            let least = self.best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
-            if least <= relative_gap {
+            if gap <= relative_gap {
                 return Status::Converged;
             }
+            // An earlier run does not count: it may have come closer before it stalled.
+            worse = if gap < least { 0 } else { worse + 1 };
+            least = least.min(gap);
             if stop {
                 return Status::Cancelled;
             }
