@@ -16,20 +16,19 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// The matrix of this size with these values on and below the diagonal.
-    pub(crate) fn new(size: usize, value: impl Fn(usize, usize) -> f64) -> Self {
+    /// The matrix of this size whose entries are 0.
+    pub(crate) fn zeros(size: usize) -> Self {
         let count = size.div_ceil(WIDTH);
-        let mut lanes = Vec::with_capacity(begin(count));
-        for panel in 0..count {
-            for column in 0..WIDTH * (panel + 1) {
-                lanes.push(Lane::from_fn(|k| match WIDTH * panel + k {
-                    row if row == column && row >= size => 1.0,
-                    row if row < column || row >= size => 0.0,
-                    row => value(row, column),
-                }));
-            }
+        let mut panels = Self { size, lanes: vec![Lane::ZERO; begin(count)] };
+        for beyond in size..WIDTH * count {
+            *panels.entry(beyond, beyond) = 1.0;
         }
-        Self { size, lanes }
+        panels
+    }
+
+    /// How many rows it has.
+    pub(crate) fn size(&self) -> usize {
+        self.size
     }
 
     /// Becomes a copy, in its own memory.
@@ -37,6 +36,13 @@ impl Panels {
         self.size = other.size;
         self.lanes.clear();
         self.lanes.extend_from_slice(&other.lanes);
+    }
+
+    /// An entry of the matrix.
+    #[cfg(any(test, feature = "clarabel"))]
+    pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
+        let (row, column) = (row.max(column), row.min(column));
+        self.lanes[begin(row / WIDTH) + column].0[row % WIDTH]
     }
 
     /// An entry on or below the diagonal.
@@ -322,11 +328,20 @@ impl pulp::NullaryFnOnce for Solve<'_> {
 
 #[cfg(test)]
 mod tests {
-    use faer::linalg::solvers::Solve;
-    use faer::{Mat, Side};
+    use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
     use super::*;
+
+    fn of(size: usize, value: impl Fn(usize, usize) -> f64) -> Panels {
+        let mut panels = Panels::zeros(size);
+        for row in 0..size {
+            for column in 0..=row {
+                *panels.entry(row, column) = value(row, column);
+            }
+        }
+        panels
+    }
 
     proptest! {
         #[test]
@@ -334,13 +349,13 @@ mod tests {
             size in 1..150_usize,
             values in prop::collection::vec(-1.0..1.0_f64, 150 * 151),
         ) {
-            let half = Mat::from_fn(size, size, |r, c| values[150 * r + c]);
-            let diagonal = Mat::from_fn(size, size, |r, c| if r == c { 0.1 } else { 0.0 });
-            let matrix = &half * half.transpose() + diagonal;
+            let half = DMatrix::from_fn(size, size, |r, c| values[150 * r + c]);
+            let matrix = &half * half.transpose() + DMatrix::identity(size, size) * 0.1;
             let right = &values[150 * 150..][..size];
-            let expected = matrix.llt(Side::Lower).unwrap().solve(Mat::from_fn(size, 1, |r, _| right[r]));
-            let mut panels = Panels::new(size, |r, c| matrix[(r, c)]);
-            prop_assert_eq!(*panels.entry(size - 1, 0), matrix[(size - 1, 0)]);
+            let reference = matrix.clone().cholesky().unwrap();
+            let expected = reference.solve(&DVector::from_column_slice(right));
+            let mut panels = of(size, |r, c| matrix[(r, c)]);
+            prop_assert_eq!(panels.at(0, size - 1), matrix[(size - 1, 0)]);
             let (mut found, mut memory) = (vec![0.0; size], Vec::new());
             panels.product(right, &mut found, &mut memory);
             for row in 0..size {
@@ -350,9 +365,9 @@ mod tests {
             panels.factor().unwrap();
             found.copy_from_slice(right);
             panels.solve(&mut found, &mut memory);
-            let scale = (0..size).map(|k| expected[(k, 0)].abs()).fold(1.0, f64::max);
+            let scale = (0..size).map(|k| expected[k].abs()).fold(1.0, f64::max);
             for k in 0..size {
-                prop_assert!((found[k] - expected[(k, 0)]).abs() <= 1e-10 * scale);
+                prop_assert!((found[k] - expected[k]).abs() <= 1e-10 * scale);
             }
         }
 
@@ -361,7 +376,7 @@ mod tests {
             for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
                 let at = at % size;
                 let entry = |r, c| if r != c { 0.0 } else if r == at { value } else { 1.0 };
-                prop_assert_eq!(Panels::new(size, entry).factor(), None);
+                prop_assert_eq!(of(size, entry).factor(), None);
             }
         }
     }

@@ -35,14 +35,14 @@ impl Newton {
     pub(crate) fn of(problem: &Problem) -> Option<Self> {
         let begins = begins(problem);
         let quadratic = gram(problem, &begins)?;
-        let size = quadratic.nrows();
+        let size = quadratic.size();
         let mut labels = vec![0.0; size];
         for (point, begin) in problem.points.iter().zip(&begins) {
             labels[*begin] = point.sign;
         }
         Some(Self {
             begins,
-            quadratic: Panels::new(size, |row, column| quadratic[(row, column)]),
+            quadratic,
             factor: Panels::default(),
             toward_bias: vec![0.0; size],
             labels,

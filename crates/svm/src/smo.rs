@@ -93,8 +93,8 @@ pub(crate) fn improve(
     }
 }
 
-/// Whether, after a quarter of the budget or that many steps, the log-linear decay of the gap over the second half of
-/// the run misses the tolerance at the end of the budget.
+/// Whether, after a quarter of the budget or [`TOLD_AFTER`] steps a sample, the log-linear decay of the
+/// gap over the second half of the run misses the tolerance at the end of the budget.
 fn hopeless(history: &[(usize, f64)], limits: &Limits, samples: usize) -> bool {
     let Some(&(steps, gap)) = history.last() else { return false };
     if steps < (limits.max_steps / 4).min(TOLD_AFTER * samples) {
