@@ -6,8 +6,8 @@ use clarabel::solver::{
     SolverStatus, SupportedConeT, ZeroConeT,
 };
 use cloudtouch_geom::Vector3;
+use faer::Mat;
 
-use crate::cholesky::Panels;
 use crate::gram::{begins, gram};
 use crate::problem::Problem;
 use crate::status::Status;
@@ -86,14 +86,14 @@ pub(crate) fn solve(
     Ok(ClarabelDual { alpha, p, iterations: solver.solution.iterations as usize, status })
 }
 
-fn upper_triangle(matrix: &Panels) -> CscMatrix<f64> {
-    let n = matrix.size();
+fn upper_triangle(matrix: &Mat<f64>) -> CscMatrix<f64> {
+    let n = matrix.ncols();
     let mut starts = vec![0];
     let (mut rows, mut values) = (Vec::new(), Vec::new());
     for column in 0..n {
         for row in 0..=column {
             rows.push(row);
-            values.push(matrix.at(row, column));
+            values.push(matrix[(row, column)]);
         }
         starts.push(rows.len());
     }

@@ -1,9 +1,9 @@
 //! The dense quadratic form of the dual, for the interior point methods.
 
 use cloudtouch_geom::Vector3;
+use faer::Mat;
 use nalgebra::Matrix4;
 
-use crate::cholesky::Panels;
 use crate::kernel::Kernel;
 use crate::lanes::Lanes;
 use crate::problem::{PreparedPoint, Problem};
@@ -23,10 +23,10 @@ pub(crate) fn begins(problem: &Problem) -> Vec<usize> {
     begins
 }
 
-/// The Gram matrix B of the dual's quadratic form, of feature vectors relative to
+/// The Gram matrix B of the dual's quadratic form (full, symmetric), of feature vectors relative to
 /// that of the centre: with Σcα = 0 that is the same form, and it keeps its digits where the kernel is
 /// wide. `None` when it is too large.
-pub(crate) fn gram(problem: &Problem, begins: &[usize]) -> Option<Panels> {
+pub(crate) fn gram(problem: &Problem, begins: &[usize]) -> Option<Mat<f64>> {
     let size = begins[problem.len()];
     if size > MAX_VARIABLES {
         return None;
@@ -44,14 +44,15 @@ pub(crate) fn gram(problem: &Problem, begins: &[usize]) -> Option<Panels> {
             Features { point, reduced_at_zero: row.at(i), at_zero: point.factor * at_zero }
         })
         .collect();
-    let mut matrix = Panels::zeros(size);
+    let mut matrix = Mat::zeros(size, size);
     for (j, of_j) in features.iter().enumerate() {
         problem.kernel.reduced_row(&of_j.point.x, &problem.places, row.lanes_mut());
         for (i, of_i) in features[..=j].iter().enumerate() {
             let block = of_i.products(of_j, &problem.kernel, row.at(i));
             for (b, row) in (begins[j]..begins[j + 1]).enumerate() {
                 for (a, column) in (begins[i]..begins[i + 1].min(row + 1)).enumerate() {
-                    *matrix.entry(row, column) = block[(a, b)];
+                    matrix[(row, column)] = block[(a, b)];
+                    matrix[(column, row)] = block[(a, b)];
                 }
             }
         }
@@ -160,7 +161,7 @@ mod tests {
                 for (column, from) in (0..16).map(term).enumerate() {
                     let (f, g) = centred_influence(&kernel, &from.0, &to.0, from.1, &from.2);
                     let expected = to.1 * f + to.2.dot(&g);
-                    assert!((matrix.at(row, column) - expected).abs() < 1e-14, "{row}, {column}");
+                    assert!((matrix[(row, column)] - expected).abs() < 1e-14, "{row}, {column}");
                 }
             }
         }
@@ -182,13 +183,13 @@ mod tests {
             let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
             let begins = begins(&problem);
             let matrix = gram(&problem, &begins).unwrap();
-            let count = matrix.size();
-            let size = (0..count).map(|i| matrix.at(i, i)).fold(0.0, f64::max);
+            let count = matrix.ncols();
+            let size = (0..count).map(|i| matrix[(i, i)]).fold(0.0, f64::max);
             for x in 0..20_u32 {
                 let z: Vec<f64> =
                     (0..count).map(|i| f64::from((x + 1) * i as u32 % 7) - 3.0).collect();
                 let value: f64 = (0..z.len())
-                    .map(|i| (0..z.len()).map(|j| z[i] * matrix.at(i, j) * z[j]).sum::<f64>())
+                    .map(|i| (0..z.len()).map(|j| z[i] * matrix[(i, j)] * z[j]).sum::<f64>())
                     .sum();
                 assert!(value >= -1e-12 * size, "gamma {gamma}: {value} of {size}");
             }

@@ -3,7 +3,6 @@
 mod ball;
 mod bias;
 mod bounds;
-mod cholesky;
 mod choose;
 #[cfg(feature = "clarabel")]
 mod clarabel_dual;

@@ -1,11 +1,14 @@
 //! The linear system of an interior point iteration: Q + H with the border c for the bias.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt;
+use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Col, Mat, Par, Scale, Spec};
 use nalgebra::Vector4;
 
-use crate::cholesky::Panels;
 use crate::cone::Scaling;
 use crate::gram::{begins, gram};
-use crate::lanes::Lane;
 use crate::problem::Problem;
 
 /// By what share the diagonal is raised until the factor exists: near the boundary of a cone the entries
@@ -17,17 +20,18 @@ const RAISES: [f64; 5] = [0.0, 1e-15, 1e-14, 1e-13, 1e-12];
 pub(crate) struct Newton {
     /// Where the variables of each point begin, and where those of the last end.
     begins: Vec<usize>,
-    quadratic: Panels,
-    factor: Panels,
+    quadratic: Mat<f64>,
+    /// The Cholesky factor, below and on the diagonal.
+    factor: Mat<f64>,
     /// c of each multiplier.
-    labels: Vec<f64>,
+    labels: Col<f64>,
     /// The solution for the labels on the right.
-    toward_bias: Vec<f64>,
+    toward_bias: Col<f64>,
     /// Their product.
     border: f64,
-    column: Vec<f64>,
-    moved: Vec<f64>,
-    memory: Vec<Lane>,
+    column: Col<f64>,
+    moved: Col<f64>,
+    memory: MemBuffer,
 }
 
 impl Newton {
@@ -35,28 +39,30 @@ impl Newton {
     pub(crate) fn of(problem: &Problem) -> Option<Self> {
         let begins = begins(problem);
         let quadratic = gram(problem, &begins)?;
-        let size = quadratic.size();
-        let mut labels = vec![0.0; size];
+        let size = quadratic.nrows();
+        let mut labels = Col::zeros(size);
         for (point, begin) in problem.points.iter().zip(&begins) {
             labels[*begin] = point.sign;
         }
+        let memory = llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, parameters());
         Some(Self {
             begins,
+            factor: Mat::zeros(size, size),
             quadratic,
-            factor: Panels::default(),
-            toward_bias: vec![0.0; size],
+            toward_bias: Col::zeros(size),
             labels,
             border: 0.0,
-            column: vec![0.0; size],
-            moved: vec![0.0; size],
-            memory: Vec::new(),
+            column: Col::zeros(size),
+            moved: Col::zeros(size),
+            memory: MemBuffer::new(memory),
         })
     }
 
     /// Q z, point by point.
     pub(crate) fn product(&mut self, z: &[Vector4<f64>], moved: &mut [Vector4<f64>]) {
         gather(&self.begins, |i| z[i], &mut self.column);
-        self.quadratic.product(&self.column, &mut self.moved, &mut self.memory);
+        let (to, from) = (self.moved.as_mat_mut(), self.column.as_mat());
+        matmul(to, Accum::Replace, &self.quadratic, from, 1.0, Par::Seq);
         scatter(&self.begins, &self.moved, moved);
     }
 
@@ -69,29 +75,31 @@ impl Newton {
     ) -> Option<()> {
         let positive = RAISES.into_iter().any(|raise| {
             self.fill(scalings, &bound, 1.0 + raise);
-            self.factor.factor().is_some()
+            let (matrix, memory) = (self.factor.as_mut(), MemStack::new(&mut self.memory));
+            let none = LltRegularization::default();
+            llt::factor::cholesky_in_place(matrix, none, Par::Seq, memory, parameters()).is_ok()
         });
         if !positive {
             return None;
         }
-        self.toward_bias.copy_from_slice(&self.labels);
-        self.factor.solve(&mut self.toward_bias, &mut self.memory);
-        self.border = dot(&self.labels, &self.toward_bias);
+        self.toward_bias.copy_from(&self.labels);
+        solve_in_place(&self.factor, &mut self.toward_bias);
+        self.border = self.labels.transpose() * &self.toward_bias;
         Some(())
     }
 
     /// Q + H, its diagonal times a factor.
     fn fill(&mut self, scalings: &[Scaling], bound: impl Fn(usize) -> f64, raise: f64) {
-        self.factor.copy_from(&self.quadratic);
+        self.factor.copy_from_triangular_lower(&self.quadratic);
         for (i, scaling) in scalings.iter().enumerate() {
             let (begin, end) = (self.begins[i], self.begins[i + 1]);
             let mut h = scaling.squared();
             h[(0, 0)] += bound(i);
             for column in begin..end {
                 for row in column..end {
-                    *self.factor.entry(row, column) += h[(row - begin, column - begin)];
+                    self.factor[(row, column)] += h[(row - begin, column - begin)];
                 }
-                *self.factor.entry(column, column) *= raise;
+                self.factor[(column, column)] *= raise;
             }
         }
     }
@@ -102,33 +110,39 @@ impl Newton {
         right: impl Fn(usize) -> Vector4<f64>,
     ) -> (Vec<Vector4<f64>>, f64) {
         gather(&self.begins, right, &mut self.column);
-        self.factor.solve(&mut self.column, &mut self.memory);
-        let bias = dot(&self.labels, &self.column) / self.border;
-        for (value, toward_bias) in self.column.iter_mut().zip(&self.toward_bias) {
-            *value -= toward_bias * bias;
-        }
+        solve_in_place(&self.factor, &mut self.column);
+        let bias = self.labels.transpose() * &self.column / self.border;
+        self.column -= &self.toward_bias * Scale(bias);
         let mut z = vec![Vector4::zeros(); self.begins.len() - 1];
         scatter(&self.begins, &self.column, &mut z);
         (z, bias)
     }
 }
 
+fn parameters() -> Spec<LltParams, f64> {
+    Spec::default()
+}
+
+fn solve_in_place(factor: &Mat<f64>, right: &mut Col<f64>) {
+    let none = MemStack::new(&mut []);
+    llt::solve::solve_in_place(factor.as_ref(), right.as_mat_mut(), Par::Seq, none);
+}
+
 /// Takes from the blocks what their points have variables for.
-fn gather(begins: &[usize], block: impl Fn(usize) -> Vector4<f64>, column: &mut [f64]) {
+fn gather(begins: &[usize], block: impl Fn(usize) -> Vector4<f64>, column: &mut Col<f64>) {
     for i in 0..begins.len() - 1 {
-        let values = &mut column[begins[i]..begins[i + 1]];
-        values.copy_from_slice(&block(i).as_slice()[..values.len()]);
+        let block = block(i);
+        for k in begins[i]..begins[i + 1] {
+            column[k] = block[k - begins[i]];
+        }
     }
 }
 
-fn scatter(begins: &[usize], column: &[f64], blocks: &mut [Vector4<f64>]) {
+fn scatter(begins: &[usize], column: &Col<f64>, blocks: &mut [Vector4<f64>]) {
     for (i, block) in blocks.iter_mut().enumerate() {
         *block = Vector4::zeros();
-        let values = &column[begins[i]..begins[i + 1]];
-        block.as_mut_slice()[..values.len()].copy_from_slice(values);
+        for k in begins[i]..begins[i + 1] {
+            block[k - begins[i]] = column[k];
+        }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
