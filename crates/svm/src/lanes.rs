@@ -29,13 +29,6 @@ impl Lane {
         Self(result)
     }
 
-    /// The sum of its numbers, pair by pair.
-    #[inline(always)]
-    pub(crate) fn sum(self) -> f64 {
-        let [a, b, c, d, e, f, g, h] = self.0;
-        ((a + e) + (c + g)) + ((b + f) + (d + h))
-    }
-
     #[inline(always)]
     pub(crate) fn sqrt(self) -> Self {
         Self::from_fn(|k| self.0[k].sqrt())
