@@ -89,6 +89,21 @@ fn check(mode: Mode, a_from_b: &Pose) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+#[test]
+fn the_order_of_the_sides_chose_among_points_as_far_from_their_middle() {
+    let poses = [
+        ([-0.039, -0.044, 0.0473], [-2.65, 2.06, -1.36]),
+        ([-0.010, -0.041, 0.0488], [1.43, 1.43, 0.74]),
+        ([0.011, 0.022, 0.0471], [-2.15, 0.68, 1.40]),
+        ([-0.037, -0.021, 0.0454], [2.69, -2.92, 0.35]),
+    ];
+    for (translation, rpy) in poses {
+        let pose = Pose::from_translation_rpy(Vector3::from(translation), rpy);
+        let same = check(Mode::Paper, &pose);
+        assert!(same.is_ok(), "{translation:?}, {rpy:?}: {same:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 

@@ -2,6 +2,10 @@
 
 use cloudtouch_geom::Vector3;
 
+/// Newton's method ends when the length is off by this share: its next step would square that, but
+/// the ball step itself is one of many.
+const ROUGHLY: f64 = 1e-11;
+
 /// Minimises ½ pᵀMp − h·p over |p| ≤ `radius`, with M = diag(`m`) and m descending and ≥ 0.
 ///
 /// Axes with m = 0 must have h = 0 (a direction without variance has no gradient either) and get 0.
@@ -22,20 +26,20 @@ pub(crate) fn ball_minimiser(m: &Vector3, h: &Vector3, radius: f64) -> Vector3 {
     }
     let mut mu = (length / radius - m[0]).max(0.0);
     for _ in 0..50 {
-        let p = at(mu);
-        let norm = p.norm();
-        if norm <= radius * (1.0 + 1e-14) {
+        let inverse = Vector3::from_fn(|k, _| if h[k] == 0.0 { 0.0 } else { 1.0 / (m[k] + mu) });
+        let p = h.component_mul(&inverse);
+        let squared = p.norm_squared();
+        let excess = squared.sqrt() / radius - 1.0;
+        if excess <= ROUGHLY {
             break;
         }
-        let bent: f64 =
-            (0..3).map(|k| if p[k] == 0.0 { 0.0 } else { p[k] * p[k] / (m[k] + mu) }).sum();
-        let step = norm * norm / bent * (norm / radius - 1.0);
+        let step = squared / p.component_mul(&p).dot(&inverse) * excess;
         if !step.is_finite() || mu + step == mu {
             break;
         }
         mu += step;
     }
-    // The last rounding: never leave the ball.
+    // What is left, and the last rounding: never leave the ball.
     clip_to_ball(&at(mu), radius)
 }
 

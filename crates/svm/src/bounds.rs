@@ -6,7 +6,7 @@
 use cloudtouch_geom::{Vector3, normal};
 
 use crate::kernel::Kernel;
-use crate::problem::Problem;
+use crate::problem::{PreparedPoint, Problem};
 use crate::solution::ErrorBounds;
 use crate::state::{Certificate, State};
 
@@ -76,7 +76,7 @@ pub(crate) fn error_bounds(state: &State<'_>, certificate: &Certificate) -> Erro
     let slope = reference.slope();
     let mut bias = [f64::NEG_INFINITY, f64::INFINITY];
     for (i, point) in points.iter().enumerate() {
-        let alpha = numbers.alpha[i];
+        let alpha = numbers.alpha.at(i);
         let off = weight * (reference.distance(&point.x) + slope * point.t[0]) + rounding;
         let y = state.violation(i);
         // What cb* may be: (C−α)(y*−cb*)₊ and α(y*−cb*)₋ are each at most the gap.
@@ -86,10 +86,10 @@ pub(crate) fn error_bounds(state: &State<'_>, certificate: &Certificate) -> Erro
     }
     let mut bounds = ErrorBounds { weight, bias, probability: 0.0 };
     for (i, point) in points.iter().enumerate().filter(|(_, p)| p.std[0] > 0.0) {
-        let deviation = point.deviation(&numbers.gradient[i]);
-        let value = point.sign * (numbers.f[i] + certificate.bias);
+        let deviation = point.deviation(&numbers.field.gradient_at(i));
+        let value = point.sign * (numbers.field.f.at(i) + certificate.bias);
         let off = weight * reference.distance(&point.x);
-        let values = bias.map(|bias| point.sign * (numbers.f[i] + bias));
+        let values = bias.map(|bias| point.sign * (numbers.field.f.at(i) + bias));
         let value_range = [values[0].min(values[1]) - off, values[0].max(values[1]) + off];
         let deviation_off = weight * slope * point.std[0];
         let range = Range {
@@ -112,8 +112,8 @@ pub(crate) fn bias_spread(state: &State<'_>, interval: [f64; 2]) -> f64 {
     let numbers = &state.numbers;
     let spread = |i: usize| {
         let point = &state.problem.points[i];
-        let deviation = point.deviation(&numbers.gradient[i]);
-        let [low, high] = interval.map(|bias| point.sign * (numbers.f[i] + bias));
+        let deviation = point.deviation(&numbers.field.gradient_at(i));
+        let [low, high] = interval.map(|bias| point.sign * (numbers.field.f.at(i) + bias));
         if deviation > 0.0 {
             let [p, q] = [low, high].map(|value| normal::below_zero(value, deviation));
             (p - q).abs()
@@ -138,10 +138,9 @@ fn feature_lengths(state: &State<'_>) -> f64 {
     let problem = state.problem;
     let reference = Reference::of(problem);
     let slope = reference.slope();
-    let terms = problem.points.iter().zip(state.numbers.alpha.iter().zip(&state.numbers.p));
-    terms
-        .map(|(point, (alpha, p))| {
-            alpha * reference.distance(&point.x) + point.displacement(p).norm() * slope
-        })
-        .sum()
+    let length = |(i, point): (usize, &PreparedPoint)| {
+        let displacement = point.displacement(&state.numbers.p(i));
+        state.numbers.alpha.at(i) * reference.distance(&point.x) + displacement.norm() * slope
+    };
+    problem.points.iter().enumerate().map(length).sum()
 }

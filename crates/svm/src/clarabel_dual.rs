@@ -8,9 +8,28 @@ use clarabel::solver::{
 use cloudtouch_geom::Vector3;
 use faer::Mat;
 
-use crate::gram::{Variable, gram, variables};
+use crate::gram::{begins, gram};
 use crate::problem::Problem;
 use crate::status::Status;
+
+/// One scalar variable of the dual: a multiplier, or a component of a cone vector.
+#[derive(Debug, Clone, Copy)]
+struct Variable {
+    point: usize,
+    /// `None` for α, the eigen-axis for a component of p.
+    axis: Option<usize>,
+}
+
+/// The variables of the dual; axes without variance have none.
+fn variables(problem: &Problem) -> Vec<Variable> {
+    let mut all = Vec::new();
+    for (index, point) in problem.points.iter().enumerate() {
+        all.push(Variable { point: index, axis: None });
+        let axes = (0..3).filter(|&axis| point.t[axis] > 0.0);
+        all.extend(axes.map(|axis| Variable { point: index, axis: Some(axis) }));
+    }
+    all
+}
 
 /// What Clarabel found: α and p in sample order, and its iterations. Not necessarily feasible to
 /// the last digit, and not necessarily optimal: the caller certifies it.
@@ -33,7 +52,7 @@ pub(crate) fn solve(
     max_iterations: usize,
 ) -> Result<ClarabelDual, Status> {
     let variables = variables(problem);
-    let quadratic = upper_triangle(&gram(problem, &variables).ok_or(Status::TooLarge)?);
+    let quadratic = upper_triangle(&gram(problem, &begins(problem)).ok_or(Status::TooLarge)?);
     let linear: Vec<f64> =
         variables.iter().map(|v| if v.axis.is_none() { -1.0 } else { 0.0 }).collect();
     let (constraints, bounds, cones) = constraints(problem, &variables);

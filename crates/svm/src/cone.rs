@@ -91,6 +91,13 @@ impl Scaling {
         y
     }
 
+    /// H x.
+    pub(crate) fn apply_squared(&self, x: &Vector4<f64>) -> Vector4<f64> {
+        let mut y = self.w * (2.0 * self.w.dot(x)) + x;
+        y[0] -= 2.0 * x[0];
+        y * (self.beta * self.beta)
+    }
+
     /// H = W².
     pub(crate) fn squared(&self) -> Matrix4<f64> {
         let mut h = self.w * self.w.transpose() * 2.0 + Matrix4::identity();
@@ -123,6 +130,7 @@ mod tests {
             let size = scaling.lambda.norm();
             prop_assert!((scaling.apply(&z) - scaling.apply_inverse(&s)).norm() < 1e-9 * size);
             prop_assert!((scaling.squared() * z - s).norm() < 1e-8 * s.norm());
+            prop_assert!((scaling.apply_squared(&z) - s).norm() < 1e-8 * s.norm());
             prop_assert!((scaling.apply(&scaling.apply(&z)) - s).norm() < 1e-8 * s.norm());
         }
 

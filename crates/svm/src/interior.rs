@@ -4,16 +4,17 @@
 //! cone with multiplier s_i, u_i = C_i − α_i ≥ 0 with multiplier ξ_i, and the bias b for Σcα = 0:
 //! Q z − e − s + ξ + b c = 0. Every iterate is feasible, so its gap can be certified.
 
-use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
+use cloudtouch_geom::Vector3;
 use nalgebra::Vector4;
 
+use crate::ball::clip_to_ball;
+use crate::bias::Slack;
 use crate::cone::{Scaling, longest_step, product, quotient};
-use crate::gram::{Variable, gram, variables};
+use crate::newton::Newton;
 use crate::problem::Problem;
-use crate::state::{Numbers, State};
+use crate::smo::Tools;
+use crate::state::{Certificate, Margin, Numbers, State, certify, largest_violation};
 use crate::status::{Rung, Status};
-use crate::watch::Watch;
 
 /// Seven to twelve iterations are usual at 1e-4; past this rounding has stopped the progress.
 const MAX_ITERATIONS: usize = 60;
@@ -29,15 +30,33 @@ const STEP: f64 = 0.99;
 /// penalties allow it: two classes so far apart take multipliers of 2 over their squared distance.
 const START: f64 = 10.0;
 
+/// Beyond this relative gap a dual point is no start: its multipliers are of the wrong size.
+const FAR: f64 = 0.4;
+/// A start beside a dual point that has not led to the tolerance by then leads nowhere.
+const NEAR_ITERATIONS: usize = 15;
+/// Products with s and ξ that the start beside a dual point has at least, over the mean of the gap.
+/// Larger ones are better centred, but further from what SMO has found.
+const LEVEL: f64 = 0.02;
+/// And the share of the penalty that it keeps from a bound at most.
+const MARGIN: f64 = 0.1;
+/// How far inside of its cone a multiplier starts at least, as a share of it.
+const LEAST_INSIDE: f64 = 1e-3;
+
 /// The iterate: one cone pair and one bound pair for each point.
-struct Iterate {
+struct Iterate<'a> {
+    problem: &'a Problem,
     z: Vec<Vector4<f64>>,
     s: Vec<Vector4<f64>>,
     u: Vec<f64>,
     xi: Vec<f64>,
     bias: f64,
+    /// Q z.
+    moved: Vec<Vector4<f64>>,
+    scalings: Vec<Scaling>,
 }
 
+/// A step of the iterate.
+#[derive(Default)]
 struct Direction {
     z: Vec<Vector4<f64>>,
     s: Vec<Vector4<f64>>,
@@ -55,64 +74,106 @@ pub(crate) struct Reached<'a> {
 
 /// Solves the dual to `relative_gap`, or as far as rounding and `allowed` iterations let it.
 ///
-/// `typical` is a guess at the mean of the multipliers: each iteration changes them by a bounded
-/// factor, so that large penalties take many iterations from a small start.
+/// It starts beside the point of SMO or, where that is far from the optimum or leads nowhere, cold.
 pub(crate) fn solve<'a>(
-    problem: &'a Problem,
+    so_far: &State<'a>,
     relative_gap: f64,
-    typical: f64,
     allowed: usize,
-    watch: &mut Watch<'_>,
+    tools: &mut Tools<'_, '_>,
 ) -> Reached<'a> {
-    let variables = variables(problem);
-    let Some(quadratic) = gram(problem, &variables) else {
+    let problem = so_far.problem;
+    let Some(mut newton) = Newton::of(problem) else {
         return Reached { state: None, iterations: 0, status: Status::TooLarge };
     };
-    let reaches = problem.points.iter().map(|p| problem.kernel.squared_reach(&p.x));
-    let start = (START / reaches.fold(0.0, f64::max)).min(f64::MAX);
-    let mut at = Iterate::start(problem, typical.max(start));
-    let mut best: Option<(State<'_>, f64)> = None;
-    let mut worse = 0;
-    let allowed = allowed.min(MAX_ITERATIONS);
-    let mut status = Status::IterationLimit;
-    let mut iterations = 0;
-    while iterations < allowed {
-        let mut state = at.state(problem);
-        let certificate = state.certificate();
-        let gap = certificate.relative_gap();
-        let stop = watch.shows_stop(Rung::InteriorPoint, iterations, &state, &certificate);
-        if gap.is_finite() && best.as_ref().is_none_or(|(_, least)| gap < *least) {
-            best = Some((state, gap));
-            worse = 0;
-        } else {
-            worse += 1;
+    let mut slack = Slack::default();
+    let mut run = Run { best: None, iterations: 0 };
+    if let Some(near) = Iterate::near(so_far, &mut newton, &mut slack) {
+        let allowed = allowed.min(NEAR_ITERATIONS);
+        let status = run.go_on(near, &mut newton, &mut slack, relative_gap, allowed, tools);
+        if matches!(status, Status::Converged | Status::Cancelled) {
+            return run.end(status, problem, tools);
         }
-        let least = best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
-        let end = if least <= relative_gap {
-            Some(Status::Converged)
-        } else if stop {
-            Some(Status::Cancelled)
-        } else if worse >= MAX_STALLED && least <= NEAR {
-            Some(Status::Stalled)
-        } else {
-            // A scaling or a factor that fails is rounding too.
-            at.step(problem, &variables, &quadratic).is_none().then_some(Status::Stalled)
-        };
-        if let Some(end) = end {
-            status = end;
-            break;
-        }
-        iterations += 1;
     }
-    let state = best.map(|(state, _)| state);
-    let status =
-        if state.is_none() && status == Status::Stalled { Status::NotFinite } else { status };
-    Reached { state, iterations, status }
+    let reaches = problem.points.iter().map(|p| problem.kernel.squared_reach(&p.x));
+    let least = (START / reaches.fold(0.0, f64::max)).min(f64::MAX);
+    // Where SMO got stuck its multipliers are of the right size, if nothing more: an iteration changes
+    // them by a bounded factor, so that large penalties take many from a small start.
+    let sum: f64 = (0..problem.len()).map(|i| so_far.numbers.alpha.at(i)).sum();
+    let start = Iterate::start(problem, least.max(sum / problem.len() as f64));
+    let allowed = (run.iterations + MAX_ITERATIONS).min(allowed);
+    let status = run.go_on(start, &mut newton, &mut slack, relative_gap, allowed, tools);
+    run.end(status, problem, tools)
 }
 
-impl Iterate {
+/// The iterations so far, and the best multipliers among them with their gap.
+struct Run {
+    best: Option<(Vec<Vector4<f64>>, f64)>,
+    iterations: usize,
+}
+
+impl Run {
+    /// Iterates from a start, and says how that ended.
+    fn go_on(
+        &mut self,
+        mut at: Iterate<'_>,
+        newton: &mut Newton,
+        slack: &mut Slack,
+        relative_gap: f64,
+        allowed: usize,
+        tools: &mut Tools<'_, '_>,
+    ) -> Status {
+        let (mut least, mut worse) = (f64::INFINITY, 0);
+        while self.iterations < allowed {
+            newton.product(&at.z, &mut at.moved);
+            let certificate = at.certificate(slack);
+            let gap = certificate.relative_gap();
+            let violation = || largest_violation(&at.problem.points, |i| at.violation(i));
+            let stop = tools.watch.shows_stop(
+                Rung::InteriorPoint,
+                self.iterations,
+                &certificate,
+                violation,
+            );
+            if gap.is_finite() && self.best.as_ref().is_none_or(|(_, least)| gap < *least) {
+                self.best = Some((at.z.clone(), gap));
+            }
+            if gap <= relative_gap {
+                return Status::Converged;
+            }
+            // An earlier run does not count: it may have come closer before it stalled.
+            worse = if gap < least { 0 } else { worse + 1 };
+            least = least.min(gap);
+            if stop {
+                return Status::Cancelled;
+            }
+            // A scaling or a factor that fails is rounding too.
+            if worse >= MAX_STALLED && least <= NEAR || at.step(newton).is_none() {
+                return Status::Stalled;
+            }
+            self.iterations += 1;
+        }
+        Status::IterationLimit
+    }
+
+    fn end<'a>(
+        self,
+        status: Status,
+        problem: &'a Problem,
+        tools: &mut Tools<'_, '_>,
+    ) -> Reached<'a> {
+        let state = self.best.map(|(z, _)| {
+            let duals = z.iter().map(|z| (z[0], tail(z)));
+            State::from_duals(problem, Numbers::default(), duals, tools.rows)
+        });
+        let nothing = state.is_none() && status == Status::Stalled;
+        let status = if nothing { Status::NotFinite } else { status };
+        Reached { state, iterations: self.iterations, status }
+    }
+}
+
+impl<'a> Iterate<'a> {
     /// Multipliers of about `size` and well inside their range with Σcα = 0, cone vectors 0.
-    fn start(problem: &Problem, size: f64) -> Self {
+    fn start(problem: &'a Problem, size: f64) -> Self {
         let points = &problem.points;
         let first = |penalty: f64| (0.5 * penalty).min(size);
         let total = |sign: f64| -> f64 {
@@ -124,77 +185,109 @@ impl Iterate {
             .iter()
             .map(|p| first(p.penalty) * lighter / if p.sign > 0.0 { a } else { b })
             .collect();
-        let head = |value: f64| Vector4::new(value, 0.0, 0.0, 0.0);
         Self {
+            problem,
             z: alpha.iter().map(|a| head(*a)).collect(),
             s: vec![head(1.0); points.len()],
             u: points.iter().zip(&alpha).map(|(p, a)| p.penalty - a).collect(),
             xi: vec![1.0; points.len()],
             bias: 0.0,
+            moved: vec![Vector4::zeros(); points.len()],
+            scalings: Vec::with_capacity(points.len()),
         }
     }
 
-    fn state<'a>(&self, problem: &'a Problem) -> State<'a> {
-        let p = self.z.iter().map(|z| z.fixed_rows::<3>(1).into_owned());
-        State::from_duals(problem, Numbers::default(), self.z.iter().map(|z| z[0]), p)
+    /// Well inside the cones beside a dual point that is not far from the optimum, with s, ξ and b that
+    /// leave nothing of Q z − e − s + ξ + b c; `None` when it is far.
+    ///
+    /// With b and the excesses y − cb of the certificate, ξ = (y − cb)₊ + δ and
+    /// s = (|g| + (y − cb)₋ + δ, g) do: complementarity is then the gap and δΣC.
+    fn near(so_far: &State<'a>, newton: &mut Newton, slack: &mut Slack) -> Option<Self> {
+        let problem = so_far.problem;
+        let points = &problem.points;
+        let mut at = Self::start(problem, 1.0);
+        for (i, z) in at.z.iter_mut().enumerate() {
+            let p = so_far.numbers.p(i);
+            *z = Vector4::new(so_far.numbers.alpha.at(i), p.x, p.y, p.z);
+        }
+        newton.product(&at.z, &mut at.moved);
+        let certificate = at.certificate(slack);
+        if certificate.relative_gap() > FAR {
+            return None;
+        }
+        let penalties: f64 = points.iter().map(|p| p.penalty).sum();
+        let level = LEVEL * certificate.gap / (2 * points.len()) as f64;
+        let floor = certificate.gap / penalties;
+        let mut totals = [0.0; 2];
+        for (i, point) in points.iter().enumerate() {
+            let (norm, excess) = at.excess(i, certificate.bias);
+            let [above, below] = [excess, -excess].map(|e| e.max(0.0) + floor);
+            let off = |slack: f64| (level / slack).min(MARGIN * point.penalty);
+            let alpha = at.z[i][0].max(off(below)).min(point.penalty - off(above));
+            let inside = (below / (below + norm)).clamp(LEAST_INSIDE, 0.5);
+            let p = clip_to_ball(&tail(&at.z[i]), alpha * (1.0 - inside));
+            at.z[i] = Vector4::new(alpha, p.x, p.y, p.z);
+            totals[usize::from(point.sign < 0.0)] += alpha;
+        }
+        let lighter = totals[0].min(totals[1]);
+        for (i, point) in points.iter().enumerate() {
+            at.z[i] *= lighter / totals[usize::from(point.sign < 0.0)];
+            at.u[i] = point.penalty - at.z[i][0];
+        }
+        newton.product(&at.z, &mut at.moved);
+        let certificate = at.certificate(slack);
+        let floor = certificate.gap / penalties;
+        at.bias = certificate.bias;
+        for i in 0..points.len() {
+            let (norm, excess) = at.excess(i, certificate.bias);
+            let [above, below] = [excess, -excess].map(|e| e.max(0.0) + floor);
+            at.s[i] = at.moved[i];
+            at.s[i][0] = norm + below;
+            at.xi[i] = above;
+        }
+        Some(at)
+    }
+
+    /// |T∇f₀| and y − cb.
+    fn excess(&self, i: usize, bias: f64) -> (f64, f64) {
+        let norm = tail(&self.moved[i]).norm();
+        (norm, 1.0 - self.moved[i][0] + norm - self.problem.points[i].sign * bias)
+    }
+
+    /// Of these multipliers as they are: every iterate keeps Σcα = 0 up to rounding.
+    fn certificate(&self, slack: &mut Slack) -> Certificate {
+        certify(&self.problem.points, slack, |i| {
+            let (z, moved) = (&self.z[i], &self.moved[i]);
+            let turned = z.dot(moved) - z[0] * moved[0];
+            Margin { alpha: z[0], value: moved[0], norm: tail(moved).norm(), turned }
+        })
+    }
+
+    /// α and y.
+    fn violation(&self, i: usize) -> (f64, f64) {
+        (self.z[i][0], 1.0 - self.moved[i][0] + tail(&self.moved[i]).norm())
     }
 
     /// One predictor-corrector step; `None` when rounding stops it.
-    fn step(
-        &mut self,
-        problem: &Problem,
-        variables: &[Variable],
-        quadratic: &Mat<f64>,
-    ) -> Option<()> {
-        let points = &problem.points;
-        let n = points.len();
-        let scalings: Vec<Scaling> =
-            self.z.iter().zip(&self.s).map(|(z, s)| Scaling::of(z, s)).collect::<Option<_>>()?;
-        let mut matrix = quadratic.clone();
-        add_scalings(&mut matrix, variables, &scalings, |i| self.xi[i] / self.u[i]);
-        let factor = matrix.llt(Side::Lower).ok()?;
-        let residual = self.stationarity(problem, variables, quadratic);
-        let labels = gathered(variables, &points.iter().map(|p| head(p.sign)).collect::<Vec<_>>());
-        let toward_bias = factor.solve(&labels);
-        let border = dot(&labels, &toward_bias);
-
-        // `cone` is λ∘(W dz + W⁻¹ ds), `bound` is u dξ + ξ du.
-        let direction = |cone: &[Vector4<f64>], bound: &[f64]| -> Option<Direction> {
-            let pushed: Vec<Vector4<f64>> = (0..n)
-                .map(|i| scalings[i].apply(&quotient(&scalings[i].lambda, &cone[i])))
-                .collect();
-            let right: Vec<Vector4<f64>> =
-                (0..n).map(|i| pushed[i] - residual[i] - head(bound[i] / self.u[i])).collect();
-            let free = factor.solve(&gathered(variables, &right));
-            let bias = dot(&labels, &free) / border;
-            let solution = &free - &toward_bias * faer::Scale(bias);
-            let z = scattered(variables, &solution, n);
-            let s = (0..n).map(|i| pushed[i] - scalings[i].squared() * z[i]).collect();
-            let xi = (0..n).map(|i| (bound[i] + self.xi[i] * z[i][0]) / self.u[i]).collect();
-            let finite = bias.is_finite() && z.iter().all(|z| z.iter().all(|v| v.is_finite()));
-            finite.then_some(Direction { z, s, xi, bias })
-        };
-
-        let complementarity =
-            (0..n).map(|i| self.z[i].dot(&self.s[i]) + self.u[i] * self.xi[i]).sum::<f64>()
-                / (2 * n) as f64;
-        let squares: Vec<Vector4<f64>> =
-            scalings.iter().map(|w| product(&w.lambda, &w.lambda)).collect();
-        let predictor = direction(
-            &squares.iter().map(|x| -x).collect::<Vec<_>>(),
-            &(0..n).map(|i| -self.u[i] * self.xi[i]).collect::<Vec<_>>(),
-        )?;
+    fn step(&mut self, newton: &mut Newton) -> Option<()> {
+        let n = self.z.len();
+        self.scalings.clear();
+        for (z, s) in self.z.iter().zip(&self.s) {
+            self.scalings.push(Scaling::of(z, s)?);
+        }
+        newton.factor(&self.scalings, |i| self.xi[i] / self.u[i])?;
+        let pairs = (0..n).map(|i| self.z[i].dot(&self.s[i]) + self.u[i] * self.xi[i]);
+        let complementarity = pairs.sum::<f64>() / (2 * n) as f64;
+        let square = |i: usize| product(&self.scalings[i].lambda, &self.scalings[i].lambda);
+        let predictor = self.direction(newton, |i| -square(i), |i| -self.u[i] * self.xi[i])?;
         let target = complementarity * (1.0 - self.longest(&predictor)).powi(3);
-        let cone: Vec<Vector4<f64>> = (0..n)
-            .map(|i| {
-                let (w, z, s) = (&scalings[i], &predictor.z[i], &predictor.s[i]);
-                head(target) - squares[i] - product(&w.apply_inverse(s), &w.apply(z))
-            })
-            .collect();
-        let bound: Vec<f64> = (0..n)
-            .map(|i| target - self.u[i] * self.xi[i] + predictor.z[i][0] * predictor.xi[i])
-            .collect();
-        let corrected = direction(&cone, &bound)?;
+        let cone = |i: usize| {
+            let (w, z, s) = (&self.scalings[i], &predictor.z[i], &predictor.s[i]);
+            head(target) - square(i) - product(&w.apply_inverse(s), &w.apply(z))
+        };
+        let bound =
+            |i: usize| target - self.u[i] * self.xi[i] + predictor.z[i][0] * predictor.xi[i];
+        let corrected = self.direction(newton, cone, bound)?;
         let length = STEP * self.longest(&corrected);
         for i in 0..n {
             self.z[i] += corrected.z[i] * length;
@@ -206,20 +299,33 @@ impl Iterate {
         (length > 1e-10).then_some(())
     }
 
-    /// Q z − e − s + ξ + b c, point by point.
-    fn stationarity(
+    /// Where λ∘(W dz + W⁻¹ ds) is `cone`, u dξ + ξ du is `bound`, and nothing is left of
+    /// Q z − e − s + ξ + b c; `None` when that is not finite.
+    fn direction(
         &self,
-        problem: &Problem,
-        variables: &[Variable],
-        quadratic: &Mat<f64>,
-    ) -> Vec<Vector4<f64>> {
-        let moved = quadratic * gathered(variables, &self.z);
-        let mut residual = scattered(variables, &moved, self.z.len());
-        for (i, point) in problem.points.iter().enumerate() {
-            residual[i] -= self.s[i];
-            residual[i][0] += self.xi[i] - 1.0 + self.bias * point.sign;
-        }
-        residual
+        newton: &mut Newton,
+        cone: impl Fn(usize) -> Vector4<f64>,
+        bound: impl Fn(usize) -> f64,
+    ) -> Option<Direction> {
+        let points = &self.problem.points;
+        let n = points.len();
+        let bounds: Vec<f64> = (0..n).map(bound).collect();
+        let pushed: Vec<Vector4<f64>> = self
+            .scalings
+            .iter()
+            .enumerate()
+            .map(|(i, scaling)| scaling.apply(&quotient(&scaling.lambda, &cone(i))))
+            .collect();
+        let right = |i: usize| {
+            let mut right = pushed[i] - self.moved[i] + self.s[i];
+            right[0] += 1.0 - self.xi[i] - self.bias * points[i].sign - bounds[i] / self.u[i];
+            right
+        };
+        let (z, bias) = newton.solve(right);
+        let s = (0..n).map(|i| pushed[i] - self.scalings[i].apply_squared(&z[i])).collect();
+        let xi = (0..n).map(|i| (bounds[i] + self.xi[i] * z[i][0]) / self.u[i]).collect();
+        let finite = bias.is_finite() && z.iter().all(|z| z.iter().all(|v| v.is_finite()));
+        finite.then_some(Direction { z, s, xi, bias })
     }
 
     /// The longest step, at most 1, that leaves everything in its cone.
@@ -240,41 +346,6 @@ fn head(value: f64) -> Vector4<f64> {
     Vector4::new(value, 0.0, 0.0, 0.0)
 }
 
-/// Adds each point's H, and its bound's ξ/u, to the diagonal blocks.
-fn add_scalings(
-    matrix: &mut Mat<f64>,
-    variables: &[Variable],
-    scalings: &[Scaling],
-    bound: impl Fn(usize) -> f64,
-) {
-    let mut begin = 0;
-    while begin < variables.len() {
-        let point = variables[begin].point;
-        let size = variables[begin..].iter().take_while(|v| v.point == point).count();
-        let h = scalings[point].squared();
-        for row in 0..size {
-            for column in 0..size {
-                let (r, c) = (variables[begin + row].slot(), variables[begin + column].slot());
-                matrix[(begin + row, begin + column)] += h[(r, c)];
-            }
-        }
-        matrix[(begin, begin)] += bound(point);
-        begin += size;
-    }
-}
-
-fn gathered(variables: &[Variable], blocks: &[Vector4<f64>]) -> Mat<f64> {
-    Mat::from_fn(variables.len(), 1, |k, _| blocks[variables[k].point][variables[k].slot()])
-}
-
-fn scattered(variables: &[Variable], column: &Mat<f64>, points: usize) -> Vec<Vector4<f64>> {
-    let mut blocks = vec![Vector4::zeros(); points];
-    for (k, variable) in variables.iter().enumerate() {
-        blocks[variable.point][variable.slot()] = column[(k, 0)];
-    }
-    blocks
-}
-
-fn dot(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
-    (0..a.nrows()).map(|k| a[(k, 0)] * b[(k, 0)]).sum()
+fn tail(vector: &Vector4<f64>) -> Vector3 {
+    Vector3::new(vector[1], vector[2], vector[3])
 }

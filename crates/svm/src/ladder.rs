@@ -48,7 +48,7 @@ pub(crate) fn climb(
     {
         // What is left of the steps, and our own interior point method, but not Clarabel.
         tolerance = (TIGHTER * solution.relative_gap).max(TIGHTEST);
-        let start = reached.state.copied(Numbers::default());
+        let start = reached.state.copied(tools.rows);
         let next = climb_to(tolerance, start, &rungs[..1], settings, tools);
         if next.certificate.relative_gap() >= solution.relative_gap {
             break;
@@ -131,9 +131,7 @@ fn fall_back<'a>(
     let Some(allowed) = work::interior_iterations(problem) else {
         return (None, Status::TooLarge);
     };
-    // Where SMO got stuck its multipliers are of the right size, if nothing more.
-    let typical = so_far.numbers.alpha.iter().sum::<f64>() / problem.len() as f64;
-    let found = interior::solve(problem, relative_gap, typical, allowed, &mut tools.watch);
+    let found = interior::solve(so_far, relative_gap, allowed, tools);
     tools.effort.interior_iterations += found.iterations;
     (found.state, found.status)
 }
@@ -161,9 +159,16 @@ fn ask_clarabel<'a>(
         Err(status) => return (None, status),
     };
     tools.effort.clarabel_iterations += dual.iterations;
-    let mut state = State::from_duals(problem, Numbers::default(), dual.alpha, dual.p);
+    let mut state = State::from_duals(
+        problem,
+        Numbers::default(),
+        dual.alpha.into_iter().zip(dual.p),
+        tools.rows,
+    );
     let certificate = state.certificate();
-    tools.watch.shows_stop(Rung::Clarabel, dual.iterations, &state, &certificate);
+    tools
+        .watch
+        .shows_stop(Rung::Clarabel, dual.iterations, &certificate, || state.largest_violation());
     // Its own tolerance is not that of the gap.
     let reached = certificate.relative_gap() <= relative_gap;
     let end = match (reached, dual.status) {
@@ -207,11 +212,11 @@ fn conclude(reached: &Reached<'_>, settings: &Settings, tools: &Tools<'_, '_>) -
     let effort = Effort { kernel_rows: tools.rows.computed(), ..tools.effort };
     tracing::debug!(?status, ?rung, relative_gap, ?effort, "solved");
     let bias_interval = state.bias_interval(certificate);
-    let directions = || problem.points.iter().zip(&state.numbers.p);
+    let samples = || problem.points.iter().enumerate();
     Solution {
-        alpha: state.numbers.alpha.clone(),
-        v: directions().map(|(point, p)| point.axes * p * point.radius).collect(),
-        displacement: directions().map(|(point, p)| point.displacement(p)).collect(),
+        alpha: samples().map(|(i, _)| state.numbers.alpha.at(i)).collect(),
+        v: samples().map(|(i, point)| point.axes * state.numbers.p(i) * point.radius).collect(),
+        displacement: samples().map(|(i, point)| point.displacement(&state.numbers.p(i))).collect(),
         bias: certificate.bias,
         bias_interval,
         bias_spread: bias_spread(state, bias_interval),

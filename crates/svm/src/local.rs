@@ -30,10 +30,10 @@ impl<'a> Local<'a> {
         Self {
             problem: state.problem,
             index,
-            alpha: state.numbers.alpha[index],
-            p: state.numbers.p[index],
-            f: state.numbers.f[index],
-            gradient: state.numbers.gradient[index],
+            alpha: state.numbers.alpha.at(index),
+            p: state.numbers.p(index),
+            f: state.numbers.field.f.at(index),
+            gradient: state.numbers.field.gradient_at(index),
             change: Change::default(),
         }
     }
@@ -49,7 +49,8 @@ impl<'a> Local<'a> {
 
     fn feel_itself(&mut self, a: f64, s: &Vector3) {
         let x = &self.problem.points[self.index].x;
-        let (df, dg) = self.problem.kernel.influence(x, x, self.problem.kernel.reduced(x, x), a, s);
+        let (df, dg) =
+            self.problem.kernel.influence(x, x, self.problem.kernel.reduced_own(x), a, s);
         self.f += df;
         self.gradient += dg;
         self.change.a += a;
@@ -99,7 +100,7 @@ pub(crate) fn pair_step(first: &mut Local<'_>, second: &mut Local<'_>, k: f64) -
     let of = |from: &Vector3, to: &Vector3, k: f64, a: f64, s: &Vector3| {
         kernel.influence(from, to, k, a, s)
     };
-    let own = |x: &Vector3, a: f64, s: &Vector3| of(x, x, kernel.reduced(x, x), a, s);
+    let own = |x: &Vector3, a: f64, s: &Vector3| of(x, x, kernel.reduced_own(x), a, s);
     let (own_i, own_j) = (own(&pi.x, 1.0, &si), own(&pj.x, -1.0, &sj));
     let (at_i, at_j) = (of(&pj.x, &pi.x, k, -1.0, &sj), of(&pi.x, &pj.x, k, 1.0, &si));
     let (fi, gi) = (own_i.0 + at_i.0, own_i.1 + at_i.1);

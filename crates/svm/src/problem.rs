@@ -4,6 +4,7 @@ use cloudtouch_geom::message::number;
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
 use crate::kernel::Kernel;
+use crate::lanes::Lanes;
 use crate::sample::{Class, Sample};
 
 /// A robust classification problem (eq. 10) that has been checked and prepared.
@@ -13,6 +14,13 @@ pub struct Problem {
     /// Subtracted from every position, so that far-away origins cost no digits.
     pub(crate) centre: Point3,
     pub(crate) points: Vec<PreparedPoint>,
+    /// x, y and z of the points.
+    pub(crate) places: [Lanes; 3],
+    /// T of the points, row by row.
+    pub(crate) factors: [Lanes; 9],
+    /// c and C of the points.
+    pub(crate) signs: Lanes,
+    pub(crate) penalties: Lanes,
     /// Whether any point has cone variables.
     pub(crate) has_uncertain: bool,
 }
@@ -150,7 +158,17 @@ impl Problem {
             .map(|(index, sample)| prepare(index, sample, &centre))
             .collect::<Result<Vec<PreparedPoint>, _>>()?;
         let has_uncertain = points.iter().any(PreparedPoint::is_uncertain);
-        Ok(Self { kernel, centre, points, has_uncertain })
+        let lanes = |of: &dyn Fn(&PreparedPoint) -> f64| Lanes::new(points.iter().map(of));
+        Ok(Self {
+            kernel,
+            centre,
+            places: std::array::from_fn(|axis| lanes(&|p| p.x[axis])),
+            factors: std::array::from_fn(|k| lanes(&|p| p.factor[(k / 3, k % 3)])),
+            signs: lanes(&|p| p.sign),
+            penalties: lanes(&|p| p.penalty),
+            points,
+            has_uncertain,
+        })
     }
 
     /// How many samples there are.

@@ -2,17 +2,20 @@
 
 use std::collections::VecDeque;
 
+use crate::lanes::{Lane, WIDTH};
 use crate::problem::Problem;
 
 /// Rows of the reduced scalar kernel matrix; the oldest row goes when memory is full.
 #[derive(Debug, Default)]
 pub(crate) struct KernelRows {
-    /// Rows one after another, as long as there are samples.
-    values: Vec<f64>,
+    /// Rows one after another, each as many lanes as hold the samples.
+    values: Vec<Lane>,
     /// Which row of `values` a sample has.
     place: Vec<Option<usize>>,
     /// The samples that have a row, oldest first.
     kept: VecDeque<usize>,
+    /// Lanes of a row.
+    lanes: usize,
     computed: usize,
 }
 
@@ -27,6 +30,7 @@ impl KernelRows {
         self.computed = 0;
         self.place.clear();
         self.place.resize(problem.len(), None);
+        self.lanes = problem.len().div_ceil(WIDTH);
     }
 
     /// Makes row `i` available.
@@ -39,16 +43,13 @@ impl KernelRows {
         if self.place[i].is_some() {
             return;
         }
-        let n = problem.len();
-        let place = self.free_place((BUDGET / n).max(2), other);
-        if self.values.len() < (place + 1) * n {
-            self.values.resize((place + 1) * n, 0.0);
+        let place = self.free_place((BUDGET / problem.len()).max(2), other);
+        let range = place * self.lanes..(place + 1) * self.lanes;
+        if self.values.len() < range.end {
+            self.values.resize(range.end, Lane::ZERO);
         }
-        let x = &problem.points[i].x;
-        let row = &mut self.values[place * n..(place + 1) * n];
-        for (value, point) in row.iter_mut().zip(&problem.points) {
-            *value = problem.kernel.reduced(x, &point.x);
-        }
+        let row = &mut self.values[range];
+        problem.kernel.reduced_row(&problem.points[i].x, &problem.places, row);
         self.place[i] = Some(place);
         self.kept.push_back(i);
         self.computed += 1;
@@ -65,9 +66,14 @@ impl KernelRows {
     }
 
     /// Row `i`; empty unless it has been ensured.
-    pub(crate) fn row(&self, i: usize) -> &[f64] {
-        let n = self.place.len();
-        self.place[i].map_or(&[], |place| &self.values[place * n..(place + 1) * n])
+    pub(crate) fn row(&self, i: usize) -> &[Lane] {
+        let lanes = self.lanes;
+        self.place[i].map_or(&[], |place| &self.values[place * lanes..(place + 1) * lanes])
+    }
+
+    /// The reduced kernel of two samples, the row of the first of which has been ensured.
+    pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
+        self.row(i)[j / WIDTH].0[j % WIDTH]
     }
 
     pub(crate) fn computed(&self) -> usize {

@@ -10,7 +10,8 @@ use crate::choose::{choose_pair, most_misaligned};
 use crate::local::{Local, pair_step};
 use crate::rows::KernelRows;
 use crate::solution::Effort;
-use crate::state::{Certificate, State, scaled_norm};
+use crate::spread::Source;
+use crate::state::{Certificate, State};
 use crate::status::{Rung, Status};
 use crate::watch::Watch;
 
@@ -26,8 +27,10 @@ pub(crate) struct Limits {
 /// How often the largest misalignment competes with the best pair: more often than every third
 /// step costs more in scans than it saves in steps, less often takes up to five times the steps.
 const BALL_STEP_EVERY: usize = 3;
-/// Rounds of (ball i, ball j, pair) on the two chosen points before all others are updated.
-const LOCAL_ROUNDS: usize = 2;
+
+/// Steps a sample after which the decay of the gap tells where it leads; fewer give up on problems
+/// that SMO would soon have done.
+const TOLD_AFTER: usize = 4;
 
 /// What a solve is done with.
 pub(crate) struct Tools<'r, 'w> {
@@ -62,22 +65,23 @@ pub(crate) fn improve(
         let running = state.certificate();
         let gap = running.relative_gap();
         history.push((steps, gap));
-        let end = if tools.watch.shows_stop(Rung::Smo, steps, state, &running) {
-            Status::Cancelled
-        } else if !running.is_finite() {
-            Status::NotFinite
-        } else if stuck {
-            Status::Stalled
-        } else if steps >= limits.max_steps {
-            Status::StepLimit
-        } else if gap <= limits.relative_gap {
-            Status::Converged
-        } else if limits.predict && hopeless(&history, limits) {
-            Status::SlowProgress
-        } else {
-            continue;
-        };
-        state.recompute();
+        let end =
+            if tools.watch.shows_stop(Rung::Smo, steps, &running, || state.largest_violation()) {
+                Status::Cancelled
+            } else if !running.is_finite() {
+                Status::NotFinite
+            } else if stuck {
+                Status::Stalled
+            } else if steps >= limits.max_steps {
+                Status::StepLimit
+            } else if gap <= limits.relative_gap {
+                Status::Converged
+            } else if limits.predict && hopeless(&history, limits, n) {
+                Status::SlowProgress
+            } else {
+                continue;
+            };
+        state.recompute(tools.rows);
         let fresh = state.certificate();
         let reached = fresh.relative_gap() <= limits.relative_gap;
         // Rounding in the running sums can hide a gap: then the fresh ones go on.
@@ -89,11 +93,11 @@ pub(crate) fn improve(
     }
 }
 
-/// Whether, after a quarter of the budget, the log-linear decay of the gap over the second half of
-/// the run misses the tolerance at the end of the budget.
-fn hopeless(history: &[(usize, f64)], limits: &Limits) -> bool {
+/// Whether, after a quarter of the budget or [`TOLD_AFTER`] steps a sample, the log-linear decay of the
+/// gap over the second half of the run misses the tolerance at the end of the budget.
+fn hopeless(history: &[(usize, f64)], limits: &Limits, samples: usize) -> bool {
     let Some(&(steps, gap)) = history.last() else { return false };
-    if steps < limits.max_steps / 4 {
+    if steps < (limits.max_steps / 4).min(TOLD_AFTER * samples) {
         return false;
     }
     let Some(&(from, before)) = history.iter().rev().find(|entry| entry.0 <= steps / 2) else {
@@ -112,7 +116,7 @@ fn step(state: &mut State<'_>, tools: &mut Tools<'_, '_>, consider_ball: bool) -
     if consider_ball || pair.is_none() {
         let (turning, gain) = most_misaligned(state);
         // α is what |g| is multiplied by, and |g| is in margins: less is rounding.
-        if gain > pair_gain && gain > 1e-16 * state.numbers.alpha[turning] {
+        if gain > pair_gain && gain > 1e-16 * state.numbers.alpha.at(turning) {
             tools.effort.ball_steps += 1;
             let mut local = Local::new(state, turning);
             local.ball_step();
@@ -125,19 +129,14 @@ fn step(state: &mut State<'_>, tools: &mut Tools<'_, '_>, consider_ball: bool) -
     let Some(pair) = pair else { return false };
     rows.ensure(state.problem, pair.i);
     rows.ensure_beside(state.problem, pair.j, pair.i);
-    let k = rows.row(pair.i)[pair.j];
+    let k = rows.at(pair.i, pair.j);
     let (mut first, mut second) = (Local::new(state, pair.i), Local::new(state, pair.j));
-    let mut moved = false;
-    for _ in 0..LOCAL_ROUNDS {
-        for turn_first in [true, false] {
-            let (turning, other) =
-                if turn_first { (&mut first, &mut second) } else { (&mut second, &mut first) };
-            let s = turning.ball_step();
-            other.feel(turning, k, 0.0, &s);
-            moved |= s != Vector3::zeros();
-        }
-        moved |= pair_step(&mut first, &mut second, k);
-    }
+    let s = first.ball_step();
+    second.feel(&first, k, 0.0, &s);
+    let t = second.ball_step();
+    first.feel(&second, k, 0.0, &t);
+    let turned = s != Vector3::zeros() || t != Vector3::zeros();
+    let moved = pair_step(&mut first, &mut second, k) || turned;
     if moved {
         commit(state, rows, &first, Some(&second));
     }
@@ -145,32 +144,20 @@ fn step(state: &mut State<'_>, tools: &mut Tools<'_, '_>, consider_ball: bool) -
 }
 
 /// Writes one or two moved points back and carries their changes to all points.
-///
-/// Where no point is uncertain nothing asks for gradients before the end, when they are computed
-/// anew.
 fn commit(state: &mut State<'_>, rows: &KernelRows, first: &Local<'_>, second: Option<&Local<'_>>) {
     let problem = state.problem;
     for local in [Some(first), second].into_iter().flatten() {
-        state.numbers.alpha[local.index] = local.alpha;
-        state.numbers.p[local.index] = local.p;
-        if !problem.has_uncertain {
-            for (f, k) in state.numbers.f.iter_mut().zip(rows.row(local.index)) {
-                *f += k * local.change.a;
-            }
-            continue;
-        }
-        let source = &problem.points[local.index].x;
-        let row = rows.row(local.index);
-        for (k, point) in problem.points.iter().enumerate() {
-            let (df, dg) =
-                problem.kernel.influence(source, &point.x, row[k], local.change.a, &local.change.s);
-            state.numbers.f[k] += df;
-            state.numbers.gradient[k] += dg;
-        }
+        state.numbers.put(local.index, local.alpha, &local.p);
     }
-    if problem.has_uncertain {
-        for (k, point) in problem.points.iter().enumerate() {
-            state.numbers.norm[k] = scaled_norm(point, &state.numbers.gradient[k]);
+    let source = |local: &Local<'_>| {
+        let x = problem.points[local.index].x;
+        Source { x, row: rows.row(local.index), a: local.change.a, s: local.change.s }
+    };
+    let field = &mut state.numbers.field;
+    match second {
+        None => field.add(problem, &[source(first)], problem.has_uncertain),
+        Some(second) => {
+            field.add(problem, &[source(first), source(second)], problem.has_uncertain);
         }
     }
 }

@@ -97,7 +97,7 @@ impl Solver {
         self.rows.reset(problem);
         let numbers = std::mem::take(&mut self.numbers);
         let state = match start.filter(|start| fits(start, problem)) {
-            Some(start) => warm(problem, numbers, start),
+            Some(start) => warm(problem, numbers, start, &mut self.rows),
             None => State::cold(problem, numbers),
         };
         let mut tools = Tools { rows: &mut self.rows, watch, effort: Effort::default() };
@@ -112,11 +112,16 @@ fn fits(start: &Solution, problem: &Problem) -> bool {
     start.alpha.len() == problem.len() && start.v.len() == problem.len() && finite
 }
 
-fn warm<'a>(problem: &'a Problem, numbers: Numbers, start: &Solution) -> State<'a> {
+fn warm<'a>(
+    problem: &'a Problem,
+    numbers: Numbers,
+    start: &Solution,
+    rows: &mut KernelRows,
+) -> State<'a> {
     let p = problem.points.iter().zip(&start.v).map(|(point, v)| {
         if point.is_uncertain() { point.axes.tr_mul(v) / point.radius } else { Vector3::zeros() }
     });
-    State::from_duals(problem, numbers, start.alpha.iter().copied(), p)
+    State::from_duals(problem, numbers, start.alpha.iter().copied().zip(p), rows)
 }
 
 impl Problem {

@@ -4,7 +4,10 @@ use cloudtouch_geom::Vector3;
 
 use crate::ball::clip_to_ball;
 use crate::bias::Slack;
+use crate::lanes::Lanes;
 use crate::problem::{PreparedPoint, Problem};
+use crate::rows::KernelRows;
+use crate::spread::{Field, Source};
 
 /// Dual variables and, kept in step with them, f₀ and its gradient at every sample.
 #[derive(Debug)]
@@ -16,16 +19,29 @@ pub(crate) struct State<'a> {
 /// The numbers of a [`State`], one entry a sample; kept from solve to solve for their memory.
 #[derive(Debug, Default)]
 pub(crate) struct Numbers {
-    pub(crate) alpha: Vec<f64>,
+    pub(crate) alpha: Lanes,
     /// Dual vectors in the eigenbasis of each covariance, |p| ≤ α.
-    pub(crate) p: Vec<Vector3>,
-    /// f₀ = f − b at the samples.
-    pub(crate) f: Vec<f64>,
-    /// ∇f₀ at the samples, world axes.
-    pub(crate) gradient: Vec<Vector3>,
-    /// |T∇f₀| at the samples.
-    pub(crate) norm: Vec<f64>,
+    p: [Lanes; 3],
+    pub(crate) field: Field,
     slack: Slack,
+}
+
+impl Numbers {
+    pub(crate) fn p(&self, i: usize) -> Vector3 {
+        Vector3::from_fn(|axis, _| self.p[axis].at(i))
+    }
+
+    pub(crate) fn p_lanes(&self) -> &[Lanes; 3] {
+        &self.p
+    }
+
+    /// Moves the dual variables of a sample; what they induce stays.
+    pub(crate) fn put(&mut self, i: usize, alpha: f64, p: &Vector3) {
+        self.alpha.put(i, alpha);
+        for axis in 0..3 {
+            self.p[axis].put(i, p[axis]);
+        }
+    }
 }
 
 /// A dual point's certificate of how far it can be from the optimum.
@@ -56,14 +72,9 @@ impl<'a> State<'a> {
     /// The dual point 0, in the memory of `numbers`.
     pub(crate) fn cold(problem: &'a Problem, mut numbers: Numbers) -> Self {
         let n = problem.len();
-        for scalars in [&mut numbers.alpha, &mut numbers.f, &mut numbers.norm] {
-            scalars.clear();
-            scalars.resize(n, 0.0);
-        }
-        for vectors in [&mut numbers.p, &mut numbers.gradient] {
-            vectors.clear();
-            vectors.resize(n, Vector3::zeros());
-        }
+        numbers.alpha.reset(n);
+        numbers.p.iter_mut().for_each(|lanes| lanes.reset(n));
+        numbers.field.reset(n);
         Self { problem, numbers }
     }
 
@@ -72,112 +83,72 @@ impl<'a> State<'a> {
     pub(crate) fn from_duals(
         problem: &'a Problem,
         numbers: Numbers,
-        alpha: impl IntoIterator<Item = f64>,
-        p: impl IntoIterator<Item = Vector3>,
+        duals: impl IntoIterator<Item = (f64, Vector3)>,
+        rows: &mut KernelRows,
     ) -> Self {
         let mut state = Self::cold(problem, numbers);
         let numbers = &mut state.numbers;
         let mut totals = [0.0; 2];
-        for (i, (alpha, p)) in alpha.into_iter().zip(p).enumerate().take(problem.len()) {
+        for (i, (alpha, p)) in duals.into_iter().enumerate().take(problem.len()) {
             let point = &problem.points[i];
-            let value = if alpha.is_finite() { alpha.clamp(0.0, point.penalty) } else { 0.0 };
-            numbers.alpha[i] = value;
-            totals[usize::from(point.sign < 0.0)] += value;
-            if point.is_uncertain() && p.iter().all(|v| v.is_finite()) {
-                numbers.p[i] = p.zip_map(&point.t, |p, t| if t > 0.0 { p } else { 0.0 });
-            }
+            let alpha = if alpha.is_finite() { alpha.clamp(0.0, point.penalty) } else { 0.0 };
+            totals[usize::from(point.sign < 0.0)] += alpha;
+            let has_cone = point.is_uncertain() && p.iter().all(|v| v.is_finite());
+            let p = p.zip_map(&point.t, |p, t| if has_cone && t > 0.0 { p } else { 0.0 });
+            numbers.put(i, alpha, &p);
         }
         let lighter = totals[0].min(totals[1]);
         let shrink = totals.map(|total| if total > lighter { lighter / total } else { 1.0 });
         for (i, point) in problem.points.iter().enumerate() {
             let factor = shrink[usize::from(point.sign < 0.0)];
-            numbers.alpha[i] *= factor;
-            numbers.p[i] = clip_to_ball(&(numbers.p[i] * factor), numbers.alpha[i]);
+            let alpha = numbers.alpha.at(i) * factor;
+            let p = clip_to_ball(&(numbers.p(i) * factor), alpha);
+            numbers.put(i, alpha, &p);
         }
-        state.recompute();
+        state.recompute(rows);
         state
     }
 
-    /// A copy of the dual point, in the memory of `numbers`.
-    pub(crate) fn copied(&self, numbers: Numbers) -> Self {
-        let (alpha, p) = (&self.numbers.alpha, &self.numbers.p);
-        Self::from_duals(self.problem, numbers, alpha.iter().copied(), p.iter().copied())
+    /// A copy of the dual point.
+    pub(crate) fn copied(&self, rows: &mut KernelRows) -> Self {
+        let n = self.problem.len();
+        let duals = (0..n).map(|i| (self.numbers.alpha.at(i), self.numbers.p(i)));
+        Self::from_duals(self.problem, Numbers::default(), duals, rows)
     }
 
     /// Computes f₀ and its gradient from the dual variables alone.
-    pub(crate) fn recompute(&mut self) {
-        let kernel = self.problem.kernel;
-        let points = &self.problem.points;
-        let numbers = &mut self.numbers;
-        numbers.f.fill(0.0);
-        numbers.gradient.fill(Vector3::zeros());
-        for (source, (&alpha, p)) in points.iter().zip(numbers.alpha.iter().zip(&numbers.p)) {
+    pub(crate) fn recompute(&mut self, rows: &mut KernelRows) {
+        let problem = self.problem;
+        self.numbers.field.reset(problem.len());
+        for (i, point) in problem.points.iter().enumerate() {
+            let alpha = self.numbers.alpha.at(i);
             if alpha == 0.0 {
                 continue;
             }
-            let (a, s) = (source.sign * alpha, source.displacement(p));
-            for (k, target) in points.iter().enumerate() {
-                let reduced = kernel.reduced(&source.x, &target.x);
-                let (df, dg) = kernel.influence(&source.x, &target.x, reduced, a, &s);
-                numbers.f[k] += df;
-                numbers.gradient[k] += dg;
-            }
-        }
-        for (k, point) in points.iter().enumerate() {
-            numbers.norm[k] = scaled_norm(point, &numbers.gradient[k]);
+            rows.ensure(problem, i);
+            let (a, s) = (point.sign * alpha, point.displacement(&self.numbers.p(i)));
+            let source = Source { x: point.x, row: rows.row(i), a, s };
+            self.numbers.field.add(problem, &[source], true);
         }
     }
 
     /// y = 1 − c f₀ + |T∇f₀|: how far the worst point of the ellipsoid is inside the margin, b aside.
     #[inline]
     pub(crate) fn violation(&self, i: usize) -> f64 {
-        1.0 - self.problem.points[i].sign * self.numbers.f[i] + self.numbers.norm[i]
-    }
-
-    /// α|g| + p·g ≥ 0: what turning p against the gradient could gain at most.
-    #[inline]
-    pub(crate) fn misalignment(&self, i: usize) -> f64 {
-        let turned = self.turned(i);
-        (self.numbers.alpha[i] * self.numbers.norm[i] + turned).max(0.0)
-    }
-
-    fn turned(&self, i: usize) -> f64 {
-        let point = &self.problem.points[i];
-        point.displacement(&self.numbers.p[i]).dot(&self.numbers.gradient[i])
+        let field = &self.numbers.field;
+        1.0 - self.problem.points[i].sign * field.f.at(i) + field.norm.at(i)
     }
 
     /// Objective values and gap, from the f₀ and gradients at hand.
-    ///
-    /// gap = Σ (C−α)(y−cb)₊ + α(y−cb)₋ + (α|g| + p·g), with b the minimiser of Σ C(y−cb)₊.
     pub(crate) fn certificate(&mut self) -> Certificate {
+        let Numbers { alpha, p, field, slack } = &mut self.numbers;
         let points = &self.problem.points;
-        let mut slack = std::mem::take(&mut self.numbers.slack);
-        slack
-            .set((0..points.len()).map(|i| (points[i].sign, self.violation(i), points[i].penalty)));
-        let bias = slack.minimiser();
-        self.numbers.slack = slack;
-        let mut sum = 0.0;
-        let mut squared_norm = 0.0;
-        let mut slack = 0.0;
-        let mut gap = 0.0;
-        for (i, point) in points.iter().enumerate() {
-            let alpha = self.numbers.alpha[i];
-            let excess = self.violation(i) - point.sign * bias;
-            let above = excess.max(0.0);
-            sum += alpha;
-            squared_norm += point.sign * alpha * self.numbers.f[i] + self.turned(i);
-            slack += point.penalty * above;
-            gap += (point.penalty - alpha) * above + alpha * (above - excess);
-            gap += self.misalignment(i);
-        }
-        let squared_norm = squared_norm.max(0.0);
-        Certificate {
-            bias,
-            primal: 0.5 * squared_norm + slack,
-            dual: sum - 0.5 * squared_norm,
-            squared_norm,
-            gap,
-        }
+        certify(points, slack, |i| Margin {
+            alpha: alpha.at(i),
+            value: points[i].sign * field.f.at(i),
+            norm: field.norm.at(i),
+            turned: (0..3).map(|axis| p[axis].at(i) * field.scaled[axis].at(i)).sum(),
+        })
     }
 
     /// The biases that the gap of the last certificate, handed in, cannot tell apart.
@@ -185,23 +156,68 @@ impl<'a> State<'a> {
         self.numbers.slack.within(certificate.gap, certificate.bias)
     }
 
-    /// By how much the optimality conditions are missed: by the values that b must have for the
-    /// points that may rise and those that may fall.
+    /// By how much the optimality conditions are missed.
     pub(crate) fn largest_violation(&self) -> f64 {
-        let mut highest = f64::NEG_INFINITY;
-        let mut lowest = f64::INFINITY;
-        for (i, point) in self.problem.points.iter().enumerate() {
-            let value = point.sign * self.violation(i);
-            let [may_rise, may_fall] = point.may_move(self.numbers.alpha[i]);
-            highest = if may_rise { highest.max(value) } else { highest };
-            lowest = if may_fall { lowest.min(value) } else { lowest };
-        }
-        (highest - lowest).max(0.0)
+        let at = |i: usize| (self.numbers.alpha.at(i), self.violation(i));
+        largest_violation(&self.problem.points, at)
     }
 }
 
-/// |T g|.
-#[inline]
-pub(crate) fn scaled_norm(point: &PreparedPoint, gradient: &Vector3) -> f64 {
-    if point.is_uncertain() { (point.factor * gradient).norm() } else { 0.0 }
+/// What a sample adds to a certificate.
+pub(crate) struct Margin {
+    pub(crate) alpha: f64,
+    /// c f₀.
+    pub(crate) value: f64,
+    /// |T∇f₀|.
+    pub(crate) norm: f64,
+    /// p·T∇f₀.
+    pub(crate) turned: f64,
+}
+
+/// Objective values and gap of a dual point with these margins.
+///
+/// gap = Σ (C−α)(y−cb)₊ + α(y−cb)₋ + (α|g| + p·g), with b the minimiser of Σ C(y−cb)₊.
+pub(crate) fn certify(
+    points: &[PreparedPoint],
+    slack: &mut Slack,
+    at: impl Fn(usize) -> Margin,
+) -> Certificate {
+    let violation = |margin: &Margin| 1.0 - margin.value + margin.norm;
+    let terms = points.iter().enumerate();
+    slack.set(terms.map(|(i, point)| (point.sign, violation(&at(i)), point.penalty)));
+    let bias = slack.minimiser();
+    let (mut sum, mut squared_norm, mut loss, mut gap) = (0.0, 0.0, 0.0, 0.0);
+    for (i, point) in points.iter().enumerate() {
+        let margin = at(i);
+        let excess = violation(&margin) - point.sign * bias;
+        let above = excess.max(0.0);
+        sum += margin.alpha;
+        squared_norm += margin.alpha * margin.value + margin.turned;
+        loss += point.penalty * above;
+        gap += (point.penalty - margin.alpha) * above + margin.alpha * (above - excess);
+        gap += (margin.alpha * margin.norm + margin.turned).max(0.0);
+    }
+    let squared_norm = squared_norm.max(0.0);
+    Certificate {
+        bias,
+        primal: 0.5 * squared_norm + loss,
+        dual: sum - 0.5 * squared_norm,
+        squared_norm,
+        gap,
+    }
+}
+
+/// By how much the optimality conditions are missed, given α and y of each sample: by the values that
+/// b must have for the points that may rise and those that may fall.
+pub(crate) fn largest_violation(points: &[PreparedPoint], at: impl Fn(usize) -> (f64, f64)) -> f64 {
+    let mut highest = f64::NEG_INFINITY;
+    let mut lowest = f64::INFINITY;
+    for (i, point) in points.iter().enumerate() {
+        let (alpha, violation) = at(i);
+        let value = point.sign * violation;
+        let [may_rise, may_fall] = point.may_move(alpha);
+        highest = if may_rise { highest.max(value) } else { highest };
+        lowest = if may_fall { lowest.min(value) } else { lowest };
+    }
+    (highest - lowest).max(0.0)
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::state::{Certificate, State};
+use crate::state::Certificate;
 use crate::status::Rung;
 
 /// One entry of the iteration log.
@@ -52,8 +52,8 @@ impl<'w> Watch<'w> {
         &mut self,
         rung: Rung,
         iteration: usize,
-        state: &State<'_>,
         certificate: &Certificate,
+        violation: impl FnOnce() -> f64,
     ) -> bool {
         let relative_gap = certificate.relative_gap();
         tracing::trace!(?rung, iteration, certificate.primal, certificate.dual, relative_gap);
@@ -64,7 +64,7 @@ impl<'w> Watch<'w> {
                 primal: certificate.primal,
                 dual: certificate.dual,
                 relative_gap,
-                violation: state.largest_violation(),
+                violation: violation(),
             };
             self.cancelled = look(&progress).is_break();
         }

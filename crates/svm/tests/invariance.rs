@@ -52,6 +52,18 @@ fn mapped(samples: &[Sample], map: impl Fn(&UncertainPoint) -> UncertainPoint) -
     samples.iter().map(|s| Sample { point: map(&s.point), ..*s }).collect()
 }
 
+#[test]
+fn duplicates_at_a_tiny_gap_stalled() {
+    // Rounding made the matrix of the interior point method indefinite near the boundary of a cone.
+    for seed in 0..200_u64 {
+        let (samples, gamma) = leaf(seed);
+        let doubled: Vec<Sample> =
+            samples.iter().flat_map(|s| [Sample { penalty: 0.5 * s.penalty, ..*s }; 2]).collect();
+        let (_, solution) = solve(&doubled, kernel(gamma, seed));
+        assert!(solution.relative_gap <= 1e-8, "{seed}: {:?}", solution.status);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 

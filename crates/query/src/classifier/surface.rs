@@ -36,12 +36,17 @@ impl Surface {
 
     /// Moves a point onto the surface along the gradient; `None` when that does not succeed within
     /// `reach` metres (a flat spot of f, or f = 0 is far away).
+    ///
+    /// A step that does not bring f as near to 0 as half of what the gradient promises is halved:
+    /// a whole one over a bend of f may end anywhere, and where hangs on the last digits of f.
     pub(crate) fn project(&self, point: &Point3, reach: f64) -> Option<(Point3, Vector3)> {
         /// Newton steps: one does for a plane, curved surfaces need a few more.
-        const STEPS: usize = 8;
+        const STEPS: usize = 16;
+        /// The least share of a step.
+        const SHORTEST: f64 = 1.0 / 16.0;
         let mut foot = *point;
+        let (mut value, mut gradient) = self.value_and_gradient(&foot);
         for _ in 0..STEPS {
-            let (value, gradient) = self.value_and_gradient(&foot);
             let slope = gradient.norm();
             let distance = value / slope;
             if !distance.is_finite() {
@@ -50,7 +55,20 @@ impl Surface {
             if distance.abs() <= 1e-3 * reach {
                 return Some((foot, -gradient / slope));
             }
-            foot -= gradient * (distance / slope);
+            let step = gradient * (distance / slope);
+            let mut share = 1.0;
+            loop {
+                let next = foot - step * share;
+                let there = self.value_and_gradient(&next);
+                if there.0.abs() <= (1.0 - 0.5 * share) * value.abs() {
+                    (foot, value, gradient) = (next, there.0, there.1);
+                    break;
+                }
+                share *= 0.5;
+                if share < SHORTEST {
+                    return None;
+                }
+            }
             if (foot - point).norm() > reach {
                 return None;
             }

@@ -45,8 +45,8 @@ const TIE: f64 = 1e-3;
 /// A contact is not farther from the samples it stands for than this many spacings and their noise.
 const KNOWN_SPACINGS: f64 = 2.0;
 
-/// Where the equally probable points project to on the surface, and the normal there: their middle,
-/// or the one of them next to it that can.
+/// Where the equally probable points project to on the surface, and the normal there: their middle
+/// or, where it does not, the one of them whose foot is next to it.
 ///
 /// Where the surface is near none, the middle itself is the contact, and the normal is the
 /// direction from one leaf to the other.
@@ -64,13 +64,15 @@ fn foot_of_the_tied(
     // The surface is known near the samples; where it bulges away from them it means nothing.
     let known = |p: &PairPoint| KNOWN_SPACINGS * p.spacing + 3.0 * p.point.covariance.std_bound();
     let nearby = tied.iter().map(known).fold(0.0, f64::max).min(reach);
-    // In deep overlap points all around may be equally certain, and their middle far from the surface.
-    let mut starts: Vec<Point3> = tied.iter().map(|p| p.point.mean).collect();
-    starts.sort_by(|p, q| (p - middle).norm().total_cmp(&(q - middle).norm()));
-    starts.insert(0, middle);
-    starts.iter().find_map(|start| surface.project(start, nearby)).unwrap_or_else(|| {
-        let across = centroid(&points.b) - centroid(&points.a);
-        (middle, across.try_normalize(0.0).unwrap_or_else(Vector3::z))
+    surface.project(&middle, nearby).unwrap_or_else(|| {
+        // In deep overlap points all around may be equally certain, and their middle far from the
+        // surface. The feet are compared, not the points: two points are as far from their middle.
+        let feet = tied.iter().filter_map(|p| surface.project(&p.point.mean, nearby));
+        let away = |(foot, _): &(Point3, Vector3)| (foot - middle).norm();
+        feet.min_by(|p, q| away(p).total_cmp(&away(q))).unwrap_or_else(|| {
+            let across = centroid(&points.b) - centroid(&points.a);
+            (middle, across.try_normalize(0.0).unwrap_or_else(Vector3::z))
+        })
     })
 }
 
