@@ -6,8 +6,8 @@ use cloudtouch::noise::SensorModel;
 use cloudtouch::paper::{LeafClassifier, RadiusRule};
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, FilterSettings, Mesh, PaperBodyRef, PaperCloud,
-    PaperCloudSettings, PaperPoseDistribution, Placement, PoseDistribution, PrepareError, Query,
-    QueryError, Report, StageReport, UnderPoses,
+    PaperCloudSettings, PaperQuery, Placement, PoseDistribution, PrepareError, Query, QueryError,
+    Report, StageReport, UnderPoses,
 };
 
 use crate::margin::{Nearness, SHARE};
