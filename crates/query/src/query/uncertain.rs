@@ -1,7 +1,7 @@
 //! A collision where the pose itself is known only so well.
 
 use cloudtouch_geom::{Pose, Vector3, normal};
-use nalgebra::{Matrix6, SymmetricEigen, UnitQuaternion, Vector6};
+use nalgebra::{DMatrix, Matrix6, Matrix6xX, SymmetricEigen, UnitQuaternion, Vector6};
 use serde::Serialize;
 
 use crate::body::BodyRef;
@@ -76,16 +76,24 @@ impl PoseDistribution {
         if axes.is_empty() {
             return Ok(Vec::new());
         }
-        let ratio = golden_ratio(axes.len());
-        let motion = |number: usize| -> Vector6<f64> {
-            let along = |k: usize| {
-                let part = ratio.powi(-(k as i32 + 1));
-                normal::quantile((0.5 + part * (number + 1) as f64).fract().clamp(1e-9, 1.0 - 1e-9))
-            };
-            axes.iter().enumerate().map(|(k, axis)| axis * along(k)).sum()
-        };
-        Ok((0..PAIRS).map(motion).flat_map(|motion| [motion, -motion]).collect())
+        let axes = Matrix6xX::from_columns(&axes);
+        let motions = &axes * spread(axes.ncols());
+        Ok(motions.column_iter().flat_map(|m| [m.into_owned(), -m.into_owned()]).collect())
     }
+}
+
+/// Columns that stand for a standard normal distribution of so many dimensions: with their opposites
+/// they have its mean and covariance.
+fn spread(dimensions: usize) -> DMatrix<f64> {
+    let ratio = golden_ratio(dimensions);
+    let even = DMatrix::from_fn(dimensions, PAIRS, |k, number| {
+        let part = ratio.powi(-(k as i32 + 1));
+        normal::quantile((0.5 + part * (number + 1) as f64).fract().clamp(1e-9, 1.0 - 1e-9))
+    });
+    let covariance = &even * even.transpose() / PAIRS as f64;
+    // Far more columns than dimensions: it is positive definite, and nearly the identity.
+    let Some(factor) = covariance.cholesky() else { return even };
+    factor.l().solve_lower_triangular(&even).unwrap_or(even)
 }
 
 /// The root above one of x^(d+1) = x + 1.
@@ -186,7 +194,7 @@ mod tests {
         let found: Matrix6<f64> =
             motions.iter().map(|m| m * m.transpose()).sum::<Matrix6<f64>>() / motions.len() as f64;
         let wanted = Matrix6::from_fn(|i, j| covariance[i][j]);
-        assert!((found - wanted).amax() < 1e-5, "{found}");
+        assert!((found - wanted).amax() < 1e-15, "{found}");
     }
 
     #[test]
