@@ -3,8 +3,6 @@
 use cloudtouch::Within;
 use serde_json::{Value, json};
 
-use crate::print::probability;
-
 /// The share of the interval that is told of a clearance: what it is below and above is as likely.
 pub(crate) const SHARE: f64 = 0.9;
 
@@ -30,18 +28,5 @@ impl Nearness {
         clearance["q05"] = json!(q05);
         clearance["q95"] = json!(q95);
         answer["margin"] = json!(self.within);
-    }
-
-    /// A line for people.
-    pub(crate) fn text(&self) -> String {
-        let Within { margin_m, bounds, .. } = self.within;
-        let [low, high] = bounds.map(probability);
-        let [q05, q95] = self.interval.map(|m| 1e3 * m);
-        let label = format!("P(nearer than {:.0} mm)", 1e3 * margin_m);
-        let of = probability(self.within.probability);
-        format!(
-            "{label:<22} {of}   (within {low} .. {high}); {:.0} % between {q05:.1} and {q95:.1} mm",
-            100.0 * SHARE
-        )
     }
 }

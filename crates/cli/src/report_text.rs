@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use cloudtouch::{Placement, Report, Stats, UnderPoses, Unseen};
+use cloudtouch::{Placement, Report, Stats, UnderPoses, Unseen, Within};
 
+use crate::margin::{Nearness, SHARE};
 use crate::print::{probability, undecided};
 
 /// A report for people shows this many contacts; JSON has them all.
@@ -21,6 +22,19 @@ pub(crate) fn text(report: &Report, placement: &Placement, shows_work: bool) -> 
     }
     text.truncate(text.trim_end().len());
     text
+}
+
+/// A line about a margin, and between what distances the bodies lie.
+pub(crate) fn nearness(nearness: &Nearness) -> String {
+    let Within { margin_m, bounds, probability: likely, .. } = nearness.within;
+    let [low, high] = bounds.map(probability);
+    let [q05, q95] = nearness.interval.map(|m| 1e3 * m);
+    let label = format!("P(nearer than {:.0} mm)", 1e3 * margin_m);
+    let likely = probability(likely);
+    let share = 100.0 * SHARE;
+    format!(
+        "{label:<22} {likely}   (within {low} .. {high}); {share:.0} % between {q05:.1} and {q95:.1} mm"
+    )
 }
 
 /// A line about all poses that may be.

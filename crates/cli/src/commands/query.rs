@@ -100,7 +100,7 @@ fn run_by<P: body::Path>(
             print::body("object", &object),
             report_text::text(&report, &placement, shows_work),
         ];
-        parts.extend(nearness.map(|nearness| nearness.text()));
+        parts.extend(nearness.as_ref().map(report_text::nearness));
         parts.extend(pose_uncertainty.as_ref().map(report_text::over_poses));
         if !arguments.pose.is_given() {
             parts.push("pose                   not given: the identity".to_owned());
