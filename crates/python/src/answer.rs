@@ -35,6 +35,11 @@ pub(crate) fn cause(cause: Undecided) -> &'static str {
     }
 }
 
+/// How long a query took, s: a report has whole microseconds.
+pub(crate) fn seconds(report: &Report) -> f64 {
+    1e-6 * report.stats.query_us as f64
+}
+
 /// The fields of a report, by their names in Python.
 pub(crate) fn report<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'py, PyDict>> {
     let fields = PyDict::new(py);
@@ -55,14 +60,17 @@ pub(crate) fn report<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'p
     fields.set_item(intern!(py, "evidence"), evidence)?;
     let warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
     fields.set_item(intern!(py, "warnings"), warnings)?;
-    fields.set_item(intern!(py, "seconds"), 1e-6 * report.stats.query_us as f64)?;
+    fields.set_item(intern!(py, "seconds"), seconds(report))?;
     if !report.contacts.is_empty() {
         let contacts = &report.contacts;
-        let points = table(contacts.iter().map(|c| c.point.coords)).into_pyarray(py);
-        let normals = table(contacts.iter().map(|c| c.normal_a_to_b)).into_pyarray(py);
-        let numbers: Vec<_> =
-            contacts.iter().map(|c| (c.probability, c.clearance_m, c.area_m2)).collect();
-        fields.set_item(intern!(py, "contacts"), (points, normals, numbers))?;
+        let points = table(contacts.iter().map(|c| c.point.coords));
+        let normals = table(contacts.iter().map(|c| c.normal_a_to_b));
+        let area = |area: Option<f64>| area.unwrap_or(f64::NAN);
+        let numbers =
+            contacts.iter().map(|c| [c.probability, c.clearance_m, area(c.area_m2)].into());
+        let numbers = table(numbers).into_pyarray(py);
+        let arrays = (points.into_pyarray(py), normals.into_pyarray(py), numbers);
+        fields.set_item(intern!(py, "_contacts"), arrays)?;
     }
     for (name, points) in [
         (intern!(py, "points_a"), &report.point_probabilities.a),

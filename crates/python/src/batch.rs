@@ -6,7 +6,7 @@ use numpy::{IntoPyArray, PyFixedUnicode};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::answer::{cause, verdict};
+use crate::answer::{cause, seconds, verdict};
 use crate::body::table;
 
 /// Letters of the longest name: "in_collision".
@@ -29,6 +29,7 @@ pub(crate) struct Columns {
     contact_normal: Vec<Vector3>,
     contact_count: Vec<i64>,
     warning_count: Vec<i64>,
+    seconds: Vec<f64>,
 }
 
 impl Columns {
@@ -52,6 +53,7 @@ impl Columns {
         self.contact_normal.push(contact.map_or(nowhere, |c| c.normal_a_to_b));
         self.contact_count.push(report.contacts.len() as i64);
         self.warning_count.push(report.warnings.len() as i64);
+        self.seconds.push(seconds(report));
     }
 
     /// By their names in Python.
@@ -73,6 +75,7 @@ impl Columns {
         columns.set_item("contact_normal", normals.into_pyarray(py))?;
         columns.set_item("contact_count", self.contact_count.into_pyarray(py))?;
         columns.set_item("warning_count", self.warning_count.into_pyarray(py))?;
+        columns.set_item("seconds", self.seconds.into_pyarray(py))?;
         Ok(columns)
     }
 }

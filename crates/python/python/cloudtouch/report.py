@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, Literal, NamedTuple, Optional
 
 import numpy as np
@@ -79,14 +80,24 @@ class Report:
     evidence: Optional[Evidence]
     #: Signs of a slip (a unit, a pose, a sensor that is hardly meant), each a sentence with a remedy.
     warnings: tuple[str, ...]
-    #: Where the surfaces touch or may touch, most probable first.
-    contacts: tuple[Contact, ...]
     #: Points of A with a probability of their own; empty for a mesh.
     points_a: PointProbabilities
     #: Points of B with a probability of their own; empty for a mesh.
     points_b: PointProbabilities
-    #: How long the query took, s.
+    #: How long the query took, s, in whole microseconds.
     seconds: float
+    #: Points, normals, and probability, clearance and area of the contacts, a row each.
+    _contacts: Optional[tuple[Floats, Floats, Floats]] = None
+
+    @cached_property
+    def contacts(self) -> tuple[Contact, ...]:
+        """Where the surfaces touch or may touch, most probable first."""
+        if self._contacts is None:
+            return ()
+        points, normals, numbers = self._contacts
+        rows = zip(points, normals, numbers.tolist())
+        # A number that is not one is not equal to itself.
+        return tuple(Contact(p, n, at, gap, area if area == area else None) for p, n, (at, gap, area) in rows)
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -98,12 +109,13 @@ class Report:
         evidence = told["evidence"]
         told["evidence"] = None if evidence is None else Evidence(*evidence)
         told["warnings"] = tuple(told["warnings"])
-        points, normals, numbers = told.get("contacts", ((), (), ()))
-        told["contacts"] = tuple(Contact(p, n, *rest) for p, n, rest in zip(points, normals, numbers))
         for side in ("points_a", "points_b"):
             found = told.get(side)
             told[side] = _no_points() if found is None else PointProbabilities(*found)
-        return cls(**told)
+        # Not by the constructor: a frozen class sets its fields one by one, which takes longer than the rest.
+        report = cls.__new__(cls)
+        report.__dict__.update(told)
+        return report
 
     def __repr__(self) -> str:
         words = [self.verdict + (f" ({self.undecided_by})" if self.undecided_by else "")]
@@ -112,7 +124,8 @@ class Report:
             sign = "<= " if self.clearance_is_bound else ""
             gap, std = 1e3 * self.clearance, 1e3 * self.clearance_std
             words.append(f"clearance {sign}{gap:+.1f} +- {std:.1f} mm")
-        words.append(f"{len(self.contacts)} contact{'' if len(self.contacts) == 1 else 's'}")
+        count = len(self.contacts)
+        words.append(f"{count} contact{'' if count == 1 else 's'}")
         words.extend(f"warning: {warning}" for warning in self.warnings)
         return f"<Report: {', '.join(words)}>"
 
@@ -170,6 +183,8 @@ class Batch:
     contact_count: npt.NDArray[np.int64]
     #: (M,): how many warnings there are; :meth:`Query.run` says which.
     warning_count: npt.NDArray[np.int64]
+    #: (M,): how long each query took on its thread, s.
+    seconds: Floats
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         """Every column by its name, for a table."""
