@@ -68,7 +68,7 @@ JOB = {}
 
 def prepare():
     a, b = bodies()
-    JOB.update(query=ct.Query(), a=a, b=b, poses=poses(300, -0.01, 0.03))
+    JOB.update(query=ct.Query(), a=a, b=b, poses=poses(60, -0.01, 0.03))
     work(0)
 
 
@@ -77,7 +77,7 @@ def work(_):
         JOB["query"].run(JOB["a"], JOB["b"], pose)
 
 
-def gains(rounds=12):
+def gains(rounds=80):
     """The best of several rounds each, in turns: others who use the machine only ever add."""
     prepare()
     spawn = multiprocessing.get_context("spawn")
@@ -87,7 +87,7 @@ def gains(rounds=12):
         for _ in range(rounds + 1):
             for way, workers in ways.items():
                 start = time.perf_counter()
-                list(workers.map(work, range(4)))
+                list(workers.map(work, range(2)))
                 best[way] = min(best[way], time.perf_counter() - start)
     for way in ("two threads", "two processes"):
         print(f"{way}: {best['one'] / best[way]:.2f} x one thread")

@@ -31,7 +31,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
         let scripts = if cfg!(windows) { "Scripts" } else { "bin" };
         let mut command =
             Command::new(environment.join(scripts).join(format!("python{EXE_SUFFIX}")));
-        // The profile that the other steps have built: half of the time of a release build.
+        // The profile of the other steps: what they have built with the same features is there.
         command.current_dir(&folder).env("MATURIN_PEP517_ARGS", "--profile dev");
         command
     };
