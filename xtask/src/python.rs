@@ -1,7 +1,7 @@
 //! `cargo xtask python`: builds the Python package as `pip` does, checks its types and runs its tests.
 
 use std::env::consts::EXE_SUFFIX;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
@@ -20,23 +20,34 @@ pub(crate) fn run(root: &Path) -> Result<()> {
         println!("python: skipped: {reason}");
         return Ok(());
     }
-    let target =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    // Absolute: what is started below runs in another folder.
+    let target = root.join(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
     let folder = root.join("crates/python");
     let environment = target.join("python/venv");
     if !environment.exists() {
         succeed(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
     }
+    let scripts = environment.join(if cfg!(windows) { "Scripts" } else { "bin" });
+    // As an activated environment has it: pip looks for maturin there.
+    let known = std::env::var_os("PATH").unwrap_or_default();
+    let path =
+        std::env::join_paths([scripts.clone()].into_iter().chain(std::env::split_paths(&known)))
+            .context("put the environment into PATH")?;
     let python = || {
-        let scripts = if cfg!(windows) { "Scripts" } else { "bin" };
-        let mut command =
-            Command::new(environment.join(scripts).join(format!("python{EXE_SUFFIX}")));
+        let mut command = Command::new(scripts.join(format!("python{EXE_SUFFIX}")));
+        command.env("PATH", &path);
         // The profile of the other steps: what they have built with the same features is there.
-        command.current_dir(&folder).env("MATURIN_PEP517_ARGS", "--profile dev");
+        command.current_dir(&folder).env("CARGO_TARGET_DIR", &target);
+        command.env("MATURIN_PEP517_ARGS", "--profile dev");
         command
     };
-    let install = "-m pip install --quiet --disable-pip-version-check .[test]";
-    succeed(python().args(install.split_whitespace()))?;
+    let install = |what: &str| {
+        let pip = "-m pip install --quiet --disable-pip-version-check";
+        succeed(python().args(pip.split_whitespace()).args(what.split_whitespace()))
+    };
+    // Not in isolation, for which pip would ask the network each time.
+    install("maturin>=1.9,<2")?;
+    install("--no-build-isolation .[test]")?;
     succeed(python().args(["-m", "mypy"]))?;
     // The tool is what answers are compared with, in the build that the tests of all crates left.
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
