@@ -6,9 +6,9 @@ use anyhow::{Context, Result, ensure};
 
 use cloudtouch_evaluation::sweep;
 
-use crate::{fixtures, tidy};
+use crate::{fixtures, python, tidy};
 
-/// Runs every step; tests come last.
+/// Runs every step; tests come last, those in Python after those in Rust, whose build they use.
 pub(crate) fn run(root: &Path) -> Result<()> {
     let cargo = |name: &str, arguments: &str| {
         step(name, &format!("cargo {arguments}"), || succeed(&mut command(root, arguments)))
@@ -31,7 +31,8 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     let test = "test --locked --workspace --no-fail-fast";
     step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
         succeed(command(root, test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
-    })
+    })?;
+    step("python", "cargo xtask python", || python::run(root))
 }
 
 /// Runs one step and says how long it took, or how to run it again.

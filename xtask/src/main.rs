@@ -2,6 +2,7 @@
 
 mod ci;
 mod fixtures;
+mod python;
 mod tidy;
 
 use std::path::{Path, PathBuf};
@@ -18,6 +19,8 @@ enum Task {
     Ci,
     /// Rules on manifests, layers and text that no compiler checks.
     Tidy,
+    /// The Python package: built, its types checked, its tests run; skipped where there is no Python.
+    Python,
     /// Answers of the tool on real scans and exact poses, with figures.
     Evaluate(real_scans::Arguments),
     /// Every method against exact truth on generated scenes, with tables and figures.
@@ -49,6 +52,7 @@ fn main() -> anyhow::Result<()> {
     match Task::parse() {
         Task::Ci => ci::run(&root),
         Task::Tidy => tidy::run(&root),
+        Task::Python => python::run(&root),
         Task::Evaluate(arguments) => real_scans::run(&root, &arguments),
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Calibrate(arguments) => calibrate::run(&root, &arguments),

@@ -28,6 +28,7 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
         }
         "cloudtouch" => &LAYERS[..4],
         "cloudtouch-cli" => &LAYERS[..6],
+        "cloudtouch-python" => &LAYERS[..5],
         "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..7],
         "xtask" => &LAYERS,
         _ => return None,

@@ -1,0 +1,29 @@
+"""How likely is it that the surfaces behind two noisy point clouds, or a cloud and a mesh, touch?
+
+Metres and radians everywhere. A body is in the frame of its own points; a pose is the 4 x 4 matrix that maps the
+frame of the second body into that of the first: ``p_a = (pose @ [x, y, z, 1])[:3]``.
+
+>>> import cloudtouch as ct
+>>> query = ct.Query(accept=0.9, reject=0.1)
+
+See ``Cloud``, ``Mesh`` and ``Query``; ``python -m cloudtouch.demo`` shows them at work.
+"""
+
+from cloudtouch._native import CloudtouchError, __version__
+from cloudtouch.bodies import Cloud, Mesh
+from cloudtouch.query import Query
+from cloudtouch.report import Batch, Contact, Evidence, PointProbabilities, Report, Within
+
+__all__ = [
+    "Batch",
+    "Cloud",
+    "CloudtouchError",
+    "Contact",
+    "Evidence",
+    "Mesh",
+    "PointProbabilities",
+    "Query",
+    "Report",
+    "Within",
+    "__version__",
+]

@@ -1,0 +1,72 @@
+"""What users have, as arrays that the library reads; what is of the right kind already is not copied."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+#: As numpy writes a shape, of which the first number is free.
+FREE = -1
+
+
+def points(value: Any, name: str) -> tuple[npt.NDArray[Any], tuple[int, int] | None]:
+    """Rows of x, y and z, and width and height where they are those of an image."""
+    array = np.asarray(value) if not isinstance(value, np.ma.MaskedArray) else _refuse_mask(name)
+    if array.dtype.names is not None:
+        missing = [field for field in "xyz" if field not in array.dtype.names]
+        if missing:
+            have = ", ".join(array.dtype.names)
+            raise ValueError(f"{name} has the fields {have}: {', '.join(missing)} is missing")
+        array = np.stack([array[field] for field in "xyz"], axis=-1)
+    image_size = None
+    if array.ndim == 3:
+        height, width = array.shape[:2]
+        image_size = (width, height)
+        if array.shape[2] == 3:
+            array = array.reshape(-1, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(
+            f"{name} has the shape {array.shape}: give (N, 3), or (height, width, 3) for a depth image"
+        )
+    return _readable(array, name), image_size
+
+
+def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
+    """Numbers of one shape, in double precision."""
+    if isinstance(value, np.ma.MaskedArray):
+        _refuse_mask(name)
+    array = np.asarray(value)
+    fits = array.ndim == len(shape) and all(n in (FREE, m) for n, m in zip(shape, array.shape))
+    if not fits:
+        wanted = str(shape).replace(str(FREE), "N")
+        raise ValueError(f"{name} has the shape {array.shape}: give {wanted}")
+    return np.asarray(_readable(array, name), dtype=np.float64)
+
+
+def indices(value: Any, name: str) -> npt.NDArray[np.uint32]:
+    """Three indices of vertices a row."""
+    array = np.asarray(value)
+    if array.size == 0:
+        array = np.empty((0, 3), dtype=np.uint32)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name} has the shape {array.shape}: give (M, 3), three indices a triangle")
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{name} has the type {array.dtype}: give whole numbers, such as int64")
+    if array.size and (array.min() < 0 or array.max() > np.iinfo(np.uint32).max):
+        low, high = array.min(), array.max()
+        raise ValueError(f"{name} holds indices from {low} to {high}: they count vertices from 0")
+    return np.require(array, dtype=np.uint32, requirements="A")
+
+
+def _readable(array: npt.NDArray[Any], name: str) -> npt.NDArray[Any]:
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"{name} has the type {array.dtype}: give numbers, float32 or float64")
+    single = array.dtype.itemsize == 4 and array.dtype.kind == "f"
+    # Aligned, and in the byte order of the machine.
+    return np.require(array, dtype=np.float32 if single else np.float64, requirements="A")
+
+
+def _refuse_mask(name: str) -> npt.NDArray[Any]:
+    raise ValueError(f"{name} is a masked array: give {name}.filled(numpy.nan), NaN for no return")

@@ -1,0 +1,226 @@
+"""Bodies: noisy clouds and exact meshes, prepared once and queried in any pose."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cloudtouch import _arrays, _native
+
+
+class Cloud:
+    """A noisy point cloud, ready to be queried in any pose, from many threads at once.
+
+    Preparing takes all cores and lets other Python threads run.
+
+    Parameters
+    ----------
+    points
+        (N, 3), float32 or float64, m: rows of NaN are passed over, as missing returns. Or (height, width, 3): a depth
+        image as its camera delivers it, NaN where nothing came back, of which it is known what was not seen. Any strides;
+        read where they are. A structured array with fields x, y and z (as ROS's PointCloud2 is read), of one or two
+        dimensions, will do, and so will an object with ``.points``, such as an Open3D cloud.
+    sensor
+        What measured it, and how noisy that is: ``"kinect"``, ``"stereo:BASELINE_M,FOCAL_PX,DISPARITY_STD_PX"``,
+        ``"lidar:RANGE_STD_M,BEAM_RAD"``, ``"iso:STD_M"``, ``"axes:SX,SY,SZ"``, ``"grid:RESOLUTION_M"``, ``"exact"`` or
+        ``"per-point"``. Too small a noise is the dangerous way round: it makes touching surfaces free.
+    sensor_pose
+        (4, 4): from the frame of the sensor (of a camera x right, y down, z forward) into that of the points. The
+        identity where it is not given.
+    covariances
+        (N, 3, 3), m^2: the noise of each point, for ``sensor="per-point"``.
+    normals
+        (N, 3), of any length and either sign. They are believed: leave out what was fitted to noisy points.
+    min_range, max_range
+        Points nearer to the sensor, or farther, are dropped, m. What suits the sensor where not given.
+    outliers
+        (neighbors, deviations): drops points whose mean distance to so many neighbours is so many standard deviations
+        above that of all.
+    collision_map
+        Edge of a cell, m: points are replaced by the centres of the occupied cells.
+    refined
+        Computes the surface everywhere now, and not where queries come near it: later ready, and each query several
+        times as fast. For a scene that many poses are tested in.
+
+    Raises
+    ------
+    ValueError
+        An array has the wrong shape or type.
+    CloudtouchError
+        Nothing is left of the cloud, a number is out of range or the sensor is not known; the message says what to do.
+    """
+
+    __slots__ = ("_arguments", "_body")
+
+    _arguments: dict[str, Any]
+    _body: _native.Body
+
+    def __init__(
+        self,
+        points: Any,
+        *,
+        sensor: str,
+        sensor_pose: npt.ArrayLike | None = None,
+        covariances: npt.ArrayLike | None = None,
+        normals: npt.ArrayLike | None = None,
+        min_range: float | None = None,
+        max_range: float | None = None,
+        outliers: tuple[int, float] | None = None,
+        collision_map: float | None = None,
+        refined: bool = False,
+    ) -> None:
+        if not isinstance(points, np.ndarray) and hasattr(points, "points"):
+            points = points.points
+        rows, image_size = _arrays.points(points, "points")
+        count = len(rows)
+
+        def optional(value: npt.ArrayLike | None, name: str, *shape: int) -> Any:
+            # A copy: pickling must not see what its owner does to it later.
+            return None if value is None else _arrays.numbers(value, name, shape).copy()
+
+        self._prepare(
+            rows,
+            {
+                "sensor": sensor,
+                "sensor_pose": optional(sensor_pose, "sensor_pose", 4, 4),
+                "image_size": image_size,
+                "covariances": optional(covariances, "covariances", count, 3, 3),
+                "normals": optional(normals, "normals", count, 3),
+                "min_range": min_range,
+                "max_range": max_range,
+                "outliers": outliers,
+                "collision_map": collision_map,
+                "refined": refined,
+            },
+        )
+
+    def _prepare(self, rows: npt.NDArray[Any], arguments: dict[str, Any]) -> None:
+        self._arguments = arguments
+        self._body = _native.cloud(rows, arguments)
+
+    @property
+    def points(self) -> npt.NDArray[np.float64]:
+        """(K, 3): the points that were kept, m, in the frame they were given in."""
+        return self._body.points()
+
+    @property
+    def rows(self) -> npt.NDArray[np.int64]:
+        """(K,): for every kept point its row in what was given (of an image row by row); empty after a collision map."""
+        return self._body.rows()
+
+    @property
+    def removed(self) -> dict[str, int]:
+        """How many points each stage of the filter took away."""
+        return dict(self._body.removed())
+
+    @property
+    def sensor(self) -> str:
+        """The sensor, as it was stated."""
+        return str(self._arguments["sensor"])
+
+    @property
+    def prepare_seconds(self) -> float:
+        """How long preparation took."""
+        return self._body.prepare_seconds()
+
+    def __len__(self) -> int:
+        """How many points were kept."""
+        return self._body.count()
+
+    def __repr__(self) -> str:
+        removed = ", ".join(f"{stage} {count}" for stage, count in self.removed.items() if count)
+        dropped = f" (removed: {removed})" if removed else ""
+        return f"<Cloud: {len(self)} points{dropped}, sensor {self.sensor!r}, {_extent(self.points)}>"
+
+    def __getstate__(self) -> tuple[npt.NDArray[np.float64], dict[str, Any]]:
+        return self._body.given_points(), self._arguments
+
+    def __setstate__(self, state: tuple[npt.NDArray[np.float64], dict[str, Any]]) -> None:
+        self._prepare(*state)
+
+
+class Mesh:
+    """A triangle mesh, ready to be queried in any pose, from many threads at once. Its surface is exact.
+
+    Parameters
+    ----------
+    vertices
+        (V, 3), float32 or float64, m. Or an object with ``.vertices`` and ``.faces`` or ``.triangles``, such as a mesh of
+        trimesh or Open3D; ``triangles`` is then left out.
+    triangles
+        (M, 3), whole numbers: indices of vertices from 0, anticlockwise seen from outside. A mesh that is not watertight
+        is a surface without an inside.
+
+    Raises
+    ------
+    ValueError
+        An array has the wrong shape or type.
+    CloudtouchError
+        There are no triangles, an index or a coordinate is out of range, or every triangle is degenerate.
+    """
+
+    __slots__ = ("_body",)
+
+    _body: _native.Body
+
+    def __init__(self, vertices: Any, triangles: npt.ArrayLike | None = None) -> None:
+        if triangles is None:
+            vertices, triangles = _faces(vertices)
+        rows, image_size = _arrays.points(vertices, "vertices")
+        if image_size is not None:
+            raise ValueError("vertices has three dimensions: give (V, 3)")
+        self._body = _native.mesh(rows, _arrays.indices(triangles, "triangles"))
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]:
+        """(V, 3): the vertices after merging equal ones, m."""
+        return self._body.points()
+
+    @property
+    def triangles(self) -> npt.NDArray[np.int64]:
+        """(M, 3): the triangles after merging."""
+        return self._body.triangles()
+
+    @property
+    def is_watertight(self) -> bool:
+        """Whether it encloses a volume: only then has it an inside."""
+        return self._body.is_watertight()
+
+    @property
+    def prepare_seconds(self) -> float:
+        """How long preparation took."""
+        return self._body.prepare_seconds()
+
+    def __len__(self) -> int:
+        """How many triangles are left after merging."""
+        return self._body.count()
+
+    def __repr__(self) -> str:
+        kind = "watertight" if self.is_watertight else "open"
+        return f"<Mesh: {len(self)} triangles, {kind}, {_extent(self.vertices)}>"
+
+    def __getstate__(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+        return self._body.given_points(), self._body.given_triangles()
+
+    def __setstate__(self, state: tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]) -> None:
+        vertices, triangles = state
+        self._body = _native.mesh(vertices, _arrays.indices(triangles, "triangles"))
+
+
+def _faces(source: Any) -> tuple[Any, Any]:
+    # ``triangles`` of a trimesh are the corners themselves, not indices.
+    faces = getattr(source, "faces", None)
+    if faces is None:
+        faces = getattr(source, "triangles", None)
+    if faces is None or not hasattr(source, "vertices"):
+        name = type(source).__name__
+        raise TypeError(f"{name} has no .vertices with .faces or .triangles: give vertices and triangles")
+    return source.vertices, faces
+
+
+def _extent(points: npt.NDArray[np.float64]) -> str:
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = " x ".join(f"{side:.3g}" for side in high - low)
+    return f"{size} m about ({', '.join(f'{middle:.3g}' for middle in (low + high) / 2)})"

@@ -1,0 +1,153 @@
+"""Queries: two bodies and a pose in, a probability out."""
+
+from __future__ import annotations
+
+from typing import Any, Union
+
+import numpy.typing as npt
+
+from cloudtouch import _arrays, _native
+from cloudtouch.bodies import Cloud, Mesh
+from cloudtouch.report import Batch, Report, Within
+
+Body = Union[Cloud, Mesh]
+
+
+class Query:
+    """Settings, checked; cheap to make, immutable, and shared by threads.
+
+    Parameters
+    ----------
+    accept, reject
+        Above ``accept`` a pair is in collision, with an upper bound below ``reject`` it is free. If a collision costs C
+        and a good pose refused costs 1, ``reject = 1 / (1 + C)``.
+    prior
+        Which share of the poses asked about collides, before anything is known of them: between 0 and 1.
+    max_unseen
+        Share of a body's surface that may lie where a depth image saw nothing, 0 to 1; beyond, nothing is free.
+    max_missing
+        Share of the rows of a cloud without image layout that may have no return, 0 to 1.
+    doubt_units
+        Whether sizes and distances that cannot be meant make a pair undecided.
+    stop_above
+        The search ends when a collision is this certain; 1 never ends it early.
+    deadline
+        How long a query may search, s; ``None`` for as long as it takes. What was not looked at by then is undecided.
+    max_contacts
+        How many contacts are reported at most.
+
+    Raises
+    ------
+    CloudtouchError
+        A setting is out of range.
+    """
+
+    __slots__ = ("_query", "_settings")
+
+    _query: _native.Query
+    _settings: dict[str, Any]
+
+    def __init__(
+        self,
+        *,
+        accept: float = 0.9,
+        reject: float = 0.1,
+        prior: float = 0.5,
+        max_unseen: float = 0.05,
+        max_missing: float = 0.25,
+        doubt_units: bool = True,
+        stop_above: float = 0.999,
+        deadline: float | None = None,
+        max_contacts: int = 16,
+    ) -> None:
+        self._set(
+            {
+                "accept": accept,
+                "reject": reject,
+                "prior": prior,
+                "max_unseen": max_unseen,
+                "max_missing": max_missing,
+                "doubt_units": doubt_units,
+                "stop_above": stop_above,
+                "deadline": deadline,
+                "max_contacts": max_contacts,
+            }
+        )
+
+    def _set(self, settings: dict[str, Any]) -> None:
+        self._settings = settings
+        self._query = _native.Query(*settings.values())
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All settings by name, as ``Query(**settings)`` takes them."""
+        return dict(self._settings)
+
+    def run(self, a: Body, b: Body, pose: npt.ArrayLike) -> Report:
+        """How likely it is that the surfaces behind two bodies collide.
+
+        Parameters
+        ----------
+        a, b
+            The scene and the object, as a rule; either may be a cloud or a mesh.
+        pose
+            (4, 4): from the frame of ``b`` into that of ``a``, m.
+
+        Raises
+        ------
+        ValueError
+            ``pose`` has the wrong shape or type.
+        CloudtouchError
+            ``pose`` is no rigid motion, or the meshes cannot be tested against each other. A pair that could not be
+            decided is no error but a verdict, and never reads as free.
+        """
+        return Report._of(self._query.run(a._body, b._body, _arrays.numbers(pose, "pose", (4, 4))))
+
+    def within(self, a: Body, b: Body, pose: npt.ArrayLike, margin: float) -> tuple[Report, Within]:
+        """The report of :meth:`run`, and how likely the surfaces are within ``margin`` metres of each other.
+
+        Never less likely than a collision, nor less likely with a larger margin.
+
+        Raises
+        ------
+        CloudtouchError
+            ``margin`` is negative or not finite, and what :meth:`run` raises.
+        """
+        matrix = _arrays.numbers(pose, "pose", (4, 4))
+        report, within = self._query.within(a._body, b._body, matrix, margin)
+        return Report._of(report), Within(**within)
+
+    def run_batch(self, a: Body, b: Body, poses: npt.ArrayLike) -> Batch:
+        """Many poses of one pair, on all cores: the numbers of :meth:`run`, a row for each pose.
+
+        Other Python threads run meanwhile; Ctrl-C ends it. ``RAYON_NUM_THREADS`` limits the cores.
+
+        Parameters
+        ----------
+        poses
+            (M, 4, 4): from the frame of ``b`` into that of ``a``, m.
+
+        Raises
+        ------
+        ValueError
+            ``poses`` has the wrong shape or type.
+        CloudtouchError
+            As :meth:`run`; the message names the first pose concerned, and there are no other answers.
+        """
+        matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
+        return Batch(**self._query.run_batch(a._body, b._body, matrices))
+
+    def __repr__(self) -> str:
+        return f"Query({', '.join(f'{name}={value!r}' for name, value in self._settings.items())})"
+
+    def __eq__(self, other: object) -> bool:
+        return self._settings == other._settings if isinstance(other, Query) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._settings.values()))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self._settings
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._set(state)

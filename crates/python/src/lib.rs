@@ -1,0 +1,24 @@
+//! What the Python package `cloudtouch` is built on. Nobody imports this by itself: checks of arrays,
+//! names and documentation are in `python/cloudtouch`, which calls in here with arrays of numbers.
+
+mod answer;
+mod arrays;
+mod batch;
+mod body;
+mod error;
+mod pool;
+mod query;
+
+#[pyo3::pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::body::{Body, cloud, mesh};
+    #[pymodule_export]
+    use crate::error::CloudtouchError;
+    #[pymodule_export]
+    use crate::query::Query;
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "the name Python gives a version")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}

@@ -1,0 +1,41 @@
+//! The threads that the library computes on, apart from Python's.
+
+use std::mem;
+use std::process;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::error::refused;
+
+/// The pool, with the process that started its threads.
+static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+
+/// Does the work on all threads, and lets other Python threads run meanwhile.
+pub(crate) fn on_all_threads<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    let pool = pool()?;
+    Ok(py.detach(|| pool.install(work)))
+}
+
+/// As many threads as the machine has cores, or as `RAYON_NUM_THREADS` says.
+///
+/// A forked process (`multiprocessing` on Linux before Python 3.14) has a copy of the pool and none of
+/// its threads: work given to those would never end, as it would in rayon's global pool. Whoever comes
+/// here holds the GIL, and so does who forks: the lock is free in the child.
+fn pool() -> PyResult<Arc<ThreadPool>> {
+    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    let here = process::id();
+    match &*known {
+        Some((owner, pool)) if *owner == here => Ok(Arc::clone(pool)),
+        _ => {
+            let pool = Arc::new(ThreadPoolBuilder::new().build().map_err(refused)?);
+            // The parent's: to drop it would be to talk to threads that are not there.
+            mem::forget(known.replace((here, Arc::clone(&pool))));
+            Ok(pool)
+        }
+    }
+}

@@ -1,0 +1,155 @@
+"""Answers: batches, margins, settings, words."""
+
+import numpy as np
+import pytest
+from conftest import lifted
+from same import assert_same_batch
+
+import cloudtouch as ct
+
+HEIGHTS = np.linspace(-0.02, 0.06, 41)
+
+
+@pytest.mark.parametrize("bodies", [("floor", "plate"), ("table", "parcel")])
+def test_a_batch_says_what_single_queries_say(bodies, request):
+    a, b = (request.getfixturevalue(name) for name in bodies)
+    query = ct.Query()
+    poses = np.stack([lifted(z) for z in HEIGHTS])
+    batch = query.run_batch(a, b, poses)
+    assert len(batch) == len(poses) and len(set(batch.verdict)) > 1
+    for row, pose in enumerate(poses):
+        report = query.run(a, b, pose)
+        for name in ("probability", "lower", "upper", "verdict", "clearance_is_bound"):
+            assert getattr(batch, name)[row] == getattr(report, name), name
+        for name in ("log_likelihood_ratio", "clearance", "clearance_std", "clearance_at_least"):
+            told = getattr(report, name)
+            np.testing.assert_array_equal(getattr(batch, name)[row], np.nan if told is None else told)
+        assert batch.undecided_by[row] == (report.undecided_by or "")
+        assert batch.contact_count[row] == len(report.contacts)
+        assert batch.warning_count[row] == len(report.warnings)
+        first = report.contacts[0] if report.contacts else None
+        nowhere = np.full(3, np.nan)
+        np.testing.assert_array_equal(batch.contact_point[row], nowhere if first is None else first.point)
+        np.testing.assert_array_equal(batch.contact_normal[row], nowhere if first is None else first.normal)
+
+
+def test_more_poses_than_are_asked_about_at_once(floor, plate):
+    heights = np.tile(np.linspace(0.006, 0.3, 110), 10)
+    poses = np.stack([lifted(z) for z in heights])
+    batch = ct.Query().run_batch(floor, plate, poses)
+    few = ct.Query().run_batch(floor, plate, poses[:110])
+    np.testing.assert_array_equal(batch.clearance_at_least.reshape(10, -1), np.tile(few.clearance_at_least, (10, 1)))
+    poses[1050, 2, 3] = 1e11
+    with pytest.raises(ct.CloudtouchError, match=r"^poses\[1050\]: "):
+        ct.Query().run_batch(floor, plate, poses)
+
+
+def test_a_margin_is_monotone_and_begins_with_the_collision(table, parcel):
+    query = ct.Query()
+    for height in (0.0, 0.02, 0.07):
+        pose = lifted(0.05 + height)
+        known = query.run(table, parcel, pose).probability
+        margins = [0.0, 0.003, 0.01, 0.03, 0.1, 1.0]
+        near = [query.within(table, parcel, pose, margin)[1] for margin in margins]
+        assert near[0].probability == known
+        assert all(a.probability <= b.probability for a, b in zip(near, near[1:]))
+        assert all(w.lower <= w.probability <= w.upper for w in near)
+        assert [w.margin for w in near] == margins
+    assert near[-1].probability > 0.99 > 0.01 > known
+    for margin in (-0.1, np.nan, np.inf):
+        with pytest.raises(ct.CloudtouchError, match="the margin is"):
+            query.within(table, parcel, np.eye(4), margin)
+
+
+def test_contacts_and_points_are_in_the_frame_of_a(table, parcel):
+    pose = lifted(0.045)
+    report = ct.Query().run(table, parcel, pose)
+    assert report.verdict == "in_collision" and report.contacts
+    for contact in report.contacts:
+        assert np.linalg.norm(contact.normal) == pytest.approx(1.0, abs=1e-9)
+        assert 0 < contact.probability <= report.probability and abs(contact.point[2]) < 0.02
+    indices, probabilities = report.points_b
+    assert len(report.points_a.indices) == 0 < len(indices)
+    assert (parcel.points[indices] + pose[:3, 3])[probabilities.argmax(), 2] < 0.02
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        ({"accept": 0.2, "reject": 0.8}, "thresholds accept = 0.2, reject = 0.8"),
+        ({"prior": 0.0}, "prior"),
+        ({"prior": float("nan")}, "prior"),
+        ({"max_unseen": 1.5}, "max_unseen"),
+        ({"stop_above": 0.0}, "stop_above"),
+        ({"deadline": -1.0}, "deadline"),
+        ({"deadline": float("nan")}, "deadline"),
+    ],
+)
+def test_settings_out_of_range_are_named(settings, says):
+    with pytest.raises(ct.CloudtouchError, match=says):
+        ct.Query(**settings)
+
+
+def test_sensors_and_filters_out_of_range_are_named():
+    points = np.random.default_rng(0).normal(size=(50, 3))
+    for arguments, says in [
+        ({"sensor": "sonar"}, "`sonar`"),
+        ({"sensor": "iso:-1"}, "not negative"),
+        ({"sensor": "per-point"}, "no covariance per point"),
+        ({"sensor": "per-point", "covariances": np.tile(-np.eye(3), (50, 1, 1))}, r"covariances\[0\]: "),
+        ({"sensor": "exact", "normals": np.zeros((50, 3))}, r"normals\[0\]: .*has no direction"),
+        ({"sensor": "exact", "sensor_pose": np.diag([1.0, 1, -1, 1])}, "sensor_pose: .*mirrors"),
+        ({"sensor": "exact", "min_range": 2.0, "max_range": 1.0}, "range"),
+        ({"sensor": "exact", "outliers": (0, 1.0)}, "neighbo"),
+        ({"sensor": "exact", "collision_map": 0.0}, "resolution"),
+    ]:
+        with pytest.raises(ct.CloudtouchError, match=says):
+            ct.Cloud(points, **arguments)
+    for arguments in ({"covariances": np.eye(3)}, {"normals": np.ones((49, 3))}, {"sensor_pose": np.eye(3)}):
+        with pytest.raises(ValueError, match=f"{next(iter(arguments))} has the shape"):
+            ct.Cloud(points, sensor="exact", **arguments)
+
+
+def test_covariances_of_the_points_are_those_of_the_sensor_that_has_them(floor, plate):
+    points = floor.points
+    each = ct.Cloud(points, sensor="per-point", covariances=np.tile(1e-6 * np.eye(3), (len(points), 1, 1)))
+    near = ct.Query().run(each, plate, lifted(0.004)).probability
+    assert near == pytest.approx(ct.Query().run(floor, plate, lifted(0.004)).probability, abs=1e-9)
+    wide = ct.Cloud(points, sensor="per-point", covariances=np.tile(1e-4 * np.eye(3), (len(points), 1, 1)))
+    assert abs(ct.Query().run(wide, plate, lifted(0.02)).probability - near) > 0.01
+
+
+def test_a_deadline_that_is_over_decides_nothing(table, parcel):
+    pose = lifted(0.08)
+    assert ct.Query().run(table, parcel, pose).verdict == "free"
+    report = ct.Query(deadline=0.0).run(table, parcel, pose)
+    assert (report.verdict, report.undecided_by, report.upper) == ("undecided", "bounds", 1.0)
+
+
+def test_what_is_printed_is_worth_reading(table, parcel, floor):
+    assert repr(table) == "<Mesh: 12 triangles, watertight, 0.6 x 0.4 x 0.03 m about (0, 0, -0.015)>"
+    assert repr(floor).startswith("<Cloud: 400 points, sensor 'iso:0.001', 0.19")
+    assert "(removed: missing 2)" in repr(
+        ct.Cloud(np.vstack([floor.points, np.full((2, 3), np.nan)]), sensor="exact")
+    )
+    assert repr(ct.Query(prior=0.2)).startswith("Query(accept=0.9, reject=0.1, prior=0.2, ")
+    free = ct.Query().run(table, parcel, lifted(0.2))
+    assert repr(free).startswith("<Report: free, P = 0.000")
+    touching = repr(ct.Query().run(table, parcel, lifted(0.05)))
+    assert "in_collision, P = 0." in touching and " mm" in touching and "contact" in touching
+    assert "warning: " in repr(ct.Query().run(table, parcel, lifted(500.0)))
+    batch = ct.Query().run_batch(table, parcel, [lifted(0.2), lifted(0.3), lifted(0.02)])
+    assert repr(batch) == "<Batch: 3 poses: 2 free, 1 in_collision>"
+
+
+def test_refining_changes_no_probability(parcel, table):
+    refined = ct.Cloud(parcel.points, sensor="iso:0.002", refined=True)
+    for height in HEIGHTS[::4]:
+        one, other = (ct.Query().run(table, cloud, lifted(0.05 + height)) for cloud in (parcel, refined))
+        assert one.probability == pytest.approx(other.probability, abs=1e-3)
+
+
+def test_turning_a_batch_upside_down_turns_its_answers(floor, plate):
+    poses = np.stack([lifted(z) for z in HEIGHTS])
+    forth, back = (ct.Query().run_batch(floor, plate, p) for p in (poses, poses[::-1]))
+    assert_same_batch(forth, ct.Batch(**{name: column[::-1] for name, column in back.columns().items()}))
