@@ -89,6 +89,9 @@ impl Drift {
 
     /// What the arc adds anywhere within a radius of a place, m; no more is left out of s·u.
     pub fn beyond_first_order(&self, place: &Point3, radius: f64) -> f64 {
+        if self.bend == 0.0 {
+            return self.skew;
+        }
         self.bend * (self.axis.cross(&(place - self.pivot)).norm() + radius) + self.skew
     }
 }

@@ -297,12 +297,18 @@ fn what_a_sweep_costs_beside_a_query() {
             let end = least_time(|| drop(query().run(&a, &b, to)));
             let all = least_time(|| drop(query().sweep(&a, &b, &path, 0.01)));
             let swept = sweep(&a, &b, &path, 0.01);
+            let of_end = query().run(&a, &b, to).expect("a good pose").stats;
             eprintln!(
                 "{kinds:?} {name}: sweep {all:.0} us, query {one:.0} us in the middle and {end:.0} us \
-                 at the end: {:.1} times; {} poses, {} stretches, bounds {:.3?}, free until {:.3}",
+                 at the end: {:.1} times; {} poses, {} stretches, {} nodes, {} leaf pairs (a query at the end: {}, {}), \
+                 bounds {:.3?}, free until {:.3}",
                 all / one.max(end),
                 swept.stats.poses,
                 swept.stats.stretches,
+                swept.stats.nodes_visited,
+                swept.stats.leaf_pairs,
+                of_end.nodes_visited,
+                of_end.leaf_pairs,
                 swept.bounds,
                 swept.certified_free_until,
             );

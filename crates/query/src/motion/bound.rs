@@ -5,7 +5,7 @@ use cloudtouch_geom::{Drift, Pose};
 use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
-use crate::judge::probability;
+use crate::judge::{MOST_DEVIATIONS, probability};
 use crate::query::{Query, QuerySettings};
 use crate::report::Stats;
 use crate::search::{greatest_depth, reach_of};
@@ -42,7 +42,7 @@ impl Drifting<'_> {
         let is_above = |deviations: f64, clearness: f64| {
             at_most(settings, deviations, clearness) > cut || clock.is_over()
         };
-        let is_deep = |depth: f64| is_above(-depth, 0.0);
+        let is_deep = |depth: f64| is_above(MOST_DEVIATIONS - depth, 0.0);
         let depth = greatest_depth((a, b), &local, &self.drift, is_deep, stats);
         if is_deep(depth) {
             return Ok(1.0);

@@ -231,10 +231,14 @@ impl Sweep<'_> {
     }
 
     fn bounded(&mut self, segment: usize, times: [f64; 2]) -> Result<Interval, QueryError> {
-        self.stretches += 1;
         let (a, b) = self.bodies;
         let leg = self.path.leg(segment);
         let mut interval = Interval { segment, times, upper: 1.0, is_doubtful: false };
+        if interval.end() >= self.tested.end() {
+            // It holds the pose that exceeds the threshold: nothing is left to bound.
+            return Ok(interval);
+        }
+        self.stretches += 1;
         let a_from_b = leg.at(interval.middle());
         let drift = leg.drift(times, &a.shape().origin());
         let drifting = Drifting { bodies: (a, b), a_from_b, drift };

@@ -43,8 +43,17 @@ fn deepest(
         return most;
     }
     let mesh_from_a = a_from_mesh.inverse();
-    let drifts_by =
-        |in_a: &Point3, radius: f64| drift.in_any_direction(in_a) + drift.turn() * radius;
+    let to_mesh = |in_a: &Point3| mesh_from_a.transform_point(in_a);
+    // What is outside all along its way, and all about it, does not get inside.
+    let stays_clear = |in_a: &Point3, radius: f64| {
+        let distance = radius * (1.0 + drift.turn());
+        mesh.is_clear_of(&to_mesh(in_a), distance + drift.in_any_direction(in_a)) || {
+            let way = drift.first_order(in_a);
+            let ends = [to_mesh(&(in_a - way)), to_mesh(&(in_a + way))];
+            let beside = drift.beyond_first_order(in_a, 0.0);
+            mesh.is_clear_of_way([&ends[0], &ends[1]], distance + beside)
+        }
+    };
     cloud.tree().visit_nodes(|node| {
         stats.nodes_visited += 1;
         if is_enough(most) || most >= 2.0 * MOST_DEVIATIONS {
@@ -53,8 +62,7 @@ fn deepest(
         let obb = node.obb();
         let in_a = a_from_cloud.transform_point(&obb.centre);
         let radius = obb.radius() + node.shift();
-        let room = radius + drifts_by(&in_a, radius);
-        if mesh.is_clear_of(&mesh_from_a.transform_point(&in_a), room) {
+        if stays_clear(&in_a, radius) {
             return Visit::Prune;
         }
         if node.is_leaf() {
@@ -62,8 +70,11 @@ fn deepest(
             stats.leaves_prepared += usize::from(computed);
             for surfel in surfels {
                 let in_a = a_from_cloud.transform_point(&surfel.point.mean);
-                let distance = mesh.project(&mesh_from_a.transform_point(&in_a)).signed_distance;
-                let depth = drifts_by(&in_a, 0.0) - distance;
+                if stays_clear(&in_a, 0.0) {
+                    continue;
+                }
+                let distance = mesh.project(&to_mesh(&in_a)).signed_distance;
+                let depth = drift.in_any_direction(&in_a) - distance;
                 let std = surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
                 most = most.max(depth / std);
             }

@@ -7,8 +7,9 @@ use crate::cloud::{DISC_SPACINGS, SLOPE};
 use super::super::crossings::Witness;
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, NoisyLeaf};
-use super::passage::{Adrift, mesh_through_disc};
+use super::passage::{Adrift, may_pierce, mesh_through_disc};
 use super::pool::Passages;
+use super::track::Track;
 
 /// Whether an edge may get to a disc of another leaf, as `search/gather.rs` asks of leaves that keep
 /// still.
@@ -21,10 +22,7 @@ pub(super) fn may_reach(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>, drif
         let middle = &surfel.point.mean;
         let across = SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)) + turn;
         slab.is_within(middle, half * across + drift.along(&slab.direction, middle))
-            && ball.is_within(
-                middle,
-                half + DISC_SPACINGS * ball.spacing + drift.in_any_direction(middle),
-            )
+            && Track::of(middle, drift).gets_to(ball, half + DISC_SPACINGS * ball.spacing)
     })
 }
 
@@ -36,8 +34,8 @@ pub(super) fn may_reach_facets(
 ) -> bool {
     of_edges.surfels.iter().any(|surfel| {
         let middle = &surfel.point.mean;
-        let reach = DISC_SPACINGS * surfel.spacing + drift.in_any_direction(middle);
-        surfel.normal.is_some() && facets.ball.is_within(middle, reach)
+        let track = Track::of(middle, drift);
+        surfel.normal.is_some() && track.gets_to(&facets.ball, DISC_SPACINGS * surfel.spacing)
     })
 }
 
@@ -55,15 +53,15 @@ pub(super) fn add_edges_through_discs(
         if !slab.may_hold(&edge.ends, room[0].max(room[1])) {
             continue;
         }
-        let adrift = Adrift::new(edge, drift);
-        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
-        let half = edge.half_length + adrift.by;
-        if !around.is_within(&middle, half + DISC_SPACINGS * around.spacing) {
+        let adrift = Adrift::new(is_a, edge, drift);
+        let track = Track::of(&nalgebra::center(&edge.ends[0], &edge.ends[1]), drift);
+        // Its ends may get ahead of its middle by the turn.
+        let half = edge.half_length * (1.0 + drift.turn());
+        if !track.gets_to(&around, half + DISC_SPACINGS * around.spacing) {
             continue;
         }
         for disc in of_discs.surfels.iter() {
-            let reach = half + DISC_SPACINGS * disc.spacing;
-            if (disc.point.mean - middle).norm_squared() > reach * reach {
+            if track.keeps_off(&disc.point.mean) > half + DISC_SPACINGS * disc.spacing {
                 continue;
             }
             if let Some(passage) = adrift.through_disc(disc, drift) {
@@ -82,9 +80,9 @@ pub(super) fn add_edges_through_facets(
     found: &mut Passages,
 ) {
     for edge in of_edges.edges() {
-        let adrift = Adrift::new(edge, drift);
-        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
-        if !facets.ball.is_within(&middle, edge.half_length + adrift.by) {
+        let adrift = Adrift::new(is_a, edge, drift);
+        let track = Track::of(&nalgebra::center(&edge.ends[0], &edge.ends[1]), drift);
+        if !track.gets_to(&facets.ball, edge.half_length * (1.0 + drift.turn())) {
             continue;
         }
         for facet in &facets.facets {
@@ -107,15 +105,14 @@ pub(super) fn add_mesh_through_discs(
 ) {
     for disc in discs.surfels.iter() {
         let Some(normal) = disc.normal else { continue };
-        let middle = disc.point.mean;
-        let reach = DISC_SPACINGS * disc.spacing + drift.in_any_direction(&middle);
-        let witness = Witness::disc(is_a, disc);
-        // Once, and by all of the mesh there: however its triangles are shared out to leaves.
-        if !facets.ball.is_within(&middle, reach) || found.knows(&witness) {
+        let track = Track::of(&disc.point.mean, drift);
+        if !track.gets_to(&facets.ball, DISC_SPACINGS * disc.spacing) {
             continue;
         }
-        if let Some(passage) = mesh_through_disc(disc, normal, &around, drift) {
-            found.add(witness, &passage);
+        let off = may_pierce(is_a, disc, &normal, &facets.facets, drift);
+        if let Some(off) = off.filter(|_| disc.spacing > 0.0) {
+            let passage = mesh_through_disc(is_a, disc, (normal, off), &around, drift);
+            found.add(Witness::disc(is_a, disc), &passage);
         }
     }
 }

@@ -8,6 +8,7 @@ mod passage;
 mod pieces;
 mod pool;
 mod run;
+mod track;
 
 pub(crate) use depth::greatest_depth;
 pub(crate) use run::reach_of;

@@ -6,8 +6,9 @@ use cloudtouch_geom::{Drift, Point3, Vector3};
 use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
 
 use super::super::crossing::{CLEAREST, known_to, weight_at};
-use super::super::facet::{Facet, nearest_to_origin};
+use super::super::facet::Facet;
 use super::super::through_mesh::Outline;
+use super::track::{facet_keeps_off, gap_along, piece_keeps_off};
 
 /// A passage that may be.
 #[derive(Debug, Clone, Copy)]
@@ -22,17 +23,19 @@ pub(super) struct Passage {
     pub spacing: f64,
 }
 
-/// An edge, with how far its ends get in any direction against the other body, m.
+/// An edge of A, or one of B, which drifts.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Adrift<'a> {
-    pub edge: &'a Edge,
-    pub by: f64,
+    edge: &'a Edge,
+    is_a: bool,
+    /// How far its ends get in any direction, m.
+    by: f64,
 }
 
 impl<'a> Adrift<'a> {
-    pub(super) fn new(edge: &'a Edge, drift: &Drift) -> Self {
+    pub(super) fn new(is_a: bool, edge: &'a Edge, drift: &Drift) -> Self {
         let [p, q] = edge.ends.map(|end| drift.in_any_direction(&end));
-        Self { edge, by: p.max(q) }
+        Self { edge, is_a, by: p.max(q) }
     }
 
     /// Where it passes a plane, given as its unit normal and a place on it.
@@ -65,9 +68,17 @@ impl<'a> Adrift<'a> {
         let stds = self.edge.across.map(|own| known_to((own + across).sqrt(), disc.spacing));
         let crossed = self.crossed((&normal, &middle), stds, drift)?;
         let part = self.part(&crossed);
-        let off = ((distance_to(&middle, &part) - self.by) / disc.spacing).max(0.0);
-        (off <= DISC_SPACINGS)
-            .then(|| self.passage(crossed.clear, weight_at(off), part, disc.spacing))
+        let off = (piece_keeps_off(&part, &middle, drift) / disc.spacing).max(0.0);
+        if off > DISC_SPACINGS {
+            return None;
+        }
+        let mut passage = self.passage(crossed.clear, weight_at(off), part, disc.spacing);
+        let reach = DISC_SPACINGS * disc.spacing;
+        if !self.is_a && reach < passage.radius {
+            // The disc keeps still.
+            (passage.middle, passage.radius) = (middle, reach);
+        }
+        Some(passage)
     }
 
     /// Of a triangle of the other body.
@@ -76,15 +87,16 @@ impl<'a> Adrift<'a> {
         let spacing = 2.0 * self.edge.half_length;
         let stds = self.edge.across.map(|own| known_to(own.sqrt(), spacing));
         let crossed = self.crossed((&normal, &facet.corners[0]), stds, drift)?;
-        let passage = self.passage(crossed.clear, 1.0, self.part(&crossed), spacing);
-        let way = nearest_to_origin(&facet.corners.map(|corner| corner - passage.middle));
-        (way.norm() <= passage.radius * (1.0 + ROUNDING) + f64::EPSILON * spacing)
-            .then_some(passage)
+        let [from, to] = self.part(&crossed);
+        let (middle, half) = (nalgebra::center(&from, &to), 0.5 * (to - from).norm());
+        let off = facet_keeps_off(&middle, facet, !self.is_a, drift);
+        (off <= half * (1.0 + ROUNDING) + ROUNDING * spacing)
+            .then(|| self.passage(crossed.clear, 1.0, [from, to], spacing))
     }
 
     fn passage(&self, clear: f64, weight: f64, part: [Point3; 2], spacing: f64) -> Passage {
         let middle = nalgebra::center(&part[0], &part[1]);
-        let radius = 0.5 * (part[1] - part[0]).norm() + self.by;
+        let radius = 0.5 * (part[1] - part[0]).norm() + if self.is_a { 0.0 } else { self.by };
         Passage { clear, weight, middle, radius, spacing }
     }
 }
@@ -142,49 +154,52 @@ impl Crossed {
     }
 }
 
-/// What a mesh may do to the disc about a sample; `around` gives all its triangles within a distance of
-/// a place.
-pub(super) fn mesh_through_disc(
+/// How near to the middle of a disc some facets may pass it, m; `None` where none can.
+pub(super) fn may_pierce(
+    is_a: bool,
     disc: &Surfel,
-    normal: Vector3,
+    normal: &Vector3,
+    facets: &[Facet],
+    drift: &Drift,
+) -> Option<f64> {
+    let middle = disc.point.mean;
+    let keeps = |side: f64, facet: &Facet| {
+        gap_along(&middle, facet, false, drift, &(normal * side)) > 0.0
+    };
+    let passes = facets.iter().filter(|facet| !keeps(1.0, facet) && !keeps(-1.0, facet));
+    let off = passes.map(|facet| facet_keeps_off(&middle, facet, !is_a, drift));
+    let off = off.fold(f64::INFINITY, f64::min);
+    (off <= DISC_SPACINGS * disc.spacing * (1.0 + ROUNDING)).then_some(off)
+}
+
+/// What a mesh may do to the disc about a sample that it may pass so near to its middle; `around` gives
+/// all its triangles within a distance of a place.
+pub(super) fn mesh_through_disc(
+    is_a: bool,
+    disc: &Surfel,
+    (normal, off): (Vector3, f64),
     around: impl FnOnce(&Point3, f64) -> Vec<Facet>,
     drift: &Drift,
-) -> Option<Passage> {
+) -> Passage {
     let (middle, radius) = (disc.point.mean, DISC_SPACINGS * disc.spacing);
     let by = drift.in_any_direction(&middle);
     let std = known_to(disc.variance_across().sqrt(), disc.spacing);
-    let passage = |clear: f64, off: f64| {
-        let weight = weight_at((off - by).max(0.0) / disc.spacing);
-        Passage { clear, weight, middle, radius: radius + by, spacing: disc.spacing }
+    let passage = |clear: f64| Passage {
+        clear: (clear / std).min(CLEAREST),
+        weight: weight_at(off / disc.spacing),
+        middle,
+        radius: radius + if is_a { 0.0 } else { by },
+        spacing: disc.spacing,
     };
-    let clearest = (radius / std).min(CLEAREST);
-    if disc.spacing <= 0.0 {
-        return None;
-    }
     if by > radius {
         // As clear as a disc is wide: with so much room there is no telling.
-        return Some(passage(clearest, 0.0));
+        return passage(radius);
     }
     let near = around(&middle, std::f64::consts::SQRT_2 * radius + by);
-    let farthest =
-        near.iter().flat_map(|facet| &facet.corners).map(|corner| (corner - middle).norm());
-    let room = by + drift.turn() * farthest.fold(0.0, f64::max);
-    let [low, high] = Outline::new(middle, normal, radius + room).heights(near.iter())?;
-    let (above, below) = ((high + room).min(radius), (room - low).min(radius));
-    if above <= 0.0 || below <= 0.0 {
-        return None;
-    }
-    let off = near
-        .iter()
-        .map(|facet| nearest_to_origin(&facet.corners.map(|corner| corner - middle)).norm());
-    let off = off.fold(f64::INFINITY, f64::min);
-    (off <= radius + by).then(|| passage((above.min(below) / std).min(clearest), off))
-}
-
-/// Distance from a place to a straight piece, m.
-fn distance_to(place: &Point3, [from, to]: &[Point3; 2]) -> f64 {
-    let (offset, along) = (place - from, to - from);
-    let length = along.norm_squared();
-    let share = if length > 0.0 { (offset.dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (offset - along * share).norm()
+    let corners = near.iter().flat_map(|facet| &facet.corners);
+    let farthest = corners.map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
+    let room = by + drift.turn() * farthest;
+    let heights = Outline::new(middle, normal, radius + room).heights(near.iter());
+    let [low, high] = heights.unwrap_or([0.0; 2]);
+    passage((high + room).min(room - low).clamp(0.0, radius))
 }

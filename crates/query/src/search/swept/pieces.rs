@@ -5,15 +5,13 @@
 //! (n·δ − |n·u| − r)/√(nᵀΣn), and of all n the one that says most is Σ⁻¹(δ + s·u) for the s with the
 //! fewest deviations.
 
-use cloudtouch_geom::{Drift, Point3, Vector3};
+use cloudtouch_geom::{Drift, Vector3};
 
 use crate::cloud::Surfel;
 
 use super::super::facet::{Facet, Whitening, nearest_to_origin};
 use super::super::meeting::{LEAST_STD, solve};
-
-/// How often the nearest place of a facet and the time of it are looked for in turn.
-const TURNS: usize = 3;
+use super::track::{directions, gap_along, least_at, nearest_time};
 
 /// The pieces of two clouds, that of B drifting; `None` where they have `limit` or more.
 pub(super) fn between_discs(a: &Surfel, b: &Surfel, drift: &Drift, limit: f64) -> Option<f64> {
@@ -73,19 +71,13 @@ pub(super) fn to_facet(
     let way = drift.first_order(&mean) * if is_facet_still { -1.0 } else { 1.0 };
     let way = whitening.apply(&way);
     let corners = offsets.map(|offset| whitening.apply(&offset));
-    let mut time = 0.0;
-    for _ in 0..TURNS {
-        let nearest = nearest_to_origin(&corners.map(|corner| corner + way * time));
-        let Some(n) = whitening.apply(&nearest).try_normalize(0.0) else { break };
+    for n in directions(&corners, &way) {
+        // Across what parts them in standard deviations.
+        let Some(n) = whitening.apply(&n).try_normalize(0.0) else { break };
         most = most.max(along(&n).1);
         if most >= limit {
             return None;
         }
-        let next = nearest_time(&(nearest - way * time), &way);
-        if next == time {
-            break;
-        }
-        time = next;
     }
     Some(most)
 }
@@ -95,29 +87,4 @@ fn turned_variance(surfel: &Surfel, n: &Vector3, drift: &Drift) -> f64 {
     let most = surfel.most_variance.sqrt();
     let turned = surfel.point.covariance.std_along(n) + drift.turn_of(n) * most;
     turned.min(most).powi(2)
-}
-
-/// How far a facet keeps from a place along a unit vector, away from it, m.
-fn gap_along(
-    place: &Point3,
-    facet: &Facet,
-    is_facet_still: bool,
-    drift: &Drift,
-    n: &Vector3,
-) -> f64 {
-    let of_corner = |corner: &Point3| {
-        let drifting = if is_facet_still { place } else { corner };
-        n.dot(&(corner - place)) - drift.along(n, drifting)
-    };
-    facet.corners.iter().map(of_corner).fold(f64::INFINITY, f64::min)
-}
-
-/// The s from −1 to 1 at which δ + s·u is shortest.
-fn nearest_time(offset: &Vector3, way: &Vector3) -> f64 {
-    least_at(offset.dot(way), way.norm_squared())
-}
-
-/// Where 2·s·slope + s²·curvature is least, s from −1 to 1.
-fn least_at(slope: f64, curvature: f64) -> f64 {
-    if curvature > 0.0 { (-slope / curvature).clamp(-1.0, 1.0) } else { 0.0 }
 }

@@ -41,10 +41,6 @@ impl Passages {
         self.last = Some(witness);
     }
 
-    pub(super) fn knows(&self, witness: &Witness) -> bool {
-        self.witnesses.contains_key(witness)
-    }
-
     /// No place on the way sees more than this.
     pub(super) fn clearness(&self) -> f64 {
         self.witnesses.values().map(|at| self.around(at)).fold(0.0, f64::max)

@@ -19,6 +19,7 @@ use super::gather::{
 };
 use super::pieces::{between_discs, to_facet};
 use super::pool::Passages;
+use super::track::Track;
 
 /// What the evidence can be on the way, at most.
 #[derive(Debug, Clone, Copy)]
@@ -112,7 +113,7 @@ fn between_noisy(a: &NoisyLeaf<'_>, b: &NoisyLeaf<'_>, drift: &Drift, most: f64)
     for on_b in b.surfels.iter() {
         let mean = &on_b.point.mean;
         let reach = least * (on_b.most_variance + a.ball.variance).sqrt();
-        if !a.ball.is_within(mean, reach + drift.in_any_direction(mean)) {
+        if !Track::of(mean, drift).gets_to(&a.ball, reach) {
             continue;
         }
         for on_a in a.surfels.iter() {
@@ -133,8 +134,8 @@ fn to_exact(
     let (surfels, whitenings, _) = noisy.whitened();
     for (surfel, whitening) in surfels.iter().zip(whitenings) {
         let mean = &surfel.point.mean;
-        let reach = least * surfel.most_variance.sqrt() + drift.in_any_direction(mean);
-        if !exact.ball.is_within(mean, reach) {
+        let reach = least * surfel.most_variance.sqrt();
+        if !Track::of(mean, drift).gets_to(&exact.ball, reach) {
             continue;
         }
         for facet in &exact.facets {
