@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     // A path asks about as many poses as a small batch.
     let scene = scene.refined_for(POSES, common.effort.refine)?;
     let object = object.refined_for(POSES, common.effort.refine)?;
-    let swept = query.sweep(scene.body.of_query(), object.body.of_query(), &path, arguments.tolerance)?;
+    let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;
     let text = if arguments.json {
         path_answer::json_line(&swept, [&scene.input, &object.input])?
     } else {

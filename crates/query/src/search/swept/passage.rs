@@ -163,9 +163,8 @@ pub(super) fn may_pierce(
     drift: &Drift,
 ) -> Option<f64> {
     let middle = disc.point.mean;
-    let keeps = |side: f64, facet: &Facet| {
-        gap_along(&middle, facet, false, drift, &(normal * side)) > 0.0
-    };
+    let keeps =
+        |side: f64, facet: &Facet| gap_along(&middle, facet, false, drift, &(normal * side)) > 0.0;
     let passes = facets.iter().filter(|facet| !keeps(1.0, facet) && !keeps(-1.0, facet));
     let off = passes.map(|facet| facet_keeps_off(&middle, facet, !is_a, drift));
     let off = off.fold(f64::INFINITY, f64::min);
