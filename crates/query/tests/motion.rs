@@ -269,7 +269,7 @@ fn answers_are_the_same_bits_on_any_number_of_threads() {
     assert_eq!(of(1), of(4));
 }
 
-/// Run it for the figures: `cargo test --release -p cloudtouch --test motion -- --ignored cost --nocapture`.
+/// Run it for the figures: `cargo test -p cloudtouch --test motion -- --ignored cost --nocapture`.
 #[test]
 #[ignore = "it only measures"]
 fn what_a_sweep_costs_beside_a_query() {
@@ -292,23 +292,19 @@ fn what_a_sweep_costs_beside_a_query() {
         let b = body(kinds[1], &object, 0.005, 0.001, 15);
         for (name, [from, to]) in &moves {
             let path = Path::linear(from, to).expect("two poses");
-            let middle = path.pose(0.5);
-            let one = least_time(|| drop(query().run(&a, &b, &middle)));
-            let end = least_time(|| drop(query().run(&a, &b, to)));
             let all = least_time(|| drop(query().sweep(&a, &b, &path, 0.01)));
             let swept = sweep(&a, &b, &path, 0.01);
-            let of_end = query().run(&a, &b, to).expect("a good pose").stats;
-            eprintln!(
-                "{kinds:?} {name}: sweep {all:.0} us, query {one:.0} us in the middle and {end:.0} us \
-                 at the end: {:.1} times; {} poses, {} stretches, {} nodes, {} leaf pairs (a query at the end: {}, {}), \
-                 bounds {:.3?}, free until {:.3}",
-                all / one.max(end),
+            let of_one = |i: u32| {
+                let pose = path.pose(0.05 * f64::from(i));
+                least_time(|| drop(query().run(&a, &b, &pose)))
+            };
+            let costliest = (0..=20).map(of_one).fold(0.0, f64::max);
+            println!(
+                "{kinds:?} {name}: {all:.0} us, {:.1} times the costliest query ({costliest:.0} us); \
+                 {} poses, {} stretches, bounds {:.3?}, free until {:.3}",
+                all / costliest,
                 swept.stats.poses,
                 swept.stats.stretches,
-                swept.stats.nodes_visited,
-                swept.stats.leaf_pairs,
-                of_end.nodes_visited,
-                of_end.leaf_pairs,
                 swept.bounds,
                 swept.certified_free_until,
             );
