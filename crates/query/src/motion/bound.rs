@@ -60,7 +60,7 @@ impl Drifting<'_> {
             return Ok(1.0);
         }
         let (a, b) = self.bodies;
-        Ok(query.run(a, b, &self.a_from_b)?.bounds[1])
+        Ok(query.run(a, b, &self.a_from_b)?.collision_probability)
     }
 }
 
