@@ -180,3 +180,84 @@ fn cross<'a>(
         _ => {}
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{PointCloud, TriangleMesh, Vector3};
+    use cloudtouch_noise::SensorModel;
+    use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+    use cloudtouch_testkit::{scene, surface};
+    use nalgebra::UnitQuaternion;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::body::Body;
+    use crate::classifier::Clock;
+    use crate::cloud::{Cloud, CloudSettings};
+    use crate::mesh::Mesh;
+    use crate::search::swept::greatest_depth;
+    use crate::search::{look_inside, search};
+
+    fn body(is_mesh: bool, shape: &TriangleMesh, std: f64, seed: u64) -> Body {
+        if is_mesh {
+            return Body::Mesh(Mesh::prepare(shape).unwrap());
+        }
+        let samples = surface::positions(&surface::sample_surface(shape, 160, seed));
+        let points = add_noise(&samples, NoiseKind::Gaussian, std, seed);
+        let mut settings = CloudSettings::new(SensorModel::Isotropic { std });
+        settings.tree.max_leaf_points = 12;
+        settings.tree.min_leaf_points = 4;
+        Body::Cloud(Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) })]
+
+        /// Each number by itself: where one is found wanting, another may hide it from a probability.
+        #[test]
+        fn no_pose_on_the_way_has_more_evidence_of_any_kind(
+            (mesh, shapes) in (0..3_usize, any::<[bool; 2]>()),
+            std in 0.0003_f64..0.004,
+            offset in prop::array::uniform3(-0.09..0.09_f64),
+            turn in -3.0..3.0_f64,
+            linear in prop::array::uniform3(-0.02..0.02_f64),
+            angular in prop::array::uniform3(-0.2..0.2_f64),
+            is_fine in any::<bool>(),
+            seed in any::<u64>(),
+        ) {
+            let kinds = [[false, false], [true, false], [false, true]][mesh];
+            let of = |is_ball: bool| match is_ball {
+                true => scene::sphere(0.05, 2),
+                false => scene::cuboid([0.1, 0.08, 0.04]),
+            };
+            let a = body(kinds[0], &of(shapes[0]), std, seed);
+            let b = body(kinds[1], &of(shapes[1]), std, !seed);
+            let pair = (BodyRef::from(&a), BodyRef::from(&b));
+            let file = Pose::from_translation_rpy(Vector3::from(offset), [turn, 0.3, 0.0]);
+            let local = pair.0.shape().local_from(&pair.1.shape(), &file);
+            // Small motions are bounded as tightly as they are told.
+            let scale = if is_fine { 0.1 } else { 1.0 };
+            let (linear, angular) = (Vector3::from(linear) * scale, Vector3::from(angular) * scale);
+            let pivot = Point3::new(0.03, 0.0, -0.05);
+            let drift = Drift::new(pivot, linear, angular);
+            let mut stats = Stats::default();
+            let reach = reach_of(pair, &local, &drift, |_, _| false, &mut stats).unwrap();
+            let depth = greatest_depth(pair, &local, &drift, |_| false, &mut stats);
+            prop_assert!(reach.is_complete);
+            for s in [-1.0, -0.7, -0.3, 0.0, 0.2, 0.6, 1.0] {
+                let turned = UnitQuaternion::new(angular * s);
+                let about = pivot.coords + linear * s - turned * pivot.coords;
+                let there = Pose::from_translation_rotation(about, turned).after(&local);
+                let found = search(pair, &there, |_, _| false, &mut stats).unwrap();
+                prop_assert!(found.deviations >= reach.deviations * (1.0 - 1e-9), "{s}");
+                let clearness = found.crossings.clearness();
+                prop_assert!(clearness <= reach.clearness * (1.0 + 1e-9) + 1e-9,
+                    "{clearness} above {} at {s}", reach.clearness);
+                let clock = Clock::new(std::time::Instant::now(), None);
+                let inside = look_inside(pair, &there, &clock).deepest;
+                let is_deeper = |d: f64| d > depth * (1.0 + 1e-9) && depth < 2.0 * MOST_DEVIATIONS;
+                prop_assert!(!inside.is_some_and(|inside| is_deeper(inside.deviations)), "{s}");
+            }
+        }
+    }
+}
