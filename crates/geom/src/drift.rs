@@ -50,7 +50,9 @@ impl Drift {
 
     /// How far along a unit vector a point gets from a place at most, either way, m.
     pub fn along(&self, direction: &Vector3, place: &Point3) -> f64 {
-        self.first_order(place).dot(direction).abs() + self.beyond_first_order(place, 0.0)
+        // What the arc adds is across the axis.
+        let across = direction.cross(&self.axis).norm();
+        self.first_order(place).dot(direction).abs() + across * self.beyond_first_order(place, 0.0)
     }
 
     /// How far in any direction, m.
@@ -73,7 +75,7 @@ impl Drift {
         self.first_order(middle).dot(direction).abs()
             + half_axes.tr_mul(&slope).abs().sum()
             + slope.norm() * around
-            + self.beyond_first_order(middle, radius)
+            + direction.cross(&self.axis).norm() * self.beyond_first_order(middle, radius)
     }
 
     /// By how much a direction that turns with the body gets from itself at most, as a length of the

@@ -44,11 +44,13 @@ impl Query {
     ///
     /// let slide = Path::linear(&at(0.0, 0.05), &at(0.1, 0.05))?;
     /// assert_eq!(query.sweep(&table, &plate, &slide, 0.01)?.certified_free_until, 1.0);
-    /// // Free at both ends, and at no sample in between if these are 10 cm apart.
-    /// let drop = Path::linear(&at(0.0, 0.05), &at(0.0, -0.05))?;
+    /// // Aslant through the table in one step: free at both ends.
+    /// let aslant = |z: f64| Pose::from_translation_rpy(Vector3::new(0.0, 0.0, z), [0.7, 0.0, 0.0]);
+    /// let drop = Path::linear(&aslant(0.05), &aslant(-0.2))?;
     /// let swept = query.sweep(&table, &plate, &drop, 0.01)?;
     /// let first = swept.first.expect("it goes through the table");
-    /// assert!((0.4..0.5).contains(&first.at.share) && swept.verdict == Verdict::InCollision);
+    /// // Its lower edge is at the table after 5 of 25 cm.
+    /// assert!((0.18..0.35).contains(&first.at.share) && swept.verdict == Verdict::InCollision);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
