@@ -2,7 +2,7 @@
 //!
 //! This is the innermost loop of every search: plain arrays and loops, which compile to vectors.
 
-use cloudtouch_geom::{Motion, Vector3};
+use cloudtouch_geom::{Drift, Matrix3, Motion, Point3, Vector3};
 
 use crate::Obb;
 use crate::node::NodeData;
@@ -35,6 +35,38 @@ impl MovedBox {
     }
 }
 
+impl MovedBox {
+    fn axis(&self, k: usize) -> Vector3 {
+        Vector3::from(self.axes[k])
+    }
+}
+
+/// What a drift takes off gaps and adds to spreads along an axis.
+#[derive(Debug, Clone, Copy, Default)]
+struct Loss {
+    /// How far the second box gets along the axis, m.
+    room: f64,
+    /// What its turn adds to its deviations there, and to its reach, m.
+    std: f64,
+    reach: f64,
+}
+
+impl Loss {
+    /// Along a unit vector in the frame of A.
+    fn of(drift: &Drift, axis: &Vector3, (b, moved): (&NodeData, &MovedBox)) -> Self {
+        let middle = Point3::from(moved.centre);
+        let axes: Matrix3 = moved.axes.into();
+        let half_axes = axes * Matrix3::from_diagonal(&b.obb.half_extents);
+        let around = b.bounds.shift + b.bounds.max_reach;
+        let turn = drift.turn_of(axis);
+        Self {
+            room: drift.along_of_box(axis, &middle, &half_axes, around),
+            std: turn * b.bounds.max_std,
+            reach: turn * b.bounds.max_reach,
+        }
+    }
+}
+
 #[inline]
 fn dot(a: &Array, b: &Array) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -50,15 +82,19 @@ pub(crate) struct Between<'a> {
     offset: [Array; 2],
     /// What is to be taken off every gap, m.
     slack: f64,
+    /// What a drift of B does along the axes of A and of B.
+    losses: [[Loss; 3]; 2],
+    drifts: bool,
 }
 
 impl<'a> Between<'a> {
-    /// `rounding` is what the pose may misplace a box by, m.
+    /// `rounding` is what the pose may misplace a box by, m; B may drift from where it is.
     #[inline]
     pub(crate) fn new(
         a: &'a NodeData,
         (b, moved): (&'a NodeData, &MovedBox),
         rounding: f64,
+        drift: Option<&Drift>,
     ) -> Self {
         let axes: &[Array; 3] = a.obb.axes.as_ref();
         let centre = &a.obb.centre;
@@ -76,7 +112,12 @@ impl<'a> Between<'a> {
             size += offset[0][i].abs();
         }
         let slack = a.bounds.shift + b.bounds.shift + rounding + 8.0 * f64::EPSILON * size;
-        Self { a, b, cosines, offset, slack }
+        let losses = drift.map_or_else(Default::default, |drift| {
+            let of = |axis: Vector3| Loss::of(drift, &axis, (b, moved));
+            let own = |k: usize| a.obb.axes.column(k).into_owned();
+            [[own(0), own(1), own(2)].map(of), [0, 1, 2].map(|k| of(moved.axis(k)))]
+        });
+        Self { a, b, cosines, offset, slack, losses, drifts: drift.is_some() }
     }
 
     /// Bounds by the six normals of faces.
@@ -86,17 +127,22 @@ impl<'a> Between<'a> {
         let turned = [0, 1, 2].map(|j| [c[0][j], c[1][j], c[2][j]]);
         let mut apart =
             Apart { deviations: 0.0, points: f64::NEG_INFINITY, surfaces: f64::NEG_INFINITY };
-        self.along_axes((self.a, self.b), (&self.offset[0], c), margin, &mut apart);
-        self.along_axes((self.b, self.a), (&self.offset[1], &turned), margin, &mut apart);
+        let none = [Loss::default(); 3];
+        let [of_a, of_b] = &self.losses;
+        self.along_axes((self.a, &none), (self.b, of_a), (&self.offset[0], c), margin, &mut apart);
+        let (a, b) = ((self.a, &none), (self.b, of_b));
+        self.along_axes(b, a, (&self.offset[1], &turned), margin, &mut apart);
         apart.deviations = apart.deviations.sqrt();
         apart
     }
 
-    /// Raises the bounds by the three axes of a node; its deviations are squared.
+    /// Raises the bounds by the three axes of a node; its deviations are squared. Of the two losses one
+    /// is none.
     #[inline]
     fn along_axes(
         &self,
-        (own, other): (&NodeData, &NodeData),
+        (own, own_loss): (&NodeData, &[Loss; 3]),
+        (other, other_loss): (&NodeData, &[Loss; 3]),
         (offset, cosines): (&Array, &[Array; 3]),
         margin: f64,
         apart: &mut Apart,
@@ -104,13 +150,17 @@ impl<'a> Between<'a> {
         for k in 0..3 {
             let [x, y, z] = [cosines[k][0].abs(), cosines[k][1].abs(), cosines[k][2].abs()];
             let along = |v: &Vector3| x * v.x + y * v.y + z * v.z;
+            let (own_loss, other_loss) = (&own_loss[k], &other_loss[k]);
             let points = offset[k].abs()
                 - own.obb.half_extents[k]
                 - along(&other.obb.half_extents)
-                - self.slack;
-            let reach = own.bounds.axis_reach[k] + along(&other.bounds.axis_reach);
-            let std = along(&other.bounds.axis_std).min(other.bounds.max_std);
-            let variance = own.bounds.axis_std[k] * own.bounds.axis_std[k] + std * std;
+                - (self.slack + own_loss.room + other_loss.room);
+            let reach = own.bounds.axis_reach[k]
+                + along(&other.bounds.axis_reach)
+                + (own_loss.reach + other_loss.reach);
+            let own_std = own.bounds.axis_std[k] + own_loss.std;
+            let std = (along(&other.bounds.axis_std) + other_loss.std).min(other.bounds.max_std);
+            let variance = own_std * own_std + std * std;
             let positive = (points - margin).max(0.0);
             // Nothing over nothing, of exact points that touch, is no bound: `max` passes over NaN.
             apart.deviations = apart.deviations.max(positive * positive / variance);
@@ -122,6 +172,10 @@ impl<'a> Between<'a> {
     /// Whether the boxes of the surfaces are apart along one of the nine directions across an edge of
     /// each.
     pub(crate) fn edges_part_surfaces(&self) -> bool {
+        if self.drifts {
+            // What a drift does across two edges is not known: not to tell is the safe side.
+            return false;
+        }
         let (r, t) = (&self.cosines, &self.offset[0]);
         let surface = |node: &NodeData| Array::from(node.obb.half_extents + node.bounds.axis_reach);
         let (half_a, half_b) = (surface(self.a), surface(self.b));

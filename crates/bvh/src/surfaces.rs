@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use cloudtouch_geom::{Motion, Pose};
+use cloudtouch_geom::{Drift, Motion, Pose};
 
 use crate::apart::{Apart, Between, MovedBox};
 use crate::node::NodeData;
@@ -34,6 +34,9 @@ pub struct Sought {
     pub margin: f64,
     /// Whether surfaces that may cross are looked for too.
     pub crossings: bool,
+    /// How the second tree moves about its pose, in the frame of the first: what is sought is sought
+    /// anywhere on the way. `None` where it keeps still.
+    pub drift: Option<Drift>,
 }
 
 /// Whether to go on after a pair of leaves.
@@ -72,7 +75,8 @@ pub struct SurfaceOutcome {
 /// Along a unit vector n across which two boxes are g apart and their points have standard deviations
 /// up to σ and τ, no two of these have less than (g − m)/√(σ² + τ²) deviations between them, m the
 /// margin: the bound is the largest over the normals of the faces. Gaps are reduced by the shifts of
-/// both nodes and by the rounding of the pose.
+/// both nodes, by the rounding of the pose, and by how far a drift takes the second box along n; its
+/// turn raises the deviations and the reach of the second.
 ///
 /// An empty tree has no pairs, and nothing was left out; it is for the caller to say what that means.
 ///
@@ -193,7 +197,7 @@ impl<'a> Pairs<'a> {
         outcome.nodes_visited += 1;
         let (of_a, of_b) = (&self.a.nodes[a as usize], &self.b.nodes[b as usize]);
         let moved = &self.moved[box_of_b as usize];
-        let between = Between::new(of_a, (of_b, moved), self.rounding);
+        let between = Between::new(of_a, (of_b, moved), self.rounding, self.sought.drift.as_ref());
         let apart = between.by_faces(self.sought.margin);
         let squared_size =
             || of_a.obb.half_extents.norm_squared().min(of_b.obb.half_extents.norm_squared());
@@ -244,9 +248,10 @@ impl<'a> Pairs<'a> {
     fn may_cross(&self, pair: &Candidate) -> bool {
         let (a, b) = self.nodes(pair);
         let moved = &self.moved[pair.box_of_b as usize];
+        let drift = self.sought.drift.as_ref();
         self.sought.crossings
             && pair.apart.surfaces < 0.0
-            && !Between::new(a, (b, moved), self.rounding).edges_part_surfaces()
+            && !Between::new(a, (b, moved), self.rounding, drift).edges_part_surfaces()
     }
 }
 

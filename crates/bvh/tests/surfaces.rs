@@ -10,7 +10,7 @@ use cloudtouch_bvh::{
     TreeSettings, visit_surfaces,
 };
 use cloudtouch_geom::{
-    Covariance, Motion, Point3, Pose, UncertainPoint, UnitVector3, Vector3, seed,
+    Covariance, Drift, Motion, Point3, Pose, UncertainPoint, UnitVector3, Vector3, seed,
 };
 use common::{bumpy_sheet, noisy};
 use proptest::prelude::*;
@@ -33,7 +33,7 @@ fn discs(stream: u64, count: usize) -> Vec<Primitive> {
 }
 
 fn sought(within: f64) -> Sought {
-    Sought { within, margin: 0.0, crossings: true }
+    Sought { within, margin: 0.0, crossings: true, drift: None }
 }
 
 type Pairs = BTreeSet<(NodeId, NodeId)>;
@@ -160,4 +160,60 @@ fn a_pose_that_is_not_finite_is_refused_and_an_empty_tree_has_no_pairs() {
     let error =
         visit_surfaces((&some, &some), &bad, sought(6.0), |_| SurfaceFlow::Stop).unwrap_err();
     assert!(matches!(error, TreeError::Pose { .. }));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+
+    /// What is left out of a search along a drift has as many deviations anywhere on the way, and
+    /// surfaces that meet there are visited.
+    #[test]
+    fn a_drift_leaves_out_nothing_that_comes_near_on_the_way(
+        streams in (0..1000_u64, 0..1000_u64),
+        offset in prop::array::uniform3(-0.6..0.6_f64),
+        linear in prop::array::uniform3(-0.2..0.2_f64),
+        yaw in -0.5..0.5_f64,
+        within in 0.5..8.0_f64,
+        s in -1.0..1.0_f64,
+    ) {
+        let (mut a, mut b) =
+            (small_leaves(discs(streams.0, 100)), small_leaves(discs(streams.1 + 1000, 80)));
+        let reach = 0.02;
+        for tree in [&mut a, &mut b] {
+            tree.set_extents(vec![Covariance::isotropic(reach * reach); tree.index_count()]).unwrap();
+        }
+        let pose = Pose::from_translation(Vector3::from(offset));
+        let (linear, angular) = (Vector3::from(linear), Vector3::z() * yaw);
+        let pivot = Point3::new(0.3, -0.2, 0.1);
+        let drift = Some(Drift::new(pivot, linear, angular));
+        let sought = Sought { drift, ..sought(within) };
+        let mut all = BTreeSet::new();
+        let outcome = visit_surfaces((&a, &b), &pose, sought, |pair| {
+            all.insert((pair.a, pair.b));
+            SurfaceFlow::Within(within)
+        }).unwrap();
+        let turn = Pose::from_translation_rpy(Vector3::zeros(), [0.0, 0.0, yaw * s]);
+        let moves = |place: Point3| {
+            pivot + linear * s + turn.transform_vector(&(place - pivot))
+        };
+        let point = |tree: &Tree, i: usize| match tree.primitive(i) {
+            Some(Primitive::Point { point, .. }) => *point,
+            _ => unreachable!(),
+        };
+        for i in 0..a.index_count() {
+            for j in 0..b.index_count() {
+                if all.contains(&(a.leaf_of(i).unwrap(), b.leaf_of(j).unwrap())) {
+                    continue;
+                }
+                let (p, q) = (point(&a, i), Motion::from(&pose).uncertain_point(&point(&b, j)));
+                let turned = Motion::from(&turn).covariance(&q.covariance);
+                let joint = p.covariance.sum(&turned).matrix();
+                let offset = moves(q.mean) - p.mean;
+                let squared = offset.dot(&(joint.try_inverse().unwrap() * offset));
+                prop_assert!(squared.sqrt() >= outcome.deviations * (1.0 - 1e-9));
+                prop_assert!(squared.sqrt() >= within * (1.0 - 1e-9));
+                prop_assert!(offset.norm() > 2.0 * reach);
+            }
+        }
+    }
 }

@@ -45,10 +45,15 @@ pub(crate) fn json_error_line(id: &str, error: &str) -> Result<String> {
     Ok(serde_json::to_string(&ErrorLine { id, error })?)
 }
 
+/// A pose as rows.
+pub(crate) fn matrix(pose: &Pose) -> [[f64; 4]; 4] {
+    let matrix = pose.isometry().to_homogeneous();
+    std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]))
+}
+
 impl Answer<'_> {
     pub(crate) fn json_line(&self, id: &str, [scene, object]: [&Input; 2]) -> Result<String> {
-        let matrix = self.pose.isometry().to_homogeneous();
-        let pose = std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]));
+        let pose = matrix(self.pose);
         let Self { report, placement, details, nearness, .. } = self;
         let line = Line { id, report, details, placement, pose, scene, object };
         let Some(nearness) = nearness else { return Ok(serde_json::to_string(&line)?) };

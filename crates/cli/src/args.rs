@@ -35,6 +35,7 @@ Examples:
   cloudtouch demo
   cloudtouch info scan.pcd
   cloudtouch query scan.pcd gripper.stl --sensor kinect --translate 0.4,0,0.9
+  cloudtouch path scan.pcd gripper.stl --poses approach.csv
   cloudtouch batch cases.json --jsonl answers.jsonl
 
 Exit codes: 0 done, 1 error, 2 wrong usage; query --exit-code tells the verdict.";
@@ -55,6 +56,7 @@ impl Arguments {
     pub(crate) fn check(&self) -> Result<(), String> {
         match &self.command {
             Command::Query(arguments) => arguments.check(),
+            Command::Path(arguments) => arguments.check(),
             Command::Batch(arguments) => arguments.common.check(&[]),
             Command::Info(_) | Command::Demo(_) | Command::Settings => Ok(()),
         }
@@ -79,6 +81,8 @@ impl Arguments {
 pub(crate) enum Command {
     /// One object in one scene at one pose
     Query(Box<QueryArguments>),
+    /// One object along a path in one scene; nothing between its poses is missed
+    Path(Box<PathArguments>),
     /// Many poses from a case file; scenes and objects are prepared once
     Batch(Box<BatchArguments>),
     /// What a cloud or mesh file holds, and which sensor suits it
@@ -136,6 +140,39 @@ impl QueryArguments {
             return Err("--pose-std has no effect in the paper's mode: leave it out".to_owned());
         }
         self.common.check(&of_the_paper)
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = SENSORS)]
+pub(crate) struct PathArguments {
+    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .stl .obj)
+    pub scene: PathBuf,
+    /// Cloud or mesh of the object
+    pub object: PathBuf,
+    /// Poses of the object in the scene, m: a JSON list of 4x4 row-major matrices, or lines of
+    /// x,y,z,qw,qx,qy,qz
+    #[arg(long, value_name = "PATH.json|csv")]
+    pub poses: PathBuf,
+    /// How finely the path is looked at, as a share of it
+    #[arg(long, value_name = "SHARE", value_parser = numbers::finite, default_value_t = 0.01)]
+    pub tolerance: f64,
+    /// Print the answer as one JSON object
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
+    /// Exit with 0 free, 10 uncertain, 20 in collision, 30 undecided
+    #[arg(long, help_heading = "Output")]
+    pub exit_code: bool,
+    #[command(flatten)]
+    pub common: CommonArguments,
+}
+
+impl PathArguments {
+    fn check(&self) -> Result<(), String> {
+        if self.common.mode == ModeName::Paper {
+            return Err("path is of the calibrated mode: leave --mode out".to_owned());
+        }
+        self.common.check(&[])
     }
 }
 

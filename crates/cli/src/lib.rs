@@ -2,4 +2,5 @@
 
 pub mod case_file;
 pub mod numbers;
+pub mod path_text;
 pub mod pose_text;

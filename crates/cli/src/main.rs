@@ -9,6 +9,8 @@ mod load;
 mod margin;
 mod ordered;
 mod output;
+mod path_answer;
+mod path_file;
 mod per_point;
 mod picture;
 mod pose_file;
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Query(arguments) => commands::query::run(arguments, shows_work),
         Command::Batch(arguments) => commands::batch::run(arguments),
+        Command::Path(arguments) => commands::path::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Demo(arguments) => commands::demo::run(arguments, shows_work),
         Command::Settings => commands::settings::run(),

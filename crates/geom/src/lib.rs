@@ -5,6 +5,7 @@ mod bounding_box;
 mod cloud;
 mod covariance;
 mod covariance_error;
+mod drift;
 mod jacobi;
 #[cfg(feature = "mesh")]
 mod mesh;
@@ -24,6 +25,7 @@ pub use bounding_box::bounding_box;
 pub use cloud::PointCloud;
 pub use covariance::Covariance;
 pub use covariance_error::CovarianceError;
+pub use drift::Drift;
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshError, TriangleMesh};
 pub use motion::Motion;

@@ -12,6 +12,7 @@ mod filter;
 mod judge;
 mod mesh;
 mod mode;
+mod motion;
 pub mod paper;
 mod placement;
 mod query;
@@ -37,6 +38,7 @@ pub use judge::{
 };
 pub use mesh::Mesh;
 pub use mode::Mode;
+pub use motion::{AlongPath, Path, Reached, SweepStats, Swept};
 pub use paper::{
     PaperBodyRef, PaperCloud, PaperCloudSettings, PaperModel, PaperNoise, PaperQuery,
     PaperSettings, Pooling,

@@ -3,5 +3,6 @@
 pub(crate) mod batch;
 pub(crate) mod demo;
 pub(crate) mod info;
+pub(crate) mod path;
 pub(crate) mod query;
 pub(crate) mod settings;

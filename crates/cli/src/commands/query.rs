@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context as _, Result, bail};
 use cloudtouch::geom::{Pose, Vector3};
-use cloudtouch::{PaperQuery, PoseDistribution, Query, Verdict};
+use cloudtouch::{PaperQuery, PoseDistribution, Query};
 use cloudtouch_cli::numbers::{PoseStd, Triple};
 use cloudtouch_io::read_colors_within;
 use nalgebra::UnitQuaternion;
@@ -108,7 +108,7 @@ fn run_by<P: body::Path>(
         parts.join("\n")
     };
     print::to_stdout(&format!("{text}\n"))?;
-    Ok(if arguments.exit_code { exit_code(report.verdict) } else { ExitCode::SUCCESS })
+    Ok(if arguments.exit_code { print::exit_code(report.verdict) } else { ExitCode::SUCCESS })
 }
 
 /// Gives each row of the scene its own κ, where a file says so.
@@ -133,13 +133,4 @@ fn pose(arguments: &PoseArguments) -> Result<Pose> {
     let offset = arguments.translate.map_or(Vector3::zeros(), |Triple(offset)| offset.into());
     let turn = arguments.turn().map_or(UnitQuaternion::identity(), |turn| turn.0);
     Ok(Pose::from_translation_rotation(offset, turn))
-}
-
-fn exit_code(verdict: Verdict) -> ExitCode {
-    ExitCode::from(match verdict {
-        Verdict::Free => 0,
-        Verdict::Uncertain => 10,
-        Verdict::InCollision => 20,
-        Verdict::Undecided => 30,
-    })
 }

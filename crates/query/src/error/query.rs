@@ -142,6 +142,40 @@ pub enum QueryError {
         /// What was given.
         value: f64,
     },
+    /// A path has too few poses to move along.
+    #[error("a path through {count} poses: give at least two, where it begins and where it ends")]
+    TooFewPoses {
+        /// How many there are.
+        count: usize,
+    },
+    /// A pose of a path has an entry as in [`Self::Pose`].
+    #[error(
+        "pose {index} of the path contains {}: every entry must be finite, and at most 1e10 m",
+        number(*value)
+    )]
+    PathPose {
+        /// Which, from 0.
+        index: usize,
+        /// What was found.
+        value: f64,
+    },
+    /// All poses of a path are the same.
+    #[error(
+        "all {count} poses of the path are the same: ask for that one pose, or give another end"
+    )]
+    NoMotion {
+        /// How many there are.
+        count: usize,
+    },
+    /// The tolerance of a sweep is no share of the path.
+    #[error(
+        "the tolerance is {}: give a share of the path, above 0 and below 1",
+        number(*value)
+    )]
+    Tolerance {
+        /// What was given.
+        value: f64,
+    },
     /// A mesh cannot be sampled as densely as the cloud that it faces.
     #[error(transparent)]
     Subdivision(#[from] SubdivisionError),

@@ -1,7 +1,9 @@
 //! The nearest place on a mesh, and how far it is.
 
 use cloudtouch_geom::Point3;
+use parry3d_f64::math;
 use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
+use parry3d_f64::shape::Segment;
 
 use super::prepare::{Mesh, vector};
 use super::side::Side;
@@ -51,6 +53,20 @@ impl Mesh {
             self.surface().project_local_point_with_max_dist(vector(p), false, distance).is_some()
         };
         self.distance_to_box(local) >= distance || !(self.encloses(local) || near(local))
+    }
+
+    /// Whether every place within a distance (m) of a straight way, in the local frame, is outside.
+    pub(crate) fn is_clear_of_way(&self, [from, to]: [&Point3; 2], distance: f64) -> bool {
+        /// Distances end within a few times 1e-7 of the size.
+        const ROUNDING: f64 = 1e-6;
+        let length = (to - from).norm();
+        if length == 0.0 || self.encloses(from) {
+            return false;
+        }
+        let (way, here) = (Segment::new(vector(from), vector(to)), math::Pose::IDENTITY);
+        let size = length + self.surface().local_aabb().extents().length();
+        parry3d_f64::query::distance(&here, &way, &here, self.surface())
+            .is_ok_and(|apart| apart.distance > distance + ROUNDING * size)
     }
 
     /// Whether a place in the local frame is inside. A bucket surrounds more than three quarters of

@@ -41,8 +41,20 @@ impl Query {
         Self { settings: QuerySettings { detail, ..self.settings } }
     }
 
-    pub(super) fn clock(&self, start: Instant) -> Clock {
+    pub(crate) fn clock(&self, start: Instant) -> Clock {
         Clock::new(start, self.settings.deadline)
+    }
+
+    pub(crate) fn terms(&self) -> Terms {
+        Terms {
+            mode: Mode::Calibrated,
+            seed: 0,
+            accept: self.settings.accept,
+            reject: self.settings.reject,
+            safeguards: self.settings.safeguards,
+            max_contacts: self.settings.max_contacts,
+            closeness: Closeness::default(),
+        }
     }
 
     fn task(&self, start: Instant) -> Task<'_> {
@@ -67,16 +79,7 @@ impl Query {
         a_from_b: &Pose,
     ) -> Result<Report, QueryError> {
         let (a, b) = (a.into(), b.into());
-        let terms = Terms {
-            mode: Mode::Calibrated,
-            seed: 0,
-            accept: self.settings.accept,
-            reject: self.settings.reject,
-            safeguards: self.settings.safeguards,
-            max_contacts: self.settings.max_contacts,
-            closeness: Closeness::default(),
-        };
-        terms.ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
+        self.terms().ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
             estimate((a, b), local, &self.task(start), evidence)
         })
     }

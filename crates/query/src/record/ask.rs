@@ -55,8 +55,7 @@ impl Terms {
         let unseen = unseen(a, b, &local);
         let warnings = doubts((a, b), &local, unseen.as_ref(), &self.safeguards);
         let doubt = if estimate.probability <= self.accept {
-            let enclosed = || is_enclosed(a, b, &local).then_some(Undecided::Enclosed);
-            self.doubt(&warnings).or_else(enclosed)
+            self.doubt((a, b), &local, &warnings)
         } else {
             None
         };
@@ -83,11 +82,28 @@ impl Terms {
         Ok(report)
     }
 
-    /// The gravest reason not to believe what would read as free.
-    fn doubt(&self, warnings: &[Warning]) -> Option<Undecided> {
+    /// The gravest reason not to believe that a pair is free at a pose, if it should read so.
+    pub(crate) fn doubt_at(
+        &self,
+        (a, b): (Shape<'_>, Shape<'_>),
+        a_from_b: &Pose,
+    ) -> Option<Undecided> {
+        let local = a.local_from(&b, a_from_b);
+        let unseen = unseen(a, b, &local);
+        let warnings = doubts((a, b), &local, unseen.as_ref(), &self.safeguards);
+        self.doubt((a, b), &local, &warnings)
+    }
+
+    fn doubt(
+        &self,
+        (a, b): (Shape<'_>, Shape<'_>),
+        local: &Pose,
+        warnings: &[Warning],
+    ) -> Option<Undecided> {
         let counts =
             |reason: &Undecided| *reason != Undecided::Units || self.safeguards.doubt_units;
-        warnings.iter().filter_map(Warning::undecides).find(counts)
+        let enclosed = || is_enclosed(a, b, local).then_some(Undecided::Enclosed);
+        warnings.iter().filter_map(Warning::undecides).find(counts).or_else(enclosed)
     }
 
     fn report(

@@ -36,7 +36,7 @@ pub(crate) fn least_beyond<'a>(
     let mut least = MOST_DEVIATIONS;
     let motion = Motion::from(a_from_b);
     let trees = (a.shape().tree(), b.shape().tree());
-    let sought = Sought { within: MOST_DEVIATIONS, margin, crossings: false };
+    let sought = Sought { within: MOST_DEVIATIONS, margin, crossings: false, drift: None };
     let mut leaves: (BTreeMap<NodeId, Leaf<'a>>, BTreeMap<NodeId, Leaf<'a>>) = Default::default();
     let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
         stats.leaf_pairs += 1;

@@ -19,7 +19,7 @@ const WEIGHT_SPACINGS: f64 = 0.5;
 /// bends, and it ends.
 const BEND_SPACINGS: f64 = 0.25;
 /// No crossing is clearer than this many standard deviations.
-const CLEAREST: f64 = 6.0;
+pub(super) const CLEAREST: f64 = 6.0;
 
 /// A place where a piece of one surface passes through a piece of the other.
 #[derive(Debug, Clone, Copy)]
@@ -45,8 +45,7 @@ pub(crate) struct Crossing {
 impl Crossing {
     /// Of two ends at these heights, of unequal sign, known so well.
     fn of(heights: [f64; 2], stds: [f64; 2], weight: f64, spacing: f64) -> Self {
-        let bend = BEND_SPACINGS * spacing;
-        let clear_of = |k: usize| heights[k].abs() / stds[k].hypot(bend).max(f64::MIN_POSITIVE);
+        let clear_of = |k: usize| heights[k].abs() / known_to(stds[k], spacing);
         let nearer = usize::from(heights[1].abs() < heights[0].abs());
         // Twice the excess over one half: none on the surface, certain far from it.
         let sure = |k: usize| 1.0 - 2.0 * normal::below_zero(heights[k].abs(), stds[k]);
@@ -72,7 +71,12 @@ pub(super) fn of_mesh(disc: &Surfel, axis: Vector3, through: &Through) -> Crossi
     Crossing { place: through.place, axis, ..of_pair }
 }
 
-fn weight_at(spacings_off: f64) -> f64 {
+/// How well the height of an end is known, m, given its standard deviation and the spacing there.
+pub(super) fn known_to(std: f64, spacing: f64) -> f64 {
+    std.hypot(BEND_SPACINGS * spacing).max(f64::MIN_POSITIVE)
+}
+
+pub(super) fn weight_at(spacings_off: f64) -> f64 {
     (-0.5 * (spacings_off / WEIGHT_SPACINGS).powi(2)).exp()
 }
 

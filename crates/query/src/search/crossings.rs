@@ -10,10 +10,10 @@ use super::crossing::Crossing;
 
 /// Crossings within so many spacings of one another are at one place: what adds up there does not
 /// grow with the area of contact.
-const PLACE_SPACINGS: f64 = 3.0;
+pub(super) const PLACE_SPACINGS: f64 = 3.0;
 /// Clearness, in standard deviations, that a crossing seen from one side alone brings without any
 /// seen from the other.
-const ONE_SIDED: f64 = 0.25;
+pub(super) const ONE_SIDED: f64 = 0.25;
 
 /// A piece of surface that passes through the other body: an edge, or the disc about a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,7 +34,7 @@ impl Witness {
 
     /// Whether it says that the surface of A is on both sides of that of B: an edge of A does, and a
     /// disc of B that a mesh passes.
-    fn is_of_a(&self) -> bool {
+    pub(super) fn is_of_a(&self) -> bool {
         let is_disc = self.points[0] == self.points[1];
         self.is_a != is_disc
     }
@@ -140,6 +140,11 @@ fn together(others: impl Iterator<Item = Heard>, at: &Heard) -> f64 {
             sums[1] += other.clearness[1];
         }
     }
+    by_both_sides(sums)
+}
+
+/// Clearness given that of either side, each with [`ONE_SIDED`] on top.
+pub(super) fn by_both_sides(sums: [f64; 2]) -> f64 {
     2.0 * ((sums[0] * sums[1]).sqrt() - ONE_SIDED)
 }
 

@@ -44,7 +44,7 @@ pub(super) fn add_edges_through_discs(
     // Taken out, for the edges are borrowed while probabilities are raised.
     let mut of_ends = std::mem::take(&mut of_edges.crossing);
     for edge in of_edges.edges() {
-        if !slab.may_hold(&edge.ends) {
+        if !slab.may_hold(&edge.ends, 0.0) {
             continue;
         }
         let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);

@@ -50,7 +50,7 @@ pub(crate) struct NoisyLeaf<'a> {
 /// Between which heights along a direction all discs of a leaf lie, m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slab {
-    direction: Vector3,
+    pub direction: Vector3,
     low: f64,
     high: f64,
 }
@@ -205,10 +205,10 @@ impl Slab {
         self.low - distance <= height && height <= self.high + distance
     }
 
-    /// Whether some place between two ends may be on a disc.
-    pub(super) fn may_hold(&self, ends: &[Point3; 2]) -> bool {
+    /// Whether some place between two ends may be so near to the height of a disc, m.
+    pub(super) fn may_hold(&self, ends: &[Point3; 2], distance: f64) -> bool {
         let [from, to] = ends.map(|end| end.coords.dot(&self.direction));
-        from.max(to) >= self.low && from.min(to) <= self.high
+        from.max(to) + distance >= self.low && from.min(to) - distance <= self.high
     }
 }
 

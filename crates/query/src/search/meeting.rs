@@ -88,7 +88,7 @@ impl Meeting {
 
 /// Σ⁻¹v by cofactors, which round evenly for discs of any size; `None` where numbers end. What is
 /// exact counts as known to [`LEAST_STD`].
-fn solve(sigma: &Matrix3, v: &Vector3) -> Option<Vector3> {
+pub(super) fn solve(sigma: &Matrix3, v: &Vector3) -> Option<Vector3> {
     let sigma = sigma + Matrix3::identity() * LEAST_STD.powi(2);
     let [x, y, z] = [0, 1, 2].map(|k| sigma.column(k).into_owned());
     let (yz, zx, xy) = (y.cross(&z), z.cross(&x), x.cross(&y));

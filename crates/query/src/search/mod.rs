@@ -14,6 +14,7 @@ mod leaf;
 mod meeting;
 mod nearest;
 mod run;
+mod swept;
 mod through_mesh;
 
 pub(crate) use beyond::least_beyond;
@@ -22,3 +23,4 @@ pub(crate) use inside::{Inside, look_inside};
 pub(crate) use leaf::{Leaf, NoisyLeaf};
 pub(crate) use meeting::probability_at;
 pub(crate) use run::{Finding, Found, search};
+pub(crate) use swept::{greatest_depth, reach_of};

@@ -63,7 +63,7 @@ pub(crate) fn search<'a>(
         Found { deviations: MOST_DEVIATIONS, at_least: f64::INFINITY, ..Found::default() };
     let motion = Motion::from(a_from_b);
     let trees = (a.shape().tree(), b.shape().tree());
-    let sought = Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: true };
+    let sought = Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: true, drift: None };
     let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), &motion, &pair, stats);
@@ -145,7 +145,7 @@ fn cross<'a>(
     }
 }
 
-fn load_edges<'a>(
+pub(super) fn load_edges<'a>(
     leaf: &mut NoisyLeaf<'a>,
     body: BodyRef<'a>,
     id: NodeId,
@@ -157,7 +157,7 @@ fn load_edges<'a>(
 }
 
 /// The triangles of a mesh within a distance of a place in the frame of A.
-fn facets_around(
+pub(super) fn facets_around(
     body: BodyRef<'_>,
     a_from_mesh: Option<&Motion>,
     place: &Point3,

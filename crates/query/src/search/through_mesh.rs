@@ -39,27 +39,13 @@ impl Outline {
         let mut all = Through { above: 0.0, below: 0.0, off: f64::INFINITY, place: self.middle };
         for facet in facets {
             let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
-            // Most facets about a disc are on one side of the cylinder over it.
-            let is_aside = |k: usize| {
-                corners.iter().all(|c| c[k] > self.radius)
-                    || corners.iter().all(|c| c[k] < -self.radius)
-            };
-            if (0..3).any(is_aside) {
+            if self.is_aside(&corners) {
                 continue;
             }
-            let heights = |all: &mut Through, z: f64| {
+            self.visit_heights(facet, &corners, |z| {
                 all.above = all.above.max(z.min(self.radius));
                 all.below = all.below.max((-z).min(self.radius));
-            };
-            for k in 0..3 {
-                for z in self.ends_within(&corners[k], &corners[(k + 1) % 3]).into_iter().flatten()
-                {
-                    heights(&mut all, z);
-                }
-            }
-            for z in self.steepest(facet, &corners).into_iter().flatten() {
-                heights(&mut all, z);
-            }
+            });
             if let Some(place) = passes_nearest(&corners) {
                 let off = place.norm();
                 if off < all.off && off <= self.radius {
@@ -70,6 +56,39 @@ impl Outline {
             }
         }
         all
+    }
+
+    /// Between which heights over the disc these facets are, m; `None` where they are all aside.
+    pub(super) fn heights<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Option<[f64; 2]> {
+        let mut between = None;
+        for facet in facets {
+            let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
+            if self.is_aside(&corners) {
+                continue;
+            }
+            self.visit_heights(facet, &corners, |z| {
+                let [low, high] = between.unwrap_or([z; 2]);
+                between = Some([z.min(low), z.max(high)]);
+            });
+        }
+        between
+    }
+
+    /// Most facets about a disc are on one side of the cylinder over it.
+    fn is_aside(&self, corners: &[Vector3; 3]) -> bool {
+        (0..3).any(|k| {
+            corners.iter().all(|c| c[k] > self.radius)
+                || corners.iter().all(|c| c[k] < -self.radius)
+        })
+    }
+
+    /// The heights that bound a facet within the cylinder.
+    fn visit_heights(&self, facet: &Facet, corners: &[Vector3; 3], mut visit: impl FnMut(f64)) {
+        for k in 0..3 {
+            let ends = self.ends_within(&corners[k], &corners[(k + 1) % 3]);
+            ends.into_iter().flatten().for_each(&mut visit);
+        }
+        self.steepest(facet, corners).into_iter().flatten().for_each(visit);
     }
 
     /// The components of a vector across the normal and along it.

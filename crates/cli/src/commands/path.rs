@@ -1,0 +1,39 @@
+//! `cloudtouch path`: one object along a path in one scene.
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use cloudtouch::{Cloud, Query};
+
+use crate::args::PathArguments;
+use crate::body::Body;
+use crate::load::{self, Role};
+use crate::{path_answer, path_file, print, unused};
+
+pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
+    let common = &arguments.common;
+    let query = Query::new(common.query_settings())?;
+    let inputs = [&arguments.scene, &arguments.object].into_iter().chain(&common.robot);
+    inputs.into_iter().try_for_each(|path| load::check(path))?;
+    let path = path_file::read(&arguments.poses)?;
+    let object_sensor = common.object_sensor.unwrap_or(common.sensor);
+    let scene =
+        load::bodies::<Cloud>(&[arguments.scene.as_path()], Role::Scene, common.sensor, common)?;
+    let object = load::body::<Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
+    let is_mesh = [&scene, &object].map(|loaded| matches!(loaded.body, Body::Mesh(_)));
+    unused::check(common, &is_mesh)?;
+    // A path asks about as many poses as a small batch.
+    let scene = scene.refined_for(POSES, common.effort.refine)?;
+    let object = object.refined_for(POSES, common.effort.refine)?;
+    let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;
+    let text = if arguments.json {
+        path_answer::json_line(&swept, [&scene.input, &object.input])?
+    } else {
+        let bodies = [print::body("scene", &scene), print::body("object", &object)];
+        format!("{}\n{}", bodies.join("\n"), path_answer::text(&swept))
+    };
+    print::to_stdout(&format!("{text}\n"))?;
+    Ok(if arguments.exit_code { print::exit_code(swept.verdict) } else { ExitCode::SUCCESS })
+}
+
+const POSES: usize = 10;

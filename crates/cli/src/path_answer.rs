@@ -1,0 +1,122 @@
+//! What is known along a path, for programs and for people.
+
+use anyhow::Result;
+use cloudtouch::geom::Pose;
+use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Verdict};
+use serde::Serialize;
+
+use crate::answer::matrix;
+use crate::load::Input;
+use crate::print::probability;
+
+#[derive(Serialize)]
+struct Line<'a> {
+    max_probability: f64,
+    bounds: [f64; 2],
+    verdict: Verdict,
+    most_probable: Place<'a>,
+    first: Option<First<'a>>,
+    certified_free_until: f64,
+    stats: SweepStats,
+    scene: &'a Input,
+    object: &'a Input,
+}
+
+#[derive(Serialize)]
+struct First<'a> {
+    #[serde(flatten)]
+    at: Place<'a>,
+    not_before: f64,
+}
+
+#[derive(Serialize)]
+struct Place<'a> {
+    segment: usize,
+    t: f64,
+    share: f64,
+    pose: [[f64; 4]; 4],
+    probability: f64,
+    contacts: &'a [Contact],
+}
+
+impl<'a> From<&'a AlongPath> for Place<'a> {
+    fn from(at: &'a AlongPath) -> Self {
+        Self {
+            segment: at.segment,
+            t: at.t,
+            share: at.share,
+            pose: matrix(&at.pose),
+            probability: at.report.collision_probability,
+            contacts: &at.report.contacts,
+        }
+    }
+}
+
+pub(crate) fn json_line(swept: &Swept, [scene, object]: [&Input; 2]) -> Result<String> {
+    let line = Line {
+        max_probability: swept.most_probable.report.collision_probability,
+        bounds: swept.bounds,
+        verdict: swept.verdict,
+        most_probable: (&swept.most_probable).into(),
+        first: swept
+            .first
+            .as_ref()
+            .map(|first| First { at: (&first.at).into(), not_before: first.not_before }),
+        certified_free_until: swept.certified_free_until,
+        stats: swept.stats,
+        scene,
+        object,
+    };
+    Ok(serde_json::to_string(&line)?)
+}
+
+/// The same in a few lines.
+pub(crate) fn text(swept: &Swept) -> String {
+    let [low, high] = swept.bounds.map(probability);
+    let best = &swept.most_probable;
+    let mut lines = vec![
+        format!(
+            "largest probability    {}   (within {low} .. {high})",
+            probability(best.report.collision_probability)
+        ),
+        format!("                       at {}", place(best)),
+        format!("verdict                {}", swept.verdict),
+        format!("free for certain       until {} of the path", percent(swept.certified_free_until)),
+    ];
+    if let Some(first) = &swept.first {
+        lines.push(format!("in collision from      {}", place(&first.at)));
+        lines.push(format!(
+            "                       not before {} of the path",
+            percent(first.not_before)
+        ));
+        for contact in first.at.report.contacts.iter().take(1) {
+            let p = contact.point;
+            lines.push(format!("first contact          {:.3} {:.3} {:.3} m", p.x, p.y, p.z));
+        }
+    }
+    let SweepStats { poses, stretches, query_us, .. } = swept.stats;
+    lines.push(format!(
+        "work                   {poses} poses and {stretches} stretches in {:.1} ms",
+        1e-3 * query_us as f64
+    ));
+    lines.join("\n")
+}
+
+fn place(at: &AlongPath) -> String {
+    let origin = origin(&at.pose);
+    format!(
+        "segment {}, t = {:.3} ({} of the path), origin {origin}",
+        at.segment,
+        at.t,
+        percent(at.share)
+    )
+}
+
+fn origin(pose: &Pose) -> String {
+    let t = pose.translation();
+    format!("{:.3} {:.3} {:.3} m", t.x, t.y, t.z)
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}

@@ -1,0 +1,97 @@
+//! The poses of a path in a text: a JSON list of matrices, or a table of places and quaternions.
+
+use anyhow::{Context as _, Result, bail};
+use cloudtouch::geom::{Pose, Vector3};
+use nalgebra::Matrix4;
+
+/// No message quotes more of a word.
+const EXCERPT: usize = 40;
+
+/// Poses, object to scene, in metres: JSON where the text begins with a bracket, a list of 4×4
+/// row-major matrices; else a table with a pose in each line, `x,y,z,qw,qx,qy,qz`, with or without
+/// these names in its first line.
+///
+/// # Errors
+/// Names the pose, from 0, or the line, from 1, that is none.
+pub fn parse(text: &str) -> Result<Vec<Pose>> {
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    if text.starts_with('[') { matrices(text) } else { table(text) }
+}
+
+fn matrices(text: &str) -> Result<Vec<Pose>> {
+    let all: Vec<[[f64; 4]; 4]> = serde_json::from_str(text)
+        .context("the path is not a list of poses, each four rows of four numbers")?;
+    let pose = |(index, rows): (usize, [[f64; 4]; 4])| {
+        let matrix = Matrix4::from_row_slice(rows.as_flattened());
+        Pose::try_from_matrix(&matrix).with_context(|| format!("pose {index} of the path"))
+    };
+    all.into_iter().enumerate().map(pose).collect()
+}
+
+fn table(text: &str) -> Result<Vec<Pose>> {
+    let mut poses = Vec::new();
+    for (line, content) in text.lines().enumerate() {
+        let content = content.trim();
+        let is_header = line == 0 && content.starts_with(|c: char| c.is_alphabetic() || c == '"');
+        if content.is_empty() || content.starts_with('#') || is_header {
+            continue;
+        }
+        poses.push(row(content).with_context(|| format!("line {} of the path", line + 1))?);
+    }
+    Ok(poses)
+}
+
+fn row(content: &str) -> Result<Pose> {
+    let number = |word: &str| -> Result<f64> {
+        let word = word.trim();
+        match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => {
+                bail!("`{}` is not a finite number", word.chars().take(EXCERPT).collect::<String>())
+            }
+        }
+    };
+    let numbers = content.split(',').map(number).collect::<Result<Vec<f64>>>()?;
+    let Ok([x, y, z, w, i, j, k]) = <[f64; 7]>::try_from(numbers) else {
+        bail!("write seven numbers, x,y,z,qw,qx,qy,qz: metres and a quaternion");
+    };
+    Ok(Pose::try_from_quaternion(Vector3::new(x, y, z), [w, i, j, k])?)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_of_matrices_and_a_table_say_the_same() {
+        let json = "[[[1,0,0,0.5],[0,-1,0,0],[0,0,-1,0.25],[0,0,0,1]],
+                     [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]";
+        let plain = "0.5,0,0.25,0,1,0,0\n0, 0, 0, 1, 0, 0, 0\n";
+        let headed = format!("x,y,z,qw,qx,qy,qz\n# a half turn first\n{plain}");
+        let expected = parse(json).unwrap();
+        for text in [plain, &headed] {
+            let found = parse(text).unwrap();
+            assert_eq!(found.len(), 2);
+            for (p, q) in found.iter().zip(&expected) {
+                assert!(
+                    (p.isometry().to_homogeneous() - q.isometry().to_homogeneous()).norm() < 1e-12
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn messages_say_which_pose_and_what_to_write() {
+        for (text, part) in [
+            ("[[[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]", "pose 0 of the path"),
+            ("[[1,0,0,0]]", "each four rows of four numbers"),
+            ("0,0,0,1,0,0,0\n0,0,0,1,0,0", "line 2 of the path: write seven numbers"),
+            ("0,0,nan,1,0,0,0", "line 1 of the path: `nan` is not a finite number"),
+            ("0,0,0,2,0,0,0", "line 1 of the path: the quaternion"),
+        ] {
+            let error = format!("{:#}", parse(text).unwrap_err());
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

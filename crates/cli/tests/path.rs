@@ -1,0 +1,84 @@
+//! `cloudtouch path`: a box moved over the floor and through it.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use support::{Inputs, Run};
+
+/// Heights of the box along a path, at a place away from the rows of the floor.
+fn csv(heights: &[f64]) -> String {
+    let line = |z: &f64| format!("0.01,0.02,{z},1,0,0,0\n");
+    std::iter::once("x,y,z,qw,qx,qy,qz\n".to_owned()).chain(heights.iter().map(line)).collect()
+}
+
+fn json(heights: &[f64]) -> String {
+    let pose = |z: &f64| format!("[[1,0,0,0.01],[0,1,0,0.02],[0,0,1,{z}],[0,0,0,1]]");
+    format!("[{}]", heights.iter().map(pose).collect::<Vec<_>>().join(","))
+}
+
+fn path(inputs: &Inputs, poses: &str, more: &[&str]) -> Run {
+    let arguments = ["path", "floor.pcd", "box.obj", "--sensor=iso:0.002", "--poses", poses];
+    inputs.run(&[&arguments, more].concat())
+}
+
+#[test]
+fn a_box_through_the_floor_is_found_between_two_free_poses() {
+    let inputs = Inputs::new();
+    let heights = [0.6, 0.5, -0.5];
+    inputs.write("through.csv", &csv(&heights));
+    inputs.write("through.json", &json(&heights));
+    let run = path(&inputs, "through.csv", &["--json", "--exit-code"]).quiet(20);
+    let found = run.json_lines().remove(0);
+    let first = &found["first"];
+    assert_eq!((&first["segment"], &found["verdict"]), (&1.into(), &"in_collision".into()));
+    // Its lower side is at the floor after 40 of 100 cm, its upper side after 60.
+    let t = first["t"].as_f64().unwrap();
+    assert!((0.39..0.5).contains(&t), "{t}");
+    let height = first["pose"][2][3].as_f64().unwrap();
+    assert!((height - (0.5 - t)).abs() < 1e-9, "{height}");
+    assert!(found["max_probability"].as_f64().unwrap() > 0.9);
+    assert_eq!(found["bounds"][1], 1.0);
+    let free = found["certified_free_until"].as_f64().unwrap();
+    assert!((0.6..0.71).contains(&free), "{free}");
+    assert!(first["not_before"].as_f64().unwrap() <= first["share"].as_f64().unwrap());
+    assert!(found["stats"]["poses"].as_u64().unwrap() > 2);
+    // The same from the other format, but for the time.
+    let other = path(&inputs, "through.json", &["--json"]).quiet(0).json_lines().remove(0);
+    assert_eq!((&other["first"], &other["bounds"]), (first, &found["bounds"]));
+    let text = path(&inputs, "through.json", &[]).quiet(0).stdout();
+    assert!(text.contains("in collision from      segment 1, t = 0.4"), "{text}");
+}
+
+#[test]
+fn a_path_above_the_floor_is_free_and_says_so() {
+    let inputs = Inputs::new();
+    inputs.write("above.csv", &csv(&[0.6, 0.4]));
+    let run = path(&inputs, "above.csv", &["--json", "--exit-code"]).quiet(0);
+    let found = run.json_lines().remove(0);
+    assert_eq!((&found["first"], &found["verdict"]), (&serde_json::Value::Null, &"free".into()));
+    assert_eq!(found["certified_free_until"], 1.0);
+    assert!(found["bounds"][1].as_f64().unwrap() < 0.1);
+    let text = path(&inputs, "above.csv", &[]).quiet(0).stdout();
+    assert!(text.contains("free for certain       until 100.0 % of the path"), "{text}");
+}
+
+#[test]
+fn bad_paths_are_named_with_what_to_do() {
+    let inputs = Inputs::new();
+    for (name, text, part) in [
+        ("one.csv", csv(&[0.5]), "a path through 1 poses: give at least two"),
+        ("still.json", json(&[0.5, 0.5]), "all 2 poses of the path are the same"),
+        ("short.csv", "0,0,0,1\n".to_owned(), "write seven numbers"),
+    ] {
+        inputs.write(name, &text);
+        let run = path(&inputs, name, &[]);
+        assert_eq!(run.code(), 1);
+        let error = run.stderr();
+        assert!(error.contains(name) && error.contains(part), "{error}");
+    }
+    inputs.write("good.csv", &csv(&[0.5, 0.4]));
+    let run = path(&inputs, "good.csv", &["--tolerance", "2"]);
+    assert!(run.code() == 1 && run.stderr().contains("the tolerance is 2"), "{}", run.stderr());
+    let run = path(&inputs, "good.csv", &["--mode", "paper"]);
+    assert!(run.code() == 2 && run.stderr().contains("calibrated mode"), "{}", run.stderr());
+    assert!(path(&inputs, "gone.csv", &[]).stderr().contains("cannot read the path"));
+}

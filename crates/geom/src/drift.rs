@@ -1,0 +1,143 @@
+//! How far the points of a body that moves get from their places at the middle of the motion.
+
+use crate::vectors::{Matrix3, Point3, Vector3};
+
+/// A motion about its middle: at s from −1 to 1 a point x is at c + s·l + R(s·ω)(x − c), with a pivot
+/// c, a shift l and a turn ω, the pose at the middle being s = 0.
+///
+/// To first order a point moves by s·u, u = l + ω × (x − c); bounds are |n·u| along a direction n and
+/// what the arc adds, so that a motion along a surface keeps its distance to it. They hold as well for
+/// what stays at its place, seen from the body that moves: the inverse motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drift {
+    pivot: Point3,
+    linear: Vector3,
+    angular: Vector3,
+    /// Unit vector along the axis; zero without a turn.
+    axis: Vector3,
+    /// 2 sin(|ω|/2): no unit vector turns by more.
+    chord: f64,
+    /// Length of R(ω)w − w − ω × w for a unit vector w across the axis.
+    bend: f64,
+    /// |l × axis|·chord: what the turn does to the shift in the inverse motion, m.
+    skew: f64,
+}
+
+impl Drift {
+    /// `linear` (m) and `angular` (radians about its own direction, at most half a turn) are the shift
+    /// and the turn from the middle to either end.
+    ///
+    /// ```
+    /// use cloudtouch_geom::{Drift, Point3, Vector3};
+    /// // A turntable that has turned by 0.1 rad either way.
+    /// let drift = Drift::new(Point3::origin(), Vector3::zeros(), Vector3::new(0.0, 0.0, 0.1));
+    /// let rim = Point3::new(0.5, 0.0, 0.0);
+    /// assert_eq!(drift.along(&Vector3::z(), &rim), 0.0);
+    /// assert!((0.05..0.06).contains(&drift.along(&Vector3::y(), &rim)));
+    /// ```
+    pub fn new(pivot: Point3, linear: Vector3, angular: Vector3) -> Self {
+        let angle = angular.norm();
+        let axis = angular.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let chord = 2.0 * (0.5 * angle.min(std::f64::consts::PI)).sin();
+        let bend = (angle - angle.sin()).hypot(1.0 - angle.cos());
+        Self { pivot, linear, angular, axis, chord, bend, skew: linear.cross(&axis).norm() * chord }
+    }
+
+    /// u: where a point at a place is headed, m.
+    pub fn first_order(&self, place: &Point3) -> Vector3 {
+        self.linear + self.angular.cross(&(place - self.pivot))
+    }
+
+    /// How far along a unit vector a point gets from a place at most, either way, m.
+    pub fn along(&self, direction: &Vector3, place: &Point3) -> f64 {
+        // What the arc adds is across the axis.
+        let across = direction.cross(&self.axis).norm();
+        self.first_order(place).dot(direction).abs() + across * self.beyond_first_order(place, 0.0)
+    }
+
+    /// How far in any direction, m.
+    pub fn in_any_direction(&self, place: &Point3) -> f64 {
+        self.first_order(place).norm() + self.beyond_first_order(place, 0.0)
+    }
+
+    /// The largest of [`Self::along`] in a box, given by its middle and its half axes (columns), and
+    /// `around` metres about it.
+    pub fn along_of_box(
+        &self,
+        direction: &Vector3,
+        middle: &Point3,
+        half_axes: &Matrix3,
+        around: f64,
+    ) -> f64 {
+        // n·(ω × y) = (n × ω)·y.
+        let slope = direction.cross(&self.angular);
+        let radius = half_axes.norm() + around;
+        self.first_order(middle).dot(direction).abs()
+            + half_axes.tr_mul(&slope).abs().sum()
+            + slope.norm() * around
+            + direction.cross(&self.axis).norm() * self.beyond_first_order(middle, radius)
+    }
+
+    /// By how much a direction that turns with the body gets from itself at most, as a length of the
+    /// difference; 0 along the axis.
+    pub fn turn_of(&self, direction: &Vector3) -> f64 {
+        self.chord * direction.cross(&self.axis).norm()
+    }
+
+    /// The same of any direction.
+    pub fn turn(&self) -> f64 {
+        self.chord
+    }
+
+    /// What the arc adds anywhere within a radius of a place, m; no more is left out of s·u.
+    pub fn beyond_first_order(&self, place: &Point3, radius: f64) -> f64 {
+        if self.bend == 0.0 {
+            return self.skew;
+        }
+        self.bend * (self.axis.cross(&(place - self.pivot)).norm() + radius) + self.skew
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::UnitQuaternion;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn vector(size: f64) -> impl Strategy<Value = Vector3> {
+        prop::array::uniform3(-size..size).prop_map(Vector3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn no_point_drifts_farther_whichever_body_is_said_to_move(
+            pivot in vector(2.0), linear in vector(0.5), angular in vector(1.7), middle in vector(1.0),
+            half in prop::array::uniform3(0.0..0.3_f64), direction in vector(1.0), s in -1.0..1.0_f64,
+            inside in prop::array::uniform3(-1.0..1.0_f64),
+        ) {
+            prop_assume!(direction.norm() > 1e-3 && angular.norm() < 3.1);
+            let direction = direction.normalize();
+            let (pivot, middle) = (Point3::from(pivot), Point3::from(middle));
+            let drift = Drift::new(pivot, linear, angular);
+            let axes = *UnitQuaternion::new(linear).to_rotation_matrix().matrix();
+            let half_axes = axes * Matrix3::from_diagonal(&Vector3::from(half));
+            let place = middle + half_axes * Vector3::from(inside);
+            let turn = UnitQuaternion::new(angular * s);
+            let there = pivot + linear * s + turn * (place - pivot);
+            let back = pivot + turn.inverse() * (place - pivot - linear * s);
+            let in_box = drift.along_of_box(&direction, &middle, &half_axes, 0.0);
+            prop_assert!(drift.along(&direction, &place) <= in_box + 1e-12);
+            for moved in [there, back] {
+                let by = moved - place;
+                prop_assert!(by.dot(&direction).abs() <= drift.along(&direction, &place) + 1e-12);
+                prop_assert!(by.norm() <= drift.in_any_direction(&place) + 1e-12);
+            }
+            let turned = (turn * direction - direction).norm();
+            prop_assert!(turned <= drift.turn_of(&direction) + 1e-12);
+            prop_assert!(drift.turn_of(&direction) <= drift.turn());
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What no pose of a stretch exceeds.
+
+use cloudtouch_geom::{Drift, Pose};
+
+use crate::body::BodyRef;
+use crate::classifier::Clock;
+use crate::error::QueryError;
+use crate::judge::{MOST_DEVIATIONS, probability};
+use crate::query::{Query, QuerySettings};
+use crate::report::Stats;
+use crate::search::{greatest_depth, reach_of};
+
+/// Two bodies, and how the second drifts about a pose.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Drifting<'a> {
+    pub bodies: (BodyRef<'a>, BodyRef<'a>),
+    /// From the file frame of B into that of A.
+    pub a_from_b: Pose,
+    /// In the local frame of A.
+    pub drift: Drift,
+}
+
+/// What sums in another order may differ by, in log odds.
+const ROUNDING: f64 = 1e-9;
+
+impl Drifting<'_> {
+    /// A bound on the probability of a collision at any pose on the way; 1 as soon as it would exceed
+    /// `cut`, or when time is over.
+    pub(super) fn upper_bound(
+        &self,
+        query: &Query,
+        cut: f64,
+        clock: &Clock,
+        stats: &mut Stats,
+    ) -> Result<f64, QueryError> {
+        let (a, b) = self.bodies;
+        let settings = query.settings();
+        let local = a.shape().local_from(&b.shape(), &self.a_from_b);
+        if let (BodyRef::Mesh(_), BodyRef::Mesh(_)) = (a, b) {
+            return self.exact(query, &local, stats);
+        }
+        let is_above = |deviations: f64, clearness: f64| {
+            at_most(settings, deviations, clearness) > cut || clock.is_over()
+        };
+        let is_deep = |depth: f64| is_above(MOST_DEVIATIONS - depth, 0.0);
+        let depth = greatest_depth((a, b), &local, &self.drift, is_deep, stats);
+        if is_deep(depth) {
+            return Ok(1.0);
+        }
+        let is_enough = |deviations: f64, clearness: f64| is_above(deviations - depth, clearness);
+        let reach = reach_of((a, b), &local, &self.drift, is_enough, stats)?;
+        let upper = at_most(settings, reach.deviations - depth, reach.clearness);
+        Ok(if reach.is_complete { upper } else { 1.0 })
+    }
+
+    /// Where two exact surfaces never touch, one is inside the other all the time or never.
+    fn exact(&self, query: &Query, local: &Pose, stats: &mut Stats) -> Result<f64, QueryError> {
+        let touch = |deviations: f64, _: f64| deviations <= 0.0;
+        if reach_of(self.bodies, local, &self.drift, touch, stats)?.deviations <= 0.0 {
+            return Ok(1.0);
+        }
+        let (a, b) = self.bodies;
+        Ok(query.run(a, b, &self.a_from_b)?.collision_probability)
+    }
+}
+
+/// The probability where there are no fewer deviations and crossings are no clearer, whatever a
+/// classifier says.
+fn at_most(settings: &QuerySettings, deviations: f64, clearness: f64) -> f64 {
+    let judge = &settings.judge;
+    let by_geometry = judge.log_odds_by_geometry(deviations, clearness.ln_1p());
+    let revised = judge.revise(by_geometry, f64::INFINITY).max(by_geometry);
+    probability(revised + ROUNDING, settings.prior)
+}

@@ -1,0 +1,12 @@
+//! Continuous collision: how likely two bodies collide anywhere along a path, nothing between poses
+//! missed.
+
+mod bound;
+mod interval;
+mod leg;
+mod path;
+mod sweep;
+mod swept;
+
+pub use path::Path;
+pub use swept::{AlongPath, Reached, SweepStats, Swept};

@@ -1,0 +1,301 @@
+//! The search along a path: stretches are bounded, and those left open halved, least certain first.
+
+use std::collections::BinaryHeap;
+use std::time::{Duration, Instant};
+
+use crate::body::BodyRef;
+use crate::classifier::Clock;
+use crate::error::QueryError;
+use crate::query::{Query, QuerySettings};
+use crate::report::{Report, Stats, Verdict};
+
+use super::bound::Drifting;
+use super::interval::Interval;
+use super::path::Path;
+use super::swept::{AlongPath, Reached, SweepStats, Swept};
+
+/// The largest probability is known well enough to within this.
+const PROBABILITY_TOLERANCE: f64 = 0.05;
+
+impl Query {
+    /// How likely the surfaces behind two bodies collide anywhere along a path of `b`, and where that
+    /// first exceeds the accept threshold.
+    ///
+    /// Nothing between poses is missed: over a stretch of the path the probability is bounded by what
+    /// [`Self::run`] would find at its middle if every piece of surface came as near, and crossed as
+    /// clearly, as the motion lets it. Stretches whose bound is not below the reject threshold are
+    /// halved, down to `tolerance` as a share of the path; what is open then stays in the bounds.
+    /// What [`Self::run`] says of surface that no point stands for holds here too. A deadline
+    /// counts for the sweep, and for each pose.
+    ///
+    /// ```
+    /// use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+    /// use cloudtouch::noise::SensorModel;
+    /// use cloudtouch::{Cloud, CloudSettings, Path, Query, QuerySettings, Verdict};
+    ///
+    /// let sheet = |z: f64| -> Vec<Point3> {
+    ///     (0..400).map(|i| Point3::new(0.01 * (i % 20) as f64, 0.01 * (i / 20) as f64, z)).collect()
+    /// };
+    /// let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+    /// let prepare = |z| Cloud::prepare(&PointCloud::from_points(sheet(z)), &settings);
+    /// let (table, plate) = (prepare(0.0)?, prepare(0.0)?);
+    /// let query = Query::new(QuerySettings::default())?;
+    /// let at = |x: f64, z: f64| Pose::from_translation(Vector3::new(x, 0.0, z));
+    ///
+    /// let slide = Path::linear(&at(0.0, 0.05), &at(0.1, 0.05))?;
+    /// assert_eq!(query.sweep(&table, &plate, &slide, 0.01)?.certified_free_until, 1.0);
+    /// // Aslant through the table in one step: free at both ends.
+    /// let aslant = |z: f64| Pose::from_translation_rpy(Vector3::new(0.0, 0.0, z), [0.7, 0.0, 0.0]);
+    /// let drop = Path::linear(&aslant(0.05), &aslant(-0.2))?;
+    /// let swept = query.sweep(&table, &plate, &drop, 0.01)?;
+    /// let first = swept.first.expect("it goes through the table");
+    /// // Its lower edge is at the table after 5 of 25 cm.
+    /// assert!((0.18..0.35).contains(&first.at.share) && swept.verdict == Verdict::InCollision);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the tolerance is not between 0 and 1, and those of [`Self::run`].
+    pub fn sweep<'a>(
+        &self,
+        a: impl Into<BodyRef<'a>>,
+        b: impl Into<BodyRef<'a>>,
+        path: &Path,
+        tolerance: f64,
+    ) -> Result<Swept, QueryError> {
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return Err(QueryError::Tolerance { value: tolerance });
+        }
+        let start = Instant::now();
+        let bodies = (a.into(), b.into());
+        let segments = path.segments() as f64;
+        let begin = ask(self, bodies, path, (0, 0.0))?;
+        let mut sweep = Sweep {
+            query: self,
+            bodies,
+            path,
+            tolerance: tolerance * segments,
+            clock: self.clock(start),
+            tested: Tested::of(&begin, self.settings()),
+            stats: Stats::default(),
+            poses: 0,
+            stretches: 0,
+        };
+        sweep.count(&begin);
+        let intervals = sweep.look_along()?;
+        Ok(sweep.answer(intervals, start.elapsed()))
+    }
+}
+
+fn ask(
+    query: &Query,
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    path: &Path,
+    (segment, t): (usize, f64),
+) -> Result<AlongPath, QueryError> {
+    let pose = path.leg(segment).at(t);
+    let report = query.run(a, b, &pose)?;
+    let share = (segment as f64 + t) / path.segments() as f64;
+    Ok(AlongPath { segment, t, share, pose, report })
+}
+
+/// What the poses that were asked about say.
+#[derive(Debug)]
+struct Tested {
+    /// The most probable.
+    most_probable: AlongPath,
+    /// The earliest above the accept threshold.
+    first: Option<AlongPath>,
+    /// The largest lower and upper bound of any.
+    bounds: [f64; 2],
+    /// The first that is not free, in segments: probable, or something speaks against believing it.
+    not_free_from: f64,
+    is_doubtful: bool,
+}
+
+impl Tested {
+    fn of(begin: &AlongPath, settings: &QuerySettings) -> Self {
+        let mut tested = Self {
+            most_probable: begin.clone(),
+            first: None,
+            bounds: [0.0; 2],
+            not_free_from: f64::INFINITY,
+            is_doubtful: false,
+        };
+        tested.add(begin.clone(), settings);
+        tested
+    }
+
+    fn add(&mut self, asked: AlongPath, settings: &QuerySettings) {
+        let Report { collision_probability: probability, bounds: [low, high], .. } = asked.report;
+        self.bounds = [self.bounds[0].max(low), self.bounds[1].max(high)];
+        let at = position(&asked);
+        if asked.report.verdict != Verdict::Free {
+            self.not_free_from = self.not_free_from.min(at);
+        }
+        self.is_doubtful |= asked.report.verdict == Verdict::Undecided;
+        let is_first = self.first.as_ref().is_none_or(|first| at < position(first));
+        if probability > settings.accept && is_first {
+            self.first = Some(asked.clone());
+        }
+        if probability > self.most_probable.report.collision_probability {
+            self.most_probable = asked;
+        }
+    }
+
+    /// Nothing matters from here on, in segments: the threshold was reached.
+    fn end(&self) -> f64 {
+        self.first.as_ref().map_or(f64::INFINITY, position)
+    }
+}
+
+/// In segments from the beginning.
+fn position(at: &AlongPath) -> f64 {
+    at.segment as f64 + at.t
+}
+
+struct Sweep<'a> {
+    query: &'a Query,
+    bodies: (BodyRef<'a>, BodyRef<'a>),
+    path: &'a Path,
+    /// In segments.
+    tolerance: f64,
+    clock: Clock,
+    tested: Tested,
+    stats: Stats,
+    poses: usize,
+    stretches: usize,
+}
+
+impl Sweep<'_> {
+    /// Stretches that together are the whole path, in no order.
+    fn look_along(&mut self) -> Result<Vec<Interval>, QueryError> {
+        let mut waiting = BinaryHeap::new();
+        for segment in 0..self.path.segments() {
+            waiting.push(self.bounded(segment, [0.0, 1.0])?);
+        }
+        if waiting.iter().any(|interval| self.is_wanted(interval)) {
+            self.test(self.path.segments() - 1, 1.0)?;
+        }
+        let mut looked_at = Vec::new();
+        while let Some(interval) = waiting.pop() {
+            if self.clock.is_over() || !self.is_wanted(&interval) {
+                looked_at.push(interval);
+                continue;
+            }
+            let Interval { segment, times: [from, to], .. } = interval;
+            let middle = interval.middle();
+            self.test(segment, middle)?;
+            for times in [[from, middle], [middle, to]] {
+                let half = Interval { times, ..interval };
+                // What cannot matter any more keeps the bound of the whole.
+                waiting.push(match half.start() < self.tested.end() {
+                    true => self.bounded(segment, times)?,
+                    false => half,
+                });
+            }
+        }
+        Ok(looked_at)
+    }
+
+    /// Whether a closer look could change the answer by more than the tolerances.
+    fn is_wanted(&self, interval: &Interval) -> bool {
+        let is_free = interval.upper < self.query.settings().reject && !interval.is_doubtful;
+        // A pose before the first that is known not to be free may be free.
+        let may_be_free = !is_free && interval.start() < self.tested.not_free_from;
+        interval.length() > self.tolerance
+            && interval.start() < self.tested.end()
+            && (interval.upper > self.cut() || may_be_free)
+    }
+
+    /// Bounds up to this need no closer look.
+    fn cut(&self) -> f64 {
+        let settings = self.query.settings();
+        if self.tested.first.is_some() {
+            return settings.accept;
+        }
+        let known = self.tested.most_probable.report.collision_probability;
+        (known + PROBABILITY_TOLERANCE).max(settings.reject).min(settings.accept)
+    }
+
+    fn test(&mut self, segment: usize, t: f64) -> Result<(), QueryError> {
+        let asked = ask(self.query, self.bodies, self.path, (segment, t))?;
+        self.count(&asked);
+        self.tested.add(asked, self.query.settings());
+        Ok(())
+    }
+
+    fn count(&mut self, asked: &AlongPath) {
+        self.poses += 1;
+        self.stats.nodes_visited += asked.report.stats.nodes_visited;
+        self.stats.leaf_pairs += asked.report.stats.leaf_pairs;
+        self.stats.kernel_solves += asked.report.stats.kernel_solves;
+    }
+
+    fn bounded(&mut self, segment: usize, times: [f64; 2]) -> Result<Interval, QueryError> {
+        let (a, b) = self.bodies;
+        let leg = self.path.leg(segment);
+        let mut interval = Interval { segment, times, upper: 1.0, is_doubtful: false };
+        if interval.end() >= self.tested.end() {
+            // It holds the pose that exceeds the threshold: nothing is left to bound.
+            return Ok(interval);
+        }
+        self.stretches += 1;
+        let a_from_b = leg.at(interval.middle());
+        let drift = leg.drift(times, &a.shape().origin());
+        let drifting = Drifting { bodies: (a, b), a_from_b, drift };
+        // The shortest ones are not halved: of them all that can be told counts.
+        let cut = if interval.length() > self.tolerance { self.cut() } else { 1.0 };
+        interval.upper = drifting.upper_bound(self.query, cut, &self.clock, &mut self.stats)?;
+        if interval.upper < self.query.settings().reject {
+            let doubt = self.query.terms().doubt_at((a.shape(), b.shape()), &a_from_b);
+            interval.is_doubtful = doubt.is_some();
+            if interval.is_doubtful {
+                let at = segment as f64 + interval.middle();
+                self.tested.not_free_from = self.tested.not_free_from.min(at);
+                self.tested.is_doubtful = true;
+            }
+        }
+        Ok(interval)
+    }
+
+    fn answer(self, looked_at: Vec<Interval>, elapsed: Duration) -> Swept {
+        let Self { tested, stats, poses, stretches, .. } = self;
+        let settings = self.query.settings();
+        let segments = self.path.segments() as f64;
+        let mut intervals = looked_at;
+        intervals.sort_by(|p, q| p.start().total_cmp(&q.start()));
+        let is_free = |interval: &&Interval| {
+            interval.upper < settings.reject && interval.end() < tested.not_free_from
+        };
+        let certified = intervals.iter().take_while(is_free).last().map_or(0.0, Interval::end);
+        let open = intervals.iter().find(|interval| interval.upper > settings.accept);
+        let not_before = open.map_or(f64::INFINITY, Interval::start).min(tested.end()) / segments;
+        let largest = intervals.iter().map(|interval| interval.upper).fold(0.0, f64::max);
+        let highest = if tested.is_doubtful { 1.0 } else { largest.max(tested.bounds[1]) };
+        let known = tested.most_probable.report.collision_probability;
+        Swept {
+            bounds: [tested.bounds[0], highest],
+            verdict: if tested.first.is_some() {
+                Verdict::InCollision
+            } else if certified >= segments {
+                Verdict::Free
+            } else if tested.is_doubtful || known < settings.reject {
+                Verdict::Undecided
+            } else {
+                Verdict::Uncertain
+            },
+            most_probable: tested.most_probable,
+            first: tested.first.map(|at| Reached { at, not_before }),
+            certified_free_until: certified / segments,
+            stats: SweepStats {
+                poses,
+                stretches,
+                nodes_visited: stats.nodes_visited,
+                leaf_pairs: stats.leaf_pairs,
+                kernel_solves: stats.kernel_solves,
+                query_us: u64::try_from(elapsed.as_micros()).unwrap_or(u64::MAX),
+            },
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! How deep a cloud can get inside a closed mesh while one of them drifts.
+
+use cloudtouch_bvh::Visit;
+use cloudtouch_geom::{Drift, Point3, Pose};
+
+use crate::body::BodyRef;
+use crate::cloud::Cloud;
+use crate::judge::MOST_DEVIATIONS;
+use crate::mesh::Mesh;
+use crate::report::Stats;
+
+/// Deviations, at most, up to where `is_enough` of them; 0 where no point gets inside, or neither body is
+/// a closed mesh. No place gets deeper by more than it drifts. Twice [`MOST_DEVIATIONS`] outweigh
+/// everything else. Local frames.
+pub(crate) fn greatest_depth(
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    a_from_b: &Pose,
+    drift: &Drift,
+    is_enough: impl Fn(f64) -> bool,
+    stats: &mut Stats,
+) -> f64 {
+    let here = Pose::identity();
+    match (a, b) {
+        (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
+            deepest((cloud, &here), (mesh, a_from_b), drift, is_enough, stats)
+        }
+        (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
+            deepest((cloud, a_from_b), (mesh, &here), drift, is_enough, stats)
+        }
+        _ => 0.0,
+    }
+}
+
+fn deepest(
+    (cloud, a_from_cloud): (&Cloud, &Pose),
+    (mesh, a_from_mesh): (&Mesh, &Pose),
+    drift: &Drift,
+    is_enough: impl Fn(f64) -> bool,
+    stats: &mut Stats,
+) -> f64 {
+    let mut most = 0.0;
+    if !mesh.is_closed() {
+        return most;
+    }
+    let mesh_from_a = a_from_mesh.inverse();
+    let to_mesh = |in_a: &Point3| mesh_from_a.transform_point(in_a);
+    // What is outside all along its way, and all about it, does not get inside.
+    let stays_clear = |in_a: &Point3, radius: f64| {
+        let distance = radius * (1.0 + drift.turn());
+        mesh.is_clear_of(&to_mesh(in_a), distance + drift.in_any_direction(in_a)) || {
+            let way = drift.first_order(in_a);
+            let ends = [to_mesh(&(in_a - way)), to_mesh(&(in_a + way))];
+            let beside = drift.beyond_first_order(in_a, 0.0);
+            mesh.is_clear_of_way([&ends[0], &ends[1]], distance + beside)
+        }
+    };
+    cloud.tree().visit_nodes(|node| {
+        stats.nodes_visited += 1;
+        if is_enough(most) || most >= 2.0 * MOST_DEVIATIONS {
+            return Visit::Prune;
+        }
+        let obb = node.obb();
+        let in_a = a_from_cloud.transform_point(&obb.centre);
+        let radius = obb.radius() + node.shift();
+        if stays_clear(&in_a, radius) {
+            return Visit::Prune;
+        }
+        if node.is_leaf() {
+            let (surfels, computed) = cloud.leaf(node.id());
+            stats.leaves_prepared += usize::from(computed);
+            for surfel in surfels {
+                let in_a = a_from_cloud.transform_point(&surfel.point.mean);
+                if stays_clear(&in_a, 0.0) {
+                    continue;
+                }
+                let distance = mesh.project(&to_mesh(&in_a)).signed_distance;
+                let depth = drift.in_any_direction(&in_a) - distance;
+                let std = surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
+                most = most.max(depth / std);
+            }
+        }
+        Visit::Descend
+    });
+    most
+}

@@ -1,0 +1,14 @@
+//! What geometry could say of a collision at any pose of a motion, at most: the search at its middle,
+//! with all that the motion can add.
+
+mod depth;
+mod facets;
+mod gather;
+mod passage;
+mod pieces;
+mod pool;
+mod run;
+mod track;
+
+pub(crate) use depth::greatest_depth;
+pub(crate) use run::reach_of;

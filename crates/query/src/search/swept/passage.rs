@@ -1,0 +1,204 @@
+//! How clearly a piece of one surface could pass through a piece of the other while one of them
+//! drifts: a bound on the crossings of `search/crossing.rs` at any pose on the way.
+
+use cloudtouch_geom::{Drift, Point3, Vector3};
+
+use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
+
+use super::super::crossing::{CLEAREST, known_to, weight_at};
+use super::super::facet::Facet;
+use super::super::through_mesh::Outline;
+use super::track::{facet_keeps_off, gap_along, piece_keeps_off};
+
+/// A passage that may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Passage {
+    /// No clearer and with no more weight than this.
+    pub clear: f64,
+    pub weight: f64,
+    /// No farther than `radius` metres from here.
+    pub middle: Point3,
+    pub radius: f64,
+    /// Distance between samples there, m.
+    pub spacing: f64,
+}
+
+/// An edge of A, or one of B, which drifts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Adrift<'a> {
+    edge: &'a Edge,
+    is_a: bool,
+    /// How far its ends get in any direction, m.
+    by: f64,
+}
+
+impl<'a> Adrift<'a> {
+    pub(super) fn new(is_a: bool, edge: &'a Edge, drift: &Drift) -> Self {
+        let [p, q] = edge.ends.map(|end| drift.in_any_direction(&end));
+        Self { edge, is_a, by: p.max(q) }
+    }
+
+    /// Where it passes a plane, given as its unit normal and a place on it.
+    fn crossed(
+        &self,
+        (normal, place): (&Vector3, &Point3),
+        stds: [f64; 2],
+        drift: &Drift,
+    ) -> Option<Crossed> {
+        let ends = &self.edge.ends;
+        let heights = ends.map(|end| normal.dot(&(end - place)));
+        let changes = ends.map(|end| drift.along(normal, &end));
+        let turn = drift.turn_of(normal) * 2.0 * self.edge.half_length;
+        let crossed = Crossed::of(heights, changes, turn, stds)?;
+        // The leaf of the end that is nearer to the plane counts it: either, where both may be.
+        let counts = |k: usize| crossed.nearer[k] && self.edge.own[k].is_some();
+        (counts(0) || counts(1)).then_some(crossed)
+    }
+
+    /// The ends of the part of the edge where it may pass.
+    fn part(&self, crossed: &Crossed) -> [Point3; 2] {
+        let [from, to] = self.edge.ends;
+        crossed.shares.map(|share| from + (to - from) * share)
+    }
+
+    /// Of the disc about a sample of the other body.
+    pub(super) fn through_disc(&self, disc: &Surfel, drift: &Drift) -> Option<Passage> {
+        let (normal, middle) = (disc.normal?, disc.point.mean);
+        let across = disc.variance_across();
+        let stds = self.edge.across.map(|own| known_to((own + across).sqrt(), disc.spacing));
+        let crossed = self.crossed((&normal, &middle), stds, drift)?;
+        let part = self.part(&crossed);
+        let off = (piece_keeps_off(&part, &middle, drift) / disc.spacing).max(0.0);
+        if off > DISC_SPACINGS {
+            return None;
+        }
+        let mut passage = self.passage(crossed.clear, weight_at(off), part, disc.spacing);
+        let reach = DISC_SPACINGS * disc.spacing;
+        if !self.is_a && reach < passage.radius {
+            // The disc keeps still.
+            (passage.middle, passage.radius) = (middle, reach);
+        }
+        Some(passage)
+    }
+
+    /// Of a triangle of the other body.
+    pub(super) fn through_facet(&self, facet: &Facet, drift: &Drift) -> Option<Passage> {
+        let normal = facet.normal?;
+        let spacing = 2.0 * self.edge.half_length;
+        let stds = self.edge.across.map(|own| known_to(own.sqrt(), spacing));
+        let crossed = self.crossed((&normal, &facet.corners[0]), stds, drift)?;
+        let [from, to] = self.part(&crossed);
+        let (middle, half) = (nalgebra::center(&from, &to), 0.5 * (to - from).norm());
+        let off = facet_keeps_off(&middle, facet, !self.is_a, drift);
+        (off <= half * (1.0 + ROUNDING) + ROUNDING * spacing)
+            .then(|| self.passage(crossed.clear, 1.0, [from, to], spacing))
+    }
+
+    fn passage(&self, clear: f64, weight: f64, part: [Point3; 2], spacing: f64) -> Passage {
+        let middle = nalgebra::center(&part[0], &part[1]);
+        let radius = 0.5 * (part[1] - part[0]).norm() + if self.is_a { 0.0 } else { self.by };
+        Passage { clear, weight, middle, radius, spacing }
+    }
+}
+
+const ROUNDING: f64 = 1e-9;
+
+/// How an edge may pass a plane.
+#[derive(Debug, Clone, Copy)]
+struct Crossed {
+    /// Deviations of its less clear end, at most.
+    clear: f64,
+    /// Between which shares of its length it passes.
+    shares: [f64; 2],
+    /// Whether either end may be the nearer one.
+    nearer: [bool; 2],
+}
+
+impl Crossed {
+    /// Of ends at heights that change by so much, and by `turn` against one another. `None` where both
+    /// keep on one side.
+    fn of(heights: [f64; 2], changes: [f64; 2], turn: f64, stds: [f64; 2]) -> Option<Self> {
+        let from_above = Self::one_way(heights, changes, turn, stds);
+        let from_below = Self::one_way(heights.map(|h| -h), changes, turn, stds);
+        match (from_above, from_below) {
+            (Some(p), Some(q)) => Some(Self {
+                clear: p.clear.max(q.clear),
+                shares: [p.shares[0].min(q.shares[0]), p.shares[1].max(q.shares[1])],
+                nearer: [p.nearer[0] || q.nearer[0], p.nearer[1] || q.nearer[1]],
+            }),
+            (one, other) => one.or(other),
+        }
+    }
+
+    /// With the first end above the plane and the second below it.
+    fn one_way(heights: [f64; 2], changes: [f64; 2], turn: f64, stds: [f64; 2]) -> Option<Self> {
+        let (above, below) = (heights[0], -heights[1]);
+        let least = [(above - changes[0]).max(0.0), (below - changes[1]).max(0.0)];
+        let apart = above + below;
+        let most_apart = (apart + turn).min(above + changes[0] + below + changes[1]);
+        let most = [
+            (above + changes[0]).min(most_apart - least[1]),
+            (below + changes[1]).min(most_apart - least[0]),
+        ];
+        if most[0] <= 0.0 || most[1] <= 0.0 {
+            return None;
+        }
+        let clear = (most[0] / stds[0]).min(most[1] / stds[1]).min(CLEAREST);
+        let least_apart = (apart - turn).max(least[0] + least[1]);
+        let to = most[0] / least_apart.max(most[0]);
+        Some(Self {
+            clear: clear.min(most_apart / (stds[0] + stds[1])),
+            shares: [(least[0] / most_apart).min(to), to.min(most[0] / (most[0] + least[1]))],
+            nearer: [least[0] <= most[1], least[1] <= most[0]],
+        })
+    }
+}
+
+/// How near to the middle of a disc some facets may pass it, m; `None` where none can.
+pub(super) fn may_pierce(
+    is_a: bool,
+    disc: &Surfel,
+    normal: &Vector3,
+    facets: &[Facet],
+    drift: &Drift,
+) -> Option<f64> {
+    let middle = disc.point.mean;
+    let keeps =
+        |side: f64, facet: &Facet| gap_along(&middle, facet, false, drift, &(normal * side)) > 0.0;
+    let passes = facets.iter().filter(|facet| !keeps(1.0, facet) && !keeps(-1.0, facet));
+    let off = passes.map(|facet| facet_keeps_off(&middle, facet, !is_a, drift));
+    let off = off.fold(f64::INFINITY, f64::min);
+    (off <= DISC_SPACINGS * disc.spacing * (1.0 + ROUNDING)).then_some(off)
+}
+
+/// What a mesh may do to the disc about a sample that it may pass so near to its middle; `around` gives
+/// all its triangles within a distance of a place.
+pub(super) fn mesh_through_disc(
+    is_a: bool,
+    disc: &Surfel,
+    (normal, off): (Vector3, f64),
+    around: impl FnOnce(&Point3, f64) -> Vec<Facet>,
+    drift: &Drift,
+) -> Passage {
+    let (middle, radius) = (disc.point.mean, DISC_SPACINGS * disc.spacing);
+    let by = drift.in_any_direction(&middle);
+    let std = known_to(disc.variance_across().sqrt(), disc.spacing);
+    let passage = |clear: f64| Passage {
+        clear: (clear / std).min(CLEAREST),
+        weight: weight_at(off / disc.spacing),
+        middle,
+        radius: radius + if is_a { 0.0 } else { by },
+        spacing: disc.spacing,
+    };
+    if by > radius {
+        // As clear as a disc is wide: with so much room there is no telling.
+        return passage(radius);
+    }
+    let near = around(&middle, std::f64::consts::SQRT_2 * radius + by);
+    let corners = near.iter().flat_map(|facet| &facet.corners);
+    let farthest = corners.map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
+    let room = by + drift.turn() * farthest;
+    let heights = Outline::new(middle, normal, radius + room).heights(near.iter());
+    let [low, high] = heights.unwrap_or([0.0; 2]);
+    passage((high + room).min(room - low).clamp(0.0, radius))
+}

@@ -1,0 +1,90 @@
+//! How few deviations two pieces of surface can have between them while one of them drifts.
+//!
+//! Two pieces with the offset δ have at least n·δ/√(nᵀΣn) deviations between them, for any n. Where δ
+//! moves by s·u, s from −1 to 1, and by no more than r beside that, these are at least
+//! (n·δ − |n·u| − r)/√(nᵀΣn), and of all n the one that says most is Σ⁻¹(δ + s·u) for the s with the
+//! fewest deviations.
+
+use cloudtouch_geom::{Drift, Vector3};
+
+use crate::cloud::Surfel;
+
+use super::super::facet::{Facet, Whitening, nearest_to_origin};
+use super::super::meeting::{LEAST_STD, solve};
+use super::track::{directions, gap_along, least_at, nearest_time};
+
+/// The pieces of two clouds, that of B drifting; `None` where they have `limit` or more.
+pub(super) fn between_discs(a: &Surfel, b: &Surfel, drift: &Drift, limit: f64) -> Option<f64> {
+    let offset = b.point.mean - a.point.mean;
+    let way = drift.first_order(&b.point.mean);
+    let reach = drift.beyond_first_order(&b.point.mean, 0.0)
+        + limit * (a.most_variance + b.most_variance).sqrt();
+    // No direction has more variance than this: most pairs end here.
+    if (offset + way * nearest_time(&offset, &way)).norm_squared() > reach * reach {
+        return None;
+    }
+    let joint = a.point.covariance.sum(&b.point.covariance).matrix();
+    let (of_offset, of_way) = (solve(&joint, &offset)?, solve(&joint, &way)?);
+    let time = least_at(way.dot(&of_offset), way.dot(&of_way));
+    let Some(n) = (of_offset + of_way * time).try_normalize(0.0) else { return Some(0.0) };
+    let gap = n.dot(&offset) - drift.along(&n, &b.point.mean);
+    let of_a = a.point.covariance.variance_along(&n);
+    let deviations = gap / (of_a + turned_variance(b, &n, drift)).max(LEAST_STD.powi(2)).sqrt();
+    (deviations < limit).then_some(deviations.max(0.0))
+}
+
+/// A piece of a cloud and an exact one. `is_facet_still`: whether the piece of the cloud drifts.
+pub(super) fn to_facet(
+    (surfel, whitening): (&Surfel, &Whitening),
+    facet: &Facet,
+    is_facet_still: bool,
+    drift: &Drift,
+    limit: f64,
+) -> Option<f64> {
+    let mean = surfel.point.mean;
+    let along = |n: &Vector3| {
+        let gap = gap_along(&mean, facet, is_facet_still, drift, n);
+        let variance = match is_facet_still {
+            true => turned_variance(surfel, n, drift),
+            false => surfel.point.covariance.variance_along(n),
+        };
+        (gap, gap / variance.max(LEAST_STD.powi(2)).sqrt())
+    };
+    if let Some(n) = facet.normal {
+        let n = if facet.height(&mean) > 0.0 { -n } else { n };
+        if gap_along(&mean, facet, is_facet_still, drift, &n) > limit * surfel.most_variance.sqrt()
+        {
+            return None;
+        }
+    }
+    let offsets = facet.corners.map(|corner| corner - mean);
+    let shortest = nearest_to_origin(&offsets);
+    let mut most: f64 = 0.0;
+    if let Some(n) = shortest.try_normalize(0.0) {
+        let (gap, deviations) = along(&n);
+        if gap > limit * surfel.most_variance.sqrt() {
+            return None;
+        }
+        most = most.max(deviations);
+    }
+    // The place of the facet as seen from the piece moves by the way, or against it.
+    let way = drift.first_order(&mean) * if is_facet_still { -1.0 } else { 1.0 };
+    let way = whitening.apply(&way);
+    let corners = offsets.map(|offset| whitening.apply(&offset));
+    for n in directions(&corners, &way) {
+        // Across what parts them in standard deviations.
+        let Some(n) = whitening.apply(&n).try_normalize(0.0) else { break };
+        most = most.max(along(&n).1);
+        if most >= limit {
+            return None;
+        }
+    }
+    Some(most)
+}
+
+/// nᵀΣn of a piece at any turn of the drift.
+fn turned_variance(surfel: &Surfel, n: &Vector3, drift: &Drift) -> f64 {
+    let most = surfel.most_variance.sqrt();
+    let turned = surfel.point.covariance.std_along(n) + drift.turn_of(n) * most;
+    turned.min(most).powi(2)
+}

@@ -1,0 +1,68 @@
+//! All passages that may be, put together as `search/crossings.rs` does with crossings that are.
+
+use std::collections::BTreeMap;
+
+use cloudtouch_geom::Point3;
+
+use super::super::crossings::{ONE_SIDED, PLACE_SPACINGS, Witness, by_both_sides};
+use super::passage::Passage;
+
+/// What one witness may see at most.
+#[derive(Debug, Clone, Copy)]
+struct MaySee {
+    sum: f64,
+    clearest: f64,
+    /// Its place is no farther than `radius` from here, whichever of its passages is the best, m.
+    middle: Point3,
+    radius: f64,
+    /// What counts as one place with it reaches so far, m.
+    reach: f64,
+}
+
+/// The passages heard of so far.
+#[derive(Debug, Default)]
+pub(super) struct Passages {
+    witnesses: BTreeMap<Witness, MaySee>,
+    /// The witness heard last, until it was looked what there may be at its place.
+    last: Option<Witness>,
+    /// What there may be at the place looked at last.
+    at_last: f64,
+}
+
+impl Passages {
+    pub(super) fn add(&mut self, witness: Witness, passage: &Passage) {
+        let Passage { clear, weight, middle, radius, spacing } = *passage;
+        let seen = self.witnesses.entry(witness);
+        let seen = seen.or_insert(MaySee { sum: 0.0, clearest: 0.0, middle, radius, reach: 0.0 });
+        seen.sum += clear * weight;
+        seen.clearest = seen.clearest.max(clear);
+        seen.radius = seen.radius.max((middle - seen.middle).norm() + radius);
+        seen.reach = seen.reach.max(PLACE_SPACINGS * spacing);
+        self.last = Some(witness);
+    }
+
+    /// No place on the way sees more than this.
+    pub(super) fn clearness(&self) -> f64 {
+        self.witnesses.values().map(|at| self.around(at)).fold(0.0, f64::max)
+    }
+
+    /// The same at the place heard of last: most pairs of leaves add nothing, and cost nothing here.
+    pub(super) fn last_clearness(&mut self) -> f64 {
+        if let Some(at) = self.last.take().and_then(|last| self.witnesses.get(&last)) {
+            self.at_last = self.around(at);
+        }
+        self.at_last
+    }
+
+    /// What all witnesses say that may at some time be within reach of one.
+    fn around(&self, at: &MaySee) -> f64 {
+        let mut sums = [ONE_SIDED; 2];
+        for (witness, other) in &self.witnesses {
+            let reach = at.reach + at.radius + other.radius;
+            if (other.middle - at.middle).norm_squared() <= reach * reach {
+                sums[usize::from(witness.is_of_a())] += other.sum.min(other.clearest);
+            }
+        }
+        by_both_sides(sums)
+    }
+}

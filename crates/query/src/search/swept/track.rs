@@ -1,0 +1,102 @@
+//! Where a point gets to against the other body while one of them drifts.
+
+use cloudtouch_geom::{Drift, Point3, Vector3};
+
+use super::super::facet::{Facet, nearest_to_origin};
+use super::super::leaf::Ball;
+
+/// How often the nearest place of a facet and the time of it are looked for in turn.
+const TURNS: usize = 3;
+
+/// A straight way through a place, and how far beside it the point may be, m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Track {
+    place: Point3,
+    way: Vector3,
+    beside: f64,
+}
+
+impl Track {
+    pub(super) fn of(place: &Point3, drift: &Drift) -> Self {
+        let (way, beside) = (drift.first_order(place), drift.beyond_first_order(place, 0.0));
+        Self { place: *place, way, beside }
+    }
+
+    /// Whether it gets within a distance of a ball, m; never no by rounding.
+    pub(super) fn gets_to(&self, ball: &Ball, distance: f64) -> bool {
+        ball.is_within(&self.nearest_to(&ball.middle), distance + self.beside)
+    }
+
+    /// It stays at least so far from a place, m.
+    pub(super) fn keeps_off(&self, place: &Point3) -> f64 {
+        (self.nearest_to(place) - place).norm() - self.beside
+    }
+
+    fn nearest_to(&self, place: &Point3) -> Point3 {
+        self.place + self.way * nearest_time(&(self.place - place), &self.way)
+    }
+}
+
+/// A straight piece that drifts stays at least so far from a place, m.
+pub(super) fn piece_keeps_off([from, to]: &[Point3; 2], place: &Point3, drift: &Drift) -> f64 {
+    let ways = [from, to].map(|end| drift.first_order(end));
+    let way = 0.5 * (ways[0] + ways[1]);
+    let beside = [from, to].map(|end| drift.beyond_first_order(end, 0.0));
+    let [p, q] = [from, to].map(|end| end - place);
+    // All it passes is about the parallelogram along the mean way.
+    let halves = [[p - way, p + way, q + way], [p - way, q + way, q - way]];
+    let nearest = halves.iter().map(|half| nearest_to_origin(half).norm()).fold(f64::MAX, f64::min);
+    nearest - 0.5 * (ways[0] - ways[1]).norm() - beside[0].max(beside[1])
+}
+
+/// How far a facet keeps from a place along a unit vector, away from it, m; one of the two drifts.
+pub(super) fn gap_along(
+    place: &Point3,
+    facet: &Facet,
+    is_facet_still: bool,
+    drift: &Drift,
+    n: &Vector3,
+) -> f64 {
+    let of_corner = |corner: &Point3| {
+        let drifting = if is_facet_still { place } else { corner };
+        n.dot(&(corner - place)) - drift.along(n, drifting)
+    };
+    facet.corners.iter().map(of_corner).fold(f64::INFINITY, f64::min)
+}
+
+/// A place and a facet stay at least so far apart, m; less than zero says nothing.
+pub(super) fn facet_keeps_off(
+    place: &Point3,
+    facet: &Facet,
+    is_facet_still: bool,
+    drift: &Drift,
+) -> f64 {
+    let offsets = facet.corners.map(|corner| corner - place);
+    let way = drift.first_order(place) * if is_facet_still { -1.0 } else { 1.0 };
+    let along = |n: &Vector3| gap_along(place, facet, is_facet_still, drift, n);
+    directions(&offsets, &way).map(|n| along(&n)).fold(0.0, f64::max)
+}
+
+/// Unit vectors that part the origin from a triangle carried along a way and back: each step points
+/// at the nearest place so far.
+pub(super) fn directions<'a>(
+    corners: &'a [Vector3; 3],
+    way: &'a Vector3,
+) -> impl Iterator<Item = Vector3> + 'a {
+    let mut time = 0.0;
+    (0..TURNS).map_while(move |_| {
+        let nearest = nearest_to_origin(&corners.map(|corner| corner + way * time));
+        time = nearest_time(&(nearest - way * time), way);
+        nearest.try_normalize(0.0)
+    })
+}
+
+/// The s from −1 to 1 at which δ + s·u is shortest.
+pub(super) fn nearest_time(offset: &Vector3, way: &Vector3) -> f64 {
+    least_at(offset.dot(way), way.norm_squared())
+}
+
+/// Where 2·s·slope + s²·curvature is least, s from −1 to 1.
+pub(super) fn least_at(slope: f64, curvature: f64) -> f64 {
+    if curvature > 0.0 { (-slope / curvature).clamp(-1.0, 1.0) } else { 0.0 }
+}
