@@ -172,6 +172,9 @@ impl PathArguments {
         if self.common.mode == ModeName::Paper {
             return Err("path is of the calibrated mode: leave --mode out".to_owned());
         }
+        if self.common.margin.is_some() {
+            return Err("--margin has no effect on a path: leave it out".to_owned());
+        }
         self.common.check(&[])
     }
 }

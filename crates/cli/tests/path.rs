@@ -80,5 +80,7 @@ fn bad_paths_are_named_with_what_to_do() {
     assert!(run.code() == 1 && run.stderr().contains("the tolerance is 2"), "{}", run.stderr());
     let run = path(&inputs, "good.csv", &["--mode", "paper"]);
     assert!(run.code() == 2 && run.stderr().contains("calibrated mode"), "{}", run.stderr());
+    let run = path(&inputs, "good.csv", &["--margin", "0.1"]);
+    assert!(run.code() == 2 && run.stderr().contains("--margin"), "{}", run.stderr());
     assert!(path(&inputs, "gone.csv", &[]).stderr().contains("cannot read the path"));
 }
