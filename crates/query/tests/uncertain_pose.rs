@@ -37,7 +37,7 @@ fn query() -> Query {
 /// How far the answer is from the mean over so many poses drawn at random.
 fn error_of_case(case: u64, draws: u64) -> f64 {
     let draw = |k: u64| seed::unit(seed::derive(case, k, 1));
-    let (a, b) = bodies(case % 2 == 0, case);
+    let (a, b) = bodies(case.is_multiple_of(2), case);
     // Around contact of the boxes' faces, aslant.
     let offset = Vector3::new(0.1 * draw(0) - 0.05, 0.1 * draw(1) - 0.05, 0.17 + 0.1 * draw(2));
     let mean = Pose::from_translation_rpy(offset, [0.6 * draw(3), 0.6 * draw(4), 3.0 * draw(5)]);
