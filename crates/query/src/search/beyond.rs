@@ -48,7 +48,8 @@ pub(crate) fn least_beyond<'a>(
         if clock.is_over() || least <= -MOST_DEVIATIONS {
             return SurfaceFlow::Stop;
         }
-        SurfaceFlow::Within(least)
+        // Of pairs whose boxes are within the margin no more is known than that: all are looked at.
+        SurfaceFlow::Within(least.max(f64::MIN_POSITIVE))
     })?;
     stats.nodes_visited += outcome.nodes_visited;
     let is_complete = !outcome.stopped || least <= -MOST_DEVIATIONS;
