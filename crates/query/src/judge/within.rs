@@ -3,7 +3,8 @@
 /// Where the log odds have their values: deviations from being within the margin.
 pub const WITHIN_KNOTS: [f64; 9] = [-6.0, -2.5, -1.2, -0.4, 0.4, 1.2, 2.3, 4.0, 6.0];
 
-/// Made by `cargo xtask motion --draws 3 --poses 20 --fit`: generated scenes, margins of 3 and 10 cm.
+/// Made by `cargo xtask motion --draws 3 --poses 20 --fit`, on generated scenes at margins of 3 and 10 cm, by
+/// deviations that ended at the first piece within the margin.
 const WITHIN: [f64; 9] = [16.223, 8.26, 5.241, 3.227, 0.862, -0.963, -2.855, -4.788, -7.129];
 
 /// A margin of this share of a spacing counts half: one much narrower is as good as none, and what
