@@ -84,6 +84,7 @@ fn help_and_version_are_0_and_fit_a_terminal() {
         &["--help"][..],
         &["query", "--help"],
         &["batch", "--help"],
+        &["path", "--help"],
         &["info", "--help"],
         &["demo", "--help"],
     ] {

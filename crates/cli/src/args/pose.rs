@@ -28,7 +28,7 @@ pub(crate) struct PoseArguments {
     #[arg(long, value_name = "X,Y,Z,W", value_parser = numbers::quaternion,
           allow_hyphen_values = true)]
     pub quaternion: Option<Turn>,
-    /// How well it is known: standard deviations along the axes of the object, m, and about them, rad
+    /// Standard deviations along and about the object's axes, m and rad
     #[arg(long, value_name = "X,Y,Z,R,P,Y", value_parser = numbers::pose_std)]
     pub pose_std: Option<PoseStd>,
 }
