@@ -150,8 +150,7 @@ pub(crate) struct PathArguments {
     pub scene: PathBuf,
     /// Cloud or mesh of the object
     pub object: PathBuf,
-    /// Poses of the object in the scene, m: a JSON list of 4x4 row-major matrices, or lines of
-    /// x,y,z,qw,qx,qy,qz
+    /// JSON list of 4x4 row-major matrices, or lines of x,y,z,qw,qx,qy,qz
     #[arg(long, value_name = "PATH.json|csv")]
     pub poses: PathBuf,
     /// How finely the path is looked at, as a share of it
