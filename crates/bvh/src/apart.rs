@@ -33,9 +33,7 @@ impl MovedBox {
         let axes = motion.rotation() * obb.axes;
         Self { centre: motion.point(&obb.centre).into(), axes: axes.into() }
     }
-}
 
-impl MovedBox {
     fn axis(&self, k: usize) -> Vector3 {
         Vector3::from(self.axes[k])
     }
@@ -82,9 +80,8 @@ pub(crate) struct Between<'a> {
     offset: [Array; 2],
     /// What is to be taken off every gap, m.
     slack: f64,
-    /// What a drift of B does along the axes of A and of B.
-    losses: [[Loss; 3]; 2],
-    drifts: bool,
+    /// What a drift of B does along the axes of A and of B; `None` where it keeps still.
+    losses: Option<[[Loss; 3]; 2]>,
 }
 
 impl<'a> Between<'a> {
@@ -112,12 +109,12 @@ impl<'a> Between<'a> {
             size += offset[0][i].abs();
         }
         let slack = a.bounds.shift + b.bounds.shift + rounding + 8.0 * f64::EPSILON * size;
-        let losses = drift.map_or_else(Default::default, |drift| {
+        let losses = drift.map(|drift| {
             let of = |axis: Vector3| Loss::of(drift, &axis, (b, moved));
             let own = |k: usize| a.obb.axes.column(k).into_owned();
             [[own(0), own(1), own(2)].map(of), [0, 1, 2].map(|k| of(moved.axis(k)))]
         });
-        Self { a, b, cosines, offset, slack, losses, drifts: drift.is_some() }
+        Self { a, b, cosines, offset, slack, losses }
     }
 
     /// Bounds by the six normals of faces.
@@ -128,7 +125,7 @@ impl<'a> Between<'a> {
         let mut apart =
             Apart { deviations: 0.0, points: f64::NEG_INFINITY, surfaces: f64::NEG_INFINITY };
         let none = [Loss::default(); 3];
-        let [of_a, of_b] = &self.losses;
+        let [of_a, of_b] = &self.losses.unwrap_or([none; 2]);
         self.along_axes((self.a, &none), (self.b, of_a), (&self.offset[0], c), margin, &mut apart);
         let (a, b) = ((self.a, &none), (self.b, of_b));
         self.along_axes(b, a, (&self.offset[1], &turned), margin, &mut apart);
@@ -172,7 +169,7 @@ impl<'a> Between<'a> {
     /// Whether the boxes of the surfaces are apart along one of the nine directions across an edge of
     /// each.
     pub(crate) fn edges_part_surfaces(&self) -> bool {
-        if self.drifts {
+        if self.losses.is_some() {
             // What a drift does across two edges is not known: not to tell is the safe side.
             return false;
         }

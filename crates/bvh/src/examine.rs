@@ -4,7 +4,7 @@ use cloudtouch_geom::{Motion, Pose, Vector3, seed};
 
 use crate::gap::signed_gap_up_to;
 use crate::leakage::{Side, gap_aware_probability, gap_of, paper_probability, plane_deviations};
-use crate::node::NodeData;
+use crate::node::{NodeData, pose_rounding};
 use crate::{Traversal, TraversalSettings, Tree};
 
 /// What is known of a pair of nodes.
@@ -44,11 +44,8 @@ impl<'a> Examiner<'a> {
         settings: TraversalSettings,
         seed: u64,
     ) -> Self {
-        let reach = |root: &NodeData| root.obb.centre.coords.norm() + 3.0 * root.obb.radius();
-        let size = reach(&a.nodes[root_a as usize])
-            + reach(&b.nodes[root_b as usize])
-            + a_from_b.translation().norm();
-        let rounding = 16.0 * f64::EPSILON * size;
+        let roots = [&a.nodes[root_a as usize], &b.nodes[root_b as usize]];
+        let rounding = pose_rounding(roots, &a_from_b);
         Self { a, b, a_from_b: Motion::from(&a_from_b), settings, seed, rounding }
     }
 

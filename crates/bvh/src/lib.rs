@@ -16,6 +16,7 @@ mod node;
 mod obb;
 mod parts;
 mod primitive;
+mod queue;
 mod refit;
 mod remove;
 mod settings;

@@ -2,6 +2,8 @@
 
 use std::sync::OnceLock;
 
+use cloudtouch_geom::Pose;
+
 use crate::bounds::SpreadBounds;
 use crate::{Moments, Obb};
 
@@ -32,4 +34,11 @@ pub(crate) struct NodeData {
     pub(crate) start: u32,
     pub(crate) count: u32,
     pub(crate) in_use: bool,
+}
+
+/// How far a pose can misplace a box below one of two roots by rounding, m.
+pub(crate) fn pose_rounding(roots: [&NodeData; 2], a_from_b: &Pose) -> f64 {
+    let reach = |root: &NodeData| root.obb.centre.coords.norm() + 3.0 * root.obb.radius();
+    let [a, b] = roots.map(reach);
+    16.0 * f64::EPSILON * (a + b + a_from_b.translation().norm())
 }

@@ -1,12 +1,12 @@
 //! Which leaves of two trees have surfaces that may touch: pairs best first, and a bound on the rest.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use cloudtouch_geom::{Drift, Motion, Pose};
 
 use crate::apart::{Apart, Between, MovedBox};
-use crate::node::NodeData;
+use crate::node::{NodeData, pose_rounding};
+use crate::queue::{Queued, Urgent};
 use crate::{NodeId, Tree, TreeError};
 
 /// Two leaves whose surfaces may touch.
@@ -106,7 +106,7 @@ pub fn visit_surfaces(
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(outcome) };
     let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought);
     pairs.test_roots(root_a, root_b, within, &mut outcome);
-    while let Some(pair) = pairs.queue.pop() {
+    while let Some(Queued(pair)) = pairs.queue.pop() {
         if pair.apart.deviations >= within && !pairs.may_cross(&pair) {
             outcome.leave_out(&pair.apart);
             continue;
@@ -144,7 +144,7 @@ struct Pairs<'a> {
     sought: Sought,
     /// How far the pose can misplace a box by rounding, m.
     rounding: f64,
-    queue: BinaryHeap<Candidate>,
+    queue: BinaryHeap<Queued<Candidate>>,
     /// Boxes of B in the frame of A: pairs that share a node share its box.
     moved: Vec<MovedBox>,
 }
@@ -156,16 +156,13 @@ impl<'a> Pairs<'a> {
         a_from_b: &Pose,
         sought: Sought,
     ) -> Self {
-        let reach = |root: &NodeData| root.obb.centre.coords.norm() + 3.0 * root.obb.radius();
-        let size = reach(&a.nodes[root_a as usize])
-            + reach(&b.nodes[root_b as usize])
-            + a_from_b.translation().norm();
+        let roots = [&a.nodes[root_a as usize], &b.nodes[root_b as usize]];
         Self {
             a,
             b,
             a_from_b: Motion::from(a_from_b),
             sought,
-            rounding: 16.0 * f64::EPSILON * size,
+            rounding: pose_rounding(roots, a_from_b),
             queue: BinaryHeap::with_capacity(256),
             moved: Vec::with_capacity(256),
         }
@@ -212,7 +209,7 @@ impl<'a> Pairs<'a> {
         if apart.deviations >= within && !may_cross() {
             outcome.leave_out(&apart);
         } else {
-            self.queue.push(Candidate { a, b, box_of_b, apart, urgency });
+            self.queue.push(Queued(Candidate { a, b, box_of_b, apart, urgency }));
         }
     }
 
@@ -255,34 +252,23 @@ impl<'a> Pairs<'a> {
     }
 }
 
-/// A pair in the queue; the greatest comes out first.
+/// A pair that waits.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
     a: u32,
     b: u32,
     box_of_b: u32,
     apart: Apart,
-    /// Small is urgent: negative for an overlap, relative to the smaller node, else deviations.
+    /// Negative for an overlap, relative to the smaller node, else deviations.
     urgency: f64,
 }
 
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        (other.urgency.total_cmp(&self.urgency))
-            .then_with(|| (other.a, other.b).cmp(&(self.a, self.b)))
+impl Urgent for Candidate {
+    fn urgency(&self) -> f64 {
+        self.urgency
+    }
+
+    fn nodes(&self) -> (u32, u32) {
+        (self.a, self.b)
     }
 }
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Candidate {}

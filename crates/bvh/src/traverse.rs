@@ -1,12 +1,12 @@
 //! Traversal of two trees: node pairs best first, leaf pairs to the caller, a bound on the rest.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use cloudtouch_geom::{Pose, Vector3, normal};
 
 use crate::examine::{Examined, Examiner};
 use crate::leakage::bound_at;
+use crate::queue::{Queued, Urgent};
 use crate::{NodeId, TraversalSettings, Tree, TreeError};
 
 /// Two leaves whose points may touch.
@@ -136,12 +136,12 @@ fn walk(
             let pair = examiner.examine(ids, wanted_within);
             outcome.nodes_visited += 1;
             if pair.descend {
-                queue.push(Candidate(pair));
+                queue.push(Queued(pair));
             } else {
                 cull(&pair, &mut outcome);
             }
         }
-        let Some(Candidate(pair)) = queue.pop() else { break };
+        let Some(Queued(pair)) = queue.pop() else { break };
         if pair.deviations >= wanted_within {
             cull(&pair, &mut outcome);
         } else if let Some(narrower) = examiner.narrower_pairs(&pair) {
@@ -153,7 +153,7 @@ fn walk(
                 Flow::Above(bound) => wanted_within = wanted_within.min(-normal::quantile(bound)),
                 Flow::Stop => {
                     outcome.stopped = true;
-                    let deviations = queue.iter().map(|Candidate(pair)| pair.deviations);
+                    let deviations = queue.iter().map(|Queued(pair)| pair.deviations);
                     outcome.pending_bound = bound_at(deviations.fold(f64::INFINITY, f64::min));
                     break;
                 }
@@ -171,31 +171,15 @@ impl From<Examined> for LeafPair {
     }
 }
 
-/// A pair in the queue; the greatest comes out first.
-#[derive(Debug, Clone, Copy)]
-struct Candidate(Examined);
+impl Urgent for Examined {
+    fn urgency(&self) -> f64 {
+        self.urgency
+    }
 
-impl Ord for Candidate {
-    fn cmp(&self, Self(other): &Self) -> Ordering {
-        let Self(pair) = self;
-        (other.urgency.total_cmp(&pair.urgency))
-            .then_with(|| (other.a, other.b).cmp(&(pair.a, pair.b)))
+    fn nodes(&self) -> (u32, u32) {
+        (self.a, self.b)
     }
 }
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Candidate {}
 
 #[cfg(test)]
 mod tests {
@@ -333,7 +317,7 @@ mod tests {
         let candidate = |urgency, a, b| {
             let deviations = f64::NEG_INFINITY;
             let axis = Vector3::x();
-            Candidate(Examined { a, b, gap: urgency, axis, deviations, urgency, descend: true })
+            Queued(Examined { a, b, gap: urgency, axis, deviations, urgency, descend: true })
         };
         let mut queue: BinaryHeap<_> = [
             candidate(0.1, 0, 0),

@@ -5,9 +5,10 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use clap::Args;
 use cloudtouch::WITHIN_KNOTS;
+use cloudtouch_testkit::family::Kind;
 
 use crate::{
-    answers::{Answers, Pair},
+    answers::{Answers, Pair, Question},
     measures::{
         Axis, Clusters, Sample, SurfaceSample, calibration_error, chance_error, fit_surface,
     },
@@ -135,9 +136,9 @@ fn judged(
     family: Option<&str>,
 ) -> Result<(usize, f64, f64)> {
     let method = answers.index(&name(margin)).context("a margin that was asked about")?;
-    let is_asked = |question: &crate::answers::Question| {
+    let is_asked = |question: &Question| {
         question.pair == pair
-            && question.kind == cloudtouch_testkit::family::Kind::Ordinary
+            && question.kind == Kind::Ordinary
             && family.is_none_or(|family| family == question.family)
     };
     let rows: Vec<_> = answers.rows.iter().filter(|(question, _)| is_asked(question)).collect();
@@ -153,6 +154,8 @@ fn judged(
 
 #[cfg(test)]
 mod tests {
+    use std::time::Instant;
+
     use super::*;
     use crate::answers::{Said, tests::question};
 
@@ -165,15 +168,9 @@ mod tests {
                 let score = (distance - margin) / 0.01;
                 let probability =
                     if margin == 0.03 { stated } else { f64::from(distance < margin) };
-                Some(Said {
-                    probability: Some(probability),
-                    ..Said::score(score, std::time::Instant::now())
-                })
+                Some(Said { probability: Some(probability), ..Said::score(score, Instant::now()) })
             };
-            let question = crate::answers::Question {
-                signed_distance: distance,
-                ..question("a", 0, pose, false)
-            };
+            let question = Question { signed_distance: distance, ..question("a", 0, pose, false) };
             answers.push((question, MARGINS.map(said).to_vec())).unwrap();
         }
         answers

@@ -108,8 +108,7 @@ impl Query {
         };
         let clock = self.clock(Instant::now());
         let local = a.shape().local_from(&b.shape(), a_from_b);
-        let mut stats = report.stats;
-        let found = least_beyond((a, b), &local, margin, &clock, &mut stats)?;
+        let found = least_beyond((a, b), &local, margin, &clock)?;
         let high = if found.is_complete { high } else { 1.0 };
         Ok(at_least(of(found.deviations), high, found.deviations.min(deviations)))
     }

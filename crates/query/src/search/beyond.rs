@@ -31,19 +31,19 @@ pub(crate) fn least_beyond<'a>(
     a_from_b: &Pose,
     margin: f64,
     clock: &Clock,
-    stats: &mut Stats,
 ) -> Result<Beyond, QueryError> {
     let mut least = MOST_DEVIATIONS;
+    // A margin is told without what it cost.
+    let mut stats = Stats::default();
     let motion = Motion::from(a_from_b);
     let trees = (a.shape().tree(), b.shape().tree());
     let sought = Sought { within: MOST_DEVIATIONS, margin, crossings: false, drift: None };
     let mut leaves: (BTreeMap<NodeId, Leaf<'a>>, BTreeMap<NodeId, Leaf<'a>>) = Default::default();
     let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
-        stats.leaf_pairs += 1;
         let leaf_a = leaves.0.entry(pair.a);
-        let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, stats));
+        let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, &mut stats));
         let leaf_b = leaves.1.entry(pair.b);
-        let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(&motion), stats));
+        let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(&motion), &mut stats));
         least = least_of(leaf_a, leaf_b, margin, least).max(-MOST_DEVIATIONS);
         if clock.is_over() || least <= -MOST_DEVIATIONS {
             return SurfaceFlow::Stop;
@@ -51,7 +51,6 @@ pub(crate) fn least_beyond<'a>(
         // Of pairs whose boxes are within the margin no more is known than that: all are looked at.
         SurfaceFlow::Within(least.max(f64::MIN_POSITIVE))
     })?;
-    stats.nodes_visited += outcome.nodes_visited;
     let is_complete = !outcome.stopped || least <= -MOST_DEVIATIONS;
     Ok(Beyond { deviations: least, is_complete })
 }
