@@ -18,8 +18,7 @@ impl Nearness {
     /// Puts both into an answer in JSON.
     pub(crate) fn add_to(&self, answer: &mut Value) {
         let [q05, q95] = self.interval;
-        let at_least = answer["clearance_at_least_m"].take();
-        answer["clearance_at_least_m"] = at_least.clone();
+        let at_least = answer["clearance_at_least_m"].clone();
         if answer["clearance_m"].is_null() {
             answer["clearance_m"] = json!({ "mean": null, "std": null, "is_bound": false });
         }

@@ -41,10 +41,9 @@ pub(crate) fn nearness(nearness: &Nearness) -> String {
 pub(crate) fn over_poses(under: &UnderPoses) -> String {
     let [low, high] = under.bounds.map(probability);
     let of = probability(under.probability);
-    let poses = if under.poses == 1 {
-        "none of them comes near".to_owned()
-    } else {
-        format!("{} poses", under.poses)
+    let poses = match under.poses {
+        1 => "one pose tells of all".to_owned(),
+        count => format!("{count} poses"),
     };
     labelled("over uncertain poses", &format!("{of}   (within {low} .. {high}; {poses})"))
 }

@@ -22,7 +22,6 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let object = load::body::<Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
     let is_mesh = [&scene, &object].map(|loaded| matches!(loaded.body, Body::Mesh(_)));
     unused::check(common, &is_mesh)?;
-    // A path asks about as many poses as a small batch.
     let scene = scene.refined_for(POSES, common.effort.refine)?;
     let object = object.refined_for(POSES, common.effort.refine)?;
     let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;
@@ -36,4 +35,5 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     Ok(if arguments.exit_code { print::exit_code(swept.verdict) } else { ExitCode::SUCCESS })
 }
 
+/// A path asks about as many poses as a small batch.
 const POSES: usize = 10;
