@@ -9,9 +9,11 @@ use crate::positions::Positions;
 use crate::sensor_noise::SensorNoise;
 use crate::spacing::is_noisy;
 
-/// A representative stands for the points up to so many spacings from it, and for none beyond the
-/// standard deviation of the noise.
+/// A representative stands for the points up to so many spacings from it, ...
 const REACH_SPACINGS: f64 = 2.0;
+/// ... or up to this part of the standard deviation of the noise, which hides steps so short, and for
+/// none beyond the whole of it.
+const REACH_STD: f64 = 0.2;
 /// Points whose noise is compared with their spacing before all are.
 const SAMPLE: usize = 200;
 /// The part of these that has to be noisy.
@@ -95,7 +97,8 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
         chosen.push(index);
         let (noise, spacing) = (&sensor[at], densities[at].spacing);
         if is_noisy(noise, spacing) {
-            let reach = noise.max_std().min(REACH_SPACINGS * spacing);
+            let std = noise.max_std();
+            let reach = std.min((REACH_SPACINGS * spacing).max(REACH_STD * std));
             for near in cloud.positions().within(at, reach * reach) {
                 let noise = sensor[near.index].max_std();
                 is_represented[near.index] |= near.squared_distance <= noise * noise;
