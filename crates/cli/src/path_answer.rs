@@ -2,18 +2,21 @@
 
 use anyhow::Result;
 use cloudtouch::geom::Pose;
-use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Verdict};
+use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Undecided, Verdict, Warning};
 use serde::Serialize;
 
 use crate::answer::matrix;
 use crate::load::Input;
-use crate::print::probability;
+use crate::print::{probability, undecided};
+use crate::report_text::labelled;
 
 #[derive(Serialize)]
 struct Line<'a> {
     max_probability: f64,
     bounds: [f64; 2],
     verdict: Verdict,
+    undecided_by: Option<Undecided>,
+    warnings: &'a [Warning],
     most_probable: Place<'a>,
     first: Option<First<'a>>,
     certified_free_until: f64,
@@ -57,6 +60,8 @@ pub(crate) fn json_line(swept: &Swept, [scene, object]: [&Input; 2]) -> Result<S
         max_probability: swept.most_probable.report.collision_probability,
         bounds: swept.bounds,
         verdict: swept.verdict,
+        undecided_by: swept.undecided_by,
+        warnings: &swept.warnings,
         most_probable: (&swept.most_probable).into(),
         first: swept
             .first
@@ -74,13 +79,14 @@ pub(crate) fn json_line(swept: &Swept, [scene, object]: [&Input; 2]) -> Result<S
 pub(crate) fn text(swept: &Swept) -> String {
     let [low, high] = swept.bounds.map(probability);
     let best = &swept.most_probable;
+    let reason = swept.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
     let mut lines = vec![
         format!(
             "largest probability    {}   (within {low} .. {high})",
             probability(best.report.collision_probability)
         ),
         format!("                       at {}", place(best)),
-        format!("verdict                {}", swept.verdict),
+        labelled("verdict", &format!("{}{reason}", swept.verdict)),
         format!("free for certain       until {} of the path", percent(swept.certified_free_until)),
     ];
     if let Some(first) = &swept.first {
@@ -94,6 +100,7 @@ pub(crate) fn text(swept: &Swept) -> String {
             lines.push(format!("first contact          {:.3} {:.3} {:.3} m", p.x, p.y, p.z));
         }
     }
+    lines.extend(swept.warnings.iter().map(|warning| labelled("warning", &warning.to_string())));
     let SweepStats { poses, stretches, query_us, .. } = swept.stats;
     lines.push(format!(
         "work                   {poses} poses and {stretches} stretches in {:.1} ms",

@@ -116,7 +116,7 @@ const WIDTH: usize = 100;
 const INDENT: usize = 23;
 
 /// A line of a report, with as many lines after it as its words take.
-fn labelled(label: &str, words: &str) -> String {
+pub(crate) fn labelled(label: &str, words: &str) -> String {
     let mut text = format!("{label:<INDENT$}");
     let mut column = INDENT;
     for word in words.split(' ') {

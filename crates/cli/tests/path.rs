@@ -62,6 +62,24 @@ fn a_path_above_the_floor_is_free_and_says_so() {
 }
 
 #[test]
+fn a_path_in_millimetres_is_undecided_and_says_why() {
+    let inputs = Inputs::new();
+    inputs.write("far.csv", &csv(&[600.0, 400.0]));
+    let run = path(&inputs, "far.csv", &["--json", "--exit-code"]).quiet(30);
+    let found = run.json_lines().remove(0);
+    assert_eq!((&found["verdict"], &found["undecided_by"]), (&"undecided".into(), &"units".into()));
+    let warnings = found["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1, "once for the whole path: {warnings:?}");
+    assert_eq!(warnings[0]["code"], "far_away");
+    assert!(warnings[0]["words"].as_str().unwrap().contains("check the pose"));
+    assert!(warnings[0]["values"]["gap_m"].as_f64().unwrap() > 590.0, "as it begins");
+    let text = path(&inputs, "far.csv", &[]).quiet(0).stdout();
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("verdict undecided: sizes or distance cannot be meant"), "{text}");
+    assert!(words.contains("warning the object is"), "{text}");
+}
+
+#[test]
 fn bad_paths_are_named_with_what_to_do() {
     let inputs = Inputs::new();
     for (name, text, part) in [

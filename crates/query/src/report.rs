@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::judge::ContactEvidence;
 use crate::mode::Mode;
 use crate::undecided::Undecided;
-use crate::warning::{Warning, Which, spelled};
+use crate::warning::{Warning, Which};
 
 /// The answer to one query. Serialises to the JSON object of the command-line tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,7 +40,6 @@ pub struct Report {
     /// How much of a body lies where a single depth image saw nothing; `None` where no body is one.
     pub unseen: Option<Unseen>,
     /// Signs of a slip: a unit, a pose or a sensor that is hardly meant.
-    #[serde(serialize_with = "spelled")]
     pub warnings: Vec<Warning>,
     /// What the answer cost.
     pub stats: Stats,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::undecided::Undecided;
 
@@ -29,7 +29,7 @@ impl fmt::Display for Which {
 /// A sign that a file, a unit, a pose or a sensor is not what was meant. Displays as a sentence with
 /// a remedy; in a report it serialises as `{"code","values","words"}`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(tag = "code", content = "values", rename_all = "snake_case")]
+#[serde(remote = "Self", tag = "code", content = "values", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Warning {
     /// The points of a cloud, or all corners of each face of a mesh, are on a line: no surface.
@@ -125,6 +125,23 @@ pub enum Warning {
 }
 
 impl Warning {
+    /// Whom it is about; `None` where it is about how they lie to one another.
+    pub(crate) fn body(&self) -> Option<Which> {
+        match *self {
+            Self::NoSurface { body, .. }
+            | Self::Missing { body, .. }
+            | Self::Units { body, .. }
+            | Self::Sparse { body, .. }
+            | Self::Noise { body, .. }
+            | Self::SensorPose { body, .. }
+            | Self::SensorRange { body, .. }
+            | Self::SensorLayout { body }
+            | Self::NoImage { body }
+            | Self::Unseen { body, .. } => Some(body),
+            Self::FarAway { .. } | Self::OutsideScene { .. } => None,
+        }
+    }
+
     /// Why nothing reads as free beside this; `None` where it may.
     pub(crate) fn undecides(&self) -> Option<Undecided> {
         match self {
@@ -234,17 +251,16 @@ fn length(metres: f64) -> String {
     }
 }
 
-/// Serialises warnings with their words.
-pub(crate) fn spelled<S: serde::Serializer>(
-    warnings: &[Warning],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Spelled<'a> {
-        #[serde(flatten)]
-        warning: &'a Warning,
-        words: String,
+/// With its words.
+impl Serialize for Warning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Spelled<'a> {
+            // What is derived above: an associated function of the same name.
+            #[serde(flatten, serialize_with = "Warning::serialize")]
+            warning: &'a Warning,
+            words: String,
+        }
+        Spelled { warning: self, words: self.to_string() }.serialize(serializer)
     }
-    let words = |warning| Spelled { warning, words: Warning::to_string(warning) };
-    serializer.collect_seq(warnings.iter().map(words))
 }

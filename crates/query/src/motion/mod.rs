@@ -4,6 +4,7 @@
 mod bound;
 mod interval;
 mod leg;
+mod misgivings;
 mod path;
 mod sweep;
 mod swept;

@@ -8,9 +8,11 @@ use crate::classifier::Clock;
 use crate::error::QueryError;
 use crate::query::{Query, QuerySettings};
 use crate::report::{Report, Stats, Verdict};
+use crate::undecided::Undecided;
 
 use super::bound::Drifting;
 use super::interval::Interval;
+use super::misgivings::Misgivings;
 use super::path::Path;
 use super::swept::{AlongPath, Reached, SweepStats, Swept};
 
@@ -110,7 +112,7 @@ struct Tested {
     bounds: [f64; 2],
     /// The first that is not free, in segments: probable, or something speaks against believing it.
     not_free_from: f64,
-    is_doubtful: bool,
+    misgivings: Misgivings,
 }
 
 impl Tested {
@@ -120,7 +122,7 @@ impl Tested {
             first: None,
             bounds: [0.0; 2],
             not_free_from: f64::INFINITY,
-            is_doubtful: false,
+            misgivings: Misgivings::default(),
         };
         tested.add(begin.clone(), settings);
         tested
@@ -133,7 +135,7 @@ impl Tested {
         if asked.report.verdict != Verdict::Free {
             self.not_free_from = self.not_free_from.min(at);
         }
-        self.is_doubtful |= asked.report.verdict == Verdict::Undecided;
+        self.misgivings.add(at, asked.report.undecided_by, &asked.report.warnings);
         let is_first = self.first.as_ref().is_none_or(|first| at < position(first));
         if probability > settings.accept && is_first {
             self.first = Some(asked.clone());
@@ -248,13 +250,14 @@ impl Sweep<'_> {
         let cut = if interval.length() > self.tolerance { self.cut() } else { 1.0 };
         interval.upper = drifting.upper_bound(self.query, cut, &self.clock, &mut self.stats)?;
         if interval.upper < self.query.settings().reject {
-            let doubt = self.query.terms().doubt_at((a.shape(), b.shape()), &a_from_b);
+            let at = segment as f64 + interval.middle();
+            let shapes = (a.shape(), b.shape());
+            let (doubt, warnings) = self.query.terms().doubt_at(shapes, &a_from_b);
             interval.is_doubtful = doubt.is_some();
             if interval.is_doubtful {
-                let at = segment as f64 + interval.middle();
                 self.tested.not_free_from = self.tested.not_free_from.min(at);
-                self.tested.is_doubtful = true;
             }
+            self.tested.misgivings.add(at, doubt, &warnings);
         }
         Ok(interval)
     }
@@ -272,19 +275,24 @@ impl Sweep<'_> {
         let open = intervals.iter().find(|interval| interval.upper > settings.accept);
         let not_before = open.map_or(f64::INFINITY, Interval::start).min(tested.end()) / segments;
         let largest = intervals.iter().map(|interval| interval.upper).fold(0.0, f64::max);
-        let highest = if tested.is_doubtful { 1.0 } else { largest.max(tested.bounds[1]) };
+        let doubt = tested.misgivings.earliest();
+        let highest = if doubt.is_some() { 1.0 } else { largest.max(tested.bounds[1]) };
         let known = tested.most_probable.report.collision_probability;
+        let verdict = if tested.first.is_some() {
+            Verdict::InCollision
+        } else if certified >= segments {
+            Verdict::Free
+        } else if doubt.is_some() || known < settings.reject {
+            Verdict::Undecided
+        } else {
+            Verdict::Uncertain
+        };
         Swept {
             bounds: [tested.bounds[0], highest],
-            verdict: if tested.first.is_some() {
-                Verdict::InCollision
-            } else if certified >= segments {
-                Verdict::Free
-            } else if tested.is_doubtful || known < settings.reject {
-                Verdict::Undecided
-            } else {
-                Verdict::Uncertain
-            },
+            verdict,
+            undecided_by: (verdict == Verdict::Undecided)
+                .then(|| doubt.unwrap_or(Undecided::Bounds)),
+            warnings: tested.misgivings.into_warnings(),
             most_probable: tested.most_probable,
             first: tested.first.map(|at| Reached { at, not_before }),
             certified_free_until: certified / segments,

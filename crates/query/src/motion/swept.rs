@@ -4,6 +4,8 @@ use cloudtouch_geom::Pose;
 use serde::Serialize;
 
 use crate::report::{Report, Verdict};
+use crate::undecided::Undecided;
+use crate::warning::Warning;
 
 /// How likely two bodies collide along a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +24,11 @@ pub struct Swept {
     /// The verdict on the whole path: [`Verdict::Free`] where every pose is for certain,
     /// [`Verdict::InCollision`] where some pose is, else as for a pose.
     pub verdict: Verdict,
+    /// Why the verdict is undecided: the doubt about the earliest pose that there is one about.
+    pub undecided_by: Option<Undecided>,
+    /// Signs of a slip at the poses that were looked at: each kind once for each body, as of the
+    /// earliest of them.
+    pub warnings: Vec<Warning>,
     /// What the answer cost.
     pub stats: SweepStats,
 }

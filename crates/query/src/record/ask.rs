@@ -82,16 +82,17 @@ impl Terms {
         Ok(report)
     }
 
-    /// The gravest reason not to believe that a pair is free at a pose, if it should read so.
+    /// The gravest reason not to believe that a pair is free at a pose, if it should read so, and the
+    /// warnings about it.
     pub(crate) fn doubt_at(
         &self,
         (a, b): (Shape<'_>, Shape<'_>),
         a_from_b: &Pose,
-    ) -> Option<Undecided> {
+    ) -> (Option<Undecided>, Vec<Warning>) {
         let local = a.local_from(&b, a_from_b);
         let unseen = unseen(a, b, &local);
         let warnings = doubts((a, b), &local, unseen.as_ref(), &self.safeguards);
-        self.doubt((a, b), &local, &warnings)
+        (self.doubt((a, b), &local, &warnings), warnings)
     }
 
     fn doubt(
