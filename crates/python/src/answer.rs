@@ -1,6 +1,6 @@
 //! One report as what `cloudtouch.Report` is made of.
 
-use cloudtouch::{Report, Undecided, Verdict, Within};
+use cloudtouch::{Report, Undecided, UnderPoses, Verdict, Within};
 use numpy::IntoPyArray;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -95,5 +95,20 @@ pub(crate) fn within<'py>(py: Python<'py>, within: &Within) -> PyResult<Bound<'p
     fields.set_item(intern!(py, "lower"), lower)?;
     fields.set_item(intern!(py, "upper"), upper)?;
     fields.set_item(intern!(py, "deviations"), within.deviations)?;
+    Ok(fields)
+}
+
+/// The fields of a collision over all the poses that may be.
+pub(crate) fn under_poses<'py>(
+    py: Python<'py>,
+    under: &UnderPoses,
+) -> PyResult<Bound<'py, PyDict>> {
+    let fields = PyDict::new(py);
+    let [lower, upper] = under.bounds;
+    fields.set_item(intern!(py, "probability"), under.probability)?;
+    fields.set_item(intern!(py, "lower"), lower)?;
+    fields.set_item(intern!(py, "upper"), upper)?;
+    fields.set_item(intern!(py, "std_error"), under.std_error)?;
+    fields.set_item(intern!(py, "poses"), under.poses)?;
     Ok(fields)
 }

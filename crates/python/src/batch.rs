@@ -30,6 +30,7 @@ pub(crate) struct Columns {
     contact_count: Vec<i64>,
     warning_count: Vec<i64>,
     seconds: Vec<f64>,
+    error: Vec<String>,
 }
 
 impl Columns {
@@ -54,6 +55,27 @@ impl Columns {
         self.contact_count.push(report.contacts.len() as i64);
         self.warning_count.push(report.warnings.len() as i64);
         self.seconds.push(seconds(report));
+        self.error.push(String::new());
+    }
+
+    /// A row without an answer, which never reads as free.
+    pub(crate) fn push_error(&mut self, message: &str) {
+        self.probability.push(f64::NAN);
+        self.lower.push(f64::NAN);
+        self.upper.push(f64::NAN);
+        self.verdict.push(name("error"));
+        self.undecided_by.push(name(""));
+        self.log_likelihood_ratio.push(f64::NAN);
+        self.clearance.push(f64::NAN);
+        self.clearance_std.push(f64::NAN);
+        self.clearance_is_bound.push(false);
+        self.clearance_at_least.push(f64::NAN);
+        self.contact_point.push(Vector3::repeat(f64::NAN));
+        self.contact_normal.push(Vector3::repeat(f64::NAN));
+        self.contact_count.push(0);
+        self.warning_count.push(0);
+        self.seconds.push(0.0);
+        self.error.push(message.to_owned());
     }
 
     /// By their names in Python.
@@ -76,6 +98,7 @@ impl Columns {
         columns.set_item("contact_count", self.contact_count.into_pyarray(py))?;
         columns.set_item("warning_count", self.warning_count.into_pyarray(py))?;
         columns.set_item("seconds", self.seconds.into_pyarray(py))?;
+        columns.set_item("error", self.error)?;
         Ok(columns)
     }
 }

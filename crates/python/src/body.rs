@@ -207,7 +207,8 @@ pub(crate) fn mesh(
     Ok(Body { prepared: Prepared::Mesh(prepared.map_err(refused)?), given: Given::Mesh(given) })
 }
 
-fn rows<'py>(py: Python<'py>, points: &[Point3]) -> Bound<'py, PyArray2<f64>> {
+/// Points as rows.
+pub(crate) fn rows<'py>(py: Python<'py>, points: &[Point3]) -> Bound<'py, PyArray2<f64>> {
     table(points.iter().map(|p| p.coords)).into_pyarray(py)
 }
 
@@ -220,7 +221,8 @@ pub(crate) fn table(vectors: impl ExactSizeIterator<Item = Vector3>) -> Array2<f
     table
 }
 
-fn corners<'py>(py: Python<'py>, triangles: &[[u32; 3]]) -> Bound<'py, PyArray2<i64>> {
+/// Triangles as rows.
+pub(crate) fn corners<'py>(py: Python<'py>, triangles: &[[u32; 3]]) -> Bound<'py, PyArray2<i64>> {
     let entry = |(row, column): (usize, usize)| i64::from(triangles[row][column]);
     Array2::from_shape_fn((triangles.len(), 3), entry).into_pyarray(py)
 }

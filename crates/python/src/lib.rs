@@ -6,8 +6,10 @@ mod arrays;
 mod batch;
 mod body;
 mod error;
+mod files;
 mod pool;
 mod query;
+mod sweep;
 
 #[pyo3::pymodule]
 mod _native {
@@ -15,6 +17,8 @@ mod _native {
     use crate::body::{Body, cloud, mesh};
     #[pymodule_export]
     use crate::error::CloudtouchError;
+    #[pymodule_export]
+    use crate::files::{read_cloud, read_faces};
     #[pymodule_export]
     use crate::query::Query;
 

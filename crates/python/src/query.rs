@@ -1,9 +1,10 @@
-//! Queries: settings checked once, and the three questions.
+//! Queries: settings checked once, and what is asked with them.
 
+use std::array::from_fn;
 use std::time::Duration;
 
 use cloudtouch::geom::Pose;
-use cloudtouch::{Query as Checked, QuerySettings, Safeguards};
+use cloudtouch::{Path, PoseDistribution, Query as Checked, QuerySettings, Safeguards};
 use nalgebra::Matrix4;
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -15,6 +16,7 @@ use crate::batch::Columns;
 use crate::body::Body;
 use crate::error::{refused, refused_for};
 use crate::pool::on_all_threads;
+use crate::sweep;
 
 /// Between so many poses Python is asked whether Ctrl-C was pressed, and reports make room for others.
 const POSES_AT_ONCE: usize = 1024;
@@ -88,31 +90,107 @@ impl Query {
         Ok((answer::report(py, &report)?, answer::within(py, &within)?))
     }
 
-    #[pyo3(signature = (a, b, poses, /))]
+    #[pyo3(signature = (a, b, pose, share, /))]
+    fn clearance_interval<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Body>,
+        b: &Bound<'py, Body>,
+        pose: PyReadonlyArray2<'py, f64>,
+        share: f64,
+    ) -> PyResult<[f64; 2]> {
+        let (a, b) = (a.get().get(), b.get().get());
+        let pose = rigid(&matrix(&pose))?;
+        py.detach(|| self.checked.clearance_interval(a, b, &pose, share)).map_err(refused)
+    }
+
+    #[pyo3(signature = (a, b, pose, covariance, /))]
+    fn run_uncertain<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Body>,
+        b: &Bound<'py, Body>,
+        pose: PyReadonlyArray2<'py, f64>,
+        covariance: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+        let (a, b) = (a.get().get(), b.get().get());
+        let mean = rigid(&matrix(&pose))?;
+        let entries = covariance.as_array();
+        let covariance = from_fn(|row| from_fn(|column| entries[(row, column)]));
+        let poses = PoseDistribution { mean, covariance };
+        let both = on_all_threads(py, || self.checked.run_uncertain(a, b, &poses))?;
+        let (report, under) = both.map_err(refused)?;
+        Ok((answer::report(py, &report)?, answer::under_poses(py, &under)?))
+    }
+
+    #[pyo3(signature = (a, b, poses, is_screw, tolerance, /))]
+    fn sweep<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Body>,
+        b: &Bound<'py, Body>,
+        poses: PyReadonlyArray3<'py, f64>,
+        is_screw: bool,
+        tolerance: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (a, b) = (a.get().get(), b.get().get());
+        let poses: PyResult<Vec<Pose>> = all_rigid(&poses).into_iter().collect();
+        let path = match (&poses?[..], is_screw) {
+            ([from, to], true) => Path::screw(from, to),
+            (poses, _) => Path::through(poses),
+        };
+        let path = path.map_err(refused)?;
+        let swept = py.detach(|| self.checked.sweep(a, b, &path, tolerance)).map_err(refused)?;
+        sweep::answer(py, &swept)
+    }
+
+    #[pyo3(signature = (a, b, poses, keep_going, /))]
     fn run_batch<'py>(
         &self,
         py: Python<'py>,
         a: &Bound<'py, Body>,
         b: &Bound<'py, Body>,
         poses: PyReadonlyArray3<'py, f64>,
+        keep_going: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (a, b) = (a.get().get(), b.get().get());
-        let at = |index: usize| format!("poses[{index}]");
-        let rigid = |(index, pose): (usize, &Matrix4<f64>)| {
-            Pose::try_from_matrix(pose).map_err(|e| refused_for(at(index), e))
-        };
-        let poses: PyResult<Vec<Pose>> = matrices(&poses).iter().enumerate().map(rigid).collect();
+        let poses = all_rigid(&poses);
+        // Before any work.
+        if let Some(Err(error)) = poses.iter().find(|pose| pose.is_err() && !keep_going) {
+            return Err(error.clone_ref(py));
+        }
         let mut columns = Columns::default();
-        for (part, poses) in poses?.chunks(POSES_AT_ONCE).enumerate() {
-            let reports = on_all_threads(py, || self.checked.run_batch(a, b, poses))?;
-            for (index, report) in reports.into_iter().enumerate() {
-                let failed = |e| refused_for(at(part * POSES_AT_ONCE + index), e);
-                columns.push(&report.map_err(failed)?);
+        for (part, poses) in poses.chunks(POSES_AT_ONCE).enumerate() {
+            let good: Vec<Pose> = poses.iter().flatten().copied().collect();
+            let mut reports =
+                on_all_threads(py, || self.checked.run_batch(a, b, &good))?.into_iter();
+            for (index, pose) in poses.iter().enumerate() {
+                let row = part * POSES_AT_ONCE + index;
+                let report = match pose {
+                    Ok(_) => {
+                        let report = reports.next().expect("a report for each good pose");
+                        report.map_err(|e| refused_for(format!("poses[{row}]"), e))
+                    }
+                    Err(error) => Err(error.clone_ref(py)),
+                };
+                match report {
+                    Ok(report) => columns.push(&report),
+                    Err(error) if keep_going => columns.push_error(&error.value(py).to_string()),
+                    Err(error) => return Err(error),
+                }
             }
             py.check_signals()?;
         }
         columns.into_dict(py)
     }
+}
+
+/// The poses of an array, each good or named by its place.
+fn all_rigid(poses: &PyReadonlyArray3<'_, f64>) -> Vec<PyResult<Pose>> {
+    let rigid = |(index, pose): (usize, &Matrix4<f64>)| {
+        Pose::try_from_matrix(pose).map_err(|e| refused_for(format!("poses[{index}]"), e))
+    };
+    matrices(poses).iter().enumerate().map(rigid).collect()
 }
 
 fn rigid(matrix: &Matrix4<f64>) -> PyResult<Pose> {

@@ -11,10 +11,13 @@ See ``Cloud``, ``Mesh`` and ``Query``; ``python -m cloudtouch.demo`` shows them 
 
 from cloudtouch._native import CloudtouchError, __version__
 from cloudtouch.bodies import Cloud, Mesh
+from cloudtouch.checker import PoseChecker
+from cloudtouch.motion import AlongPath, Swept, UnderPoses
 from cloudtouch.query import Query
 from cloudtouch.report import Batch, Contact, Evidence, PointProbabilities, Report, Within
 
 __all__ = [
+    "AlongPath",
     "Batch",
     "Cloud",
     "CloudtouchError",
@@ -22,8 +25,11 @@ __all__ = [
     "Evidence",
     "Mesh",
     "PointProbabilities",
+    "PoseChecker",
     "Query",
     "Report",
+    "Swept",
+    "UnderPoses",
     "Within",
     "__version__",
 ]

@@ -1,5 +1,6 @@
 """The compiled half. Not for use by itself: arrays are as ``cloudtouch._arrays`` makes them."""
 
+import os
 from typing import Any, Optional, Union, final
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 Rows = Union[npt.NDArray[np.float32], npt.NDArray[np.float64]]
 
-__all__ = ["Body", "CloudtouchError", "Query", "__version__", "cloud", "mesh"]
+__all__ = ["Body", "CloudtouchError", "Query", "__version__", "cloud", "mesh", "read_cloud", "read_mesh"]
 
 __version__: str
 
@@ -29,6 +30,10 @@ class Body:
 def cloud(points: Rows, arguments: dict[str, Any], /) -> Body: ...
 def mesh(vertices: Rows, triangles: npt.NDArray[np.uint32], /) -> Body: ...
 
+def read_cloud(
+    path: Union[str, os.PathLike[str]], unit: str, /
+) -> tuple[Floats, Optional[tuple[int, int]], Floats, Optional[Floats]]: ...
+def read_mesh(path: Union[str, os.PathLike[str]], unit: str, /) -> tuple[Floats, npt.NDArray[np.int64]]: ...
 @final
 class Query:
     def __new__(
@@ -48,4 +53,9 @@ class Query:
     def within(
         self, a: Body, b: Body, pose: Floats, margin: float, /
     ) -> tuple[dict[str, Any], dict[str, Any]]: ...
-    def run_batch(self, a: Body, b: Body, poses: Floats, /) -> dict[str, Any]: ...
+    def clearance_interval(self, a: Body, b: Body, pose: Floats, share: float, /) -> list[float]: ...
+    def run_uncertain(
+        self, a: Body, b: Body, pose: Floats, covariance: Floats, /
+    ) -> tuple[dict[str, Any], dict[str, Any]]: ...
+    def sweep(self, a: Body, b: Body, poses: Floats, is_screw: bool, tolerance: float, /) -> dict[str, Any]: ...
+    def run_batch(self, a: Body, b: Body, poses: Floats, keep_going: bool, /) -> dict[str, Any]: ...

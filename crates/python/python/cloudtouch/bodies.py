@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
@@ -96,6 +97,41 @@ class Cloud:
             },
         )
 
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        sensor: str,
+        unit: str = "m",
+        sensor_pose: npt.ArrayLike | None = None,
+        **others: Any,
+    ) -> Cloud:
+        """A cloud from a file: ``.pcd``, ``.ply``, ``.xyz``, ``.txt`` or ``.csv``.
+
+        Parameters
+        ----------
+        unit
+            Of its coordinates: ``"m"``, ``"cm"``, ``"mm"`` or ``"in"``.
+        sensor, sensor_pose
+            As for :class:`Cloud`. Where the sensor stood is taken from the file if it is not given.
+        others
+            Every other argument of :class:`Cloud`, by name.
+
+        Raises
+        ------
+        CloudtouchError
+            The file cannot be read, is malformed or has another extension, with place and remedy; and what
+            :class:`Cloud` raises.
+        """
+        rows, image_size, pose, covariances = _native.read_cloud(path, unit)
+        if image_size is not None:
+            width, height = image_size
+            rows = rows.reshape(height, width, 3)
+        if sensor == "per-point":
+            others.setdefault("covariances", covariances)
+        return cls(rows, sensor=sensor, sensor_pose=pose if sensor_pose is None else sensor_pose, **others)
+
     def _prepare(self, rows: npt.NDArray[Any], arguments: dict[str, Any]) -> None:
         self._arguments = arguments
         self._body = _native.cloud(rows, arguments)
@@ -172,6 +208,17 @@ class Mesh:
         if image_size is not None:
             raise ValueError("vertices has three dimensions: give (V, 3)")
         self._body = _native.mesh(rows, _arrays.indices(triangles, "triangles"))
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str], *, unit: str = "m") -> Mesh:
+        """A mesh from a file: ``.stl``, ``.obj`` or ``.ply``, in ``"m"``, ``"cm"``, ``"mm"`` or ``"in"``.
+
+        Raises
+        ------
+        CloudtouchError
+            The file cannot be read, is malformed or has another extension, with place and remedy.
+        """
+        return cls(*_native.read_mesh(path, unit))
 
     @property
     def vertices(self) -> npt.NDArray[np.float64]:

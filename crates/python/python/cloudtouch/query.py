@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Union
+from typing import Any, Literal, Union
 
+import numpy as np
 import numpy.typing as npt
 
 from cloudtouch import _arrays, _native
 from cloudtouch.bodies import Cloud, Mesh
+from cloudtouch.motion import Swept, UnderPoses
 from cloudtouch.report import Batch, Report, Within
 
 Body = Union[Cloud, Mesh]
@@ -117,7 +119,77 @@ class Query:
         report, within = self._query.within(a._body, b._body, matrix, margin)
         return Report._of(report), Within(**within)
 
-    def run_batch(self, a: Body, b: Body, poses: npt.ArrayLike) -> Batch:
+    def clearance_interval(self, a: Body, b: Body, pose: npt.ArrayLike, share: float = 0.9) -> tuple[float, float]:
+        """Between what distances, m, the surfaces lie with a probability of ``share``.
+
+        As likely nearer than the first as farther than the second; 0 where a collision alone is likely enough.
+
+        Raises
+        ------
+        CloudtouchError
+            ``share`` is not between 0 and 1, and what :meth:`run` raises.
+        """
+        low, high = self._query.clearance_interval(a._body, b._body, _arrays.numbers(pose, "pose", (4, 4)), share)
+        return low, high
+
+    def run_uncertain(
+        self, a: Body, b: Body, pose: npt.ArrayLike, covariance: npt.ArrayLike
+    ) -> tuple[Report, UnderPoses]:
+        """How likely a collision is where the pose is known only so well, and the report on the likeliest pose.
+
+        Takes some 257 queries, on all cores, and two where no pose comes near.
+
+        Parameters
+        ----------
+        pose
+            (4, 4): the likeliest, from the frame of ``b`` into that of ``a``, m.
+        covariance
+            (6, 6) of a small motion in the frame of ``b`` that follows: translation, m, then rotation vector, rad. May be
+            singular. Or (6,), standard deviations of independent ones.
+
+        Raises
+        ------
+        CloudtouchError
+            ``covariance`` is not finite, not symmetric or has a negative eigenvalue, and what :meth:`run` raises.
+        """
+        matrix = _arrays.numbers(pose, "pose", (4, 4))
+        if np.ndim(covariance) == 1:
+            covariance = np.diag(_arrays.numbers(covariance, "covariance", (6,)) ** 2)
+        spread = _arrays.numbers(covariance, "covariance", (6, 6))
+        report, under = self._query.run_uncertain(a._body, b._body, matrix, spread)
+        return Report._of(report), UnderPoses(**under)
+
+    def sweep(
+        self, a: Body, b: Body, poses: npt.ArrayLike, *, tolerance: float = 0.01, screw: bool = False
+    ) -> Swept:
+        """How likely the bodies collide anywhere along a path of ``b``, nothing between its poses missed.
+
+        Parameters
+        ----------
+        poses
+            (M, 4, 4), M at least 2: the path goes from each to the next, the origin of ``b`` along a straight line, its
+            rotation by the shorter turn.
+        tolerance
+            Stretches this short, as a share of the path, are not looked at closer; what they leave open stays in the
+            bounds.
+        screw
+            The way between two poses is a screw, about one axis and along it, as a joint moves.
+
+        Raises
+        ------
+        ValueError
+            ``poses`` has the wrong shape or type, or a screw is not between two poses.
+        CloudtouchError
+            All poses are the same, ``tolerance`` is not between 0 and 1, and what :meth:`run` raises.
+        """
+        matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
+        if screw and len(matrices) != 2:
+            raise ValueError(f"poses are {len(matrices)}: a screw is from one pose to another")
+        return Swept._of(self._query.sweep(a._body, b._body, matrices, screw, tolerance))
+
+    def run_batch(
+        self, a: Body, b: Body, poses: npt.ArrayLike, *, errors: Literal["raise", "keep"] = "raise"
+    ) -> Batch:
         """Many poses of one pair, on all cores: the numbers of :meth:`run`, a row for each pose.
 
         Other Python threads run meanwhile; Ctrl-C ends it. ``RAYON_NUM_THREADS`` limits the cores.
@@ -126,6 +198,9 @@ class Query:
         ----------
         poses
             (M, 4, 4): from the frame of ``b`` into that of ``a``, m.
+        errors
+            ``"keep"`` answers the other poses: a bad one has the verdict ``"error"``, NaN for numbers and its message in
+            ``Batch.error``.
 
         Raises
         ------
@@ -134,8 +209,12 @@ class Query:
         CloudtouchError
             As :meth:`run`; the message names the first pose concerned, and there are no other answers.
         """
+        if errors not in ("raise", "keep"):
+            raise ValueError(f"errors is {errors!r}: give 'raise' or 'keep'")
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
-        return Batch(**self._query.run_batch(a._body, b._body, matrices))
+        columns = self._query.run_batch(a._body, b._body, matrices, errors == "keep")
+        columns["error"] = np.asarray(columns["error"], dtype=np.str_)
+        return Batch(**columns)
 
     def __repr__(self) -> str:
         return f"Query({', '.join(f'{name}={value!r}' for name, value in self._settings.items())})"

@@ -161,7 +161,8 @@ class Batch:
     lower: Floats
     #: (M,): upper bounds.
     upper: Floats
-    #: (M,): ``"free"``, ``"uncertain"``, ``"in_collision"`` or ``"undecided"``, as text.
+    #: (M,): ``"free"``, ``"uncertain"``, ``"in_collision"`` or ``"undecided"``, as text; ``"error"`` for a pose that was
+    #: refused.
     verdict: npt.NDArray[np.str_]
     #: (M,): why it is undecided, as text; empty for every other verdict.
     undecided_by: npt.NDArray[np.str_]
@@ -185,6 +186,8 @@ class Batch:
     warning_count: npt.NDArray[np.int64]
     #: (M,): how long each query took on its thread, s.
     seconds: Floats
+    #: (M,): why a pose was refused, as text; empty for every answer.
+    error: npt.NDArray[np.str_]
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         """Every column by its name, for a table."""

@@ -1,0 +1,192 @@
+"""Tables of poses in, tables of answers out: what a data engine calls on each of its workers."""
+
+from __future__ import annotations
+
+import os
+from collections import OrderedDict
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Generic, Hashable, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from cloudtouch.bodies import Cloud, Mesh
+from cloudtouch.query import Body, Query
+from cloudtouch.report import Batch
+
+#: Extensions that are read as meshes; a ``.ply`` is a cloud as a scene and a mesh as an object.
+MESHES = (".stl", ".obj")
+#: Columns that a row has to have.
+NEEDED = ("scene", "object", "pose")
+
+Prepared = TypeVar("Prepared")
+
+
+class PoseChecker:
+    """Answers rows of (scene, object, pose); call it with columns.
+
+    A plain class that keeps the bodies it prepared last: Ray Data's ``map_batches``, Dask's ``map_partitions`` and a loop
+    of your own run it as it is. Answers do not depend on how rows are shared out. A row that cannot be answered has the
+    verdict ``"error"`` and says why; it costs no other row its answer.
+
+    Parameters
+    ----------
+    root
+        Folder that the paths in the columns ``scene`` and ``object`` start from.
+    sensor
+        Of scenes, as for :class:`Cloud`.
+    object_sensor
+        Of objects that are clouds; that of scenes where it is not given.
+    unit, cloud_unit
+        Of meshes and of clouds.
+    query
+        Settings by name, as :class:`Query` takes them.
+    keep
+        How many scenes, and how many objects, stay prepared. Rows in the order of their scenes are prepared once.
+
+    Raises
+    ------
+    CloudtouchError
+        A setting of ``query`` is out of range.
+    """
+
+    def __init__(
+        self,
+        root: str | os.PathLike[str] = ".",
+        *,
+        sensor: str,
+        object_sensor: str | None = None,
+        unit: str = "m",
+        cloud_unit: str = "m",
+        query: Mapping[str, Any] | None = None,
+        keep: int = 4,
+    ) -> None:
+        self._root = Path(root)
+        self._sensors = (sensor, sensor if object_sensor is None else object_sensor)
+        self._units = (unit, cloud_unit)
+        self._query = Query(**(query or {}))
+        self._scenes: _Kept[Body] = _Kept(keep)
+        self._objects: _Kept[Body] = _Kept(keep)
+
+    def __call__(self, rows: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+        """The columns of ``rows``, and those of :class:`Batch` beside them.
+
+        Parameters
+        ----------
+        rows
+            Columns of M rows. ``scene`` and ``object``: paths. ``pose``: from object to scene, 16 numbers row by row,
+            (4, 4) or as nested lists. All others are handed on.
+
+        Raises
+        ------
+        ValueError
+            A column is missing, or has another length.
+        """
+        count = _count(rows)
+        answers: dict[str, npt.NDArray[Any]] = {}
+        for names, places in _groups(rows, count):
+            for name, column in self._answer(names, [rows["pose"][place] for place in places]).items():
+                whole = answers.setdefault(name, np.empty((count, *column.shape[1:]), dtype=_wide(column.dtype)))
+                whole[places] = column
+        if count == 0:
+            answers = _refused("", 0).columns()
+        return {**{name: np.asarray(column) for name, column in rows.items()}, **answers}
+
+    def _answer(self, names: tuple[str, str], poses: list[Any]) -> dict[str, npt.NDArray[Any]]:
+        matrices = np.full((len(poses), 4, 4), np.nan)
+        for matrix, pose in zip(matrices, poses):
+            numbers = _sixteen(pose)
+            # What is none stays NaN, which the query refuses by its row.
+            if numbers is not None:
+                matrix[:] = numbers
+        try:
+            scene = self._scenes.get(names[0], lambda: self._read(names[0], is_scene=True))
+            body = self._objects.get(names[1], lambda: self._read(names[1], is_scene=False))
+            batch = self._query.run_batch(scene, body, matrices, errors="keep")
+        except (ValueError, OSError) as error:
+            batch = _refused(str(error), len(poses))
+        # A row is named by the table it is in, not by its place among those of the same pair.
+        words = [text.partition(": ")[2] if text.startswith("poses[") else text for text in batch.error.tolist()]
+        return {**batch.columns(), "error": np.asarray(words, dtype=np.str_)}
+
+    def _read(self, name: str, *, is_scene: bool) -> Body:
+        path, (unit, cloud_unit) = self._root / name, self._units
+        if path.suffix.lower() in MESHES or (path.suffix.lower() == ".ply" and not is_scene):
+            return Mesh.read(path, unit=unit)
+        sensor = self._sensors[0 if is_scene else 1]
+        return Cloud.read(path, sensor=sensor, unit=cloud_unit, refined=is_scene)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A worker prepares what it is asked about.
+        kept = self._scenes.limit
+        return {**self.__dict__, "_scenes": _Kept(kept), "_objects": _Kept(kept)}
+
+
+class _Kept(Generic[Prepared]):
+    """What was used last, by its name."""
+
+    def __init__(self, limit: int) -> None:
+        if limit < 1:
+            raise ValueError(f"keep is {limit}: at least one body stays prepared")
+        self.limit = limit
+        self._known: OrderedDict[Hashable, Prepared] = OrderedDict()
+
+    def get(self, name: Hashable, make: Any) -> Prepared:
+        if name not in self._known:
+            made: Prepared = make()
+            self._known[name] = made
+            while len(self._known) > self.limit:
+                self._known.popitem(last=False)
+        self._known.move_to_end(name)
+        return self._known[name]
+
+
+def _count(rows: Mapping[str, npt.NDArray[Any]]) -> int:
+    missing = [name for name in NEEDED if name not in rows]
+    if missing:
+        raise ValueError(f"columns {', '.join(rows)}: {', '.join(missing)} is missing")
+    lengths = {name: len(column) for name, column in rows.items()}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        raise ValueError(f"columns have different lengths: {told}")
+    return lengths["pose"]
+
+
+def _groups(
+    rows: Mapping[str, npt.NDArray[Any]], count: int
+) -> Iterator[tuple[tuple[str, str], npt.NDArray[np.int64]]]:
+    """Scene and object, and the rows that ask about them, in the order they first come."""
+    places: dict[tuple[str, str], list[int]] = {}
+    for place in range(count):
+        places.setdefault((str(rows["scene"][place]), str(rows["object"][place])), []).append(place)
+    for names, group in places.items():
+        yield names, np.asarray(group)
+
+
+def _sixteen(pose: Any) -> npt.NDArray[np.float64] | None:
+    try:
+        numbers = np.asarray(_plain(pose), dtype=np.float64)
+    except (TypeError, ValueError):
+        return None
+    return numbers.reshape(4, 4) if numbers.size == 16 else None
+
+
+def _plain(pose: Any) -> Any:
+    # Arrow tables hand nested lists on as arrays of arrays.
+    if isinstance(pose, np.ndarray) and pose.dtype == object:
+        return [_plain(row) for row in pose]
+    return pose
+
+
+def _wide(dtype: np.dtype[Any]) -> np.dtype[Any] | type:
+    # Text of any length: the rows of another pair may have longer messages.
+    return object if dtype.kind == "U" else dtype
+
+
+def _refused(message: str, count: int) -> Batch:
+    """Rows that could not be asked about, all for one reason."""
+    triangle = Mesh(np.eye(3), [[0, 1, 2]])
+    nowhere = np.full((count, 4, 4), np.nan)
+    batch = Query().run_batch(triangle, triangle, nowhere, errors="keep")
+    return Batch(**{**batch.columns(), "error": np.full(count, message)})

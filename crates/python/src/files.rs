@@ -1,0 +1,53 @@
+//! Files, read as the command-line tool reads them.
+
+use std::path::PathBuf;
+
+use cloudtouch::geom::{Covariance, PointCloud};
+use cloudtouch_io::{LengthUnit, ReadLimits, read_cloud_within, read_mesh, scaled_cloud};
+use numpy::ndarray::{Array2, Array3};
+use numpy::{IntoPyArray, PyArray2, PyArray3};
+use pyo3::prelude::*;
+
+use crate::body::{corners, rows};
+use crate::error::refused;
+
+type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+
+/// Rows (N, 3), the width and height of an image, the pose of the sensor and covariances.
+type CloudRead<'py> =
+    (Matrix<'py>, Option<(usize, usize)>, Matrix<'py>, Option<Bound<'py, PyArray3<f64>>>);
+
+/// What a file holds of a cloud, in metres.
+#[pyfunction]
+#[pyo3(signature = (path, unit, /))]
+pub(crate) fn read_cloud<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    unit: &str,
+) -> PyResult<CloudRead<'py>> {
+    let factor = unit.parse::<LengthUnit>().map_err(refused)?.in_metres();
+    let read = py.detach(|| read_cloud_within(path, &ReadLimits::default()));
+    let cloud: PointCloud = scaled_cloud(read.map_err(refused)?, factor);
+    let pose = cloud.sensor_pose.isometry().to_homogeneous();
+    let pose = Array2::from_shape_fn((4, 4), |place| pose[place]).into_pyarray(py);
+    let covariances = cloud.covariances.as_deref().map(|all| matrices(all).into_pyarray(py));
+    Ok((rows(py, &cloud.points), cloud.image_size, pose, covariances))
+}
+
+fn matrices(covariances: &[Covariance]) -> Array3<f64> {
+    let all: Vec<_> = covariances.iter().map(Covariance::matrix).collect();
+    Array3::from_shape_fn((all.len(), 3, 3), |(i, row, column)| all[i][(row, column)])
+}
+
+/// Vertices and triangles of a file, in metres.
+#[pyfunction]
+#[pyo3(name = "read_mesh", signature = (path, unit, /))]
+pub(crate) fn read_faces<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    unit: &str,
+) -> PyResult<(Matrix<'py>, Bound<'py, PyArray2<i64>>)> {
+    let unit: LengthUnit = unit.parse().map_err(refused)?;
+    let mesh = py.detach(|| read_mesh(path, unit)).map_err(refused)?;
+    Ok((rows(py, mesh.vertices()), corners(py, mesh.triangles())))
+}

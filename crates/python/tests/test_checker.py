@@ -1,0 +1,116 @@
+"""Tables of poses: the same bits however they are shared out, and no row spoils another."""
+
+import pickle
+
+import numpy as np
+import pytest
+from conftest import lifted, sheet
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from test_files import write_points, write_table
+
+import cloudtouch as ct
+
+HEIGHTS = (-0.002, 0.0, 0.003, 0.006, 0.03)
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("scans")
+    for seed in (1, 2):
+        write_points(folder / f"floor{seed}.xyz", sheet(seed=seed))
+    write_points(folder / "plate.xyz", sheet(seed=3))
+    write_table(folder / "table.obj")
+    return folder
+
+
+def table():
+    pairs = [(s, o) for s in ("floor1.xyz", "floor2.xyz") for o in ("plate.xyz", "table.obj")]
+    rows = [(s, o, lifted(z)) for s, o in pairs for z in HEIGHTS]
+    scene, body, pose = zip(*rows)
+    return {"scene": np.array(scene), "object": np.array(body), "pose": np.stack(pose), "id": np.arange(len(rows))}
+
+
+def taken(rows, places):
+    return {name: column[places] for name, column in rows.items()}
+
+
+def assert_same(one, other):
+    assert one.keys() == other.keys()
+    for name in one.keys() - {"seconds"}:
+        np.testing.assert_array_equal(one[name], other[name], err_msg=name)
+
+
+@pytest.fixture(scope="module")
+def whole(root):
+    return ct.PoseChecker(root, sensor="iso:0.001")(table())
+
+
+def test_rows_are_what_queries_answer(root, whole):
+    scene = ct.Cloud.read(root / "floor2.xyz", sensor="iso:0.001", refined=True)
+    for row in np.flatnonzero((whole["scene"] == "floor2.xyz") & (whole["object"] == "table.obj")):
+        report = ct.Query().run(scene, ct.Mesh.read(root / "table.obj"), whole["pose"][row])
+        assert (report.probability, report.verdict) == (whole["probability"][row], whole["verdict"][row])
+    assert set(whole["verdict"]) == {"free", "uncertain"} and not any(whole["error"])
+    assert whole["id"].tolist() == list(range(20))
+
+
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(order=st.permutations(range(20)), cuts=st.sets(st.integers(1, 19), max_size=4), keep=st.integers(1, 3))
+def test_any_partition_has_the_same_bits(root, whole, order, cuts, keep):
+    checker = ct.PoseChecker(root, sensor="iso:0.001", keep=keep)
+    for places in np.split(np.array(order), sorted(cuts)):
+        assert_same(checker(taken(table(), places)), taken(whole, places))
+
+
+def test_a_poisoned_row_is_an_error_in_its_place(root, whole):
+    rows = table()
+    poses: list = [pose.tolist() for pose in rows["pose"]]
+    poses[3], poses[7], poses[11] = "none", [1.0, 2.0], np.diag([2.0, 1.0, 1.0, 1.0]).tolist()
+    rows["pose"] = np.empty(20, dtype=object)
+    rows["pose"][:] = poses
+    rows["scene"] = rows["scene"].astype(object)
+    rows["scene"][15] = "gone.xyz"
+    rows["object"] = rows["object"].astype(object)
+    rows["object"][18] = "bad.obj"
+    (root / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
+    answers = ct.PoseChecker(root, sensor="iso:0.001")(rows)
+    bad = [3, 7, 11, 15, 18]
+    assert set(answers["verdict"][bad]) == {"error"} and np.isnan(answers["probability"][bad]).all()
+    assert "rotation" in answers["error"][11] and "gone.xyz" in answers["error"][15]
+    assert "bad.obj: line 2" in answers["error"][18] and not answers["error"][11].startswith("poses[")
+    good = np.setdiff1d(np.arange(20), bad)
+    assert_same(taken({n: c for n, c in answers.items() if n != "pose"}, good), taken({n: c for n, c in whole.items() if n != "pose"}, good))
+
+
+def test_it_goes_to_workers(root, whole):
+    checker = ct.PoseChecker(root, sensor="iso:0.001", query={"prior": 0.5})
+    checker(taken(table(), np.arange(2)))
+    assert_same(pickle.loads(pickle.dumps(checker))(table()), whole)
+
+
+def test_an_empty_table_has_all_columns(root, whole):
+    empty = ct.PoseChecker(root, sensor="iso:0.001")(taken(table(), np.arange(0)))
+    assert empty.keys() == whole.keys() and {len(column) for column in empty.values()} == {0}
+
+
+def test_wrong_tables_are_told(root):
+    rows = table()
+    with pytest.raises(ValueError, match="pose is missing"):
+        ct.PoseChecker(root, sensor="exact")({name: rows[name] for name in ("scene", "object")})
+    with pytest.raises(ValueError, match="columns have different lengths: .*id 3"):
+        ct.PoseChecker(root, sensor="exact")({**rows, "id": np.arange(3)})
+    with pytest.raises(ValueError, match="keep is 0"):
+        ct.PoseChecker(root, sensor="exact", keep=0)
+    with pytest.raises(ct.CloudtouchError, match="prior"):
+        ct.PoseChecker(root, sensor="exact", query={"prior": 2.0})
+
+
+def test_a_batch_keeps_going_where_that_is_asked(floor, plate):
+    poses = np.stack([lifted(0.03), np.full((4, 4), np.nan), lifted(0.0)])
+    with pytest.raises(ct.CloudtouchError, match=r"poses\[1\]"):
+        ct.Query().run_batch(floor, plate, poses)
+    batch = ct.Query().run_batch(floor, plate, poses, errors="keep")
+    assert batch.verdict.tolist() == ["free", "error", "uncertain"] and batch.error[1].startswith("poses[1]: ")
+    with pytest.raises(ValueError, match="errors is 'ignore'"):
+        ct.Query().run_batch(floor, plate, poses, errors="ignore")
