@@ -39,6 +39,15 @@ def test_everything_public_is_documented():
                     assert inspect.getdoc(value), f"{name}.{member}"
 
 
+def test_the_reference_is_made_without_a_warning(tmp_path):
+    pytest.importorskip("pdoc")
+    command = [sys.executable, "-W", "error", "-m", "pdoc", "cloudtouch", "--docformat", "numpy", "-o", str(tmp_path)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    text = (tmp_path / "cloudtouch.html").read_text(encoding="utf-8")
+    assert "The search ends when a collision is this certain" in text and "Where the surfaces touch" in text
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_example_runs_and_prints_what_it_says(page):
     """Blocks of a page are one program; a text block after one is what it prints."""

@@ -12,16 +12,16 @@ from cloudtouch.report import Floats, Report, Verdict
 class UnderPoses:
     """How likely a collision is over all the poses that may be."""
 
-    #: Mean collision probability of the poses.
     probability: float
-    #: Mean of their lower bounds.
+    """Mean collision probability of the poses."""
     lower: float
-    #: Mean of their upper bounds.
+    """Mean of their lower bounds."""
     upper: float
-    #: The standard error that as many poses drawn at random would leave.
+    """Mean of their upper bounds."""
     std_error: float
-    #: How many poses were asked about.
+    """The standard error that as many poses drawn at random would leave."""
     poses: int
+    """How many poses were asked about."""
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -33,16 +33,16 @@ class UnderPoses:
 class AlongPath:
     """A pose of a path that was asked about."""
 
-    #: From which pose of the path, counted from 0, to the next.
     segment: int
-    #: Time in the segment, from 0 to 1.
+    """From which pose of the path, counted from 0, to the next."""
     t: float
-    #: The same as a share of the whole path, every segment having the same part.
+    """Time in the segment, from 0 to 1."""
     share: float
-    #: (4, 4): from the frame of B into that of A, m.
+    """The same as a share of the whole path, every segment having the same part."""
     pose: Floats
-    #: The whole answer there.
+    """(4, 4): from the frame of B into that of A, m."""
     report: Report
+    """The whole answer there."""
 
     @classmethod
     def _of(cls, told: dict[str, Any]) -> AlongPath:
@@ -54,28 +54,28 @@ class AlongPath:
 class Swept:
     """How likely two bodies collide along a path."""
 
-    #: The largest probability of any pose of the path is not below this ...
     lower: float
-    #: ... and not above this, those between the given ones included.
+    """The largest probability of any pose of the path is not below this ..."""
     upper: float
-    #: ``"free"``: every pose is, for certain. ``"in_collision"``: some pose is. Else as of a :class:`Report`.
+    """... and not above this, those between the given ones included."""
     verdict: Verdict
-    #: Why it is undecided: the doubt about the earliest pose that there is one about.
+    """``"free"``: every pose is, for certain. ``"in_collision"``: some pose is. Else as of a :class:`Report`."""
     undecided_by: Optional[str]
-    #: Signs of a slip, each kind once, as of the earliest pose.
+    """Why it is undecided: the doubt about the earliest pose that there is one about."""
     warnings: tuple[str, ...]
-    #: The most probable of the poses asked about.
+    """Signs of a slip, each kind once, as of the earliest pose."""
     most_probable: AlongPath
-    #: The earliest pose found above ``accept``; ``None`` where none was.
+    """The most probable of the poses asked about."""
     first: Optional[AlongPath]
-    #: No pose before this share of the path is above ``accept``; ``None`` without ``first``.
+    """The earliest pose found above ``accept``; ``None`` where none was."""
     first_not_before: Optional[float]
-    #: Up to this share of the path every pose is free for certain.
+    """No pose before this share of the path is above ``accept``; ``None`` without ``first``."""
     certified_free_until: float
-    #: How many poses were asked about.
+    """Up to this share of the path every pose is free for certain."""
     poses: int
-    #: How long it took, s.
+    """How many poses were asked about."""
     seconds: float
+    """How long it took, s."""
 
     @property
     def probability(self) -> float:

@@ -1,7 +1,5 @@
 """Answers. Plain data: they pickle, and hold nothing of the bodies."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, Literal, NamedTuple, Optional
@@ -16,78 +14,82 @@ Verdict = Literal["free", "uncertain", "in_collision", "undecided"]
 class Contact(NamedTuple):
     """A place where the surfaces touch or may touch."""
 
-    #: (3,): where, in the frame of A, m.
     point: Floats
-    #: (3,): unit normal, from A to B: push B along it to get it off.
+    """(3,): where, in the frame of A, m."""
     normal: Floats
-    #: That the surfaces meet there; never above that of the collision.
+    """(3,): unit normal, from A to B: push B along it to get it off."""
     probability: float
-    #: Gap along the normal, m; negative in overlap.
+    """That the surfaces meet there; never above that of the collision."""
     clearance: float
-    #: How much surface belongs to it, m^2, roughly.
+    """Gap along the normal, m; negative in overlap."""
     area: Optional[float]
+    """How much surface belongs to it, m^2, roughly."""
 
 
 class Evidence(NamedTuple):
     """What a probability rests on; none of the numbers has a unit."""
 
-    #: Least Mahalanobis distance between two pieces of surface, from 6 down to -6, deep inside of a mesh.
     deviations: float
-    #: How clearly one surface passes through the other: ln(1 + s), s a sum of standard deviations.
+    """Least Mahalanobis distance between two pieces of surface, from 6 down to -6, deep inside of a mesh."""
     crossing: float
-    #: Points expected on the wrong side of the best separating surface; ``None`` where there was no doubt.
+    """How clearly one surface passes through the other: ln(1 + s), s a sum of standard deviations."""
     misclassified: Optional[float]
+    """Points expected on the wrong side of the best separating surface; ``None`` where there was no doubt."""
 
 
 class PointProbabilities(NamedTuple):
     """Points of a cloud that have a probability worth telling; all others have none."""
 
-    #: (K,): indices into ``Cloud.points``.
     indices: npt.NDArray[np.int64]
-    #: (K,): that the surface there collides.
+    """(K,): indices into ``Cloud.points``."""
     probabilities: Floats
+    """(K,): that the surface there collides."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Report:
     """The answer to one query."""
 
-    #: That the two underlying surfaces collide.
     probability: float
-    #: Lower bound on it under the same model.
+    """That the two underlying surfaces collide."""
     lower: float
-    #: Upper bound: what was left out, or not decided, raises it.
+    """Lower bound on it under the same model."""
     upper: float
-    #: ``"free"``: the upper bound is below ``reject`` and nothing speaks against believing it. ``"uncertain"``: between
-    #: the thresholds. ``"in_collision"``: above ``accept``. ``"undecided"``: cannot be told; treat it as not free.
+    """Upper bound: what was left out, or not decided, raises it."""
     verdict: Verdict
-    #: Why it is undecided: ``"unseen"``, ``"enclosed"``, ``"units"``, ``"sparse"``, ``"noise"``, ``"no_surface"``,
-    #: ``"missing"``, ``"sensor"``, ``"unsolved"`` or ``"bounds"``; ``None`` for every other verdict.
+    """``"free"``: the upper bound is below ``reject`` and nothing speaks against believing it. ``"uncertain"``:
+    between the thresholds. ``"in_collision"``: above ``accept``. ``"undecided"``: cannot be told; treat it as not
+    free."""
     undecided_by: Optional[str]
-    #: How many times as probable the evidence is in a collision as without one, as a logarithm; ``None`` between meshes.
+    """Why it is undecided: ``"unseen"``, ``"enclosed"``, ``"units"``, ``"sparse"``, ``"noise"``, ``"no_surface"``,
+    ``"missing"``, ``"sensor"``, ``"unsolved"`` or ``"bounds"``; ``None`` for every other verdict."""
     log_likelihood_ratio: Optional[float]
-    #: Expected gap where the surfaces are likeliest to touch, m, negative in overlap; ``None`` when nothing was near.
+    """How many times as probable the evidence is in a collision as without one, as a logarithm; ``None`` between
+    meshes."""
     clearance: Optional[float]
-    #: Its standard deviation, m.
+    """Expected gap where the surfaces are likeliest to touch, m, negative in overlap; ``None`` when nothing was near.
+    """
     clearance_std: Optional[float]
-    #: Whether the overlap may be deeper than ``clearance`` says.
+    """Its standard deviation, m."""
     clearance_is_bound: bool
-    #: No sampled surface of one body is nearer to the other than this, m; zero or less where they may touch.
+    """Whether the overlap may be deeper than ``clearance`` says."""
     clearance_at_least: Optional[float]
-    #: Share of a body's surface where the depth image of the other saw nothing, 0 to 1; ``None`` without such an image.
+    """No sampled surface of one body is nearer to the other than this, m; zero or less where they may touch."""
     unseen: Optional[float]
-    #: What the probability rests on; ``None`` between meshes.
+    """Share of a body's surface where the depth image of the other saw nothing, 0 to 1; ``None`` without such an
+    image."""
     evidence: Optional[Evidence]
-    #: Signs of a slip (a unit, a pose, a sensor that is hardly meant), each a sentence with a remedy.
+    """What the probability rests on; ``None`` between meshes."""
     warnings: tuple[str, ...]
-    #: Points of A with a probability of their own; empty for a mesh.
+    """Signs of a slip (a unit, a pose, a sensor that is hardly meant), each a sentence with a remedy."""
     points_a: PointProbabilities
-    #: Points of B with a probability of their own; empty for a mesh.
+    """Points of A with a probability of their own; empty for a mesh."""
     points_b: PointProbabilities
-    #: How long the query took, s, in whole microseconds.
+    """Points of B with a probability of their own; empty for a mesh."""
     seconds: float
-    #: Points, normals, and probability, clearance and area of the contacts, a row each.
+    """How long the query took, s, in whole microseconds."""
     _contacts: Optional[tuple[Floats, Floats, Floats]] = None
+    """Points, normals, and probability, clearance and area of the contacts, a row each."""
 
     @cached_property
     def contacts(self) -> tuple[Contact, ...]:
@@ -105,7 +107,7 @@ class Report:
         return self.lower, self.upper
 
     @classmethod
-    def _of(cls, told: dict[str, Any]) -> Report:
+    def _of(cls, told: dict[str, Any]) -> "Report":
         evidence = told["evidence"]
         told["evidence"] = None if evidence is None else Evidence(*evidence)
         told["warnings"] = tuple(told["warnings"])
@@ -134,16 +136,16 @@ class Report:
 class Within:
     """How likely two surfaces are within a margin of each other."""
 
-    #: The margin, m.
     margin: float
-    #: That the distance of the two surfaces is below it.
+    """The margin, m."""
     probability: float
-    #: Lower bound on that.
+    """That the distance of the two surfaces is below it."""
     lower: float
-    #: Upper bound on that.
+    """Lower bound on that."""
     upper: float
-    #: How many standard deviations the surfaces are from being within the margin, from 6 down to -6.
+    """Upper bound on that."""
     deviations: float
+    """How many standard deviations the surfaces are from being within the margin, from 6 down to -6."""
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -155,39 +157,39 @@ class Within:
 class Batch:
     """The answers to M poses, a row for each in their order; NaN where a report has ``None``."""
 
-    #: (M,): that the surfaces collide.
     probability: Floats
-    #: (M,): lower bounds.
+    """(M,): that the surfaces collide."""
     lower: Floats
-    #: (M,): upper bounds.
+    """(M,): lower bounds."""
     upper: Floats
-    #: (M,): ``"free"``, ``"uncertain"``, ``"in_collision"`` or ``"undecided"``, as text; ``"error"`` for a pose that was
-    #: refused.
+    """(M,): upper bounds."""
     verdict: npt.NDArray[np.str_]
-    #: (M,): why it is undecided, as text; empty for every other verdict.
+    """(M,): ``"free"``, ``"uncertain"``, ``"in_collision"`` or ``"undecided"``, as text; ``"error"`` for a pose that
+    was refused."""
     undecided_by: npt.NDArray[np.str_]
-    #: (M,): see :attr:`Report.log_likelihood_ratio`.
+    """(M,): why it is undecided, as text; empty for every other verdict."""
     log_likelihood_ratio: Floats
-    #: (M,): m, see :attr:`Report.clearance`.
+    """(M,): see :attr:`Report.log_likelihood_ratio`."""
     clearance: Floats
-    #: (M,): m.
+    """(M,): m, see :attr:`Report.clearance`."""
     clearance_std: Floats
-    #: (M,): whether the overlap may be deeper.
+    """(M,): m."""
     clearance_is_bound: npt.NDArray[np.bool_]
-    #: (M,): m, see :attr:`Report.clearance_at_least`.
+    """(M,): whether the overlap may be deeper."""
     clearance_at_least: Floats
-    #: (M, 3): the likeliest contact, in the frame of A, m.
+    """(M,): m, see :attr:`Report.clearance_at_least`."""
     contact_point: Floats
-    #: (M, 3): its unit normal, from A to B.
+    """(M, 3): the likeliest contact, in the frame of A, m."""
     contact_normal: Floats
-    #: (M,): how many contacts there are.
+    """(M, 3): its unit normal, from A to B."""
     contact_count: npt.NDArray[np.int64]
-    #: (M,): how many warnings there are; :meth:`Query.run` says which.
+    """(M,): how many contacts there are."""
     warning_count: npt.NDArray[np.int64]
-    #: (M,): how long each query took on its thread, s.
+    """(M,): how many warnings there are; :meth:`Query.run` says which."""
     seconds: Floats
-    #: (M,): why a pose was refused, as text; empty for every answer.
+    """(M,): how long each query took on its thread, s."""
     error: npt.NDArray[np.str_]
+    """(M,): why a pose was refused, as text; empty for every answer."""
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         """Every column by its name, for a table."""
