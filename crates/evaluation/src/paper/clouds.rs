@@ -1,6 +1,6 @@
-//! Clouds that the figures are drawn from, and the two ways of the paper's path.
+//! Clouds that the figures are drawn from.
 
-use cloudtouch::{PaperCloudSettings, PaperModel, PaperSettings, noise::SensorModel};
+use cloudtouch::{PaperCloudSettings, PaperModel, noise::SensorModel};
 use cloudtouch_geom::{PointCloud, TriangleMesh, seed::derive};
 use cloudtouch_testkit::{
     noise::{NoiseKind, add_noise},
@@ -9,15 +9,6 @@ use cloudtouch_testkit::{
 
 /// Everything random comes from this.
 pub(super) const SEED: u64 = 2011;
-
-/// A name, and the settings of queries and clouds.
-type Variant = (&'static str, fn() -> PaperSettings, fn() -> PaperModel);
-
-/// The paper's path as printed, and with our amendments.
-pub(super) const PATHS: [Variant; 2] = [
-    ("printed", PaperSettings::default, PaperModel::default),
-    ("amended", PaperSettings::amended, PaperModel::amended),
-];
 
 pub(super) fn by_paper(std: f64, model: PaperModel) -> PaperCloudSettings {
     PaperCloudSettings { model, ..PaperCloudSettings::new(SensorModel::Isotropic { std }) }

@@ -1,10 +1,9 @@
 //! `cargo xtask paper`: the figures of the paper with our data, by its method as printed and by ours.
 
 mod clouds;
-mod distances;
 mod overlap;
+mod piano;
 mod surfaces;
-mod times;
 
 use std::path::Path;
 
@@ -44,7 +43,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let mut page = Page::new(title, ("paper", &command), introduction, root, SEED);
     page.section(surfaces::section()?);
     page.section(overlap::section(poses)?);
-    page.section(distances::section(points, poses)?);
-    page.section(times::section(points, poses)?);
+    piano::sections(points, poses)?.into_iter().for_each(|section| page.section(section));
     page.write(&page::folder(root, update_docs))
 }

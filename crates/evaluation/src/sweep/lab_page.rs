@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cloudtouch_testkit::family::Kind;
 
-use super::{agreement, figures, plan::SEED, tables::is_of, targets};
+use super::{plan::SEED, stated, tables::is_of, targets};
 use crate::{
     answers::{Answers, Pair},
     page::{Page, Section},
@@ -25,11 +25,9 @@ Methods: `calibrated` is what users get by default, its constants fitted on the 
 (`cargo xtask calibrate`), `oracle` the same given noise-free points and true normals, `geometry alone` the same without the \
 classifier, `paper` \
 the method as printed. Alternatives: the least distance of the points, as measured or after our own \
-surface fit, in units of noise and spacing; 1 cm boxes around the points (yes or no); a support \
-vector machine without robust terms. `paper` and the plain SVM answer every seventh \
-pose, the smoothed distance every second draw. \
-Alternatives without a probability get one by a logistic function of their score, fitted on the \
-other families.
+surface fit, in units of noise and spacing; 1 cm boxes around the points (yes or no). They rank poses and \
+state no probability. `paper` answers every seventh pose, the smoothed distance every second draw.
+Noise by noise, with the best alternative, is in [accuracy.md](../accuracy.md).
 
 `a [b, c]` is a value with its 95 % interval: draws are resampled within each family, then the \
 poses of a draw, with all conditions of a pose together. False stops: the share of free poses that \
@@ -38,7 +36,7 @@ what chance alone gives a perfect forecaster. Times are medians of queries on cl
 points, prepared once for the poses of a draw, as many at a time as there are cores; the noise model \
 of `calibrated` is computed where queries first come near, so early poses pay for later ones.";
 
-pub(super) fn page(root: &Path, arguments: &str, answers: &Answers, bounds: Section) -> Page {
+pub(super) fn page(root: &Path, arguments: &str, answers: &Answers) -> Page {
     let title = ("accuracy", "Accuracy, in full");
     let mut page = Page::new(title, ("sweep", arguments), INTRODUCTION, root, SEED);
     page.section(targets::section(answers));
@@ -54,23 +52,12 @@ pub(super) fn page(root: &Path, arguments: &str, answers: &Answers, bounds: Sect
         page.section(section);
         let section = Section::new(&format!("{}: families", capitalised(pair)));
         page.section(section.text(answers.by_family(pair)));
-        let section = Section::new(&format!("{}: noise, ordinary scenes", capitalised(pair)));
-        page.section(section.text(answers.by_noise(pair)));
     }
-    let figures = Section::new("Figures")
-        .figure(
-            "sweep-reliability",
-            "Stated probability against observed rate",
-            figures::reliability_figure(answers),
-        )
-        .figure(
-            "sweep-distance",
-            "Probability against distance",
-            figures::distance_figure(answers),
-        );
-    page.section(agreement::section(answers));
-    page.section(figures);
-    page.section(bounds);
+    page.section(Section::new("Figures").figure(
+        "sweep-reliability",
+        "Stated probability against observed rate",
+        stated::figure(answers),
+    ));
     page
 }
 

@@ -2,12 +2,10 @@
 
 use std::path::Path;
 
-use super::{OURS, figures, judged::Judged, plan::SEED, tables::ordinary};
+use super::{plan::SEED, stated};
 use crate::{
     answers::{Answers, Pair},
-    measures::{Bin, observed_within},
     page::{Page, Section},
-    table::Table,
 };
 
 const INTRODUCTION: &str = "How often is cloudtouch right in scenes as users have them: furnished \
@@ -17,9 +15,6 @@ fitted on the other families. Half of the poses collide and half are within 3 cm
 harder, and with far more collisions, than what a planner meets. Hard cases by design, other \
 methods, families one by one, intervals and targets are in [the full report](lab/accuracy.md); \
 [what a probability means](probability.md) says what none of this can show.";
-
-/// Stated probabilities, in ranges.
-const STATED: [[f64; 2]; 5] = [[0.0, 0.1], [0.1, 0.4], [0.4, 0.6], [0.6, 0.9], [0.9, 1.01]];
 
 pub(super) fn page(root: &Path, arguments: &str, answers: &Answers) -> Page {
     let title = ("accuracy", "Accuracy");
@@ -33,7 +28,7 @@ pub(super) fn page(root: &Path, arguments: &str, answers: &Answers) -> Page {
                  many poses). False stops: share of free poses stopped by a threshold that misses \
                  so many of the collisions. The oracle knows the sampled points without noise. The \
                  alternative is the best by AUC of: distance of the points, distance of the \
-                 smoothed points, 1 cm boxes, a plain support vector machine, the paper's method.",
+                 smoothed points, 1 cm boxes, the paper's method.",
             )
             .text("### Two clouds")
             .text(answers.by_noise(Pair::CloudCloud))
@@ -43,29 +38,12 @@ pub(super) fn page(root: &Path, arguments: &str, answers: &Answers) -> Page {
     page.section(
         Section::new("What a stated probability is worth")
             .text("The share of poses that collide, of those with such a stated probability.")
-            .text(stated(answers))
+            .text(stated::table(answers))
             .figure(
                 "accuracy-stated",
                 "Stated probability against observed rate of collisions",
-                figures::reliability_figure(answers),
+                stated::figure(answers),
             ),
     );
     page
-}
-
-fn stated(answers: &Answers) -> Table {
-    let range = |[low, high]: [f64; 2]| format!("{low:.1} to {:.1}", high.min(1.0));
-    let mut table = Table::new(std::iter::once("stated".to_owned()).chain(STATED.map(range)));
-    for pair in Pair::ALL {
-        let judged = Judged::pick(answers, &[OURS], ordinary(pair));
-        let cell = |[low, high]: [f64; 2]| {
-            let Bin { mean, observed, count } = observed_within(judged.sample(OURS), low..high);
-            if count == 0 {
-                return "–".to_owned();
-            }
-            format!("{observed:.2} (mean stated {mean:.2}, {count} answers)")
-        };
-        table.row(std::iter::once(format!("{}: collide", pair.name())).chain(STATED.map(cell)));
-    }
-    table
 }
