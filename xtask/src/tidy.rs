@@ -30,7 +30,7 @@ pub(crate) fn unpublished(root: &Path) -> Result<Vec<String>> {
 fn violations(root: &Path) -> Result<Vec<String>> {
     let manifests = manifest::read_all(root)?;
     let mut found = layers::check(&manifests);
-    found.extend(manifest::check(&manifests));
+    found.extend(manifests.iter().flat_map(manifest::check));
     found.extend(circles::check(root, manifests.iter().map(|m| m.folder.as_str()))?);
     for path in files(root, root)? {
         found.extend(check_file(root, &path)?);
@@ -53,7 +53,7 @@ fn check_map(root: &Path) -> Result<Vec<String>> {
         .concat();
     let sources = paths.iter().filter(|path| path.ends_with(".rs"));
     let texts = sources.map(|path| Ok((path.as_str(), read(path)?))).collect::<Result<Vec<_>>>()?;
-    let names = map::declared(texts.iter().map(|(path, text)| (*path, text.as_str())));
+    let names = map::named(texts.iter().map(|(path, text)| (*path, text.as_str())));
     let has_path = |path: &str| {
         let below = |folder: &str| root.join(folder).join(path.trim_end_matches('/')).exists();
         below("crates") || below("")
