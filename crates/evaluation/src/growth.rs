@@ -12,10 +12,9 @@ use rayon::prelude::*;
 
 use crate::{
     answers::Pair,
-    figure::{Axis, Figure, Panel, Series},
     methods::{Boxes, Distance, Draw, Method, Ours, Paper, observed},
-    page::{self, Page, Section},
     real_scans::cases::{self, at_advance},
+    report::{Axis, Figure, Page, Panel, Section, Series, page},
     statistics::quantile,
 };
 

@@ -10,9 +10,8 @@ use crate::{
     answers::Pair,
     measures::Measure,
     methods::{Ours, Paper},
-    page::{self, Page, Section},
+    report::{Page, Section, Table, page},
     sweep::{Asked, Judged, Plan, SEED, ask},
-    table::Table,
 };
 
 const DEFAULT: &str = "default";

@@ -10,7 +10,7 @@ use std::path::Path;
 use anyhow::Result;
 use clap::Args;
 
-use crate::page::{self, Page};
+use crate::report::{Page, page};
 use clouds::SEED;
 
 /// What `cargo xtask paper` is given.

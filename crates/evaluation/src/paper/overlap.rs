@@ -14,7 +14,7 @@ use cloudtouch_testkit::{
 };
 
 use super::clouds::{SEED, by_paper, sampled};
-use crate::{page::Section, table::Table};
+use crate::report::{Section, Table};
 
 /// ε, as a part of the parent; the paper takes 1 to 5 %.
 const OVERLAPS: [f64; 7] = [0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3];

@@ -13,11 +13,9 @@ use cloudtouch_testkit::{
 use super::clouds::{SEED, sampled};
 use crate::{
     answers::{Pair, Said},
-    figure::{Axis, Figure, Panel, Series},
     methods::{Draw, Method, Ours, Paper, observed},
-    page::Section,
+    report::{Axis, Figure, Panel, Section, Series, Table},
     statistics::quantile,
-    table::Table,
 };
 
 /// Standard deviations of the noise, m; times are those at the first.

@@ -8,10 +8,7 @@ use cloudtouch::{
 use cloudtouch_geom::{Point3, PointCloud, Pose, seed};
 
 use super::clouds::{SEED, by_paper};
-use crate::{
-    figure::{Axis, Figure, Panel, Place, Series},
-    page::Section,
-};
+use crate::report::{Axis, Figure, Panel, Place, Section, Series};
 
 /// Points of each cloud: one leaf.
 const POINTS: u64 = 24;

@@ -10,11 +10,7 @@ use super::{
     scene::{POINTS, STD, Scene},
     timing::{ratio, time, timed},
 };
-use crate::{
-    page::Section,
-    table::Table,
-    targets::{Findings, Target},
-};
+use crate::report::{Findings, Section, Table, Target};
 
 /// Poses of the batch, and its parts; one and two threads take turns at each.
 const POSES: usize = 10_000;

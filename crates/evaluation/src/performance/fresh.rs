@@ -18,11 +18,9 @@ use super::{
     timing::{p95, time, timed, times},
 };
 use crate::{
-    page::Section,
     real_scans::cases,
+    report::{Findings, Section, Table, Target},
     statistics::median,
-    table::Table,
-    targets::{Findings, Target},
 };
 
 /// Frames of each kind, returns of a frame, and poses asked of it.

@@ -18,10 +18,8 @@ use super::{
 use crate::{
     answers::Pair,
     methods::{Draw, ExactMeshes, Ours},
-    page::Section,
+    report::{Findings, Section, Table, Target},
     statistics::median,
-    table::Table,
-    targets::{Findings, Target},
 };
 
 /// Points of the room.

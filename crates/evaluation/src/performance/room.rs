@@ -12,9 +12,8 @@ use super::{
 use crate::{
     answers::Pair,
     methods::{Boxes, Distance, Draw, ExactMeshes, Method, Ours},
-    page::Section,
+    report::{Findings, Section, Target},
     statistics::median,
-    targets::{Findings, Target},
 };
 
 /// The larger of the two noises, m.

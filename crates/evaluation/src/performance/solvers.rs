@@ -10,10 +10,8 @@ use cloudtouch_svm::{Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
 use super::timing::{least_of, ratio, three_digits, times};
 use crate::{
     leaf::{self, Leaf, SHAPES},
-    page::Section,
+    report::{Findings, Section, Table, Target},
     statistics::median,
-    table::Table,
-    targets::{Findings, Target},
 };
 
 /// The relative gap that both are asked for.

@@ -11,8 +11,8 @@ use crate::{
     answers::Pair,
     measures::{Sample, auc},
     methods::{Draw, Method},
+    report::Table,
     statistics::median,
-    table::Table,
 };
 
 /// How often each query is timed; the least counts.

@@ -12,11 +12,7 @@ use cloudtouch_geom::{Point3, Pose};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
 
 use super::{cases, side_view};
-use crate::{
-    figure::{Axis, Figure, Panel, Series},
-    page::Section,
-    targets::{Findings, Target},
-};
+use crate::report::{Axis, Figure, Findings, Panel, Section, Series, Target};
 
 /// A fall of the probability by this much along the approach is noise.
 const NOISE_OF_PROBABILITY: f64 = 0.05;
@@ -136,7 +132,7 @@ fn figure(advances: &[f64], answers: &[Vec<Report>]) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::targets::require;
+    use crate::report::targets::require;
 
     #[test]
     fn what_is_no_number_is_not_near_and_misses_are_missed() {

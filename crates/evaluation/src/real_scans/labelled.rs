@@ -12,10 +12,9 @@ use cloudtouch::{
 use cloudtouch_io::{Geometry, LengthUnit, read_geometry};
 
 use super::cases::{self, Labelled};
-use crate::{
-    page::Section,
-    table::{Table, bounds, probability},
-    targets::{Findings, Target},
+use crate::report::{
+    Findings, Section, Table, Target,
+    table::{bounds, probability},
 };
 
 /// The sensor of each scan, by a part of its file name.

@@ -10,10 +10,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::Args;
 
-use crate::{
-    page::{self, Page},
-    targets::{self, Part},
-};
+use crate::report::{Page, Part, page, targets};
 
 /// What `cargo xtask evaluate` is given.
 #[derive(Debug, Args)]

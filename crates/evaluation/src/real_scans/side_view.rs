@@ -9,7 +9,7 @@ use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
 use i_overlay::{core::fill_rule::FillRule, float::simplify::SimplifyShape};
 
 use crate::{
-    figure::{Axis, Figure, GREY, Panel, Place, RGBColor, Series},
+    report::{Axis, Figure, GREY, Panel, Place, RGBColor, Series},
     statistics::quantile,
 };
 

@@ -7,9 +7,7 @@ use rayon::prelude::*;
 
 use crate::{
     leaf::{Leaf, SHAPES},
-    page::Section,
-    table::{Table, small},
-    targets::{Findings, Target},
+    report::{Findings, Section, Table, Target, table::small},
 };
 
 /// All randomness of the run comes from this.

@@ -3,14 +3,13 @@
 
 mod ask;
 mod judged;
-mod lab_page;
+mod pages;
 mod plan;
 mod scenes;
 mod short;
 mod stated;
 mod tables;
 mod targets;
-mod user_page;
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +24,7 @@ pub use short::run as check;
 
 use crate::{
     methods::{Boxes, Distance, Ours, Paper},
-    page,
+    report::page,
 };
 
 /// What `cargo xtask sweep` is given.
@@ -63,8 +62,8 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let answers = ask(&plan, &methods()?)?;
     let folder = page::folder(root, update_docs);
     let arguments = format!("--draws {draws} --poses {poses} --update-docs");
-    lab_page::page(root, &arguments, &answers).write(&folder)?;
-    user_page::page(root, &arguments, &answers).write(&if update_docs {
+    pages::in_full(root, &arguments, &answers).write(&folder)?;
+    pages::for_users(root, &arguments, &answers).write(&if update_docs {
         root.join("docs")
     } else {
         folder.join("user")

@@ -9,9 +9,8 @@ use super::{
 };
 use crate::{
     answers::{Answers, Pair},
-    figure::{Axis, Figure, Panel, Series},
     measures::{Bin, observed_within, reliability},
-    table::Table,
+    report::{Axis, Figure, Panel, Series, Table},
 };
 
 /// Stated probabilities, in ranges.

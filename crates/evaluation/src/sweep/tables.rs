@@ -6,7 +6,7 @@ use super::{GEOMETRY, ORACLE, OURS, judged::Judged, plan::STDS};
 use crate::{
     answers::{Answers, Pair, Question},
     measures::{Estimate, Measure},
-    table::Table,
+    report::Table,
 };
 
 /// Whether a pose is within 3 cm of contact.

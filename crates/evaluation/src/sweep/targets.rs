@@ -9,8 +9,7 @@ use super::{
 use crate::{
     answers::{Answers, Pair, Question, Said},
     measures::{Bin, Measure, observed_within},
-    page::Section,
-    targets::{self, Target},
+    report::{Section, Target, targets},
 };
 
 /// What should be reached on the ordinary families together: of which pair, whether only near

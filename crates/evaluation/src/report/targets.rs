@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::{
+use super::{
     page::{Page, Section},
     table::Table,
 };

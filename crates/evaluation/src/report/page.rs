@@ -9,7 +9,7 @@ use std::{
 use anyhow::{Context, Result};
 use cloudtouch_io::write_atomically;
 
-use crate::{figure::Figure, machine};
+use super::{figure::Figure, machine};
 
 /// What a run says, in order; a page is a Markdown file and its figures.
 #[derive(Debug)]
@@ -117,7 +117,7 @@ impl Section {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Axis, Panel, Series};
+    use crate::report::figure::{Axis, Panel, Series};
 
     #[test]
     fn a_page_and_its_figures_are_written_in_order() {

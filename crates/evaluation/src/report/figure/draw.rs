@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use plotters::{coord::Shift, element::PointCollection, prelude::*};
 
 use super::{Axis, Figure, GREY, Panel, Place};
@@ -51,14 +51,14 @@ impl Figure {
         let mut svg = String::new();
         {
             let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-            area.fill(&WHITE).map_err(failed)?;
-            let area = area.titled(&self.title, ("sans-serif", 19)).map_err(failed)?;
+            area.fill(&WHITE)?;
+            let area = area.titled(&self.title, ("sans-serif", 19))?;
             let (left, right) = area.split_horizontally(grid.0);
             for (panel, area) in self.panels.iter().zip(left.split_evenly((rows, columns))) {
                 draw_panel(&area, panel, &looks)?;
             }
             draw_legend(&right, &looks)?;
-            right.present().map_err(failed)?;
+            right.present()?;
         }
         Ok(svg)
     }
@@ -83,7 +83,7 @@ fn looks(figure: &Figure) -> Vec<Look<'_>> {
 }
 
 fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> {
-    let area = area.titled(&panel.title, ("sans-serif", 15)).map_err(failed)?;
+    let area = area.titled(&panel.title, ("sans-serif", 15))?;
     let places = || panel.series.iter().flat_map(|series| series.marks.iter().flatten());
     let x = panel.x.reach(places().map(|place| place.0));
     let y = panel.y.reach(places().map(|place| place.1));
@@ -91,8 +91,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         .margin(10)
         .x_label_area_size(40)
         .y_label_area_size(44)
-        .build_cartesian_2d(x, y)
-        .map_err(failed)?;
+        .build_cartesian_2d(x, y)?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -105,8 +104,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         .y_label_formatter(&label)
         .axis_desc_style(FONT)
         .label_style(FONT)
-        .draw()
-        .map_err(failed)?;
+        .draw()?;
     for series in &panel.series {
         let look = looks.iter().find(|look| look.name == series.name);
         let color = series.color.or(look.map(|look| look.color)).unwrap_or(GREY);
@@ -116,15 +114,15 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
             let places: Vec<Place> = mark.iter().copied().filter(is_finite).collect();
             if let Some(opacity) = series.fill {
                 let area = Polygon::new(places.clone(), color.mix(opacity));
-                chart.draw_series([area]).map_err(failed)?;
+                chart.draw_series([area])?;
             }
             if series.line {
                 let line = PathElement::new(places.clone(), color.stroke_width(2));
-                chart.draw_series([line]).map_err(failed)?;
+                chart.draw_series([line])?;
             }
             if series.points {
                 let marker = |at| marker(number, at, series.size, color.mix(0.8).filled());
-                chart.draw_series(places.into_iter().map(marker)).map_err(failed)?;
+                chart.draw_series(places.into_iter().map(marker))?;
             }
         }
     }
@@ -156,13 +154,13 @@ fn draw_legend(area: &Area<'_>, looks: &[Look<'_>]) -> Result<()> {
         let y = (LEGEND_ROW * row as u32 + 20) as i32;
         if look.line {
             let line = vec![(6, y), (26, y)];
-            area.draw(&PathElement::new(line, look.color.stroke_width(3))).map_err(failed)?;
+            area.draw(&PathElement::new(line, look.color.stroke_width(3)))?;
         }
         if look.points {
-            area.draw(&marker(look.number, (16, y), 5, look.color.filled())).map_err(failed)?;
+            area.draw(&marker(look.number, (16, y), 5, look.color.filled()))?;
         }
         let text = Text::new(look.name.to_owned(), (34, y - 7), FONT.into_font());
-        area.draw(&text).map_err(failed)?;
+        area.draw(&text)?;
     }
     Ok(())
 }
@@ -187,11 +185,6 @@ impl Axis {
 /// A number at an axis, without digits that say nothing; never −0.
 fn label(value: &f64) -> String {
     format!("{}", (value * 1e4).round() / 1e4 + 0.0)
-}
-
-/// Plotters' errors borrow from the drawing area, so only their text is kept.
-fn failed(error: impl std::fmt::Display) -> anyhow::Error {
-    anyhow!("draw a figure: {error}")
 }
 
 #[cfg(test)]
