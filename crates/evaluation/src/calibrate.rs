@@ -30,9 +30,6 @@ pub struct Arguments {
 }
 
 /// Fits, prints, and keeps when asked to.
-///
-/// # Errors
-/// When a query fails or a file cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update } = *arguments;
     let gathering = |ours: Ours| Asked::always(ours.gathering_everything());

@@ -46,9 +46,6 @@ pub struct Arguments {
 }
 
 /// Asks all methods and writes the page.
-///
-/// # Errors
-/// When files cannot be read or written, or a method has no answer.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Some(data) = cases::folder(root, &arguments.data) else { return Ok(()) };
     let mut series = cases::series(&data)?;

@@ -35,9 +35,6 @@ pub struct Arguments {
 }
 
 /// Asks the defaults and every change, and writes the page.
-///
-/// # Errors
-/// When a query fails or the page cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update_docs } = *arguments;
     let changed = |(name, change): (&str, Change)| -> Result<Asked> {

@@ -34,9 +34,6 @@ pub struct Ours {
 
 impl Ours {
     /// The defaults.
-    ///
-    /// # Errors
-    /// When the stored fit cannot be read.
     pub fn new(name: &str) -> Result<Self> {
         Ok(Self {
             name: name.to_owned(),
@@ -51,9 +48,6 @@ impl Ours {
     }
 
     /// The default, given every sampled point as it truly is: what sampling alone leaves to be known.
-    ///
-    /// # Errors
-    /// When the stored fit cannot be read.
     pub fn oracle(name: &str) -> Result<Self> {
         Ok(Self { sees_truth: true, ..Self::new(name)? })
     }

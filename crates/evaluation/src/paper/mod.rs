@@ -28,9 +28,6 @@ pub struct Arguments {
 }
 
 /// Draws every figure and writes the page.
-///
-/// # Errors
-/// When a cloud or query is refused, or the page cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { poses, points, update_docs } = *arguments;
     let introduction = "The figures of the paper that show what its method does, drawn anew with our \

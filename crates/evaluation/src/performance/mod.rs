@@ -59,19 +59,15 @@ point method, though it starts beside what SMO found, every step is cubic in the
 positions, covariances, boxes and what queries have computed are all kept, in double precision.";
 
 /// Measures and writes the page.
-///
-/// # Errors
-/// When a part cannot be measured or the page not be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { poses, update_docs, ref data } = *arguments;
     let scene = Scene::draw(poses, SEED)?;
     let data = cases::folder(root, data);
     // Whatever uses rayon gets one thread; the batch brings pools of its own.
     let alone = ThreadPoolBuilder::new().num_threads(1).build().context("start a thread")?;
-    let parts: [Part<'_>; 6] = [
+    let parts: [Part<'_>; 5] = [
         ("prepared queries", &|| room::measure(&scene)),
-        ("first query", &|| fresh::first_query(&scene)),
-        ("depth frames", &|| fresh::frames(&scene, data.as_deref())),
+        ("fresh bodies", &|| fresh::measure(&scene, data.as_deref())),
         ("leaf problems", &|| solvers::measure(scene.seed)),
         ("larger scenes", &|| growth::measure(&scene)),
         ("batch", &|| batch::measure(&scene)),

@@ -66,9 +66,6 @@ impl Page {
     }
 
     /// Writes `NAME.md` and `figures/*.svg` into the folder, each file whole.
-    ///
-    /// # Errors
-    /// When a figure cannot be drawn or a file not be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let figures = folder.join("figures");
         fs::create_dir_all(&figures).with_context(|| format!("create {}", figures.display()))?;

@@ -48,9 +48,6 @@ pub type Part<'a> = (&'static str, &'a (dyn Fn() -> Findings + Sync));
 
 /// Measures the parts one after the other, and writes a page of all targets, a note on them, and
 /// what was found.
-///
-/// # Errors
-/// When a part cannot be measured or the page not be written.
 pub fn report(
     mut page: Page,
     folder: &Path,

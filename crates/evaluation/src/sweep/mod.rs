@@ -48,10 +48,6 @@ pub struct Arguments {
 }
 
 /// Runs the sweep, and writes answers, pages and figures.
-///
-/// # Errors
-/// When a method fails, a page cannot be written, or with `--short` when accuracy is worse than
-/// recorded.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, short, ref data, update_docs } = *arguments;
     if short {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cloudtouch_testkit::family::Kind;
 
-use super::{plan::SEED, stated, tables::is_of, targets};
+use super::{OURS, judged::Judged, plan::SEED, stated, tables::is_of, targets};
 use crate::{
     answers::{Answers, Pair},
     report::{Page, Section},
@@ -86,9 +86,11 @@ pub(super) fn in_full(root: &Path, arguments: &str, answers: &Answers) -> Page {
         let mut section = Section::new(&format!("{}: methods", capitalised(pair)));
         for (name, kind) in [("Ordinary", Kind::Ordinary), ("Adversarial", Kind::Adversarial)] {
             let keep = is_of(pair, kind);
-            let rate = answers.base_rate(keep);
+            let (count, _) = Judged::pick(answers, &[OURS], keep).counts();
             section = section
-                .text(format_args!("{name} scenes, {rate}; bold: the interval excludes zero."))
+                .text(format_args!(
+                    "{name} scenes, {count} answers; bold: the interval excludes zero."
+                ))
                 .text(answers.by_method(keep));
         }
         page.section(section);

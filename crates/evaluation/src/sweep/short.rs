@@ -44,9 +44,6 @@ const RECORDED: [(Family, [[f64; 2]; 2]); 16] = [
 ];
 
 /// Runs it and compares.
-///
-/// # Errors
-/// When a method fails, or a family is answered worse than recorded.
 pub fn run() -> Result<()> {
     let families = RECORDED.map(|(family, _)| family.into()).to_vec();
     let methods = [Asked::always(Ours::new(OURS)?)];

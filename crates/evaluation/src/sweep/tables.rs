@@ -31,13 +31,6 @@ impl Answers {
         names.filter(|name| ![OURS, ORACLE, GEOMETRY].contains(name))
     }
 
-    /// How many questions, how many of them collisions: the base rate.
-    pub(super) fn base_rate(&self, keep: impl Fn(&Question) -> bool) -> String {
-        let (count, collisions) = Judged::pick(self, &[OURS], keep).counts();
-        let share = 100.0 * collisions as f64 / count as f64;
-        format!("{count} answers, {share:.0} % of them to collisions")
-    }
-
     /// A row for every method, and by how much its AUC differs from ours on the same questions.
     pub(super) fn by_method(&self, keep: impl Fn(&Question) -> bool + Copy) -> Table {
         let mut table = headed("method", &["AUC minus ours", "query (ms)"]);

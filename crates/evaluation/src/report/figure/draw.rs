@@ -37,9 +37,6 @@ struct Look<'a> {
 
 impl Figure {
     /// Draws it as SVG.
-    ///
-    /// # Errors
-    /// When plotters cannot draw, as in panels smaller than their labels.
     pub fn svg(&self) -> Result<String> {
         let looks = looks(self);
         let columns = self.columns.min(self.panels.len()).max(1);
