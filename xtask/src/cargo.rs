@@ -1,6 +1,7 @@
 //! Commands that must succeed, cargo's first of all.
 
-use std::{path::Path, process::Command};
+use std::path::Path;
+use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 

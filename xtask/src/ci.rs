@@ -1,14 +1,13 @@
 //! `cargo xtask ci`: every check, in order, each with its time; stops at the first failure.
 
-use std::{path::Path, time::Instant};
+use std::path::Path;
+use std::time::Instant;
 
 use anyhow::{Context, Result};
 use cloudtouch_evaluation::sweep;
 
-use crate::{
-    cargo::{cargo, succeed},
-    fixtures, python, tidy,
-};
+use crate::cargo::{cargo, succeed};
+use crate::{fixtures, python, tidy};
 
 /// Runs every step; tests come last, those in Python after those in Rust, whose build they use.
 pub(crate) fn run(root: &Path) -> Result<()> {

@@ -1,6 +1,7 @@
 //! `cargo xtask calibrate`: the surfaces that turn evidence into a probability.
 
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -8,12 +9,10 @@ use cloudtouch::{
     CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
 };
 
-use crate::{
-    answers::Answers,
-    measures::{Axis, SurfaceSample, fit_surface},
-    methods::{Fitted, Ours},
-    sweep::{Asked, ORACLE, OURS, Plan, ask},
-};
+use crate::answers::Answers;
+use crate::measures::{Axis, SurfaceSample, fit_surface};
+use crate::methods::{Fitted, Ours};
+use crate::sweep::{Asked, ORACLE, OURS, Plan, ask};
 
 /// What `cargo xtask calibrate` is given.
 #[derive(Args)]

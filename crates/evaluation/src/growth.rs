@@ -10,13 +10,11 @@ use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use rayon::prelude::*;
 
-use crate::{
-    answers::Pair,
-    methods::{Boxes, Distance, Draw, Method, Ours, Paper, observed},
-    real_scans::cases::{self, at_advance},
-    report::{Axis, Figure, Page, Panel, Section, Series, page},
-    statistics::quantile,
-};
+use crate::answers::Pair;
+use crate::methods::{Boxes, Distance, Draw, Method, Ours, Paper, observed};
+use crate::real_scans::cases::{self, at_advance};
+use crate::report::{Axis, Figure, Page, Panel, Section, Series, page};
+use crate::statistics::quantile;
 
 /// All randomness of the noise comes from this.
 const SEED: u64 = 2011;

@@ -6,13 +6,11 @@ use anyhow::Result;
 use clap::Args;
 use cloudtouch_testkit::family::Family;
 
-use crate::{
-    answers::Pair,
-    measures::Measure,
-    methods::{Ours, Paper},
-    report::{Page, Section, Table, page},
-    sweep::{Asked, Judged, Plan, SEED, ask},
-};
+use crate::answers::Pair;
+use crate::measures::Measure;
+use crate::methods::{Ours, Paper};
+use crate::report::{Page, Section, Table, page};
+use crate::sweep::{Asked, Judged, Plan, SEED, ask};
 
 const DEFAULT: &str = "default";
 /// Rooms, tables and small things: what users meet.

@@ -4,11 +4,9 @@
 //! uses an item of its parent, while the parent uses the child, is in a circle. What a type's methods
 //! call is not seen, only paths and imports are.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fs,
-    path::Path,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
 

@@ -1,6 +1,7 @@
 //! Manifests: what every crate says, inherits and ships.
 
-use std::{fs, path::Path};
+use std::fs;
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use toml::{Table, Value};

@@ -1,7 +1,8 @@
 //! The least distance: between the points of two clouds, or of a cloud from a mesh, as measured or
 //! after our own surface fit, in units of noise and spacing.
 
-use std::{num::NonZeroUsize, time::Instant};
+use std::num::NonZeroUsize;
+use std::time::Instant;
 
 use anyhow::{Result, anyhow};
 use cloudtouch::Mesh;
@@ -107,11 +108,9 @@ fn to_mesh(points: &[Point3], mesh: &Mesh, (low, high): (Point3, Point3), a_from
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::{Vector3, seed};
-    use cloudtouch_testkit::{
-        brute,
-        family::{Family, Side},
-        noise::NoiseKind,
-    };
+    use cloudtouch_testkit::brute;
+    use cloudtouch_testkit::family::{Family, Side};
+    use cloudtouch_testkit::noise::NoiseKind;
 
     use super::*;
 

@@ -1,6 +1,8 @@
 //! The surfaces that turn evidence into a probability, as they are kept.
 
-use std::{collections::BTreeMap, fmt::Write, path::Path};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use cloudtouch::Judge;

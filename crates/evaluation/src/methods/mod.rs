@@ -9,7 +9,8 @@ mod paper;
 mod shapes;
 
 use anyhow::Result;
-use cloudtouch::{FilterSettings, filter, noise::SensorModel};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{FilterSettings, filter};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::Observation;
 

@@ -3,9 +3,11 @@
 use std::time::Instant;
 
 use anyhow::Result;
+use cloudtouch::bvh::TreeSettings;
+use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query,
-    QuerySettings, bvh::TreeSettings, noise::SensorModel,
+    QuerySettings,
 };
 use cloudtouch_geom::{PointCloud, UnitVector3};
 use cloudtouch_testkit::family::Observation;

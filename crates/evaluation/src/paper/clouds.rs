@@ -1,11 +1,11 @@
 //! Clouds that the figures are drawn from.
 
-use cloudtouch::{PaperCloudSettings, PaperModel, noise::SensorModel};
-use cloudtouch_geom::{PointCloud, TriangleMesh, seed::derive};
-use cloudtouch_testkit::{
-    noise::{NoiseKind, add_noise},
-    surface::{positions, sample_surface},
-};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{PaperCloudSettings, PaperModel};
+use cloudtouch_geom::seed::derive;
+use cloudtouch_geom::{PointCloud, TriangleMesh};
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::surface::{positions, sample_surface};
 
 /// Everything random comes from this.
 pub(super) const SEED: u64 = 2011;

@@ -1,17 +1,13 @@
 //! Figure 3 (a, b) and storage: collisions missed where leaves are cut, found as ε grows.
 
 use anyhow::Result;
-use cloudtouch::{
-    PaperCloud, PaperModel, PaperQuery, PaperSettings,
-    bvh::{Traversal, TreeSettings},
-    paper::Scaling,
-};
+use cloudtouch::bvh::{Traversal, TreeSettings};
+use cloudtouch::paper::Scaling;
+use cloudtouch::{PaperCloud, PaperModel, PaperQuery, PaperSettings};
 use cloudtouch_geom::seed::derive;
-use cloudtouch_testkit::{
-    exact::ExactMesh,
-    poses::{LabelledPose, poses_near_contact},
-    scene,
-};
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
+use cloudtouch_testkit::scene;
 
 use super::clouds::{SEED, by_paper, sampled};
 use crate::report::{Section, Table};

@@ -4,19 +4,15 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use cloudtouch_geom::seed::derive;
-use cloudtouch_testkit::{
-    exact::ExactMesh,
-    poses::{LabelledPose, poses_near_contact},
-    scene,
-};
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
+use cloudtouch_testkit::scene;
 
 use super::clouds::{SEED, sampled};
-use crate::{
-    answers::{Pair, Said},
-    methods::{Draw, Method, Ours, Paper, observed},
-    report::{Axis, Figure, Panel, Section, Series, Table},
-    statistics::quantile,
-};
+use crate::answers::{Pair, Said};
+use crate::methods::{Draw, Method, Ours, Paper, observed};
+use crate::report::{Axis, Figure, Panel, Section, Series, Table};
+use crate::statistics::quantile;
 
 /// Standard deviations of the noise, m; times are those at the first.
 const STDS: [f64; 2] = [0.002, 0.01];

@@ -1,10 +1,8 @@
 //! Figure 2: the surfaces f = 0 that separate noise-free and noisy clouds.
 
 use anyhow::Result;
-use cloudtouch::{
-    PaperCloud, PaperModel, PaperNoise, PaperQuery, PaperSettings,
-    paper::{LeafClassifier, Scaling},
-};
+use cloudtouch::paper::{LeafClassifier, Scaling};
+use cloudtouch::{PaperCloud, PaperModel, PaperNoise, PaperQuery, PaperSettings};
 use cloudtouch_geom::{Point3, PointCloud, Pose, seed};
 
 use super::clouds::{SEED, by_paper};

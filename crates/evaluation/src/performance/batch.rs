@@ -5,11 +5,9 @@ use cloudtouch::{Detail, Query, QuerySettings};
 use cloudtouch_geom::Pose;
 use rayon::ThreadPoolBuilder;
 
-use super::{
-    fresh::prepare,
-    scene::{POINTS, STD, Scene},
-    timing::{ratio, timed},
-};
+use super::fresh::prepare;
+use super::scene::{POINTS, STD, Scene};
+use super::timing::{ratio, timed};
 use crate::report::{Findings, Section, Target};
 
 /// Poses of the batch, and its parts; one and two threads take turns at each.

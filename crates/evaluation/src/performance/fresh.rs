@@ -3,25 +3,18 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use cloudtouch::{
-    Cloud, CloudSettings, FilterSettings, Mesh, Query, QuerySettings, Report, noise::SensorModel,
-};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, FilterSettings, Mesh, Query, QuerySettings, Report};
 use cloudtouch_geom::{PointCloud, Pose, seed};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
-use cloudtouch_testkit::{
-    family::{Family, Side},
-    noise::NoiseKind,
-};
+use cloudtouch_testkit::family::{Family, Side};
+use cloudtouch_testkit::noise::NoiseKind;
 
-use super::{
-    scene::{Class, POINTS, STD, Scene},
-    timing::{p95, time, timed},
-};
-use crate::{
-    real_scans::cases,
-    report::{Findings, Section, Table, Target},
-    statistics::median,
-};
+use super::scene::{Class, POINTS, STD, Scene};
+use super::timing::{p95, time, timed};
+use crate::real_scans::cases;
+use crate::report::{Findings, Section, Table, Target};
+use crate::statistics::median;
 
 /// Frames of each kind, returns of a frame, and poses asked of it.
 const FRAMES: usize = 20;

@@ -16,10 +16,8 @@ use anyhow::{Context, Result};
 use clap::Args;
 use rayon::ThreadPoolBuilder;
 
-use crate::{
-    real_scans::cases,
-    report::{Page, Part, page, targets},
-};
+use crate::real_scans::cases;
+use crate::report::{Page, Part, page, targets};
 use scene::Scene;
 
 /// What `cargo xtask bench-report` is given.

@@ -4,9 +4,10 @@
 use std::path::Path;
 
 use anyhow::Result;
+use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings, Query,
-    QuerySettings, Report, noise::SensorModel,
+    QuerySettings, Report,
 };
 use cloudtouch_geom::{Point3, Pose};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};

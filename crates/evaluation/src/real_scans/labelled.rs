@@ -1,21 +1,16 @@
 //! Forty labelled poses in real scans: clear cases must be answered clearly.
 
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySettings, Report, noise::SensorModel,
-};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySettings, Report};
 use cloudtouch_io::{Geometry, LengthUnit, read_geometry};
 
 use super::cases::{self, Labelled};
-use crate::report::{
-    Findings, Section, Table, Target,
-    table::{bounds, probability},
-};
+use crate::report::table::{bounds, probability};
+use crate::report::{Findings, Section, Table, Target};
 
 /// The sensor of each scan, by a part of its file name.
 const SENSORS: [(&str, &str); 5] = [

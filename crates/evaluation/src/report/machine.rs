@@ -1,6 +1,8 @@
 //! Where and when a run took place.
 
-use std::{fs, path::Path, process::Command};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 /// The lines of a page that say when, from what and where its numbers were made.
 pub(super) fn provenance(root: &Path, seed: u64) -> String {

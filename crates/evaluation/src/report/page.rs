@@ -1,15 +1,14 @@
 //! Pages of `docs/lab/`, each wholly made by one command.
 
-use std::{
-    fmt::{self, Write as _},
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fmt::{self, Write as _};
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use cloudtouch_io::write_atomically;
 
-use super::{figure::Figure, machine};
+use super::figure::Figure;
+use super::machine;
 
 /// What a run says, in order; a page is a Markdown file and its figures.
 #[derive(Debug)]

@@ -4,10 +4,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
-use super::{
-    page::{Page, Section},
-    table::Table,
-};
+use super::page::{Page, Section};
+use super::table::Table;
 
 /// A target with what was measured of it.
 #[derive(Debug, Clone, PartialEq)]

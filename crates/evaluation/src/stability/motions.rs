@@ -1,14 +1,14 @@
 //! What must not change an answer: moving, scaling, turning, swapping, permuting.
 
 use anyhow::Result;
-use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report, noise::SensorModel};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report};
 use cloudtouch_geom::{PointCloud, Pose, UncertainPoint, Vector3, seed};
 use rayon::prelude::*;
 
-use crate::{
-    leaf::{Leaf, SHAPES},
-    report::{Findings, Section, Table, Target, table::small},
-};
+use crate::leaf::{Leaf, SHAPES};
+use crate::report::table::small;
+use crate::report::{Findings, Section, Table, Target};
 
 /// All randomness of the run comes from this.
 pub(super) const SEED: u64 = 2011;

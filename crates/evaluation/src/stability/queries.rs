@@ -1,9 +1,10 @@
 //! The catalogue of clouds and meshes through full queries in both modes.
 
 use anyhow::Result;
+use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings, Query,
-    QuerySettings, Report, StageReport, Verdict, noise::SensorModel,
+    QuerySettings, Report, StageReport, Verdict,
 };
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Pose};
 use cloudtouch_testkit::hard_cases::{HardCase, HardMesh, hard_cases, hard_meshes};

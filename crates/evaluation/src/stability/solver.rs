@@ -6,10 +6,9 @@ use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint};
 use cloudtouch_svm::{Kernel, Problem, Rung, Sample, Settings, Solver, Status};
 use cloudtouch_testkit::hard_cases::{HardCase, HardProblem, hard_cases, hard_problems};
 
-use crate::{
-    leaf,
-    report::{Findings, Section, Target, table::small},
-};
+use crate::leaf;
+use crate::report::table::small;
+use crate::report::{Findings, Section, Target};
 
 /// The relative gap that solves are asked for: that of reported figures.
 const RELATIVE_GAP: f64 = 1e-4;

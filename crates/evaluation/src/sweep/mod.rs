@@ -22,10 +22,8 @@ pub use plan::{GEOMETRY, ORACLE, OURS, Plan, SEED};
 pub use scenes::Scenes;
 pub use short::run as check;
 
-use crate::{
-    methods::{Boxes, Distance, Ours, Paper},
-    report::page,
-};
+use crate::methods::{Boxes, Distance, Ours, Paper};
+use crate::report::page;
 
 /// What `cargo xtask sweep` is given.
 #[derive(Args)]

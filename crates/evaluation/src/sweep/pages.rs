@@ -4,11 +4,12 @@ use std::path::Path;
 
 use cloudtouch_testkit::family::Kind;
 
-use super::{OURS, judged::Judged, plan::SEED, stated, tables::is_of, targets};
-use crate::{
-    answers::{Answers, Pair},
-    report::{Page, Section},
-};
+use super::judged::Judged;
+use super::plan::SEED;
+use super::tables::is_of;
+use super::{OURS, stated, targets};
+use crate::answers::{Answers, Pair};
+use crate::report::{Page, Section};
 
 const FOR_USERS: &str = "How often is cloudtouch right in scenes as users have them: furnished \
 rooms, desks, kitchen counters, bins, workbenches, corridors and stairs? Scenes are generated, so \

@@ -3,17 +3,13 @@
 use anyhow::{Result, ensure};
 use cloudtouch_testkit::family::Family;
 
-use super::{
-    OURS,
-    ask::{Asked, ask},
-    judged::Judged,
-    plan::Plan,
-};
-use crate::{
-    answers::{Pair, Question},
-    measures::Measure,
-    methods::Ours,
-};
+use super::OURS;
+use super::ask::{Asked, ask};
+use super::judged::Judged;
+use super::plan::Plan;
+use crate::answers::{Pair, Question};
+use crate::measures::Measure;
+use crate::methods::Ours;
 
 const DRAWS: u32 = 2;
 const POSES: usize = 28;

@@ -2,16 +2,12 @@
 
 use cloudtouch_testkit::family::Kind;
 
-use super::{
-    OURS,
-    judged::Judged,
-    tables::{is_of, ordinary},
-};
-use crate::{
-    answers::{Answers, Pair},
-    measures::{Bin, observed_within, reliability},
-    report::{Axis, Figure, Panel, Series, Table},
-};
+use super::OURS;
+use super::judged::Judged;
+use super::tables::{is_of, ordinary};
+use crate::answers::{Answers, Pair};
+use crate::measures::{Bin, observed_within, reliability};
+use crate::report::{Axis, Figure, Panel, Series, Table};
 
 /// Stated probabilities, in ranges.
 const STATED: [[f64; 2]; 5] = [[0.0, 0.1], [0.1, 0.4], [0.4, 0.6], [0.6, 0.9], [0.9, 1.01]];

@@ -1,13 +1,14 @@
 //! The answers by kind of pair, kind of scene, family and noise, as rows of tables.
 
-use cloudtouch_testkit::{family::Kind, poses::NEAR};
+use cloudtouch_testkit::family::Kind;
+use cloudtouch_testkit::poses::NEAR;
 
-use super::{GEOMETRY, ORACLE, OURS, judged::Judged, plan::STDS};
-use crate::{
-    answers::{Answers, Pair, Question},
-    measures::{Estimate, Measure},
-    report::Table,
-};
+use super::judged::Judged;
+use super::plan::STDS;
+use super::{GEOMETRY, ORACLE, OURS};
+use crate::answers::{Answers, Pair, Question};
+use crate::measures::{Estimate, Measure};
+use crate::report::Table;
 
 /// Whether a pose is within 3 cm of contact.
 pub(super) fn is_near(question: &Question) -> bool {

@@ -1,16 +1,12 @@
 //! What is aimed at on ordinary scenes, and whether it is reached.
 
-use super::{
-    ORACLE, OURS,
-    judged::Judged,
-    plan::STDS,
-    tables::{is_near, ordinary},
-};
-use crate::{
-    answers::{Answers, Pair, Question, Said},
-    measures::{Bin, Measure, observed_within},
-    report::{Section, Target, targets},
-};
+use super::judged::Judged;
+use super::plan::STDS;
+use super::tables::{is_near, ordinary};
+use super::{ORACLE, OURS};
+use crate::answers::{Answers, Pair, Question, Said};
+use crate::measures::{Bin, Measure, observed_within};
+use crate::report::{Section, Target, targets};
 
 /// What should be reached on the ordinary families together: of which pair, whether only near
 /// contact, the measure, its limit, and up to which noise, m.

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use anyhow::Result;
-use plotters::{coord::Shift, element::PointCollection, prelude::*};
+use plotters::coord::Shift;
+use plotters::element::PointCollection;
+use plotters::prelude::*;
 
 use super::{Axis, Figure, GREY, Panel, Place};
 
@@ -186,7 +188,8 @@ fn label(value: &f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::Series, *};
+    use super::super::Series;
+    use super::*;
 
     #[test]
     fn labels_say_what_stands_there_and_what_cannot_be_shown_does_not_widen_an_axis() {
