@@ -1,7 +1,5 @@
 //! `cargo xtask paper`: the figures of the paper with our data, by its method as printed and by ours.
 
-mod clouds;
-mod overlap;
 mod piano;
 mod surfaces;
 
@@ -11,12 +9,12 @@ use anyhow::Result;
 use clap::Args;
 
 use crate::report::{Page, page};
-use clouds::SEED;
+use piano::SEED;
 
 /// What `cargo xtask paper` is given.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Poses of each figure
+    /// Poses of the piano
     #[arg(long, default_value_t = 100)]
     poses: usize,
     /// Points of a cloud
@@ -39,7 +37,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let title = ("paper", "The paper's figures");
     let mut page = Page::new(title, ("paper", &command), introduction, root, SEED);
     page.section(surfaces::section()?);
-    page.section(overlap::section(poses)?);
-    piano::sections(points, poses)?.into_iter().for_each(|section| page.section(section));
+    page.section(piano::section(points, poses)?);
     page.write(&page::folder(root, update_docs))
 }
