@@ -40,10 +40,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         ("labelled poses", &|| labelled::evaluate(&data)),
         ("approach", &|| approach::evaluate(&data)),
     ];
-    targets::require(&targets::report(
-        page,
-        &page::folder(root, arguments.update_docs),
-        "",
-        &parts,
-    )?)
+    let folder = page::folder(root, arguments.update_docs);
+    targets::require(&targets::report(page, &folder, "", &parts)?)
 }

@@ -48,13 +48,10 @@ impl Page {
             ""
         };
         let command = format!("cargo run --release -p xtask -- {task} {arguments}");
+        let (command, provenance) = (command.trim_end(), machine::provenance(root, seed));
         let head = format!(
-            "# {title}\n\n{}\n\n{introduction}\n\n```text\n{}\n```\n{debug}\n{}",
-            format_args!(
-                "<!-- Made by `cargo xtask {task}`; edit crates/evaluation/, not this. -->"
-            ),
-            command.trim_end(),
-            machine::provenance(root, seed)
+            "# {title}\n\n<!-- Made by `cargo xtask {task}`; edit crates/evaluation/, not this. -->\n\n\
+             {introduction}\n\n```text\n{command}\n```\n{debug}\n{provenance}"
         );
         Self { name: name.to_owned(), task: task.to_owned(), head, sections: Vec::new() }
     }

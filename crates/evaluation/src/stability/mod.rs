@@ -39,10 +39,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         ("queries", &queries::measure),
         ("motions", &motions::measure),
     ];
-    targets::require(&targets::report(
-        page,
-        &page::folder(root, arguments.update_docs),
-        "",
-        &parts,
-    )?)
+    let folder = page::folder(root, arguments.update_docs);
+    targets::require(&targets::report(page, &folder, "", &parts)?)
 }
