@@ -3,6 +3,7 @@
 use anyhow::Result;
 use cloudtouch::geom::Pose;
 use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Verdict};
+use cloudtouch_page::Fact;
 use serde::Serialize;
 
 use crate::answer::matrix;
@@ -102,7 +103,30 @@ pub(crate) fn text(swept: &Swept) -> String {
     lines.join("\n")
 }
 
-fn place(at: &AlongPath) -> String {
+/// What holds of the whole path, for a page.
+pub(crate) fn facts(swept: &Swept) -> Vec<Fact> {
+    let [low, high] = swept.bounds.map(probability);
+    let best = &swept.most_probable;
+    let likely = probability(best.report.collision_probability);
+    let mut facts = vec![
+        Fact::new("Verdict on the whole path", swept.verdict.to_string()),
+        Fact::new("Largest probability", format!("{likely} (within {low} .. {high})")),
+        Fact::new("Where", place(best)),
+        Fact::new(
+            "Free for certain",
+            format!("until {} of the path", percent(swept.certified_free_until)),
+        ),
+    ];
+    if let Some(first) = &swept.first {
+        let before = percent(first.not_before);
+        let text = format!("{}; not before {before} of the path", place(&first.at));
+        facts.push(Fact::new("In collision from", text));
+    }
+    facts
+}
+
+/// A place on a path in words.
+pub(crate) fn place(at: &AlongPath) -> String {
     let origin = origin(&at.pose);
     format!(
         "segment {}, t = {:.3} ({} of the path), origin {origin}",
@@ -117,6 +141,7 @@ fn origin(pose: &Pose) -> String {
     format!("{:.3} {:.3} {:.3} m", t.x, t.y, t.z)
 }
 
-fn percent(share: f64) -> String {
+/// A share of a path.
+pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
