@@ -1,11 +1,15 @@
 // A scene or an object: drawn once, and posed as often as one likes.
-import { Box3, BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshLambertMaterial, Sphere, Vector3 } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, Sphere, Vector3 } from 'three';
 import { bytes, floats, indices } from './decode.js';
 import { points, tints } from './points.js';
 import { scale } from './colors.js';
 
 // Dots are drawn somewhat larger than their usual distance, so that near surfaces close.
 const DOT = 0.6;
+
+const BEHIND_EDGES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+// An edge between faces that turn by more is drawn as a line, degrees.
+const SHARP = 30;
 
 export class Body {
   constructor({ name, middle, positions, triangles, brightness }, color) {
@@ -19,7 +23,7 @@ export class Body {
     this.group.matrixAutoUpdate = false;
     this.spacing = spacing(this.box, this.positions.length / 3);
     if (triangles) {
-      this.group.add(surface(attribute, indices(triangles), color));
+      this.group.add(...surface(attribute, indices(triangles), color));
     } else {
       const shades = tints(color, this.positions.length / 3, brightness && bytes(brightness));
       this.group.add(points(this.positions, shades, { diameter: DOT * this.spacing, least: 1.4, most: 7 }));
@@ -53,8 +57,12 @@ function surface(positions, triangles, color) {
   const flat = geometry.toNonIndexed();
   flat.computeVertexNormals();
   // What lies within must be seen: contacts are on and below the surface.
-  const look = { color, side: DoubleSide, transparent: true, opacity: 0.72 };
-  return new Mesh(flat, new MeshLambertMaterial(look));
+  const look = { color, side: DoubleSide, transparent: true, opacity: 0.72, ...BEHIND_EDGES };
+  const edges = new LineBasicMaterial({ color: '#1c2329', transparent: true, opacity: 0.35 });
+  return [
+    new Mesh(flat, new MeshLambertMaterial(look)),
+    new LineSegments(new EdgesGeometry(geometry, SHARP), edges),
+  ];
 }
 
 // A guess of how far neighbours are apart: points on the faces of a box.

@@ -44,6 +44,12 @@ function drawButtons(picture) {
     element.addEventListener('click', act);
     return element;
   };
+  const cut = button('Cut away what is in front', () => {
+    picture.isCut = !picture.isCut;
+    cut.setAttribute('aria-pressed', picture.isCut);
+    picture.wish();
+  });
+  cut.setAttribute('aria-pressed', picture.isCut);
   const other = () => (picture.upright === 'z' ? 'camera' : 'z');
   const turned = () => (picture.upright === 'z' ? 'z is up' : 'as the camera saw it');
   button('Object', () => picture.frame('object'));

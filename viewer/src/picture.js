@@ -5,12 +5,16 @@ import { Body } from './body.js';
 import { BACKGROUND, OBJECT, SCENE } from './colors.js';
 import { drawContacts } from './contacts.js';
 import { overlay } from './scalebar.js';
+import { Shade } from './shade.js';
 
 // From where one looks at first, and which way is up.
 const LOOKS = {
-  z: { from: [-0.75, -1, 0.75], up: [0, 0, 1] },
+  z: { from: [-0.6, -0.9, 1.1], up: [0, 0, 1] },
   camera: { from: [0.35, -0.45, -1], up: [0, -1, 0] },
 };
+
+// What is framed fills a little less than the picture.
+const MARGIN = 1.2;
 
 export class Picture {
   constructor(container, { bodies, upright }) {
@@ -21,14 +25,19 @@ export class Picture {
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     container.append(this.renderer.domElement);
+    this.renderer.autoClear = false;
+    this.shade = new Shade();
     this.scene = new Scene();
     this.scene.background = new Color(BACKGROUND);
     this.scene.fog = new Fog(BACKGROUND, 1, 2);
     this.camera = new PerspectiveCamera(40, 1, 0.01, 100);
-    this.scene.add(new AmbientLight('white', 1.6), this.camera);
-    const light = new DirectionalLight('white', 2);
-    light.position.set(-0.6, 1, 0.8);
+    this.scene.add(new AmbientLight('white', 1.1), this.camera);
+    const light = new DirectionalLight('white', 2.6);
+    light.position.set(-0.9, 1, 0.6);
     this.camera.add(light);
+    // Over everything: most contacts are hidden within the bodies.
+    this.above = new Scene();
+    this.isCut = true;
     this.drawScale = overlay(container);
     this.turn(upright);
     new ResizeObserver(() => this.resize()).observe(container);
@@ -59,7 +68,8 @@ export class Picture {
     scene.color(view.likely[0]);
     object.color(view.likely[1]);
     this.group = drawContacts(view.contacts, scene.middle, 0.22 * Math.min(object.radius, scene.radius));
-    this.scene.add(scene.group, object.group, this.group);
+    this.scene.add(scene.group, object.group);
+    this.above.add(this.group);
     const box = object.box.clone().applyMatrix4(object.group.matrix);
     this.spheres = {
       object: box.getBoundingSphere(new Sphere()),
@@ -89,7 +99,7 @@ export class Picture {
     const half = (0.5 * this.camera.fov * Math.PI) / 180;
     const widest = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(from.normalize(), radius / Math.sin(widest));
+    this.camera.position.copy(center).addScaledVector(from.normalize(), (MARGIN * radius) / Math.sin(widest));
     this.controls.update();
     this.wish();
   }
@@ -101,6 +111,13 @@ export class Picture {
     this.camera.updateProjectionMatrix();
     this.renderer.setSize(width, height, false);
     this.render();
+  }
+
+  // How far ahead the object begins, with a little room before it.
+  frontOfObject() {
+    const { center, radius } = this.spheres.object;
+    const ahead = this.camera.getWorldDirection(new Vector3());
+    return center.clone().sub(this.camera.position).dot(ahead) - 1.15 * radius;
   }
 
   // Draws once, soon: nothing moves on its own.
@@ -117,7 +134,7 @@ export class Picture {
     const { center, radius } = this.spheres.scene;
     const distance = camera.position.distanceTo(controls.target);
     const farthest = camera.position.distanceTo(center) + radius;
-    camera.near = Math.max(distance / 1000, farthest / 1e5);
+    camera.near = Math.max(distance / 1000, farthest / 1e5, this.isCut ? this.frontOfObject() : 0);
     camera.far = 1.01 * farthest;
     camera.updateProjectionMatrix();
     scene.fog.near = distance;
@@ -127,7 +144,9 @@ export class Picture {
     scene.traverse(({ material }) => {
       if (material?.uniforms?.pixelsPerRadian) material.uniforms.pixelsPerRadian.value = pixelsPerRadian;
     });
-    this.renderer.render(scene, camera);
+    this.renderer.clear();
+    this.shade.render(this.renderer, scene, camera);
+    this.renderer.render(this.above, camera);
     this.drawScale(camera, controls.target, this.container.clientHeight);
   }
 }

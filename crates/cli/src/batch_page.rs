@@ -45,8 +45,8 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
         }
     }
 
-    /// Writes the page of the case file `title`.
-    pub(crate) fn write(self, path: &Path, title: String, limits: &ReadLimits) -> Result<()> {
+    /// Writes the page of a case file.
+    pub(crate) fn write(self, path: &Path, cases: &str, limits: &ReadLimits) -> Result<()> {
         let summary = unanswered(&self.errors);
         let (answers, note) = self.answers.finish();
         let mut known: Vec<&Loaded<C>> = Vec::new();
@@ -72,6 +72,7 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
                 more: answered.nearness.as_ref().map(report_text::nearness).into_iter().collect(),
             });
         }
+        let title = format!("{} poses of {cases}", views.len());
         let notes = note.into_iter().collect();
         page::write(path, &Page { title, summary, notes, bodies, views, start: 0 })
     }

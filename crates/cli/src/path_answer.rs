@@ -125,8 +125,7 @@ pub(crate) fn facts(swept: &Swept) -> Vec<Fact> {
     facts
 }
 
-/// A place on a path in words.
-pub(crate) fn place(at: &AlongPath) -> String {
+fn place(at: &AlongPath) -> String {
     let origin = origin(&at.pose);
     format!(
         "segment {}, t = {:.3} ({} of the path), origin {origin}",

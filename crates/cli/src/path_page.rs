@@ -17,11 +17,18 @@ struct Shown {
     report: Report,
 }
 
-impl Shown {
-    fn found(at: &AlongPath, what: &str) -> Self {
-        let name = format!("{what}: {}", path_answer::place(at));
-        Self { share: at.share, name, pose: at.pose, report: at.report.clone() }
+/// Puts a place that the sweep found among the poses, which are in order, and says where.
+fn insert(shown: &mut Vec<Shown>, at: &AlongPath, what: &str) -> usize {
+    let index = shown.partition_point(|pose| pose.share < at.share);
+    match shown.get_mut(index) {
+        Some(same) if same.share == at.share => same.name = format!("{}: {what}", same.name),
+        _ => {
+            let name = format!("At {} of the path: {what}", path_answer::percent(at.share));
+            let (share, pose, report) = (at.share, at.pose, at.report.clone());
+            shown.insert(index, Shown { share, name, pose, report });
+        }
     }
+    index
 }
 
 /// Writes a page of the given poses of a path, which `ask` answers, and of the two places between
@@ -47,12 +54,10 @@ pub(crate) fn write(
         );
         shown.push(Shown { share, name, pose, report: ask(&pose)? });
     }
-    let first = swept.first.as_ref().map(|first| Shown::found(&first.at, "In collision from here"));
-    shown.extend(first);
-    let likeliest = Shown::found(&swept.most_probable, "The likeliest collision found");
-    shown.sort_by(|a, b| a.share.total_cmp(&b.share));
-    let start = shown.partition_point(|pose| pose.share < likeliest.share);
-    shown.insert(start, likeliest);
+    if let Some(first) = &swept.first {
+        insert(&mut shown, &first.at, "in collision from here");
+    }
+    let start = insert(&mut shown, &swept.most_probable, "the likeliest collision found");
     let notes = (step > 1).then(|| format!("Of the {given} poses given every {step}th is shown."));
     let views = shown.iter().map(|shown| View {
         name: shown.name.clone(),

@@ -32,8 +32,8 @@ impl Page<'_> {
              <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
              <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
              <main>\n<div id=\"picture\"><noscript><p>The picture needs JavaScript; the answers \
-             beside it do not.</p></noscript></div>\n\
-             <aside>\n<h1>{title}</h1>\n{}<div id=\"poses\"></div>\n{answers}{LEGEND}\
+             beside it do not.</p></noscript>\n{LEGEND}</div>\n\
+             <aside>\n<h1>{title}</h1>\n{}<div id=\"poses\"></div>\n{answers}{PICTURE}\
              <div class=\"small\">\n{notes}<p>Drawn by cloudtouch {}.</p>\n\
              <details><summary>Licence of three.js, which draws the picture</summary>\
              <pre>{}</pre></details>\n</div>\n</aside>\n</main>\n\
@@ -46,15 +46,22 @@ impl Page<'_> {
     }
 }
 
+/// Beside the picture, whose script fills in the colours.
 const LEGEND: &str = "\
-<section id=\"legend\">
-<h3>Colours</h3>
-<p><i class=\"dot scene\"></i> scene&ensp;<i class=\"dot object\"></i> object</p>
+<div id=\"legend\">
+<p><span><i class=\"dot scene\"></i> scene</span><span><i class=\"dot object\"></i> object</span>\
+<span>&#10140; contact</span></p>
 <div class=\"scale\" aria-hidden=\"true\"></div>
-<p class=\"ticks\"><span>unlikely<br>0</span><span>as likely as not<br>0.5</span><span>certain<br>1</span></p>
-<p>The darker a point or a disc, the likelier the surfaces meet there. A disc is a contact, as large \
-as the surface that belongs to it; its arrow points from the scene to the object.</p>
-</section>
+<p><span>unlikely</span><span>probability</span><span>certain</span></p>
+</div>
+";
+
+const PICTURE: &str = "\
+<h3>The picture</h3>
+<p>The darker a coloured point or disc, the likelier the surfaces meet there; 0 is yellow, 1 dark \
+red. A disc is a contact, as large as the surface that belongs to it; its arrow points from the scene \
+to the object. Points without a colour of their own were not found near the other body. Drag to turn, \
+scroll or pinch to come nearer. The scale bar is true at the middle of the picture.</p>
 ";
 
 /// A page within another, as notebooks show it: a frame that keeps its styles and scripts to itself.

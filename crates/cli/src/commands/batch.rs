@@ -91,8 +91,8 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
         None => write(&mut io::sink())?,
     }
     if let Some(path) = &arguments.html {
-        let title = arguments.cases.file_name().unwrap_or_default().to_string_lossy();
-        shown.write(path, title.into_owned(), &arguments.common.limits.read_limits())?;
+        let cases = arguments.cases.file_name().unwrap_or_default().to_string_lossy();
+        shown.write(path, &cases, &arguments.common.limits.read_limits())?;
     }
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
