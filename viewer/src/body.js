@@ -25,9 +25,17 @@ export class Body {
     if (triangles) {
       this.group.add(...surface(attribute, indices(triangles), color));
     } else {
-      const shades = tints(color, this.positions.length / 3, brightness && bytes(brightness));
+      const light = brightness ? Float32Array.from(bytes(brightness), (b) => b / 255) : this.heights();
+      const shades = tints(color, light);
       this.group.add(points(this.positions, shades, { diameter: DOT * this.spacing, least: 1.4, most: 7 }));
     }
+  }
+
+  // How bright each point is where the file does not tell: less the higher it is, along z.
+  heights() {
+    const { min, max } = this.box;
+    const light = new Float32Array(this.positions.length / 3);
+    return light.map((_, i) => 0.85 - (0.4 * (this.positions[3 * i + 2] - min.z)) / (max.z - min.z || 1));
   }
 
   // Replaces the coloured points.

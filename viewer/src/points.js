@@ -38,16 +38,16 @@ export function points(positions, tints, { diameter, least, most }) {
   return new Points(geometry, material);
 }
 
-// One colour for all points, or between black and it where the file shows a point less bright.
-export function tints(color, count, brightness) {
+// Shades of one color, `light` from 0 to 1 each. Never black, which would be taken for a shadow, nor as light as the
+// background.
+export function tints(color, light) {
   const { r, g, b } = new Color(color);
-  const list = new Uint8Array(3 * count);
-  for (let i = 0; i < count; i += 1) {
-    // Never black, which would be taken for a shadow, nor as light as the background.
-    const light = brightness ? 0.12 + 2.1 * (brightness[i] / 255) ** 2.2 : 1;
-    list[3 * i] = Math.min(255 * r * light, 235);
-    list[3 * i + 1] = Math.min(255 * g * light, 235);
-    list[3 * i + 2] = Math.min(255 * b * light, 235);
-  }
+  const list = new Uint8Array(3 * light.length);
+  light.forEach((value, i) => {
+    const strength = 255 * (0.12 + 2.1 * value ** 2.2);
+    list[3 * i] = Math.min(strength * r, 215);
+    list[3 * i + 1] = Math.min(strength * g, 215);
+    list[3 * i + 2] = Math.min(strength * b, 215);
+  });
   return list;
 }

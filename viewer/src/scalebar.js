@@ -22,7 +22,7 @@ export function overlay(container) {
   });
   return (camera, target, height) => {
     const metres = (2 * camera.position.distanceTo(target) * Math.tan((camera.fov * Math.PI) / 360)) / height;
-    const length = roundLength(90 * metres);
+    const length = roundLength(120 * metres);
     bar.style.width = `${length / metres}px`;
     bar.textContent = spelled(length);
     arms.forEach(([line, text], k) => {

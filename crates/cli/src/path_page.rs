@@ -17,8 +17,8 @@ struct Shown {
     report: Report,
 }
 
-/// Puts a place that the sweep found among the poses, which are in order, and says where.
-fn insert(shown: &mut Vec<Shown>, at: &AlongPath, what: &str) -> usize {
+/// Puts a place that the sweep found among the poses, which are in order.
+fn insert(shown: &mut Vec<Shown>, at: &AlongPath, what: &str) {
     let index = shown.partition_point(|pose| pose.share < at.share);
     match shown.get_mut(index) {
         Some(same) if same.share == at.share => same.name = format!("{}: {what}", same.name),
@@ -28,7 +28,6 @@ fn insert(shown: &mut Vec<Shown>, at: &AlongPath, what: &str) -> usize {
             shown.insert(index, Shown { share, name, pose, report });
         }
     }
-    index
 }
 
 /// Writes a page of the given poses of a path, which `ask` answers, and of the two places between
@@ -54,10 +53,14 @@ pub(crate) fn write(
         );
         shown.push(Shown { share, name, pose, report: ask(&pose)? });
     }
-    if let Some(first) = &swept.first {
-        insert(&mut shown, &first.at, "in collision from here");
+    let likeliest = &swept.most_probable;
+    insert(&mut shown, likeliest, "the likeliest collision found");
+    let first = swept.first.as_ref().map(|first| &first.at);
+    if let Some(first) = first {
+        insert(&mut shown, first, "in collision from here");
     }
-    let start = insert(&mut shown, &swept.most_probable, "the likeliest collision found");
+    let opening = first.unwrap_or(likeliest).share;
+    let start = shown.partition_point(|pose| pose.share < opening);
     let notes = (step > 1).then(|| format!("Of the {given} poses given every {step}th is shown."));
     let views = shown.iter().map(|shown| View {
         name: shown.name.clone(),

@@ -60,7 +60,8 @@ const PICTURE: &str = "\
 <h3>The picture</h3>
 <p>The darker a coloured point or disc, the likelier the surfaces meet there; 0 is yellow, 1 dark \
 red. A disc is a contact, as large as the surface that belongs to it; its arrow points from the scene \
-to the object. Points without a colour of their own were not found near the other body. Drag to turn, \
+to the object. Shades of grey and blue are as bright as the file shows the points, or else \
+lighter where they are lower. Points without a colour were not found near the other body. Drag to turn, \
 scroll or pinch to come nearer. The scale bar is true at the middle of the picture.</p>
 ";
 
