@@ -5,7 +5,8 @@ use cloudtouch::{Contact, Report, Verdict};
 use crate::body::Body;
 use crate::data;
 use crate::escape::html;
-use crate::facts::{self, Fact};
+use crate::fact::Fact;
+use crate::facts;
 use crate::view::View;
 use crate::words;
 

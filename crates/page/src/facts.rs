@@ -3,24 +3,9 @@
 use cloudtouch::geom::Pose;
 use cloudtouch::{Placement, Report};
 
+use crate::fact::Fact;
 use crate::view::View;
 use crate::words;
-
-/// A name and what is to be said under it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fact {
-    /// A few words.
-    pub label: String,
-    /// A sentence, or less.
-    pub text: String,
-}
-
-impl Fact {
-    /// Both from anything that is text.
-    pub fn new(label: impl Into<String>, text: impl Into<String>) -> Self {
-        Self { label: label.into(), text: text.into() }
-    }
-}
 
 /// All that is told of a view beside its verdict, contacts and warnings.
 pub(crate) fn of_view(view: &View<'_>) -> Vec<Fact> {

@@ -7,6 +7,7 @@ mod data;
 mod document;
 mod encode;
 mod escape;
+mod fact;
 mod facts;
 mod page;
 mod shortlist;
@@ -17,7 +18,7 @@ pub mod words;
 
 pub use body::{Body, Shape};
 pub use document::notebook_frame;
-pub use facts::Fact;
+pub use fact::Fact;
 pub use page::Page;
 pub use shortlist::Shortlist;
 pub use view::View;

@@ -1,7 +1,7 @@
 //! What a page shows.
 
 use crate::body::Body;
-use crate::facts::Fact;
+use crate::fact::Fact;
 use crate::view::View;
 
 /// Bodies and the poses in which they were asked about.

@@ -3,7 +3,7 @@
 use cloudtouch::geom::Pose;
 use cloudtouch::{Placement, Report};
 
-use crate::facts::Fact;
+use crate::fact::Fact;
 
 /// An object in a scene at one pose.
 #[derive(Debug, Clone)]

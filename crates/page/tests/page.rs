@@ -66,8 +66,7 @@ fn a_page_without_views_is_a_page() {
 fn many_views_that_colour_many_points_stay_within_the_limit() {
     let cloud = floor();
     let mut report = report(&cloud);
-    let all = |p: f64| (0..cloud.len()).map(|i| (i, p)).collect::<Vec<_>>();
-    report.point_probabilities.a = all(0.5);
+    report.point_probabilities.a = (0..cloud.len()).map(|i| (i, 0.5)).collect();
     let html = page(&cloud, std::iter::repeat_n(&report, MOST_VIEWS)).html();
     let each = MOST_LIKELY / MOST_VIEWS / 2;
     assert!(each < cloud.len());
