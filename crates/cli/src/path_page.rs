@@ -54,7 +54,7 @@ pub(crate) fn write(
         shown.push(Shown { share, name, pose, report: ask(&pose)? });
     }
     let likeliest = &swept.most_probable;
-    insert(&mut shown, likeliest, "the likeliest collision found");
+    insert(&mut shown, likeliest, "the largest probability found");
     let first = swept.first.as_ref().map(|first| &first.at);
     if let Some(first) = first {
         insert(&mut shown, first, "in collision from here");

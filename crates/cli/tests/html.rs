@@ -233,8 +233,12 @@ fn no_input_is_replaced_and_another_file_only_with_force() {
     let path = ["path", "floor.pcd", "box.obj", "--poses=path.csv", "--html=path.csv", "--force"];
     assert!(inputs.run(&path).stderr().contains("is an input"));
     inputs.write("cases.json", &case_file(&[case_at("a", 0.5)]));
-    let batch = ["batch", "cases.json", "--html=floor.pcd", "--force"];
-    assert!(inputs.run(&batch).stderr().contains("is an input"));
+    std::fs::copy(inputs.path("box.obj"), inputs.path("arm.obj")).unwrap();
+    for input in ["cases.json", "floor.pcd", "arm.obj"] {
+        let output = format!("--html={input}");
+        let batch = ["batch", "cases.json", "--robot=arm.obj", &output, "--force"];
+        assert!(inputs.run(&batch).stderr().contains("is an input"), "{input}");
+    }
 }
 
 #[test]

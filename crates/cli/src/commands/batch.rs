@@ -42,7 +42,8 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
     for path in arguments.jsonl.iter().chain(&arguments.html) {
         let files = good().flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
-        let inputs = files.chain([arguments.cases.as_path()]);
+        let others = arguments.common.robot.iter().chain([&arguments.cases]);
+        let inputs = files.chain(others.map(PathBuf::as_path));
         output::check(path, inputs, arguments.force)?;
     }
     let bodies = prepare_all::<P::Cloud>(arguments, good())?;
