@@ -33,7 +33,7 @@ impl Page<'_> {
              <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
              <main>\n<div id=\"picture\"><noscript><p>The picture needs JavaScript; the answers \
              beside it do not.</p></noscript>\n{LEGEND}</div>\n\
-             <aside>\n<h1>{title}</h1>\n{}<div id=\"poses\"></div>\n{answers}{PICTURE}\
+             <aside>\n<h1>{title}</h1>\n<div id=\"poses\"></div>\n{}{answers}{PICTURE}\
              <div class=\"small\">\n{notes}<p>Drawn by cloudtouch {}.</p>\n\
              <details><summary>Licence of three.js, which draws the picture</summary>\
              <pre>{}</pre></details>\n</div>\n</aside>\n</main>\n\
