@@ -69,13 +69,13 @@ fn check_file(root: &Path, path: &str, names: &mut BTreeSet<String>) -> Result<V
     })
 }
 
-/// Files of the project, relative to its root, in order; not what git or cargo made.
+/// Files of the project, relative to its root, in order; not what git, cargo or npm made.
 pub(crate) fn files(root: &Path, folder: &Path) -> Result<Vec<String>> {
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).with_context(|| format!("list {}", folder.display()))? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if name.starts_with('.') || name == "target" {
+        if name.starts_with('.') || ["target", "node_modules"].contains(&name.as_ref()) {
             continue;
         }
         if path.is_dir() && !path.is_symlink() {

@@ -126,6 +126,9 @@ pub(crate) struct QueryArguments {
     /// Write both bodies, redder with probability, contacts green; a mesh as a mesh
     #[arg(long, value_name = "OUT.ply", help_heading = "Output")]
     pub ply: Option<PathBuf>,
+    /// Write a page that shows all of it in any browser
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub html: Option<PathBuf>,
     /// Replace an output file that is there already
     #[arg(long, help_heading = "Output")]
     pub force: bool,
@@ -162,6 +165,12 @@ pub(crate) struct PathArguments {
     /// Exit with 0 free, 10 uncertain, 20 in collision, 30 undecided
     #[arg(long, help_heading = "Output")]
     pub exit_code: bool,
+    /// Write a page that shows all of it in any browser
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub html: Option<PathBuf>,
+    /// Replace an output file that is there already
+    #[arg(long, requires = "html", help_heading = "Output")]
+    pub force: bool,
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -189,6 +198,9 @@ pub(crate) struct BatchArguments {
     /// Write one JSON object per case to this file
     #[arg(long, value_name = "OUT.jsonl", help_heading = "Output")]
     pub jsonl: Option<PathBuf>,
+    /// Write a page that shows the cases in any browser, with a slider
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub html: Option<PathBuf>,
     /// Replace an output file that is there already
     #[arg(long, help_heading = "Output")]
     pub force: bool,

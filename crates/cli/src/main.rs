@@ -2,6 +2,7 @@
 
 mod answer;
 mod args;
+mod batch_page;
 mod batch_table;
 mod body;
 mod commands;
@@ -9,8 +10,10 @@ mod load;
 mod margin;
 mod ordered;
 mod output;
+mod page;
 mod path_answer;
 mod path_file;
+mod path_page;
 mod per_point;
 mod picture;
 mod pose_file;

@@ -3,6 +3,7 @@
 use anyhow::Result;
 use cloudtouch::geom::Pose;
 use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Undecided, Verdict, Warning};
+use cloudtouch_page::Fact;
 use serde::Serialize;
 
 use crate::answer::matrix;
@@ -79,14 +80,13 @@ pub(crate) fn json_line(swept: &Swept, [scene, object]: [&Input; 2]) -> Result<S
 pub(crate) fn text(swept: &Swept) -> String {
     let [low, high] = swept.bounds.map(probability);
     let best = &swept.most_probable;
-    let reason = swept.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
     let mut lines = vec![
         format!(
             "largest probability    {}   (within {low} .. {high})",
             probability(best.report.collision_probability)
         ),
         format!("                       at {}", place(best)),
-        labelled("verdict", &format!("{}{reason}", swept.verdict)),
+        labelled("verdict", &verdict(swept)),
         format!("free for certain       until {} of the path", percent(swept.certified_free_until)),
     ];
     if let Some(first) = &swept.first {
@@ -109,6 +109,34 @@ pub(crate) fn text(swept: &Swept) -> String {
     lines.join("\n")
 }
 
+/// What holds of the whole path, for a page.
+pub(crate) fn facts(swept: &Swept) -> Vec<Fact> {
+    let [low, high] = swept.bounds.map(probability);
+    let best = &swept.most_probable;
+    let likely = probability(best.report.collision_probability);
+    let mut facts = vec![
+        Fact::new("Verdict on the whole path", verdict(swept)),
+        Fact::new("Largest probability", format!("{likely} (within {low} .. {high})")),
+        Fact::new("Where", place(best)),
+        Fact::new(
+            "Free for certain",
+            format!("until {} of the path", percent(swept.certified_free_until)),
+        ),
+    ];
+    if let Some(first) = &swept.first {
+        let before = percent(first.not_before);
+        let text = format!("{}; not before {before} of the path", place(&first.at));
+        facts.push(Fact::new("In collision from", text));
+    }
+    facts.extend(swept.warnings.iter().map(|w| Fact::new("Warning", w.to_string())));
+    facts
+}
+
+fn verdict(swept: &Swept) -> String {
+    let reason = swept.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
+    format!("{}{reason}", swept.verdict)
+}
+
 fn place(at: &AlongPath) -> String {
     let origin = origin(&at.pose);
     format!(
@@ -124,6 +152,7 @@ fn origin(pose: &Pose) -> String {
     format!("{:.3} {:.3} {:.3} m", t.x, t.y, t.z)
 }
 
-fn percent(share: f64) -> String {
+/// A share of a path.
+pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }

@@ -4,7 +4,8 @@ use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use cloudtouch::{Clearance, StageReport, Undecided, Verdict};
+use cloudtouch::{Clearance, StageReport, Verdict};
+pub(crate) use cloudtouch_page::words::{probability, undecided};
 
 use crate::body::{Body, PreparedCloud};
 use crate::load::{Input, Loaded};
@@ -21,28 +22,6 @@ pub(crate) fn to_stdout(text: &str) -> Result<()> {
     }
 }
 
-/// Why there is no decision.
-pub(crate) fn undecided(by: Undecided) -> &'static str {
-    match by {
-        Undecided::Unseen => "the camera saw too little of where the object is",
-        Undecided::Enclosed => "one cloud is all around the other: hollow or solid is not known",
-        Undecided::Units => "sizes or distance cannot be meant",
-        Undecided::Sparse => "one body fits between the points of the other",
-        Undecided::Noise => "the noise is larger than a body",
-        Undecided::NoSurface => "a cloud spans no surface",
-        Undecided::Missing => "too many rows have no return",
-        Undecided::Sensor => "the sensor cannot have seen this cloud",
-        Undecided::Unsolved => "a classifier could not be trained",
-        Undecided::Bounds => "what was not looked at, or is too noisy, could still collide",
-        _ => "see undecided_by in the JSON",
-    }
-}
-
-/// A probability with the digits that mean something.
-pub(crate) fn probability(p: f64) -> String {
-    if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
-}
-
 /// A gap in millimetres with its standard deviation, or a dash when none was computed.
 pub(crate) fn gap_mm(clearance: Option<Clearance>) -> String {
     clearance.map_or("-".to_owned(), |c| {
@@ -53,13 +32,18 @@ pub(crate) fn gap_mm(clearance: Option<Clearance>) -> String {
 
 /// What a body is, what it was taken for and what the filter did to it, in a few lines.
 pub(crate) fn body<C: PreparedCloud>(name: &str, loaded: &Loaded<C>) -> String {
+    format!("{name}: {}", about(loaded))
+}
+
+/// The same without its name.
+pub(crate) fn about<C: PreparedCloud>(loaded: &Loaded<C>) -> String {
     let Input { unit, sensor, sensor_because, .. } = &loaded.input;
     match &loaded.body {
         Body::Cloud(cloud) => {
             let because = sensor_because.map_or(String::new(), |why| format!(" ({why})"));
             let sensor = sensor.as_deref().unwrap_or_default();
             format!(
-                "{name}: cloud of {} points in {unit}, sensor {sensor}{because} ({})",
+                "cloud of {} points in {unit}, sensor {sensor}{because} ({})",
                 cloud.count(),
                 stages(cloud.stages())
             )
@@ -67,10 +51,7 @@ pub(crate) fn body<C: PreparedCloud>(name: &str, loaded: &Loaded<C>) -> String {
         Body::Mesh(mesh) => {
             let kind = if mesh.is_watertight() { "watertight" } else { "open" };
             let count = mesh.triangle_count();
-            format!(
-                "{name}: {kind} mesh of {count} triangles in {unit}, {:.3} m across",
-                mesh.size()
-            )
+            format!("{kind} mesh of {count} triangles in {unit}, {:.3} m across", mesh.size())
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use cloudtouch::{Placement, Report, Stats, UnderPoses, Unseen, Within};
+use cloudtouch::{Placement, Report, Stats, UnderPoses, Within};
+use cloudtouch_page::{Fact, words};
 
 use crate::margin::{Nearness, SHARE};
 use crate::print::{probability, undecided};
@@ -24,28 +25,34 @@ pub(crate) fn text(report: &Report, placement: &Placement, shows_work: bool) -> 
     text
 }
 
-/// A line about a margin, and between what distances the bodies lie.
-pub(crate) fn nearness(nearness: &Nearness) -> String {
+/// About a margin, and between what distances the bodies lie.
+pub(crate) fn nearness(nearness: &Nearness) -> Fact {
     let Within { margin_m, bounds, probability: likely, .. } = nearness.within;
     let [low, high] = bounds.map(probability);
     let [q05, q95] = nearness.interval.map(|m| 1e3 * m);
     let label = format!("P(nearer than {:.0} mm)", 1e3 * margin_m);
     let likely = probability(likely);
     let share = 100.0 * SHARE;
-    format!(
-        "{label:<22} {likely}   (within {low} .. {high}); {share:.0} % between {q05:.1} and {q95:.1} mm"
-    )
+    let text = format!(
+        "{likely}   (within {low} .. {high}); {share:.0} % between {q05:.1} and {q95:.1} mm"
+    );
+    Fact::new(label, text)
 }
 
-/// A line about all poses that may be.
-pub(crate) fn over_poses(under: &UnderPoses) -> String {
+/// About all poses that may be.
+pub(crate) fn over_poses(under: &UnderPoses) -> Fact {
     let [low, high] = under.bounds.map(probability);
     let of = probability(under.probability);
     let poses = match under.poses {
         1 => "one pose tells of all".to_owned(),
         count => format!("{count} poses"),
     };
-    labelled("over uncertain poses", &format!("{of}   (within {low} .. {high}; {poses})"))
+    Fact::new("over uncertain poses", format!("{of}   (within {low} .. {high}; {poses})"))
+}
+
+/// A line of a report, however long.
+pub(crate) fn line(Fact { label, text }: &Fact) -> String {
+    format!("{label:<22} {text}")
 }
 
 /// What is known of surfaces too far apart to be measured.
@@ -106,7 +113,7 @@ fn found(report: &Report) -> String {
         let _ = writeln!(text, "                       and {more} more");
     }
     if let Some(unseen) = &report.unseen {
-        let _ = writeln!(text, "{}", labelled("unseen", &unseen_words(unseen)));
+        let _ = writeln!(text, "{}", labelled("unseen", &words::unseen(unseen)));
     }
     text
 }
@@ -131,25 +138,6 @@ pub(crate) fn labelled(label: &str, words: &str) -> String {
     }
     text.truncate(text.trim_end().len());
     text
-}
-
-fn unseen_words(unseen: &Unseen) -> String {
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-    let all = [
-        ("behind the camera", unseen.behind_camera),
-        ("outside of its view", unseen.outside_view),
-        ("in holes of the image", unseen.hole),
-        ("behind what it saw", unseen.behind_returns),
-    ];
-    let shares: Vec<String> = all
-        .iter()
-        .filter(|(_, share)| *share > 0.0)
-        .map(|(place, share)| format!("{} {place}", percent(*share)))
-        .collect();
-    if shares.is_empty() {
-        return format!("nothing of the {}", unseen.body);
-    }
-    format!("{} of the {}: {}", percent(unseen.share()), unseen.body, shares.join(", "))
 }
 
 fn place(placement: &Placement) -> String {

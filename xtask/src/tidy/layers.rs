@@ -8,12 +8,13 @@ use super::manifest::{KINDS, Manifest};
 const TESTKIT: &str = "cloudtouch-testkit";
 
 /// From the lowest layer upwards: what a crate may use comes before it.
-const LAYERS: [&str; 8] = [
+const LAYERS: [&str; 9] = [
     "cloudtouch-geom",
     "cloudtouch-noise",
     "cloudtouch-svm",
     "cloudtouch-bvh",
     "cloudtouch",
+    "cloudtouch-page",
     "cloudtouch-io",
     "cloudtouch-cli",
     "cloudtouch-evaluation",
@@ -27,9 +28,9 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
             &LAYERS[..1]
         }
         "cloudtouch" => &LAYERS[..4],
-        "cloudtouch-cli" => &LAYERS[..6],
-        "cloudtouch-python" => &LAYERS[..5],
-        "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..7],
+        "cloudtouch-page" => &LAYERS[..5],
+        "cloudtouch-cli" | "cloudtouch-python" => &LAYERS[..7],
+        "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..8],
         "xtask" => &LAYERS,
         _ => return None,
     })

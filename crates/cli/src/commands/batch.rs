@@ -6,19 +6,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
-use cloudtouch::geom::Pose;
-use cloudtouch::{PaperQuery, Placement, Query, Report};
+use cloudtouch::{PaperQuery, Query};
 use cloudtouch_io::write_atomically;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::answer::{Answer as Line, json_error_line};
 use crate::args::{BatchArguments, ModeName};
+use crate::batch_page::{Answered, Shown};
 use crate::batch_table::Table;
 use crate::body::{self, Body};
 use crate::case_file::{self, Case};
-use crate::load::{self, Input, Loaded, Role};
-use crate::margin::Nearness;
+use crate::load::{self, Loaded, Role};
 use crate::per_point::Details;
 use crate::sensor::SensorChoice;
 use crate::{ordered, output, print, unused};
@@ -28,16 +27,7 @@ type BodyKey = (PathBuf, Role, String);
 type Bodies<C> = BTreeMap<BodyKey, Result<Loaded<C>, String>>;
 
 /// What became of one case: a report, or the reason why there is none.
-type Answer<'a> = Result<Answered<'a>, String>;
-
-/// A report with where the object was and what the files were taken for.
-struct Answered<'a> {
-    report: Report,
-    placement: Placement,
-    pose: &'a Pose,
-    inputs: [&'a Input; 2],
-    nearness: Option<Nearness>,
-}
+type Answer<'a, C> = Result<Answered<'a, C>, String>;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -50,15 +40,17 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
 fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCode> {
     let file = case_file::read(&arguments.cases, arguments.common.limits.read_limits().bytes)?;
     let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
-    if let Some(path) = &arguments.jsonl {
+    for path in arguments.jsonl.iter().chain(&arguments.html) {
         let files = good().flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
-        let inputs = files.chain([arguments.cases.as_path()]);
+        let others = arguments.common.robot.iter().chain([&arguments.cases]);
+        let inputs = files.chain(others.map(PathBuf::as_path));
         output::check(path, inputs, arguments.force)?;
     }
     let bodies = prepare_all::<P::Cloud>(arguments, good())?;
     let progress = progress_bar(file.cases.len(), "queries");
     let mut table = Table::new(&file.cases);
     let mut failed = false;
+    let mut shown = Shown::new();
     let mut write = |jsonl: &mut dyn Write| -> io::Result<()> {
         if !arguments.json {
             to_stdout(&table.head())?;
@@ -68,12 +60,13 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
             Ok(case) => answer(arguments, query, &bodies, case),
             Err(error) => Err(format!("{error:#}")),
         };
-        ordered::for_each(file.cases.len(), threads, work, |index, answer: Answer<'_>| {
+        ordered::for_each(file.cases.len(), threads, work, |index, answer: Answer<'_, _>| {
             let (id, case) = &file.cases[index];
             let line = match &answer {
-                Ok(Answered { report, placement, pose, inputs, nearness }) => {
+                Ok(Answered { report, placement, pose, bodies, nearness }) => {
                     let (details, nearness) = (Details::default(), *nearness);
-                    Line { report, placement, pose, details, nearness }.json_line(id, *inputs)
+                    let inputs = bodies.map(|(_, loaded)| &loaded.input);
+                    Line { report, placement, pose, details, nearness }.json_line(id, inputs)
                 }
                 Err(error) => json_error_line(id, error),
             };
@@ -85,7 +78,11 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
             progress.suspend(|| {
                 let row = table.row(id, case, report);
                 to_stdout(&if arguments.json { format!("{line}\n") } else { row })
-            })
+            })?;
+            if arguments.html.is_some() {
+                shown.push(id, answer);
+            }
+            Ok::<(), io::Error>(())
         })?;
         progress.finish_and_clear();
         if arguments.json { Ok(()) } else { to_stdout(&table.foot()) }
@@ -93,6 +90,10 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     match &arguments.jsonl {
         Some(path) => write_atomically(path, write)?,
         None => write(&mut io::sink())?,
+    }
+    if let Some(path) = &arguments.html {
+        let cases = arguments.cases.file_name().unwrap_or_default().to_string_lossy();
+        shown.write(path, &cases, &arguments.common.limits.read_limits())?;
     }
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
@@ -106,7 +107,7 @@ fn answer<'a, P: body::Path>(
     query: &P,
     bodies: &'a Bodies<P::Cloud>,
     case: &'a Case,
-) -> Answer<'a> {
+) -> Answer<'a, P::Cloud> {
     let [scene, object] = keys(arguments, case).map(|key| match bodies.get(&key) {
         Some(Ok(loaded)) => Ok(loaded),
         Some(Err(error)) => Err(error.clone()),
@@ -114,6 +115,7 @@ fn answer<'a, P: body::Path>(
     });
     let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
     let report = query.ask(&scene.body, &object.body, pose).map_err(|error| error.to_string())?;
+    let bodies = [(case.scene.as_path(), scene), (case.object.as_path(), object)];
     let placement = query.place(&scene.body, &object.body, pose);
     let nearness = match arguments.common.margin {
         Some(margin) => query
@@ -121,7 +123,7 @@ fn answer<'a, P: body::Path>(
             .map_err(|error| error.to_string())?,
         None => None,
     };
-    Ok(Answered { report, placement, pose, inputs: [&scene.input, &object.input], nearness })
+    Ok(Answered { report, placement, pose, bodies, nearness })
 }
 
 fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {

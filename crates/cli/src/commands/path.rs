@@ -1,5 +1,6 @@
 //! `cloudtouch path`: one object along a path in one scene.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
@@ -8,13 +9,18 @@ use cloudtouch::{Cloud, Query};
 use crate::args::PathArguments;
 use crate::body::Body;
 use crate::load::{self, Role};
-use crate::{path_answer, path_file, print, unused};
+use crate::{output, page, path_answer, path_file, path_page, print, unused};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let common = &arguments.common;
     let query = Query::new(common.query_settings())?;
     let inputs = [&arguments.scene, &arguments.object].into_iter().chain(&common.robot);
     inputs.into_iter().try_for_each(|path| load::check(path))?;
+    if let Some(output) = &arguments.html {
+        let files = [&arguments.scene, &arguments.object, &arguments.poses];
+        let inputs = files.into_iter().chain(&common.robot).map(PathBuf::as_path);
+        output::check(output, inputs, arguments.force)?;
+    }
     let path = path_file::read(&arguments.poses)?;
     let object_sensor = common.object_sensor.unwrap_or(common.sensor);
     let scene =
@@ -25,6 +31,16 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let scene = scene.refined_for(POSES, common.effort.refine)?;
     let object = object.refined_for(POSES, common.effort.refine)?;
     let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;
+    if let Some(output) = &arguments.html {
+        let limits = common.limits.read_limits();
+        let bodies = [
+            page::body(&scene, Some(&arguments.scene), &limits)?,
+            page::body(&object, Some(&arguments.object), &limits)?,
+        ];
+        path_page::write(output, bodies, &swept, &path, |pose| {
+            query.run(&scene.body, &object.body, pose)
+        })?;
+    }
     let text = if arguments.json {
         path_answer::json_line(&swept, [&scene.input, &object.input])?
     } else {

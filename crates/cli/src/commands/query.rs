@@ -8,6 +8,7 @@ use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{PaperQuery, PoseDistribution, Query};
 use cloudtouch_cli::numbers::{PoseStd, Triple};
 use cloudtouch_io::read_colors_within;
+use cloudtouch_page::{Fact, Page, View};
 use nalgebra::UnitQuaternion;
 
 use crate::answer::Answer;
@@ -15,7 +16,7 @@ use crate::args::{ModeName, PoseArguments, QueryArguments};
 use crate::body::{self, Body, PreparedCloud};
 use crate::load::{self, Loaded, Role};
 use crate::per_point::{self, Details};
-use crate::{output, picture, pose_file, print, report_text, unused};
+use crate::{output, page, picture, pose_file, print, report_text, unused};
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -42,7 +43,7 @@ fn run_by<P: body::Path>(
         .chain(&arguments.kappas)
         .chain(&common.robot);
     inputs.clone().try_for_each(|path| load::check(path))?;
-    for path in arguments.ply.iter().chain(&arguments.csv) {
+    for path in arguments.ply.iter().chain(&arguments.csv).chain(&arguments.html) {
         output::check(path, inputs.clone().map(|input| input.as_path()), arguments.force)?;
     }
     let pose = pose(&arguments.pose)?;
@@ -85,6 +86,33 @@ fn run_by<P: body::Path>(
         let object = (&object.body, of_object.as_deref());
         picture::write(path, scene, object, &pose, &report)?;
     }
+    let more: Vec<Fact> = nearness
+        .as_ref()
+        .map(report_text::nearness)
+        .into_iter()
+        .chain(pose_uncertainty.as_ref().map(report_text::over_poses))
+        .collect();
+    if let Some(path) = &arguments.html {
+        let limits = common.limits.read_limits();
+        // Rows of several scans are not those of the first file.
+        let scan = Some(arguments.scene.as_path()).filter(|_| arguments.also.is_empty());
+        let bodies = [
+            page::body(&scene, scan, &limits)?,
+            page::body(&object, Some(&arguments.object), &limits)?,
+        ];
+        let title = format!("{} in {}", bodies[1].name, bodies[0].name);
+        let view = View {
+            name: "The pose asked about".to_owned(),
+            scene: 0,
+            object: 1,
+            scene_from_object: pose,
+            report: &report,
+            placement: Some(&placement),
+            more: more.clone(),
+        };
+        let bodies = bodies.into();
+        page::write(path, &Page { title, bodies, views: vec![view], ..Page::default() })?;
+    }
     let text = if arguments.json {
         let details = Details {
             points: arguments.points.then(|| (&report).into()),
@@ -100,8 +128,7 @@ fn run_by<P: body::Path>(
             print::body("object", &object),
             report_text::text(&report, &placement, shows_work),
         ];
-        parts.extend(nearness.as_ref().map(report_text::nearness));
-        parts.extend(pose_uncertainty.as_ref().map(report_text::over_poses));
+        parts.extend(more.iter().map(report_text::line));
         if !arguments.pose.is_given() {
             parts.push("pose                   not given: the identity".to_owned());
         }

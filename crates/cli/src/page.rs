@@ -1,0 +1,44 @@
+//! `--html`: what a command knows, as a report page shows it.
+
+use std::path::Path;
+
+use anyhow::Result;
+use cloudtouch_io::{ReadLimits, read_colors_within, write_atomically};
+use cloudtouch_page::{Body as Drawn, Page, Shape};
+
+use crate::body::{Body, PreparedCloud};
+use crate::load::Loaded;
+use crate::print;
+
+/// Writes a page whole or not at all.
+pub(crate) fn write(path: &Path, page: &Page<'_>) -> Result<()> {
+    Ok(write_atomically(path, |out| out.write_all(page.html().as_bytes()))?)
+}
+
+/// A body as a page draws it, as bright as `file` shows it, if that has colours.
+pub(crate) fn body<C: PreparedCloud>(
+    loaded: &Loaded<C>,
+    file: Option<&Path>,
+    limits: &ReadLimits,
+) -> Result<Drawn> {
+    let shape = match &loaded.body {
+        Body::Mesh(mesh) => mesh.into(),
+        Body::Cloud(cloud) => {
+            let colors = file.map(|file| read_colors_within(file, limits)).transpose()?.flatten();
+            let bright = |colors: Vec<[u8; 3]>| {
+                let of_row = |row: &usize| colors.get(*row).map(luminance);
+                cloud.file_rows().iter().map(of_row).collect::<Option<Vec<u8>>>()
+            };
+            let brightness = colors.and_then(bright).filter(|b| b.len() == cloud.count());
+            Shape::Cloud { points: cloud.points(), brightness }
+        }
+    };
+    let name = Path::new(&loaded.input.file).file_name();
+    let name = name.map_or(loaded.input.file.clone(), |name| name.to_string_lossy().into_owned());
+    Ok(Drawn { name, about: print::about(loaded), shape })
+}
+
+/// How bright a colour looks (ITU-R BT.601).
+fn luminance(&[r, g, b]: &[u8; 3]) -> u8 {
+    (0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b)).round() as u8
+}

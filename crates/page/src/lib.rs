@@ -1,0 +1,36 @@
+#![doc = include_str!("../README.md")]
+
+mod answer;
+mod body;
+mod coarse;
+mod data;
+mod document;
+mod encode;
+mod escape;
+mod fact;
+mod facts;
+mod page;
+mod shortlist;
+mod thin;
+mod upright;
+mod view;
+pub mod words;
+
+pub use body::{Body, Shape};
+pub use document::notebook_frame;
+pub use fact::Fact;
+pub use page::Page;
+pub use shortlist::Shortlist;
+pub use view::View;
+
+/// Points of all clouds of a page together; beyond it every cloud is thinned by the same share.
+pub const MOST_POINTS: usize = 300_000;
+
+/// Triangles of all meshes of a page together; beyond it meshes are drawn coarser.
+pub const MOST_TRIANGLES: usize = 150_000;
+
+/// Points with a probability of their own in all views together; beyond it the likeliest are told.
+pub const MOST_LIKELY: usize = 200_000;
+
+/// Views that a page is meant for: what gathers more keeps those that are the likeliest to collide.
+pub const MOST_VIEWS: usize = 500;

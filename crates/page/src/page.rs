@@ -1,0 +1,22 @@
+//! What a page shows.
+
+use crate::body::Body;
+use crate::fact::Fact;
+use crate::view::View;
+
+/// Bodies and the poses in which they were asked about.
+#[derive(Debug, Clone, Default)]
+pub struct Page<'a> {
+    /// What it is about, such as the names of two files.
+    pub title: String,
+    /// What is true of all views together, such as of a path.
+    pub summary: Vec<Fact>,
+    /// What is to be said of the page itself, such as which poses it leaves out.
+    pub notes: Vec<String>,
+    /// Scenes and objects, which the views name by their place in this list.
+    pub bodies: Vec<Body>,
+    /// Poses with their answers, in the order of the slider.
+    pub views: Vec<View<'a>>,
+    /// Which of them is shown first.
+    pub start: usize,
+}

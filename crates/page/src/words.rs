@@ -1,0 +1,100 @@
+//! Words and numbers of answers for people, the same on a page and on a terminal.
+
+use cloudtouch::{Clearance, Undecided, Unseen, Verdict};
+
+/// A probability with the digits that mean something.
+pub fn probability(p: f64) -> String {
+    if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
+}
+
+/// Why there is no decision.
+pub fn undecided(by: Undecided) -> &'static str {
+    match by {
+        Undecided::Unseen => "the camera saw too little of where the object is",
+        Undecided::Enclosed => "one cloud is all around the other: hollow or solid is not known",
+        Undecided::Units => "sizes or distance cannot be meant",
+        Undecided::Sparse => "one body fits between the points of the other",
+        Undecided::Noise => "the noise is larger than a body",
+        Undecided::NoSurface => "a cloud spans no surface",
+        Undecided::Missing => "too many rows have no return",
+        Undecided::Sensor => "the sensor cannot have seen this cloud",
+        Undecided::Unsolved => "a classifier could not be trained",
+        Undecided::Bounds => "what was not looked at, or is too noisy, could still collide",
+        _ => "see undecided_by in the JSON",
+    }
+}
+
+/// How much of a body a depth image did not see, and why.
+pub fn unseen(unseen: &Unseen) -> String {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let all = [
+        ("behind the camera", unseen.behind_camera),
+        ("outside of its view", unseen.outside_view),
+        ("in holes of the image", unseen.hole),
+        ("behind what it saw", unseen.behind_returns),
+    ];
+    let shares: Vec<String> = all
+        .iter()
+        .filter(|(_, share)| *share > 0.0)
+        .map(|(place, share)| format!("{} {place}", percent(*share)))
+        .collect();
+    if shares.is_empty() {
+        return format!("nothing of the {}", unseen.body);
+    }
+    format!("{} of the {}: {}", percent(unseen.share()), unseen.body, shares.join(", "))
+}
+
+/// What a verdict means, in a sentence.
+pub fn verdict(verdict: Verdict, by: Option<Undecided>) -> String {
+    match verdict {
+        Verdict::Free => "The surfaces are apart: even the upper bound on the probability of a \
+                          collision is below the threshold."
+            .to_owned(),
+        Verdict::InCollision => {
+            "The surfaces touch or overlap: the probability is above the threshold.".to_owned()
+        }
+        Verdict::Uncertain => "The surfaces may touch or be apart: the measurements do not tell. \
+                               Look again, move away, or use a better sensor."
+            .to_owned(),
+        Verdict::Undecided => {
+            format!(
+                "No decision: {}. Treat it as not free.",
+                by.map_or("see the warnings", undecided)
+            )
+        }
+    }
+}
+
+/// A measured gap, or what is known where none was measured: `at_least` m, if anything bounds it.
+pub fn clearance(measured: Option<Clearance>, at_least: Option<f64>) -> String {
+    match measured {
+        Some(Clearance { mean, std, is_bound }) => {
+            let deeper = if is_bound { " or deeper" } else { "" };
+            let side = if mean < 0.0 { "overlap of" } else { "gap of" };
+            format!(
+                "{side} {:.1} mm{deeper}, standard deviation {:.1} mm",
+                1e3 * mean.abs(),
+                1e3 * std
+            )
+        }
+        None => match at_least.filter(|least| *least > 0.0) {
+            Some(least) => format!("at least {:.1} mm", 1e3 * least),
+            None => "not computed".to_owned(),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clearance_says_which_side_and_how_sure() {
+        let of = |mean, is_bound| clearance(Some(Clearance { mean, std: 0.01, is_bound }), None);
+        assert_eq!(of(0.0299, false), "gap of 29.9 mm, standard deviation 10.0 mm");
+        assert_eq!(of(-0.0092, true), "overlap of 9.2 mm or deeper, standard deviation 10.0 mm");
+        assert_eq!(clearance(None, Some(0.0512)), "at least 51.2 mm");
+        assert_eq!(clearance(None, Some(-0.1)), "not computed");
+        assert_eq!(clearance(None, None), "not computed");
+    }
+}

@@ -1,0 +1,58 @@
+//! The committed script is what its sources give. Skipped, with the reason, without node, npm or their registry.
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// What npm says when it cannot reach its registry.
+const UNREACHABLE: [&str; 6] =
+    ["ENOTFOUND", "ECONNREFUSED", "ECONNRESET", "ETIMEDOUT", "EAI_AGAIN", "ENOTCACHED"];
+
+fn run(folder: &Path, program: &str, arguments: &[&str]) -> Option<Output> {
+    Command::new(program).args(arguments).current_dir(folder).output().ok()
+}
+
+#[test]
+fn the_script_is_what_its_sources_give() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let sources = here.join("../../viewer");
+    if !sources.is_dir() {
+        return println!("skipped: the sources in viewer/ are not part of the package");
+    }
+    let is_there = |program| run(here, program, &["--version"]).is_some_and(|o| o.status.success());
+    if let Some(missing) = ["node", "npm"].into_iter().find(|program| !is_there(program)) {
+        return println!("skipped: {missing} is not there");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let copy = |name: &str| fs::copy(sources.join(name), folder.path().join(name)).unwrap();
+    for name in ["package.json", "package-lock.json", "build.mjs"] {
+        copy(name);
+    }
+    fs::create_dir(folder.path().join("src")).unwrap();
+    for file in fs::read_dir(sources.join("src")).unwrap() {
+        copy(&format!("src/{}", file.unwrap().file_name().to_str().unwrap()));
+    }
+    let install = [
+        "ci",
+        "--ignore-scripts",
+        "--no-audit",
+        "--no-fund",
+        "--prefer-offline",
+        "--fetch-retries=0",
+    ];
+    let installed = run(folder.path(), "npm", &install).unwrap();
+    let said = String::from_utf8_lossy(&installed.stderr).into_owned();
+    if !installed.status.success() && UNREACHABLE.iter().any(|code| said.contains(code)) {
+        return println!("skipped: the registry of npm cannot be reached");
+    }
+    assert!(installed.status.success(), "{said}");
+    fs::create_dir(folder.path().join("out")).unwrap();
+    let built = run(folder.path(), "node", &["build.mjs", "out/viewer.js"]).unwrap();
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    for name in ["viewer.js", "LICENSE-three.txt"] {
+        let made = fs::read(folder.path().join("out").join(name)).unwrap();
+        let committed = fs::read(here.join("viewer").join(name)).unwrap();
+        assert!(made == committed, "{name} is stale: run `npm ci && npm run build` in viewer/");
+    }
+}

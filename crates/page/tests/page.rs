@@ -1,0 +1,76 @@
+//! Pages and frames as a program makes them.
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
+use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report};
+use cloudtouch_page::{Body, Fact, MOST_LIKELY, MOST_VIEWS, Page, Shape, View, notebook_frame};
+
+const SIDE: u32 = 30;
+
+fn floor() -> Cloud {
+    let at = |i: u32| Point3::new(0.05 * f64::from(i % SIDE), 0.05 * f64::from(i / SIDE), 0.0);
+    let cloud = PointCloud::from_points((0..SIDE * SIDE).map(at).collect());
+    Cloud::prepare(&cloud, &CloudSettings::new(SensorModel::Isotropic { std: 0.002 })).unwrap()
+}
+
+fn pose() -> Pose {
+    Pose::from_translation(Vector3::new(0.0, 0.0, 0.01))
+}
+
+fn report(cloud: &Cloud) -> Report {
+    Query::new(QuerySettings::default()).unwrap().run(cloud, cloud, &pose()).unwrap()
+}
+
+fn page<'a>(cloud: &Cloud, reports: impl IntoIterator<Item = &'a Report>) -> Page<'a> {
+    let shape = Shape::cloud(cloud.len(), |index| cloud.point(index));
+    let body = Body { name: "<floor> & more".to_owned(), about: "a cloud".to_owned(), shape };
+    let view = |report| View {
+        name: "'here'".to_owned(),
+        scene: 0,
+        object: 0,
+        scene_from_object: pose(),
+        report,
+        placement: None,
+        more: vec![Fact::new("Said by", "the <program>")],
+    };
+    let views = reports.into_iter().map(view).collect();
+    Page { title: "A \"title\"".to_owned(), bodies: vec![body], views, ..Page::default() }
+}
+
+#[test]
+fn a_frame_holds_the_page_and_nothing_of_it_leaves_the_attribute() {
+    let cloud = floor();
+    let report = report(&cloud);
+    let page = page(&cloud, [&report]);
+    let frame = notebook_frame(&page, 480);
+    let (head, rest) = frame.split_once("srcdoc=\"").unwrap();
+    assert!(head.contains("sandbox=\"allow-scripts\"") && head.contains("height:480px"));
+    let (held, tail) = rest.split_once('"').unwrap();
+    assert_eq!(tail, "></iframe>");
+    // What a browser makes of the attribute.
+    let names = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&#39;", "'"), ("&amp;", "&")];
+    let read = names.iter().fold(held.to_owned(), |text, (name, c)| text.replace(name, c));
+    assert!(read == page.html());
+    assert!(read.contains("<dt>Said by</dt><dd>the &lt;program&gt;</dd>"));
+}
+
+#[test]
+fn a_page_without_views_is_a_page() {
+    let html = page(&floor(), []).html();
+    assert!(html.contains("<title>A &quot;title&quot;</title>") && html.ends_with("</html>\n"));
+}
+
+/// However many points every view colours, the page stays small, and says that it leaves some out.
+#[test]
+fn many_views_that_colour_many_points_stay_within_the_limit() {
+    let cloud = floor();
+    let mut report = report(&cloud);
+    report.point_probabilities.a = (0..cloud.len()).map(|i| (i, 0.5)).collect();
+    let html = page(&cloud, std::iter::repeat_n(&report, MOST_VIEWS)).html();
+    let each = MOST_LIKELY / MOST_VIEWS / 2;
+    assert!(each < cloud.len());
+    let note = format!("no more than the {each} likeliest points of a cloud are coloured");
+    assert_eq!(html.matches(&note).count(), 1);
+    assert!(html.len() < 12_000_000, "{}", html.len());
+}
