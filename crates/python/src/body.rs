@@ -32,6 +32,10 @@ impl Body {
         (&self.prepared).into()
     }
 
+    pub(crate) fn prepared(&self) -> &Prepared {
+        &self.prepared
+    }
+
     /// The points kept, to the bit as they were given; the cells of a collision map were not given.
     fn kept(&self, cloud: &Cloud) -> Vec<Point3> {
         match &self.given {

@@ -7,6 +7,7 @@ mod batch;
 mod body;
 mod error;
 mod files;
+mod page;
 mod pool;
 mod query;
 mod sweep;

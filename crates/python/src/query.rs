@@ -16,7 +16,7 @@ use crate::batch::Columns;
 use crate::body::Body;
 use crate::error::{refused, refused_for};
 use crate::pool::on_all_threads;
-use crate::sweep;
+use crate::{page, sweep};
 
 /// Between so many poses Python is asked whether Ctrl-C was pressed, and reports make room for others.
 const POSES_AT_ONCE: usize = 1024;
@@ -142,6 +142,20 @@ impl Query {
         let path = path.map_err(refused)?;
         let swept = py.detach(|| self.checked.sweep(a, b, &path, tolerance)).map_err(refused)?;
         sweep::answer(py, &swept)
+    }
+
+    #[pyo3(signature = (a, b, poses, title, height, /))]
+    fn page<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Body>,
+        b: &Bound<'py, Body>,
+        poses: PyReadonlyArray3<'py, f64>,
+        title: &str,
+        height: Option<u32>,
+    ) -> PyResult<String> {
+        let poses: PyResult<Vec<Pose>> = all_rigid(&poses).into_iter().collect();
+        page::answer(py, &self.checked, [a.get(), b.get()], &poses?, title, height)
     }
 
     #[pyo3(signature = (a, b, poses, keep_going, /))]

@@ -13,6 +13,7 @@ from cloudtouch._native import CloudtouchError, __version__
 from cloudtouch.bodies import Cloud, Mesh
 from cloudtouch.checker import PoseChecker
 from cloudtouch.motion import AlongPath, Swept, UnderPoses
+from cloudtouch.page import Page
 from cloudtouch.query import Query
 from cloudtouch.report import Batch, Contact, Evidence, PointProbabilities, Report, Within
 
@@ -24,6 +25,7 @@ __all__ = [
     "Contact",
     "Evidence",
     "Mesh",
+    "Page",
     "PointProbabilities",
     "PoseChecker",
     "Query",

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from cloudtouch import _arrays, _native
 from cloudtouch.bodies import Cloud, Mesh
 from cloudtouch.motion import Swept, UnderPoses
+from cloudtouch.page import Page
 from cloudtouch.report import Batch, Report, Within
 
 Body = Union[Cloud, Mesh]
@@ -215,6 +216,26 @@ class Query:
         columns = self._query.run_batch(a._body, b._body, matrices, errors == "keep")
         columns["error"] = np.asarray(columns["error"], dtype=np.str_)
         return Batch(**columns)
+
+    def page(self, a: Body, b: Body, poses: npt.ArrayLike, *, title: str = "cloudtouch") -> Page:
+        """Both bodies and the answers of :meth:`run`, to look at: a notebook shows it, :meth:`Page.save` writes it.
+
+        Parameters
+        ----------
+        poses
+            (4, 4) or (M, 4, 4), at most 500, in the order of the slider.
+
+        Raises
+        ------
+        ValueError
+            ``poses`` has the wrong shape or type.
+        CloudtouchError
+            As :meth:`run_batch`, when the page is shown or written.
+        """
+        if np.ndim(poses) == 2:
+            poses = _arrays.numbers(poses, "poses", (4, 4))[None]
+        matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4)).copy()
+        return Page(lambda height: self._query.page(a._body, b._body, matrices, title, height))
 
     def __repr__(self) -> str:
         return f"Query({', '.join(f'{name}={value!r}' for name, value in self._settings.items())})"

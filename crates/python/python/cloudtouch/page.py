@@ -1,0 +1,37 @@
+"""Answers to look at."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Callable, Optional
+
+
+class Page:
+    """Two bodies in some poses, as one HTML page: turned with the mouse, coloured by probability, with words.
+
+    Made by :meth:`Query.page`. Shown by a notebook where it is the last value of a cell; a file otherwise.
+    """
+
+    __slots__ = ("_render",)
+
+    _render: Callable[[Optional[int]], str]
+
+    def __init__(self, render: Callable[[int | None], str]) -> None:
+        self._render = render
+
+    @property
+    def html(self) -> str:
+        """The whole file; it needs no network."""
+        return self._render(None)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the file, over what stood there."""
+        Path(path).write_text(self.html, encoding="utf-8")
+
+    def frame(self, height: int = 480) -> str:
+        """A frame of so many pixels with the page in it, as a part of another page."""
+        return self._render(height)
+
+    def _repr_html_(self) -> str:
+        return self.frame()

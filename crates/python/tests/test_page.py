@@ -1,0 +1,31 @@
+"""Pages of answers."""
+
+import numpy as np
+import pytest
+from conftest import lifted
+
+import cloudtouch as ct
+
+
+def test_a_page_says_what_a_report_says(tmp_path, floor, table):
+    page = ct.Query().page(floor, table, [lifted(z) for z in (0.1, 0.0)], title="a <b> & c")
+    page.save(tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert text == page.html and text.startswith("<!DOCTYPE html>")
+    assert "a &lt;b&gt; &amp; c" in text and "<b> & c" not in text
+    assert "free" in text and "pose 1" in text
+    frame = page._repr_html_()
+    assert frame.startswith("<iframe") and "480" in frame
+
+
+def test_one_pose_is_a_page_too(floor, table):
+    assert "pose 0" in ct.Query().page(floor, table, lifted(0.1)).html
+
+
+def test_poses_of_a_page(floor, table):
+    with pytest.raises(ValueError, match="poses has the shape"):
+        ct.Query().page(floor, table, np.eye(3))
+    with pytest.raises(ct.CloudtouchError, match="poses are 0: a page shows 1 to 500"):
+        ct.Query().page(floor, table, np.empty((0, 4, 4))).frame()
+    with pytest.raises(ct.CloudtouchError, match=r"poses\[0\]"):
+        ct.Query().page(floor, table, np.full((4, 4), np.nan)).save("never.html")
