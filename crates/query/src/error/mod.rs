@@ -3,7 +3,9 @@
 mod filter;
 mod prepare;
 mod query;
+mod scene;
 
 pub use filter::FilterError;
 pub use prepare::PrepareError;
 pub use query::{QueryError, SettingsError, SubdivisionError};
+pub use scene::SceneError;
