@@ -92,7 +92,7 @@ pub fn visit_surfaces(
     let mut within = sought.within;
     let mut outcome = SurfaceOutcome::NOTHING;
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(outcome) };
-    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought);
+    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought, USUAL_PAIRS);
     pairs.test_roots(root_a, root_b, within, &mut outcome);
     while let Some(Queued(pair)) = pairs.queue.pop() {
         if pair.apart.deviations >= within && !pairs.may_cross(&pair) {
@@ -130,7 +130,7 @@ pub fn urgency_of_roots(
 ) -> Result<Option<f64>, TreeError> {
     check(a_from_b, &sought)?;
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(None) };
-    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought);
+    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought, 1);
     let mut outcome = SurfaceOutcome::NOTHING;
     pairs.test_roots(root_a, root_b, sought.within, &mut outcome);
     Ok(pairs.queue.pop().map(|Queued(roots)| roots.urgency))
@@ -163,6 +163,9 @@ impl SurfaceOutcome {
     }
 }
 
+/// Room for as many pairs as a search has waiting at once, as a rule.
+const USUAL_PAIRS: usize = 256;
+
 /// The pairs that wait, and what they are tested by.
 struct Pairs<'a> {
     a: &'a Tree,
@@ -182,6 +185,7 @@ impl<'a> Pairs<'a> {
         (b, root_b): (&'a Tree, u32),
         a_from_b: &Pose,
         sought: Sought,
+        capacity: usize,
     ) -> Self {
         let roots = [&a.nodes[root_a as usize], &b.nodes[root_b as usize]];
         Self {
@@ -190,8 +194,8 @@ impl<'a> Pairs<'a> {
             a_from_b: Motion::from(a_from_b),
             sought,
             rounding: pose_rounding(roots, a_from_b),
-            queue: BinaryHeap::with_capacity(256),
-            moved: Vec::with_capacity(256),
+            queue: BinaryHeap::with_capacity(capacity),
+            moved: Vec::with_capacity(capacity),
         }
     }
 

@@ -1,5 +1,7 @@
 //! Many bodies: the answer is that of all pairs asked one by one, and most are ruled out by their boxes.
 
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
 mod common;
 
 use std::sync::Arc;
@@ -70,8 +72,10 @@ fn one_by_one(scene: &Scene, query: &Query, of_scene: &Checked) -> Vec<PairAnswe
     answers
 }
 
-/// What does not depend on the frame that contacts are told in.
-fn key(pair: &PairAnswer) -> (String, String, Result<(u64, [u64; 2], Verdict), QueryError>) {
+/// What does not depend on the frame that contacts are told in: probability and bounds by their bits.
+type Told = Result<(u64, [u64; 2], Verdict), QueryError>;
+
+fn key(pair: &PairAnswer) -> (String, String, Told) {
     let answer = pair.answer.as_ref().map_err(Clone::clone).map(|report| {
         let bounds = report.bounds.map(f64::to_bits);
         (report.collision_probability.to_bits(), bounds, report.verdict)
