@@ -28,9 +28,9 @@ mod unseen;
 mod warning;
 
 pub use body::{Body, BodyRef};
-pub use cloud::{Cloud, CloudSettings};
+pub use cloud::{Change, Cloud, CloudSettings};
 pub use error::{
-    FilterError, PrepareError, QueryError, SceneError, SettingsError, SubdivisionError,
+    ChangeError, FilterError, PrepareError, QueryError, SceneError, SettingsError, SubdivisionError,
 };
 pub use filter::{
     FilterSettings, Filtered, OutlierSettings, SelfMesh, StageReport, VeilSettings, filter,

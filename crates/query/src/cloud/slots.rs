@@ -10,12 +10,22 @@ use super::surfel::Surfel;
 /// Points that a spacing is told from, at most.
 const REGION_POINTS: usize = 40;
 
+/// The surface at a piece, and what it depends on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fitted {
+    pub surfel: Surfel,
+    /// Points farther away had no part in it, m.
+    pub reach: f64,
+}
+
 /// One slot per piece, and per tree node, of which only those of leaves are ever filled. Each is a
 /// pure function of the cloud, so it does not matter which thread fills it.
 #[derive(Debug)]
 pub(super) struct LazySurface {
     /// None once all leaves hold theirs.
-    pub surfels: Vec<OnceLock<Box<Surfel>>>,
+    pub surfels: Vec<OnceLock<Box<Fitted>>>,
+    /// By piece the reach of what the leaves hold; empty until then.
+    pub reaches: Vec<f64>,
     pub leaves: Vec<OnceLock<Vec<Surfel>>>,
     /// Of leaves with what they share.
     pub shared: Vec<OnceLock<Vec<Surfel>>>,
@@ -35,6 +45,7 @@ impl LazySurface {
         }
         Self {
             surfels: slots(pieces),
+            reaches: Vec::new(),
             leaves: slots(tree.node_slots()),
             shared: slots(tree.node_slots()),
             edges: slots(tree.node_slots()),
