@@ -42,9 +42,8 @@ pub(crate) fn posterior(
         // Which points stand for the others hangs on all of them.
         scratch.reach = f64::INFINITY;
     }
-    let wide = is_wide
-        .then(|| wide_surface(index, neighborhoods, sensor, around, scratch))
-        .flatten();
+    let wide =
+        is_wide.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
     let Scratch { neighbors, patch, kept_block, wide_neighbors, wide_patch, .. } = scratch;
     let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
     let surface = wide.or_else(|| fit_surface(&patch))?;

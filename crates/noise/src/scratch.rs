@@ -31,6 +31,14 @@ impl Scratch {
     pub fn reach(&self) -> f64 {
         self.reach
     }
+
+    /// The points nearest to the one that was refined last, as [`Neighborhoods::nearest`] has them: as
+    /// many as its refinement looked at.
+    ///
+    /// [`Neighborhoods::nearest`]: crate::Neighborhoods::nearest
+    pub fn neighbors(&self) -> &[Neighbor] {
+        &self.neighbors
+    }
 }
 
 #[derive(Debug, Default)]

@@ -3,13 +3,11 @@
 
 mod common;
 
-use std::time::Instant;
-
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{ChangeError, Cloud, CloudSettings, Judge, Mesh, Query, QuerySettings, Report};
 use cloudtouch_testkit::scene;
-use common::{at, measured, timeless, uniform};
+use common::{measured, timeless, uniform};
 use proptest::prelude::*;
 
 /// Corners of a box that nothing leaves: its middle stays.
@@ -148,10 +146,12 @@ proptest! {
         }
         let fresh = cloud(&points, &by);
         let judge = Judge::default().without_classifier();
-        let query = Query::new(QuerySettings { judge, ..QuerySettings::default() }).unwrap();
+        // A search that ends early knows what came first.
+        let usual = QuerySettings { stop_above: 1.0, ..QuerySettings::default() };
+        let query = Query::new(QuerySettings { judge, ..usual }).unwrap();
         for (found, expected) in answers(&query, &changed, seed).iter().zip(answers(&query, &fresh, seed)) {
             let apart = (found.collision_probability - expected.collision_probability).abs();
-            prop_assert!(apart <= 1e-9, "{found:?} {expected:?}");
+            prop_assert!(apart <= 1e-9, "{apart}");
             prop_assert_eq!(found.verdict, expected.verdict);
         }
     }
@@ -184,7 +184,7 @@ fn noise_of_each_point_comes_goes_and_moves_with_it() {
     let fresh = Cloud::prepare(&scan(&left), &by).unwrap();
     assert_eq!(answers(&query, &changed, 2), answers(&query, &fresh, 2));
     assert_eq!(changed.rows().len(), left.len());
-    assert_eq!((changed.rows()[100], changed.rows()[499]), (101, 567));
+    assert_eq!((changed.rows()[100], changed.rows()[499]), (101, 566));
 }
 
 #[test]
@@ -232,7 +232,7 @@ fn what_cannot_be_meant_is_refused_and_leaves_the_cloud_as_it_was() {
     assert_eq!(answers(&query, &changed, 1), answers(&query, &cloud(&points, &by), 1));
 }
 
-/// Prints what a change costs beside preparing anew: `cargo test --release -p cloudtouch --test change --
+/// Prints the work that a change takes beside preparing anew: `cargo test --release -p cloudtouch --test change --
 /// --ignored --nocapture cost`.
 #[test]
 #[ignore = "measures time"]
@@ -248,14 +248,14 @@ fn cost_of_changing_one_point_in_a_hundred() {
         .map(|&i| (i, points[i] + Vector3::z() * 1e-3))
         .collect();
     let seconds = |work: &mut dyn FnMut()| {
-        let start = Instant::now();
+        let start = cpu_seconds();
         work();
-        start.elapsed().as_secs_f64()
+        cpu_seconds() - start
     };
     let mut changed = None;
     let prepare = seconds(&mut || changed = Some(cloud(&points, &by)));
     let mut changed = changed.unwrap();
-    let lazy = seconds(&mut || drop(changed.move_points(&some).unwrap()));
+    let lazy = seconds(&mut || assert!(changed.move_points(&some).is_ok()));
     let mut refined = None;
     let whole = seconds(&mut || refined = Some(cloud(&points, &by).refined().unwrap()));
     let mut refined = refined.unwrap();
@@ -272,4 +272,12 @@ fn cost_of_changing_one_point_in_a_hundred() {
         100.0 * again / whole,
         change.unwrap()
     );
+}
+
+/// What this process has worked, on all cores and whatever else the machine does, s.
+fn cpu_seconds() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").expect("a Linux system");
+    // Ticks of 10 ms, counted behind the name in brackets.
+    let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
+    [11, 12].map(|field| fields[field].parse::<f64>().unwrap()).iter().sum::<f64>() / 100.0
 }

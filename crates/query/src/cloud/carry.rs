@@ -25,10 +25,9 @@ impl Prepared {
         changed: Vec<Point3>,
     ) -> Result<usize, PrepareError> {
         // Where a few points stand for all, which they are hangs on all.
-        let is_each = |cloud: &Self| cloud.surface.spacing_caps.len() == cloud.len();
         let is_uniform = |cloud: &Self| cloud.scans.noise.as_uniform().is_some();
         let has_normals = |cloud: &Self| cloud.scans.normals.is_some();
-        if !(is_each(self) && is_each(of))
+        if !(self.pieces.is_each() && of.pieces.is_each())
             || self.origin != of.origin
             || is_uniform(self) != is_uniform(of)
             || has_normals(self) != has_normals(of)
@@ -36,6 +35,12 @@ impl Prepared {
             return Ok(0);
         }
         let changed = Neighborhoods::try_new(changed)?;
+        let mut after = vec![NEW; of.len()];
+        for (index, &before) in (0..).zip(before) {
+            if let Some(after) = after.get_mut(before as usize) {
+                *after = index;
+            }
+        }
         let carried = (before.par_iter().enumerate()).filter(|&(piece, &before)| {
             let fitted = if before == NEW { None } else { of.known(before) };
             let of_cap = |fitted: &Fitted| {
@@ -45,12 +50,14 @@ impl Prepared {
                 cap == cap_before || (spacing < *cap_before && spacing <= *cap)
             };
             let is_same = |fitted: &Fitted| {
-                let near = changed.nearest_to(&self.points()[piece], 1);
-                let reach = fitted.reach * (1.0 + ROUNDING);
-                near.first().is_none_or(|near| near.squared_distance > reach * reach)
+                let reach = fitted.basis.reach * (1.0 + ROUNDING);
+                !(reach.is_infinite() || changed.is_any_within(&self.points()[piece], reach))
             };
             let Some(mut fitted) = fitted.filter(of_cap).filter(is_same) else { return false };
             fitted.surfel.index = piece as u32;
+            // None of them went.
+            fitted.basis.nearest =
+                fitted.basis.nearest.map(|nearest| nearest.map(|index| after[index as usize]));
             // A slot of a new cloud is empty.
             self.surface.surfels[piece].set(Box::new(fitted)).is_ok()
         });

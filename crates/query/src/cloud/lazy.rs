@@ -5,7 +5,7 @@ use cloudtouch_geom::{Point3, UnitVector3};
 use cloudtouch_noise::Scratch;
 
 use super::prepared::Prepared;
-use super::slots::Fitted;
+use super::slots::{Basis, Fitted, NEIGHBORS};
 use super::surfel::Surfel;
 
 /// Relative rounding of an eigenvalue, generously.
@@ -49,10 +49,16 @@ impl Prepared {
         match self.surface.surfels.get(piece as usize) {
             Some(slot) => slot.get().map(|fitted| **fitted),
             None => {
-                let reach = *self.surface.reaches.get(piece as usize)?;
-                Some(Fitted { surfel: *self.kept(piece), reach })
+                let basis = *self.surface.bases.get(piece as usize)?;
+                Some(Fitted { surfel: *self.kept(piece), basis })
             }
         }
+    }
+
+    /// The pieces nearest to one, where its surface was computed and tells.
+    pub(super) fn known_nearest(&self, piece: u32) -> Option<[u32; NEIGHBORS]> {
+        let slot = self.surface.surfels.get(piece as usize)?;
+        slot.get()?.basis.nearest
     }
 
     /// Whether the surface at one piece was computed already.
@@ -92,6 +98,9 @@ impl Prepared {
         let normal = refined.normal.map(UnitVector3::into_inner);
         let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
         let surfel = Surfel { index: index as u32, point, spacing, most_variance, normal };
-        Fitted { surfel, reach: scratch.reach() }
+        let is_each = self.pieces.is_each() && self.scans.normals.is_none();
+        let nearest = scratch.neighbors().first_chunk::<NEIGHBORS>().filter(|_| is_each);
+        let nearest = nearest.map(|all| all.map(|near| near.index as u32));
+        Fitted { surfel, basis: Basis { reach: scratch.reach(), nearest } }
     }
 }

@@ -11,7 +11,7 @@ use crate::error::PrepareError;
 
 use super::edge::{DISC_SPACINGS, Edge};
 use super::prepared::Prepared;
-use super::slots::Fitted;
+use super::slots::{Basis, Fitted};
 use super::surfel::Surfel;
 
 /// The half axes of an ellipsoid, along a disc and across it, that holds everything up to (1, 1): the
@@ -31,8 +31,9 @@ impl Prepared {
         });
         // Every leaf has copies of its own.
         let slots = std::mem::take(&mut self.surface.surfels);
-        let reach = |slot: &OnceLock<Box<Fitted>>| slot.get().map_or(f64::INFINITY, |f| f.reach);
-        self.surface.reaches = slots.iter().map(reach).collect();
+        let unknown = Basis { reach: f64::INFINITY, nearest: None };
+        let basis = |slot: &OnceLock<Box<Fitted>>| slot.get().map_or(unknown, |f| f.basis);
+        self.surface.bases = slots.iter().map(basis).collect();
         let pieces = self.surface.spacing_caps.len();
         let mut extents = vec![Covariance::zero(); pieces];
         let mut primitives =
