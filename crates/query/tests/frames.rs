@@ -12,7 +12,7 @@ use cloudtouch_testkit::scene;
 use common::{at, mesh};
 
 fn camera() -> DepthCamera {
-    DepthCamera { width: 64, height: 48, focal_px: 56.0, ..DepthCamera::default() }
+    DepthCamera { width: 48, height: 36, focal_px: 42.0, ..DepthCamera::default() }
 }
 
 fn settings() -> CloudSettings {
@@ -102,12 +102,12 @@ fn a_camera_that_keeps_still_adds_nothing_for_ever() {
     assert!(cloud.len() * 10 < first * 12, "{first} points at first, {} now", cloud.len());
 }
 
-/// Points of a cloud along a walk about a room at 10 frames a second, one round in six seconds.
+/// Points of a cloud along a walk about a room at 10 frames a second, one round in four seconds.
 fn walk(frames: u64) -> Vec<usize> {
     let room = ExactMesh::new(&scene::room());
     let by = settings();
     let place = |k: u64| {
-        let turn = std::f64::consts::TAU * k as f64 / 60.0;
+        let turn = std::f64::consts::TAU * k as f64 / 40.0;
         // Level, and looking along its way: z forward, y down.
         let level =
             Pose::from_translation_rpy(Vector3::zeros(), [-std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
@@ -134,8 +134,8 @@ fn most(counts: &[usize]) -> usize {
 
 #[test]
 fn a_camera_that_walks_about_a_room_has_seen_it_after_some_rounds() {
-    let counts = walk(180);
-    let [second, third] = [most(&counts[60..120]), most(&counts[120..])];
+    let counts = walk(120);
+    let [second, third] = [most(&counts[40..80]), most(&counts[80..])];
     println!("at most {second} points in the second round, {third} in the third");
     assert!(third * 100 < second * 115, "{second} and {third}");
 }

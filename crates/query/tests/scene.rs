@@ -319,6 +319,43 @@ fn what_cannot_be_meant_is_refused_with_names_and_leaves_the_scene_as_it_was() {
     scene.remove("hand").unwrap();
 }
 
+#[test]
+fn a_cloud_in_the_scene_can_be_changed_and_replaced() {
+    let mut scene = Scene::default();
+    let ball = scene::sphere(0.05, 2);
+    scene.add("ball", cloud(&ball, 0.01, 0.001, 1), at(0.0, 0.0, 0.0)).unwrap();
+    scene.add("cube", mesh(&scene::cuboid([0.1; 3])), at(0.3, 0.0, 0.0)).unwrap();
+    assert_eq!(scene.check(&query()).verdict(), Verdict::Free);
+    let Body::Cloud(held) = scene.body_mut("ball").unwrap() else { panic!("a cloud was added") };
+    let beside = measured(&scene::moved(&ball, &at(0.25, 0.0, 0.0)), 0.01, 0.001, 2);
+    let by = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+    held.insert(&PointCloud::from_points(beside), &by).unwrap();
+    assert_eq!(names(&scene.check(&query())), [["ball", "cube"]]);
+    let old = scene.replace("ball", cloud(&ball, 0.01, 0.001, 3)).unwrap();
+    assert!(matches!(&*old, Body::Cloud(_)));
+    assert_eq!(scene.check(&query()).verdict(), Verdict::Free);
+}
+
+#[test]
+fn a_list_of_pairs_is_asked_up_to_the_first_that_is_not_free() {
+    let cube = mesh(&scene::cuboid([0.1; 3]));
+    let (free, touching, nowhere) = (at(0.3, 0.0, 0.0), at(0.05, 0.0, 0.0), at(f64::NAN, 0.0, 0.0));
+    let first = |poses: &[Pose]| {
+        let mut asked = 0;
+        let pairs = poses.iter().map(|pose| (&cube, &cube, *pose)).inspect(|_| asked += 1);
+        let found = query().any(pairs);
+        (found.map(|found| (found.index, found.answer.map(|report| report.verdict))), asked)
+    };
+    assert_eq!(first(&[free, free]), (None, 2));
+    let hit = Some((1, Ok(Verdict::InCollision)));
+    assert_eq!(first(&[free, touching, nowhere]), (hit, 2));
+    // What cannot be asked is not free.
+    assert!(matches!(
+        first(&[free, nowhere, touching]),
+        (Some((1, Err(QueryError::Pose { .. }))), 2)
+    ));
+}
+
 /// A hundred balls of a thousand points and an arm of twelve links among them.
 fn workshop() -> Scene {
     let mut scene = Scene::default();
