@@ -203,7 +203,6 @@ impl SceneArguments {
         if common.mode == ModeName::Paper {
             return Err("scene is of the calibrated mode: leave --mode out".to_owned());
         }
-        // Of these a scene file says more, or a body has no use for them.
         let of_pairs = [
             ("--object-sensor", common.object_sensor.is_some()),
             ("--sensor-pose", common.sensor_pose.is_some()),
