@@ -30,7 +30,7 @@ pub(crate) fn gap_mm(clearance: Option<Clearance>) -> String {
     })
 }
 
-/// What a body is, what it was taken for and what the filter did to it, in a few lines.
+/// What a body is, what it was taken for and what the filter did to it, in a line with its name.
 pub(crate) fn body<C: PreparedCloud>(name: &str, loaded: &Loaded<C>) -> String {
     format!("{name}: {}", about(loaded))
 }

@@ -2,7 +2,10 @@
 //! model is computed for a leaf when a query first visits it.
 
 mod accessors;
+mod carry;
+mod change;
 mod edge;
+mod frame;
 mod join;
 mod lazy;
 mod makeup;
@@ -11,6 +14,7 @@ mod pieces;
 mod preparation;
 mod prepare;
 mod prepared;
+mod raster;
 mod refine;
 mod scans;
 mod settings;
@@ -19,6 +23,7 @@ mod surfel;
 mod view;
 
 pub(crate) use accessors::cloud_accessors;
+pub use change::Change;
 pub(crate) use edge::{DISC_SPACINGS, Edge, SLOPE};
 #[cfg(test)]
 pub(crate) use join::edges_of;
@@ -26,6 +31,6 @@ pub(crate) use makeup::{Makeup, SensorDoubt};
 pub(crate) use preparation::Preparation;
 pub use prepare::Cloud;
 pub(crate) use prepared::Prepared;
+pub(crate) use raster::Sight;
 pub use settings::CloudSettings;
 pub(crate) use surfel::Surfel;
-pub(crate) use view::Sight;

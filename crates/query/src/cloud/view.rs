@@ -1,42 +1,12 @@
 //! A single depth image: what its camera did not look at, or not see, was never seen to be empty.
-//!
-//! Directions are looked up in a raster over the view, of cells two pixels wide, and not among the
-//! measured directions: a query looks at hundreds of them.
 
-use std::f64::consts::TAU;
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::SensorNoise;
 
-/// Edge of a raster's cell in pixels: no cell between measured pixels is left empty by chance.
-const CELL_PIXELS: f64 = 2.0;
-/// A place is in a hole when nothing was measured so many cells around its own: smaller holes are
-/// specks that no surface hides in.
-const HOLE_CELLS: isize = 2;
-/// Standard deviations of the measured surface that count as clearly behind it.
-const CLEARLY: f64 = 3.0;
-/// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
-const PANORAMA: f64 = 0.17;
-/// Cells of a raster at most, and columns or rows: beyond, they become wider.
-const MOST_CELLS: f64 = 1e7;
-const MOST_COLUMNS: f64 = 1e4;
-
-/// What a camera knows of a place; what comes first is known better.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Sight {
-    /// It looked there and beyond, and met nothing on the way.
-    Seen,
-    /// It met a surface before the place.
-    BehindReturns,
-    /// No return came from there.
-    Hole,
-    /// The place is beside what it looked at.
-    OutsideView,
-    /// The place is behind the camera's back.
-    BehindCamera,
-}
+use super::raster::{Raster, Sight};
 
 /// Where the sensor stood, and the raster of its view once that is needed.
 #[derive(Debug)]
@@ -45,7 +15,7 @@ pub(crate) struct SingleView {
     sensor_origin: Point3,
     /// Which points of the cloud are those of the image.
     points: Range<usize>,
-    raster: OnceLock<Option<Raster>>,
+    raster: OnceLock<Option<Arc<Raster>>>,
 }
 
 impl SingleView {
@@ -59,144 +29,41 @@ impl SingleView {
         &'a self,
         measured: (&[Point3], &SensorNoise),
     ) -> Option<impl Fn(&Point3) -> Sight + 'a> {
-        let raster = self.raster.get_or_init(|| {
-            let (points, noise) = measured;
-            let own = self.points.clone().map(|index| (points[index], noise[index].std_bound()));
-            Raster::new(&self.sensor_origin, own)
-        });
-        let raster = raster.as_ref()?;
+        let raster = self.raster(measured)?;
         Some(move |place: &Point3| raster.sight(&(place - self.sensor_origin)))
     }
-}
 
-/// How far was seen in each direction of a view.
-#[derive(Debug)]
-struct Raster {
-    lens: Lens,
-    low: [f64; 2],
-    pitch: f64,
-    /// Columns and rows.
-    size: [usize; 2],
-    /// The range, m, clearly behind the farthest return of each cell; zero without one.
-    clearly_behind: Vec<f64>,
-}
-
-impl Raster {
-    /// Of the points measured, each with an upper bound of its standard deviations, m.
-    fn new(origin: &Point3, measured: impl Iterator<Item = (Point3, f64)>) -> Option<Self> {
-        let rays: Vec<(Vector3, f64)> = measured.map(|(p, std)| (p - origin, std)).collect();
-        let lens = Lens::of(rays.iter().map(|(ray, _)| ray))?;
-        let placed: Vec<(f64, [f64; 2])> = rays
-            .iter()
-            .filter_map(|(ray, std)| Some((ray.norm() + CLEARLY * std, lens.project(ray)?)))
-            .collect();
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for (_, at) in &placed {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(at[axis]);
-                high[axis] = high[axis].max(at[axis]);
-            }
-        }
-        let extent = [high[0] - low[0], high[1] - low[1]];
-        let area = extent[0] * extent[1];
-        let pitch = (CELL_PIXELS * (area / placed.len().max(1) as f64).sqrt())
-            .max((area / MOST_CELLS).sqrt())
-            .max(extent[0].max(extent[1]) / MOST_COLUMNS);
-        if !(pitch > 0.0 && pitch.is_finite()) {
-            return None;
-        }
-        // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
-        let low = low.map(|v| v - 0.5 * pitch);
-        let size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
-        let mut raster =
-            Self { lens, low, pitch, size, clearly_behind: vec![0.0; size[0] * size[1]] };
-        for (behind, at) in placed {
-            if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
-                raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
-            }
-        }
-        Some(raster)
+    /// Whether the camera looked past places, each with a standard deviation of its own, in their
+    /// direction and in all around it; and how far apart its pixels are, per metre of distance. `None`
+    /// where the measured points have no directions.
+    pub(super) fn looks_past<'a>(
+        &'a self,
+        measured: (&[Point3], &SensorNoise),
+    ) -> Option<(impl Fn(&Point3, f64) -> bool + Sync + 'a, f64)> {
+        let raster = self.raster(measured)?;
+        let looks_past =
+            move |place: &Point3, std| raster.looks_past(&(place - self.sensor_origin), std);
+        Some((looks_past, raster.pixel()))
     }
 
-    fn sight(&self, ray: &Vector3) -> Sight {
-        if self.lens.is_behind(ray) {
-            return Sight::BehindCamera;
-        }
-        let Some([x, y]) = self.lens.project(ray).and_then(|at| self.cell(at)) else {
-            return Sight::OutsideView;
-        };
-        let range = ray.norm();
-        // The nearest ring of cells with a return tells; within a ring, the farthest return.
-        for ring in 0..=HOLE_CELLS {
-            let mut farthest = 0.0_f64;
-            for dy in -ring..=ring {
-                let step = if dy.abs() == ring { 1 } else { 2 * ring.max(1) };
-                for dx in (-ring..=ring).step_by(step as usize) {
-                    if let Some(cell) = self.index(x + dx, y + dy) {
-                        farthest = farthest.max(self.clearly_behind[cell]);
-                    }
-                }
-            }
-            if farthest > 0.0 {
-                return if range > farthest { Sight::BehindReturns } else { Sight::Seen };
-            }
-        }
-        Sight::Hole
+    fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
+        let raster = self.raster.get_or_init(|| {
+            let own = self.points.clone().map(|index| (points[index], noise[index].std_bound()));
+            Raster::new(&self.sensor_origin, own).map(Arc::new)
+        });
+        raster.as_deref()
     }
 
-    /// The cell of a place of the view; `None` outside of it.
-    fn cell(&self, at: [f64; 2]) -> Option<[isize; 2]> {
-        let [x, y] = [0, 1].map(|axis| ((at[axis] - self.low[axis]) / self.pitch).floor());
-        let is_within = |v: f64, axis: usize| v >= 0.0 && v < self.size[axis] as f64;
-        (is_within(x, 0) && is_within(y, 1)).then_some([x as isize, y as isize])
-    }
-
-    fn index(&self, x: isize, y: isize) -> Option<usize> {
-        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
-        (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
-    }
-}
-
-/// How directions become places of a view.
-#[derive(Debug)]
-enum Lens {
-    /// A camera: right, down and forward as the points lie, whatever the file says of its turn.
-    Camera([Vector3; 3]),
-    /// All around the vertical of the file: by azimuth and elevation.
-    Panorama,
-}
-
-impl Lens {
-    fn of<'a>(rays: impl Iterator<Item = &'a Vector3> + Clone) -> Option<Self> {
-        let directions = || rays.clone().filter_map(|ray| ray.try_normalize(0.0));
-        let forward = directions().sum::<Vector3>().try_normalize(0.0)?;
-        if directions().any(|direction| direction.dot(&forward) < PANORAMA) {
-            return Some(Self::Panorama);
-        }
-        let aside = Vector3::ith(forward.iamin(), 1.0);
-        let down = forward.cross(&aside).normalize();
-        Some(Self::Camera([down.cross(&forward), down, forward]))
-    }
-
-    fn is_behind(&self, ray: &Vector3) -> bool {
-        match self {
-            Self::Camera([_, _, forward]) => ray.dot(forward) <= 0.0,
-            Self::Panorama => false,
-        }
-    }
-
-    /// `None` for a direction that no view of this kind has.
-    fn project(&self, ray: &Vector3) -> Option<[f64; 2]> {
-        match self {
-            Self::Camera([right, down, forward]) => {
-                let depth = ray.dot(forward);
-                (depth > 0.0).then(|| [ray.dot(right) / depth, ray.dot(down) / depth])
-            }
-            Self::Panorama => {
-                let range = ray.norm();
-                (range > 0.0).then(|| [ray.y.atan2(ray.x).rem_euclid(TAU), (ray.z / range).asin()])
-            }
-        }
+    /// The same view as it was measured, whatever becomes of its points, in a frame that lies at
+    /// `shift` in the old one; `None` where the measured points have no directions.
+    pub(super) fn settled(
+        &self,
+        measured: (&[Point3], &SensorNoise),
+        shift: &Vector3,
+    ) -> Option<Self> {
+        let _looked = self.sight(measured)?;
+        let (sensor_origin, raster) = (self.sensor_origin - shift, self.raster.clone());
+        Some(Self { sensor_origin, points: 0..0, raster })
     }
 }
 

@@ -1,0 +1,195 @@
+//! How far a camera saw in each direction of its view.
+//!
+//! Directions are looked up in a raster over the view, of cells two pixels wide, and not among the
+//! measured directions: a query looks at hundreds of them.
+
+use std::f64::consts::TAU;
+
+use cloudtouch_geom::{Point3, Vector3};
+
+/// Edge of a raster's cell in pixels: no cell between measured pixels is left empty by chance.
+const CELL_PIXELS: f64 = 2.0;
+/// A place is in a hole when nothing was measured so many cells around its own: smaller holes are
+/// specks that no surface hides in.
+const HOLE_CELLS: isize = 2;
+/// Standard deviations of the measured surface that count as clearly behind it.
+const CLEARLY: f64 = 3.0;
+/// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
+const PANORAMA: f64 = 0.17;
+/// Cells of a raster at most, and columns or rows: beyond, they become wider.
+const MOST_CELLS: f64 = 1e7;
+const MOST_COLUMNS: f64 = 1e4;
+
+/// What a camera knows of a place; what comes first is known better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Sight {
+    /// It looked there and beyond, and met nothing on the way.
+    Seen,
+    /// It met a surface before the place.
+    BehindReturns,
+    /// No return came from there.
+    Hole,
+    /// The place is beside what it looked at.
+    OutsideView,
+    /// The place is behind the camera's back.
+    BehindCamera,
+}
+
+/// How far was seen in each direction of a view.
+#[derive(Debug)]
+pub(super) struct Raster {
+    lens: Lens,
+    low: [f64; 2],
+    pitch: f64,
+    /// Columns and rows.
+    size: [usize; 2],
+    /// The range, m, clearly behind the farthest return of each cell; zero without one.
+    clearly_behind: Vec<f64>,
+    /// The range, m, clearly before the nearest return of each cell; infinite without one.
+    clearly_before: Vec<f64>,
+}
+
+impl Raster {
+    /// Of the points measured, each with an upper bound of its standard deviations, m.
+    pub(super) fn new(
+        origin: &Point3,
+        measured: impl Iterator<Item = (Point3, f64)>,
+    ) -> Option<Self> {
+        let rays: Vec<(Vector3, f64)> = measured.map(|(p, std)| (p - origin, std)).collect();
+        let lens = Lens::of(rays.iter().map(|(ray, _)| ray))?;
+        let placed: Vec<([f64; 2], [f64; 2])> = rays
+            .iter()
+            .filter_map(|(ray, std)| {
+                let range = ray.norm();
+                Some(([range - CLEARLY * std, range + CLEARLY * std], lens.project(ray)?))
+            })
+            .collect();
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for (_, at) in &placed {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(at[axis]);
+                high[axis] = high[axis].max(at[axis]);
+            }
+        }
+        let extent = [high[0] - low[0], high[1] - low[1]];
+        let area = extent[0] * extent[1];
+        let pitch = (CELL_PIXELS * (area / placed.len().max(1) as f64).sqrt())
+            .max((area / MOST_CELLS).sqrt())
+            .max(extent[0].max(extent[1]) / MOST_COLUMNS);
+        if !(pitch > 0.0 && pitch.is_finite()) {
+            return None;
+        }
+        // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
+        let low = low.map(|v| v - 0.5 * pitch);
+        let size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
+        let cells = size[0] * size[1];
+        let (clearly_behind, clearly_before) = (vec![0.0; cells], vec![f64::INFINITY; cells]);
+        let mut raster = Self { lens, low, pitch, size, clearly_behind, clearly_before };
+        for ([before, behind], at) in placed {
+            if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
+                raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
+                raster.clearly_before[cell] = raster.clearly_before[cell].min(before);
+            }
+        }
+        Some(raster)
+    }
+
+    pub(super) fn sight(&self, ray: &Vector3) -> Sight {
+        if self.lens.is_behind(ray) {
+            return Sight::BehindCamera;
+        }
+        let Some([x, y]) = self.lens.project(ray).and_then(|at| self.cell(at)) else {
+            return Sight::OutsideView;
+        };
+        let range = ray.norm();
+        // The nearest ring of cells with a return tells; within a ring, the farthest return.
+        for ring in 0..=HOLE_CELLS {
+            let mut farthest = 0.0_f64;
+            for dy in -ring..=ring {
+                let step = if dy.abs() == ring { 1 } else { 2 * ring.max(1) };
+                for dx in (-ring..=ring).step_by(step as usize) {
+                    if let Some(cell) = self.index(x + dx, y + dy) {
+                        farthest = farthest.max(self.clearly_behind[cell]);
+                    }
+                }
+            }
+            if farthest > 0.0 {
+                return if range > farthest { Sight::BehindReturns } else { Sight::Seen };
+            }
+        }
+        Sight::Hole
+    }
+
+    /// Whether every return of the cell of a ray, where there is one, and of those around it is clearly
+    /// behind a place known this well.
+    pub(super) fn looks_past(&self, ray: &Vector3, std: f64) -> bool {
+        let Some([x, y]) = self.lens.project(ray).and_then(|at| self.cell(at)) else {
+            return false;
+        };
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
+        let cells = around.filter_map(|[x, y]| self.index(x, y));
+        let nearest = cells.map(|cell| self.clearly_before[cell]).fold(f64::INFINITY, f64::min);
+        let has_return = self.index(x, y).is_some_and(|cell| self.clearly_behind[cell] > 0.0);
+        has_return && ray.norm() + CLEARLY * std < nearest
+    }
+
+    /// How far apart pixels are, per metre of distance.
+    pub(super) fn pixel(&self) -> f64 {
+        self.pitch / CELL_PIXELS
+    }
+
+    /// The cell of a place of the view; `None` outside of it.
+    fn cell(&self, at: [f64; 2]) -> Option<[isize; 2]> {
+        let [x, y] = [0, 1].map(|axis| ((at[axis] - self.low[axis]) / self.pitch).floor());
+        let is_within = |v: f64, axis: usize| v >= 0.0 && v < self.size[axis] as f64;
+        (is_within(x, 0) && is_within(y, 1)).then_some([x as isize, y as isize])
+    }
+
+    fn index(&self, x: isize, y: isize) -> Option<usize> {
+        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
+        (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
+    }
+}
+
+/// How directions become places of a view.
+#[derive(Debug)]
+enum Lens {
+    /// A camera: right, down and forward as the points lie, whatever the file says of its turn.
+    Camera([Vector3; 3]),
+    /// All around the vertical of the file: by azimuth and elevation.
+    Panorama,
+}
+
+impl Lens {
+    fn of<'a>(rays: impl Iterator<Item = &'a Vector3> + Clone) -> Option<Self> {
+        let directions = || rays.clone().filter_map(|ray| ray.try_normalize(0.0));
+        let forward = directions().sum::<Vector3>().try_normalize(0.0)?;
+        if directions().any(|direction| direction.dot(&forward) < PANORAMA) {
+            return Some(Self::Panorama);
+        }
+        let aside = Vector3::ith(forward.iamin(), 1.0);
+        let down = forward.cross(&aside).normalize();
+        Some(Self::Camera([down.cross(&forward), down, forward]))
+    }
+
+    fn is_behind(&self, ray: &Vector3) -> bool {
+        match self {
+            Self::Camera([_, _, forward]) => ray.dot(forward) <= 0.0,
+            Self::Panorama => false,
+        }
+    }
+
+    /// `None` for a direction that no view of this kind has.
+    fn project(&self, ray: &Vector3) -> Option<[f64; 2]> {
+        match self {
+            Self::Camera([right, down, forward]) => {
+                let depth = ray.dot(forward);
+                (depth > 0.0).then(|| [ray.dot(right) / depth, ray.dot(down) / depth])
+            }
+            Self::Panorama => {
+                let range = ray.norm();
+                (range > 0.0).then(|| [ray.y.atan2(ray.x).rem_euclid(TAU), (ray.z / range).asin()])
+            }
+        }
+    }
+}
