@@ -3,11 +3,13 @@
 mod batch;
 mod classify;
 mod contacts;
+mod directions;
 mod estimate;
 mod gap_by_pose;
 mod gradient;
 mod interval;
 mod patches;
+mod penetration;
 mod points;
 mod run;
 mod settings;
@@ -18,6 +20,7 @@ mod weigh;
 mod within;
 
 pub use gradient::PoseGradient;
+pub use penetration::Penetration;
 pub use run::Query;
 pub use settings::{Detail, QuerySettings};
 pub use uncertain::{PoseDistribution, UnderPoses};

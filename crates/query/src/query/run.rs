@@ -41,6 +41,12 @@ impl Query {
         Self { settings: QuerySettings { detail, ..self.settings } }
     }
 
+    /// The same, asked no more than whether a probability is below this one.
+    pub(super) fn deciding(&self, probability: f64) -> Self {
+        let (accept, reject, detail) = (probability, probability, Detail::Verdict);
+        Self { settings: QuerySettings { accept, reject, detail, ..self.settings } }
+    }
+
     /// The same to the end: it does not stop where a collision is likely enough, and tells all.
     pub(super) fn to_the_end(&self) -> Self {
         let (stop_above, detail) = (f64::INFINITY, Detail::Full);
