@@ -6,8 +6,8 @@ use cloudtouch::noise::SensorModel;
 use cloudtouch::paper::{LeafClassifier, RadiusRule};
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, FilterSettings, Mesh, PaperBodyRef, PaperCloud,
-    PaperCloudSettings, PaperQuery, Placement, PoseDistribution, PrepareError, Query, QueryError,
-    Report, StageReport, UnderPoses,
+    PaperCloudSettings, PaperQuery, Penetration, Placement, PoseDistribution, PoseGradient,
+    PrepareError, Query, QueryError, Report, StageReport, UnderPoses,
 };
 
 use crate::margin::{Nearness, SHARE};
@@ -90,6 +90,27 @@ pub(crate) trait Path: Sync {
         _object: &Body<Self::Cloud>,
         _scene_from_object: &PoseDistribution,
     ) -> Result<Option<UnderPoses>, QueryError> {
+        Ok(None)
+    }
+
+    /// What a small motion of the object changes; `None` on the paper's path.
+    fn slopes(
+        &self,
+        _scene: &Body<Self::Cloud>,
+        _object: &Body<Self::Cloud>,
+        _scene_from_object: &Pose,
+    ) -> Result<Option<PoseGradient>, QueryError> {
+        Ok(None)
+    }
+
+    /// The least translation found that ends a collision; `None` where none does, and on the paper's path.
+    fn way_out(
+        &self,
+        _scene: &Body<Self::Cloud>,
+        _object: &Body<Self::Cloud>,
+        _scene_from_object: &Pose,
+        _probability: f64,
+    ) -> Result<Option<Penetration>, QueryError> {
         Ok(None)
     }
 
@@ -215,6 +236,25 @@ impl Path for Query {
         scene_from_object: &PoseDistribution,
     ) -> Result<Option<UnderPoses>, QueryError> {
         Ok(Some(self.run_uncertain(scene, object, scene_from_object)?.1))
+    }
+
+    fn slopes(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &Pose,
+    ) -> Result<Option<PoseGradient>, QueryError> {
+        Ok(Some(self.gradient(scene, object, scene_from_object)?.1))
+    }
+
+    fn way_out(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &Pose,
+        probability: f64,
+    ) -> Result<Option<Penetration>, QueryError> {
+        Ok(self.penetration(scene, object, scene_from_object, probability)?.1)
     }
 
     fn place(

@@ -44,7 +44,9 @@ pub use paper::{
     PaperSettings, Pooling,
 };
 pub use placement::Placement;
-pub use query::{Detail, Penetration, PoseDistribution, PoseGradient, Query, QuerySettings, UnderPoses, Within};
+pub use query::{
+    Detail, Penetration, PoseDistribution, PoseGradient, Query, QuerySettings, UnderPoses, Within,
+};
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Unseen, Verdict};
 pub use safeguards::Safeguards;
 pub use undecided::Undecided;

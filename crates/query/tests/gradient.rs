@@ -37,7 +37,11 @@ fn query() -> Query {
 
 fn moved(pose: &Pose, axis: usize, step: f64) -> Pose {
     let (mut shift, mut turn) = (Vector3::zeros(), Vector3::zeros());
-    if axis < 3 { shift[axis] = step } else { turn[axis - 3] = step / ARM }
+    if axis < 3 {
+        shift[axis] = step
+    } else {
+        turn[axis - 3] = step / ARM
+    }
     let turn = UnitQuaternion::from_scaled_axis(turn);
     pose.after(&Pose::from_translation_rotation(shift, turn))
 }
@@ -122,7 +126,11 @@ fn measure(kinds: [bool; 2], poses: u64) -> [Tally; 3] {
         let (report, PoseGradient { log_odds: found, clearance: gap, .. }) =
             query().gradient(&a, &b, &pose).unwrap();
         let asked = report.evidence.is_some_and(|evidence| evidence.misclassified.is_some());
-        tallies[usize::from(asked)].add(&by_arm(found), differences((&a, &b), &pose, log_odds), FLAT[0]);
+        tallies[usize::from(asked)].add(
+            &by_arm(found),
+            differences((&a, &b), &pose, log_odds),
+            FLAT[0],
+        );
         if let (Some(gap), Some(false)) = (gap, report.clearance_m.map(|gap| gap.is_bound)) {
             tallies[2].add(&by_arm(gap), differences((&a, &b), &pose, clearance), FLAT[1]);
         }

@@ -15,7 +15,7 @@ use crate::args::{ModeName, PoseArguments, QueryArguments};
 use crate::body::{self, Body, PreparedCloud};
 use crate::load::{self, Loaded, Role};
 use crate::per_point::{self, Details};
-use crate::{output, picture, pose_file, print, report_text, unused};
+use crate::{gradient, output, penetration, picture, pose_file, print, report_text, unused};
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -73,6 +73,12 @@ fn run_by<P: body::Path>(
         }
         None => None,
     };
+    let slopes = match arguments.gradient {
+        true => query.slopes(&scene.body, &object.body, &pose)?,
+        false => None,
+    };
+    let way_out = |probability| query.way_out(&scene.body, &object.body, &pose, probability);
+    let out = arguments.penetration.map(way_out).transpose()?;
     if let Some(path) = &arguments.csv {
         per_point::write_csv(path, &scene.body, &object.body, &pose, &report)?;
     }
@@ -89,6 +95,8 @@ fn run_by<P: body::Path>(
         let details = Details {
             points: arguments.points.then(|| (&report).into()),
             pose_uncertainty,
+            gradient: slopes,
+            penetration: out,
             classifiers: arguments.explain.then_some(&classifiers[..]),
         };
         let answer =
@@ -102,6 +110,10 @@ fn run_by<P: body::Path>(
         ];
         parts.extend(nearness.as_ref().map(report_text::nearness));
         parts.extend(pose_uncertainty.as_ref().map(report_text::over_poses));
+        parts.extend(slopes.as_ref().map(gradient::text));
+        if let Some(probability) = arguments.penetration {
+            parts.push(penetration::text(out.flatten().as_ref(), probability));
+        }
         if !arguments.pose.is_given() {
             parts.push("pose                   not given: the identity".to_owned());
         }

@@ -83,7 +83,9 @@ impl Misclassified {
     /// What these log odds change by with those by geometry and with the misclassified points.
     pub(super) fn slopes(&self, judge: &Judge, by_geometry: f64) -> [f64; 2] {
         match self.value {
-            Some(count) if self.log_odds(judge, by_geometry) == judge.revise(by_geometry, count) => {
+            Some(count)
+                if self.log_odds(judge, by_geometry) == judge.revise(by_geometry, count) =>
+            {
                 judge.slopes_of_revision(by_geometry, count)
             }
             _ => [1.0, 0.0],

@@ -46,7 +46,9 @@ mod tests {
     #[test]
     fn some_direction_is_near_to_any() {
         let all: Vec<Vector3> = sphere().collect();
-        for other in ring(&Vector3::x(), 1.0).chain(ring(&Vector3::z(), 0.1)).chain(axes(&Pose::identity())) {
+        for other in
+            ring(&Vector3::x(), 1.0).chain(ring(&Vector3::z(), 0.1)).chain(axes(&Pose::identity()))
+        {
             assert!((other.norm() - 1.0).abs() < 1e-12);
             assert!(all.iter().any(|d| d.dot(&other) > 0.4_f64.cos()), "{other}");
         }

@@ -105,11 +105,7 @@ pub(super) fn gap_by_pose(
 }
 
 /// From the piece of A to that of B.
-fn offset(
-    (a, b): (BodyRef<'_>, BodyRef<'_>),
-    a_from_b: &Motion,
-    finding: &Finding,
-) -> Moved {
+fn offset((a, b): (BodyRef<'_>, BodyRef<'_>), a_from_b: &Motion, finding: &Finding) -> Moved {
     let nearest = &finding.nearest;
     let value = nearest.b.mean - nearest.a.mean;
     let corners = |body: BodyRef<'_>, triangle: u32| match body {

@@ -29,6 +29,7 @@ pub struct PoseGradient {
     pub log_odds: [f64; 6],
     /// Of the mean of [`Report::clearance_m`], where there is one. Of surfaces that cross it is that of the
     /// depth as the place tells it, though the clearance tells half a spacing of it at most.
+    #[serde(rename = "clearance_m")]
     pub clearance: Option<[f64; 6]>,
 }
 
@@ -72,29 +73,32 @@ impl Query {
         let (a, b) = (a.into(), b.into());
         let query = self.to_the_end();
         let mut gradient = PoseGradient::default();
-        let report = query.terms().ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
-            let motion = Motion::from(local);
-            let of = |wrench: Wrench| in_object_frame(&wrench, &motion, &b.shape().origin());
-            if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
-                let places = nearest_places((a, b), local)?;
-                gradient.clearance = places.map(|[on_a, on_b]| {
-                    let away = (on_b - on_a).try_normalize(0.0).unwrap_or_default();
-                    of(force_at(&on_b, &away))
-                });
-                return exact((a, b), local, evidence);
-            }
-            let task = query.task(start);
-            let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;
-            let spots = weighed.spots((a, b));
-            let estimate = weighed.estimate(Some(&spots), &task, evidence);
-            let p = estimate.probability;
-            let log_odds = weighed.log_odds_by_pose((a, b), local, &task, &mut evidence.stats)?;
-            gradient.log_odds = of(log_odds);
-            gradient.probability = of(log_odds * (p * (1.0 - p)));
-            let nearest = weighed.nearest_spot(&spots, p);
-            gradient.clearance = nearest.map(|spot| of(weighed.gap_by_pose((a, b), &motion, spot)));
-            Ok(estimate)
-        })?;
+        let report =
+            query.terms().ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
+                let motion = Motion::from(local);
+                let of = |wrench: Wrench| in_object_frame(&wrench, &motion, &b.shape().origin());
+                if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
+                    let places = nearest_places((a, b), local)?;
+                    gradient.clearance = places.map(|[on_a, on_b]| {
+                        let away = (on_b - on_a).try_normalize(0.0).unwrap_or_default();
+                        of(force_at(&on_b, &away))
+                    });
+                    return exact((a, b), local, evidence);
+                }
+                let task = query.task(start);
+                let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;
+                let spots = weighed.spots((a, b));
+                let estimate = weighed.estimate(Some(&spots), &task, evidence);
+                let p = estimate.probability;
+                let log_odds =
+                    weighed.log_odds_by_pose((a, b), local, &task, &mut evidence.stats)?;
+                gradient.log_odds = of(log_odds);
+                gradient.probability = of(log_odds * (p * (1.0 - p)));
+                let nearest = weighed.nearest_spot(&spots, p);
+                gradient.clearance =
+                    nearest.map(|spot| of(weighed.gap_by_pose((a, b), &motion, spot)));
+                Ok(estimate)
+            })?;
         Ok((report, gradient))
     }
 }
@@ -132,7 +136,9 @@ impl Weighed<'_> {
         spot: &Spot,
     ) -> Wrench {
         match spot.told_by {
-            ToldBy::Pieces(index) => gap_by_pose((a, b), a_from_b, &self.found.findings[index], spot),
+            ToldBy::Pieces(index) => {
+                gap_by_pose((a, b), a_from_b, &self.found.findings[index], spot)
+            }
             ToldBy::Crossing(depth) => -depth,
             ToldBy::Inside => {
                 let mesh_is_a = matches!(a, BodyRef::Mesh(_));

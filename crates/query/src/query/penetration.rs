@@ -216,7 +216,8 @@ impl Overlap<'_> {
         let (a, b) = self.bodies;
         let pose = Pose::from_translation(offset).after(self.a_from_b);
         let (_, gradient) = query.gradient(a, b, &pose)?;
-        let climb = |gradient: &[f64; 6]| pose.transform_vector(&first(gradient)).try_normalize(0.0);
+        let climb =
+            |gradient: &[f64; 6]| pose.transform_vector(&first(gradient)).try_normalize(0.0);
         Ok(climb(&gradient.log_odds).map(|n| -n).or_else(|| climb(&gradient.clearance?)))
     }
 

@@ -138,7 +138,11 @@ pub(super) fn common_normal(finding: &Finding) -> Option<Vector3> {
 }
 
 /// The direction from A to B by the outside of a closed mesh.
-pub(super) fn outward(a: BodyRef<'_>, b: BodyRef<'_>, [of_a, of_b]: [Option<Vector3>; 2]) -> Option<Vector3> {
+pub(super) fn outward(
+    a: BodyRef<'_>,
+    b: BodyRef<'_>,
+    [of_a, of_b]: [Option<Vector3>; 2],
+) -> Option<Vector3> {
     match (a, b) {
         (BodyRef::Mesh(mesh), _) if mesh.is_closed() => of_a,
         (_, BodyRef::Mesh(mesh)) if mesh.is_closed() => of_b.map(|normal| -normal),

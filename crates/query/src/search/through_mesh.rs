@@ -60,7 +60,8 @@ impl Outline {
                     below = reached;
                 }
             });
-            let passes = passes_nearest(&corners).filter(|reached| reached.at.norm() <= self.radius);
+            let passes =
+                passes_nearest(&corners).filter(|reached| reached.at.norm() <= self.radius);
             if let Some(reached) = passes {
                 let is_nearer = |known: Reached| reached.at.norm() < known.at.norm();
                 if nearest.is_none_or(is_nearer) {
@@ -72,7 +73,10 @@ impl Outline {
         Through {
             above: self.height(&above),
             below: self.height(&below),
-            off: Height { value: off, by_pose: nearest.map_or_else(Wrench::zeros, |s| self.wrench(&s)) },
+            off: Height {
+                value: off,
+                by_pose: nearest.map_or_else(Wrench::zeros, |s| self.wrench(&s)),
+            },
             place: nearest.map_or(self.middle, |reached| self.place(&reached.at)),
         }
     }

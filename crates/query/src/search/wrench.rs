@@ -53,17 +53,17 @@ pub(crate) fn way_to_triangle(
     const BORDER: f64 = 1e-9;
     let [p, q, r] = *corners;
     let normal = (q - p).cross(&(r - p));
-    let shares = [(q, r), (r, p), (p, q)]
-        .map(|(from, to)| (to - from).cross(&(nearest - from)).dot(&normal) / normal.norm_squared());
-    let touched: Vec<Point3> =
-        (0..3).filter(|&k| shares[k] > BORDER).map(|k| corners[k]).collect();
+    let shares = [(q, r), (r, p), (p, q)].map(|(from, to)| {
+        (to - from).cross(&(nearest - from)).dot(&normal) / normal.norm_squared()
+    });
+    let touched: Vec<Point3> = (0..3).filter(|&k| shares[k] > BORDER).map(|k| corners[k]).collect();
     let rides = of_place(nearest);
     let free: Vec<Vector3> = touched.iter().skip(1).map(|corner| corner - touched[0]).collect();
     let weighted = metric * way;
     // Of each direction d that it may slide along: dᵀW(way) stays nothing.
-    let misses = free.iter().map(|d| {
-        (rides.tr_mul(&(metric * d)) + of_direction(d).tr_mul(&weighted)).transpose()
-    });
+    let misses = free
+        .iter()
+        .map(|d| (rides.tr_mul(&(metric * d)) + of_direction(d).tr_mul(&weighted)).transpose());
     let misses: Vec<_> = misses.collect();
     match *free.as_slice() {
         [d] => rides - d * (misses[0] / d.dot(&(metric * d))),
@@ -105,7 +105,11 @@ mod tests {
         for (k, found) in found.into_iter().enumerate() {
             let height = |step: f64| {
                 let (mut shift, mut turn) = (Vector3::zeros(), Vector3::zeros());
-                if k < 3 { shift[k] = step } else { turn[k - 3] = step }
+                if k < 3 {
+                    shift[k] = step
+                } else {
+                    turn[k - 3] = step
+                }
                 let turn = nalgebra::UnitQuaternion::from_scaled_axis(turn);
                 // About the origin of the object's file, which is `origin` away from that of its points.
                 let moved = turn * (at.coords + origin) + shift - origin;
