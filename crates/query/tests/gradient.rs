@@ -19,9 +19,16 @@ const MOST_ERROR: f64 = 1e-2;
 /// A slope below this is none: of log odds per metre, and of the clearance.
 const FLAT: [f64; 2] = [1e-2, 1e-3];
 
+/// Where the points of the objects are in their own frame: far from its origin, so that a turn about that
+/// moves them far.
+const PLACE: Vector3 = Vector3::new(0.3, -0.2, 0.1);
+
+/// A cloud, or a mesh that is closed; of every third seed one that lacks a triangle.
 fn body(mesh: &TriangleMesh, is_mesh: bool, std: f64, seed: u64) -> Body {
     if is_mesh {
-        return Body::Mesh(Mesh::prepare(mesh).unwrap());
+        let faces = &mesh.triangles()[usize::from(seed.is_multiple_of(3))..];
+        let mesh = TriangleMesh::try_new(mesh.vertices().to_vec(), faces.to_vec()).unwrap();
+        return Body::Mesh(Mesh::prepare(&mesh).unwrap());
     }
     let samples = surface::positions(&surface::sample_surface(mesh, 900, seed));
     let points: Vec<Point3> = add_noise(&samples, NoiseKind::Gaussian, std, seed);
@@ -116,13 +123,16 @@ fn measure(kinds: [bool; 2], poses: u64) -> [Tally; 3] {
         let std = 0.001 * 8.0_f64.powf(unit(0));
         let swapped = usize::from(unit(1) < 0.5);
         let a = body(&shapes[swapped], kinds[0], std, index);
-        let b = body(&shapes[1 - swapped], kinds[1], std, !index);
+        let object = scene::moved(&shapes[1 - swapped], &Pose::from_translation(PLACE));
+        let b = body(&object, kinds[1], std, index + 1);
         let away = Vector3::new(unit(2) - 0.5, unit(3) - 0.5, unit(4) - 0.5).normalize();
         // The box reaches 10 cm along its axes: from 2 cm deep to 5 cm away.
         let distance = 0.07 + 0.1 / away.amax() - 0.02 + 0.07 * unit(5);
-        let turn = [6.0 * unit(6), 0.0, 0.0];
-        let turn = if swapped == 0 { turn } else { [0.0, 0.0, 0.1 * unit(6)] };
-        let pose = Pose::from_translation_rpy(away * distance, turn);
+        // No edge is along a face: two places that are as near would each have a gradient.
+        let most = if swapped == 0 { 6.0 } else { 0.1 };
+        let turn = [6, 7, 8].map(|stream| most * unit(stream));
+        let pose = Pose::from_translation_rpy(away * distance, turn)
+            .after(&Pose::from_translation(-PLACE));
         let (report, PoseGradient { log_odds: found, clearance: gap, .. }) =
             query().gradient(&a, &b, &pose).unwrap();
         let asked = report.evidence.is_some_and(|evidence| evidence.misclassified.is_some());
@@ -144,6 +154,37 @@ fn check(kinds: [bool; 2], poses: u64, least: [usize; 3]) {
     for (tally, least) in tallies.iter().zip(least) {
         assert!(tally.compared >= least, "{tally:?}");
         assert!(tally.right as f64 >= 0.95 * tally.compared as f64, "{tally:?}");
+    }
+}
+
+#[test]
+fn two_meshes_have_a_clearance_and_no_doubt() {
+    let [_, _, of_clearance] = measure([true, true], 60);
+    println!("{of_clearance:?}");
+    assert!(of_clearance.compared >= 20 && of_clearance.right == of_clearance.compared);
+    let cube = body(&scene::cuboid([0.2; 3]), true, 0.0, 1);
+    let (_, apart) = query().gradient(&cube, &cube, &Pose::from_translation(Vector3::z())).unwrap();
+    assert_eq!((apart.probability, apart.log_odds), ([0.0; 6], [0.0; 6]));
+    assert!((apart.clearance.unwrap()[2] - 1.0).abs() < 1e-9);
+    let (_, inside) = query().gradient(&cube, &cube, &Pose::identity()).unwrap();
+    assert_eq!(inside.clearance, None);
+}
+
+#[test]
+fn the_report_is_that_of_a_query() {
+    let (a, b) = (
+        body(&scene::cuboid([0.2; 3]), false, 0.002, 1),
+        body(&scene::sphere(0.07, 3), true, 0.0, 1),
+    );
+    for height in [0.3, 0.175, 0.17, 0.165] {
+        let pose = Pose::from_translation(Vector3::new(0.0, 0.0, height));
+        let (mut report, gradient) = query().gradient(&a, &b, &pose).unwrap();
+        let plain = query().run(&a, &b, &pose).unwrap();
+        report.stats = plain.stats;
+        assert_eq!(report, plain);
+        let p = report.collision_probability;
+        let [of_p, of_odds] = [gradient.probability, gradient.log_odds].map(by_arm);
+        assert!((of_p - of_odds * p * (1.0 - p)).norm() <= 1e-12 * of_odds.norm());
     }
 }
 

@@ -23,8 +23,8 @@ const NEARER: f64 = 0.6;
 const TURNS: usize = 4;
 /// Then others at these angles from it are tried, rad.
 const ANGLES: [f64; 3] = [0.3, 0.15, 0.07];
-/// Probabilities of a normal distribution one standard deviation on either side of its middle.
-const ONE_DEVIATION: [f64; 2] = [0.841_344_746, 0.158_655_254];
+/// How likely a number is above a standard deviation below its mean, above that, and above one more.
+const LIKELY: [f64; 3] = [0.841_344_746, 0.5, 0.158_655_254];
 
 /// The least translation that was found to end a collision.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -32,8 +32,10 @@ pub struct Penetration {
     /// Where to, as a unit vector in the frame of the scene; nothing where the object need not move.
     #[serde(serialize_with = "vector_as_array")]
     pub direction: Vector3,
-    /// How far, m.
+    /// How far until a collision is less likely than asked for, m.
     pub distance_m: f64,
+    /// How far until it is as likely as not, m: how deep the object is in, as far as is known.
+    pub depth_m: f64,
     /// Half of how much farther it is until a collision is one standard deviation less likely than not than
     /// until it is one more likely, m: what the surfaces leave open of the distance along the direction.
     pub std_m: f64,
@@ -92,7 +94,12 @@ impl Query {
         let bodies = (a.into(), b.into());
         let (report, gradient) = self.gradient(bodies.0, bodies.1, a_from_b)?;
         if report.bounds[1] < probability {
-            let here = Penetration { direction: Vector3::zeros(), distance_m: 0.0, std_m: 0.0 };
+            let here = Penetration {
+                direction: Vector3::zeros(),
+                distance_m: 0.0,
+                depth_m: 0.0,
+                std_m: 0.0,
+            };
             return Ok((report, Some(here)));
         }
         let overlap = Overlap { query: self.deciding(probability), bodies, a_from_b };
@@ -126,12 +133,12 @@ impl Query {
             }
         }
         let (direction, distance_m) = best;
-        let [near, far] = ONE_DEVIATION.map(|likely| {
+        let [near, depth_m, far] = LIKELY.map(|likely| {
             let of_likely = Overlap { query: self.deciding(likely), ..overlap };
             of_likely.way_out(&direction, distance_m)
         });
-        let std_m = 0.5 * (far? - near?);
-        Ok((report, Some(Penetration { direction, distance_m, std_m })))
+        let (depth_m, std_m) = (depth_m?, 0.5 * (far? - near?));
+        Ok((report, Some(Penetration { direction, distance_m, depth_m, std_m })))
     }
 }
 
