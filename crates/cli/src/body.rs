@@ -71,16 +71,16 @@ pub(crate) trait Path: Sync {
         Ok((self.ask(scene, object, scene_from_object)?, Vec::new()))
     }
 
-    /// How likely they are within a margin (m) of each other; `None` on the paper's path, which knows
-    /// no distances.
-    fn nearness(
+    /// The same with how likely they are within a margin (m) of each other, where one is asked about; the
+    /// paper's path knows no distances.
+    fn ask_within(
         &self,
-        _scene: &Body<Self::Cloud>,
-        _object: &Body<Self::Cloud>,
-        _scene_from_object: &Pose,
-        _margin: f64,
-    ) -> Result<Option<Nearness>, QueryError> {
-        Ok(None)
+        scene: &Body<Self::Cloud>,
+        object: &Body<Self::Cloud>,
+        scene_from_object: &Pose,
+        _margin: Option<f64>,
+    ) -> Result<(Report, Option<Nearness>), QueryError> {
+        Ok((self.ask(scene, object, scene_from_object)?, None))
     }
 
     /// How likely a collision is over all poses that may be; `None` on the paper's path.
@@ -217,16 +217,19 @@ impl Path for Query {
         self.run(scene, object, scene_from_object)
     }
 
-    fn nearness(
+    fn ask_within(
         &self,
         scene: &Body<Cloud>,
         object: &Body<Cloud>,
         scene_from_object: &Pose,
-        margin: f64,
-    ) -> Result<Option<Nearness>, QueryError> {
-        let (_, within) = self.within(scene, object, scene_from_object, margin)?;
-        let interval = self.clearance_interval(scene, object, scene_from_object, SHARE)?;
-        Ok(Some(Nearness { within, interval }))
+        margin: Option<f64>,
+    ) -> Result<(Report, Option<Nearness>), QueryError> {
+        let Some(margin) = margin else {
+            return Ok((self.ask(scene, object, scene_from_object)?, None));
+        };
+        let (report, within, interval) =
+            self.nearness(scene, object, scene_from_object, margin, SHARE)?;
+        Ok((report, Some(Nearness { within, interval })))
     }
 
     fn uncertain(

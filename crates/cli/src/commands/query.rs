@@ -56,16 +56,15 @@ fn run_by<P: body::Path>(
     unused::check(common, &is_mesh)?;
     let scene = scene.refined_for(1, common.effort.refine)?;
     let object = object.refined_for(1, common.effort.refine)?;
-    let (report, classifiers) = if arguments.explain {
-        query.explain(&scene.body, &object.body, &pose)?
+    let (report, classifiers, nearness) = if arguments.explain {
+        let (report, classifiers) = query.explain(&scene.body, &object.body, &pose)?;
+        (report, classifiers, None)
     } else {
-        (query.ask(&scene.body, &object.body, &pose)?, Vec::new())
+        let (report, nearness) =
+            query.ask_within(&scene.body, &object.body, &pose, common.margin)?;
+        (report, Vec::new(), nearness)
     };
     let placement = query.place(&scene.body, &object.body, &pose);
-    let nearness = match common.margin {
-        Some(margin) => query.nearness(&scene.body, &object.body, &pose, margin)?,
-        None => None,
-    };
     let pose_uncertainty = match arguments.pose.pose_std {
         Some(PoseStd(stds)) => {
             let poses = PoseDistribution::from_std(pose, stds);

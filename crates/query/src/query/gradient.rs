@@ -71,7 +71,7 @@ impl Query {
         a_from_b: &Pose,
     ) -> Result<(Report, PoseGradient), QueryError> {
         let (a, b) = (a.into(), b.into());
-        let query = self.to_the_end();
+        let query = self.unstopped();
         let mut gradient = PoseGradient::default();
         let report =
             query.terms().ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {

@@ -48,7 +48,7 @@ impl Query {
     }
 
     /// The same to the end: it does not stop where a collision is likely enough, and tells all.
-    pub(super) fn to_the_end(&self) -> Self {
+    pub(super) fn unstopped(&self) -> Self {
         let (stop_above, detail) = (f64::INFINITY, Detail::Full);
         Self { settings: QuerySettings { stop_above, detail, ..self.settings } }
     }
