@@ -124,6 +124,13 @@ pub(crate) struct QueryArguments {
     /// Paper: text file with one kappa for each row of the scene
     #[arg(long, value_name = "FILE", conflicts_with = "also", help_heading = "Files")]
     pub kappas: Option<PathBuf>,
+    /// Also how P and the clearance change along and about the object's axes
+    #[arg(long, help_heading = "Estimate")]
+    pub gradient: bool,
+    /// Also the least translation to a probability below P [0.1]
+    #[arg(long, value_name = "P", num_args = 0..=1, require_equals = true,
+          default_missing_value = "0.1", value_parser = parse_fraction, help_heading = "Estimate")]
+    pub penetration: Option<f64>,
     /// Exit with 0 free, 10 uncertain, 20 in collision, 30 undecided
     #[arg(long, help_heading = "Output")]
     pub exit_code: bool,
@@ -143,8 +150,14 @@ pub(crate) struct QueryArguments {
 impl QueryArguments {
     fn check(&self) -> Result<(), String> {
         let of_the_paper = [("--explain", self.explain), ("--kappas", self.kappas.is_some())];
-        if self.common.mode == ModeName::Paper && self.pose.pose_std.is_some() {
-            return Err("--pose-std has no effect in the paper's mode: leave it out".to_owned());
+        let of_the_default = [
+            ("--pose-std", self.pose.pose_std.is_some()),
+            ("--gradient", self.gradient),
+            ("--penetration", self.penetration.is_some()),
+        ];
+        let given = of_the_default.iter().find(|(_, is_given)| *is_given);
+        if let (ModeName::Paper, Some((name, _))) = (self.common.mode, given) {
+            return Err(format!("{name} has no effect in the paper's mode: leave it out"));
         }
         self.common.check(&of_the_paper)
     }
@@ -334,7 +347,7 @@ pub(crate) struct CommonArguments {
           help_heading = "Estimate")]
     pub settings: Option<Settings>,
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
-    #[arg(long, value_name = "P", value_parser = parse_prior, help_heading = "Estimate")]
+    #[arg(long, value_name = "P", value_parser = parse_fraction, help_heading = "Estimate")]
     pub prior: Option<f64>,
     /// Calibrated: also how likely the bodies are nearer than this
     #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Estimate")]
@@ -470,10 +483,10 @@ fn parse_positive(text: &str) -> Result<f64, String> {
     if length > 0.0 { Ok(length) } else { Err("it must be above 0, such as 0.01".to_owned()) }
 }
 
-fn parse_prior(text: &str) -> Result<f64, String> {
-    let prior = numbers::finite(text)?;
-    let is_between = prior > 0.0 && prior < 1.0;
-    if is_between { Ok(prior) } else { Err("give a number above 0 and below 1".to_owned()) }
+fn parse_fraction(text: &str) -> Result<f64, String> {
+    let fraction = numbers::finite(text)?;
+    let is_between = fraction > 0.0 && fraction < 1.0;
+    if is_between { Ok(fraction) } else { Err("give a number above 0 and below 1".to_owned()) }
 }
 
 fn parse_accept(text: &str) -> Result<f64, String> {

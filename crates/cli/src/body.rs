@@ -6,8 +6,8 @@ use cloudtouch::noise::SensorModel;
 use cloudtouch::paper::{LeafClassifier, RadiusRule};
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, FilterSettings, Mesh, PaperBodyRef, PaperCloud,
-    PaperCloudSettings, PaperQuery, Placement, PoseDistribution, PrepareError, Query, QueryError,
-    Report, StageReport, UnderPoses,
+    PaperCloudSettings, PaperQuery, Penetration, Placement, PoseDistribution, PoseGradient,
+    PrepareError, Query, QueryError, Report, StageReport, UnderPoses,
 };
 
 use crate::margin::{Nearness, SHARE};
@@ -71,16 +71,16 @@ pub(crate) trait Path: Sync {
         Ok((self.ask(scene, object, scene_from_object)?, Vec::new()))
     }
 
-    /// How likely they are within a margin (m) of each other; `None` on the paper's path, which knows
-    /// no distances.
-    fn nearness(
+    /// The same with how likely they are within a margin (m) of each other, where one is asked about; the
+    /// paper's path knows no distances.
+    fn ask_within(
         &self,
-        _scene: &Body<Self::Cloud>,
-        _object: &Body<Self::Cloud>,
-        _scene_from_object: &Pose,
-        _margin: f64,
-    ) -> Result<Option<Nearness>, QueryError> {
-        Ok(None)
+        scene: &Body<Self::Cloud>,
+        object: &Body<Self::Cloud>,
+        scene_from_object: &Pose,
+        _margin: Option<f64>,
+    ) -> Result<(Report, Option<Nearness>), QueryError> {
+        Ok((self.ask(scene, object, scene_from_object)?, None))
     }
 
     /// How likely a collision is over all poses that may be; `None` on the paper's path.
@@ -90,6 +90,27 @@ pub(crate) trait Path: Sync {
         _object: &Body<Self::Cloud>,
         _scene_from_object: &PoseDistribution,
     ) -> Result<Option<UnderPoses>, QueryError> {
+        Ok(None)
+    }
+
+    /// What a small motion of the object changes; `None` on the paper's path.
+    fn slopes(
+        &self,
+        _scene: &Body<Self::Cloud>,
+        _object: &Body<Self::Cloud>,
+        _scene_from_object: &Pose,
+    ) -> Result<Option<PoseGradient>, QueryError> {
+        Ok(None)
+    }
+
+    /// The least translation found that ends a collision; `None` where none does, and on the paper's path.
+    fn way_out(
+        &self,
+        _scene: &Body<Self::Cloud>,
+        _object: &Body<Self::Cloud>,
+        _scene_from_object: &Pose,
+        _probability: f64,
+    ) -> Result<Option<Penetration>, QueryError> {
         Ok(None)
     }
 
@@ -196,16 +217,19 @@ impl Path for Query {
         self.run(scene, object, scene_from_object)
     }
 
-    fn nearness(
+    fn ask_within(
         &self,
         scene: &Body<Cloud>,
         object: &Body<Cloud>,
         scene_from_object: &Pose,
-        margin: f64,
-    ) -> Result<Option<Nearness>, QueryError> {
-        let (_, within) = self.within(scene, object, scene_from_object, margin)?;
-        let interval = self.clearance_interval(scene, object, scene_from_object, SHARE)?;
-        Ok(Some(Nearness { within, interval }))
+        margin: Option<f64>,
+    ) -> Result<(Report, Option<Nearness>), QueryError> {
+        let Some(margin) = margin else {
+            return Ok((self.ask(scene, object, scene_from_object)?, None));
+        };
+        let (report, within, interval) =
+            self.nearness(scene, object, scene_from_object, margin, SHARE)?;
+        Ok((report, Some(Nearness { within, interval })))
     }
 
     fn uncertain(
@@ -215,6 +239,25 @@ impl Path for Query {
         scene_from_object: &PoseDistribution,
     ) -> Result<Option<UnderPoses>, QueryError> {
         Ok(Some(self.run_uncertain(scene, object, scene_from_object)?.1))
+    }
+
+    fn slopes(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &Pose,
+    ) -> Result<Option<PoseGradient>, QueryError> {
+        Ok(Some(self.gradient(scene, object, scene_from_object)?.1))
+    }
+
+    fn way_out(
+        &self,
+        scene: &Body<Cloud>,
+        object: &Body<Cloud>,
+        scene_from_object: &Pose,
+        probability: f64,
+    ) -> Result<Option<Penetration>, QueryError> {
+        Ok(self.penetration(scene, object, scene_from_object, probability)?.1)
     }
 
     fn place(

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Result;
 use cloudtouch::geom::{Point3, Pose};
 use cloudtouch::paper::LeafClassifier;
-use cloudtouch::{PointProbabilities, Report, UnderPoses};
+use cloudtouch::{Penetration, PointProbabilities, PoseGradient, Report, UnderPoses};
 use cloudtouch_io::write_atomically;
 use serde::Serialize;
 
@@ -39,6 +39,12 @@ pub(crate) struct Details<'a> {
     /// Over all poses that may be.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pose_uncertainty: Option<UnderPoses>,
+    /// By a small motion of the object.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gradient: Option<PoseGradient>,
+    /// The way out, where it was asked for, if one was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub penetration: Option<Option<Penetration>>,
     /// Every classifier trained (eq. 10 to 16).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub classifiers: Option<&'a [LeafClassifier]>,

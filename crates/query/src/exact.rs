@@ -37,6 +37,15 @@ pub(crate) fn add_exact(
 }
 
 /// Tests two meshes with parry.
+/// The two places, on A and on B in the frame of A, where these are nearest to each other; `None` where they
+/// collide.
+pub(crate) fn nearest_places(
+    (a, b): (&Mesh, &Mesh),
+    a_from_b: &Pose,
+) -> Result<Option<[Point3; 2]>, QueryError> {
+    Ok(exact_pair(a, b, a_from_b)?.nearest.map(|(on_a, on_b)| [on_a, on_b]))
+}
+
 fn exact_pair(a: &Mesh, b: &Mesh, a_from_b: &Pose) -> Result<ExactPair, QueryError> {
     let unsupported = |_| QueryError::Unsupported;
     let pose_a = math::Pose::IDENTITY;

@@ -47,7 +47,10 @@ pub use paper::{
     PaperSettings, Pooling,
 };
 pub use placement::Placement;
-pub use query::{Detail, NotFree, PoseDistribution, Query, QuerySettings, UnderPoses, Within};
+pub use query::{
+    Detail, NotFree, Penetration, PoseDistribution, PoseGradient, Query, QuerySettings, UnderPoses,
+    Within,
+};
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Unseen, Verdict};
 pub use safeguards::Safeguards;
 pub use scene::{Checked, PairAnswer, Scene};

@@ -148,7 +148,10 @@ fn as_array<S: serde::Serializer>(point: &Point3, serializer: S) -> Result<S::Ok
     [point.x, point.y, point.z].serialize(serializer)
 }
 
-fn vector_as_array<S: serde::Serializer>(v: &Vector3, serializer: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn vector_as_array<S: serde::Serializer>(
+    v: &Vector3,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     [v.x, v.y, v.z].serialize(serializer)
 }
 

@@ -91,6 +91,10 @@ fn an_interval_holds_the_gap_and_starts_at_nothing_in_a_collision() {
             "{kinds:?} {low} {high}"
         );
         assert_eq!(query.clearance_interval(&a, &b, &at(-0.05), 0.9).unwrap(), [0.0; 2]);
+        // One query tells the same as one for each.
+        let (_, within, interval) = query.nearness(&a, &b, &at(0.06), 0.05, 0.9).unwrap();
+        assert_eq!(interval, [low, high]);
+        assert_eq!(within, query.within(&a, &b, &at(0.06), 0.05).unwrap().1);
         assert!(matches!(
             query.clearance_interval(&a, &b, &at(0.0), 1.0),
             Err(QueryError::Share { .. })

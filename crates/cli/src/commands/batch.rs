@@ -114,15 +114,11 @@ fn answer<'a, P: body::Path>(
         None => Err(format!("{}: not prepared", key.0.display())),
     });
     let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
-    let report = query.ask(&scene.body, &object.body, pose).map_err(|error| error.to_string())?;
+    let (report, nearness) = query
+        .ask_within(&scene.body, &object.body, pose, arguments.common.margin)
+        .map_err(|error| error.to_string())?;
     let bodies = [(case.scene.as_path(), scene), (case.object.as_path(), object)];
     let placement = query.place(&scene.body, &object.body, pose);
-    let nearness = match arguments.common.margin {
-        Some(margin) => query
-            .nearness(&scene.body, &object.body, pose, margin)
-            .map_err(|error| error.to_string())?,
-        None => None,
-    };
     Ok(Answered { report, placement, pose, bodies, nearness })
 }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context as _, Result, bail};
 use cloudtouch::geom::{Pose, Vector3};
-use cloudtouch::{PaperQuery, PoseDistribution, Query};
+use cloudtouch::{PaperQuery, Placement, PoseDistribution, Query, Report};
 use cloudtouch_cli::numbers::{PoseStd, Triple};
 use cloudtouch_io::read_colors_within;
 use cloudtouch_page::{Fact, Page, View};
@@ -16,7 +16,7 @@ use crate::args::{ModeName, PoseArguments, QueryArguments};
 use crate::body::{self, Body, PreparedCloud};
 use crate::load::{self, Loaded, Role};
 use crate::per_point::{self, Details};
-use crate::{output, page, picture, pose_file, print, report_text, unused};
+use crate::{gradient, output, page, penetration, picture, pose_file, print, report_text, unused};
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -57,16 +57,15 @@ fn run_by<P: body::Path>(
     unused::check(common, &is_mesh)?;
     let scene = scene.refined_for(1, common.effort.refine)?;
     let object = object.refined_for(1, common.effort.refine)?;
-    let (report, classifiers) = if arguments.explain {
-        query.explain(&scene.body, &object.body, &pose)?
+    let (report, classifiers, nearness) = if arguments.explain {
+        let (report, classifiers) = query.explain(&scene.body, &object.body, &pose)?;
+        (report, classifiers, None)
     } else {
-        (query.ask(&scene.body, &object.body, &pose)?, Vec::new())
+        let (report, nearness) =
+            query.ask_within(&scene.body, &object.body, &pose, common.margin)?;
+        (report, Vec::new(), nearness)
     };
     let placement = query.place(&scene.body, &object.body, &pose);
-    let nearness = match common.margin {
-        Some(margin) => query.nearness(&scene.body, &object.body, &pose, margin)?,
-        None => None,
-    };
     let pose_uncertainty = match arguments.pose.pose_std {
         Some(PoseStd(stds)) => {
             let poses = PoseDistribution::from_std(pose, stds);
@@ -74,6 +73,12 @@ fn run_by<P: body::Path>(
         }
         None => None,
     };
+    let slopes = match arguments.gradient {
+        true => query.slopes(&scene.body, &object.body, &pose)?,
+        false => None,
+    };
+    let way_out = |probability| query.way_out(&scene.body, &object.body, &pose, probability);
+    let out = arguments.penetration.map(way_out).transpose()?;
     if let Some(path) = &arguments.csv {
         per_point::write_csv(path, &scene.body, &object.body, &pose, &report)?;
     }
@@ -92,31 +97,16 @@ fn run_by<P: body::Path>(
         .into_iter()
         .chain(pose_uncertainty.as_ref().map(report_text::over_poses))
         .collect();
-    if let Some(path) = &arguments.html {
-        let limits = common.limits.read_limits();
-        // Rows of several scans are not those of the first file.
-        let scan = Some(arguments.scene.as_path()).filter(|_| arguments.also.is_empty());
-        let bodies = [
-            page::body(&scene, scan, &limits)?,
-            page::body(&object, Some(&arguments.object), &limits)?,
-        ];
-        let title = format!("{} in {}", bodies[1].name, bodies[0].name);
-        let view = View {
-            name: "The pose asked about".to_owned(),
-            scene: 0,
-            object: 1,
-            scene_from_object: pose,
-            report: &report,
-            placement: Some(&placement),
-            more: more.clone(),
-        };
-        let bodies = bodies.into();
-        page::write(path, &Page { title, bodies, views: vec![view], ..Page::default() })?;
+    if arguments.html.is_some() {
+        let answer = (&report, &placement, &more[..]);
+        write_page(arguments, (&scene, &object), &pose, answer)?;
     }
     let text = if arguments.json {
         let details = Details {
             points: arguments.points.then(|| (&report).into()),
             pose_uncertainty,
+            gradient: slopes,
+            penetration: out,
             classifiers: arguments.explain.then_some(&classifiers[..]),
         };
         let answer =
@@ -129,6 +119,10 @@ fn run_by<P: body::Path>(
             report_text::text(&report, &placement, shows_work),
         ];
         parts.extend(more.iter().map(report_text::line));
+        parts.extend(slopes.as_ref().map(gradient::text));
+        if let Some(probability) = arguments.penetration {
+            parts.push(penetration::text(out.flatten().as_ref(), probability));
+        }
         if !arguments.pose.is_given() {
             parts.push("pose                   not given: the identity".to_owned());
         }
@@ -136,6 +130,33 @@ fn run_by<P: body::Path>(
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(if arguments.exit_code { print::exit_code(report.verdict) } else { ExitCode::SUCCESS })
+}
+
+/// Both bodies and the answer, to look at.
+fn write_page<C: PreparedCloud>(
+    arguments: &QueryArguments,
+    (scene, object): (&Loaded<C>, &Loaded<C>),
+    pose: &Pose,
+    (report, placement, more): (&Report, &Placement, &[Fact]),
+) -> Result<()> {
+    let Some(path) = &arguments.html else { return Ok(()) };
+    let limits = arguments.common.limits.read_limits();
+    // Rows of several scans are not those of the first file.
+    let scan = Some(arguments.scene.as_path()).filter(|_| arguments.also.is_empty());
+    let bodies =
+        [page::body(scene, scan, &limits)?, page::body(object, Some(&arguments.object), &limits)?];
+    let view = View {
+        name: "The pose asked about".to_owned(),
+        scene: 0,
+        object: 1,
+        scene_from_object: *pose,
+        report,
+        placement: Some(placement),
+        more: more.to_vec(),
+    };
+    let title = format!("{} in {}", bodies[1].name, bodies[0].name);
+    let page = Page { title, bodies: bodies.into(), views: vec![view], ..Page::default() };
+    page::write(path, &page)
 }
 
 /// Gives each row of the scene its own κ, where a file says so.

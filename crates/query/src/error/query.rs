@@ -142,6 +142,12 @@ pub enum QueryError {
         /// What was given.
         value: f64,
     },
+    /// A probability to stay below that everything or nothing is below.
+    #[error("the probability to stay below is {}: give a number between 0 and 1, ends excluded", number(*value))]
+    Probability {
+        /// What was given.
+        value: f64,
+    },
     /// A path has too few poses to move along.
     #[error("a path through {count} poses: give at least two, where it begins and where it ends")]
     TooFewPoses {

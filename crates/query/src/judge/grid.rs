@@ -17,6 +17,20 @@ impl<const N: usize, const M: usize> Grid<'_, N, M> {
         let (low, high) = (along(&self.values[i]), along(&self.values[i + 1]));
         low + s * (high - low)
     }
+
+    /// What [`Self::at`] changes by with each number; nothing at and beyond the border, and at a knot
+    /// what it changes by above it.
+    pub(super) fn slopes(&self, x: f64, y: f64) -> [f64; 2] {
+        let ((i, s), (j, t)) = (between_knots(self.rows, x), between_knots(self.columns, y));
+        let inside = |knots: &[f64], at: f64| knots[0] < at && at < knots[knots.len() - 1];
+        let [[a, b], [c, d]] = [i, i + 1].map(|i| [self.values[i][j], self.values[i][j + 1]]);
+        let by_row = (c - a + t * (d - c - b + a)) / (self.rows[i + 1] - self.rows[i]);
+        let by_column = (b - a + s * (d - c - b + a)) / (self.columns[j + 1] - self.columns[j]);
+        [
+            if inside(self.rows, x) { by_row } else { 0.0 },
+            if inside(self.columns, y) { by_column } else { 0.0 },
+        ]
+    }
 }
 
 /// Between which two of ascending knots a number falls, by the index of the first, and how far along
@@ -51,6 +65,16 @@ mod tests {
         }
         assert_eq!(GRID.at(1.0, 0.5), 2.5);
         assert_eq!(GRID.at(1.0, 2.0), 4.0);
+    }
+
+    #[test]
+    fn slopes_are_what_a_step_changes() {
+        for (x, y) in [(0.7, 0.2), (1.9, 2.9), (0.1, 1.4), (3.0, 1.5), (1.0, -1.0), (-1.0, 9.0)] {
+            let [by_row, by_column] = GRID.slopes(x, y);
+            let change = |dx: f64, dy: f64| GRID.at(x + dx, y + dy) - GRID.at(x - dx, y - dy);
+            assert!((by_row - change(1e-3, 0.0) / 2e-3).abs() < 1e-9, "{x} {y}");
+            assert!((by_column - change(0.0, 1e-3) / 2e-3).abs() < 1e-9, "{x} {y}");
+        }
     }
 
     #[test]

@@ -128,19 +128,42 @@ impl Judge {
 
     /// Log odds given the geometry alone.
     pub fn log_odds_by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
-        let Self { by_geometry: values, .. } = self;
-        Grid { rows: &DEVIATION_KNOTS, columns: &CROSSING_KNOTS, values }.at(deviations, crossing)
+        self.geometry().at(deviations, crossing)
+    }
+
+    /// What log odds by geometry change by with the deviations and with the crossing.
+    pub(crate) fn slopes_by_geometry(&self, deviations: f64, crossing: f64) -> [f64; 2] {
+        self.geometry().slopes(deviations, crossing)
+    }
+
+    fn geometry(&self) -> Grid<'_, { DEVIATION_KNOTS.len() }, { CROSSING_KNOTS.len() }> {
+        Grid { rows: &DEVIATION_KNOTS, columns: &CROSSING_KNOTS, values: &self.by_geometry }
     }
 
     /// Log odds given what a classifier said too; the same again where geometry leaves no doubt.
     pub fn revise(&self, by_geometry: f64, misclassified: f64) -> f64 {
-        let [least, .., most] = DOUBT_KNOTS;
-        if by_geometry <= least || by_geometry >= most {
+        if Self::leaves_no_doubt(by_geometry) {
             return by_geometry;
         }
-        let Self { revised: values, .. } = self;
-        let grid = Grid { rows: &DOUBT_KNOTS, columns: &MISCLASSIFIED_KNOTS, values };
-        grid.at(by_geometry, ln_above_floor(misclassified))
+        self.revision().at(by_geometry, ln_above_floor(misclassified))
+    }
+
+    /// What revised log odds change by with those by geometry and with the misclassified points.
+    pub(crate) fn slopes_of_revision(&self, by_geometry: f64, misclassified: f64) -> [f64; 2] {
+        if Self::leaves_no_doubt(by_geometry) {
+            return [1.0, 0.0];
+        }
+        let slopes = self.revision().slopes(by_geometry, ln_above_floor(misclassified));
+        [slopes[0], slopes[1] / (misclassified + MISCLASSIFIED_FLOOR)]
+    }
+
+    fn leaves_no_doubt(by_geometry: f64) -> bool {
+        let [least, .., most] = DOUBT_KNOTS;
+        by_geometry <= least || by_geometry >= most
+    }
+
+    fn revision(&self) -> Grid<'_, { DOUBT_KNOTS.len() }, { MISCLASSIFIED_KNOTS.len() }> {
+        Grid { rows: &DOUBT_KNOTS, columns: &MISCLASSIFIED_KNOTS, values: &self.revised }
     }
 }
 
@@ -201,6 +224,31 @@ mod tests {
             let judge = Judge::default();
             let of = |z, c, m| judge.revise(judge.log_odds_by_geometry(z, c), m);
             prop_assert!(of(z - step.0, c + step.1, m + step.2) >= of(z, c, m) - 1e-12);
+        }
+
+        #[test]
+        fn slopes_are_what_a_small_step_changes(
+            z in -7.0..7.0_f64, c in 0.01..6.0_f64, m in 0.01..40.0_f64,
+        ) {
+            const STEP: f64 = 1e-7;
+            let judge = Judge::default();
+            let geometry = |z, c| judge.log_odds_by_geometry(z, c);
+            let by_geometry = geometry(z, c);
+            let [by_z, by_c] = judge.slopes_by_geometry(z, c);
+            let [by_odds, by_m] = judge.slopes_of_revision(by_geometry, m);
+            // A step over a knot has two slopes, of which either is right.
+            let is_of = |slope: f64, above: f64, below: f64, here: f64| {
+                let (above, below) = ((above - here) / STEP, (here - below) / STEP);
+                (slope - above).abs().min((slope - below).abs()) < 1e-4 * (1.0 + slope.abs())
+            };
+            let revised = |odds, m| judge.revise(odds, m);
+            prop_assert!(is_of(by_z, geometry(z + STEP, c), geometry(z - STEP, c), by_geometry));
+            prop_assert!(is_of(by_c, geometry(z, c + STEP), geometry(z, c - STEP), by_geometry));
+            let here = revised(by_geometry, m);
+            let odds = [by_geometry + STEP, by_geometry - STEP].map(|odds| revised(odds, m));
+            prop_assert!(is_of(by_odds, odds[0], odds[1], here));
+            let counts = [m + STEP, m - STEP].map(|m| revised(by_geometry, m));
+            prop_assert!(is_of(by_m, counts[0], counts[1], here));
         }
 
         #[test]

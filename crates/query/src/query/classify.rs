@@ -1,16 +1,25 @@
 //! The paper's classifier (eq. 10 to 16) on the places where geometry leaves doubt.
 
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Motion, Pose, Vector3};
+use nalgebra::UnitQuaternion;
 
 use crate::body::BodyRef;
-use crate::classifier::{PairAnswer, by_kernel};
+use crate::classifier::{
+    ClassifierSettings, PairAnswer, PairPoint, PairPoints, by_kernel, centroid,
+};
 use crate::error::QueryError;
 use crate::judge::{DOUBT_KNOTS, Judge};
 use crate::report::Stats;
-use crate::search::Found;
+use crate::search::{Found, Wrench, force_at};
 
 use super::patches::patches;
 use super::task::Task;
+
+/// Relative gap of the problems that slopes are told from, and how far the points move for it: by this
+/// share of how far they reach, and by as many radians.
+const TIGHT: f64 = 1e-9;
+/// See [`TIGHT`].
+const STEP: f64 = 1e-4;
 
 /// ΣP, largest over the patches, and between what bounds it is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,37 +29,43 @@ pub(super) struct Misclassified {
     pub bounds: [f64; 2],
     /// Whether a patch was left to geometry: the noise is as large as it.
     is_indistinct: bool,
+    /// The patch with that value, by its place among all.
+    patch: Option<usize>,
 }
 
 impl Misclassified {
     /// Anything may be found by a classifier that was not asked.
     pub(super) const NOT_ASKED: Self =
-        Self { value: None, bounds: [0.0, f64::INFINITY], is_indistinct: false };
-    const NOTHING: Self = Self { value: None, bounds: [0.0; 2], is_indistinct: false };
+        Self { value: None, bounds: [0.0, f64::INFINITY], is_indistinct: false, patch: None };
+    const NOTHING: Self = Self { value: None, bounds: [0.0; 2], is_indistinct: false, patch: None };
 
-    fn known(value: f64) -> Self {
-        Self { value: Some(value), bounds: [value; 2], is_indistinct: false }
+    fn known(value: f64, patch: usize) -> Self {
+        let patch = Some(patch);
+        Self { value: Some(value), bounds: [value; 2], is_indistinct: false, patch }
     }
 
     /// Of a patch of so many points that no solver could decide.
     fn undecided(points: usize) -> Self {
         let points = points as f64;
-        Self { value: Some(0.5 * points), bounds: [0.0, points], is_indistinct: false }
+        Self { value: Some(0.5 * points), bounds: [0.0, points], is_indistinct: false, patch: None }
     }
 
     /// Of a patch of so many points that nothing separates and nothing joins.
     fn indistinct(points: usize) -> Self {
-        Self { value: None, bounds: [0.0, points as f64], is_indistinct: true }
+        Self { value: None, bounds: [0.0, points as f64], is_indistinct: true, patch: None }
     }
 
     fn or_more(self, other: Self) -> Self {
         let [[low, high], [other_low, other_high]] = [self.bounds, other.bounds];
         let larger = |p: f64, q: f64| p.max(q);
+        let (value, patch) = match (self.value, other.value) {
+            (Some(p), Some(q)) if q > p => (other.value, other.patch),
+            (None, _) => (other.value, other.patch),
+            _ => (self.value, self.patch),
+        };
         Self {
-            value: match (self.value, other.value) {
-                (Some(p), Some(q)) => Some(larger(p, q)),
-                (value, None) | (None, value) => value,
-            },
+            value,
+            patch,
             bounds: [larger(low, other_low), larger(high, other_high)],
             is_indistinct: self.is_indistinct || other.is_indistinct,
         }
@@ -62,6 +77,18 @@ impl Misclassified {
             None => by_geometry,
             Some(count) if self.is_indistinct => judge.revise(by_geometry, count).max(by_geometry),
             Some(count) => judge.revise(by_geometry, count),
+        }
+    }
+
+    /// What these log odds change by with those by geometry and with the misclassified points.
+    pub(super) fn slopes(&self, judge: &Judge, by_geometry: f64) -> [f64; 2] {
+        match self.value {
+            Some(count)
+                if self.log_odds(judge, by_geometry) == judge.revise(by_geometry, count) =>
+            {
+                judge.slopes_of_revision(by_geometry, count)
+            }
+            _ => [1.0, 0.0],
         }
     }
 }
@@ -81,14 +108,16 @@ pub(super) fn ask_classifier(
         return Ok(Misclassified::NOT_ASKED);
     }
     let mut all = Misclassified::NOTHING;
-    for points in patches {
+    for (patch, points) in patches.iter().enumerate() {
         let count = points.a.len() + points.b.len();
         if task.clock.is_over() {
             all = all.or_more(Misclassified::indistinct(count));
             continue;
         }
-        let of_patch = match by_kernel(&points, &task.classifier, &task.clock, stats).answer {
-            PairAnswer::Separated { a, b, .. } => Misclassified::known(a.iter().chain(&b).sum()),
+        let of_patch = match by_kernel(points, &task.classifier, &task.clock, stats).answer {
+            PairAnswer::Separated { a, b, .. } => {
+                Misclassified::known(a.iter().chain(&b).sum(), patch)
+            }
             PairAnswer::Undecided => Misclassified::undecided(count),
             PairAnswer::Indistinct => Misclassified::indistinct(count),
         };
@@ -102,13 +131,70 @@ pub(super) fn ask_classifier(
     Ok(all)
 }
 
+/// What the misclassified points of the patch that has most change by as the pose does; nothing where no
+/// patch is known, or where a classifier cannot tell a little aside.
+///
+/// ΣP is no optimum of what the classifier minimises, so that the envelope theorem does not give its
+/// derivative, and the multipliers that are at a bound change with the pose: the same points are moved a
+/// little and separated anew, with a tight tolerance.
+pub(super) fn misclassified_by_pose(
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    a_from_b: &Pose,
+    (found, misclassified): (&Found<'_>, &Misclassified),
+    task: &Task<'_>,
+    stats: &mut Stats,
+) -> Result<Wrench, QueryError> {
+    let patches = patches((a, b), a_from_b, found, task.settings.max_mesh_parts)?;
+    let points = misclassified.patch.and_then(|patch| patches.get(patch));
+    let Some(points) = points else { return Ok(Wrench::zeros()) };
+    let settings = ClassifierSettings {
+        relative_gap: task.classifier.relative_gap.min(TIGHT),
+        ..task.classifier
+    };
+    let middle = centroid(&points.b);
+    let reach = points.b.iter().map(|p| (p.point.mean - middle).norm()).fold(0.0, f64::max);
+    let step = STEP * reach.max(f64::MIN_POSITIVE);
+    let mut sum = |shift: Vector3, turn: Vector3| {
+        let turn = UnitQuaternion::from_scaled_axis(turn);
+        let moved = Motion::from(
+            &Pose::from_translation(middle.coords + shift)
+                .after(&Pose::from_translation_rotation(Vector3::zeros(), turn))
+                .after(&Pose::from_translation(-middle.coords)),
+        );
+        let b = points.b.iter().map(|p| PairPoint { point: moved.uncertain_point(&p.point), ..*p });
+        let moved = PairPoints { a: points.a.clone(), b: b.collect(), ..*points };
+        match by_kernel(&moved, &settings, &task.clock, stats).answer {
+            PairAnswer::Separated { a, b, .. } => Some(a.iter().chain(&b).sum::<f64>()),
+            PairAnswer::Undecided | PairAnswer::Indistinct => None,
+        }
+    };
+    let mut slope = |shift: Vector3, turn: Vector3| {
+        let (above, below) = (sum(shift * step, turn * STEP)?, sum(-shift * step, -turn * STEP)?);
+        Some(above - below)
+    };
+    let none = Vector3::zeros();
+    let mut slopes = [[0.0; 3]; 2];
+    for k in 0..3 {
+        let axis = Vector3::ith(k, 1.0);
+        let (Some(force), Some(torque)) = (slope(axis, none), slope(none, axis)) else {
+            return Ok(Wrench::zeros());
+        };
+        (slopes[0][k], slopes[1][k]) = (force / (2.0 * step), torque / (2.0 * STEP));
+    }
+    let [force, torque] = slopes.map(Vector3::from);
+    let mut wrench = force_at(&middle, &force);
+    let mut about = wrench.fixed_rows_mut::<3>(3);
+    about += torque;
+    Ok(wrench)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn an_indistinct_patch_beside_a_clear_one_was_skipped() {
-        let clear = Misclassified::known(0.001);
+        let clear = Misclassified::known(0.001, 0);
         let all = clear.or_more(Misclassified::indistinct(40));
         assert_eq!((all.value, all.bounds), (Some(0.001), [0.001, 40.0]));
         // The clear patch alone would speak for free: what it does not speak of is left to geometry.

@@ -31,16 +31,20 @@ pub(super) fn contacts(sorted: &[Spot], collision: f64, most: usize) -> Vec<Cont
     patches.iter().map(contact).collect()
 }
 
-/// The distance of the two surfaces. Where a collision is likelier than not, that of the likeliest
+/// The place that tells the distance of the two surfaces. Where a collision is likelier than not, that of the likeliest
 /// spot, or of the deepest that is about as likely: as much of an overlap as was seen. Else that of the
 /// two pieces likeliest to meet: what seems to cross there most probably does not.
-pub(super) fn clearance(sorted: &[Spot], collision: f64) -> Option<Clearance> {
+pub(super) fn nearest(sorted: &[Spot], collision: f64) -> Option<&Spot> {
     let is_likely = collision >= 0.5;
     let likeliest = sorted.iter().find(|spot| is_likely || !spot.is_bound)?;
     let deepest = sorted
         .iter()
         .filter(|spot| spot.gap < 0.0 && spot.probability >= 0.9 * likeliest.probability)
         .min_by(|p, q| p.gap.total_cmp(&q.gap));
-    let spot = deepest.filter(|_| is_likely).unwrap_or(likeliest);
-    Some(Clearance { mean: spot.gap, std: spot.std, is_bound: spot.is_bound })
+    Some(deepest.filter(|_| is_likely).unwrap_or(likeliest))
+}
+
+/// The distance of the two surfaces there.
+pub(super) fn clearance(spot: &Spot) -> Clearance {
+    Clearance { mean: spot.gap, std: spot.std, is_bound: spot.is_bound }
 }

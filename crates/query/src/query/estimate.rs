@@ -1,21 +1,20 @@
-//! One query on the default path: the search, the classifier where that leaves doubt, the judge.
+//! One query on the default path: the evidence, and what the judge makes of it.
 
 use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::exact::add_exact;
-use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
+use crate::judge::{ContactEvidence, probability};
 use crate::mesh::Mesh;
 use crate::record::{Estimate, Evidence, Places};
-use crate::search::{Found, Inside, look_inside, search};
 
-use super::classify::{Misclassified, ask_classifier};
-use super::contacts::{clearance, contacts};
+use super::contacts::{clearance, contacts, nearest};
 use super::points::add_points;
 use super::settings::Detail;
-use super::spots::spots;
+use super::spots::{Spot, spots};
 use super::task::Task;
+use super::weigh::{Weighed, weigh};
 
 /// Estimates how probable a collision of two bodies is; the probabilities of single points go to
 /// `evidence`.
@@ -28,80 +27,68 @@ pub(super) fn estimate(
     if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
         return exact((a, b), a_from_b, evidence);
     }
-    let (settings, judge) = (task.settings, &task.settings.judge);
-    let stats = &mut evidence.stats;
-    let looked = look_inside((a, b), a_from_b, &task.clock);
-    stats.nodes_visited += looked.nodes_visited;
-    stats.leaves_prepared += looked.leaves_prepared;
-    let depth = looked.deepest.map_or(0.0, |inside| inside.deviations);
-    let of = |log_odds| probability(log_odds, settings.prior);
-    let is_enough = |deviations: f64, clearness: f64| {
-        let log_odds = judge.log_odds_by_geometry(deviations - depth, clearness.ln_1p());
-        // More evidence only raises the odds; what a classifier could take off them is taken off.
-        let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
-        of(log_odds) > settings.stop_above
-            || settings.detail == Detail::Verdict && is_decided()
-            || task.clock.is_over()
-    };
-    let found = search((a, b), a_from_b, is_enough, stats)?;
-    let deviations = (found.deviations - depth).max(-MOST_DEVIATIONS);
-    let crossing = found.crossings.clearness().ln_1p();
-    let of_geometry = ContactEvidence { deviations, crossing, misclassified: None };
-    let by_geometry = judge.log_odds_by_geometry(deviations, crossing);
-    let is_complete = found.is_complete && !looked.is_cut_short;
-
-    // Whatever a classifier says, the verdict is the same.
-    let is_settled = || {
-        of(judge.revise(by_geometry, f64::INFINITY)) < settings.reject
-            || of(judge.revise(by_geometry, 0.0)) > settings.accept
-    };
-    let is_open = judge.is_open(by_geometry);
-    let is_wanted = is_open && !(settings.detail == Detail::Verdict && is_settled());
-    let misclassified = if is_complete && is_wanted {
-        ask_classifier((a, b), a_from_b, &found, by_geometry, task, &mut evidence.stats)?
-    } else {
-        Misclassified::NOT_ASKED
-    };
-    let [low, high] = misclassified.bounds.map(|count| of(judge.revise(by_geometry, count)));
-    let log_odds = misclassified.log_odds(judge, by_geometry);
-    // More evidence only raises the odds; what was not looked at may be any.
-    let bounds = [low, if is_complete { high } else { 1.0 }];
-
-    let probability = of(log_odds);
-    let is_full = settings.detail == Detail::Full;
-    if is_full {
-        add_points(&found, probability, evidence);
-    }
-    let places = || places((a, b), &found, looked.deepest.as_ref(), probability, task);
-    let at_least = Some(found.at_least).filter(|least| least.is_finite());
-    let without = || Places { at_least, ..Places::default() };
-    Ok(Estimate {
-        probability,
-        bounds,
-        evidence: Some(ContactEvidence { misclassified: misclassified.value, ..of_geometry }),
-        log_likelihood_ratio: Some(log_odds),
-        places: Some(if is_full { places() } else { without() }),
-    })
+    let weighed = weigh((a, b), a_from_b, task, &mut evidence.stats)?;
+    let of_full = (task.settings.detail == Detail::Full).then(|| weighed.spots((a, b)));
+    Ok(weighed.estimate(of_full.as_deref(), task, evidence))
 }
 
-fn places(
-    bodies: (BodyRef<'_>, BodyRef<'_>),
-    found: &Found<'_>,
-    inside: Option<&Inside>,
-    probability: f64,
-    task: &Task<'_>,
-) -> Places {
-    let spots = spots(bodies, found, inside);
-    Places {
-        contacts: contacts(&spots, probability, task.settings.max_contacts),
-        clearance: clearance(&spots, probability)
-            .filter(|_| found.is_complete || probability > 0.5),
-        at_least: Some(found.at_least).filter(|least| least.is_finite()),
+impl Weighed<'_> {
+    /// The places where the bodies are nearest to touching, likeliest first.
+    pub(super) fn spots(&self, bodies: (BodyRef<'_>, BodyRef<'_>)) -> Vec<Spot> {
+        spots(bodies, &self.found, self.looked.deepest.as_ref())
+    }
+
+    /// The log odds of a collision.
+    pub(super) fn log_odds(&self, task: &Task<'_>) -> f64 {
+        self.misclassified.log_odds(&task.settings.judge, self.by_geometry)
+    }
+
+    /// The estimate; with places, and points to `evidence`, where spots are given.
+    pub(super) fn estimate(
+        &self,
+        spots: Option<&[Spot]>,
+        task: &Task<'_>,
+        evidence: &mut Evidence,
+    ) -> Estimate {
+        let Self { found, by_geometry, misclassified, .. } = self;
+        let settings = task.settings;
+        let of = |log_odds| probability(log_odds, settings.prior);
+        let revised = |count| of(settings.judge.revise(*by_geometry, count));
+        let [low, high] = misclassified.bounds.map(revised);
+        let log_odds = self.log_odds(task);
+        // More evidence only raises the odds; what was not looked at may be any.
+        let bounds = [low, if self.is_complete { high } else { 1.0 }];
+        let probability = of(log_odds);
+        let at_least = Some(found.at_least).filter(|least| least.is_finite());
+        let places = match spots {
+            None => Places { at_least, ..Places::default() },
+            Some(spots) => {
+                add_points(found, probability, evidence);
+                Places {
+                    contacts: contacts(spots, probability, settings.max_contacts),
+                    clearance: self.nearest_spot(spots, probability).map(clearance),
+                    at_least,
+                }
+            }
+        };
+        let misclassified = misclassified.value;
+        Estimate {
+            probability,
+            bounds,
+            evidence: Some(ContactEvidence { misclassified, ..self.of_geometry }),
+            log_likelihood_ratio: Some(log_odds),
+            places: Some(places),
+        }
+    }
+
+    /// The place that tells the clearance, where nothing nearer was left out.
+    pub(super) fn nearest_spot<'s>(&self, spots: &'s [Spot], probability: f64) -> Option<&'s Spot> {
+        nearest(spots, probability).filter(|_| self.found.is_complete || probability > 0.5)
     }
 }
 
 /// Two exact surfaces: a yes or no.
-fn exact(
+pub(super) fn exact(
     (a, b): (&Mesh, &Mesh),
     a_from_b: &Pose,
     evidence: &mut Evidence,

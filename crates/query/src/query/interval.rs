@@ -8,6 +8,7 @@ use crate::placement::Placement;
 use crate::report::Report;
 
 use super::run::Query;
+use super::within::Within;
 
 /// The ends of an interval are told this well, relative to themselves.
 const PRECISION: f64 = 1e-3;
@@ -33,9 +34,40 @@ impl Query {
         }
         let bodies = (a.into(), b.into());
         let report = self.run(bodies.0, bodies.1, a_from_b)?;
+        self.interval(bodies, a_from_b, &report, share)
+    }
+
+    /// The answers to [`Self::within`] and [`Self::clearance_interval`], by one query.
+    ///
+    /// # Errors
+    /// Those of both.
+    pub fn nearness<'a>(
+        &self,
+        a: impl Into<BodyRef<'a>>,
+        b: impl Into<BodyRef<'a>>,
+        a_from_b: &Pose,
+        margin: f64,
+        share: f64,
+    ) -> Result<(Report, Within, [f64; 2]), QueryError> {
+        if !(share > 0.0 && share < 1.0) {
+            return Err(QueryError::Share { value: share });
+        }
+        let bodies = (a.into(), b.into());
+        let (report, within) = self.within(bodies.0, bodies.1, a_from_b, margin)?;
+        let interval = self.interval(bodies, a_from_b, &report, share)?;
+        Ok((report, within, interval))
+    }
+
+    fn interval(
+        &self,
+        bodies: (BodyRef<'_>, BodyRef<'_>),
+        a_from_b: &Pose,
+        report: &Report,
+        share: f64,
+    ) -> Result<[f64; 2], QueryError> {
         let below = 0.5 * (1.0 - share);
-        let low = self.margin_of(bodies, a_from_b, &report, below)?;
-        Ok([low, self.margin_of(bodies, a_from_b, &report, 1.0 - below)?.max(low)])
+        let low = self.margin_of(bodies, a_from_b, report, below)?;
+        Ok([low, self.margin_of(bodies, a_from_b, report, 1.0 - below)?.max(low)])
     }
 
     /// The least margin within which the bodies are with this probability.

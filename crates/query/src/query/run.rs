@@ -41,6 +41,18 @@ impl Query {
         Self { settings: QuerySettings { detail, ..self.settings } }
     }
 
+    /// The same, asked no more than whether a probability is below this one.
+    pub(super) fn deciding(&self, probability: f64) -> Self {
+        let (accept, reject, detail) = (probability, probability, Detail::Verdict);
+        Self { settings: QuerySettings { accept, reject, detail, ..self.settings } }
+    }
+
+    /// The same to the end: it does not stop where a collision is likely enough, and tells all.
+    pub(super) fn unstopped(&self) -> Self {
+        let (stop_above, detail) = (f64::INFINITY, Detail::Full);
+        Self { settings: QuerySettings { stop_above, detail, ..self.settings } }
+    }
+
     pub(crate) fn clock(&self, start: Instant) -> Clock {
         Clock::new(start, self.settings.deadline)
     }
@@ -58,7 +70,7 @@ impl Query {
         }
     }
 
-    fn task(&self, start: Instant) -> Task<'_> {
+    pub(super) fn task(&self, start: Instant) -> Task<'_> {
         let classifier = self.settings.classifier();
         Task { settings: &self.settings, classifier, clock: self.clock(start) }
     }

@@ -4,16 +4,16 @@
 use cloudtouch_geom::{Point3, Vector3};
 
 use crate::body::BodyRef;
-use crate::search::{Crossing, Finding, Found, Inside, probability_at};
+use crate::search::{Crossing, Finding, Found, Inside, Wrench, probability_at};
 
 /// A crossing less probable than this is told by the gap of the pieces nearest to it.
 const LIKELY: f64 = 0.5;
 /// Normals of two pieces with a smaller cosine between them belong to no common plane.
-const ONE_PLANE: f64 = 0.7;
+pub(super) const ONE_PLANE: f64 = 0.7;
 /// Between its samples a surface may be so many spacings off the flat pieces that stand for it.
 const BEND_SPACINGS: f64 = 0.2;
 /// The piece of surface about a sample reaches so many spacings.
-const FOOTPRINT_SPACINGS: f64 = 0.5;
+pub(super) const FOOTPRINT_SPACINGS: f64 = 0.5;
 
 /// A place where the bodies touch, overlap or come near.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +31,18 @@ pub(super) struct Spot {
     pub spacing: f64,
     /// How likely the surfaces meet there, by the pieces there alone.
     pub probability: f64,
+    pub told_by: ToldBy,
+}
+
+/// What tells of a spot.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum ToldBy {
+    /// Two pieces that face each other: a finding, by its place among all.
+    Pieces(usize),
+    /// A crossing, whose depth changes so with the pose.
+    Crossing(Wrench),
+    /// A point inside a closed mesh.
+    Inside,
 }
 
 /// More spots than this say nothing new of where bodies touch.
@@ -43,7 +55,8 @@ pub(super) fn spots(
     found: &Found<'_>,
     inside: Option<&Inside>,
 ) -> Vec<Spot> {
-    let mut pairs: Vec<Spot> = found.findings.iter().map(|finding| near((a, b), finding)).collect();
+    let near = |(index, finding)| near((a, b), index, finding);
+    let mut pairs: Vec<Spot> = found.findings.iter().enumerate().map(near).collect();
     let likely = found.crossings.iter().filter(|crossing| crossing.probability > LIKELY);
     let mut crossed: Vec<Spot> = likely.map(through).collect();
     // Deep overlaps have thousands: those that are not told need no direction.
@@ -69,7 +82,7 @@ fn sort(spots: &mut Vec<Spot>) {
 }
 
 /// Of the two pieces that are least apart.
-fn near((a, b): (BodyRef<'_>, BodyRef<'_>), finding: &Finding) -> Spot {
+fn near((a, b): (BodyRef<'_>, BodyRef<'_>), index: usize, finding: &Finding) -> Spot {
     let Finding { nearest, meeting, toward_b } = finding;
     let offset = nearest.b.mean - nearest.a.mean;
     let axis = common_normal(finding)
@@ -108,11 +121,12 @@ fn near((a, b): (BodyRef<'_>, BodyRef<'_>), finding: &Finding) -> Spot {
     let probability = probability_at(meeting.deviations);
     let (place, spacing) = (meeting.place, nearest.spacing);
     let std = of_pieces.hypot(BEND_SPACINGS * spacing);
-    Spot { place, normal, gap, is_bound: false, std, spacing, probability }
+    let told_by = ToldBy::Pieces(index);
+    Spot { place, normal, gap, is_bound: false, std, spacing, probability, told_by }
 }
 
 /// The mean of the normals of two pieces that are of one plane, or the only one there is.
-fn common_normal(finding: &Finding) -> Option<Vector3> {
+pub(super) fn common_normal(finding: &Finding) -> Option<Vector3> {
     match finding.nearest.normals {
         [Some(a), Some(b)] => {
             let cosine = a.dot(&b);
@@ -124,7 +138,11 @@ fn common_normal(finding: &Finding) -> Option<Vector3> {
 }
 
 /// The direction from A to B by the outside of a closed mesh.
-fn outward(a: BodyRef<'_>, b: BodyRef<'_>, [of_a, of_b]: [Option<Vector3>; 2]) -> Option<Vector3> {
+pub(super) fn outward(
+    a: BodyRef<'_>,
+    b: BodyRef<'_>,
+    [of_a, of_b]: [Option<Vector3>; 2],
+) -> Option<Vector3> {
     match (a, b) {
         (BodyRef::Mesh(mesh), _) if mesh.is_closed() => of_a,
         (_, BodyRef::Mesh(mesh)) if mesh.is_closed() => of_b.map(|normal| -normal),
@@ -139,7 +157,8 @@ fn through(crossing: &Crossing) -> Spot {
     let Crossing { place, axis, depth, std, spacing, probability, .. } = *crossing;
     let footprint = FOOTPRINT_SPACINGS * spacing;
     let (gap, std) = (-depth.min(footprint), std.hypot(0.5 * footprint));
-    Spot { place, normal: axis, gap, is_bound: true, std, spacing, probability }
+    let told_by = ToldBy::Crossing(crossing.by_pose.depth);
+    Spot { place, normal: axis, gap, is_bound: true, std, spacing, probability, told_by }
 }
 
 /// A crossing has no direction of its own: it takes that of the nearest pair of pieces.
@@ -156,5 +175,6 @@ fn within(a: BodyRef<'_>, inside: &Inside) -> Spot {
     let Inside { deviations, depth, std, place, outward, spacing } = *inside;
     let normal = if matches!(a, BodyRef::Mesh(_)) { outward } else { -outward };
     let probability = 1.0 - probability_at(std::f64::consts::SQRT_2 * deviations);
-    Spot { place, normal, gap: -depth, is_bound: true, std, spacing, probability }
+    let (gap, told_by) = (-depth, ToldBy::Inside);
+    Spot { place, normal, gap, is_bound: true, std, spacing, probability, told_by }
 }

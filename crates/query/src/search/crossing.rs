@@ -12,6 +12,7 @@ use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
 
 use super::facet::Facet;
 use super::through_mesh::Through;
+use super::wrench::{Height, Wrench, force_at};
 
 /// The weight of a disc falls off like a normal density with this many spacings.
 const WEIGHT_SPACINGS: f64 = 0.5;
@@ -40,33 +41,64 @@ pub(crate) struct Crossing {
     pub std: f64,
     /// Distance between samples there, m.
     pub spacing: f64,
+    /// What these change by as the pose does.
+    pub by_pose: CrossingByPose,
+}
+
+/// What a crossing changes by as what passes moves and what it passes keeps, or with the pose of B.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CrossingByPose {
+    pub clear: Wrench,
+    pub weight: Wrench,
+    pub depth: Wrench,
 }
 
 impl Crossing {
-    /// Of two ends at these heights, of unequal sign, known so well.
-    fn of(heights: [f64; 2], stds: [f64; 2], weight: f64, spacing: f64) -> Self {
-        let clear_of = |k: usize| heights[k].abs() / known_to(stds[k], spacing);
-        let nearer = usize::from(heights[1].abs() < heights[0].abs());
+    /// Of two ends at these heights, of unequal sign, known so well, with this weight.
+    fn of(heights: [Height; 2], stds: [f64; 2], weight: Height, spacing: f64) -> Self {
+        let size = heights.map(|height| height.value.abs());
+        let known = stds.map(|std| known_to(std, spacing));
+        let clear_of = [size[0] / known[0], size[1] / known[1]];
+        let less_clear = usize::from(clear_of[1] < clear_of[0]);
+        let clear = clear_of[less_clear];
+        let nearer = usize::from(size[1] < size[0]);
         // Twice the excess over one half: none on the surface, certain far from it.
-        let sure = |k: usize| 1.0 - 2.0 * normal::below_zero(heights[k].abs(), stds[k]);
+        let sure = |k: usize| 1.0 - 2.0 * normal::below_zero(size[k], stds[k]);
+        let grows = |k: usize| heights[k].by_pose * heights[k].value.signum();
+        let by_pose = CrossingByPose {
+            clear: if clear < CLEAREST {
+                grows(less_clear) / known[less_clear]
+            } else {
+                Wrench::zeros()
+            },
+            weight: weight.by_pose,
+            depth: grows(nearer),
+        };
         Self {
-            clear: clear_of(0).min(clear_of(1)).min(CLEAREST),
-            weight,
-            probability: sure(0) * sure(1) * weight,
+            clear: clear.min(CLEAREST),
+            weight: weight.value,
+            probability: sure(0) * sure(1) * weight.value,
             place: Point3::origin(),
             axis: Vector3::z(),
-            depth: heights[nearer].abs(),
+            depth: size[nearer],
             std: stds[nearer],
             spacing,
+            by_pose,
         }
+    }
+
+    /// The same where what is passed is what moves.
+    pub(super) fn reversed(self) -> Self {
+        let CrossingByPose { clear, weight, depth } = self.by_pose;
+        Self { by_pose: CrossingByPose { clear: -clear, weight: -weight, depth: -depth }, ..self }
     }
 }
 
 /// What a mesh does to the disc about a sample.
 pub(super) fn of_mesh(disc: &Surfel, axis: Vector3, through: &Through) -> Crossing {
     let std = disc.variance_across().sqrt();
-    let weight = weight_at(through.off / disc.spacing);
-    let heights = [through.above, -through.below];
+    let weight = weight_by_pose(&through.off, disc.spacing);
+    let heights = [through.above, through.below];
     let of_pair = Crossing::of(heights, [std; 2], weight, disc.spacing);
     Crossing { place: through.place, axis, ..of_pair }
 }
@@ -78,6 +110,13 @@ pub(super) fn known_to(std: f64, spacing: f64) -> f64 {
 
 pub(super) fn weight_at(spacings_off: f64) -> f64 {
     (-0.5 * (spacings_off / WEIGHT_SPACINGS).powi(2)).exp()
+}
+
+/// The same with what it changes by, so far off the middle.
+fn weight_by_pose(off: &Height, spacing: f64) -> Height {
+    let value = weight_at(off.value / spacing);
+    let slope = -value * off.value / (WEIGHT_SPACINGS * spacing).powi(2);
+    Height { value, by_pose: off.by_pose * slope }
 }
 
 /// Whether an edge of a leaf crosses a disc; `None` too where the end nearer to the disc's plane is
@@ -93,13 +132,20 @@ pub(super) fn through_disc(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
     edge.own[nearer_end(edge, heights)]?;
     let share = above / (above - below);
     let place = edge.ends[0] + (edge.ends[1] - edge.ends[0]) * share;
-    let off = (place - middle).norm() / disc.spacing;
-    if off.is_nan() || off > DISC_SPACINGS {
+    let aside = place - middle;
+    let off = aside.norm();
+    if off.is_nan() || off > DISC_SPACINGS * disc.spacing {
         return None;
     }
     let of_disc = disc.variance_across();
     let stds = edge.across.map(|across| (across + of_disc).sqrt());
-    let of_pair = Crossing::of(heights, stds, weight_at(off), disc.spacing);
+    // Where the edge passes moves with it, and along it back into the plane of the disc.
+    let away = aside.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+    let along = edge.ends[1] - edge.ends[0];
+    let force = away - axis * (away.dot(&along) / axis.dot(&along));
+    let off = Height { value: off, by_pose: force_at(&place, &force) };
+    let heights = heights_of(edge, heights, &axis);
+    let of_pair = Crossing::of(heights, stds, weight_by_pose(&off, disc.spacing), disc.spacing);
     Some(Crossing { place, axis, ..of_pair })
 }
 
@@ -109,8 +155,14 @@ pub(super) fn through_facet(edge: &Edge, facet: &Facet) -> Option<Crossing> {
     let pierced = facet.pierced_by(&edge.ends)?;
     edge.own[nearer_end(edge, pierced.heights)]?;
     let stds = edge.across.map(f64::sqrt);
-    let of_pair = Crossing::of(pierced.heights, stds, 1.0, 2.0 * edge.half_length);
+    let heights = heights_of(edge, pierced.heights, &axis);
+    let full = Height { value: 1.0, by_pose: Wrench::zeros() };
+    let of_pair = Crossing::of(heights, stds, full, 2.0 * edge.half_length);
     Some(Crossing { place: pierced.place, axis, ..of_pair })
+}
+
+fn heights_of(edge: &Edge, heights: [f64; 2], axis: &Vector3) -> [Height; 2] {
+    [0, 1].map(|k| Height { value: heights[k], by_pose: force_at(&edge.ends[k], axis) })
 }
 
 /// The end with the smaller height; between equals the one that comes first in space, so that both

@@ -7,6 +7,7 @@ use cloudtouch_geom::Point3;
 use crate::cloud::{Edge, Surfel};
 
 use super::crossing::Crossing;
+use super::wrench::Wrench;
 
 /// Crossings within so many spacings of one another are at one place: what adds up there does not
 /// grow with the area of contact.
@@ -46,6 +47,8 @@ struct Seen {
     sum: f64,
     clearest: f64,
     best: Crossing,
+    sum_by_pose: Wrench,
+    clearest_by_pose: Wrench,
 }
 
 impl Seen {
@@ -53,6 +56,10 @@ impl Seen {
     /// clearest of them at most.
     fn clearness(&self) -> f64 {
         self.sum.min(self.clearest)
+    }
+
+    fn clearness_by_pose(&self) -> Wrench {
+        if self.sum < self.clearest { self.sum_by_pose } else { self.clearest_by_pose }
     }
 }
 
@@ -76,13 +83,23 @@ struct Heard {
 
 impl Crossings {
     pub(super) fn add(&mut self, witness: Witness, crossing: &Crossing) {
-        let Crossing { clear, weight, probability, .. } = *crossing;
-        let seen = self.witnesses.entry(witness);
-        let seen = seen.or_insert(Seen { sum: 0.0, clearest: 0.0, best: *crossing });
+        // What passes may be of A: then it is what is passed that moves.
+        let crossing = if witness.is_of_a() { crossing.reversed() } else { *crossing };
+        let Crossing { clear, weight, probability, by_pose, .. } = crossing;
+        let seen = self.witnesses.entry(witness).or_insert(Seen {
+            sum: 0.0,
+            clearest: 0.0,
+            best: crossing,
+            sum_by_pose: Wrench::zeros(),
+            clearest_by_pose: Wrench::zeros(),
+        });
         seen.sum += clear * weight;
-        seen.clearest = seen.clearest.max(clear);
+        seen.sum_by_pose += by_pose.clear * weight + by_pose.weight * clear;
+        if clear > seen.clearest {
+            (seen.clearest, seen.clearest_by_pose) = (clear, by_pose.clear);
+        }
         if probability > seen.best.probability {
-            seen.best = *crossing;
+            seen.best = crossing;
         }
         self.last = Some(witness);
     }
@@ -94,6 +111,10 @@ impl Crossings {
 
     /// Clearness of all crossings together at the place where it is most; never less by one more.
     pub(crate) fn clearness(&self) -> f64 {
+        self.clearest_place().map_or(0.0, |(clearness, _)| clearness)
+    }
+
+    fn clearest_place(&self) -> Option<(f64, Heard)> {
         let mut all: Vec<Heard> = self.heard().collect();
         all.sort_by(|p, q| p.place.x.total_cmp(&q.place.x));
         let around = |at: &Heard| {
@@ -101,7 +122,22 @@ impl Crossings {
             let until = |other: &&Heard| other.place.x <= at.place.x + at.reach;
             together(all[from..].iter().take_while(until).copied(), at)
         };
-        all.iter().map(around).fold(0.0, f64::max)
+        let places = all.iter().map(|at| (around(at), *at));
+        places.max_by(|(p, _), (q, _)| p.total_cmp(q))
+    }
+
+    /// What the clearness changes by as the pose does; which crossings are at one place keeps.
+    pub(crate) fn clearness_by_pose(&self) -> Wrench {
+        let Some((_, at)) = self.clearest_place() else { return Wrench::zeros() };
+        let (mut sums, mut by_pose) = ([ONE_SIDED; 2], [Wrench::zeros(); 2]);
+        for (witness, seen) in &self.witnesses {
+            if at.reaches(&seen.best.place) {
+                let side = usize::from(witness.is_of_a());
+                sums[side] += seen.clearness();
+                by_pose[side] += seen.clearness_by_pose();
+            }
+        }
+        (by_pose[0] * sums[1] + by_pose[1] * sums[0]) / (sums[0] * sums[1]).sqrt()
     }
 
     /// The same at the place heard of last: no more than that. Most pairs of leaves add no crossing, and
@@ -125,6 +161,10 @@ impl Heard {
         clearness[usize::from(witness.is_of_a())] = seen.clearness();
         Self { place: seen.best.place, reach: PLACE_SPACINGS * seen.best.spacing, clearness }
     }
+
+    fn reaches(&self, place: &Point3) -> bool {
+        (place - self.place).norm_squared() <= self.reach * self.reach
+    }
 }
 
 /// What the witnesses within reach of one say together.
@@ -135,7 +175,7 @@ impl Heard {
 fn together(others: impl Iterator<Item = Heard>, at: &Heard) -> f64 {
     let mut sums = [ONE_SIDED; 2];
     for other in others {
-        if (other.place - at.place).norm_squared() <= at.reach * at.reach {
+        if at.reaches(&other.place) {
             sums[0] += other.clearness[0];
             sums[1] += other.clearness[1];
         }
@@ -153,6 +193,7 @@ mod tests {
     use cloudtouch_geom::Vector3;
 
     use super::*;
+    use crate::search::crossing::CrossingByPose;
 
     fn crossing(x: f64) -> Crossing {
         Crossing {
@@ -164,6 +205,11 @@ mod tests {
             depth: 0.01,
             std: 0.001,
             spacing: 0.1,
+            by_pose: CrossingByPose {
+                clear: Wrench::zeros(),
+                weight: Wrench::zeros(),
+                depth: Wrench::zeros(),
+            },
         }
     }
 

@@ -10,6 +10,8 @@ use crate::cloud::{Cloud, Surfel};
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 
+use super::wrench::{Wrench, force_at};
+
 /// The point of a cloud that is most clearly inside a closed mesh.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inside {
@@ -25,6 +27,19 @@ pub(crate) struct Inside {
     pub outward: Vector3,
     /// Distance between samples there, m.
     pub spacing: f64,
+}
+
+impl Inside {
+    /// What the depth changes by as the pose does.
+    pub(crate) fn depth_by_pose(&self, mesh_is_a: bool) -> Wrench {
+        let outward = if mesh_is_a { -self.outward } else { self.outward };
+        force_at(&self.place, &outward)
+    }
+
+    /// The same of the deviations.
+    pub(crate) fn deviations_by_pose(&self, mesh_is_a: bool) -> Wrench {
+        self.depth_by_pose(mesh_is_a) * (self.deviations / self.depth)
+    }
 }
 
 /// What looking inside found.

@@ -4,6 +4,8 @@ use cloudtouch_geom::{Matrix3, Point3, UncertainPoint, Vector3, normal};
 
 use crate::cloud::Surfel;
 
+use super::wrench::{Wrench, force_at};
+
 /// No coordinate is known better than this, m: what keeps exact pieces at one place from dividing
 /// nothing by nothing.
 pub(super) const LEAST_STD: f64 = 1e-12;
@@ -84,6 +86,18 @@ impl Meeting {
         let normal = weighted.try_normalize(0.0);
         Some(Self { deviations, place, normal })
     }
+}
+
+/// What the deviations z = √(δᵀ(Σa+Σb)⁻¹δ) of two pieces change by as B moves: Σ⁻¹δ/z per metre at the
+/// place where they would meet, for Σb turns with B. Of a triangle the nearest place keeps to first
+/// order. `None` where they are at one place.
+pub(super) fn deviations_by_pose(a: &UncertainPoint, b: &UncertainPoint) -> Option<Wrench> {
+    let offset = b.mean - a.mean;
+    let joint = a.covariance.sum(&b.covariance);
+    let weighted = solve(&joint.matrix(), &offset)?;
+    let deviations = offset.dot(&weighted).sqrt();
+    let place = a.mean + a.covariance.matrix() * weighted;
+    (deviations > 0.0).then(|| force_at(&place, &(weighted / deviations)))
 }
 
 /// Σ⁻¹v by cofactors, which round evenly for discs of any size; `None` where numbers end. What is

@@ -16,11 +16,15 @@ mod nearest;
 mod run;
 mod swept;
 mod through_mesh;
+mod wrench;
 
 pub(crate) use beyond::least_beyond;
 pub(crate) use crossing::Crossing;
-pub(crate) use inside::{Inside, look_inside};
+pub(crate) use inside::{Inside, Looked, look_inside};
 pub(crate) use leaf::{Leaf, NoisyLeaf};
 pub(crate) use meeting::probability_at;
 pub(crate) use run::{Finding, Found, search};
 pub(crate) use swept::{greatest_depth, reach_of};
+pub(crate) use wrench::{
+    Changes, Wrench, force_at, in_object_frame, of_direction, of_place, way_to_triangle,
+};

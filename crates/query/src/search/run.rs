@@ -17,8 +17,9 @@ use super::gather::{
     may_reach_facets,
 };
 use super::leaf::{Leaf, NoisyLeaf};
-use super::meeting::Meeting;
+use super::meeting::{Meeting, deviations_by_pose};
 use super::nearest::{Nearest, nearest_pieces};
+use super::wrench::Wrench;
 
 /// Places that are more than this many deviations above the least are not looked at ...
 const FURTHER_DEVIATIONS: f64 = 1.5;
@@ -83,6 +84,15 @@ impl<'a> Found<'a> {
     /// least counts.
     pub(crate) fn deviations_of_interest(&self) -> f64 {
         self.deviations.max((self.deviations + FURTHER_DEVIATIONS).min(CLEARLY_FREE))
+    }
+
+    /// What the least deviations change by as the pose does: those of the two pieces that have them.
+    pub(crate) fn deviations_by_pose(&self) -> Wrench {
+        let least = self.findings.iter().map(|finding| &finding.nearest);
+        least
+            .min_by(|p, q| p.squared.total_cmp(&q.squared))
+            .and_then(|nearest| deviations_by_pose(&nearest.a, &nearest.b))
+            .unwrap_or_else(Wrench::zeros)
     }
 
     fn add(

@@ -3,19 +3,28 @@
 use cloudtouch_geom::{Point3, Vector3};
 
 use super::facet::Facet;
+use super::wrench::{Height, Wrench, force_at};
 
 /// What a mesh does near a disc: how far it reaches on either side within the disc's outline, and
 /// how near to the middle it passes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Through {
-    /// The greatest height above and depth below the disc, m; zero or more.
-    pub above: f64,
-    pub below: f64,
+    /// The greatest height above the disc and the lowest below, m; zero where there is none.
+    pub above: Height,
+    pub below: Height,
     /// Distance from the middle of the disc to the nearest place where the mesh passes it, m;
     /// infinite where it does not.
-    pub off: f64,
+    pub off: Height,
     /// That place.
     pub place: Point3,
+}
+
+/// A place of a mesh in the coordinates of a disc, and what its height, or its distance from the middle,
+/// changes by as the mesh moves.
+#[derive(Debug, Clone, Copy)]
+struct Reached {
+    at: Vector3,
+    force: Vector3,
 }
 
 /// A disc, seen along its normal.
@@ -36,26 +45,59 @@ impl Outline {
 
     /// Adds up what some facets do; no height counts beyond the radius.
     pub(super) fn through<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Through {
-        let mut all = Through { above: 0.0, below: 0.0, off: f64::INFINITY, place: self.middle };
+        let level = Reached { at: Vector3::zeros(), force: Vector3::zeros() };
+        let (mut above, mut below, mut nearest) = (level, level, None);
         for facet in facets {
             let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
             if self.is_aside(&corners) {
                 continue;
             }
-            self.visit_heights(facet, &corners, |z| {
-                all.above = all.above.max(z.min(self.radius));
-                all.below = all.below.max((-z).min(self.radius));
+            self.visit_heights(facet, &corners, |reached| {
+                if reached.at.z > above.at.z {
+                    above = reached;
+                }
+                if reached.at.z < below.at.z {
+                    below = reached;
+                }
             });
-            if let Some(place) = passes_nearest(&corners) {
-                let off = place.norm();
-                if off < all.off && off <= self.radius {
-                    all.off = off;
-                    let [x, y] = self.across;
-                    all.place = self.middle + (x * place.x + y * place.y);
+            let passes =
+                passes_nearest(&corners).filter(|reached| reached.at.norm() <= self.radius);
+            if let Some(reached) = passes {
+                let is_nearer = |known: Reached| reached.at.norm() < known.at.norm();
+                if nearest.is_none_or(is_nearer) {
+                    nearest = Some(reached);
                 }
             }
         }
-        all
+        let off = nearest.map_or(f64::INFINITY, |reached| reached.at.norm());
+        Through {
+            above: self.height(&above),
+            below: self.height(&below),
+            off: Height {
+                value: off,
+                by_pose: nearest.map_or_else(Wrench::zeros, |s| self.wrench(&s)),
+            },
+            place: nearest.map_or(self.middle, |reached| self.place(&reached.at)),
+        }
+    }
+
+    /// No height counts beyond the radius.
+    fn height(&self, reached: &Reached) -> Height {
+        let value = reached.at.z.clamp(-self.radius, self.radius);
+        let is_within = value == reached.at.z;
+        Height { value, by_pose: if is_within { self.wrench(reached) } else { Wrench::zeros() } }
+    }
+
+    fn wrench(&self, reached: &Reached) -> Wrench {
+        force_at(&self.place(&reached.at), &self.vector(&reached.force))
+    }
+
+    fn place(&self, local: &Vector3) -> Point3 {
+        self.middle + self.vector(local)
+    }
+
+    fn vector(&self, local: &Vector3) -> Vector3 {
+        self.across[0] * local.x + self.across[1] * local.y + self.normal * local.z
     }
 
     /// Between which heights over the disc these facets are, m; `None` where they are all aside.
@@ -66,7 +108,8 @@ impl Outline {
             if self.is_aside(&corners) {
                 continue;
             }
-            self.visit_heights(facet, &corners, |z| {
+            self.visit_heights(facet, &corners, |Reached { at, .. }| {
+                let z = at.z;
                 let [low, high] = between.unwrap_or([z; 2]);
                 between = Some([z.min(low), z.max(high)]);
             });
@@ -83,7 +126,7 @@ impl Outline {
     }
 
     /// The heights that bound a facet within the cylinder.
-    fn visit_heights(&self, facet: &Facet, corners: &[Vector3; 3], mut visit: impl FnMut(f64)) {
+    fn visit_heights(&self, facet: &Facet, corners: &[Vector3; 3], mut visit: impl FnMut(Reached)) {
         for k in 0..3 {
             let ends = self.ends_within(&corners[k], &corners[(k + 1) % 3]);
             ends.into_iter().flatten().for_each(&mut visit);
@@ -97,8 +140,8 @@ impl Outline {
         Vector3::new(x.dot(vector), y.dot(vector), self.normal.dot(vector))
     }
 
-    /// Heights where an edge enters and leaves the cylinder over the disc.
-    fn ends_within(&self, from: &Vector3, to: &Vector3) -> [Option<f64>; 2] {
+    /// Where an edge enters and leaves the cylinder over the disc.
+    fn ends_within(&self, from: &Vector3, to: &Vector3) -> [Option<Reached>; 2] {
         let (p, d) = (from.xy(), to.xy() - from.xy());
         let (a, b, c) = (d.norm_squared(), p.dot(&d), p.norm_squared() - self.radius * self.radius);
         let [start, end] = if a == 0.0 {
@@ -117,12 +160,22 @@ impl Outline {
         if start > end {
             return [None; 2];
         }
-        [start, end].map(|t| Some(from.z + (to.z - from.z) * t))
+        let along = to - from;
+        [start, end].map(|t| {
+            let at = from + along * t;
+            let mut force = Vector3::z();
+            if t > 0.0 && t < 1.0 {
+                // On the wall it keeps to the wall, by its way along the edge.
+                let outward = Vector3::new(at.x, at.y, 0.0) / self.radius;
+                force -= outward * (along.z / outward.dot(&along));
+            }
+            Some(Reached { at, force })
+        })
     }
 
-    /// Heights of a facet's plane on the rim of the disc, uphill and downhill, where these places
-    /// are on the facet.
-    fn steepest(&self, facet: &Facet, corners: &[Vector3; 3]) -> [Option<f64>; 2] {
+    /// Where a facet's plane is highest and lowest on the rim of the disc, where these places are on
+    /// the facet.
+    fn steepest(&self, facet: &Facet, corners: &[Vector3; 3]) -> [Option<Reached>; 2] {
         let none = [None; 2];
         let Some(normal) = facet.normal else { return none };
         let n = self.local(&normal);
@@ -140,23 +193,33 @@ impl Outline {
             };
             let sides = [side(0), side(1), side(2)];
             let inside = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
-            inside.then_some(z)
+            inside.then(|| Reached { at: Vector3::new(at.x, at.y, z), force: n / n.z })
         })
     }
 }
 
 /// Where a facet passes height zero, nearest to the middle.
-fn passes_nearest(corners: &[Vector3; 3]) -> Option<Vector3> {
+fn passes_nearest(corners: &[Vector3; 3]) -> Option<Reached> {
     let mut ends = (0..3).filter_map(|k| {
         let (from, to) = (corners[k], corners[(k + 1) % 3]);
         let crosses = (from.z < 0.0) != (to.z < 0.0);
-        crosses.then(|| from + (to - from) * (from.z / (from.z - to.z)))
+        crosses.then(|| (from + (to - from) * (from.z / (from.z - to.z)), to - from))
     });
-    let (from, to) = (ends.next()?, ends.next()?);
+    let ((from, edge_from), (to, edge_to)) = (ends.next()?, ends.next()?);
     let along = to - from;
     let length = along.norm_squared();
     let t = if length > 0.0 { (-from.dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    Some(from + along * t)
+    let at = from + along * t;
+    let away = at.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+    let force = if t > 0.0 && t < 1.0 {
+        // Across the line where both planes meet, as the plane of the facet moves.
+        let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+        normal / normal.dot(&away)
+    } else {
+        let edge = if t > 0.0 { edge_to } else { edge_from };
+        away - Vector3::z() * (away.dot(&edge) / edge.z)
+    };
+    Some(Reached { at, force })
 }
 
 #[cfg(test)]
@@ -175,8 +238,8 @@ mod tests {
     fn an_upright_sheet_is_as_high_and_deep_as_the_disc_is_wide() {
         let sheet = facet([[-9.0, 0.03, -9.0], [9.0, 0.03, -9.0], [0.0, 0.03, 9.0]]);
         let through = disc().through([sheet].iter());
-        assert_eq!((through.above, through.below), (0.1, 0.1));
-        assert!((through.off - 0.03).abs() < 1e-12 && through.place.z.abs() < 1e-12);
+        assert_eq!((through.above.value, through.below.value), (0.1, -0.1));
+        assert!((through.off.value - 0.03).abs() < 1e-12 && through.place.z.abs() < 1e-12);
     }
 
     #[test]
@@ -194,18 +257,23 @@ mod tests {
             }
         }
         let (whole, fine) = (disc().through(whole.iter()), disc().through(fine.iter()));
-        assert!((whole.above - 0.06).abs() < 1e-12 && (whole.below - 0.04).abs() < 1e-12);
-        assert!((fine.above - whole.above).abs() < 1e-9 && (fine.below - whole.below).abs() < 1e-9);
-        assert!((fine.off - 0.02).abs() < 1e-9 && (whole.off - 0.02).abs() < 1e-12);
+        let of = |through: &Through| [through.above, through.below, through.off].map(|h| h.value);
+        for (found, known) in of(&whole).into_iter().zip([0.06, -0.04, 0.02]) {
+            assert!((found - known).abs() < 1e-12, "{found} {known}");
+        }
+        for (found, known) in of(&fine).into_iter().zip(of(&whole)) {
+            assert!((found - known).abs() < 1e-9, "{found} {known}");
+        }
     }
 
     #[test]
     fn a_thin_rod_between_samples_passes_and_one_beside_the_disc_does_not() {
         let rod = |x: f64| facet([[x, 0.0, -0.5], [x + 0.002, 0.0, 0.5], [x, 0.002, 0.5]]);
         let through = disc().through([rod(0.07)].iter());
-        assert!(through.above > 0.09 && through.below > 0.09 && (through.off - 0.07).abs() < 2e-3);
-        assert_eq!(disc().through([rod(0.12)].iter()).off, f64::INFINITY);
+        assert!(through.above.value > 0.09 && through.below.value < -0.09);
+        assert!((through.off.value - 0.07).abs() < 2e-3);
+        assert_eq!(disc().through([rod(0.12)].iter()).off.value, f64::INFINITY);
         let above = facet([[0.0, 0.0, 0.01], [0.2, 0.0, 0.01], [0.0, 0.2, 0.5]]);
-        assert_eq!(disc().through([above].iter()).off, f64::INFINITY);
+        assert_eq!(disc().through([above].iter()).off.value, f64::INFINITY);
     }
 }

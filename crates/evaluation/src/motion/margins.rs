@@ -1,9 +1,6 @@
-//! `cargo xtask motion`: how well stated what goes beyond the collision at one pose is.
-
-use std::path::Path;
+//! How likely bodies are within a margin of each other, against how often they are.
 
 use anyhow::{Context, Result};
-use clap::Args;
 use cloudtouch::WITHIN_KNOTS;
 use cloudtouch_testkit::family::Kind;
 
@@ -13,36 +10,16 @@ use crate::{
         Axis, Clusters, Sample, SurfaceSample, calibration_error, chance_error, fit_surface,
     },
     methods::Ours,
-    page::{self, Page, Section},
+    page::Section,
     sweep::{Asked, Plan, SEED, ask},
     table::Table,
-    targets::{self, Findings, Target},
+    targets::{Findings, Target},
 };
-
-/// What `cargo xtask motion` is given.
-#[derive(Debug, Args)]
-pub struct Arguments {
-    /// Draws of each family
-    #[arg(long, default_value_t = 3)]
-    draws: u32,
-    /// Poses of each draw
-    #[arg(long, default_value_t = 20)]
-    poses: usize,
-    /// Fit the log odds of margins to other draws first, and print them
-    #[arg(long)]
-    fit: bool,
-    /// Write docs/lab/motion.md; else it goes to target/lab/
-    #[arg(long)]
-    update_docs: bool,
-}
 
 /// Margins asked about, m.
 const MARGINS: [f64; 3] = [0.01, 0.03, 0.1];
 /// What is stated of a margin may be wrong by this much on average.
 const MOST_ERROR: f64 = 0.05;
-
-const INTRODUCTION: &str = "What a query says of margins, judged against the exact distance of the \
-surfaces on generated scenes.";
 
 const MARGIN: &str = "The bodies of the sweep's scenes, at its poses and noises, asked how likely they \
 are nearer to one another than a margin. *Nearer*: share of the poses where the exact surfaces are. \
@@ -50,20 +27,15 @@ are nearer to one another than a margin. *Nearer*: share of the poses where the 
 *worst family*: the same of the ordinary family where it is largest. The log odds of margins were \
 fitted on other draws of the same families, at 3 and 10 cm.";
 
-/// Fits where asked to, measures, and writes the page.
-///
-/// # Errors
-/// When a query fails or the page cannot be written.
-pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
-    let Arguments { draws, poses, fit, update_docs } = *arguments;
-    if fit {
-        println!("{:?}", fit_margins(&answers(Plan::evidence(draws, poses))?)?);
-    }
-    let command = format!("--draws {draws} --poses {poses} --update-docs");
-    let page = Page::new(("motion", "Margins"), ("motion", &command), INTRODUCTION, root, SEED);
-    let measure = || margins(&answers(Plan::full(draws, poses))?);
-    targets::report(page, &page::folder(root, update_docs), "", &[("margins", &measure)])?;
+/// Log odds at the knots fitted to some draws, printed.
+pub(super) fn fit(draws: u32, poses: usize) -> Result<()> {
+    println!("{:?}", fit_margins(&answers(Plan::evidence(draws, poses))?)?);
     Ok(())
+}
+
+/// How well stated margins are.
+pub(super) fn measure(draws: u32, poses: usize) -> Findings {
+    margins(&answers(Plan::full(draws, poses))?)
 }
 
 fn answers(mut plan: Plan) -> Result<Answers> {

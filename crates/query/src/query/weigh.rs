@@ -1,0 +1,70 @@
+//! The evidence of one pair of bodies: the search, and the classifier where that leaves doubt.
+
+use cloudtouch_geom::Pose;
+
+use crate::body::BodyRef;
+use crate::error::QueryError;
+use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
+use crate::report::Stats;
+use crate::search::{Found, Looked, look_inside, search};
+
+use super::classify::{Misclassified, ask_classifier};
+use super::settings::Detail;
+use super::task::Task;
+
+/// What a probability rests on, and where that was found.
+#[derive(Debug)]
+pub(super) struct Weighed<'a> {
+    pub found: Found<'a>,
+    pub looked: Looked,
+    /// Without what the classifier says.
+    pub of_geometry: ContactEvidence,
+    /// Log odds by that alone.
+    pub by_geometry: f64,
+    pub misclassified: Misclassified,
+    /// Whether what was left out can change nothing.
+    pub is_complete: bool,
+}
+
+/// Gathers the evidence of two bodies, of which one is a cloud.
+pub(super) fn weigh<'a>(
+    (a, b): (BodyRef<'a>, BodyRef<'a>),
+    a_from_b: &Pose,
+    task: &Task<'_>,
+    stats: &mut Stats,
+) -> Result<Weighed<'a>, QueryError> {
+    let (settings, judge) = (task.settings, &task.settings.judge);
+    let looked = look_inside((a, b), a_from_b, &task.clock);
+    stats.nodes_visited += looked.nodes_visited;
+    stats.leaves_prepared += looked.leaves_prepared;
+    let depth = looked.deepest.map_or(0.0, |inside| inside.deviations);
+    let of = |log_odds| probability(log_odds, settings.prior);
+    let is_enough = |deviations: f64, clearness: f64| {
+        let log_odds = judge.log_odds_by_geometry(deviations - depth, clearness.ln_1p());
+        // More evidence only raises the odds; what a classifier could take off them is taken off.
+        let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
+        of(log_odds) > settings.stop_above
+            || settings.detail == Detail::Verdict && is_decided()
+            || task.clock.is_over()
+    };
+    let found = search((a, b), a_from_b, is_enough, stats)?;
+    let deviations = (found.deviations - depth).max(-MOST_DEVIATIONS);
+    let crossing = found.crossings.clearness().ln_1p();
+    let of_geometry = ContactEvidence { deviations, crossing, misclassified: None };
+    let by_geometry = judge.log_odds_by_geometry(deviations, crossing);
+    let is_complete = found.is_complete && !looked.is_cut_short;
+
+    // Whatever a classifier says, the verdict is the same.
+    let is_settled = || {
+        of(judge.revise(by_geometry, f64::INFINITY)) < settings.reject
+            || of(judge.revise(by_geometry, 0.0)) > settings.accept
+    };
+    let is_open = judge.is_open(by_geometry);
+    let is_wanted = is_open && !(settings.detail == Detail::Verdict && is_settled());
+    let misclassified = if is_complete && is_wanted {
+        ask_classifier((a, b), a_from_b, &found, by_geometry, task, stats)?
+    } else {
+        Misclassified::NOT_ASKED
+    };
+    Ok(Weighed { found, looked, of_geometry, by_geometry, misclassified, is_complete })
+}
