@@ -29,7 +29,7 @@ pub(crate) fn answer(
     let reports: PyResult<Vec<Report>> = reports.into_iter().enumerate().map(failed).collect();
     let reports = reports?;
     let bodies = vec![drawn("a", a), drawn("b", b)];
-    let view = |(index, (pose, report))| View {
+    let views = poses.iter().zip(&reports).enumerate().map(|(index, (pose, report))| View {
         name: format!("pose {index}"),
         scene: 0,
         object: 1,
@@ -37,8 +37,8 @@ pub(crate) fn answer(
         report,
         placement: None,
         more: Vec::new(),
-    };
-    let views = poses.iter().zip(&reports).enumerate().map(view).collect();
+    });
+    let views = views.collect();
     let page = Page { title: title.to_owned(), bodies, views, ..Page::default() };
     Ok(py.detach(|| height.map_or_else(|| page.html(), |height| notebook_frame(&page, height))))
 }
