@@ -1,20 +1,23 @@
 //! The command line.
 
 mod caution;
+mod common;
+mod limits;
+mod parse;
 mod pose;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use cloudtouch::{FilterSettings, OutlierSettings, PaperSettings, Pooling, QuerySettings};
-use cloudtouch_cli::numbers::{self, Rigid};
-use cloudtouch_io::{LengthUnit, ReadLimits};
+use clap::{Args, Parser, Subcommand};
+use cloudtouch_cli::numbers;
+use cloudtouch_io::LengthUnit;
 
 use crate::sensor::SensorChoice;
-use crate::settings_file::{self, Settings};
 
 pub(crate) use caution::Refine;
-use caution::{CautionArguments, EffortArguments};
+pub(crate) use common::{CommonArguments, ModeName};
+use limits::LimitArguments;
+use parse::{parse_fraction, parse_sensor_for};
 pub(crate) use pose::PoseArguments;
 
 /// Sensor specs, for the help of the commands that take them.
@@ -278,29 +281,6 @@ pub(crate) struct InfoArguments {
     pub limits: LimitArguments,
 }
 
-/// How large a file may be.
-#[derive(Debug, Args)]
-pub(crate) struct LimitArguments {
-    /// Read at most this many points of a file
-    #[arg(long, value_name = "N", default_value_t = ReadLimits::default().points,
-          help_heading = "Limits")]
-    max_points: usize,
-    /// Read at most this many triangles of a file
-    #[arg(long, value_name = "N", default_value_t = ReadLimits::default().triangles,
-          help_heading = "Limits")]
-    max_triangles: usize,
-    /// Read at most this many bytes of a file
-    #[arg(long, value_name = "N", default_value_t = ReadLimits::default().bytes,
-          help_heading = "Limits")]
-    max_bytes: u64,
-}
-
-impl LimitArguments {
-    pub(crate) fn read_limits(&self) -> ReadLimits {
-        ReadLimits { bytes: self.max_bytes, points: self.max_points, triangles: self.max_triangles }
-    }
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct DemoArguments {
     /// How to estimate: calibrated, or paper (as printed)
@@ -312,214 +292,4 @@ pub(crate) struct DemoArguments {
     /// Replace an output file that is there already
     #[arg(long)]
     pub force: bool,
-}
-
-/// What query and batch share.
-#[derive(Debug, Args)]
-pub(crate) struct CommonArguments {
-    /// Sensor of scene clouds; see below
-    #[arg(long, value_name = "SPEC", default_value = "iso:0.005", help_heading = "Files")]
-    pub sensor: SensorChoice,
-    /// Sensor of object clouds; that of the scene when not given
-    #[arg(long, value_name = "SPEC", help_heading = "Files")]
-    pub object_sensor: Option<SensorChoice>,
-    /// Where the sensor of scene clouds stood in their frame; a camera looks along its own z
-    #[arg(long, value_name = "X,Y,Z[,QX,QY,QZ,QW]", value_parser = numbers::rigid,
-          allow_hyphen_values = true, help_heading = "Files")]
-    pub sensor_pose: Option<Rigid>,
-    /// Unit of meshes: m, cm, mm or in [m]
-    #[arg(long, help_heading = "Files")]
-    pub unit: Option<LengthUnit>,
-    /// Unit of clouds: m, cm, mm or in [m]
-    #[arg(long, value_name = "UNIT", help_heading = "Files")]
-    pub cloud_unit: Option<LengthUnit>,
-    /// How to estimate: calibrated, or paper (as printed)
-    #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated, help_heading = "Estimate")]
-    pub mode: ModeName,
-    /// In collision above this probability, 0.5 to 1 [0.9]
-    #[arg(long, value_name = "A", value_parser = parse_accept, help_heading = "Estimate")]
-    pub accept: Option<f64>,
-    /// Free below this probability, 0 to 0.5 [0.1]
-    #[arg(long, value_name = "B", value_parser = parse_reject, help_heading = "Estimate")]
-    pub reject: Option<f64>,
-    /// Paper: its settings, as `cloudtouch settings` prints them
-    #[arg(long, value_name = "FILE", value_parser = settings_file::read,
-          help_heading = "Estimate")]
-    pub settings: Option<Settings>,
-    /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
-    #[arg(long, value_name = "P", value_parser = parse_fraction, help_heading = "Estimate")]
-    pub prior: Option<f64>,
-    /// Calibrated: also how likely the bodies are nearer than this
-    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Estimate")]
-    pub margin: Option<f64>,
-    /// Paper: how point probabilities make one: max, or noisy-or [max]
-    #[arg(long, value_enum, hide_possible_values = true, help_heading = "Estimate")]
-    pub pooling: Option<PoolingName>,
-    /// Paper: seed of the stochastic traversal [0]
-    #[arg(long, value_name = "N", help_heading = "Estimate")]
-    pub seed: Option<u64>,
-    /// Drop points nearer to the sensor [cameras and lidar: 0.1]
-    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
-    pub min_range: Option<f64>,
-    /// Drop points farther from the sensor
-    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
-    pub max_range: Option<f64>,
-    /// Drop outliers: neighbours and standard deviations, such as 8,3
-    #[arg(long, value_name = "K,M", value_parser = parse_outliers, help_heading = "Cleaning")]
-    pub outliers: Option<OutlierSettings>,
-    /// Keep veil points at depth edges, which are dropped for cameras
-    #[arg(long, help_heading = "Cleaning")]
-    pub keep_veil: bool,
-    /// Replace scene points by the occupied cells of a grid
-    #[arg(long, value_name = "METRES", value_parser = parse_positive, help_heading = "Cleaning")]
-    pub collision_map: Option<f64>,
-    /// Robot link in the scene's frame: points inside go; repeatable
-    #[arg(long, value_name = "MESH", help_heading = "Cleaning")]
-    pub robot: Vec<PathBuf>,
-    /// Points this near to a robot link go too
-    #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length,
-          requires = "robot", help_heading = "Cleaning")]
-    pub robot_padding: f64,
-    #[command(flatten)]
-    caution: CautionArguments,
-    #[command(flatten)]
-    pub effort: EffortArguments,
-    #[command(flatten)]
-    pub limits: LimitArguments,
-}
-
-impl CommonArguments {
-    pub(crate) fn query_settings(&self) -> QuerySettings {
-        let usual = QuerySettings::default();
-        QuerySettings {
-            accept: self.accept.unwrap_or(usual.accept),
-            reject: self.reject.unwrap_or(usual.reject),
-            prior: self.prior.unwrap_or(usual.prior),
-            deadline: self.effort.deadline(),
-            safeguards: self.caution.safeguards(usual.safeguards),
-            ..usual
-        }
-    }
-
-    pub(crate) fn paper_settings(&self) -> PaperSettings {
-        let usual = self.settings.map_or_else(PaperSettings::default, |file| file.query);
-        PaperSettings {
-            accept: self.accept.unwrap_or(usual.accept),
-            reject: self.reject.unwrap_or(usual.reject),
-            pooling: self.pooling.map_or(usual.pooling, Pooling::from),
-            seed: self.seed.unwrap_or(usual.seed),
-            deadline: self.effort.deadline().or(usual.deadline),
-            safeguards: self.caution.safeguards(usual.safeguards),
-            ..usual
-        }
-    }
-
-    /// Refuses options that the mode has no use for; `more` are of the paper's mode, and whether they
-    /// are given.
-    fn check(&self, more: &[(&str, bool)]) -> Result<(), String> {
-        let of_the_paper = [
-            ("--pooling", self.pooling.is_some()),
-            ("--seed", self.seed.is_some()),
-            ("--settings", self.settings.is_some()),
-        ];
-        match of_the_paper.iter().chain(more).find(|(_, is_given)| *is_given) {
-            Some((name, _)) if self.mode == ModeName::Calibrated => Err(format!(
-                "{name} has no effect in the calibrated mode: leave it out, or give --mode paper"
-            )),
-            _ if self.mode == ModeName::Paper && self.margin.is_some() => {
-                Err("--margin has no effect in the paper's mode: leave it out".to_owned())
-            }
-            _ if self.mode == ModeName::Paper && self.prior.is_some() => {
-                Err("--prior has no effect in the paper's mode: leave it out".to_owned())
-            }
-            _ if self.mode == ModeName::Paper && self.effort.refine == Refine::Yes => {
-                Err("--refine has no effect in the paper's mode: leave it out".to_owned())
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Changes the cleaning that suits a sensor; the robot and the collision map concern scenes only.
-    pub(crate) fn change(&self, filter: &mut FilterSettings) {
-        filter.min_range = self.min_range.unwrap_or(filter.min_range);
-        filter.max_range = self.max_range.unwrap_or(filter.max_range);
-        filter.outliers = self.outliers;
-        if self.keep_veil {
-            filter.veil = None;
-        }
-    }
-}
-
-/// Name of a mode on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ModeName {
-    Calibrated,
-    Paper,
-}
-
-/// Name of a way of pooling on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PoolingName {
-    Max,
-    NoisyOr,
-}
-
-impl From<PoolingName> for Pooling {
-    fn from(name: PoolingName) -> Self {
-        match name {
-            PoolingName::Max => Self::Max,
-            PoolingName::NoisyOr => Self::NoisyOr,
-        }
-    }
-}
-
-fn parse_length(text: &str) -> Result<f64, String> {
-    let length = numbers::finite(text)?;
-    if length >= 0.0 { Ok(length) } else { Err("a length in metres is 0 or more".to_owned()) }
-}
-
-fn parse_positive(text: &str) -> Result<f64, String> {
-    let length = numbers::finite(text)?;
-    if length > 0.0 { Ok(length) } else { Err("it must be above 0, such as 0.01".to_owned()) }
-}
-
-fn parse_fraction(text: &str) -> Result<f64, String> {
-    let fraction = numbers::finite(text)?;
-    let is_between = fraction > 0.0 && fraction < 1.0;
-    if is_between { Ok(fraction) } else { Err("give a number above 0 and below 1".to_owned()) }
-}
-
-fn parse_accept(text: &str) -> Result<f64, String> {
-    let accept = numbers::finite(text)?;
-    if (0.5..=1.0).contains(&accept) { Ok(accept) } else { Err("give 0.5 to 1".to_owned()) }
-}
-
-fn parse_reject(text: &str) -> Result<f64, String> {
-    let reject = numbers::finite(text)?;
-    if (0.0..=0.5).contains(&reject) { Ok(reject) } else { Err("give 0 to 0.5".to_owned()) }
-}
-
-/// More neighbours than this take minutes and smooth everything away.
-const MOST_NEIGHBORS: usize = 200;
-
-fn parse_outliers(text: &str) -> Result<OutlierSettings, String> {
-    let form = "write neighbours and standard deviations, as in 8,3";
-    let (neighbors, deviations) = text.split_once(',').ok_or_else(|| form.to_owned())?;
-    match neighbors.trim().parse::<usize>() {
-        Ok(neighbors) if neighbors > MOST_NEIGHBORS => Err(format!(
-            "{neighbors} neighbours are too many: 8 are usual, {MOST_NEIGHBORS} the most"
-        )),
-        Ok(neighbors) if neighbors > 0 => {
-            Ok(OutlierSettings { neighbors, deviations: numbers::finite(deviations)? })
-        }
-        _ => Err(format!("`{neighbors}` is not a number of neighbours: {form}")),
-    }
-}
-
-fn parse_sensor_for(text: &str) -> Result<(String, SensorChoice), String> {
-    let (name, spec) = text
-        .split_once('=')
-        .ok_or_else(|| format!("`{text}`: write NAME=SPEC, as in mug=kinect"))?;
-    let sensor = spec.parse::<SensorChoice>().map_err(|error| error.to_string())?;
-    Ok((name.to_owned(), sensor))
 }

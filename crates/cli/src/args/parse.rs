@@ -1,0 +1,57 @@
+//! Numbers of options, with what they may be.
+
+use cloudtouch::OutlierSettings;
+use cloudtouch_cli::numbers;
+
+use crate::sensor::SensorChoice;
+
+pub(super) fn parse_length(text: &str) -> Result<f64, String> {
+    let length = numbers::finite(text)?;
+    if length >= 0.0 { Ok(length) } else { Err("a length in metres is 0 or more".to_owned()) }
+}
+
+pub(super) fn parse_positive(text: &str) -> Result<f64, String> {
+    let length = numbers::finite(text)?;
+    if length > 0.0 { Ok(length) } else { Err("it must be above 0, such as 0.01".to_owned()) }
+}
+
+pub(super) fn parse_fraction(text: &str) -> Result<f64, String> {
+    let fraction = numbers::finite(text)?;
+    let is_between = fraction > 0.0 && fraction < 1.0;
+    if is_between { Ok(fraction) } else { Err("give a number above 0 and below 1".to_owned()) }
+}
+
+pub(super) fn parse_accept(text: &str) -> Result<f64, String> {
+    let accept = numbers::finite(text)?;
+    if (0.5..=1.0).contains(&accept) { Ok(accept) } else { Err("give 0.5 to 1".to_owned()) }
+}
+
+pub(super) fn parse_reject(text: &str) -> Result<f64, String> {
+    let reject = numbers::finite(text)?;
+    if (0.0..=0.5).contains(&reject) { Ok(reject) } else { Err("give 0 to 0.5".to_owned()) }
+}
+
+/// More neighbours than this take minutes and smooth everything away.
+const MOST_NEIGHBORS: usize = 200;
+
+pub(super) fn parse_outliers(text: &str) -> Result<OutlierSettings, String> {
+    let form = "write neighbours and standard deviations, as in 8,3";
+    let (neighbors, deviations) = text.split_once(',').ok_or_else(|| form.to_owned())?;
+    match neighbors.trim().parse::<usize>() {
+        Ok(neighbors) if neighbors > MOST_NEIGHBORS => Err(format!(
+            "{neighbors} neighbours are too many: 8 are usual, {MOST_NEIGHBORS} the most"
+        )),
+        Ok(neighbors) if neighbors > 0 => {
+            Ok(OutlierSettings { neighbors, deviations: numbers::finite(deviations)? })
+        }
+        _ => Err(format!("`{neighbors}` is not a number of neighbours: {form}")),
+    }
+}
+
+pub(super) fn parse_sensor_for(text: &str) -> Result<(String, SensorChoice), String> {
+    let (name, spec) = text
+        .split_once('=')
+        .ok_or_else(|| format!("`{text}`: write NAME=SPEC, as in mug=kinect"))?;
+    let sensor = spec.parse::<SensorChoice>().map_err(|error| error.to_string())?;
+    Ok((name.to_owned(), sensor))
+}
