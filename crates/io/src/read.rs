@@ -194,7 +194,7 @@ pub fn check_extension(path: impl AsRef<Path>) -> Result<(), ReadError> {
 }
 
 /// What [`read_geometry`] reads.
-const EVERYTHING: &str = ".pcd, .ply, .xyz, .txt, .csv, .stl, .obj, .mcap";
+const EVERYTHING: &str = ".pcd, .ply, .xyz, .txt, .csv, .stl, .obj";
 
 type Parser<T> = fn(&[u8], &ReadLimits) -> Result<T, FormatError>;
 

@@ -48,7 +48,7 @@ pub fn parse_within(
 ) -> Result<Scan, FormatError> {
     let mut cursor = Cursor::new(bytes, encoding)?;
     let header = header::read(&mut cursor, encoding)?;
-    let promised = header.width.checked_mul(header.height).unwrap_or(usize::MAX);
+    let promised = header.width.saturating_mul(header.height);
     limits.check_points(promised, header.size_place)?;
 
     let length = cursor.u32("the length of data")? as usize;
