@@ -136,7 +136,7 @@ fn errors_say_where_what_and_what_to_do() {
 }
 
 #[test]
-fn an_empty_scan_of_endless_height_took_for_ever() {
+fn an_empty_scan_of_endless_height_ends() {
     let message = Message { width: 0, height: u32::MAX, data: Vec::new(), ..triple() };
     assert!(parse(&message.bytes(Wire::Ros1), Encoding::Ros1).unwrap().cloud.is_empty());
 }
