@@ -41,6 +41,7 @@ Examples:
   cloudtouch path scan.pcd gripper.stl --poses approach.csv
   cloudtouch scene workcell.json
   cloudtouch batch cases.json --jsonl answers.jsonl
+  cloudtouch query run.mcap#/points@12.5 gripper.stl   (built with --features mcap)
 
 Exit codes: 0 done, 1 error, 2 wrong usage; query --exit-code tells the verdict.";
 
@@ -269,7 +270,7 @@ pub(crate) struct BatchArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArguments {
-    /// Cloud or mesh file (.pcd .ply .xyz .txt .csv .stl .obj)
+    /// Cloud or mesh file (.pcd .ply .xyz .txt .csv .stl .obj), or a recording (.mcap)
     pub file: PathBuf,
     /// Length unit of a mesh file: m, cm, mm or in [m]
     #[arg(long)]

@@ -10,7 +10,7 @@ use cloudtouch::{Mesh, SelfMesh};
 use cloudtouch_cli::numbers::Rigid;
 use cloudtouch_io::{
     Geometry, LengthUnit, ReadLimits, check_extension, read_geometry_within, read_mesh_within,
-    scaled_cloud,
+    recording::file_of, scaled_cloud,
 };
 use serde::Serialize;
 
@@ -207,8 +207,8 @@ impl Units {
 /// Whether a file is there and has an extension that is read: asked of all files before any is read.
 pub(crate) fn check(path: &Path) -> Result<()> {
     // Said before the extension is looked at: `cloudtouch query folder …` is not about extensions.
-    let found =
-        std::fs::metadata(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    let found = std::fs::metadata(file_of(path))
+        .with_context(|| format!("{}: cannot be read", path.display()))?;
     ensure!(!found.is_dir(), "{}: is a folder: give a cloud or mesh file", path.display());
     Ok(check_extension(path)?)
 }

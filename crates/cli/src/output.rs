@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
+use cloudtouch_io::recording::file_of;
 
 /// Whether a file may be written: it is none of the inputs, and not there unless `force` is given. A
 /// pipe or a device may be.
@@ -12,7 +13,9 @@ pub(crate) fn check<'a>(
     force: bool,
 ) -> Result<()> {
     let Ok(existing) = std::fs::canonicalize(output) else { return Ok(()) };
-    let is_input = |path: &Path| std::fs::canonicalize(path).is_ok_and(|path| path == existing);
+    // The input of a scan's name is the recording it is in.
+    let is_input =
+        |path: &Path| std::fs::canonicalize(file_of(path)).is_ok_and(|path| path == existing);
     if inputs.into_iter().any(is_input) {
         bail!("{}: is an input of this very command: write to another file", output.display());
     }

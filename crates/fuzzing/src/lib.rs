@@ -8,15 +8,16 @@ mod readers;
 pub use cases::case_file;
 pub use options::options;
 pub use query::query;
-pub use readers::{read_obj, read_pcd, read_ply, read_stl, read_xyz};
+pub use readers::{read_obj, read_pcd, read_ply, read_pointcloud2, read_stl, read_xyz};
 
 /// A target: takes bytes, and panics when the code under test does what it must not.
 pub type Target = fn(&[u8]);
 
 /// Every target under the name of its folder of seeds.
-pub const TARGETS: [(&str, Target); 8] = [
+pub const TARGETS: [(&str, Target); 9] = [
     ("read_pcd", read_pcd),
     ("read_ply", read_ply),
+    ("read_pointcloud2", read_pointcloud2),
     ("read_xyz", read_xyz),
     ("read_stl", read_stl),
     ("read_obj", read_obj),

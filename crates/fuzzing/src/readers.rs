@@ -1,5 +1,6 @@
 //! File readers: any bytes give a cloud or mesh that they back, or an error that says where.
 
+use cloudtouch_io::pointcloud2::{self, Encoding};
 use cloudtouch_io::{FormatError, Geometry, obj, pcd, ply, stl, xyz};
 
 /// What LZF makes of a byte at most; a compressed PCD may hold a point in every unpacked byte.
@@ -30,6 +31,17 @@ pub fn read_ply(bytes: &[u8]) {
 /// As [`read_pcd`].
 pub fn read_xyz(bytes: &[u8]) {
     check(bytes, 1, xyz::parse(bytes).map(Geometry::Cloud));
+}
+
+/// Bytes as a message of either version of ROS.
+///
+/// # Panics
+/// As [`read_pcd`].
+pub fn read_pointcloud2(bytes: &[u8]) {
+    for encoding in [Encoding::Cdr, Encoding::Ros1] {
+        let scan = pointcloud2::parse(bytes, encoding);
+        check(bytes, 1, scan.map(|scan| Geometry::Cloud(scan.cloud)));
+    }
 }
 
 /// Bytes as an STL file.

@@ -5,7 +5,8 @@ use std::path::Path;
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud};
 
 use crate::{
-    error::{Fault, FormatError, Place, WriteError},
+    error::WriteError,
+    fault::{Fault, FormatError, Place},
     limits::ReadLimits,
 };
 

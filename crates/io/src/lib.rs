@@ -3,12 +3,15 @@
 mod atomic;
 mod builder;
 mod error;
+mod fault;
 mod geometry;
 mod limits;
 pub mod obj;
 pub mod pcd;
 pub mod ply;
+pub mod pointcloud2;
 mod read;
+pub mod recording;
 mod scalar;
 pub mod stl;
 mod text;
@@ -16,7 +19,8 @@ mod unit;
 pub mod xyz;
 
 pub use atomic::write_atomically;
-pub use error::{Fault, FormatError, Place, ReadError, WriteError};
+pub use error::{ReadError, WriteError};
+pub use fault::{Fault, FormatError, Place};
 pub use geometry::Geometry;
 pub use limits::ReadLimits;
 pub use obj::write_mesh_obj;
@@ -24,6 +28,6 @@ pub use pcd::write_cloud_pcd;
 pub use ply::{write_cloud_ply, write_colored_ply};
 pub use read::{
     check_extension, read_bytes, read_cloud, read_cloud_within, read_colors_within, read_geometry,
-    read_geometry_within, read_mesh, read_mesh_within, scaled_cloud,
+    read_geometry_within, read_mesh, read_mesh_within, read_scan_within, scaled_cloud,
 };
 pub use unit::{LengthUnit, UnknownUnit};

@@ -1,6 +1,6 @@
 //! How large a file may be: a header can promise anything, and memory ends before disks do.
 
-use crate::error::{Fault, FormatError, Place};
+use crate::fault::{Fault, FormatError, Place};
 
 /// What is read at most; beyond it there is an error, before the memory is taken.
 ///

@@ -10,7 +10,8 @@ use cloudtouch_geom::{Point3, TriangleMesh};
 
 use crate::{
     atomic::write_atomically,
-    error::{Fault, FormatError, Place, WriteError},
+    error::WriteError,
+    fault::{Fault, FormatError, Place},
     limits::ReadLimits,
     text::{Lines, excerpt, finite_triple, parse as parse_number, words},
 };

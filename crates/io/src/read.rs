@@ -8,16 +8,22 @@ use std::{
 
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 
+#[cfg(feature = "mcap")]
+use crate::recording::Recording;
 use crate::{
-    error::{Fault, FormatError, Place, ReadError},
+    error::ReadError,
+    fault::{Fault, FormatError, Place},
     geometry::Geometry,
     limits::ReadLimits,
-    obj, pcd, ply, stl,
+    obj, pcd, ply,
+    recording::{RecordedScan, ScanName},
+    stl,
     unit::LengthUnit,
     xyz,
 };
 
-/// Reads a point cloud in metres: `.pcd`, `.ply`, `.xyz`, `.txt` or `.csv`.
+/// Reads a point cloud in metres: `.pcd`, `.ply`, `.xyz`, `.txt` or `.csv`; with the feature `mcap`
+/// also a scan of a recording, see [`read_scan_within`].
 ///
 /// Rows without a return stay as NaN rows. Of a PLY with faces the vertices are taken.
 ///
@@ -45,6 +51,7 @@ pub fn read_cloud_within(
             })
         },
         "xyz" | "txt" | "csv" => xyz::parse_within,
+        "mcap" => return Ok(read_scan_within(path, limits)?.scan.cloud),
         _ => return Err(unsupported(path, ".pcd, .ply, .xyz, .txt, .csv (point clouds)")),
     };
     read(path, parse, limits)
@@ -105,6 +112,7 @@ pub fn read_geometry_within(
     limits: &ReadLimits,
 ) -> Result<Geometry, ReadError> {
     let path = path.as_ref();
+    let factor = unit.in_metres();
     let parse: Parser<Geometry> = match extension(path).as_str() {
         "pcd" => |bytes, limits| pcd::parse_within(bytes, limits).map(Geometry::Cloud),
         "xyz" | "txt" | "csv" => {
@@ -113,13 +121,43 @@ pub fn read_geometry_within(
         "stl" => |bytes, limits| stl::parse_within(bytes, limits).map(Geometry::Mesh),
         "obj" => |bytes, limits| obj::parse_within(bytes, limits).map(Geometry::Mesh),
         "ply" => ply::parse_within,
+        "mcap" => {
+            let cloud = read_scan_within(path, limits)?.scan.cloud;
+            return Ok(Geometry::Cloud(scaled_cloud(cloud, factor)));
+        }
         _ => return Err(unsupported(path, EVERYTHING)),
     };
-    let factor = unit.in_metres();
     Ok(match read(path, parse, limits)? {
         Geometry::Cloud(cloud) => Geometry::Cloud(scaled_cloud(cloud, factor)),
         Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(factor)),
     })
+}
+
+/// Reads a scan of a recording, `run.mcap#/topic@SECONDS`, as [`ScanName`] explains it.
+///
+/// The cloud is in the frame of the message: transforms of the recording are not applied.
+///
+/// # Errors
+/// When the path names no recording or no time, the recording cannot be read or has no such scan,
+/// or the message is malformed. Always in a build without the feature `mcap`.
+pub fn read_scan_within(
+    path: impl AsRef<Path>,
+    limits: &ReadLimits,
+) -> Result<RecordedScan, ReadError> {
+    let path = path.as_ref();
+    let name =
+        ScanName::of(path).unwrap_or_else(|| Err(unsupported(path, ".mcap (recordings)")))?;
+    recorded(&name, limits)
+}
+
+#[cfg(feature = "mcap")]
+fn recorded(name: &ScanName, limits: &ReadLimits) -> Result<RecordedScan, ReadError> {
+    Recording::open(&name.file, limits)?.scan(name.topic.as_deref(), name.at)
+}
+
+#[cfg(not(feature = "mcap"))]
+fn recorded(name: &ScanName, _: &ReadLimits) -> Result<RecordedScan, ReadError> {
+    Err(ReadError::NoRecordings { path: name.file.clone() })
 }
 
 /// Red, green and blue of every row of a cloud; `None` where the file has none.
@@ -138,14 +176,19 @@ pub fn read_colors_within(
     }
 }
 
-/// Whether the extension of a file is one that is read, without a look at the file.
+/// Whether the extension of a file is one that is read, without a look at the file; the name of a
+/// scan in a recording has to be well formed.
 ///
 /// # Errors
 /// When it is not.
 pub fn check_extension(path: impl AsRef<Path>) -> Result<(), ReadError> {
     let path = path.as_ref();
-    match extension(path).as_str() {
-        "pcd" | "xyz" | "txt" | "csv" | "stl" | "obj" | "ply" => Ok(()),
+    match (extension(path).as_str(), ScanName::of(path)) {
+        (_, Some(Ok(name))) if !cfg!(feature = "mcap") => {
+            Err(ReadError::NoRecordings { path: name.file })
+        }
+        (_, Some(name)) => name.map(|_| ()),
+        ("pcd" | "xyz" | "txt" | "csv" | "stl" | "obj" | "ply", None) => Ok(()),
         _ => Err(unsupported(path, EVERYTHING)),
     }
 }
@@ -184,6 +227,10 @@ pub fn read_bytes(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, ReadErr
 }
 
 fn extension(path: &Path) -> String {
+    // A topic may end as a file does.
+    if ScanName::of(path).is_some() {
+        return "mcap".to_owned();
+    }
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 

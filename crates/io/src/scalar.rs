@@ -1,4 +1,4 @@
-//! The binary numbers that PCD and PLY know.
+//! The binary numbers that PCD, PLY and PointCloud2 know.
 
 /// A type of number in a binary file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

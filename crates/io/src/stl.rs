@@ -3,7 +3,7 @@
 use cloudtouch_geom::{Point3, TriangleMesh};
 
 use crate::{
-    error::{Fault, FormatError, Place},
+    fault::{Fault, FormatError, Place},
     limits::ReadLimits,
     scalar::{ByteOrder, Scalar},
     text::{Lines, excerpt, finite_triple, is_padding, words},

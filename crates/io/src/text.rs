@@ -1,6 +1,6 @@
 //! Lines, words and numbers of text that may be hostile: bytes, not necessarily UTF-8.
 
-use crate::error::{Fault, FormatError, Place};
+use crate::fault::{Fault, FormatError, Place};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 

@@ -4,7 +4,7 @@ use cloudtouch_geom::PointCloud;
 
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
-    error::{Fault, FormatError, Place},
+    fault::{Fault, FormatError, Place},
     limits::ReadLimits,
     text::{Lines, excerpt, number, parse as parse_number, words},
 };

@@ -21,6 +21,12 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
         meshes: arguments.unit.unwrap_or_default(),
         clouds: arguments.cloud_unit.unwrap_or_default(),
     };
+    #[cfg(feature = "mcap")]
+    if let Some(name) = cloudtouch_io::recording::ScanName::of(&arguments.file) {
+        load::check(&arguments.file)?;
+        let text = super::recording::describe(&name?, arguments, describe_cloud)?;
+        return answer(arguments, &text);
+    }
     let text = match load::geometry(&arguments.file, units, &arguments.limits.read_limits())? {
         Geometry::Cloud(_) if arguments.unit.is_some() => {
             bail!("--unit is for meshes, and this is a cloud: give --cloud-unit")
@@ -31,6 +37,10 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
         Geometry::Cloud(cloud) => describe_cloud(&cloud)?,
         Geometry::Mesh(mesh) => describe_mesh(&mesh),
     };
+    answer(arguments, &text)
+}
+
+fn answer(arguments: &InfoArguments, text: &str) -> Result<ExitCode> {
     print::to_stdout(&format!("{}\n{text}\n", arguments.file.display()))?;
     Ok(ExitCode::SUCCESS)
 }

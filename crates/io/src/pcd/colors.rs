@@ -2,7 +2,7 @@
 
 use super::header::{self, Data};
 use super::parse::parse_columns;
-use crate::{error::FormatError, limits::ReadLimits, scalar::Scalar, text::Lines};
+use crate::{fault::FormatError, limits::ReadLimits, scalar::Scalar, text::Lines};
 
 /// Red, green and blue of every row; `None` for a file without `rgb` or `rgba`.
 ///

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use cloudtouch_geom::{Pose, Vector3};
 
 use crate::{
-    error::{Fault, FormatError, Place},
+    fault::{Fault, FormatError, Place},
     scalar::Scalar,
     text::{Lines, excerpt, finite_number, finite_triple, parse, words},
 };

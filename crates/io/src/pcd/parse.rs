@@ -7,7 +7,7 @@ use cloudtouch_geom::PointCloud;
 use super::header::{self, Data, Field, Header};
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
-    error::{Fault, FormatError, Place},
+    fault::{Fault, FormatError, Place},
     limits::ReadLimits,
     scalar::{ByteOrder, Scalar},
     text::{Lines, is_padding, number, words},

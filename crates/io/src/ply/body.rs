@@ -1,7 +1,7 @@
 //! The rows of a PLY file, one number after another, whether binary or text.
 
 use crate::{
-    error::{Fault, FormatError, Place},
+    fault::{Fault, FormatError, Place},
     scalar::{ByteOrder, Scalar},
     text::{Lines, excerpt, number, words},
 };

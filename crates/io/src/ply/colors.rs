@@ -2,7 +2,7 @@
 
 use super::header;
 use super::parse::parse_body;
-use crate::{error::FormatError, geometry::Geometry, limits::ReadLimits, text::Lines};
+use crate::{fault::FormatError, geometry::Geometry, limits::ReadLimits, text::Lines};
 
 /// Red, green and blue of every point; `None` for a mesh, or a file without them.
 ///

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    error::{Fault, FormatError, Place},
+    fault::{Fault, FormatError, Place},
     scalar::{ByteOrder, Scalar},
     text::{Lines, excerpt, parse, words},
 };

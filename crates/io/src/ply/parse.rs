@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
-    error::{Fault, FormatError, Place},
+    fault::{Fault, FormatError, Place},
     geometry::Geometry,
     limits::ReadLimits,
     scalar::Scalar,

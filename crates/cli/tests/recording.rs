@@ -1,0 +1,179 @@
+//! Recordings on the command line: what a build with the feature `mcap` reads, and one without says.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+
+#[cfg(not(feature = "mcap"))]
+#[test]
+fn a_build_without_the_feature_says_how_to_build_with_it() {
+    let inputs = support::Inputs::new();
+    inputs.write("run.mcap", "never looked at");
+    for arguments in [
+        &["info", "run.mcap"][..],
+        &["info", "run.mcap#/points@1"],
+        &["query", "run.mcap#/points", "box.obj"],
+        &["query", "floor.pcd", "run.mcap"],
+    ] {
+        let run = inputs.run(arguments);
+        assert_eq!(run.code(), 1);
+        assert!(run.stderr().contains("run.mcap: is a recording"), "{}", run.stderr());
+        assert!(run.stderr().contains("--features mcap"), "{}", run.stderr());
+    }
+}
+
+#[cfg(feature = "mcap")]
+mod with_feature {
+    use std::collections::BTreeMap;
+    use std::fs::File;
+
+    use mcap::Writer;
+    use mcap::records::MessageHeader;
+
+    use super::support::{self, Inputs, case_file, floor};
+
+    /// The floor as a message of ROS 1, at a height.
+    fn message(height: f32) -> Vec<u8> {
+        let points = floor().points;
+        let mut bytes = Vec::new();
+        // Sequence, stamp, frame.
+        bytes.extend([0, 5, 0, 4_u32].iter().flat_map(|v| v.to_le_bytes()));
+        bytes.extend(b"base");
+        // Height, width, fields.
+        bytes.extend([1, points.len() as u32, 3].iter().flat_map(|v| v.to_le_bytes()));
+        for (offset, name) in [(0_u32, b'x'), (4, b'y'), (8, b'z')] {
+            bytes.extend(1_u32.to_le_bytes());
+            bytes.push(name);
+            bytes.extend(offset.to_le_bytes());
+            bytes.push(7);
+            bytes.extend(1_u32.to_le_bytes());
+        }
+        bytes.push(0);
+        for value in [12, 12 * points.len() as u32, 12 * points.len() as u32] {
+            bytes.extend(value.to_le_bytes());
+        }
+        for point in points {
+            for value in [point.x as f32, point.y as f32, point.z as f32 + height] {
+                bytes.extend(value.to_le_bytes());
+            }
+        }
+        bytes.push(1);
+        bytes
+    }
+
+    /// `run.mcap` with the floor of [`floor`] after 2 s and half a metre lower at its beginning, and
+    /// another topic.
+    fn inputs() -> Inputs {
+        let inputs = Inputs::new();
+        let mut writer = Writer::new(File::create(inputs.path("run.mcap")).unwrap()).unwrap();
+        let schema = writer.add_schema("sensor_msgs/PointCloud2", "ros1msg", b"").unwrap();
+        for (topic, seconds, height) in [("/floor", 0, -0.5), ("/floor", 2, 0.0), ("/b", 1, 0.0)] {
+            let channel_id = writer.add_channel(schema, topic, "ros1", &BTreeMap::new()).unwrap();
+            let time = 1_700_000_000_000_000_000 + seconds * 1_000_000_000;
+            let header =
+                MessageHeader { channel_id, sequence: 0, log_time: time, publish_time: time };
+            writer.write_to_known_channel(&header, &message(height)).unwrap();
+        }
+        writer.finish().unwrap();
+        inputs
+    }
+
+    const POSE: &str = "--translate=0.01,0.02,0.1";
+
+    #[test]
+    fn info_lists_the_topics_or_describes_a_scan() {
+        let inputs = inputs();
+        let text = inputs.run(&["info", "run.mcap"]).quiet(0).stdout();
+        for expected in [
+            "/b      1 scans, 1.000 to 1.000 s, frame base\n",
+            "/floor  2 scans, 0.000 to 2.000 s, frame base\n",
+            "run.mcap#/b@1.000 is the first scan",
+        ] {
+            assert!(text.contains(expected), "`{expected}` is not in\n{text}");
+        }
+        let text = inputs.run(&["info", "run.mcap#/floor@1"]).quiet(0).stdout();
+        for expected in ["/floor at 2 s, frame base, stamp 5.000 s\n", "rows        441"] {
+            assert!(text.contains(expected), "`{expected}` is not in\n{text}");
+        }
+        let text = inputs.run(&["info", "run.mcap#/floor@1", "--cloud-unit=mm"]).quiet(0).stdout();
+        assert!(text.contains("box         (-0.001, -0.001, 0.000)"), "{text}");
+        for (scan, unit) in [("run.mcap", "--cloud-unit=mm"), ("run.mcap#/floor", "--unit=mm")] {
+            assert_eq!(inputs.run(&["info", scan, unit]).code(), 1);
+        }
+    }
+
+    #[test]
+    fn a_scan_answers_as_the_same_cloud_in_a_file_does() {
+        let inputs = inputs();
+        let answer = |scene: &str| {
+            let arguments = ["query", scene, "box.obj", "--sensor=iso:0.002", POSE, "--json"];
+            let mut answer = inputs.run(&arguments).quiet(0).json_lines().remove(0);
+            assert_eq!(answer["scene"]["file"], scene);
+            for key in ["scene", "stats"] {
+                answer.as_object_mut().unwrap().remove(key);
+            }
+            answer
+        };
+        // Single precision like the message.
+        let single = cloudtouch::geom::PointCloud::from_points(
+            floor().points.iter().map(|p| p.map(|v| f64::from(v as f32))).collect(),
+        );
+        cloudtouch_io::write_cloud_pcd(inputs.path("single.pcd"), &single).unwrap();
+        assert_eq!(answer("run.mcap#/floor@1"), answer("single.pcd"));
+        assert_eq!(answer("run.mcap#/b"), answer("single.pcd"));
+        assert_ne!(answer("run.mcap#/floor"), answer("single.pcd"));
+    }
+
+    #[test]
+    fn batches_and_paths_take_scans_too() {
+        let inputs = inputs();
+        let case = |scene: &str| support::case_at(scene, 0.1).replace("floor.pcd", scene);
+        inputs.write(
+            "cases.json",
+            &case_file(
+                &["#/floor@1", "#/floor@0", "#/none"].map(|scan| case(&format!("run.mcap{scan}"))),
+            ),
+        );
+        let lines = inputs.run(&["batch", "cases.json", "--json"]).json_lines();
+        assert_eq!(lines[0]["verdict"], "in_contact");
+        assert_eq!(lines[1]["verdict"], "free");
+        let error = lines[2]["error"].as_str().unwrap();
+        assert!(error.contains("there is no topic /none: PointCloud2 is on /b, /floor"), "{error}");
+        inputs.write("path.csv", "0,0,0.5,1,0,0,0\n0,0,0.4,1,0,0,0\n");
+        let arguments = ["path", "run.mcap#/floor@1", "box.obj", "--poses=path.csv", "--json"];
+        assert_eq!(inputs.run(&arguments).quiet(0).json_lines()[0]["verdict"], "free");
+    }
+
+    #[test]
+    fn the_recording_of_a_scan_is_an_input_that_is_never_replaced() {
+        let inputs = inputs();
+        let before = std::fs::read(inputs.path("run.mcap")).unwrap();
+        std::os::unix::fs::symlink(inputs.path("run.mcap"), inputs.path("out.csv")).unwrap();
+        for output in ["--csv=run.mcap", "--csv=out.csv", "--ply=./run.mcap"] {
+            let run = inputs.run(&["query", "run.mcap#/b", "box.obj", POSE, output, "--force"]);
+            assert_eq!(run.code(), 1);
+            assert!(run.stderr().contains("is an input of this very command"), "{}", run.stderr());
+        }
+        let case = support::case_at("a", 0.1).replace("floor.pcd", "run.mcap#/b");
+        inputs.write("cases.json", &case_file(&[case]));
+        let run = inputs.run(&["batch", "cases.json", "--jsonl=run.mcap", "--force"]);
+        assert!(run.stderr().contains("is an input of this very command"), "{}", run.stderr());
+        assert_eq!(std::fs::read(inputs.path("run.mcap")).unwrap(), before);
+    }
+
+    #[test]
+    fn a_scan_that_is_not_there_is_an_error_with_its_file() {
+        let inputs = inputs();
+        for (scene, expected) in [
+            ("run.mcap", "several topics hold PointCloud2: name one of /b, /floor"),
+            ("run.mcap#/floor@9", "no message at or after 9 s"),
+            ("run.mcap#/floor@x", "\"x\" is no time"),
+            ("gone.mcap#/floor", "cannot be read"),
+        ] {
+            let run = inputs.run(&["query", scene, "box.obj", POSE]);
+            assert_eq!(run.code(), 1);
+            let file = scene.split('#').next().unwrap();
+            assert!(run.stderr().contains(expected), "{}", run.stderr());
+            assert!(run.stderr().starts_with(&format!("error: {file}")), "{}", run.stderr());
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! What is wrong with some bytes: where among them, what was found, and what to do.
+
+use std::fmt;
+
+use cloudtouch_geom::{CovarianceError, message::number};
+
+/// Why some bytes are not a file of their format.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{place}: {fault}")]
+pub struct FormatError {
+    /// Where in the file.
+    pub place: Place,
+    /// What is wrong there.
+    pub fault: Fault,
+}
+
+/// A place in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A line of text, from 1.
+    Line(usize),
+    /// A value in a line of text.
+    Column {
+        /// The line, from 1.
+        line: usize,
+        /// Which value of the line, from 1; a leading keyword does not count.
+        column: usize,
+    },
+    /// A byte, from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Column { line, column } => write!(f, "line {line}, column {column}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
+}
+
+impl Place {
+    /// The error of finding `fault` here.
+    pub(crate) fn error(self, fault: Fault) -> FormatError {
+        FormatError { place: self, fault }
+    }
+}
+
+/// What is wrong at some place of a file.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// There is nothing in it.
+    #[error("the file is empty: was it written completely?")]
+    Empty,
+    /// It does not begin as its format demands.
+    #[error("found {found:?}, expected {expected}: is the file extension right?")]
+    WrongMagic {
+        /// How such a file begins.
+        expected: &'static str,
+        /// How this one does.
+        found: String,
+    },
+    /// Something the format demands is not there.
+    #[error("there is no {entry}: add it")]
+    MissingEntry {
+        /// What is missing.
+        entry: &'static str,
+    },
+    /// A column is not there that has to be.
+    #[error("there is no column {name}: it needs x, y, z, and all six of cov_* or none")]
+    MissingColumn {
+        /// Its name.
+        name: &'static str,
+    },
+    /// Something has a value that cannot be used.
+    #[error("{entry} is {found:?}, expected {expected}")]
+    BadEntry {
+        /// What it is a value of.
+        entry: &'static str,
+        /// The value.
+        found: String,
+        /// What can be used.
+        expected: &'static str,
+    },
+    /// Something that can be there once is there twice.
+    #[error("{entry} appears a second time: keep one")]
+    Repeated {
+        /// What it is.
+        entry: String,
+    },
+    /// A binary file is shorter than its header says.
+    #[error(
+        "the header promises {promised} rows, which take {needed} bytes, and {available} bytes \
+         follow: the file is cut off or its header is wrong"
+    )]
+    TooShort {
+        /// Rows promised.
+        promised: usize,
+        /// Bytes they take, at least.
+        needed: usize,
+        /// Bytes that are there.
+        available: usize,
+    },
+    /// There is more than is read, or the header promises more.
+    #[error(
+        "there are {found} {what} or more, and at most {limit} are read: split or thin the file, \
+         or raise the limit on {what}"
+    )]
+    TooMany {
+        /// What there are too many of.
+        what: &'static str,
+        /// How many are promised, or found so far.
+        found: usize,
+        /// How many are read, see [`ReadLimits`](crate::ReadLimits).
+        limit: usize,
+    },
+    /// A text file has fewer rows than its header says.
+    #[error(
+        "the header promises {promised} rows, and the file ends after {found}: it is cut off or \
+         its header is wrong"
+    )]
+    FewRows {
+        /// Rows promised.
+        promised: usize,
+        /// Rows found.
+        found: usize,
+    },
+    /// A file goes on after the last row its header promises.
+    #[error(
+        "the header promises {promised} rows, and more data follows them: correct the count, or \
+         remove what follows"
+    )]
+    Leftover {
+        /// Rows promised.
+        promised: usize,
+    },
+    /// A file ends in the middle of something.
+    #[error("the file ends where {expected} should follow: it is cut off")]
+    UnexpectedEnd {
+        /// What should follow.
+        expected: &'static str,
+    },
+    /// A message ends in the middle of something.
+    #[error(
+        "the message ends where {expected} should follow: it is cut off, or no PointCloud2 of this \
+         encoding"
+    )]
+    MessageEnd {
+        /// What should follow.
+        expected: &'static str,
+    },
+    /// A row has too few values, or more than its header says.
+    #[error("the row has {found} values, expected {expected}")]
+    RowLength {
+        /// Values needed.
+        expected: usize,
+        /// Values found.
+        found: usize,
+    },
+    /// A row has so many values that several points seem to be in it.
+    #[error(
+        "the row has {found} values, those of several points: write one point a line, or name the \
+         columns in the first row"
+    )]
+    ManyColumns {
+        /// Values found.
+        found: usize,
+    },
+    /// A value that has to be a number is none.
+    #[error("{found:?} is not a number: write it like -0.25, 1e-3 or nan")]
+    NotANumber {
+        /// What was found.
+        found: String,
+    },
+    /// A coordinate of a mesh, or of the sensor, is NaN or infinite.
+    #[error(
+        "the coordinate {} is not finite: only points of a cloud may be missing",
+        number(*value)
+    )]
+    NotFinite {
+        /// What was found.
+        value: f64,
+    },
+    /// A face names a vertex that is not there.
+    #[error("the face names vertex {found}, and the file has {vertices}: correct the index")]
+    MissingVertex {
+        /// The index as it stands in the file.
+        found: String,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A face has a number of corners that makes no surface in its format.
+    #[error("the face has {found} corners, expected {expected}: remove or repair it")]
+    Corners {
+        /// Corners found.
+        found: usize,
+        /// Corners needed.
+        expected: &'static str,
+    },
+    /// The covariance columns of a point do not make a covariance.
+    #[error("point {row}: {cause}")]
+    Covariance {
+        /// Which point, from 0, missing ones included.
+        row: usize,
+        /// What is wrong with it.
+        cause: CovarianceError,
+    },
+    /// Compressed data contradicts the header or cannot be unpacked.
+    #[error("the compressed data {reason}: the file is damaged, write it again")]
+    Compression {
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// The counts on the first line of an OBJ file differ from what follows.
+    #[error(
+        "the first line promises {promised} {what}, and {found} follow: the file is cut off or \
+         its first line is wrong"
+    )]
+    Count {
+        /// Vertices or faces.
+        what: &'static str,
+        /// How many are promised.
+        promised: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// There are no triangles in what should be a mesh.
+    #[error("there are no faces: read it as a point cloud, or export it as a mesh")]
+    NoTriangles,
+    /// There are more vertices than 32-bit indices can name.
+    #[error("there are {found} vertices, at most 2^32 - 1 can be indexed: split the mesh")]
+    TooManyVertices {
+        /// How many there are.
+        found: usize,
+    },
+}
