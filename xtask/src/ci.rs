@@ -34,7 +34,8 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
         succeed(cargo(root, test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
     })?;
-    let of_recordings = "--package cloudtouch-io --package cloudtouch-cli --test recording";
+    let of_recordings =
+        "--package cloudtouch-io --package cloudtouch-cli --test recording --test rosbags";
     run("recordings", &format!("test --locked {of_recordings} {features}"))?;
     step("python", "cargo xtask python", || python::run(root))
 }

@@ -112,3 +112,27 @@ pub(crate) fn under_poses<'py>(
     fields.set_item(intern!(py, "poses"), under.poses)?;
     Ok(fields)
 }
+
+/// The fields of what an answer changes by with the pose.
+pub(crate) fn gradient<'py>(
+    py: Python<'py>,
+    gradient: &PoseGradient,
+) -> PyResult<Bound<'py, PyDict>> {
+    let fields = PyDict::new(py);
+    let array = |slopes: [f64; 6]| slopes.to_vec().into_pyarray(py);
+    fields.set_item(intern!(py, "probability"), array(gradient.probability))?;
+    fields.set_item(intern!(py, "log_odds"), array(gradient.log_odds))?;
+    fields.set_item(intern!(py, "clearance"), gradient.clearance.map(array))?;
+    Ok(fields)
+}
+
+/// The fields of a way out of a collision.
+pub(crate) fn penetration<'py>(py: Python<'py>, out: &Penetration) -> PyResult<Bound<'py, PyDict>> {
+    let fields = PyDict::new(py);
+    let direction: Vec<f64> = out.direction.iter().copied().collect();
+    fields.set_item(intern!(py, "direction"), direction.into_pyarray(py))?;
+    fields.set_item(intern!(py, "distance"), out.distance_m)?;
+    fields.set_item(intern!(py, "depth"), out.depth_m)?;
+    fields.set_item(intern!(py, "std"), out.std_m)?;
+    Ok(fields)
+}

@@ -1,5 +1,7 @@
 //! Clouds and meshes, made ready.
 
+use std::sync::Arc;
+
 use cloudtouch::geom::{
     Covariance, Matrix3, Point3, PointCloud, Pose, TriangleMesh, Vector3, unit,
 };
@@ -16,7 +18,7 @@ use crate::pool::on_all_threads;
 /// A prepared body; immutable, and shared by threads.
 #[pyclass(frozen, module = "cloudtouch._native")]
 pub(crate) struct Body {
-    prepared: Prepared,
+    prepared: Arc<Prepared>,
     /// As it was given, for pickling: what is prepared has lost points that were filtered out.
     given: Given,
 }
@@ -29,10 +31,10 @@ enum Given {
 
 impl Body {
     pub(crate) fn get(&self) -> BodyRef<'_> {
-        (&self.prepared).into()
+        (&*self.prepared).into()
     }
 
-    pub(crate) fn prepared(&self) -> &Prepared {
+    pub(crate) fn prepared(&self) -> &Arc<Prepared> {
         &self.prepared
     }
 
@@ -68,7 +70,7 @@ impl Body {
 
     /// The points that the filter kept, or the merged vertices, m.
     fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        match &self.prepared {
+        match &*self.prepared {
             Prepared::Cloud(cloud) => rows(py, &self.kept(cloud)),
             Prepared::Mesh(mesh) => rows(py, &mesh.faces().0),
         }
@@ -76,7 +78,7 @@ impl Body {
 
     /// The merged triangles; none for a cloud.
     fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i64>> {
-        match &self.prepared {
+        match &*self.prepared {
             Prepared::Cloud(_) => corners(py, &[]),
             Prepared::Mesh(mesh) => corners(py, mesh.faces().1),
         }
@@ -84,7 +86,7 @@ impl Body {
 
     /// For every kept point its row; empty after a collision map, and for a mesh.
     fn rows<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        let rows = match &self.prepared {
+        let rows = match &*self.prepared {
             Prepared::Cloud(cloud) => cloud.rows().iter().map(|&row| row as i64).collect(),
             Prepared::Mesh(_) => Vec::new(),
         };
@@ -93,7 +95,7 @@ impl Body {
 
     /// How many points were kept, or triangles are left after merging.
     fn count(&self) -> usize {
-        match &self.prepared {
+        match &*self.prepared {
             Prepared::Cloud(cloud) => cloud.len(),
             Prepared::Mesh(mesh) => mesh.triangle_count(),
         }
@@ -101,7 +103,7 @@ impl Body {
 
     /// What each stage of the filter removed.
     fn removed(&self) -> Vec<(&'static str, usize)> {
-        match &self.prepared {
+        match &*self.prepared {
             Prepared::Cloud(cloud) => {
                 cloud.filter_stages().iter().map(|stage| (stage.stage, stage.removed)).collect()
             }
@@ -111,7 +113,7 @@ impl Body {
 
     /// Whether a mesh encloses a volume.
     fn is_watertight(&self) -> bool {
-        matches!(&self.prepared, Prepared::Mesh(mesh) if mesh.is_watertight())
+        matches!(&*self.prepared, Prepared::Mesh(mesh) if mesh.is_watertight())
     }
 
     fn prepare_seconds(&self) -> f64 {
@@ -193,7 +195,8 @@ pub(crate) fn cloud(
         let cloud = Cloud::prepare(&given, &settings)?;
         if refined { cloud.refined() } else { Ok(cloud) }
     })?;
-    Ok(Body { prepared: Prepared::Cloud(prepared.map_err(refused)?), given: Given::Cloud(given) })
+    let prepared = Arc::new(Prepared::Cloud(prepared.map_err(refused)?));
+    Ok(Body { prepared, given: Given::Cloud(given) })
 }
 
 /// A mesh, ready to be queried. The indices are from 0 to what 32 bits hold.
@@ -208,7 +211,8 @@ pub(crate) fn mesh(
     let triangles = indices.rows().into_iter().map(|t| [t[0], t[1], t[2]]).collect();
     let given = TriangleMesh::try_new(vertices.points(), triangles).map_err(refused)?;
     let prepared = on_all_threads(py, || Mesh::prepare(&given))?;
-    Ok(Body { prepared: Prepared::Mesh(prepared.map_err(refused)?), given: Given::Mesh(given) })
+    let prepared = Arc::new(Prepared::Mesh(prepared.map_err(refused)?));
+    Ok(Body { prepared, given: Given::Mesh(given) })
 }
 
 /// Points as rows.

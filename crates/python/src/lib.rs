@@ -10,6 +10,7 @@ mod files;
 mod page;
 mod pool;
 mod query;
+mod scene;
 mod sweep;
 
 #[pyo3::pymodule]
@@ -22,6 +23,8 @@ mod _native {
     use crate::files::{read_cloud, read_faces};
     #[pymodule_export]
     use crate::query::Query;
+    #[pymodule_export]
+    use crate::scene::Scene;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "the name Python gives a version")]

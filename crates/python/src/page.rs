@@ -44,7 +44,7 @@ pub(crate) fn answer(
 }
 
 fn drawn(name: &str, body: &Body) -> Drawn {
-    let (about, shape) = match body.prepared() {
+    let (about, shape) = match &**body.prepared() {
         Prepared::Cloud(cloud) => (
             format!("cloud of {} points", cloud.len()),
             Shape::cloud(cloud.len(), |index| cloud.point(index)),

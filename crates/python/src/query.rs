@@ -27,6 +27,12 @@ pub(crate) struct Query {
     checked: Checked,
 }
 
+impl Query {
+    pub(crate) fn checked(&self) -> &Checked {
+        &self.checked
+    }
+}
+
 #[pymethods]
 impl Query {
     #[new]
@@ -123,6 +129,38 @@ impl Query {
         Ok((answer::report(py, &report)?, answer::under_poses(py, &under)?))
     }
 
+    #[pyo3(signature = (a, b, pose, /))]
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Body>,
+        b: &Bound<'py, Body>,
+        pose: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+        let (a, b) = (a.get().get(), b.get().get());
+        let pose = rigid(&matrix(&pose))?;
+        let both = py.detach(|| self.checked.gradient(a, b, &pose));
+        let (report, gradient) = both.map_err(refused)?;
+        Ok((answer::report(py, &report)?, answer::gradient(py, &gradient)?))
+    }
+
+    #[pyo3(signature = (a, b, pose, probability, /))]
+    fn penetration<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Body>,
+        b: &Bound<'py, Body>,
+        pose: PyReadonlyArray2<'py, f64>,
+        probability: f64,
+    ) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
+        let (a, b) = (a.get().get(), b.get().get());
+        let pose = rigid(&matrix(&pose))?;
+        let both = py.detach(|| self.checked.penetration(a, b, &pose, probability));
+        let (report, out) = both.map_err(refused)?;
+        let out = out.map(|out| answer::penetration(py, &out)).transpose()?;
+        Ok((answer::report(py, &report)?, out))
+    }
+
     #[pyo3(signature = (a, b, poses, is_screw, tolerance, /))]
     fn sweep<'py>(
         &self,
@@ -207,6 +245,7 @@ fn all_rigid(poses: &PyReadonlyArray3<'_, f64>) -> Vec<PyResult<Pose>> {
     matrices(poses).iter().enumerate().map(rigid).collect()
 }
 
-fn rigid(matrix: &Matrix4<f64>) -> PyResult<Pose> {
+/// The pose of a matrix.
+pub(crate) fn rigid(matrix: &Matrix4<f64>) -> PyResult<Pose> {
     Pose::try_from_matrix(matrix).map_err(|e| refused_for("pose", e))
 }

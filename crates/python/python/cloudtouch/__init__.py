@@ -12,24 +12,30 @@ See ``Cloud``, ``Mesh`` and ``Query``; ``python -m cloudtouch.demo`` shows them 
 from cloudtouch._native import CloudtouchError, __version__
 from cloudtouch.bodies import Cloud, Mesh
 from cloudtouch.checker import PoseChecker
-from cloudtouch.motion import AlongPath, Swept, UnderPoses
+from cloudtouch.motion import AlongPath, Gradient, Penetration, Swept, UnderPoses
 from cloudtouch.page import Page
 from cloudtouch.query import Query
 from cloudtouch.report import Batch, Contact, Evidence, PointProbabilities, Report, Within
+from cloudtouch.scene import Checked, PairAnswer, Scene
 
 __all__ = [
     "AlongPath",
     "Batch",
+    "Checked",
     "Cloud",
     "CloudtouchError",
     "Contact",
     "Evidence",
+    "Gradient",
     "Mesh",
     "Page",
+    "PairAnswer",
+    "Penetration",
     "PointProbabilities",
     "PoseChecker",
     "Query",
     "Report",
+    "Scene",
     "Swept",
     "UnderPoses",
     "Within",

@@ -30,6 +30,32 @@ class UnderPoses:
 
 
 @dataclass(frozen=True, eq=False)
+class Gradient:
+    """What an answer changes by with the pose: for a metre along and a radian about the axes of B, in its own frame."""
+
+    probability: Floats
+    """(6,): of the collision probability; translation x, y, z, then rotation x, y, z."""
+    log_odds: Floats
+    """(6,): of ln(P / (1 - P)), which goes on changing where the probability is all but 0 or 1."""
+    clearance: Optional[Floats]
+    """(6,): of the clearance, where there is one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Penetration:
+    """The least translation of B that was found to end a collision."""
+
+    direction: Floats
+    """(3,): where to, a unit vector in the frame of A; zero where B need not move."""
+    distance: float
+    """How far, until a collision is less likely than asked for, m."""
+    depth: float
+    """How far, until it is as likely as not: how deep B is in, m."""
+    std: float
+    """What the surfaces leave open of that along the direction, m."""
+
+
+@dataclass(frozen=True, eq=False)
 class AlongPath:
     """A pose of a path that was asked about."""
 

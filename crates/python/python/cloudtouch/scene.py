@@ -1,0 +1,130 @@
+"""Many bodies: which of them may touch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from cloudtouch import _arrays, _native
+from cloudtouch.query import Body, Query
+from cloudtouch.report import Report, Verdict
+
+
+@dataclass(frozen=True, eq=False)
+class PairAnswer:
+    """Two bodies of a scene that do not read as free."""
+
+    a: str
+    """Name of the larger."""
+    b: str
+    """Name of the other."""
+    report: Optional[Report]
+    """Their report, with contacts in the frame of the scene; ``None`` where there is no answer, which is not free."""
+    error: Optional[str]
+    """Why there is none."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """That of the report; ``"undecided"`` without one."""
+        return "undecided" if self.report is None else self.report.verdict
+
+    @classmethod
+    def _of(cls, told: tuple[str, str, dict[str, Any] | None, str | None]) -> PairAnswer:
+        a, b, report, error = told
+        return cls(a, b, None if report is None else Report._of(report), error)
+
+    def __repr__(self) -> str:
+        return f"<PairAnswer: {self.a!r} and {self.b!r}, {self.error or self.report}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """What is found of all pairs of bodies of a scene."""
+
+    pairs: tuple[PairAnswer, ...]
+    """All that do not read as free, the worst first."""
+    count: int
+    """Pairs of bodies in the scene."""
+    allowed: int
+    """Of these, pairs that may touch."""
+    ruled_out: int
+    """Pairs known to be free by their boxes alone."""
+    asked: int
+    """Pairs that were asked about."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst of any pair."""
+        return self.pairs[0].verdict if self.pairs else "free"
+
+
+class Scene:
+    """Named bodies, each with a pose; bodies may be attached to others, and pairs may be allowed to touch.
+
+    Moving a body costs nothing. Poses are (4, 4), from the frame of the body into that of the scene, or of what it is
+    attached to, m. Names that are not there, or there already, are a :class:`CloudtouchError`.
+    """
+
+    __slots__ = ("_scene",)
+
+    _scene: _native.Scene
+
+    def __init__(self) -> None:
+        self._scene = _native.Scene()
+
+    def add(self, name: str, body: Body, pose: npt.ArrayLike | None = None) -> None:
+        """Adds a body; at the origin where no pose is given."""
+        self._scene.add(name, body._body, _matrix(pose))
+
+    def replace(self, name: str, body: Body) -> None:
+        """Puts another body in the place of one, such as a new scan of the same thing."""
+        self._scene.replace(name, body._body)
+
+    def remove(self, name: str) -> None:
+        """Removes a body that no other is attached to."""
+        self._scene.remove(name)
+
+    def set_pose(self, name: str, pose: npt.ArrayLike) -> None:
+        """Moves a body, and what is attached to it."""
+        self._scene.set_pose(name, _matrix(pose))
+
+    def attach(self, name: str, to: str) -> None:
+        """From now on the first moves with the second, from where both are."""
+        self._scene.attach(name, to)
+
+    def detach(self, name: str) -> None:
+        """It stays where it is, and moves by itself."""
+        self._scene.detach(name)
+
+    def allow(self, a: str, b: str, may_touch: bool = True) -> None:
+        """Whether two bodies may touch: such pairs are not asked about."""
+        self._scene.allow(a, b, may_touch)
+
+    @property
+    def names(self) -> list[str]:
+        """Of all bodies, in order."""
+        return self._scene.names()
+
+    def check(self, query: Query) -> Checked:
+        """All pairs that do not read as free, the worst first, on all cores."""
+        pairs, counts = self._scene.check(query._query)
+        return Checked(tuple(map(PairAnswer._of, pairs)), *counts)
+
+    def check_first(self, query: Query) -> PairAnswer | None:
+        """One pair that does not read as free, or ``None`` where all do: sooner known."""
+        found = self._scene.check_first(query._query)
+        return None if found is None else PairAnswer._of(found)
+
+    def __len__(self) -> int:
+        """How many bodies there are."""
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return f"<Scene: {', '.join(self.names) or 'empty'}>"
+
+
+def _matrix(pose: npt.ArrayLike | None) -> npt.NDArray[np.float64]:
+    return np.eye(4) if pose is None else _arrays.numbers(pose, "pose", (4, 4))

@@ -1,0 +1,75 @@
+"""Scenes of many bodies, ways out and gradients."""
+
+import numpy as np
+import pytest
+from conftest import lifted
+from same import assert_same_report
+
+import cloudtouch as ct
+
+
+@pytest.fixture
+def scene(floor, plate, table):
+    scene = ct.Scene()
+    scene.add("floor", floor)
+    scene.add("plate", plate, lifted(0.1))
+    scene.add("table", table, lifted(1.0))
+    return scene
+
+
+def test_pairs_that_may_touch_are_told_with_their_report(scene, floor, plate):
+    assert scene.check(ct.Query()).verdict == "free" and scene.check_first(ct.Query()) is None
+    scene.set_pose("plate", lifted(0.002))
+    found = scene.check(ct.Query())
+    (pair,) = found.pairs
+    assert {pair.a, pair.b} == {"floor", "plate"} and found.verdict == pair.verdict == pair.report.verdict
+    assert (found.count, found.allowed, found.ruled_out + found.asked) == (3, 0, 3)
+    assert scene.check_first(ct.Query()).report.probability == pair.report.probability
+    alone = [ct.Query().run(floor, plate, lifted(0.002)), ct.Query().run(plate, floor, lifted(-0.002))]
+    assert min(abs(report.probability - pair.report.probability) for report in alone) < 1e-3
+
+
+def test_what_is_attached_moves_along(scene):
+    scene.attach("plate", "table")
+    scene.set_pose("table", lifted(0.9))
+    assert [{pair.a, pair.b} for pair in scene.check(ct.Query()).pairs] == [{"floor", "plate"}]
+    scene.allow("floor", "plate")
+    assert scene.check(ct.Query()).verdict == "free" and scene.check(ct.Query()).allowed == 1
+    scene.allow("plate", "floor", False)
+    scene.detach("plate")
+    scene.set_pose("table", lifted(2.0))
+    assert scene.check(ct.Query()).verdict != "free"
+    scene.remove("plate")
+    assert scene.names == ["floor", "table"] and len(scene) == 2 and repr(scene) == "<Scene: floor, table>"
+
+
+def test_wrong_names_and_poses_are_told(scene, floor):
+    with pytest.raises(ct.CloudtouchError, match="floor"):
+        scene.add("floor", floor)
+    with pytest.raises(ct.CloudtouchError, match="nobody"):
+        scene.set_pose("nobody", lifted(0))
+    with pytest.raises(ct.CloudtouchError, match="rotation"):
+        scene.set_pose("floor", np.diag([2.0, 1, 1, 1]))
+    with pytest.raises(ValueError, match="pose has the shape"):
+        scene.add("other", floor, np.eye(3))
+
+
+def test_a_gradient_is_that_of_differences(floor, table):
+    query, pose = ct.Query(), lifted(-0.002)
+    report, slope = query.gradient(floor, table, pose)
+    assert_same_report(report, query.run(floor, table, pose))
+    step = 1e-5
+    above, below = (query.run(floor, table, lifted(-0.002 + sign * step)) for sign in (1, -1))
+    assert slope.clearance is None or slope.clearance.shape == (6,)
+    assert slope.probability[2] == pytest.approx((above.probability - below.probability) / (2 * step), rel=0.02)
+
+
+def test_a_way_out_leads_out(table, parcel):
+    query, pose = ct.Query(), lifted(0.03)
+    report, out = query.penetration(table, parcel, pose)
+    assert report.verdict == "in_collision" and out is not None and 0.01 < out.depth <= out.distance < 0.05
+    moved = pose.copy()
+    moved[:3, 3] += out.distance * out.direction
+    assert query.run(table, parcel, moved).probability < 0.11
+    with pytest.raises(ct.CloudtouchError, match="probability"):
+        query.penetration(table, parcel, pose, 2.0)
