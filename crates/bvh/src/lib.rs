@@ -35,7 +35,9 @@ pub use node::NodeId;
 pub use obb::Obb;
 pub use primitive::Primitive;
 pub use settings::{Traversal, TraversalSettings, TreeSettings};
-pub use surfaces::{Sought, SurfaceFlow, SurfaceOutcome, SurfacePair, visit_surfaces};
+pub use surfaces::{
+    Sought, SurfaceFlow, SurfaceOutcome, SurfacePair, urgency_of_roots, visit_surfaces,
+};
 pub use traverse::{Flow, LeafPair, Outcome, traverse};
 pub use tree::Tree;
 pub use view::Node;

@@ -88,23 +88,11 @@ pub fn visit_surfaces(
     sought: Sought,
     mut visit: impl FnMut(SurfacePair) -> SurfaceFlow,
 ) -> Result<SurfaceOutcome, TreeError> {
-    if let Some(value) = a_from_b.non_finite_entry() {
-        return Err(TreeError::Pose { value });
-    }
-    let Sought { mut within, margin, .. } = sought;
-    if !(0.0..f64::INFINITY).contains(&margin) {
-        let expected = "a length in metres, at least 0";
-        return Err(TreeError::Setting { name: "margin", value: margin, expected });
-    }
-    let mut outcome = SurfaceOutcome {
-        nodes_visited: 0,
-        leaf_pairs: 0,
-        deviations: f64::INFINITY,
-        apart: f64::INFINITY,
-        stopped: false,
-    };
+    check(a_from_b, &sought)?;
+    let mut within = sought.within;
+    let mut outcome = SurfaceOutcome::NOTHING;
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(outcome) };
-    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought);
+    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought, USUAL_PAIRS);
     pairs.test_roots(root_a, root_b, within, &mut outcome);
     while let Some(Queued(pair)) = pairs.queue.pop() {
         if pair.apart.deviations >= within && !pairs.may_cross(&pair) {
@@ -129,12 +117,54 @@ pub fn visit_surfaces(
     Ok(outcome)
 }
 
+/// By one test of two boxes, whether [`visit_surfaces`] would look into two trees: `None` where it would
+/// leave out all of them, else how urgent that is, the less the sooner. Negative for boxes that overlap,
+/// relative to the smaller one; else the deviations between them.
+///
+/// # Errors
+/// As [`visit_surfaces`].
+pub fn urgency_of_roots(
+    (a, b): (&Tree, &Tree),
+    a_from_b: &Pose,
+    sought: Sought,
+) -> Result<Option<f64>, TreeError> {
+    check(a_from_b, &sought)?;
+    let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(None) };
+    let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought, 1);
+    let mut outcome = SurfaceOutcome::NOTHING;
+    pairs.test_roots(root_a, root_b, sought.within, &mut outcome);
+    Ok(pairs.queue.pop().map(|Queued(roots)| roots.urgency))
+}
+
+fn check(a_from_b: &Pose, sought: &Sought) -> Result<(), TreeError> {
+    if let Some(value) = a_from_b.non_finite_entry() {
+        return Err(TreeError::Pose { value });
+    }
+    if (0.0..f64::INFINITY).contains(&sought.margin) {
+        return Ok(());
+    }
+    let expected = "a length in metres, at least 0";
+    Err(TreeError::Setting { name: "margin", value: sought.margin, expected })
+}
+
 impl SurfaceOutcome {
+    /// Nothing was looked at, and nothing left out.
+    const NOTHING: Self = Self {
+        nodes_visited: 0,
+        leaf_pairs: 0,
+        deviations: f64::INFINITY,
+        apart: f64::INFINITY,
+        stopped: false,
+    };
+
     fn leave_out(&mut self, apart: &Apart) {
         self.deviations = self.deviations.min(apart.deviations);
         self.apart = self.apart.min(apart.surfaces);
     }
 }
+
+/// Room for as many pairs as a search has waiting at once, as a rule.
+const USUAL_PAIRS: usize = 256;
 
 /// The pairs that wait, and what they are tested by.
 struct Pairs<'a> {
@@ -155,6 +185,7 @@ impl<'a> Pairs<'a> {
         (b, root_b): (&'a Tree, u32),
         a_from_b: &Pose,
         sought: Sought,
+        capacity: usize,
     ) -> Self {
         let roots = [&a.nodes[root_a as usize], &b.nodes[root_b as usize]];
         Self {
@@ -163,8 +194,8 @@ impl<'a> Pairs<'a> {
             a_from_b: Motion::from(a_from_b),
             sought,
             rounding: pose_rounding(roots, a_from_b),
-            queue: BinaryHeap::with_capacity(256),
-            moved: Vec::with_capacity(256),
+            queue: BinaryHeap::with_capacity(capacity),
+            moved: Vec::with_capacity(capacity),
         }
     }
 

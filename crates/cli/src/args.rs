@@ -36,6 +36,7 @@ Examples:
   cloudtouch info scan.pcd
   cloudtouch query scan.pcd gripper.stl --sensor kinect --translate 0.4,0,0.9
   cloudtouch path scan.pcd gripper.stl --poses approach.csv
+  cloudtouch scene workcell.json
   cloudtouch batch cases.json --jsonl answers.jsonl
 
 Exit codes: 0 done, 1 error, 2 wrong usage; query --exit-code tells the verdict.";
@@ -57,6 +58,7 @@ impl Arguments {
         match &self.command {
             Command::Query(arguments) => arguments.check(),
             Command::Path(arguments) => arguments.check(),
+            Command::Scene(arguments) => arguments.check(),
             Command::Batch(arguments) => arguments.common.check(&[]),
             Command::Info(_) | Command::Demo(_) | Command::Settings => Ok(()),
         }
@@ -83,6 +85,8 @@ pub(crate) enum Command {
     Query(Box<QueryArguments>),
     /// One object along a path in one scene; nothing between its poses is missed
     Path(Box<PathArguments>),
+    /// Many bodies, each with its own pose: which of them may touch
+    Scene(Box<SceneArguments>),
     /// Many poses from a case file; scenes and objects are prepared once
     Batch(Box<BatchArguments>),
     /// What a cloud or mesh file holds, and which sensor suits it
@@ -175,6 +179,42 @@ impl PathArguments {
             return Err("--margin has no effect on a path: leave it out".to_owned());
         }
         self.common.check(&[])
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = SENSORS)]
+pub(crate) struct SceneArguments {
+    /// Scene file (JSON); its paths are relative to it
+    pub scene: PathBuf,
+    /// Print the answer as one JSON object
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
+    /// Exit with the worst verdict: 0 free, 10 uncertain, 20 in collision, 30 undecided
+    #[arg(long, help_heading = "Output")]
+    pub exit_code: bool,
+    #[command(flatten)]
+    pub common: CommonArguments,
+}
+
+impl SceneArguments {
+    fn check(&self) -> Result<(), String> {
+        let common = &self.common;
+        if common.mode == ModeName::Paper {
+            return Err("scene is of the calibrated mode: leave --mode out".to_owned());
+        }
+        // Of these a scene file says more, or a body has no use for them.
+        let of_pairs = [
+            ("--object-sensor", common.object_sensor.is_some()),
+            ("--sensor-pose", common.sensor_pose.is_some()),
+            ("--margin", common.margin.is_some()),
+            ("--collision-map", common.collision_map.is_some()),
+            ("--robot", !common.robot.is_empty()),
+        ];
+        if let Some((option, _)) = of_pairs.iter().find(|(_, is_given)| *is_given) {
+            return Err(format!("{option} is of one scene and one object: leave it out"));
+        }
+        common.check(&[])
     }
 }
 

@@ -1,15 +1,15 @@
 //! The case file of a batch.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
-use nalgebra::Matrix4;
 use serde::Deserialize;
 use serde_json::Value;
 use serde_json::value::RawValue;
+
+use crate::json_text::{matrix, shortened, without_bare_words};
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.
 #[derive(Debug)]
@@ -126,49 +126,19 @@ fn id(case: &str) -> Option<String> {
     }
 }
 
-/// The text with strings of the same length for `NaN`, `Infinity` and `-Infinity`, which Python writes
-/// and JSON does not have: they are wrong only where a number is used.
-fn without_bare_words(text: &[u8]) -> Cow<'_, [u8]> {
-    const WORDS: [(&[u8], &[u8]); 3] =
-        [(b"-Infinity", b"\"-Infin.\""), (b"Infinity", b"\"Infin.\""), (b"NaN", b"\"N\"")];
-    let mut text = Cow::Borrowed(text);
-    let (mut at, mut in_string) = (0, false);
-    while at < text.len() {
-        match text[at] {
-            b'\\' if in_string => at += 1,
-            b'"' => in_string = !in_string,
-            b'-' | b'I' | b'N' if !in_string => {
-                let word = WORDS.iter().find(|(word, _)| text[at..].starts_with(word));
-                if let Some((word, instead)) = word {
-                    text.to_mut()[at..at + word.len()].copy_from_slice(instead);
-                    at += word.len() - 1;
-                }
-            }
-            _ => {}
-        }
-        at += 1;
-    }
-    text
-}
-
 fn parse_case(value: Value, folder: &Path) -> Result<Case> {
     if !value.is_object() {
         bail!("the case is not a JSON object but {}", kind(&value));
     }
     let raw = RawCase::deserialize(&value)?;
-    let rows: Vec<[f64; 4]> = serde_json::from_value(raw.pose)
-        .context("the pose is not a list of four rows of four numbers")?;
-    if rows.len() != 4 {
-        bail!("the pose has {} rows: it must be 4x4", rows.len());
-    }
-    let entries = rows.concat();
+    let scene_from_object = matrix(raw.pose)?;
     let sensor = |spec: Option<String>| {
         spec.map(|s| s.parse::<SensorModel>().map_err(|error| anyhow!("{error}"))).transpose()
     };
     Ok(Case {
         scene: folder.join(raw.scene),
         object: folder.join(raw.object),
-        scene_from_object: Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?,
+        scene_from_object,
         scene_sensor: sensor(raw.scene_sensor)?,
         object_sensor: sensor(raw.object_sensor)?,
         label: raw.label.and_then(spelled).or_else(|| {
@@ -178,20 +148,6 @@ fn parse_case(value: Value, folder: &Path) -> Result<Case> {
         signed_distance: raw.signed_distance_m.and_then(|distance| distance.as_f64()),
         written: value,
     })
-}
-
-/// The error with its causes in one message, of which no more is kept than its beginning and its
-/// end: messages quote what they found, which may be most of the file, and then say where.
-fn shortened(error: anyhow::Error) -> anyhow::Error {
-    const KEPT: usize = 200;
-    let message = format!("{error:#}");
-    let characters = message.chars().count();
-    if characters <= 2 * KEPT {
-        return error;
-    }
-    let start: String = message.chars().take(KEPT).collect();
-    let end: String = message.chars().skip(characters - KEPT).collect();
-    anyhow!("{start} ... {end}")
 }
 
 /// A label as text, whatever it is.

@@ -1,6 +1,8 @@
 //! What other programs share with the `cloudtouch` tool: how its case files and options are read.
 
 pub mod case_file;
+mod json_text;
 pub mod numbers;
 pub mod path_text;
 pub mod pose_text;
+pub mod scene_file;

@@ -69,6 +69,18 @@ pub(crate) fn body<C: PreparedCloud>(
     bodies(&[path], role, sensor, common)
 }
 
+/// Reads a file that says its unit, and prepares it as an object.
+pub(crate) fn body_in<C: PreparedCloud>(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    sensor: SensorChoice,
+    common: &CommonArguments,
+) -> Result<Loaded<C>> {
+    let usual = Units::of(common);
+    let units = unit.map_or(usual, |unit| Units { meshes: unit, clouds: unit });
+    bodies_in(&[path], units, Role::Object, sensor, common)
+}
+
 /// Reads files and prepares them as one body: several scans of one frame, or one mesh.
 pub(crate) fn bodies<C: PreparedCloud>(
     paths: &[&Path],
@@ -76,20 +88,33 @@ pub(crate) fn bodies<C: PreparedCloud>(
     sensor: SensorChoice,
     common: &CommonArguments,
 ) -> Result<Loaded<C>> {
+    bodies_in(paths, Units::of(common), role, sensor, common)
+}
+
+fn bodies_in<C: PreparedCloud>(
+    paths: &[&Path],
+    units: Units,
+    role: Role,
+    sensor: SensorChoice,
+    common: &CommonArguments,
+) -> Result<Loaded<C>> {
     let mut scans = Vec::new();
     for path in paths {
-        match geometry(path, Units::of(common), &common.limits.read_limits())? {
-            Geometry::Mesh(mesh) if paths.len() == 1 => return of_mesh(path, role, &mesh, common),
+        match geometry(path, units, &common.limits.read_limits())? {
+            Geometry::Mesh(mesh) if paths.len() == 1 => {
+                return of_mesh(path, units.meshes, role, &mesh, common);
+            }
             Geometry::Mesh(_) => bail!("{}: is a mesh: only scans make one scene", named(path)),
             Geometry::Cloud(cloud) => scans.push(cloud),
         }
     }
     let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
-    of_clouds(&names.join(", "), role, scans, sensor, common)
+    of_clouds(&names.join(", "), units.clouds, role, scans, sensor, common)
 }
 
 fn of_mesh<C>(
     path: &Path,
+    unit: LengthUnit,
     role: Role,
     mesh: &TriangleMesh,
     common: &CommonArguments,
@@ -108,14 +133,14 @@ fn of_mesh<C>(
         );
     }
     let mesh = Mesh::prepare(mesh).with_context(|| named(path))?;
-    if common.unit.unwrap_or_default() == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
+    if unit == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
         tracing::warn!(
             "{}: the mesh is {:.0} m across: if the file is in millimetres, give --unit mm",
             path.display(),
             mesh.size()
         );
     }
-    let unit = common.unit.unwrap_or_default().to_string();
+    let unit = unit.to_string();
     let input = Input { file: named(path), unit, sensor: None, sensor_because: None };
     Ok(Loaded { body: Body::Mesh(mesh), input })
 }
@@ -123,6 +148,7 @@ fn of_mesh<C>(
 /// The sensor of several scans is that chosen for the first.
 fn of_clouds<C: PreparedCloud>(
     name: &str,
+    unit: LengthUnit,
     role: Role,
     mut scans: Vec<PointCloud>,
     sensor: SensorChoice,
@@ -155,7 +181,7 @@ fn of_clouds<C: PreparedCloud>(
     });
     let input = Input {
         file: name.to_owned(),
-        unit: common.cloud_unit.unwrap_or_default().to_string(),
+        unit: unit.to_string(),
         sensor: Some(sensor.to_string()),
         sensor_because: because,
     };

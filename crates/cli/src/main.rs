@@ -1,4 +1,4 @@
-//! The `cloudtouch` command: queries, batches, file information and a demo.
+//! The `cloudtouch` command: queries, paths, scenes, batches, file information and a demo.
 
 mod answer;
 mod args;
@@ -16,6 +16,7 @@ mod picture;
 mod pose_file;
 mod print;
 mod report_text;
+mod scene_answer;
 mod sensor;
 mod settings_file;
 mod unused;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         Command::Query(arguments) => commands::query::run(arguments, shows_work),
         Command::Batch(arguments) => commands::batch::run(arguments),
         Command::Path(arguments) => commands::path::run(arguments),
+        Command::Scene(arguments) => commands::scene::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Demo(arguments) => commands::demo::run(arguments, shows_work),
         Command::Settings => commands::settings::run(),

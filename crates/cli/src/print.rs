@@ -51,15 +51,20 @@ pub(crate) fn gap_mm(clearance: Option<Clearance>) -> String {
     })
 }
 
-/// What a body is, what it was taken for and what the filter did to it, in a few lines.
+/// What a body is, what it was taken for and what the filter did to it, in a line with its name.
 pub(crate) fn body<C: PreparedCloud>(name: &str, loaded: &Loaded<C>) -> String {
+    format!("{name}: {}", kind(loaded))
+}
+
+/// The same without a name.
+pub(crate) fn kind<C: PreparedCloud>(loaded: &Loaded<C>) -> String {
     let Input { unit, sensor, sensor_because, .. } = &loaded.input;
     match &loaded.body {
         Body::Cloud(cloud) => {
             let because = sensor_because.map_or(String::new(), |why| format!(" ({why})"));
             let sensor = sensor.as_deref().unwrap_or_default();
             format!(
-                "{name}: cloud of {} points in {unit}, sensor {sensor}{because} ({})",
+                "cloud of {} points in {unit}, sensor {sensor}{because} ({})",
                 cloud.count(),
                 stages(cloud.stages())
             )
@@ -67,10 +72,7 @@ pub(crate) fn body<C: PreparedCloud>(name: &str, loaded: &Loaded<C>) -> String {
         Body::Mesh(mesh) => {
             let kind = if mesh.is_watertight() { "watertight" } else { "open" };
             let count = mesh.triangle_count();
-            format!(
-                "{name}: {kind} mesh of {count} triangles in {unit}, {:.3} m across",
-                mesh.size()
-            )
+            format!("{kind} mesh of {count} triangles in {unit}, {:.3} m across", mesh.size())
         }
     }
 }

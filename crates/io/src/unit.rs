@@ -3,7 +3,7 @@
 use std::{fmt, str::FromStr};
 
 /// The unit of the coordinates in a file; STL, OBJ and PLY do not say which one they use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum LengthUnit {
     /// Metres, `m`.

@@ -8,6 +8,7 @@ use crate::limited::limited;
 use crate::neighborhoods::Neighborhoods;
 use crate::parallel::parallel;
 use crate::patch::MOST_NEIGHBORS;
+use crate::positions::Neighbor;
 use crate::posterior::{disc, posterior};
 use crate::refined::{Bounds, Refined};
 use crate::representatives::Representatives;
@@ -105,6 +106,7 @@ impl NoiseModel {
         };
         let Scratch { block, neighbors, .. } = scratch;
         block.nearest_into(neighborhoods.positions(), &points[index], count, true, neighbors);
+        scratch.reach = reach(&scratch.neighbors, count);
         let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
         let unfitted = |covariance| Refined {
             point: UncertainPoint { mean: points[index], covariance },
@@ -172,6 +174,7 @@ impl NoiseModel {
         scratch: &mut Scratch,
     ) -> Refined {
         neighborhoods.nearest_into(index, SPACING_NEIGHBORS, &mut scratch.neighbors);
+        scratch.reach = reach(&scratch.neighbors, SPACING_NEIGHBORS);
         let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
         let settings = &self.settings.posterior;
         let across = settings.disc_std * spacing;
@@ -226,4 +229,9 @@ impl NoiseModel {
         let psi = sampling_error(neighborhoods, index, nearest, settings)?;
         Some(if settings.is_capped { limited(psi, spacing_cap) } else { psi })
     }
+}
+
+/// How far the last of so many neighbours is, m; with fewer, any point would be one more.
+fn reach(neighbors: &[Neighbor], count: usize) -> f64 {
+    neighbors.get(count - 1).map_or(f64::INFINITY, |last| last.squared_distance.sqrt())
 }

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use cloudtouch_geom::Point3;
 
 use crate::error::NoiseError;
+use crate::finite::is_finite;
 use crate::positions::{Neighbor, Positions};
 use crate::scratch::Scratch;
 use crate::thinned::Thinned;
@@ -82,6 +83,12 @@ impl Neighborhoods {
         let mut found = Vec::new();
         self.positions.search(place, k, false, &mut found);
         found
+    }
+
+    /// Whether any position is at most so far from a place, m, which is soon known where none is; not
+    /// about a place that is not finite.
+    pub fn is_any_within(&self, place: &Point3, distance: f64) -> bool {
+        is_finite(place) && !self.positions.hits_within(place, distance * distance).is_empty()
     }
 
     /// [`Self::nearest`] into a buffer, whose old content is dropped.

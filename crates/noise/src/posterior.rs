@@ -37,9 +37,13 @@ pub(crate) fn posterior(
 ) -> Option<Refined> {
     let points = neighborhoods.points();
     let around = spacing_around(&scratch.neighbors)?;
-    let wide = is_noisy(&sensor[index], around)
-        .then(|| wide_surface(index, neighborhoods, sensor, around, scratch))
-        .flatten();
+    let is_wide = is_noisy(&sensor[index], around);
+    if is_wide || representatives.is_some() {
+        // Which points stand for the others hangs on all of them.
+        scratch.reach = f64::INFINITY;
+    }
+    let wide =
+        is_wide.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
     let Scratch { neighbors, patch, kept_block, wide_neighbors, wide_patch, .. } = scratch;
     let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
     let surface = wide.or_else(|| fit_surface(&patch))?;

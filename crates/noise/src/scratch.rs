@@ -21,6 +21,24 @@ pub struct Scratch {
     /// The same of a wider neighbourhood.
     pub(crate) wide_neighbors: Vec<Neighbor>,
     pub(crate) wide_patch: Buffers,
+    /// See [`Self::reach`].
+    pub(crate) reach: f64,
+}
+
+impl Scratch {
+    /// How far (m) the last refinement looked: points farther from the refined one, whether they come,
+    /// go or move, change no bit of it. Infinite where it looked at the cloud as a whole.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// The points nearest to the one that was refined last, as [`Neighborhoods::nearest`] has them: as
+    /// many as its refinement looked at.
+    ///
+    /// [`Neighborhoods::nearest`]: crate::Neighborhoods::nearest
+    pub fn neighbors(&self) -> &[Neighbor] {
+        &self.neighbors
+    }
 }
 
 #[derive(Debug, Default)]

@@ -31,6 +31,18 @@ pub enum BodyRef<'a> {
     Mesh(&'a Mesh),
 }
 
+impl From<Cloud> for Body {
+    fn from(cloud: Cloud) -> Self {
+        Self::Cloud(cloud)
+    }
+}
+
+impl From<Mesh> for Body {
+    fn from(mesh: Mesh) -> Self {
+        Self::Mesh(mesh)
+    }
+}
+
 impl<'a> From<&'a Cloud> for BodyRef<'a> {
     fn from(cloud: &'a Cloud) -> Self {
         Self::Cloud(cloud)

@@ -23,7 +23,7 @@ const LARGE_OBJECT: f64 = 20.0;
 /// ... in a scene so many times smaller.
 const LARGE_OBJECT_RATIO: f64 = 3.0;
 /// An object is not so many sizes of the larger body away from it.
-const FARTHEST_SIZES: f64 = 100.0;
+pub(crate) const FARTHEST_SIZES: f64 = 100.0;
 
 /// The warnings about a pair, gravest first. `a_from_b` maps local frames.
 pub(crate) fn doubts(

@@ -20,6 +20,7 @@ mod range;
 mod record;
 mod report;
 mod safeguards;
+mod scene;
 mod search;
 mod shape;
 mod undecided;
@@ -27,8 +28,10 @@ mod unseen;
 mod warning;
 
 pub use body::{Body, BodyRef};
-pub use cloud::{Cloud, CloudSettings};
-pub use error::{FilterError, PrepareError, QueryError, SettingsError, SubdivisionError};
+pub use cloud::{Change, Cloud, CloudSettings};
+pub use error::{
+    ChangeError, FilterError, PrepareError, QueryError, SceneError, SettingsError, SubdivisionError,
+};
 pub use filter::{
     FilterSettings, Filtered, OutlierSettings, SelfMesh, StageReport, VeilSettings, filter,
 };
@@ -44,9 +47,10 @@ pub use paper::{
     PaperSettings, Pooling,
 };
 pub use placement::Placement;
-pub use query::{Detail, PoseDistribution, Query, QuerySettings, UnderPoses, Within};
+pub use query::{Detail, NotFree, PoseDistribution, Query, QuerySettings, UnderPoses, Within};
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Unseen, Verdict};
 pub use safeguards::Safeguards;
+pub use scene::{Checked, PairAnswer, Scene};
 pub use undecided::Undecided;
 pub use warning::{Warning, Which};
 

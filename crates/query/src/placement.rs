@@ -41,7 +41,7 @@ pub(crate) fn box_gap(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> f64 {
 }
 
 /// The box around a moved box.
-fn moved([low, high]: [Point3; 2], pose: &Pose) -> [Point3; 2] {
+pub(crate) fn moved([low, high]: [Point3; 2], pose: &Pose) -> [Point3; 2] {
     let middle = pose.transform_point(&nalgebra::center(&low, &high));
     let turn = pose.rotation().to_rotation_matrix().into_inner().abs();
     let half = turn * (0.5 * (high - low));

@@ -5,4 +5,5 @@ pub(crate) mod demo;
 pub(crate) mod info;
 pub(crate) mod path;
 pub(crate) mod query;
+pub(crate) mod scene;
 pub(crate) mod settings;

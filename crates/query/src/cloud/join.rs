@@ -7,10 +7,8 @@ use cloudtouch_noise::Scratch;
 
 use super::edge::{EDGE_SPACINGS, Edge, SLOPE};
 use super::prepared::Prepared;
+use super::slots::NEIGHBORS;
 use super::surfel::Surfel;
-
-/// Neighbours of a point that may be joined to it.
-const NEIGHBORS: usize = 8;
 
 impl Prepared {
     /// The edges that start or end at a point of a leaf.
@@ -67,6 +65,9 @@ struct Nearest<'a> {
 impl Nearest<'_> {
     /// With fewer neighbours the point itself fills the rest, to which no edge leads.
     fn of(&mut self, index: u32, scratch: &mut Scratch) -> [u32; NEIGHBORS] {
+        if let Some(nearest) = self.cloud.known_nearest(index) {
+            return nearest;
+        }
         *self.known.entry(index).or_insert_with(|| {
             let mut nearest = [index; NEIGHBORS];
             let found = self.cloud.near_pieces().nearest_with(index as usize, NEIGHBORS, scratch);

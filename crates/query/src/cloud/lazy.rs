@@ -5,6 +5,7 @@ use cloudtouch_geom::{Point3, UnitVector3};
 use cloudtouch_noise::Scratch;
 
 use super::prepared::Prepared;
+use super::slots::{Basis, Fitted, NEIGHBORS};
 use super::surfel::Surfel;
 
 /// Relative rounding of an eigenvalue, generously.
@@ -38,9 +39,36 @@ impl Prepared {
     /// The surface at one piece.
     pub(super) fn surfel(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
         match self.surface.surfels.get(piece as usize) {
-            Some(slot) => slot.get_or_init(|| Box::new(self.fitted(piece, scratch))),
+            Some(slot) => &slot.get_or_init(|| Box::new(self.fitted(piece, scratch))).surfel,
             None => self.kept(piece),
         }
+    }
+
+    /// The surface at one piece, where it was computed already.
+    pub(super) fn known(&self, piece: u32) -> Option<Fitted> {
+        match self.surface.surfels.get(piece as usize) {
+            Some(slot) => slot.get().map(|fitted| **fitted),
+            None => {
+                let basis = *self.surface.bases.get(piece as usize)?;
+                Some(Fitted { surfel: *self.kept(piece), basis })
+            }
+        }
+    }
+
+    /// The pieces nearest to one, where its surface was computed and tells.
+    pub(super) fn known_nearest(&self, piece: u32) -> Option<[u32; NEIGHBORS]> {
+        let slot = self.surface.surfels.get(piece as usize)?;
+        slot.get()?.basis.nearest
+    }
+
+    /// Whether the surface at one piece was computed already.
+    pub(super) fn is_known(&self, piece: u32) -> bool {
+        self.surface.surfels.get(piece as usize).is_none_or(|slot| slot.get().is_some())
+    }
+
+    /// Whether the surface was computed everywhere and the tree fitted to it.
+    pub(super) fn is_refined(&self) -> bool {
+        self.surface.surfels.is_empty()
     }
 
     /// The surface at one piece of a refined cloud, whose leaves hold all of them.
@@ -52,23 +80,27 @@ impl Prepared {
     }
 
     /// Computes the surface at one piece.
-    fn fitted(&self, piece: u32, scratch: &mut Scratch) -> Surfel {
+    fn fitted(&self, piece: u32, scratch: &mut Scratch) -> Fitted {
         let index = self.pieces.index(piece);
         let cap = self.surface.spacing_caps[piece as usize];
         let near = &self.neighborhoods;
-        let refined = match self.normals.as_ref().map(|normals| normals[index]) {
+        let refined = match self.scans.normals.as_ref().map(|normals| normals[index]) {
             Some(normal) => {
-                let sensor = &self.sensor[index];
+                let sensor = &self.scans.noise[index];
                 self.noise.with_normal(index, normal, near, sensor, cap, scratch)
             }
             None => {
-                let measured = (&self.noise, near, &self.sensor);
+                let measured = (&self.noise, near, &self.scans.noise);
                 self.pieces.refine(piece, measured, cap, scratch)
             }
         };
         let (point, spacing) = (refined.point, refined.spacing);
         let normal = refined.normal.map(UnitVector3::into_inner);
         let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
-        Surfel { index: index as u32, point, spacing, most_variance, normal }
+        let surfel = Surfel { index: index as u32, point, spacing, most_variance, normal };
+        let is_each = self.pieces.is_each() && self.scans.normals.is_none();
+        let nearest = scratch.neighbors().first_chunk::<NEIGHBORS>().filter(|_| is_each);
+        let nearest = nearest.map(|all| all.map(|near| near.index as u32));
+        Fitted { surfel, basis: Basis { reach: scratch.reach(), nearest } }
     }
 }

@@ -2,7 +2,10 @@
 //! model is computed for a leaf when a query first visits it.
 
 mod accessors;
+mod carry;
+mod change;
 mod edge;
+mod frame;
 mod join;
 mod lazy;
 mod makeup;
@@ -19,6 +22,7 @@ mod surfel;
 mod view;
 
 pub(crate) use accessors::cloud_accessors;
+pub use change::Change;
 pub(crate) use edge::{DISC_SPACINGS, Edge, SLOPE};
 #[cfg(test)]
 pub(crate) use join::edges_of;

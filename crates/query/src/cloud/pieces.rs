@@ -22,6 +22,11 @@ impl Pieces {
         Ok(Self { chosen: Representatives::choose(cloud, noise)? })
     }
 
+    /// Whether every point stands for itself.
+    pub(super) fn is_each(&self) -> bool {
+        self.chosen.is_none()
+    }
+
     /// The index in the cloud of every piece, in order.
     pub(super) fn indices(&self, cloud: &Neighborhoods) -> Vec<usize> {
         let count = self.neighborhoods(cloud).points().len() as u32;

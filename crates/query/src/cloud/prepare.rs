@@ -14,7 +14,7 @@ use super::surfel::Surfel;
 /// A noisy cloud, ready to be queried in any pose, from many threads at once.
 #[derive(Debug)]
 pub struct Cloud {
-    prepared: Prepared,
+    pub(super) prepared: Prepared,
 }
 
 cloud_accessors!(Cloud);

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{LeafBounds, Primitive, Tree};
-use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, UnitVector3, Vector3, bounding_box};
+use cloudtouch_bvh::{LeafBounds, Primitive, Tree, TreeSettings};
+use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, Vector3, bounding_box};
 use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 
 use crate::error::PrepareError;
@@ -27,13 +27,9 @@ const ROUNDING: f64 = 1e-9;
 #[derive(Debug)]
 pub(crate) struct Prepared {
     /// What was subtracted from file coordinates, m: far offsets keep their millimetres.
-    origin: Vector3,
-    /// Position noise of each point (Σ of the paper).
-    pub(super) sensor: SensorNoise,
-    /// Unit normals, where the surface is known.
-    pub(super) normals: Option<Vec<UnitVector3>>,
-    rows: Vec<usize>,
-    stages: Vec<StageReport>,
+    pub(super) origin: Vector3,
+    /// What was measured, in the file's frame.
+    pub(super) scans: Scans,
     /// The points kept by the filter, in the local frame, and which are near which.
     pub(super) neighborhoods: Neighborhoods,
     pub(super) pieces: Pieces,
@@ -42,7 +38,7 @@ pub(crate) struct Prepared {
     pub(super) surface: LazySurface,
     makeup: Makeup,
     /// Depth images that it was seen in.
-    views: Vec<SingleView>,
+    pub(super) views: Vec<SingleView>,
     /// Where sensors stood, in the local frame, where the scans say so.
     sensor_origins: Vec<Point3>,
     /// r of the ellipsoid of each point (eq. 11, 12), where they bring their own; else empty.
@@ -63,28 +59,45 @@ impl Prepared {
         let span = tracing::debug_span!("prepare_cloud", points = count);
         let _entered = span.enter();
         let all = Scans::of(scans)?;
-        let (Some((low, high)), Some((_, by))) = (bounding_box(&all.points), scans.first()) else {
+        let Some((_, by)) = scans.first() else {
             let stages = "no scan was given".to_owned();
             return Err(PrepareError::NothingLeft { before: count, stages });
         };
-        let sensor = all.noise;
-        let origin = nalgebra::center(&low, &high).coords;
+        let mut prepared =
+            Self::of_scans(all, NoiseModel::try_new(by.noise)?, by.tree, None, weigh)?;
+        prepared.prepare_time = start.elapsed();
+        Ok(prepared)
+    }
+
+    /// The same of what was measured, in a local frame about this origin where one is given.
+    pub(super) fn of_scans(
+        mut all: Scans,
+        noise: NoiseModel,
+        by_tree: &TreeSettings,
+        origin: Option<Vector3>,
+        weigh: impl Fn(&Neighborhoods, usize) -> f64,
+    ) -> Result<Self, PrepareError> {
+        let Some((low, high)) = bounding_box(&all.points) else {
+            return Err(PrepareError::NothingLeft { before: 0, stages: String::new() });
+        };
+        let sensor = &all.noise;
+        let origin = origin.unwrap_or_else(|| nalgebra::center(&low, &high).coords);
         let points: Vec<Point3> = all.points.iter().map(|p| p - origin).collect();
         let neighborhoods = Neighborhoods::try_new(points)?;
         let makeup = Makeup::new(
             [low - origin, high - origin],
-            (&neighborhoods, &sensor),
+            (&neighborhoods, sensor),
             all.missing,
-            all.sensor_doubts,
+            all.sensor_doubts.clone(),
         );
         if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
             return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
         }
         // A surface that is known needs no others to be told from, and one point is as good as the next.
         let is_fitted =
-            by.noise.combination == Combination::SurfacePosterior && all.normals.is_none();
+            noise.settings().combination == Combination::SurfacePosterior && all.normals.is_none();
         let pieces = match is_fitted {
-            true => Pieces::chosen(&neighborhoods, &sensor)?,
+            true => Pieces::chosen(&neighborhoods, sensor)?,
             false => Pieces::all(),
         };
         let primitive = |index: usize| Primitive::Point {
@@ -96,8 +109,7 @@ impl Prepared {
         };
         let indices = pieces.indices(&neighborhoods);
         let primitives = indices.iter().map(|&index| primitive(index)).collect();
-        let mut tree = Tree::build(primitives, by.tree)?;
-        let noise = NoiseModel::try_new(by.noise)?;
+        let mut tree = Tree::build(primitives, by_tree)?;
         let surface = LazySurface::new(&tree, indices.len());
         let mut scratch = Scratch::default();
         tree.set_leaf_bounds(|leaf| {
@@ -111,7 +123,7 @@ impl Prepared {
                     point.std
                 } else {
                     // What only the neighbours tell, they are asked for.
-                    let refined = noise.refine(index, &neighborhoods, &sensor, cap, &mut scratch);
+                    let refined = noise.refine(index, &neighborhoods, sensor, cap, &mut scratch);
                     refined.point.covariance.max_std() * (1.0 + ROUNDING)
                 };
                 bounds.std = bounds.std.max(std);
@@ -120,42 +132,39 @@ impl Prepared {
             bounds
         })?;
         let view = |(sensor, points): (Point3, _)| SingleView::new(sensor - origin, points);
-        let prepare_time = start.elapsed();
+        let images = std::mem::take(&mut all.images);
         Ok(Self {
             origin,
-            sensor,
-            normals: all.normals,
-            rows: all.rows,
-            stages: all.stages,
             neighborhoods,
             pieces,
             noise,
             tree,
             surface,
             makeup,
-            views: all.images.into_iter().map(view).collect(),
+            views: images.into_iter().map(view).collect(),
             sensor_origins: all.origins.iter().map(|place| place - origin).collect(),
             radii: Vec::new(),
-            prepare_time,
+            prepare_time: Duration::ZERO,
+            scans: all,
         })
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.sensor.len()
+        self.scans.noise.len()
     }
 
     /// A kept point in the file's frame, m.
     pub(crate) fn point(&self, index: usize) -> Point3 {
-        self.neighborhoods.points()[index] + self.origin
+        self.scans.points[index]
     }
 
     /// For every kept point its row in the input; empty when a collision map replaced the points.
     pub(crate) fn rows(&self) -> &[usize] {
-        &self.rows
+        &self.scans.rows
     }
 
     pub(crate) fn filter_stages(&self) -> &[StageReport] {
-        &self.stages
+        &self.scans.stages
     }
 
     pub(crate) fn prepare_time(&self) -> Duration {
@@ -173,12 +182,12 @@ impl Prepared {
 
     /// Position noise of the points kept by the filter.
     pub(crate) fn sensor(&self) -> &SensorNoise {
-        &self.sensor
+        &self.scans.noise
     }
 
     /// The largest standard deviation of the position noise of a kept point, m.
     pub(crate) fn sensor_std(&self, index: u32) -> f64 {
-        self.sensor[index as usize].max_std()
+        self.scans.noise[index as usize].max_std()
     }
 
     /// r of the ellipsoid of a point, where it brings one of its own.
@@ -212,6 +221,15 @@ impl Prepared {
     /// Distance of a place in the local frame to the nearest point, m.
     pub(crate) fn distance_to(&self, place: &Point3) -> Option<f64> {
         Some(self.neighborhoods.nearest_to(place, 1).first()?.squared_distance.sqrt())
+    }
+
+    /// Keeps what the last frames say of themselves, and no more of their filters than these stages.
+    pub(super) fn forget_frames(&mut self, most: usize, stages: Vec<StageReport>) {
+        let oldest = |count: usize| count.saturating_sub(most);
+        self.views.drain(..oldest(self.views.len()));
+        self.sensor_origins.drain(..oldest(self.sensor_origins.len()));
+        self.scans.origins.drain(..oldest(self.scans.origins.len()));
+        self.scans.stages = stages;
     }
 
     pub(crate) fn views(&self) -> &[SingleView] {

@@ -1,5 +1,7 @@
 //! The surface everywhere at once, and the tree fitted to it: for bodies that are queried often.
 
+use std::sync::OnceLock;
+
 use cloudtouch_bvh::{NodeId, Primitive};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3};
 use cloudtouch_noise::Scratch;
@@ -9,6 +11,7 @@ use crate::error::PrepareError;
 
 use super::edge::{DISC_SPACINGS, Edge};
 use super::prepared::Prepared;
+use super::slots::{Basis, Fitted};
 use super::surfel::Surfel;
 
 /// The half axes of an ellipsoid, along a disc and across it, that holds everything up to (1, 1): the
@@ -27,7 +30,10 @@ impl Prepared {
             self.leaf_edges_with(leaf, scratch);
         });
         // Every leaf has copies of its own.
-        self.surface.surfels = Vec::new();
+        let slots = std::mem::take(&mut self.surface.surfels);
+        let unknown = Basis { reach: f64::INFINITY, nearest: None };
+        let basis = |slot: &OnceLock<Box<Fitted>>| slot.get().map_or(unknown, |f| f.basis);
+        self.surface.bases = slots.iter().map(basis).collect();
         let pieces = self.surface.spacing_caps.len();
         let mut extents = vec![Covariance::zero(); pieces];
         let mut primitives =

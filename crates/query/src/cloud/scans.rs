@@ -14,7 +14,7 @@ use super::makeup::{SensorDoubt, missing, sensor_doubts};
 use super::preparation::Preparation;
 
 /// Scans in one frame.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Scans {
     pub points: Vec<Point3>,
     /// Position noise of each point.
@@ -23,6 +23,8 @@ pub(super) struct Scans {
     pub normals: Option<Vec<UnitVector3>>,
     /// Of each point its row, counted on through the scans; empty after a collision map.
     pub rows: Vec<usize>,
+    /// Rows that the scans had.
+    pub row_count: usize,
     pub stages: Vec<StageReport>,
     /// Where sensors stood, of scans that say so.
     pub origins: Vec<Point3>,
@@ -30,7 +32,7 @@ pub(super) struct Scans {
     pub missing: f64,
     /// Signs that a sensor did not see its scan.
     pub sensor_doubts: Vec<SensorDoubt>,
-    /// Scans that are depth images: where the sensor stood, and which points are its.
+    /// Scans that are depth images and were not looked through yet: where the sensor stood, and which points are its.
     pub images: Vec<(Point3, Range<usize>)>,
 }
 
@@ -41,6 +43,7 @@ impl Scans {
             noise: SensorNoise::from(Vec::new()),
             normals: None,
             rows: Vec::new(),
+            row_count: 0,
             stages: Vec::new(),
             origins: Vec::new(),
             missing: 0.0,
@@ -49,7 +52,7 @@ impl Scans {
         };
         let mut normals = Some(Vec::new());
         let mut noise = Vec::new();
-        let (mut first_row, mut have_rows) = (0, true);
+        let mut have_rows = true;
         for &(scan, by) in scans {
             by.validate()?;
             let filtered = filter(scan, by.filter)?;
@@ -58,6 +61,7 @@ impl Scans {
                 return Err(nothing_left(scan.len(), &filtered.stages));
             }
             // By their rows in the file; the cells of a collision map have none.
+            let first_row = all.row_count;
             let row = |i: usize| first_row + filtered.rows.get(i).copied().unwrap_or(i);
             check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
             noise.push(moved(by.sensor.covariances(&kept)?, &by.motion, &kept.points));
@@ -82,20 +86,71 @@ impl Scans {
             all.rows.extend(filtered.rows.iter().map(|row| first_row + row));
             all.stages.extend(filtered.stages);
             all.points.extend(kept.points);
-            first_row += scan.len();
+            all.row_count += scan.len();
         }
         if !have_rows {
             all.rows.clear();
         }
         all.normals = normals;
-        all.noise = match <[SensorNoise; 1]>::try_from(noise) {
-            // Which may take no room per point.
-            Ok([only]) => only,
-            Err(each) => {
-                each.iter().flat_map(SensorNoise::iter).copied().collect::<Vec<_>>().into()
+        all.noise = joined(&noise.iter().collect::<Vec<_>>());
+        Ok(all)
+    }
+
+    /// Puts others of the same frame behind these, as if all had been given at once.
+    pub(super) fn append(&mut self, others: Self) {
+        let Self { points, noise, normals, rows, row_count, stages, origins, missing, .. } = others;
+        let shifted = |(place, range): (Point3, Range<usize>)| {
+            (place, self.points.len() + range.start..self.points.len() + range.end)
+        };
+        self.images.extend(others.images.into_iter().map(shifted));
+        self.noise = joined(&[&self.noise, &noise]);
+        self.normals = match (self.normals.take(), normals) {
+            (Some(own), Some(others)) => Some(own.into_iter().chain(others).collect()),
+            _ => None,
+        };
+        if self.rows.len() != self.points.len() || rows.len() != points.len() {
+            self.rows.clear();
+        } else {
+            self.rows.extend(rows.iter().map(|row| self.row_count + row));
+        }
+        self.row_count += row_count;
+        self.stages.extend(stages);
+        self.origins.extend(origins);
+        self.missing = self.missing.max(missing);
+        // One sign of each kind is enough, the last: a camera delivers frames for hours.
+        let kind = std::mem::discriminant::<SensorDoubt>;
+        let later = &others.sensor_doubts;
+        self.sensor_doubts.retain(|doubt| !later.iter().any(|other| kind(other) == kind(doubt)));
+        self.sensor_doubts.extend(others.sensor_doubts);
+        self.points.extend(points);
+    }
+
+    /// Keeps only these points, given in order.
+    pub(super) fn keep(&mut self, kept: &[u32]) {
+        fn of<T: Copy>(all: &[T], kept: &[u32]) -> Vec<T> {
+            kept.iter().map(|&index| all[index as usize]).collect()
+        }
+        self.points = of(&self.points, kept);
+        self.noise = match self.noise.as_uniform() {
+            Some(same) => SensorNoise::uniform(*same, kept.len()),
+            None => {
+                let each: Vec<Covariance> = kept.iter().map(|&i| self.noise[i as usize]).collect();
+                each.into()
             }
         };
-        Ok(all)
+        self.normals = self.normals.take().map(|normals| of(&normals, kept));
+        if !self.rows.is_empty() {
+            self.rows = of(&self.rows, kept);
+        }
+    }
+}
+
+/// The noise of several lists of points, one after the other; stored once where all have the same.
+fn joined(parts: &[&SensorNoise]) -> SensorNoise {
+    let first = parts.first().and_then(|part| part.as_uniform());
+    match first.filter(|first| parts.iter().all(|part| part.as_uniform() == Some(first))) {
+        Some(same) => SensorNoise::uniform(*same, parts.iter().map(|part| part.len()).sum()),
+        None => parts.iter().flat_map(|part| part.iter()).copied().collect::<Vec<_>>().into(),
     }
 }
 

@@ -7,15 +7,35 @@ use cloudtouch_bvh::{Node, Tree};
 use super::edge::Edge;
 use super::surfel::Surfel;
 
+/// Neighbours of a point that may be joined to it.
+pub(super) const NEIGHBORS: usize = 8;
 /// Points that a spacing is told from, at most.
 const REGION_POINTS: usize = 40;
+
+/// The surface at a piece, and what it rests on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fitted {
+    pub surfel: Surfel,
+    pub basis: Basis,
+}
+
+/// What the surface at a piece rests on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Basis {
+    /// Points farther away had no part in it, m.
+    pub reach: f64,
+    /// The pieces nearest to it, where the fit told.
+    pub nearest: Option<[u32; NEIGHBORS]>,
+}
 
 /// One slot per piece, and per tree node, of which only those of leaves are ever filled. Each is a
 /// pure function of the cloud, so it does not matter which thread fills it.
 #[derive(Debug)]
 pub(super) struct LazySurface {
     /// None once all leaves hold theirs.
-    pub surfels: Vec<OnceLock<Box<Surfel>>>,
+    pub surfels: Vec<OnceLock<Box<Fitted>>>,
+    /// Of each what it rests on, once all leaves hold theirs.
+    pub bases: Vec<Basis>,
     pub leaves: Vec<OnceLock<Vec<Surfel>>>,
     /// Of leaves with what they share.
     pub shared: Vec<OnceLock<Vec<Surfel>>>,
@@ -35,6 +55,7 @@ impl LazySurface {
         }
         Self {
             surfels: slots(pieces),
+            bases: Vec::new(),
             leaves: slots(tree.node_slots()),
             shared: slots(tree.node_slots()),
             edges: slots(tree.node_slots()),

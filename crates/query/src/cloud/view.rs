@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::SensorNoise;
@@ -45,7 +45,7 @@ pub(crate) struct SingleView {
     sensor_origin: Point3,
     /// Which points of the cloud are those of the image.
     points: Range<usize>,
-    raster: OnceLock<Option<Raster>>,
+    raster: OnceLock<Option<Arc<Raster>>>,
 }
 
 impl SingleView {
@@ -59,13 +59,41 @@ impl SingleView {
         &'a self,
         measured: (&[Point3], &SensorNoise),
     ) -> Option<impl Fn(&Point3) -> Sight + 'a> {
-        let raster = self.raster.get_or_init(|| {
-            let (points, noise) = measured;
-            let own = self.points.clone().map(|index| (points[index], noise[index].std_bound()));
-            Raster::new(&self.sensor_origin, own)
-        });
-        let raster = raster.as_ref()?;
+        let raster = self.raster(measured)?;
         Some(move |place: &Point3| raster.sight(&(place - self.sensor_origin)))
+    }
+
+    /// Whether the camera looked past places, each with a standard deviation of its own, in their
+    /// direction and in all around it; and how far apart its pixels are, per metre of distance. `None`
+    /// where the measured points have no directions.
+    pub(super) fn looks_past<'a>(
+        &'a self,
+        measured: (&[Point3], &SensorNoise),
+    ) -> Option<(impl Fn(&Point3, f64) -> bool + Sync + 'a, f64)> {
+        let raster = self.raster(measured)?;
+        let looks_past =
+            move |place: &Point3, std| raster.looks_past(&(place - self.sensor_origin), std);
+        Some((looks_past, raster.pitch / CELL_PIXELS))
+    }
+
+    fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
+        let raster = self.raster.get_or_init(|| {
+            let own = self.points.clone().map(|index| (points[index], noise[index].std_bound()));
+            Raster::new(&self.sensor_origin, own).map(Arc::new)
+        });
+        raster.as_deref()
+    }
+
+    /// The same view as it was measured, whatever becomes of its points, in a frame that lies at
+    /// `shift` in the old one; `None` where the measured points have no directions.
+    pub(super) fn settled(
+        &self,
+        measured: (&[Point3], &SensorNoise),
+        shift: &Vector3,
+    ) -> Option<Self> {
+        let _looked = self.sight(measured)?;
+        let (sensor_origin, raster) = (self.sensor_origin - shift, self.raster.clone());
+        Some(Self { sensor_origin, points: 0..0, raster })
     }
 }
 
@@ -79,6 +107,8 @@ struct Raster {
     size: [usize; 2],
     /// The range, m, clearly behind the farthest return of each cell; zero without one.
     clearly_behind: Vec<f64>,
+    /// The range, m, clearly before the nearest return of each cell; infinite without one.
+    clearly_before: Vec<f64>,
 }
 
 impl Raster {
@@ -86,9 +116,12 @@ impl Raster {
     fn new(origin: &Point3, measured: impl Iterator<Item = (Point3, f64)>) -> Option<Self> {
         let rays: Vec<(Vector3, f64)> = measured.map(|(p, std)| (p - origin, std)).collect();
         let lens = Lens::of(rays.iter().map(|(ray, _)| ray))?;
-        let placed: Vec<(f64, [f64; 2])> = rays
+        let placed: Vec<([f64; 2], [f64; 2])> = rays
             .iter()
-            .filter_map(|(ray, std)| Some((ray.norm() + CLEARLY * std, lens.project(ray)?)))
+            .filter_map(|(ray, std)| {
+                let range = ray.norm();
+                Some(([range - CLEARLY * std, range + CLEARLY * std], lens.project(ray)?))
+            })
             .collect();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for (_, at) in &placed {
@@ -108,11 +141,13 @@ impl Raster {
         // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
         let low = low.map(|v| v - 0.5 * pitch);
         let size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
-        let mut raster =
-            Self { lens, low, pitch, size, clearly_behind: vec![0.0; size[0] * size[1]] };
-        for (behind, at) in placed {
+        let cells = size[0] * size[1];
+        let (clearly_behind, clearly_before) = (vec![0.0; cells], vec![f64::INFINITY; cells]);
+        let mut raster = Self { lens, low, pitch, size, clearly_behind, clearly_before };
+        for ([before, behind], at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
                 raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
+                raster.clearly_before[cell] = raster.clearly_before[cell].min(before);
             }
         }
         Some(raster)
@@ -142,6 +177,19 @@ impl Raster {
             }
         }
         Sight::Hole
+    }
+
+    /// Whether every return of the cell of a ray, where there is one, and of those around it is clearly
+    /// behind a place known this well.
+    fn looks_past(&self, ray: &Vector3, std: f64) -> bool {
+        let Some([x, y]) = self.lens.project(ray).and_then(|at| self.cell(at)) else {
+            return false;
+        };
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
+        let cells = around.filter_map(|[x, y]| self.index(x, y));
+        let nearest = cells.map(|cell| self.clearly_before[cell]).fold(f64::INFINITY, f64::min);
+        let has_return = self.index(x, y).is_some_and(|cell| self.clearly_behind[cell] > 0.0);
+        has_return && ray.norm() + CLEARLY * std < nearest
     }
 
     /// The cell of a place of the view; `None` outside of it.

@@ -1,5 +1,6 @@
 //! The default path: geometry first, the classifier in doubt, a fitted probability.
 
+mod any;
 mod batch;
 mod classify;
 mod contacts;
@@ -14,6 +15,7 @@ mod task;
 mod uncertain;
 mod within;
 
+pub use any::NotFree;
 pub use run::Query;
 pub use settings::{Detail, QuerySettings};
 pub use uncertain::{PoseDistribution, UnderPoses};

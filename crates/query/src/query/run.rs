@@ -52,6 +52,7 @@ impl Query {
             accept: self.settings.accept,
             reject: self.settings.reject,
             safeguards: self.settings.safeguards,
+            doubts_distance: true,
             max_contacts: self.settings.max_contacts,
             closeness: Closeness::default(),
         }
@@ -78,8 +79,32 @@ impl Query {
         b: impl Into<BodyRef<'a>>,
         a_from_b: &Pose,
     ) -> Result<Report, QueryError> {
-        let (a, b) = (a.into(), b.into());
-        self.terms().ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
+        self.ask(&self.terms(), (a.into(), b.into()), a_from_b)
+    }
+
+    /// The terms of a pair among many bodies, of which most are far from most.
+    pub(crate) fn terms_in_scene(&self) -> Terms {
+        Terms { doubts_distance: false, ..self.terms() }
+    }
+
+    /// [`Self::run`] for a pair among many bodies; one that is astray is doubted for its distance too.
+    pub(crate) fn run_in_scene(
+        &self,
+        bodies: (BodyRef<'_>, BodyRef<'_>),
+        a_from_b: &Pose,
+        is_astray: bool,
+    ) -> Result<Report, QueryError> {
+        let terms = if is_astray { self.terms() } else { self.terms_in_scene() };
+        self.ask(&terms, bodies, a_from_b)
+    }
+
+    fn ask(
+        &self,
+        terms: &Terms,
+        (a, b): (BodyRef<'_>, BodyRef<'_>),
+        a_from_b: &Pose,
+    ) -> Result<Report, QueryError> {
+        terms.ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
             estimate((a, b), local, &self.task(start), evidence)
         })
     }

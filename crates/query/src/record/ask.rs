@@ -29,6 +29,8 @@ pub(crate) struct Terms {
     pub accept: f64,
     pub reject: f64,
     pub safeguards: Safeguards,
+    /// Whether a body may be too far away to be meant: not where there are many, most far from most.
+    pub doubts_distance: bool,
     pub max_contacts: usize,
     /// Which points the noisy-or counts.
     pub closeness: Closeness,
@@ -103,8 +105,12 @@ impl Terms {
     ) -> Option<Undecided> {
         let counts =
             |reason: &Undecided| *reason != Undecided::Units || self.safeguards.doubt_units;
+        let is_doubted = |warning: &&Warning| {
+            self.doubts_distance || !matches!(warning, Warning::FarAway { .. })
+        };
         let enclosed = || is_enclosed(a, b, local).then_some(Undecided::Enclosed);
-        warnings.iter().filter_map(Warning::undecides).find(counts).or_else(enclosed)
+        let doubted = warnings.iter().filter(is_doubted);
+        doubted.filter_map(Warning::undecides).find(counts).or_else(enclosed)
     }
 
     fn report(

@@ -1,0 +1,146 @@
+//! `cloudtouch scene`: many bodies, each with its own pose.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use anyhow::{Context as _, Result, anyhow, ensure};
+use cloudtouch::geom::{Point3, TriangleMesh};
+use cloudtouch::{Cloud, Mesh, Query, QuerySettings, Scene};
+use cloudtouch_cli::scene_file::{self, BodyEntry, SceneFile};
+use cloudtouch_io::LengthUnit;
+use rayon::prelude::*;
+
+use crate::args::{CommonArguments, SceneArguments};
+use crate::body::Body;
+use crate::load::{self, Input, Loaded};
+use crate::sensor::SensorChoice;
+use crate::{print, scene_answer, unused};
+
+/// A file, the unit it is said to be in and the sensor that saw it, by its spec.
+type BodyKey = (PathBuf, Option<LengthUnit>, String);
+
+/// What several bodies of a scene may share.
+struct Prepared {
+    body: Arc<cloudtouch::Body>,
+    input: Input,
+    /// What it is, for people.
+    words: String,
+}
+
+pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
+    let common = &arguments.common;
+    let named = || arguments.scene.display().to_string();
+    let file = scene_file::read(&arguments.scene, common.limits.read_limits().bytes)?;
+    let query = Query::new(settings(common, &file).with_context(named)?)?;
+    // What can be told without work comes first.
+    let mut scene = outline(&file).with_context(named)?;
+    let keys = keys(common, &file).with_context(named)?;
+    let prepared = prepare(common, &keys)?;
+    let bodies: BTreeMap<&str, &Prepared> =
+        file.bodies.iter().zip(&keys).map(|(of, key)| (of.name.as_str(), &prepared[key])).collect();
+    for (name, prepared) in &bodies {
+        scene.replace(name, Arc::clone(&prepared.body))?;
+    }
+    let checked = scene.check(&query);
+    let threshold = query.settings().reject;
+    let text = if arguments.json {
+        let inputs = bodies.iter().map(|(name, prepared)| (*name, &prepared.input)).collect();
+        scene_answer::json_line(&checked, threshold, inputs)?
+    } else {
+        let lines =
+            file.bodies.iter().map(|of| format!("{}\n", bodies[of.name.as_str()].words_of(of)));
+        lines.collect::<String>() + &scene_answer::text(&checked, threshold)
+    };
+    print::to_stdout(&format!("{text}\n"))?;
+    Ok(if checked.pairs.iter().any(|pair| pair.answer.is_err()) {
+        ExitCode::FAILURE
+    } else if arguments.exit_code {
+        print::exit_code(checked.verdict())
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+impl Prepared {
+    fn words_of(&self, entry: &BodyEntry) -> String {
+        let attached = entry.attached_to.as_deref().map(print::one_line);
+        let attached = attached.map_or(String::new(), |to| format!(", attached to {to}"));
+        format!("{}: {}{attached}", print::one_line(&entry.name), self.words)
+    }
+}
+
+fn settings(common: &CommonArguments, file: &SceneFile) -> Result<QuerySettings> {
+    ensure!(
+        file.threshold.is_none() || common.reject.is_none(),
+        "has a threshold, and --reject is one too: give one of them"
+    );
+    let usual = common.query_settings();
+    Ok(QuerySettings { reject: file.threshold.unwrap_or(usual.reject), ..usual })
+}
+
+/// The scene with a triangle in the place of each body, until these are read.
+fn outline(file: &SceneFile) -> Result<Scene> {
+    let corners = vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
+    let triangle = Mesh::prepare(&TriangleMesh::try_new(corners, vec![[0, 1, 2]])?)?;
+    let stand_in = Arc::new(cloudtouch::Body::from(triangle));
+    let mut scene = Scene::default();
+    for (index, BodyEntry { name, pose, .. }) in file.bodies.iter().enumerate() {
+        let added = scene.add(name, Arc::clone(&stand_in), *pose);
+        added.with_context(|| format!("body {index}"))?;
+    }
+    for (index, BodyEntry { name, pose, attached_to, .. }) in file.bodies.iter().enumerate() {
+        if let Some(to) = attached_to {
+            let attached = scene.attach(name, to, *pose);
+            attached.with_context(|| format!("\"attached_to\" of body {index}"))?;
+        }
+    }
+    for (index, [a, b]) in file.allowed.iter().enumerate() {
+        scene.allow(a, b).with_context(|| format!("pair {index} of \"allowed\""))?;
+    }
+    Ok(scene)
+}
+
+/// What to read for each body, after a look whether it is there.
+fn keys(common: &CommonArguments, file: &SceneFile) -> Result<Vec<BodyKey>> {
+    let key = |(index, entry): (usize, &BodyEntry)| {
+        let place = || format!("body {index} `{}`", entry.name);
+        let BodyEntry { file, sensor, unit, .. } = entry;
+        load::check(file).with_context(place)?;
+        let sensor = match sensor {
+            Some(spec) => spec.parse::<SensorChoice>().map_err(|error| anyhow!("{error}")),
+            None => Ok(common.sensor),
+        };
+        Ok((file.clone(), *unit, sensor.with_context(place)?.to_string()))
+    };
+    file.bodies.iter().enumerate().map(key).collect()
+}
+
+/// Reads every file once for all bodies that take it for the same.
+fn prepare(common: &CommonArguments, keys: &[BodyKey]) -> Result<BTreeMap<BodyKey, Prepared>> {
+    let wanted: BTreeMap<&BodyKey, usize> = keys.iter().fold(BTreeMap::new(), |mut wanted, key| {
+        *wanted.entry(key).or_default() += 1;
+        wanted
+    });
+    let wanted: Vec<(&BodyKey, usize)> = wanted.into_iter().collect();
+    let loaded = wanted.into_par_iter().map(|(key, bodies)| {
+        let (path, unit, sensor) = key;
+        let sensor = sensor.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))?;
+        let loaded = load::body_in::<Cloud>(path, *unit, sensor, common)?;
+        Ok((key, loaded.refined_for(bodies, common.effort.refine)?))
+    });
+    let loaded: Vec<(&BodyKey, Loaded<Cloud>)> = loaded.collect::<Result<_>>()?;
+    let is_mesh: Vec<bool> =
+        loaded.iter().map(|(_, loaded)| matches!(loaded.body, Body::Mesh(_))).collect();
+    unused::check(common, &is_mesh)?;
+    let prepared = loaded.into_iter().map(|(key, loaded)| {
+        let words = print::kind(&loaded);
+        let body = Arc::new(match loaded.body {
+            Body::Cloud(cloud) => cloud.into(),
+            Body::Mesh(mesh) => mesh.into(),
+        });
+        (key.clone(), Prepared { body, input: loaded.input, words })
+    });
+    Ok(prepared.collect())
+}

@@ -1,0 +1,58 @@
+//! What all JSON files of the tool have in common: numbers that JSON does not have, poses, messages.
+
+use std::borrow::Cow;
+
+use anyhow::{Context, Result, anyhow, bail};
+use cloudtouch::geom::Pose;
+use nalgebra::Matrix4;
+use serde_json::Value;
+
+/// A pose as four rows of four numbers.
+pub(crate) fn matrix(value: Value) -> Result<Pose> {
+    let rows: Vec<[f64; 4]> = serde_json::from_value(value)
+        .context("the pose is not a list of four rows of four numbers")?;
+    if rows.len() != 4 {
+        bail!("the pose has {} rows: it must be 4x4", rows.len());
+    }
+    let entries = rows.concat();
+    Ok(Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?)
+}
+
+/// The text with strings of the same length for `NaN`, `Infinity` and `-Infinity`, which Python writes
+/// and JSON does not have: they are wrong only where a number is used.
+pub(crate) fn without_bare_words(text: &[u8]) -> Cow<'_, [u8]> {
+    const WORDS: [(&[u8], &[u8]); 3] =
+        [(b"-Infinity", b"\"-Infin.\""), (b"Infinity", b"\"Infin.\""), (b"NaN", b"\"N\"")];
+    let mut text = Cow::Borrowed(text);
+    let (mut at, mut in_string) = (0, false);
+    while at < text.len() {
+        match text[at] {
+            b'\\' if in_string => at += 1,
+            b'"' => in_string = !in_string,
+            b'-' | b'I' | b'N' if !in_string => {
+                let word = WORDS.iter().find(|(word, _)| text[at..].starts_with(word));
+                if let Some((word, instead)) = word {
+                    text.to_mut()[at..at + word.len()].copy_from_slice(instead);
+                    at += word.len() - 1;
+                }
+            }
+            _ => {}
+        }
+        at += 1;
+    }
+    text
+}
+
+/// The error with its causes in one message, of which no more is kept than its beginning and its
+/// end: messages quote what they found, which may be most of the file, and then say where.
+pub(crate) fn shortened(error: anyhow::Error) -> anyhow::Error {
+    const KEPT: usize = 200;
+    let message = format!("{error:#}");
+    let characters = message.chars().count();
+    if characters <= 2 * KEPT {
+        return error;
+    }
+    let start: String = message.chars().take(KEPT).collect();
+    let end: String = message.chars().skip(characters - KEPT).collect();
+    anyhow!("{start} ... {end}")
+}

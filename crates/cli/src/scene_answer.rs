@@ -1,0 +1,112 @@
+//! Which bodies of a scene may touch, for programs and for people.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use anyhow::Result;
+use cloudtouch::{Checked, PairAnswer, Report, Verdict};
+use serde::Serialize;
+
+use crate::load::Input;
+use crate::print::{self, one_line, probability};
+
+#[derive(Serialize)]
+struct Line<'a> {
+    verdict: Verdict,
+    threshold: f64,
+    pairs: Vec<Pair<'a>>,
+    counts: Counts,
+    bodies: BTreeMap<&'a str, &'a Input>,
+}
+
+#[derive(Serialize)]
+struct Counts {
+    pairs: usize,
+    allowed: usize,
+    ruled_out: usize,
+    asked: usize,
+}
+
+#[derive(Serialize)]
+struct Pair<'a> {
+    a: &'a str,
+    b: &'a str,
+    #[serde(flatten)]
+    report: Option<&'a Report>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+}
+
+impl<'a> From<&'a PairAnswer> for Pair<'a> {
+    fn from(pair: &'a PairAnswer) -> Self {
+        let (report, error) = match &pair.answer {
+            Ok(report) => (Some(report), None),
+            Err(error) => (None, Some(error.to_string())),
+        };
+        Self { a: &pair.a, b: &pair.b, report, error }
+    }
+}
+
+pub(crate) fn json_line(
+    checked: &Checked,
+    threshold: f64,
+    bodies: BTreeMap<&str, &Input>,
+) -> Result<String> {
+    let Checked { count, allowed, ruled_out, asked, .. } = *checked;
+    let line = Line {
+        verdict: checked.verdict(),
+        threshold,
+        pairs: checked.pairs.iter().map(Pair::from).collect(),
+        counts: Counts { pairs: count, allowed, ruled_out, asked },
+        bodies,
+    };
+    Ok(serde_json::to_string(&line)?)
+}
+
+/// The same as a table.
+pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
+    let Checked { count, allowed, ruled_out, asked, .. } = *checked;
+    let mut text = String::new();
+    if !checked.pairs.is_empty() {
+        let names: Vec<String> = checked.pairs.iter().map(names).collect();
+        let width = names.iter().map(|name| name.chars().count()).fold(4, usize::max);
+        let _ = writeln!(
+            text,
+            "{:<width$}  {:>5}  {:<14}  {:<12}  {:>14}",
+            "pair", "P", "bounds", "verdict", "clearance (mm)"
+        );
+        for (name, pair) in names.iter().zip(&checked.pairs) {
+            let _ = writeln!(text, "{name:<width$}  {}", row(pair));
+        }
+    }
+    let _ = write!(
+        text,
+        "{}: {} of {count} pairs may be at or above {}; {asked} asked, {ruled_out} ruled out by their \
+         boxes, {allowed} allowed",
+        checked.verdict(),
+        checked.pairs.len(),
+        probability(threshold),
+    );
+    text
+}
+
+fn names(pair: &PairAnswer) -> String {
+    format!("{} / {}", one_line(&pair.a), one_line(&pair.b))
+}
+
+fn row(pair: &PairAnswer) -> String {
+    let report = match &pair.answer {
+        Ok(report) => report,
+        Err(error) => return format!("error: {}", one_line(&error.to_string())),
+    };
+    let [low, high] = report.bounds.map(probability);
+    let reason =
+        report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
+    format!(
+        "{:>5}  {:<14}  {:<12}  {:>14}{reason}",
+        probability(report.collision_probability),
+        format!("{low} .. {high}"),
+        report.verdict,
+        print::gap_mm(report.clearance_m),
+    )
+}

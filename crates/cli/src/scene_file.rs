@@ -1,0 +1,132 @@
+//! The file of a scene: bodies, what moves with what, and what may touch.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, bail};
+use cloudtouch::geom::Pose;
+use cloudtouch_io::LengthUnit;
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::json_text::{matrix, shortened, without_bare_words};
+
+/// A scene as its file says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// Pairs with a probability of so much are not free; what the options say where it is not given.
+    pub threshold: Option<f64>,
+    /// In the order of the file; names may be taken twice, and unknown ones be attached to.
+    pub bodies: Vec<BodyEntry>,
+    /// Pairs that may touch, by names.
+    pub allowed: Vec<[String; 2]>,
+}
+
+/// A body of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyEntry {
+    /// By which others refer to it.
+    pub name: String,
+    /// A cloud or a mesh.
+    pub file: PathBuf,
+    /// The spec of its sensor, as in the options.
+    pub sensor: Option<String>,
+    /// In which its coordinates are.
+    pub unit: Option<LengthUnit>,
+    /// Into the frame of what it is attached to, or else of the scene, m; the identity where none is
+    /// given.
+    pub pose: Pose,
+    /// The name of the body that it moves with.
+    pub attached_to: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename = "scene file", deny_unknown_fields)]
+struct RawFile {
+    format: u32,
+    length_unit: String,
+    threshold: Option<Value>,
+    bodies: Vec<Value>,
+    #[serde(default)]
+    allowed: Vec<Value>,
+}
+
+/// What is misspelt would be passed over: an unknown field is an error.
+#[derive(Deserialize)]
+#[serde(rename = "body", deny_unknown_fields)]
+struct RawBody {
+    name: String,
+    file: PathBuf,
+    sensor: Option<String>,
+    unit: Option<String>,
+    pose: Option<Value>,
+    attached_to: Option<String>,
+}
+
+/// Reads a scene file of at most `max_bytes`; paths in it are relative to its folder.
+///
+/// # Errors
+/// When the file is larger or no scene file; the message names the body, by its place from 0 and its
+/// name, and the field.
+pub fn read(path: &Path, max_bytes: u64) -> Result<SceneFile> {
+    let named = || path.display().to_string();
+    let text = cloudtouch_io::read_bytes(path, max_bytes)?;
+    parse(&text, path.parent().unwrap_or(Path::new(""))).with_context(named)
+}
+
+/// The scene in the text of a scene file, whose paths are relative to `folder`.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(text: &[u8], folder: &Path) -> Result<SceneFile> {
+    parse_whole(text, folder).map_err(shortened)
+}
+
+fn parse_whole(text: &[u8], folder: &Path) -> Result<SceneFile> {
+    let text = without_bare_words(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text));
+    let raw: RawFile = serde_json::from_slice(&text).context(
+        "not a scene file, a JSON object with \"format\", \"length_unit\" and \"bodies\"",
+    )?;
+    if raw.format != 1 {
+        bail!("format {}: this version reads format 1", raw.format);
+    }
+    if raw.length_unit != "m" {
+        bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
+    }
+    if raw.bodies.len() < 2 {
+        bail!("{} bodies: a scene needs at least two to touch", raw.bodies.len());
+    }
+    let body = |(index, value): (usize, Value)| {
+        let name = value.get("name").and_then(Value::as_str).map(|name| format!(" `{name}`"));
+        let place = || format!("body {index}{}", name.unwrap_or_default());
+        body(value, folder).with_context(place)
+    };
+    let pair = |(index, value): (usize, Value)| {
+        let form = || format!("pair {index} of \"allowed\" is not a list of two names");
+        serde_json::from_value(value).with_context(form)
+    };
+    Ok(SceneFile {
+        threshold: raw.threshold.map(threshold).transpose()?,
+        bodies: raw.bodies.into_iter().enumerate().map(body).collect::<Result<_>>()?,
+        allowed: raw.allowed.into_iter().enumerate().map(pair).collect::<Result<_>>()?,
+    })
+}
+
+fn threshold(value: Value) -> Result<f64> {
+    match value.as_f64() {
+        Some(threshold) if (0.0..=0.5).contains(&threshold) => Ok(threshold),
+        _ => bail!("threshold {value}: give a probability from 0 to 0.5"),
+    }
+}
+
+fn body(value: Value, folder: &Path) -> Result<BodyEntry> {
+    let raw = RawBody::deserialize(value)?;
+    let unit = raw.unit.map(|unit| unit.parse::<LengthUnit>()).transpose();
+    Ok(BodyEntry {
+        name: raw.name,
+        file: folder.join(raw.file),
+        sensor: raw.sensor,
+        unit: unit?,
+        pose: raw.pose.map(matrix).transpose()?.unwrap_or_default(),
+        attached_to: raw.attached_to,
+    })
+}

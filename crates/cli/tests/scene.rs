@@ -1,0 +1,149 @@
+//! `cloudtouch scene`: boxes over a floor, one on another's back.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+use serde_json::{Value, json};
+use support::{HEIGHTS, Inputs, Run};
+
+/// A body at a height, away from the rows of the floor.
+fn body(name: &str, file: &str, height: f64) -> Value {
+    let pose = [
+        [1.0, 0.0, 0.0, 0.01],
+        [0.0, 1.0, 0.0, 0.02],
+        [0.0, 0.0, 1.0, height],
+        [0.0, 0.0, 0.0, 1.0],
+    ];
+    json!({"name": name, "file": file, "pose": pose})
+}
+
+fn floor() -> Value {
+    json!({"name": "floor", "file": "floor.pcd", "sensor": "iso:0.002"})
+}
+
+fn of_bodies(bodies: &[Value]) -> Value {
+    json!({"format": 1, "length_unit": "m", "bodies": bodies})
+}
+
+fn scene(inputs: &Inputs, scene: &Value, more: &[&str]) -> Run {
+    inputs.write("scene.json", &scene.to_string());
+    inputs.run(&[&["scene", "scene.json"], more].concat())
+}
+
+fn pairs(answer: &Value) -> Vec<[&str; 2]> {
+    let all = answer["pairs"].as_array().unwrap();
+    all.iter().map(|pair| ["a", "b"].map(|key| pair[key].as_str().unwrap())).collect()
+}
+
+#[test]
+fn the_worst_verdict_is_the_exit_code_and_answers_are_those_of_query() {
+    let inputs = Inputs::new();
+    for (verdict, code, height) in HEIGHTS {
+        let bodies = [floor(), body("box", "box.obj", height), body("bird", "box.obj", 5.0)];
+        let run = scene(&inputs, &of_bodies(&bodies), &["--json", "--exit-code"]).quiet(code);
+        let answer = run.json_lines().remove(0);
+        assert_eq!(answer["verdict"], verdict);
+        assert_eq!(answer["counts"]["pairs"], 3);
+        let Some(pair) = answer["pairs"].get(0) else {
+            assert_eq!((verdict, &answer["counts"]["ruled_out"]), ("free", &json!(3)));
+            continue;
+        };
+        assert_eq!(pairs(&answer), [["floor", "box"]]);
+        let alone = inputs.query_at(height, &["--json"]).json_lines().remove(0);
+        for key in ["collision_probability", "bounds", "verdict", "contacts", "evidence"] {
+            assert_eq!(pair[key], alone[key], "{key}");
+        }
+        scene(&inputs, &of_bodies(&bodies), &[]).quiet(0);
+    }
+}
+
+#[test]
+fn what_is_attached_is_placed_by_what_carries_it_and_allowed_pairs_may_touch() {
+    let inputs = Inputs::new();
+    // The load is half a metre below its carrier: at the floor.
+    let mut load = body("load", "box.obj", -0.55);
+    load["attached_to"] = json!("carrier");
+    let mut file = of_bodies(&[floor(), load, body("carrier", "box.obj", 0.6)]);
+    let answer = scene(&inputs, &file, &["--json", "--exit-code"]).quiet(20).json_lines().remove(0);
+    assert_eq!(pairs(&answer), [["floor", "load"]]);
+    let text = scene(&inputs, &file, &[]).quiet(0).stdout();
+    assert!(
+        text.contains("load: watertight mesh") && text.contains("attached to carrier"),
+        "{text}"
+    );
+    assert!(text.contains("floor / load"), "{text}");
+    assert!(text.contains("in collision: 1 of 3 pairs may be at or above 0.100"), "{text}");
+    file["allowed"] = json!([["load", "floor"]]);
+    let answer = scene(&inputs, &file, &["--json", "--exit-code"]).quiet(0).json_lines().remove(0);
+    assert_eq!((pairs(&answer).len(), &answer["counts"]["allowed"]), (0, &json!(1)));
+}
+
+#[test]
+fn units_sensors_and_the_threshold_are_those_of_the_file() {
+    let inputs = Inputs::new();
+    let mut small = body("box", "box.obj", 0.1);
+    small["unit"] = json!("cm");
+    let answer = scene(&inputs, &of_bodies(&[floor(), small]), &["--json"]).quiet(0);
+    let answer = answer.json_lines().remove(0);
+    assert_eq!(answer["bodies"]["box"]["unit"], "cm");
+    assert_eq!(answer["bodies"]["floor"]["sensor"], "iso:0.002");
+    let mut file = of_bodies(&[floor(), body("box", "box.obj", 5.0)]);
+    assert_eq!(answer["threshold"], 0.1);
+    file["threshold"] = json!(0.0001);
+    let answer = scene(&inputs, &file, &["--json"]).quiet(0).json_lines().remove(0);
+    assert_eq!((answer["threshold"].as_f64(), pairs(&answer).len()), (Some(0.0001), 1));
+    let both = scene(&inputs, &file, &["--reject", "0.2"]);
+    assert!(both.code() == 1 && both.stderr().contains("give one of them"), "{}", both.stderr());
+}
+
+#[test]
+fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
+    let inputs = Inputs::new();
+    let with = |key: &str, value: Value| {
+        let mut changed = body("box", "box.obj", 1.0);
+        changed[key] = value;
+        of_bodies(&[floor(), changed])
+    };
+    let of_scene = |key: &str, value: Value| {
+        let mut file = of_bodies(&[floor(), body("box", "box.obj", 1.0)]);
+        file[key] = value;
+        file
+    };
+    for (file, parts) in [
+        (with("name", json!("floor")), vec!["body 1", "`floor`", "another name"]),
+        (with("attached_to", json!("hand")), vec!["body 1", "`hand`", "add it first"]),
+        (with("attached_to", json!("box")), vec!["body 1", "`box`", "detach"]),
+        (with("file", json!("gone.obj")), vec!["body 1 `box`", "gone.obj", "cannot be read"]),
+        (with("file", json!("scene.json")), vec!["body 1 `box`", "scene.json"]),
+        (with("sensor", json!("sonar")), vec!["body 1 `box`", "`sonar`"]),
+        (with("unit", json!("miles")), vec!["body 1 `box`", "miles"]),
+        (with("pose", json!([[1, 0, 0, 0]])), vec!["body 1 `box`", "1 rows", "4x4"]),
+        (with("pose", json!("here")), vec!["body 1 `box`", "four rows of four numbers"]),
+        (with("atached_to", json!("floor")), vec!["body 1 `box`", "`atached_to`", "`attached_to`"]),
+        (of_scene("allowed", json!([["box", "wall"]])), vec!["pair 0 of \"allowed\"", "`wall`"]),
+        (of_scene("allowed", json!([["box"]])), vec!["pair 0 of \"allowed\"", "two names"]),
+        (of_scene("threshold", json!(0.7)), vec!["threshold 0.7", "0 to 0.5"]),
+        (of_scene("format", json!(2)), vec!["format 2", "format 1"]),
+        (of_scene("length_unit", json!("mm")), vec!["length_unit `mm`", "metres"]),
+        (of_scene("bodies", json!([])), vec!["0 bodies", "at least two"]),
+    ] {
+        let run = scene(&inputs, &file, &[]);
+        let error = run.stderr();
+        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{error}");
+        assert!(error.starts_with("error: scene.json: "), "{error}");
+        assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
+    }
+    // What Python writes for a number that is none.
+    let text =
+        of_bodies(&[floor(), body("box", "box.obj", 1.25)]).to_string().replace("1.25", "NaN");
+    inputs.write("nan.json", &text);
+    let run = inputs.run(&["scene", "nan.json"]);
+    assert!(run.code() == 1 && run.stderr().contains("body 1 `box`"), "{}", run.stderr());
+    for (options, part) in [
+        (["--mode", "paper"], "calibrated mode"),
+        (["--margin", "0.1"], "--margin"),
+        (["--sensor-pose", "0,0,1"], "--sensor-pose"),
+    ] {
+        let run = scene(&inputs, &of_bodies(&[floor()]), &options);
+        assert!(run.code() == 2 && run.stderr().contains(part), "{}", run.stderr());
+    }
+}

@@ -1,0 +1,195 @@
+//! A cloud whose points come, go and move.
+
+use std::time::Instant;
+
+use cloudtouch_geom::{Point3, PointCloud, Vector3, bounding_box};
+
+use crate::error::ChangeError;
+use crate::range::LARGEST_COORDINATE;
+
+use super::carry::NEW;
+use super::prepare::Cloud;
+use super::prepared::Prepared;
+use super::scans::Scans;
+use super::settings::CloudSettings;
+
+/// What a change did to a cloud.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Change {
+    /// Points that came.
+    pub inserted: usize,
+    /// Points that went.
+    pub removed: usize,
+    /// Points that are elsewhere.
+    pub moved: usize,
+    /// Points whose surface was computed before and is kept.
+    pub surfaces_kept: usize,
+    /// Points whose surface was computed before and is not known any more; it is computed when a query
+    /// comes near, or at once in a cloud that is [refined](Cloud::refined).
+    pub surfaces_lost: usize,
+    /// Whether the local frame was laid anew, for the middle of the cloud has moved by more than its
+    /// size: then all surfaces are lost.
+    pub is_recentred: bool,
+}
+
+impl Cloud {
+    /// Adds what another scan of the same frame has, filtered and with the noise by its own settings, as
+    /// if both had been [merged](Self::merge): its points come after those that there are.
+    ///
+    /// A changed cloud answers as one prepared from the same points does, to the bit as long as the middle of
+    /// the box around all points stays; else up to rounding, which a classifier may raise to a
+    /// thousandth, since it keeps the local frame it has. What is kept is the surface at points none of whose
+    /// neighbours changed, the costly part; index and tree are built anew at each change, so that they
+    /// never decay.
+    ///
+    /// ```
+    /// use cloudtouch::geom::{Point3, PointCloud};
+    /// use cloudtouch::noise::SensorModel;
+    /// use cloudtouch::{Cloud, CloudSettings};
+    ///
+    /// let sheet = |z: f64| -> PointCloud {
+    ///     let at = |i: u32| Point3::new(0.01 * f64::from(i % 20), 0.01 * f64::from(i / 20), z);
+    ///     PointCloud::from_points((0..400).map(at).collect())
+    /// };
+    /// let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+    /// let mut cloud = Cloud::prepare(&sheet(0.0), &settings)?;
+    /// assert_eq!(cloud.insert(&sheet(0.2), &settings)?.inserted, 400);
+    /// assert_eq!(cloud.remove(&[0, 1, 2])?.removed, 3);
+    /// cloud.move_points(&[(0, Point3::new(0.03, 0.0, 0.001))])?;
+    /// assert_eq!(cloud.len(), 797);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::prepare`] for the scan, or for all together.
+    pub fn insert(
+        &mut self,
+        scan: &PointCloud,
+        settings: &CloudSettings,
+    ) -> Result<Change, ChangeError> {
+        let added = Scans::of(&[(scan, settings.preparation())])?;
+        let all: Vec<u32> = (0..self.len() as u32).collect();
+        self.keep_and_append(&all, Some(added))
+    }
+
+    /// Removes points, by their indices as filtered ([`Self::point`]); those after them move up.
+    ///
+    /// For the answers see [`Self::insert`]. Depth images keep what they saw.
+    ///
+    /// # Errors
+    /// When there is no such point, one is named twice, or none would be left.
+    pub fn remove(&mut self, indices: &[usize]) -> Result<Change, ChangeError> {
+        let is_named = self.named(indices.iter().copied())?;
+        let kept: Vec<u32> = (0..).zip(&is_named).filter(|(_, n)| !**n).map(|(i, _)| i).collect();
+        if kept.is_empty() {
+            return Err(ChangeError::NothingLeft { count: self.len() });
+        }
+        self.keep_and_append(&kept, None)
+    }
+
+    /// Moves points, by their indices as filtered, to other places in the frame of the file, m; they keep their
+    /// indices and their noise.
+    ///
+    /// For the answers see [`Self::insert`].
+    ///
+    /// # Errors
+    /// When there is no such point, one is named twice, or a place is not finite or beyond 1e10 m.
+    pub fn move_points(&mut self, moves: &[(usize, Point3)]) -> Result<Change, ChangeError> {
+        let is_named = self.named(moves.iter().map(|(index, _)| *index))?;
+        let mut scans = self.prepared.scans.clone();
+        let mut places = Vec::with_capacity(2 * moves.len());
+        for &(index, place) in moves {
+            let is_beyond = |v: &f64| v.is_nan() || v.abs() > LARGEST_COORDINATE;
+            if let Some(&value) = place.iter().find(|v| is_beyond(v)) {
+                return Err(ChangeError::Coordinate { index, value });
+            }
+            places.extend([scans.points[index], place]);
+            scans.points[index] = place;
+        }
+        let before = (0..).zip(&is_named).map(|(i, moved)| if *moved { NEW } else { i }).collect();
+        let change = self.become_of(scans, before, places)?;
+        Ok(Change { moved: moves.len(), ..change })
+    }
+
+    /// Keeps points, given in order, and adds others.
+    pub(super) fn keep_and_append(
+        &mut self,
+        kept: &[u32],
+        added: Option<Scans>,
+    ) -> Result<Change, ChangeError> {
+        let own = &self.prepared.scans;
+        let mut is_kept = vec![false; own.points.len()];
+        kept.iter().for_each(|&index| is_kept[index as usize] = true);
+        let gone = own.points.iter().zip(&is_kept).filter(|(_, is_kept)| !**is_kept);
+        let mut places: Vec<Point3> = gone.map(|(place, _)| *place).collect();
+        let removed = places.len();
+        let mut scans = own.clone();
+        scans.keep(kept);
+        let mut before = kept.to_vec();
+        if let Some(added) = added {
+            places.extend(&added.points);
+            before.extend(added.points.iter().map(|_| NEW));
+            scans.append(added);
+        }
+        let inserted = places.len() - removed;
+        let change = self.become_of(scans, before, places)?;
+        Ok(Change { inserted, removed, ..change })
+    }
+
+    /// Which points are named, each once.
+    fn named(&self, indices: impl Iterator<Item = usize>) -> Result<Vec<bool>, ChangeError> {
+        let count = self.len();
+        let mut is_named = vec![false; count];
+        for index in indices {
+            match is_named.get_mut(index) {
+                None => return Err(ChangeError::NoSuchPoint { index, count }),
+                Some(true) => return Err(ChangeError::Twice { index }),
+                Some(named) => *named = true,
+            }
+        }
+        Ok(is_named)
+    }
+
+    /// Becomes the cloud of other points: `before` has the index that each had, and `places` are those (file
+    /// frame, m) that points left, came to or moved between.
+    fn become_of(
+        &mut self,
+        scans: Scans,
+        before: Vec<u32>,
+        places: Vec<Point3>,
+    ) -> Result<Change, ChangeError> {
+        let start = Instant::now();
+        let own = &self.prepared;
+        let origin = origin_for(own.origin, &scans.points);
+        let mut changed =
+            Prepared::of_scans(scans, own.noise, own.tree.settings(), Some(origin), |_, _| 1.0)?;
+        let local = places.into_iter().map(|place| place - origin).collect();
+        let surfaces_kept = changed.carry_over(own, &before, local)?;
+        let shift = origin - own.origin;
+        let measured = (own.points(), own.sensor());
+        let views = own.views.iter().filter_map(|view| view.settled(measured, &shift));
+        changed.views = views.chain(std::mem::take(&mut changed.views)).collect();
+        if own.is_refined() {
+            changed.refine()?;
+        }
+        changed.prepare_time = start.elapsed();
+        let change = Change {
+            inserted: 0,
+            removed: 0,
+            moved: 0,
+            surfaces_kept,
+            surfaces_lost: own.known_count() - surfaces_kept,
+            is_recentred: origin != own.origin,
+        };
+        self.prepared = changed;
+        Ok(change)
+    }
+}
+
+/// The middle of the local frame of a changed cloud: where it was, as long as the points are not farther
+/// from it than they are from one another, so that no precision is lost.
+fn origin_for(current: Vector3, points: &[Point3]) -> Vector3 {
+    let Some((low, high)) = bounding_box(points) else { return current };
+    let middle = nalgebra::center(&low, &high).coords;
+    if (middle - current).norm() <= (high - low).norm() { current } else { middle }
+}

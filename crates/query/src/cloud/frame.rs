@@ -1,0 +1,76 @@
+//! A cloud that a moving camera keeps up to date: what it looks at is as it sees it, the rest stays.
+
+use cloudtouch_geom::{Point3, PointCloud};
+use cloudtouch_noise::Neighborhoods;
+use rayon::prelude::*;
+
+use crate::error::{ChangeError, PrepareError};
+
+use super::change::Change;
+use super::prepare::Cloud;
+use super::scans::Scans;
+use super::settings::CloudSettings;
+use super::view::SingleView;
+
+/// Views that a cloud keeps of its frames: what only older ones saw to be empty counts as unseen again.
+const MOST_VIEWS: usize = 32;
+/// A sample within so many of its standard deviations along the ray, and as many pixels across it, is
+/// measured again by that of the frame.
+const DEVIATIONS: f64 = 3.0;
+
+impl Cloud {
+    /// Brings the cloud up to date by a depth image in its frame, whose `sensor_pose` says where the camera
+    /// stood: points that it sees through, or measures again, are removed, and its own are added.
+    ///
+    /// A point is seen through where the image has returns clearly behind it, in its own direction and
+    /// in all those about two pixels around it; it is measured again where a return is within its noise
+    /// and a pixel. What is hidden behind returns, in a hole of the image or beside it stays as it was.
+    /// So the number of points is bounded by the surface there is, and the memory by that and the last
+    /// 32 images, which tell what was seen to be empty. Filter stages are those of the frame.
+    ///
+    /// For the answers see [`Self::insert`].
+    ///
+    /// # Errors
+    /// When the frame is no depth image, or as [`Self::insert`].
+    pub fn replace_frame(
+        &mut self,
+        frame: &PointCloud,
+        settings: &CloudSettings,
+    ) -> Result<Change, ChangeError> {
+        if !frame.is_image() {
+            return Err(ChangeError::NotAnImage);
+        }
+        let added = Scans::of(&[(frame, settings.preparation())])?;
+        let kept = self.not_seen_by(&added, &frame.sensor_origin())?;
+        let stages = added.stages.clone();
+        let change = self.keep_and_append(&kept, Some(added))?;
+        self.prepared.forget_frames(MOST_VIEWS, stages);
+        Ok(change)
+    }
+
+    /// The points that a frame neither sees through nor measures again.
+    fn not_seen_by(&self, frame: &Scans, camera: &Point3) -> Result<Vec<u32>, PrepareError> {
+        let own = &self.prepared.scans;
+        let view = SingleView::new(*camera, 0..frame.points.len());
+        let Some((looks_past, pixels)) = view.looks_past((&frame.points, &frame.noise)) else {
+            return Ok((0..own.points.len() as u32).collect());
+        };
+        let measured = Neighborhoods::try_new(frame.points.clone())?;
+        let stays = |&index: &u32| {
+            let place = own.points[index as usize];
+            let std = own.noise[index as usize].max_std();
+            if looks_past(&place, std) {
+                return false;
+            }
+            let Some(near) = measured.nearest_to(&place, 1).first().copied() else { return true };
+            let ray = place - camera;
+            let pixel = pixels * ray.norm();
+            let noise = std.hypot(frame.noise[near.index].max_std());
+            let offset = frame.points[near.index] - place;
+            let along = ray.try_normalize(0.0).map_or(0.0, |ray| ray.dot(&offset));
+            let across = (offset.norm_squared() - along * along).max(0.0).sqrt();
+            along.abs() > DEVIATIONS * noise + pixel || across > pixel
+        };
+        Ok((0..own.points.len() as u32).into_par_iter().filter(stays).collect())
+    }
+}

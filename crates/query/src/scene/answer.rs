@@ -1,0 +1,70 @@
+//! What is found of the bodies of a scene.
+
+use std::cmp::{Ordering, Reverse};
+
+use crate::error::QueryError;
+use crate::report::{Report, Verdict};
+
+/// Two bodies that do not read as free.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairAnswer {
+    /// Name of the larger of the two, A of the report.
+    pub a: String,
+    /// Name of the other, B of the report.
+    pub b: String,
+    /// That of [`Query::run`](crate::Query::run) with contacts in the frame of the scene; or why there
+    /// is none, which is not free either.
+    pub answer: Result<Report, QueryError>,
+}
+
+/// What is found of all pairs of bodies of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checked {
+    /// All pairs that do not read as free, the worst first: in collision by their probability, without
+    /// an answer, undecided, uncertain.
+    pub pairs: Vec<PairAnswer>,
+    /// Pairs of bodies in the scene.
+    pub count: usize,
+    /// Of these, pairs that may touch by what was said.
+    pub allowed: usize,
+    /// Pairs known to be free by their boxes alone.
+    pub ruled_out: usize,
+    /// Pairs that were asked about.
+    pub asked: usize,
+}
+
+impl Checked {
+    /// The worst verdict of any pair: free where none is left, undecided where one has no answer and
+    /// none is in collision.
+    pub fn verdict(&self) -> Verdict {
+        self.pairs.first().map_or(Verdict::Free, PairAnswer::verdict)
+    }
+}
+
+impl PairAnswer {
+    /// The verdict; undecided without an answer.
+    pub fn verdict(&self) -> Verdict {
+        self.answer.as_ref().map_or(Verdict::Undecided, |report| report.verdict)
+    }
+
+    pub(super) fn is_free(&self) -> bool {
+        self.verdict() == Verdict::Free
+    }
+
+    /// The worse first; of the same by name.
+    pub(super) fn by_gravity(&self, other: &Self) -> Ordering {
+        let rank = |pair: &Self| {
+            let order = match (&pair.answer, pair.verdict()) {
+                (_, Verdict::InCollision) => 0,
+                (Err(_), _) => 1,
+                (_, Verdict::Undecided) => 2,
+                (_, Verdict::Uncertain) => 3,
+                (_, Verdict::Free) => 4,
+            };
+            let probability = pair.answer.as_ref().map_or(1.0, |r| r.collision_probability);
+            // Probabilities are not negative, and their bits in their order.
+            (order, Reverse(probability.to_bits()))
+        };
+        (rank(self), &self.a, &self.b).cmp(&(rank(other), &other.a, &other.b))
+    }
+}

@@ -1,0 +1,133 @@
+//! Which bodies of a scene may touch.
+
+use std::collections::BTreeSet;
+
+use cloudtouch_geom::Pose;
+use rayon::prelude::*;
+
+use crate::body::BodyRef;
+use crate::query::Query;
+
+use super::answer::{Checked, PairAnswer};
+use super::bodies::Scene;
+use super::broad::BroadPhase;
+use super::stray::strays;
+
+impl Scene {
+    /// All pairs of bodies that do not read as free at the thresholds of the query, the worst first, on
+    /// all threads of the current rayon pool, with the same bits whatever their number.
+    ///
+    /// It is the answer to all pairs asked one by one, the larger body first, but that the boxes around
+    /// most rule them out; with one difference: being far from one body is no reason to doubt the pose
+    /// of another ([`Undecided::Units`](crate::Undecided::Units)), only being far from all of them.
+    /// A pair without an answer, and one that is undecided for whatever reason, such as space that a
+    /// depth image did not see, is among those returned. Each pair takes a test of two boxes, and those
+    /// near each other, or in doubt, a query.
+    pub fn check(&self, query: &Query) -> Checked {
+        let (count, candidates) = self.candidates();
+        let broad = BroadPhase::new(query);
+        let asked: Vec<PairAnswer> = candidates
+            .par_iter()
+            .filter(|pair| broad.urgency(pair.bodies(), &pair.a_from_b, pair.is_astray).is_some())
+            .map(|pair| pair.ask(query))
+            .collect();
+        let (allowed, ruled_out) = (count - candidates.len(), candidates.len() - asked.len());
+        let mut checked = Checked { count, allowed, ruled_out, asked: asked.len(), pairs: asked };
+        checked.pairs.retain(|pair| !pair.is_free());
+        checked.pairs.sort_by(PairAnswer::by_gravity);
+        checked
+    }
+
+    /// One pair of bodies that does not read as free, or `None` where all do: the pairs are asked one
+    /// after the other, those whose boxes overlap most first, and those after it are not. Which one is
+    /// found depends on nothing but the scene.
+    ///
+    /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest.
+    pub fn check_first(&self, query: &Query) -> Option<PairAnswer> {
+        let (_, candidates) = self.candidates();
+        let broad = BroadPhase::new(query);
+        let urgency =
+            |pair: &Candidate<'_>| broad.urgency(pair.bodies(), &pair.a_from_b, pair.is_astray);
+        let mut open: Vec<(f64, &Candidate<'_>)> =
+            candidates.par_iter().filter_map(|pair| Some((urgency(pair)?, pair))).collect();
+        open.sort_by(|(p, _), (q, _)| p.total_cmp(q));
+        open.into_iter().map(|(_, pair)| pair.ask(query)).find(|pair| !pair.is_free())
+    }
+
+    /// How many pairs there are, and those of them that may not touch.
+    fn candidates(&self) -> (usize, Vec<Candidate<'_>>) {
+        let mut bodies: Vec<Member<'_>> = Vec::with_capacity(self.bodies.len());
+        for (name, placed) in &self.bodies {
+            // Every name of the map is in the scene.
+            let Ok(pose) = self.pose(name) else { continue };
+            let body = BodyRef::from(&*placed.body);
+            bodies.push(Member { name, body, pose, size: body.shape().size(), is_astray: false });
+        }
+        let places: Vec<_> = bodies.iter().map(|of| (of.body.shape(), of.pose)).collect();
+        for (member, is_astray) in bodies.iter_mut().zip(strays(&places)) {
+            member.is_astray = is_astray;
+        }
+        // The larger is A: of a pair the query takes A for the surroundings.
+        bodies.sort_by(|p, q| q.size.total_cmp(&p.size));
+        let allowed: BTreeSet<[&str; 2]> =
+            self.allowed.iter().map(|pair| pair.each_ref().map(String::as_str)).collect();
+        let mut count = 0;
+        let mut candidates = Vec::new();
+        for (k, a) in bodies.iter().enumerate() {
+            let a_from_scene = a.pose.inverse();
+            for b in &bodies[k + 1..] {
+                count += 1;
+                if !allowed.contains(&[a.name.min(b.name), a.name.max(b.name)]) {
+                    candidates.push(Candidate::new(a, b, &a_from_scene));
+                }
+            }
+        }
+        (count, candidates)
+    }
+}
+
+/// A body of the scene, and where it is.
+struct Member<'a> {
+    name: &'a str,
+    body: BodyRef<'a>,
+    /// Into the frame of the scene.
+    pose: Pose,
+    /// m.
+    size: f64,
+    is_astray: bool,
+}
+
+/// Two bodies that may not touch.
+struct Candidate<'a> {
+    names: [&'a str; 2],
+    bodies: [BodyRef<'a>; 2],
+    scene_from_a: Pose,
+    a_from_b: Pose,
+    is_astray: bool,
+}
+
+impl<'a> Candidate<'a> {
+    fn new(a: &Member<'a>, b: &Member<'a>, a_from_scene: &Pose) -> Self {
+        Self {
+            names: [a.name, b.name],
+            bodies: [a.body, b.body],
+            scene_from_a: a.pose,
+            a_from_b: a_from_scene.after(&b.pose),
+            is_astray: a.is_astray || b.is_astray,
+        }
+    }
+
+    fn bodies(&self) -> (BodyRef<'a>, BodyRef<'a>) {
+        self.bodies.into()
+    }
+
+    fn ask(&self, query: &Query) -> PairAnswer {
+        let mut answer = query.run_in_scene(self.bodies(), &self.a_from_b, self.is_astray);
+        for contact in answer.iter_mut().flat_map(|report| &mut report.contacts) {
+            contact.point = self.scene_from_a.transform_point(&contact.point);
+            contact.normal_a_to_b = self.scene_from_a.transform_vector(&contact.normal_a_to_b);
+        }
+        let [a, b] = self.names.map(str::to_owned);
+        PairAnswer { a, b, answer }
+    }
+}

@@ -1,0 +1,12 @@
+//! Many bodies, each with its own pose: which of them may touch.
+
+mod allowed;
+mod answer;
+mod attached;
+mod bodies;
+mod broad;
+mod check;
+mod stray;
+
+pub use answer::{Checked, PairAnswer};
+pub use bodies::Scene;

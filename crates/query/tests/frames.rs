@@ -1,0 +1,152 @@
+//! A cloud that a camera keeps up to date: it forgets what it sees through, and does not grow for ever.
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
+mod common;
+
+use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Undecided, Verdict};
+use cloudtouch_testkit::camera::DepthCamera;
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::scene;
+use common::{at, mesh};
+
+fn camera() -> DepthCamera {
+    DepthCamera { width: 64, height: 48, focal_px: 56.0, ..DepthCamera::default() }
+}
+
+fn settings() -> CloudSettings {
+    CloudSettings::new(SensorModel::Kinect)
+}
+
+/// What a camera sees of the meshes from its place, in their frame.
+fn frame(meshes: &[&ExactMesh], place: &Pose, seed: u64) -> PointCloud {
+    camera().scan(meshes, place, seed).transformed(place)
+}
+
+fn wall() -> ExactMesh {
+    ExactMesh::new(&scene::moved(&scene::plane_patch(6.0), &at(0.0, 0.0, 2.5)))
+}
+
+fn block() -> ExactMesh {
+    ExactMesh::new(&scene::moved(&scene::cuboid([0.5; 3]), &at(0.0, 0.0, 1.5)))
+}
+
+fn count(cloud: &Cloud, is_wanted: impl Fn(&Point3) -> bool) -> usize {
+    (0..cloud.len()).filter(|&index| is_wanted(&cloud.point(index))).count()
+}
+
+/// On the block, or behind it on the wall.
+fn is_of_block(p: &Point3) -> bool {
+    p.x.abs() < 0.3 && p.y.abs() < 0.3 && p.z < 2.0
+}
+
+fn is_hidden(p: &Point3) -> bool {
+    p.x.abs() < 0.35 && p.y.abs() < 0.35 && p.z > 2.0
+}
+
+#[test]
+fn what_the_camera_sees_through_goes_and_what_is_hidden_stays() {
+    let (wall, block, here) = (wall(), block(), Pose::identity());
+    let by = settings();
+    let mut cloud = Cloud::prepare(&frame(&[&wall], &here, 1), &by).unwrap();
+    let hidden = count(&cloud, is_hidden);
+    assert!(hidden > 50 && count(&cloud, is_of_block) == 0);
+    // The block comes: it is there, and the wall behind it still is.
+    let change = cloud.replace_frame(&frame(&[&wall, &block], &here, 2), &by).unwrap();
+    let on_block = count(&cloud, is_of_block);
+    assert!(on_block > 200, "{on_block}");
+    assert_eq!(count(&cloud, is_hidden), hidden);
+    assert!(change.removed > 0 && change.inserted > change.removed, "{change:?}");
+    // It goes again: nothing of it is left.
+    cloud.replace_frame(&frame(&[&wall], &here, 3), &by).unwrap();
+    assert_eq!(count(&cloud, is_of_block), 0);
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let ball = mesh(&scene::sphere(0.08, 2));
+    let report = query.run(&cloud, &ball, &at(0.0, 0.0, 1.4)).unwrap();
+    assert_eq!(report.verdict, Verdict::Free, "{report:?}");
+    // Behind the camera nothing was ever seen.
+    let report = query.run(&cloud, &ball, &at(0.0, 0.0, -0.5)).unwrap();
+    assert_eq!(report.undecided_by, Some(Undecided::Unseen));
+}
+
+/// What an older frame saw to be empty is known, as long as the frame is remembered.
+#[test]
+fn space_seen_from_elsewhere_counts_as_seen() {
+    let wall = wall();
+    let by = settings();
+    let aside = Pose::from_translation_rpy(Vector3::new(-2.0, 0.0, 0.0), [0.0; 3]);
+    let mut cloud = Cloud::prepare(&frame(&[&wall], &aside, 1), &by).unwrap();
+    cloud.replace_frame(&frame(&[&wall], &Pose::identity(), 2), &by).unwrap();
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let ball = mesh(&scene::sphere(0.08, 2));
+    let report = query.run(&cloud, &ball, &at(-2.0, 0.0, 1.0)).unwrap();
+    assert_eq!(report.verdict, Verdict::Free, "{report:?}");
+    for seed in 3..40 {
+        cloud.replace_frame(&frame(&[&wall], &Pose::identity(), seed), &by).unwrap();
+    }
+    let report = query.run(&cloud, &ball, &at(-2.0, 0.0, 1.0)).unwrap();
+    assert_eq!(report.undecided_by, Some(Undecided::Unseen));
+}
+
+#[test]
+fn a_camera_that_keeps_still_adds_nothing_for_ever() {
+    let (wall, block) = (wall(), block());
+    let by = settings();
+    let image = |seed| frame(&[&wall, &block], &Pose::identity(), seed);
+    let mut cloud = Cloud::prepare(&image(0), &by).unwrap();
+    let first = cloud.len();
+    for seed in 1..60 {
+        cloud.replace_frame(&image(seed), &by).unwrap();
+    }
+    assert!(cloud.len() * 10 < first * 12, "{first} points at first, {} now", cloud.len());
+}
+
+/// Points of a cloud along a walk about a room at 10 frames a second, one round in six seconds.
+fn walk(frames: u64) -> Vec<usize> {
+    let room = ExactMesh::new(&scene::room());
+    let by = settings();
+    let place = |k: u64| {
+        let turn = std::f64::consts::TAU * k as f64 / 60.0;
+        // Level, and looking along its way: z forward, y down.
+        let level =
+            Pose::from_translation_rpy(Vector3::zeros(), [-std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
+        let way = Pose::from_translation_rpy(
+            Vector3::new(1.2 * turn.cos(), 0.9 * turn.sin(), 1.3),
+            [0.0, 0.0, turn],
+        );
+        way.after(&level)
+    };
+    let image = |k: u64| frame(&[&room], &place(k), k);
+    let mut cloud = Cloud::prepare(&image(0), &by).unwrap();
+    let mut counts = vec![cloud.len()];
+    for k in 1..frames {
+        cloud.replace_frame(&image(k), &by).unwrap();
+        counts.push(cloud.len());
+    }
+    counts
+}
+
+/// The largest number of points in a round.
+fn most(counts: &[usize]) -> usize {
+    counts.iter().copied().max().unwrap()
+}
+
+#[test]
+fn a_camera_that_walks_about_a_room_has_seen_it_after_some_rounds() {
+    let counts = walk(180);
+    let [second, third] = [most(&counts[60..120]), most(&counts[120..])];
+    println!("at most {second} points in the second round, {third} in the third");
+    assert!(third * 100 < second * 115, "{second} and {third}");
+}
+
+/// `cargo test --release -p cloudtouch --test frames -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
+fn ten_minutes_of_frames_take_no_more_memory_than_one() {
+    let counts = walk(6000);
+    let rounds: Vec<usize> = counts.chunks(600).map(most).collect();
+    let pages = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    println!("most points minute by minute: {rounds:?}; pages of memory at the end: {pages}");
+    assert!(rounds[9] * 100 < rounds[1] * 110, "{rounds:?}");
+}

@@ -1,0 +1,393 @@
+//! Many bodies: the answer is that of all pairs asked one by one, and most are ruled out by their boxes.
+
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
+mod common;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{
+    Body, Checked, Cloud, CloudSettings, Detail, Mesh, PairAnswer, Query, QueryError,
+    QuerySettings, Safeguards, Scene, SceneError, Undecided, Verdict,
+};
+use cloudtouch_testkit::camera::DepthCamera;
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::scene;
+use common::{at, measured, timeless, uniform};
+use proptest::prelude::*;
+
+fn mesh(mesh: &TriangleMesh) -> Body {
+    Mesh::prepare(mesh).unwrap().into()
+}
+
+fn cloud(mesh: &TriangleMesh, spacing: f64, std: f64, seed: u64) -> Body {
+    let settings = CloudSettings::new(SensorModel::Isotropic { std });
+    let points = PointCloud::from_points(measured(mesh, spacing, std, seed));
+    Cloud::prepare(&points, &settings).unwrap().into()
+}
+
+/// A wall two metres ahead, as a camera sees it.
+fn image() -> Body {
+    let wall = ExactMesh::new(&scene::moved(&scene::plane_patch(4.0), &at(0.0, 0.0, 2.0)));
+    let camera = DepthCamera { width: 60, height: 45, focal_px: 50.0, ..DepthCamera::default() };
+    let seen = camera.scan(&[&wall], &Pose::identity(), 1);
+    Cloud::prepare(&seen, &CloudSettings::new(SensorModel::Kinect)).unwrap().into()
+}
+
+fn query() -> Query {
+    Query::new(QuerySettings::default()).unwrap()
+}
+
+fn names(checked: &Checked) -> Vec<[&str; 2]> {
+    checked.pairs.iter().map(|pair| [pair.a.as_str(), pair.b.as_str()]).collect()
+}
+
+/// All pairs that may not touch and are not free, each asked by itself, in the order that the scene asked it
+/// in: in the other one sums are rounded otherwise.
+fn one_by_one(scene: &Scene, query: &Query, of_scene: &Checked) -> Vec<PairAnswer> {
+    let names: Vec<&str> = scene.names().collect();
+    let mut answers = Vec::new();
+    for (k, first) in names.iter().enumerate() {
+        for second in &names[k + 1..] {
+            if scene.is_allowed(first, second).unwrap() {
+                continue;
+            }
+            let is_turned = |pair: &PairAnswer| pair.a == *second && pair.b == *first;
+            let [a, b] = if of_scene.pairs.iter().any(is_turned) {
+                [*second, *first]
+            } else {
+                [*first, *second]
+            };
+            let a_from_b = scene.between(a, b).unwrap();
+            let answer = query.run(scene.body(a).unwrap(), scene.body(b).unwrap(), &a_from_b);
+            let pair = PairAnswer { a: a.to_owned(), b: b.to_owned(), answer };
+            if pair.verdict() != Verdict::Free {
+                answers.push(pair);
+            }
+        }
+    }
+    answers
+}
+
+/// What does not depend on the frame that contacts are told in: probability and bounds by their bits.
+type Told = Result<(u64, [u64; 2], Verdict), QueryError>;
+
+fn key(pair: &PairAnswer) -> (String, String, Told) {
+    let answer = pair.answer.as_ref().map_err(Clone::clone).map(|report| {
+        let bounds = report.bounds.map(f64::to_bits);
+        (report.collision_probability.to_bits(), bounds, report.verdict)
+    });
+    (pair.a.clone(), pair.b.clone(), answer)
+}
+
+fn assert_same(scene: &Scene, query: &Query) -> Checked {
+    let checked = scene.check(query);
+    let mut expected: Vec<_> = one_by_one(scene, query, &checked).iter().map(key).collect();
+    let mut found: Vec<_> = checked.pairs.iter().map(key).collect();
+    expected.sort_by(|p, q| (&p.0, &p.1).cmp(&(&q.0, &q.1)));
+    found.sort_by(|p, q| (&p.0, &p.1).cmp(&(&q.0, &q.1)));
+    assert_eq!(found, expected);
+    let bodies = scene.names().count();
+    assert_eq!(checked.count, bodies * (bodies - 1) / 2);
+    assert_eq!(checked.count, checked.allowed + checked.ruled_out + checked.asked);
+    let first = scene.check_first(query);
+    assert_eq!(first.is_none(), checked.pairs.is_empty());
+    if let Some(first) = first {
+        assert!(checked.pairs.iter().any(|pair| key(pair) == key(&first)));
+    }
+    checked
+}
+
+fn random_pose(seed: u64, k: u64, size: f64) -> Pose {
+    let unit = |n: u64| 2.0 * uniform(seed, 8 * k + n) - 1.0;
+    let offset = Vector3::new(unit(0), unit(1), unit(2)) * size;
+    Pose::from_translation_rpy(offset, [3.0 * unit(3), 1.5 * unit(4), 3.0 * unit(5)])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_scene_answers_what_all_pairs_answer_one_by_one(
+        seed in any::<u64>(),
+        size in 0.05..1.5_f64,
+        std in 0.0005..0.02_f64,
+        prior in prop::sample::select(vec![0.01, 0.5, 0.9]),
+        has_image in any::<bool>(),
+        max_unseen in prop::sample::select(vec![0.05, 1.0]),
+    ) {
+        let shapes = [scene::cuboid([0.2, 0.1, 0.15]), scene::sphere(0.08, 2), scene::plane_patch(0.4)];
+        let mut scene = Scene::default();
+        for k in 0..9 {
+            let shape = &shapes[k % 3];
+            let body = if k % 2 == 0 { mesh(shape) } else { cloud(shape, 0.02, std, seed ^ k as u64) };
+            scene.add(format!("body {k}"), body, random_pose(seed, k as u64, size)).unwrap();
+        }
+        if has_image {
+            scene.add("image", image(), random_pose(seed, 20, size)).unwrap();
+        }
+        scene.allow("body 1", "body 4").unwrap();
+        let usual = QuerySettings::default();
+        let safeguards = Safeguards { max_unseen, ..usual.safeguards };
+        assert_same(&scene, &Query::new(QuerySettings { prior, safeguards, ..usual }).unwrap());
+    }
+}
+
+#[test]
+fn what_is_attached_moves_along_and_stays_when_let_go() {
+    let cube = Arc::new(mesh(&scene::cuboid([0.1; 3])));
+    let mut scene = Scene::default();
+    scene.add("hand", Arc::clone(&cube), at(0.0, 0.0, 0.0)).unwrap();
+    scene.add("cup", Arc::clone(&cube), at(0.5, 0.0, 0.0)).unwrap();
+    scene.add("wall", cube, at(2.0, 0.0, 0.0)).unwrap();
+    let grasp = scene.between("hand", "cup").unwrap();
+    scene.attach("cup", "hand", grasp).unwrap();
+    assert!(scene.check(&query()).pairs.is_empty());
+    scene.set_pose("hand", at(1.55, 0.0, 0.0)).unwrap();
+    let found = scene.check(&query());
+    assert_eq!((names(&found), found.verdict()), (vec![["cup", "wall"]], Verdict::InCollision));
+    scene.detach("cup").unwrap();
+    scene.set_pose("hand", at(0.0, 0.0, 0.0)).unwrap();
+    assert!((scene.pose("cup").unwrap().translation().x - 2.05).abs() < 1e-12);
+    assert_eq!(names(&scene.check(&query())), [["cup", "wall"]]);
+    scene.allow("wall", "cup").unwrap();
+    let allowed = scene.check(&query());
+    assert_eq!((allowed.verdict(), allowed.allowed, allowed.count), (Verdict::Free, 1, 3));
+    scene.forbid("cup", "wall").unwrap();
+    assert_eq!(scene.check(&query()).pairs.len(), 1);
+    scene.remove("cup").unwrap();
+    assert_eq!(scene.check(&query()).verdict(), Verdict::Free);
+}
+
+#[test]
+fn contacts_are_told_in_the_frame_of_the_scene() {
+    let wall = cloud(&scene::cuboid([0.4, 0.4, 0.1]), 0.01, 0.001, 1);
+    let mut scene = Scene::default();
+    let base = Pose::from_translation_rpy(Vector3::new(5.0, -3.0, 1.0), [0.4, -1.0, 2.0]);
+    let above = base.after(&at(0.0, 0.0, 0.1));
+    scene.add("wall", wall, base).unwrap();
+    scene.add("cube", mesh(&scene::cuboid([0.1; 3])), above).unwrap();
+    let found = scene.check(&query());
+    let report = found.pairs[0].answer.as_ref().unwrap();
+    assert!(!report.contacts.is_empty());
+    for contact in &report.contacts {
+        // The upper face of the wall, as the wall has it.
+        let place = base.inverse().transform_point(&contact.point);
+        assert!(place.x.abs() < 0.08 && place.y.abs() < 0.08, "{place}");
+        assert!((place.z - 0.05).abs() < 0.02, "{place}");
+    }
+}
+
+#[test]
+fn the_worst_comes_first_whatever_the_number_of_threads() {
+    let mut scene = Scene::default();
+    scene
+        .add("floor", cloud(&scene::cuboid([1.0, 1.0, 0.02]), 0.02, 0.002, 1), at(0.0, 0.0, 0.0))
+        .unwrap();
+    let ball = Arc::new(cloud(&scene::sphere(0.05, 2), 0.01, 0.002, 2));
+    for (k, height) in [0.3, 0.062, 0.02, 0.045, 0.07].into_iter().enumerate() {
+        let place = at(0.2 * k as f64 - 0.4, 0.0, height);
+        scene.add(format!("ball {k}"), Arc::clone(&ball), place).unwrap();
+    }
+    let alone = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut checked = pool.install(|| scene.check(&query()));
+        for pair in &mut checked.pairs {
+            pair.answer = pair.answer.as_ref().map(timeless).map_err(Clone::clone);
+        }
+        checked
+    };
+    let checked = alone(1);
+    assert_eq!(checked, alone(3));
+    assert_eq!(checked.verdict(), Verdict::InCollision);
+    let rank = |pair: &PairAnswer| match pair.verdict() {
+        Verdict::InCollision => 0,
+        Verdict::Undecided => 1,
+        _ => 2,
+    };
+    let probability = |pair: &PairAnswer| pair.answer.as_ref().unwrap().collision_probability;
+    for pair in checked.pairs.windows(2) {
+        let [worse, better] = [&pair[0], &pair[1]];
+        assert!(rank(worse) <= rank(better));
+        assert!(rank(worse) < rank(better) || probability(worse) >= probability(better));
+    }
+    assert!(checked.pairs.len() >= 2, "{:?}", names(&checked));
+}
+
+/// Boxes say nothing of space that no camera saw.
+#[test]
+fn a_body_far_behind_the_camera_is_undecided_though_boxes_rule_it_out() {
+    let mut scene = Scene::default();
+    scene.add("image", image(), Pose::identity()).unwrap();
+    scene.add("seen", mesh(&scene::sphere(0.05, 2)), at(0.0, 0.0, 1.0)).unwrap();
+    scene.add("hidden", mesh(&scene::sphere(0.05, 2)), at(0.0, 0.0, -1.0)).unwrap();
+    let found = assert_same(&scene, &query());
+    assert_eq!(names(&found), [["image", "hidden"]]);
+    let report = found.pairs[0].answer.as_ref().unwrap();
+    assert_eq!(report.undecided_by, Some(Undecided::Unseen));
+    assert_eq!((found.verdict(), found.ruled_out), (Verdict::Undecided, 2));
+}
+
+#[test]
+fn far_from_one_body_is_no_doubt_and_far_from_all_is() {
+    let screw = Arc::new(mesh(&scene::sphere(0.005, 2)));
+    let mut scene = Scene::default();
+    scene.add("left", Arc::clone(&screw), at(0.0, 0.0, 0.0)).unwrap();
+    scene.add("middle", Arc::clone(&screw), at(0.5, 0.0, 0.0)).unwrap();
+    scene.add("right", Arc::clone(&screw), at(2.0, 0.0, 0.0)).unwrap();
+    let pair = scene.between("left", "right").unwrap();
+    let alone = query().run(&*screw, &*screw, &pair).unwrap();
+    assert_eq!(alone.undecided_by, Some(Undecided::Units));
+    assert_eq!(scene.check(&query()).verdict(), Verdict::Free);
+    // Metres taken for millimetres.
+    scene.set_pose("right", at(2000.0, 0.0, 0.0)).unwrap();
+    let found = scene.check(&query());
+    assert_eq!((found.verdict(), found.pairs.len()), (Verdict::Undecided, 2));
+    let names = found.pairs.iter().map(|pair| [&pair.a, &pair.b]);
+    assert!(names.into_iter().all(|pair| pair.iter().any(|name| *name == "right")));
+}
+
+/// A prior or a threshold by which nothing found is not free rules nothing out.
+#[test]
+fn where_nothing_found_is_not_free_every_pair_is_in_the_answer() {
+    let mut scene = Scene::default();
+    scene.add("cloud", cloud(&scene::sphere(0.05, 2), 0.01, 0.001, 1), at(0.0, 0.0, 0.0)).unwrap();
+    scene.add("cube", mesh(&scene::cuboid([0.1; 3])), at(1.0, 0.0, 0.0)).unwrap();
+    for settings in [
+        QuerySettings { prior: 0.9999, ..QuerySettings::default() },
+        QuerySettings { reject: 1e-5, ..QuerySettings::default() },
+    ] {
+        let found = assert_same(&scene, &Query::new(settings).unwrap());
+        assert_eq!((found.asked, found.pairs.len()), (1, 1));
+    }
+    assert_eq!(assert_same(&scene, &query()).ruled_out, 1);
+}
+
+#[test]
+fn a_pair_that_cannot_be_asked_is_in_the_answer_and_not_free() {
+    let cube = Arc::new(mesh(&scene::cuboid([0.1; 3])));
+    let mut scene = Scene::default();
+    scene.add("here", Arc::clone(&cube), at(-9e9, 0.0, 0.0)).unwrap();
+    scene.add("there", cube, at(9e9, 0.0, 0.0)).unwrap();
+    let found = scene.check(&query());
+    assert_eq!((found.pairs.len(), found.verdict()), (1, Verdict::Undecided));
+    assert!(matches!(found.pairs[0].answer, Err(QueryError::Pose { .. })));
+    assert!(scene.check_first(&query()).unwrap().answer.is_err());
+}
+
+#[test]
+fn what_cannot_be_meant_is_refused_with_names_and_leaves_the_scene_as_it_was() {
+    let cube = Arc::new(mesh(&scene::cuboid([0.1; 3])));
+    let here = at(0.0, 0.0, 0.0);
+    let mut scene = Scene::default();
+    for name in ["arm", "hand", "cup"] {
+        scene.add(name, Arc::clone(&cube), here).unwrap();
+    }
+    scene.attach("hand", "arm", here).unwrap();
+    scene.attach("cup", "hand", here).unwrap();
+    let nowhere = at(f64::NAN, 0.0, 0.0);
+    let unknown = |error| matches!(error, Err(SceneError::UnknownName { name }) if name == "mug");
+    assert!(matches!(
+        scene.add("cup", Arc::clone(&cube), here), Err(SceneError::NameTaken { name }) if name == "cup"
+    ));
+    assert!(matches!(
+        scene.add("mug", Arc::clone(&cube), nowhere), Err(SceneError::Pose { value, .. }) if value.is_nan()
+    ));
+    assert!(matches!(
+        scene.set_pose("cup", at(1e11, 0.0, 0.0)),
+        Err(SceneError::Pose { value: 1e11, .. })
+    ));
+    assert!(unknown(scene.set_pose("mug", here)));
+    assert!(unknown(scene.attach("cup", "mug", here)) && unknown(scene.allow("cup", "mug")));
+    assert!(unknown(scene.replace("mug", Arc::clone(&cube)).map(|_| ())));
+    for (name, to) in [("arm", "cup"), ("arm", "hand"), ("arm", "arm")] {
+        let circle = scene.attach(name, to, here);
+        assert!(matches!(circle, Err(SceneError::Circle { .. })), "{name} to {to}");
+    }
+    let held = scene.remove("hand").map(|_| ());
+    assert_eq!(held, Err(SceneError::HoldsOthers { name: "hand".into(), attached: "cup".into() }));
+    assert_eq!(scene.detach("arm"), Err(SceneError::NotAttached { name: "arm".into() }));
+    assert_eq!(scene.allow("arm", "arm"), Err(SceneError::OneBody { name: "arm".into() }));
+    assert_eq!(scene.body_mut("arm").map(|_| ()), Err(SceneError::Shared { name: "arm".into() }));
+    assert_eq!(scene.names().collect::<Vec<_>>(), ["arm", "cup", "hand"]);
+    scene.remove("cup").unwrap();
+    let again = scene.remove("cup").map(|_| ());
+    assert_eq!(again, Err(SceneError::UnknownName { name: "cup".into() }));
+    scene.remove("hand").unwrap();
+}
+
+/// A hundred balls of a thousand points and an arm of twelve links among them.
+fn workshop() -> Scene {
+    let mut scene = Scene::default();
+    let spacing = (4.0 * std::f64::consts::PI * 0.05_f64.powi(2) / 1000.0).sqrt();
+    for k in 0..100_u32 {
+        let ball = cloud(&scene::sphere(0.05, 3), spacing, 0.001, u64::from(k));
+        let place = at(0.3 * f64::from(k % 10), 0.3 * f64::from(k / 10), 0.0);
+        scene.add(format!("ball {k}"), ball, place).unwrap();
+    }
+    let link = Arc::new(mesh(&scene::cuboid([0.2, 0.04, 0.04])));
+    for k in 0..12 {
+        let place = at(0.15 + 0.2 * f64::from(k), 0.0, 0.08);
+        scene.add(format!("link {k}"), Arc::clone(&link), place).unwrap();
+        if k > 0 {
+            scene.allow(&format!("link {}", k - 1), &format!("link {k}")).unwrap();
+        }
+    }
+    scene
+}
+
+#[test]
+fn of_a_hundred_bodies_and_an_arm_few_pairs_are_asked() {
+    let scene = workshop();
+    let checked = assert_same(&scene, &query());
+    assert_eq!((checked.count, checked.allowed), (112 * 111 / 2, 11));
+    // The arm of 2.4 m passes 1 cm above nine balls of the first row, each below one or two links.
+    assert!((9..=20).contains(&checked.asked), "{checked:?}");
+}
+
+/// Prints what a check costs beside the pairs that are near: `cargo test --release -p cloudtouch --test
+/// scene -- --ignored --nocapture`.
+#[test]
+#[ignore = "measures time"]
+fn cost_of_a_scene_beside_its_near_pairs() {
+    let scene = workshop();
+    let names: Vec<&str> = scene.names().collect();
+    let pairs =
+        names.iter().enumerate().flat_map(|(k, a)| names[k + 1..].iter().map(move |b| [*a, *b]));
+    let is_near = |[a, b]: &[&str; 2]| {
+        let bodies = [a, b].map(|name| scene.body(name).unwrap());
+        let pose = scene.between(a, b).unwrap();
+        query().run(bodies[0], bodies[1], &pose).unwrap().stats.leaf_pairs > 0
+    };
+    let may_not_touch = |[a, b]: &[&str; 2]| !scene.is_allowed(a, b).unwrap();
+    let near: Vec<[&str; 2]> = pairs.filter(may_not_touch).filter(is_near).collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for detail in [Detail::Full, Detail::Verdict] {
+        let query = Query::new(QuerySettings { detail, ..QuerySettings::default() }).unwrap();
+        let best =
+            |work: &(dyn Fn() + Sync)| (0..30).map(|_| pool.install(|| timed(work))).min().unwrap();
+        let whole = best(&|| drop(scene.check(&query)));
+        let alone = best(&|| {
+            for [a, b] in &near {
+                let bodies = [a, b].map(|name| scene.body(name).unwrap());
+                query.run(bodies[0], bodies[1], &scene.between(a, b).unwrap()).unwrap();
+            }
+        });
+        println!(
+            "{detail:?}: {:.2} ms for the scene, {:.2} ms for its {} near pairs alone: {:.2} times",
+            1e3 * whole.as_secs_f64(),
+            1e3 * alone.as_secs_f64(),
+            near.len(),
+            whole.as_secs_f64() / alone.as_secs_f64(),
+        );
+    }
+}
+
+fn timed(work: impl FnOnce()) -> Duration {
+    let start = Instant::now();
+    work();
+    start.elapsed()
+}
