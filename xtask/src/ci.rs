@@ -1,36 +1,37 @@
 //! `cargo xtask ci`: every check, in order, each with its time; stops at the first failure.
 
-use std::{path::Path, process::Command, time::Instant};
+use std::path::Path;
+use std::time::Instant;
 
-use anyhow::{Context, Result, ensure};
-
+use anyhow::{Context, Result};
 use cloudtouch_evaluation::sweep;
 
+use crate::cargo::{cargo, succeed};
 use crate::{fixtures, python, tidy};
 
 /// Runs every step; tests come last, those in Python after those in Rust, whose build they use.
 pub(crate) fn run(root: &Path) -> Result<()> {
-    let cargo = |name: &str, arguments: &str| {
-        step(name, &format!("cargo {arguments}"), || succeed(&mut command(root, arguments)))
+    let run = |name: &str, arguments: &str| {
+        step(name, &format!("cargo {arguments}"), || succeed(&mut cargo(root, arguments)))
     };
-    cargo("fmt", "fmt --all -- --check")?;
+    run("fmt", "fmt --all -- --check")?;
     step("tidy", "cargo xtask tidy", || tidy::run(root))?;
     step("fixtures", "cargo xtask fixtures --check", || fixtures::run(root, true))?;
     // The lock file holds: what is checked is what was committed, and no network is needed.
-    cargo("clippy", "clippy --locked --workspace --all-targets -- -D warnings")?;
+    run("clippy", "clippy --locked --workspace --all-targets -- -D warnings")?;
     // The tool is left out: its binary and the library it wraps would share one page.
     let doc = "doc --locked --workspace --exclude cloudtouch-cli --no-deps";
     step("doc", &format!("RUSTDOCFLAGS='-D warnings' cargo {doc}"), || {
-        succeed(command(root, doc).env("RUSTDOCFLAGS", "-D warnings"))
+        succeed(cargo(root, doc).env("RUSTDOCFLAGS", "-D warnings"))
     })?;
-    cargo("benches", "check --locked --package cloudtouch-benches --benches")?;
+    run("benches", "check --locked --package cloudtouch-benches --benches")?;
     let unpublished = tidy::unpublished(root)?;
     let exclude: String = unpublished.iter().map(|name| format!(" --exclude {name}")).collect();
-    cargo("package", &format!("package --locked --workspace{exclude} --allow-dirty --no-verify"))?;
+    run("package", &format!("package --locked --workspace{exclude} --allow-dirty --no-verify"))?;
     step("sweep", "cargo xtask sweep --short", sweep::check)?;
     let test = "test --locked --workspace --no-fail-fast";
     step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
-        succeed(command(root, test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
+        succeed(cargo(root, test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
     })?;
     step("python", "cargo xtask python", || python::run(root))
 }
@@ -41,19 +42,6 @@ fn step(name: &str, rerun: &str, action: impl FnOnce() -> Result<()>) -> Result<
     let start = Instant::now();
     action().with_context(|| format!("step {name} failed; rerun it with: {rerun}"))?;
     println!("==> {name}: ok in {:.1} s", start.elapsed().as_secs_f64());
-    Ok(())
-}
-
-/// The cargo that runs this task, in the project's folder.
-fn command(root: &Path, arguments: &str) -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(arguments.split_whitespace()).current_dir(root);
-    command
-}
-
-fn succeed(command: &mut Command) -> Result<()> {
-    let status = command.status().context("start cargo")?;
-    ensure!(status.success(), "cargo ended with {status}");
     Ok(())
 }
 

@@ -3,17 +3,17 @@
 //! Coordinates are rounded to 0.1 mm and answers to 0.01 mm, so that the last bits in which
 //! platforms differ do not reach the files; answers hold for the files as rounded.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, seed};
-use cloudtouch_testkit::{
-    exact::ExactMesh,
-    noise::{NoiseKind, add_noise},
-    poses::{LabelledPose, label, poses_near_contact},
-    scene,
-    surface::sample_surface,
-};
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::poses::{LabelledPose, label, poses_near_contact};
+use cloudtouch_testkit::scene;
+use cloudtouch_testkit::surface::sample_surface;
 use serde::Serialize;
 
 use crate::tidy;

@@ -1,5 +1,6 @@
 //! Project tasks: `cargo xtask TASK`. What measures is in crates/evaluation.
 
+mod cargo;
 mod ci;
 mod fixtures;
 mod python;

@@ -4,7 +4,9 @@ use std::env::consts::EXE_SUFFIX;
 use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
+
+use crate::cargo::{cargo, succeed};
 
 /// Says why this Python is of no use, and nothing where it is.
 const LOOK: &str = "\
@@ -50,9 +52,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     install("--no-build-isolation .[test]")?;
     succeed(python().args(["-m", "mypy"]))?;
     // The tool is what answers are compared with, in the build that the tests of all crates left.
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let build = "build --quiet --locked --workspace --bin cloudtouch";
-    succeed(Command::new(cargo).args(build.split_whitespace()).current_dir(root))?;
+    succeed(&mut cargo(root, "build --quiet --locked --workspace --bin cloudtouch"))?;
     let tool = target.join("debug").join(format!("cloudtouch{EXE_SUFFIX}"));
     succeed(python().args(["-m", "pytest", "--quiet"]).env("CLOUDTOUCH_TOOL", tool))
 }
@@ -64,12 +64,6 @@ fn unusable(python: &str) -> Option<String> {
         Ok(output) => Some(String::from_utf8_lossy(&output.stderr).trim().to_owned()),
         Err(error) => Some(format!("{python}: {error}")),
     }
-}
-
-fn succeed(command: &mut Command) -> Result<()> {
-    let status = command.status().with_context(|| format!("start {command:?}"))?;
-    ensure!(status.success(), "{command:?} ended with {status}");
-    Ok(())
 }
 
 #[cfg(test)]

@@ -7,7 +7,9 @@ mod map;
 mod modules;
 mod text;
 
-use std::{fs, path::Path};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
@@ -30,38 +32,26 @@ pub(crate) fn unpublished(root: &Path) -> Result<Vec<String>> {
 fn violations(root: &Path) -> Result<Vec<String>> {
     let manifests = manifest::read_all(root)?;
     let mut found = layers::check(&manifests);
-    found.extend(manifest::check(&manifests));
+    found.extend(manifests.iter().flat_map(manifest::check));
     found.extend(circles::check(root, manifests.iter().map(|m| m.folder.as_str()))?);
+    let mut names = BTreeSet::new();
     for path in files(root, root)? {
-        found.extend(check_file(root, &path)?);
+        found.extend(check_file(root, &path, &mut names)?);
     }
-    found.extend(check_map(root)?);
+    let map = fs::read_to_string(root.join(map::PAGE)).context(map::PAGE)?;
+    let has_path = |path: &str| {
+        let below = |folder: &str| root.join(folder).join(path.trim_end_matches('/')).exists();
+        below("crates") || below("")
+    };
+    found.extend(map::check(&map, &names, has_path));
     if !root.join("CHANGELOG.md").is_file() {
         found.push("CHANGELOG.md is missing".into());
     }
     Ok(found)
 }
 
-/// What the map from the paper to the code names and is not there.
-fn check_map(root: &Path) -> Result<Vec<String>> {
-    let read =
-        |path: &str| fs::read_to_string(root.join(path)).with_context(|| format!("read {path}"));
-    let paths: Vec<String> = ["crates", "xtask"]
-        .into_iter()
-        .map(|folder| files(root, &root.join(folder)))
-        .collect::<Result<Vec<_>>>()?
-        .concat();
-    let sources = paths.iter().filter(|path| path.ends_with(".rs"));
-    let texts = sources.map(|path| Ok((path.as_str(), read(path)?))).collect::<Result<Vec<_>>>()?;
-    let names = map::declared(texts.iter().map(|(path, text)| (*path, text.as_str())));
-    let has_path = |path: &str| {
-        let below = |folder: &str| root.join(folder).join(path.trim_end_matches('/')).exists();
-        below("crates") || below("")
-    };
-    Ok(map::check(&read(map::PAGE)?, &names, has_path))
-}
-
-fn check_file(root: &Path, path: &str) -> Result<Vec<String>> {
+/// What is wrong with a file; notes the names that a source has.
+fn check_file(root: &Path, path: &str, names: &mut BTreeSet<String>) -> Result<Vec<String>> {
     if root.join(path).is_symlink() {
         return Ok(vec![format!(
             "{path}: a symbolic link, of which a checkout on Windows makes a text file"
@@ -69,7 +59,9 @@ fn check_file(root: &Path, path: &str) -> Result<Vec<String>> {
     }
     let read = || fs::read_to_string(root.join(path)).with_context(|| format!("read {path}"));
     Ok(if path.ends_with(".rs") {
-        text::check_rust(path, &read()?)
+        let text = read()?;
+        map::note(path, &text, names);
+        text::check_rust(path, &text)
     } else if path.ends_with(".md") {
         text::check_prose(path, &read()?)
     } else {
@@ -107,7 +99,7 @@ mod tests {
         std::fs::write(root.join("a/b.txt"), "b").unwrap();
         std::os::unix::fs::symlink("a", root.join("c")).unwrap();
         let files = super::files(&root, &root).unwrap();
-        let found = super::check_file(&root, "c").unwrap();
+        let found = super::check_file(&root, "c", &mut Default::default()).unwrap();
         std::fs::remove_dir_all(&root).unwrap();
         assert_eq!(files, ["a/b.txt", "c"]);
         assert!(found.len() == 1 && found[0].starts_with("c: a symbolic link"), "{found:?}");

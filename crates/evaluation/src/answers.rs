@@ -61,7 +61,7 @@ pub struct Question {
 }
 
 /// What a method says of a question.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Said {
     /// Larger = more likely a collision; any monotone scale.
     pub score: f64,
@@ -96,16 +96,7 @@ impl From<&Report> for Said {
 impl Said {
     /// A score alone, since when it was sought.
     pub fn score(score: f64, start: Instant) -> Self {
-        let micros = 1e6 * start.elapsed().as_secs_f64();
-        Self {
-            score,
-            probability: None,
-            bounds: None,
-            evidence: None,
-            clearance: None,
-            clearance_at_least: None,
-            micros,
-        }
+        Self { score, micros: 1e6 * start.elapsed().as_secs_f64(), ..Self::default() }
     }
 
     fn check(&self) -> Result<()> {

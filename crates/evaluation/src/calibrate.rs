@@ -1,6 +1,7 @@
 //! `cargo xtask calibrate`: the surfaces that turn evidence into a probability.
 
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -8,12 +9,10 @@ use cloudtouch::{
     CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
 };
 
-use crate::{
-    answers::Answers,
-    measures::{Axis, SurfaceSample, fit_surface},
-    methods::{Fitted, Ours},
-    sweep::{Asked, ORACLE, OURS, Plan, ask},
-};
+use crate::answers::Answers;
+use crate::measures::{Axis, SurfaceSample, fit_surface};
+use crate::methods::{Fitted, Ours};
+use crate::sweep::{Asked, ORACLE, OURS, Plan, ask};
 
 /// What `cargo xtask calibrate` is given.
 #[derive(Args)]
@@ -30,9 +29,6 @@ pub struct Arguments {
 }
 
 /// Fits, prints, and keeps when asked to.
-///
-/// # Errors
-/// When a query fails or a file cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update } = *arguments;
     let gathering = |ours: Ours| Asked::always(ours.gathering_everything());

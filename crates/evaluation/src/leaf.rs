@@ -58,10 +58,10 @@ pub fn samples(
 }
 
 /// The same as a default query poses them: in their unit box, with penalties balanced. None of nothing.
-pub fn posed(sides: [&[UncertainPoint]; 2], radius: f64) -> Option<(UnitBox, Vec<Sample>)> {
+pub fn posed(sides: [&[UncertainPoint]; 2], radius: f64) -> Option<Vec<Sample>> {
     let [a, b] = sides;
     let penalty = QuerySettings::default().penalty;
     let unit_box = UnitBox::around(a.iter().chain(b))?;
     let all = samples(sides, radius, balanced_penalties(penalty, a.len(), b.len()).into());
-    Some((unit_box, all.iter().map(|sample| unit_box.sample_inside(sample)).collect()))
+    Some(all.iter().map(|sample| unit_box.sample_inside(sample)).collect())
 }

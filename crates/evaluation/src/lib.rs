@@ -1,25 +1,24 @@
 //! The lab beside the product: what its accuracy, speed and stability are measured with.
 //!
-//! A report measures, fills [`table::Table`]s and [`figure::Figure`]s, and hands them to a
-//! [`page::Page`], which writes `docs/lab/NAME.md` whole. Reports have no drawing code and no date
-//! or commit of their own.
+//! A command measures, fills [`report::Table`]s and [`report::Figure`]s, and hands them to a
+//! [`report::Page`], which writes `docs/lab/NAME.md` whole. Commands have no drawing code and no date
+//! or commit of their own. Each fails where something cannot be read, asked or written; `evaluate`,
+//! `stability` and the short sweep also where what they hold is missed.
 
 pub mod answers;
 pub mod calibrate;
-pub mod figure;
 pub mod growth;
 pub mod leaf;
-pub mod machine;
 pub mod measures;
 pub mod methods;
 pub mod motion;
-pub mod page;
 pub mod paper;
 pub mod performance;
 pub mod real_scans;
+pub mod report;
 pub mod settings;
 pub mod stability;
 pub mod statistics;
 pub mod sweep;
-pub mod table;
-pub mod targets;
+
+pub use report::{figure, page, table, targets};

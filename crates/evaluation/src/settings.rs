@@ -6,14 +6,11 @@ use anyhow::Result;
 use clap::Args;
 use cloudtouch_testkit::family::Family;
 
-use crate::{
-    answers::Pair,
-    measures::Measure,
-    methods::{Ours, Paper},
-    page::{self, Page, Section},
-    sweep::{Asked, Judged, Plan, SEED, ask},
-    table::Table,
-};
+use crate::answers::Pair;
+use crate::measures::Measure;
+use crate::methods::{Ours, Paper};
+use crate::report::{Page, Section, Table, page};
+use crate::sweep::{Asked, Judged, Plan, SEED, ask};
 
 const DEFAULT: &str = "default";
 /// Rooms, tables and small things: what users meet.
@@ -36,9 +33,6 @@ pub struct Arguments {
 }
 
 /// Asks the defaults and every change, and writes the page.
-///
-/// # Errors
-/// When a query fails or the page cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, update_docs } = *arguments;
     let changed = |(name, change): (&str, Change)| -> Result<Asked> {

@@ -1,6 +1,7 @@
 //! Manifests: what every crate says, inherits and ships.
 
-use std::{fs, path::Path};
+use std::fs;
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use toml::{Table, Value};
@@ -42,24 +43,17 @@ pub(super) fn read_all(root: &Path) -> Result<Vec<Manifest>> {
         folders.push(format!("crates/{}", entry?.file_name().to_string_lossy()));
     }
     folders.sort();
-    folders
-        .into_iter()
-        .map(|folder| {
-            let path = root.join(&folder).join("Cargo.toml");
-            let text =
-                fs::read_to_string(&path).with_context(|| format!("read {}", path.display()))?;
-            let table = text.parse().with_context(|| format!("parse {}", path.display()))?;
-            Ok(Manifest { folder, table })
-        })
-        .collect()
+    let read = |folder: String| {
+        let path = root.join(&folder).join("Cargo.toml");
+        let text = fs::read_to_string(&path).with_context(|| format!("read {}", path.display()))?;
+        let table = text.parse().with_context(|| format!("parse {}", path.display()))?;
+        Ok(Manifest { folder, table })
+    };
+    folders.into_iter().map(read).collect()
 }
 
-/// Everything about manifests but the layers and what `cargo package` checks.
-pub(super) fn check(manifests: &[Manifest]) -> Vec<String> {
-    manifests.iter().flat_map(check_fields).collect()
-}
-
-fn check_fields(manifest: &Manifest) -> Vec<String> {
+/// Everything about a manifest but the layers and what `cargo package` checks.
+pub(super) fn check(manifest: &Manifest) -> Vec<String> {
     let mut found = Vec::new();
     let mut complain = |what: String| found.push(format!("{}/Cargo.toml: {what}", manifest.folder));
     let inherits = |value: Option<&Value>| {
@@ -107,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_good_manifest_passes_and_each_fault_is_named() {
-        assert_eq!(check_fields(&manifest(GOOD)), Vec::<String>::new());
+        assert_eq!(check(&manifest(GOOD)), Vec::<String>::new());
         for (from, to, named) in [
             ("license.workspace = true", "license = 'MIT'", "license"),
             ("[lints]\nworkspace = true", "", "lints"),
@@ -115,7 +109,7 @@ mod tests {
             ("readme = 'README.md'", "", "readme"),
             ("serde.workspace = true", "serde = '1'", "serde"),
         ] {
-            let found = check_fields(&manifest(&GOOD.replace(from, to)));
+            let found = check(&manifest(&GOOD.replace(from, to)));
             assert!(found.len() == 1 && found[0].contains(named), "{from}: {found:?}");
         }
     }

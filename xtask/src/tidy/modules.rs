@@ -35,60 +35,49 @@ pub(super) type Modules = BTreeMap<Names, Module>;
 pub(super) fn read(name: &[String], file: &str, text: TokenStream, all: &mut Modules) {
     let mut module = Module { file: file.to_owned(), ..Module::default() };
     let mut is_public = false;
+    let mut rest = Vec::new();
     let mut tokens = text.into_iter().peekable();
     while let Some(token) = tokens.next() {
-        let word = token.to_string();
-        match token {
-            TokenTree::Punct(hash) if hash.as_char() == '#' => {
+        match token.to_string().as_str() {
+            "#" => {
                 let attribute = tokens.next().map(|a| a.to_string().replace(' ', ""));
                 if attribute.as_deref() == Some("[cfg(test)]") {
                     let ends = |t: &TokenTree| t.to_string() == ";" || braces(t).is_some();
                     tokens.by_ref().find(ends);
                 }
-                continue;
             }
-            TokenTree::Ident(_) if word == "pub" => {
-                is_public = true;
-                continue;
-            }
-            // The reach of `pub(super)`.
-            TokenTree::Group(ref group) if is_public && braces(&token).is_none() => {
-                mention(group.stream(), &mut module.mentions);
-                continue;
-            }
-            TokenTree::Ident(_) if word == "use" => {
+            "use" => {
                 let tree = tokens.by_ref().take_while(|t| t.to_string() != ";").collect();
                 for (name, path) in imported(tree, &[]) {
                     module.imports.push(Import { name, path, is_public });
                 }
             }
-            TokenTree::Ident(_) if word == "mod" => {
+            "mod" => {
                 let child = tokens.next().map(|t| t.to_string()).unwrap_or_default();
                 match tokens.next().as_ref().and_then(braces) {
                     Some(body) => read(&[name, &[child]].concat(), file, body, all),
                     None => drop(module.declared.insert(child)),
                 }
             }
-            TokenTree::Ident(_) if ITEMS.contains(&word.as_str()) => {
+            word if ITEMS.contains(&word) => {
                 module.items.extend(tokens.peek().map(ToString::to_string));
             }
-            // The rest of an item is read for what it mentions, its name included.
-            token => {
-                let mut rest = vec![token];
-                while let Some(next) = tokens.peek() {
-                    let starts = next.to_string();
-                    let is_next = ["#", "pub", "use", "mod"].contains(&starts.as_str())
-                        || ITEMS.contains(&starts.as_str());
-                    if is_next {
-                        break;
-                    }
-                    rest.extend(tokens.next());
+            // Only a `use` asks for it; the reach of `pub(super)` comes in between.
+            "pub" => {
+                is_public = true;
+                continue;
+            }
+            _ => {
+                let is_reach = is_public && braces(&token).is_none();
+                rest.push(token);
+                if is_reach {
+                    continue;
                 }
-                mention(rest.into_iter().collect(), &mut module.mentions);
             }
         }
         is_public = false;
     }
+    mention(rest.into_iter().collect(), &mut module.mentions);
     all.insert(name.to_vec(), module);
 }
 

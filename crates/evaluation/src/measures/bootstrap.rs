@@ -1,6 +1,7 @@
 //! Intervals from resampled draws and poses.
 
-use std::{collections::BTreeMap, fmt};
+use std::collections::BTreeMap;
+use std::fmt;
 
 use cloudtouch_geom::seed;
 use rand::RngExt;

@@ -2,14 +2,12 @@
 
 mod bootstrap;
 mod calibration;
-mod logistic;
 mod rank;
 mod sample;
 mod surface;
 
 pub use bootstrap::{Clusters, Estimate};
 pub use calibration::{Bin, brier, calibration_error, chance_error, observed_within, reliability};
-pub use logistic::Logistic;
 pub use rank::{auc, false_stops};
 pub use sample::Sample;
 pub use surface::{Axis, Sample as SurfaceSample, fit_surface};

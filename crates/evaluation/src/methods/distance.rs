@@ -1,7 +1,8 @@
 //! The least distance: between the points of two clouds, or of a cloud from a mesh, as measured or
 //! after our own surface fit, in units of noise and spacing.
 
-use std::{num::NonZeroUsize, time::Instant};
+use std::num::NonZeroUsize;
+use std::time::Instant;
 
 use anyhow::{Result, anyhow};
 use cloudtouch::Mesh;
@@ -27,16 +28,6 @@ pub struct Distance {
     pub smoothed: bool,
 }
 
-struct Bodies {
-    a: Vec<Point3>,
-    b: Vec<Point3>,
-    /// Of the points of A.
-    index: ImmutableKdTree<f64, 3>,
-    mesh: Mesh,
-    /// Lowest and highest corner of the mesh's box, m.
-    mesh_box: [Point3; 2],
-}
-
 impl Method for Distance {
     fn name(&self) -> String {
         if self.smoothed { "smoothed distance".into() } else { "distance".into() }
@@ -45,25 +36,20 @@ impl Method for Distance {
     fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let [(a, unit_a), (b, unit_b)] =
             [points(draw.a, self.smoothed)?, points(draw.b, self.smoothed)?];
-        let (low, high) = draw.mesh.bounding_box().ok_or_else(|| anyhow!("a mesh of nothing"))?;
+        let corners = draw.mesh.bounding_box().ok_or_else(|| anyhow!("a mesh of nothing"))?;
+        let mesh = Mesh::prepare(draw.mesh)?;
         // −0 and 0 are one place.
         let entries: Vec<(u32, [f64; 3])> =
             (0..).zip(&a).map(|(i, p)| (i, p.coords.map(|v| v + 0.0).into())).collect();
         let index = ImmutableKdTree::new_from_entries(&entries);
-        let bodies = Bodies {
-            index: index.map_err(|e| anyhow!("index: {e}"))?,
-            a,
-            b,
-            mesh: Mesh::prepare(draw.mesh)?,
-            mesh_box: [low, high],
-        };
+        let index = index.map_err(|e| anyhow!("index: {e}"))?;
         // What one unit of distance is for two clouds, and for a cloud and a mesh, m.
         let scales = [unit_a.hypot(unit_b), unit_a].map(|scale| scale.max(1e-9));
         Ok(Box::new(move |pair, a_from_b| {
             let start = Instant::now();
             let (distance, scale) = match pair {
-                Pair::CloudCloud => (bodies.to_points(a_from_b), scales[0]),
-                Pair::CloudMesh => (bodies.to_mesh(a_from_b), scales[1]),
+                Pair::CloudCloud => (to_points(&index, &b, a_from_b), scales[0]),
+                Pair::CloudMesh => (to_mesh(&a, &mesh, corners, a_from_b), scales[1]),
             };
             Ok(Some(Said::score(-distance / scale, start)))
         }))
@@ -85,52 +71,46 @@ fn points(observation: &Observation, smoothed: bool) -> Result<(Vec<Point3>, f64
     Ok(((0..cloud.points.len()).map(&mut expected).collect(), unit))
 }
 
-impl Bodies {
-    /// The least distance of the points of B from those of A, m.
-    fn to_points(&self, a_from_b: &Pose) -> f64 {
-        let mut least = f64::MAX;
-        // In strides, so that a close one comes early.
-        for point in (0..STRIDE).flat_map(|start| self.b.iter().skip(start).step_by(STRIDE)) {
-            let place: [f64; 3] = a_from_b.transform_point(point).coords.into();
-            let nearest =
-                self.index.query(&place).nearest_n::<SquaredEuclidean<f64>>(NonZeroUsize::MIN);
-            // Each is sought no farther than the nearest so far.
-            if let Some(hit) = nearest.within(least).execute().first() {
-                least = least.min(hit.distance);
-            }
+/// The least distance of points from those of an index, m.
+fn to_points(index: &ImmutableKdTree<f64, 3>, points: &[Point3], a_from_b: &Pose) -> f64 {
+    let mut least = f64::MAX;
+    // In strides, so that a close one comes early.
+    for point in (0..STRIDE).flat_map(|start| points.iter().skip(start).step_by(STRIDE)) {
+        let place: [f64; 3] = a_from_b.transform_point(point).coords.into();
+        let nearest = index.query(&place).nearest_n::<SquaredEuclidean<f64>>(NonZeroUsize::MIN);
+        // Each is sought no farther than the nearest so far.
+        if let Some(hit) = nearest.within(least).execute().first() {
+            least = least.min(hit.distance);
         }
-        least.sqrt()
     }
+    least.sqrt()
+}
 
-    /// The least signed distance of the points of A from the mesh, m.
-    fn to_mesh(&self, a_from_b: &Pose) -> f64 {
-        let b_from_a = a_from_b.inverse();
-        let [low, high] = self.mesh_box;
-        let moved: Vec<Point3> = self.a.iter().map(|p| b_from_a.transform_point(p)).collect();
-        let to_box = |p: &Point3| {
-            (0..3).map(|k| (low[k] - p[k]).max(p[k] - high[k]).max(0.0).powi(2)).sum::<f64>().sqrt()
-        };
-        let mut by_box: Vec<(f64, &Point3)> = moved.iter().map(|p| (to_box(p), p)).collect();
-        by_box.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let mut least = f64::INFINITY;
-        for (at_least, point) in by_box {
-            if at_least >= least && at_least > 0.0 {
-                break;
-            }
-            least = least.min(self.mesh.signed_distance(point));
+/// The least signed distance of points from a mesh in a box with these corners, m.
+fn to_mesh(points: &[Point3], mesh: &Mesh, (low, high): (Point3, Point3), a_from_b: &Pose) -> f64 {
+    let b_from_a = a_from_b.inverse();
+    let moved = points.iter().map(|p| b_from_a.transform_point(p));
+    let to_box = |p: &Point3| {
+        (0..3).map(|k| (low[k] - p[k]).max(p[k] - high[k]).max(0.0).powi(2)).sum::<f64>().sqrt()
+    };
+    let mut by_box: Vec<(f64, Point3)> = moved.map(|p| (to_box(&p), p)).collect();
+    by_box.sort_by(|x, y| x.0.total_cmp(&y.0));
+    let mut least = f64::INFINITY;
+    for (at_least, point) in by_box {
+        if at_least >= least && at_least > 0.0 {
+            break;
         }
-        least
+        least = least.min(mesh.signed_distance(&point));
     }
+    least
 }
 
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::{Vector3, seed};
-    use cloudtouch_testkit::{
-        brute,
-        family::{Family, Side},
-        noise::NoiseKind,
-    };
+    use cloudtouch_testkit::brute;
+    use cloudtouch_testkit::family::{Family, Side};
+    use cloudtouch_testkit::noise::NoiseKind;
 
     use super::*;
 

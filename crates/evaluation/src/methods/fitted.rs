@@ -1,6 +1,8 @@
 //! The surfaces that turn evidence into a probability, as they are kept.
 
-use std::{collections::BTreeMap, fmt::Write, path::Path};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use cloudtouch::Judge;
@@ -27,9 +29,6 @@ pub struct Fitted {
 
 impl Fitted {
     /// The fit in the repository.
-    ///
-    /// # Errors
-    /// When the file is not one.
     pub fn stored() -> Result<Self> {
         serde_json::from_str(include_str!("../../judges.json")).context(PLACE)
     }
@@ -41,9 +40,6 @@ impl Fitted {
     }
 
     /// Keeps it, in the lab and as the library's default.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
     pub fn write(&self, root: &Path) -> Result<()> {
         let text = serde_json::to_string(self)? + "\n";
         for (place, text) in [(PLACE, text), (SOURCE, self.as_source())] {

@@ -2,25 +2,22 @@
 //!
 //! A method is prepared once for a draw of a scene and then asked at many poses, as a planner does.
 
-mod asker;
 mod distance;
 mod fitted;
 mod ours;
 mod paper;
-mod plain_svm;
 mod shapes;
 
 use anyhow::Result;
-use cloudtouch::{FilterSettings, filter, noise::SensorModel};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{FilterSettings, filter};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::Observation;
 
-pub use asker::{Way, asker};
 pub use distance::Distance;
 pub use fitted::Fitted;
 pub use ours::Ours;
 pub use paper::Paper;
-pub use plain_svm::PlainSvm;
 pub use shapes::{Boxes, ExactMeshes};
 
 use crate::answers::{Pair, Said};

@@ -3,9 +3,11 @@
 use std::time::Instant;
 
 use anyhow::Result;
+use cloudtouch::bvh::TreeSettings;
+use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query,
-    QuerySettings, bvh::TreeSettings, noise::SensorModel,
+    QuerySettings,
 };
 use cloudtouch_geom::{PointCloud, UnitVector3};
 use cloudtouch_testkit::family::Observation;
@@ -34,9 +36,6 @@ pub struct Ours {
 
 impl Ours {
     /// The defaults.
-    ///
-    /// # Errors
-    /// When the stored fit cannot be read.
     pub fn new(name: &str) -> Result<Self> {
         Ok(Self {
             name: name.to_owned(),
@@ -51,9 +50,6 @@ impl Ours {
     }
 
     /// The default, given every sampled point as it truly is: what sampling alone leaves to be known.
-    ///
-    /// # Errors
-    /// When the stored fit cannot be read.
     pub fn oracle(name: &str) -> Result<Self> {
         Ok(Self { sees_truth: true, ..Self::new(name)? })
     }

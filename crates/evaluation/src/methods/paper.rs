@@ -1,7 +1,9 @@
-//! The paper's algorithm at its default settings.
+//! The paper's algorithm, as printed and with our amendments.
 
 use anyhow::Result;
-use cloudtouch::{Mesh, PaperBodyRef, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings};
+use cloudtouch::{
+    Mesh, PaperBodyRef, PaperCloud, PaperCloudSettings, PaperModel, PaperQuery, PaperSettings,
+};
 use cloudtouch_testkit::family::Observation;
 
 use super::{Draw, Method, Prepared, sensor_of};
@@ -12,12 +14,20 @@ pub struct Paper {
     name: String,
     /// Settings of the query.
     pub query: PaperSettings,
+    model: PaperModel,
 }
 
 impl Paper {
-    /// The defaults.
+    /// As printed.
     pub fn new(name: &str) -> Self {
-        Self { name: name.to_owned(), query: PaperSettings::default() }
+        let (query, model) = (PaperSettings::default(), PaperModel::default());
+        Self { name: name.to_owned(), query, model }
+    }
+
+    /// With all our amendments.
+    pub fn amended(name: &str) -> Self {
+        let (query, model) = (PaperSettings::amended(), PaperModel::amended());
+        Self { name: name.to_owned(), query, model }
     }
 }
 
@@ -28,7 +38,8 @@ impl Method for Paper {
 
     fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let cloud = |seen: &Observation| {
-            PaperCloud::prepare(&seen.cloud, &PaperCloudSettings::new(sensor_of(seen)))
+            let settings = PaperCloudSettings::new(sensor_of(seen));
+            PaperCloud::prepare(&seen.cloud, &PaperCloudSettings { model: self.model, ..settings })
         };
         let query = PaperQuery::new(self.query)?;
         let (a, b, mesh) = (cloud(draw.a)?, cloud(draw.b)?, Mesh::prepare(draw.mesh)?);

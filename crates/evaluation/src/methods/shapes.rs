@@ -6,11 +6,9 @@ use std::time::Instant;
 use anyhow::{Result, anyhow};
 use cloudtouch_geom::{Point3, TriangleMesh};
 use glamx::DPose3;
-use parry3d_f64::{
-    math::Vector,
-    query::intersection_test,
-    shape::{Shape, TriMesh, Voxels},
-};
+use parry3d_f64::math::Vector;
+use parry3d_f64::query::intersection_test;
+use parry3d_f64::shape::{Shape, TriMesh, Voxels};
 
 use super::{Draw, Method, Prepared, cleaned};
 use crate::answers::{Pair, Said};

@@ -1,23 +1,20 @@
 //! `cargo xtask paper`: the figures of the paper with our data, by its method as printed and by ours.
 
-mod clouds;
-mod distances;
-mod overlap;
+mod piano;
 mod surfaces;
-mod times;
 
 use std::path::Path;
 
 use anyhow::Result;
 use clap::Args;
 
-use crate::page::{self, Page};
-use clouds::SEED;
+use crate::report::{Page, page};
+use piano::SEED;
 
 /// What `cargo xtask paper` is given.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Poses of each figure
+    /// Poses of the piano
     #[arg(long, default_value_t = 100)]
     poses: usize,
     /// Points of a cloud
@@ -29,9 +26,6 @@ pub struct Arguments {
 }
 
 /// Draws every figure and writes the page.
-///
-/// # Errors
-/// When a cloud or query is refused, or the page cannot be written.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { poses, points, update_docs } = *arguments;
     let introduction = "The figures of the paper that show what its method does, drawn anew with our \
@@ -43,8 +37,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let title = ("paper", "The paper's figures");
     let mut page = Page::new(title, ("paper", &command), introduction, root, SEED);
     page.section(surfaces::section()?);
-    page.section(overlap::section(poses)?);
-    page.section(distances::section(points, poses)?);
-    page.section(times::section(points, poses)?);
+    page.section(piano::section(points, poses)?);
     page.write(&page::folder(root, update_docs))
 }

@@ -1,17 +1,15 @@
 //! Figure 2: the surfaces f = 0 that separate noise-free and noisy clouds.
 
 use anyhow::Result;
+use cloudtouch::noise::SensorModel;
+use cloudtouch::paper::{LeafClassifier, Scaling};
 use cloudtouch::{
-    PaperCloud, PaperModel, PaperNoise, PaperQuery, PaperSettings,
-    paper::{LeafClassifier, Scaling},
+    PaperCloud, PaperCloudSettings, PaperModel, PaperNoise, PaperQuery, PaperSettings,
 };
 use cloudtouch_geom::{Point3, PointCloud, Pose, seed};
 
-use super::clouds::{SEED, by_paper};
-use crate::{
-    figure::{Axis, Figure, Panel, Place, Series},
-    page::Section,
-};
+use super::piano::SEED;
+use crate::report::{Axis, Figure, Panel, Place, Section, Series};
 
 /// Points of each cloud: one leaf.
 const POINTS: u64 = 24;
@@ -44,11 +42,13 @@ pub(super) fn section() -> Result<Section> {
 
 fn panel(title: &str, gap: f64, std: f64) -> Result<Panel> {
     let clouds = [curve(0, gap), curve(1, gap)];
-    let model = PaperModel { noise: PaperNoise::Convolution, ..PaperModel::default() };
     // Noise-free points have neither Σ nor, here, Ψ: that is what (a) and (c) show.
     let noise = if std > 0.0 { PaperNoise::Convolution } else { PaperNoise::Precision };
-    let settings = by_paper(std, PaperModel { noise, ..model });
-    let [a, b] = clouds.each_ref().map(|cloud| PaperCloud::prepare(cloud, &settings));
+    let by = PaperCloudSettings {
+        model: PaperModel { noise, ..PaperModel::default() },
+        ..PaperCloudSettings::new(SensorModel::Isotropic { std })
+    };
+    let [a, b] = clouds.each_ref().map(|cloud| PaperCloud::prepare(cloud, &by));
     let settings =
         PaperSettings { scaling: Scaling::LeafPair, stop_above: 1.0, ..PaperSettings::default() };
     let (_, all) = PaperQuery::new(settings)?.explain(&a?, &b?, &Pose::identity())?;

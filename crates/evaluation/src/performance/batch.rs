@@ -5,16 +5,10 @@ use cloudtouch::{Detail, Query, QuerySettings};
 use cloudtouch_geom::Pose;
 use rayon::ThreadPoolBuilder;
 
-use super::{
-    fresh::prepare,
-    scene::{POINTS, STD, Scene},
-    timing::{ratio, time, timed},
-};
-use crate::{
-    page::Section,
-    table::Table,
-    targets::{Findings, Target},
-};
+use super::fresh::prepare;
+use super::scene::{POINTS, STD, Scene};
+use super::timing::{ratio, timed};
+use crate::report::{Findings, Section, Target};
 
 /// Poses of the batch, and its parts; one and two threads take turns at each.
 const POSES: usize = 10_000;
@@ -38,10 +32,6 @@ pub(super) fn measure(scene: &Scene) -> Findings {
             seconds[which] += timed(ask)?.1;
         }
     }
-    let mut table = Table::new(["threads", "time", "poses a second"]);
-    for (threads, seconds) in ["1", "2"].into_iter().zip(seconds) {
-        table.row([threads.into(), time(seconds), format!("{:.0}", POSES as f64 / seconds)]);
-    }
     let section = Section::new("Many poses at once").text(format_args!(
         "`Query::run_batch` for probabilities alone (`Detail::Probability`) on one thread and on two, \
          {POSES} poses: those above over and over. All \
@@ -54,5 +44,5 @@ pub(super) fn measure(scene: &Scene) -> Findings {
         Target::new(what, ratio(faster), faster >= 1.8),
         Target::new("batch: ≥ 5,000 poses a second and core", format!("{rate:.0}"), rate >= 5e3),
     ];
-    Ok((section.text(table), targets))
+    Ok((section, targets))
 }

@@ -3,27 +3,18 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use cloudtouch::{
-    Cloud, CloudSettings, FilterSettings, Mesh, Query, QuerySettings, noise::SensorModel,
-};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, FilterSettings, Mesh, Query, QuerySettings, Report};
 use cloudtouch_geom::{PointCloud, Pose, seed};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
-use cloudtouch_testkit::{
-    family::{Family, Side},
-    noise::NoiseKind,
-};
+use cloudtouch_testkit::family::{Family, Side};
+use cloudtouch_testkit::noise::NoiseKind;
 
-use super::{
-    scene::{Class, POINTS, STD, Scene},
-    timing::{p95, time, timed, times},
-};
-use crate::{
-    page::Section,
-    real_scans::cases,
-    statistics::median,
-    table::Table,
-    targets::{Findings, Target},
-};
+use super::scene::{Class, POINTS, STD, Scene};
+use super::timing::{p95, time, timed};
+use crate::real_scans::cases;
+use crate::report::{Findings, Section, Table, Target};
+use crate::statistics::median;
 
 /// Frames of each kind, returns of a frame, and poses asked of it.
 const FRAMES: usize = 20;
@@ -33,8 +24,9 @@ const POSES: usize = 10;
 const DEPTH_STD: f64 = 0.002;
 /// Standard deviation that the real scan is said to have, m.
 const SCAN_STD: f64 = 0.005;
-/// Preparation and ten poses may take this long, s.
-const LIMIT: f64 = 0.025;
+
+/// A pose, and whether it collides where that is known.
+type Labelled = (Pose, Option<bool>);
 
 /// A cloud prepared with a noise of this standard deviation.
 pub(super) fn prepare(cloud: &PointCloud, std: f64) -> Result<Cloud> {
@@ -42,127 +34,120 @@ pub(super) fn prepare(cloud: &PointCloud, std: f64) -> Result<Cloud> {
     Ok(Cloud::prepare(cloud, &CloudSettings::new(sensor))?)
 }
 
-/// Prepares both clouds anew for every near pose.
-pub(super) fn first_query(scene: &Scene) -> Findings {
-    let (room, piano) = (scene.room(POINTS, STD), scene.piano(STD));
-    let query = Query::new(QuerySettings::default())?;
-    let mut parts = [const { Vec::new() }; 3];
-    for pose in scene.of(Class::Near) {
-        let both = || Ok((prepare(&room.cloud, STD)?, prepare(&piano.cloud, STD)?));
-        let ((a, b), preparing) = timed(both)?;
-        let (_, asking) = timed(|| Ok(query.run(&a, &b, &pose.scene_from_object)?))?;
-        for (list, value) in parts.iter_mut().zip([preparing, asking, preparing + asking]) {
-            list.push(value);
-        }
-    }
-    let mut table = Table::new(["part", "median", "p95"]);
-    for (name, part) in ["prepare both clouds", "first query", "both"].into_iter().zip(&parts) {
-        let [median, p95] = times(part);
-        table.row([name.to_owned(), median, p95]);
-    }
-    let what = "first query of a fresh 10k pair, preparation included: near, median ≤ 15 ms";
-    let both = median(&parts[2]);
-    let target = Target::new(what, time(both), both <= 0.015);
-    let section = Section::new("First query of two fresh clouds").text(format_args!(
-        "The near poses again, {} of them, with {:.0} mm of noise. Both clouds are prepared anew for \
-         each: filter, sensor model, neighbour index, tree. The query then computes the noise model \
-         where it looks; its answers are those of the prepared queries.",
-        parts[2].len(),
-        1e3 * STD,
-    ));
-    Ok((section.text(table), vec![target]))
-}
-
-/// Depth frames, each prepared anew and asked about ten poses of a gripper.
-pub(super) fn frames(scene: &Scene, data: Option<&Path>) -> Findings {
-    let mut table =
-        Table::new(["frames", "prepare", "ten poses", "both", "both, p95", "wrong at ½"]);
+/// Two clouds for every near pose, and depth frames for ten poses of a gripper.
+pub(super) fn measure(scene: &Scene, data: Option<&Path>) -> Findings {
+    let mut table = Table::new(["bodies", "prepare", "ask", "both", "both, p95", "wrong at ½"]);
     let mut targets = Vec::new();
-    let mut add = |name: &str, frames: Frames| {
-        let [prepare, queries] = [&frames.prepare, &frames.queries].map(|part| time(median(part)));
-        let both: Vec<f64> =
-            frames.prepare.iter().zip(&frames.queries).map(|(p, q)| p + q).collect();
-        let (middle, p95) = (median(&both), time(p95(&both)));
-        let wrong = format!("{} of {}", frames.wrong, frames.known);
-        table.row([name.to_owned(), prepare, queries, time(middle), p95, wrong]);
-        let what =
-            format!("40k-point depth frame ({name}), prepared, and 10 gripper poses ≤ 25 ms");
-        targets.push(Target::new(what, time(middle), middle <= LIMIT));
+    let mut add = |name: &str, what: String, limit: f64, fresh: Fresh| {
+        let [prepare, ask] = [&fresh.prepare, &fresh.ask].map(|part| time(median(part)));
+        let both: Vec<f64> = fresh.prepare.iter().zip(&fresh.ask).map(|(p, q)| p + q).collect();
+        let middle = median(&both);
+        let wrong = format!("{} of {}", fresh.wrong, fresh.known);
+        table.row([name.to_owned(), prepare, ask, time(middle), time(p95(&both)), wrong]);
+        targets.push(Target::new(what, time(middle), middle <= limit));
     };
-    add("simulated", simulated(scene.seed)?);
+    let what = "first query of a fresh 10k pair, preparation included: near, median ≤ 15 ms";
+    add("two clouds", what.into(), 0.015, clouds(scene)?);
+    let frame = |kind: &str| {
+        format!("40k-point depth frame ({kind}), prepared, and 10 gripper poses ≤ 25 ms")
+    };
+    add("simulated frame", frame("simulated"), 0.025, simulated(scene.seed)?);
     if let Some(data) = data {
-        add("stereo scan", real(data)?);
+        add("stereo scan", frame("stereo scan"), 0.025, real(data)?);
     }
-    let section = Section::new("Depth frames and a gripper").text(format_args!(
-        "{FRAMES} frames of about {RETURNS} returns, as a camera at 20 Hz has 50 ms for. *Prepare* \
+    let section = Section::new("Fresh clouds and depth frames").text(format_args!(
+        "*Two clouds*: the near poses again, with {:.0} mm of noise. Both clouds are prepared anew for \
+         each: filter, sensor model, neighbour index, tree. The query then computes the noise model \
+         where it looks; its answers are those of the prepared queries.\n\n\
+         *Frames*: {FRAMES} of about {RETURNS} returns, as a camera at 20 Hz has 50 ms for. *Prepare* \
          is all of it: near returns and veils dropped, sensor model, neighbour index, tree. Then \
          {POSES} poses of a gripper, known as a mesh and prepared once, are asked of the frame, \
-         first queries all of them. Medians over frames. Simulated frames are of household objects \
-         on a table, each drawn anew ({:.0} mm of depth noise at 1 m, veils at edges). The stereo \
-         scan of a mug on a table is thinned to as many returns ({:.0} mm of noise said); its clear \
-         cases count as known.",
+         first queries all of them. Simulated frames are of household objects on a table, each drawn \
+         anew ({:.0} mm of depth noise at 1 m, veils at edges). The stereo scan of a mug on a table is \
+         thinned to as many returns ({:.0} mm of noise said); its clear cases count as known. Times \
+         are medians where nothing else is said.",
+        1e3 * STD,
         1e3 * DEPTH_STD,
         1e3 * SCAN_STD,
     ));
     Ok((section.text(table), targets))
 }
 
-/// Times of frames, s, and answers on the wrong side of ½ among those that are known.
+/// Times of bodies prepared anew, s, and answers on the wrong side of ½ among those that are known.
 #[derive(Default)]
-struct Frames {
+struct Fresh {
     prepare: Vec<f64>,
-    queries: Vec<f64>,
+    ask: Vec<f64>,
     wrong: usize,
     known: usize,
 }
 
-impl Frames {
-    /// One frame: preparation and all queries on one thread.
-    fn ask(
+impl Fresh {
+    /// Preparation, and all queries on one thread.
+    fn add<B>(
+        &mut self,
+        prepare: impl FnOnce() -> Result<B>,
+        ask: impl Fn(&B, &Pose) -> Result<Report>,
+        poses: &[Labelled],
+    ) -> Result<()> {
+        let (bodies, seconds) = timed(prepare)?;
+        self.prepare.push(seconds);
+        let run = |(pose, _): &Labelled| ask(&bodies, pose);
+        let (said, seconds) = timed(|| poses.iter().map(run).collect::<Result<Vec<Report>>>())?;
+        self.ask.push(seconds);
+        for (said, (_, known)) in said.into_iter().zip(poses) {
+            let says = said.collision_probability >= 0.5;
+            self.known += usize::from(known.is_some());
+            self.wrong += usize::from(known.is_some_and(|collides| collides != says));
+        }
+        Ok(())
+    }
+
+    fn add_frame(
         &mut self,
         frame: &PointCloud,
         sensor: SensorModel,
         gripper: &Mesh,
-        poses: &[(Pose, Option<bool>)],
+        poses: &[Labelled],
     ) -> Result<()> {
         // The stages that suit a camera.
         let filter = FilterSettings::for_sensor(&SensorModel::Kinect);
         let settings = CloudSettings { filter, ..CloudSettings::new(sensor) };
         let query = Query::new(QuerySettings::default())?;
-        let (cloud, prepare) = timed(|| Ok(Cloud::prepare(frame, &settings)?))?;
-        let run = |(pose, _): &(Pose, Option<bool>)| {
-            anyhow::Ok(query.run(&cloud, gripper, pose)?.collision_probability >= 0.5)
-        };
-        let (said, queries) = timed(|| poses.iter().map(run).collect::<Result<Vec<bool>>>())?;
-        self.prepare.push(prepare);
-        self.queries.push(queries);
-        for (said, (_, known)) in said.into_iter().zip(poses) {
-            self.known += usize::from(known.is_some());
-            self.wrong += usize::from(known.is_some_and(|collides| collides != said));
-        }
-        Ok(())
+        let prepare = || Ok(Cloud::prepare(frame, &settings)?);
+        self.add(prepare, |cloud, pose| Ok(query.run(cloud, gripper, pose)?), poses)
     }
 }
 
-fn simulated(from: u64) -> Result<Frames> {
+fn clouds(scene: &Scene) -> Result<Fresh> {
+    let (room, piano) = (scene.room(POINTS, STD), scene.piano(STD));
+    let query = Query::new(QuerySettings::default())?;
+    let mut fresh = Fresh::default();
+    for pose in scene.of(Class::Near) {
+        let both = || Ok((prepare(&room.cloud, STD)?, prepare(&piano.cloud, STD)?));
+        let asked = [(pose.scene_from_object, Some(pose.in_collision))];
+        fresh.add(both, |(a, b), pose| Ok(query.run(a, b, pose)?), &asked)?;
+    }
+    Ok(fresh)
+}
+
+fn simulated(from: u64) -> Result<Fresh> {
     let scene = Family::Tabletop.scene(seed::derive(from, 3, 0));
-    let poses: Vec<(Pose, Option<bool>)> = scene
-        .poses(4 * POSES, seed::derive(from, 3, 1))
-        .iter()
-        .map(|p| (p.scene_from_object, Some(p.in_collision)))
-        .collect();
+    let poses = scene.poses(4 * POSES, seed::derive(from, 3, 1));
+    let poses: Vec<Labelled> =
+        poses.iter().map(|p| (p.scene_from_object, Some(p.in_collision))).collect();
     let gripper = Mesh::prepare(scene.b.mesh())?;
-    let mut frames = Frames::default();
+    let mut fresh = Fresh::default();
     for (number, asked) in (0..FRAMES).zip(poses.chunks(POSES).cycle()) {
         let draw = seed::derive(from, 4, number as u64);
         let frame = scene.observe(Side::A, RETURNS, NoiseKind::Gaussian, DEPTH_STD, draw).cloud;
-        frames.ask(&frame, SensorModel::PerPoint, &gripper, asked)?;
+        fresh.add_frame(&frame, SensorModel::PerPoint, &gripper, asked)?;
     }
-    Ok(frames)
+    Ok(fresh)
 }
 
 /// The approach series of the stereo scan, ten poses of it.
-fn real(data: &Path) -> Result<Frames> {
+fn real(data: &Path) -> Result<Fresh> {
     let series = cases::series(data)?;
     let every = series.len().div_ceil(POSES);
     let series: Vec<_> =
@@ -176,11 +161,11 @@ fn real(data: &Path) -> Result<Frames> {
         _ => None,
     };
     let poses: Vec<_> = series.iter().map(|case| (case.pose, known(&case.label))).collect();
-    let mut frames = Frames::default();
+    let mut fresh = Fresh::default();
     for _ in 0..FRAMES {
-        frames.ask(&frame, SensorModel::Isotropic { std: SCAN_STD }, &gripper, &poses)?;
+        fresh.add_frame(&frame, SensorModel::Isotropic { std: SCAN_STD }, &gripper, &poses)?;
     }
-    Ok(frames)
+    Ok(fresh)
 }
 
 /// The depth image with rows and columns left out evenly until about so many returns remain.

@@ -3,26 +3,18 @@
 use std::fs;
 
 use anyhow::{Context, Result};
-use cloudtouch::{
-    bvh::{Primitive, Tree, TreeSettings},
-    noise::SensorModel,
-};
+use cloudtouch::bvh::{Primitive, Tree, TreeSettings};
+use cloudtouch::noise::SensorModel;
 use cloudtouch_geom::{PointCloud, UncertainPoint};
 
-use super::{
-    fresh::prepare,
-    scene::{POINTS, STD, Scene},
-    timing::{least_of, ratio, three_digits, time},
-    turns::take_turns,
-};
-use crate::{
-    answers::Pair,
-    methods::{Draw, ExactMeshes, Ours},
-    page::Section,
-    statistics::median,
-    table::Table,
-    targets::{Findings, Target},
-};
+use super::fresh::prepare;
+use super::scene::{POINTS, STD, Scene};
+use super::timing::{least_of, ratio, three_digits, time};
+use super::turns::take_turns;
+use crate::answers::Pair;
+use crate::methods::{Draw, ExactMeshes, Ours};
+use crate::report::{Findings, Section, Table, Target};
+use crate::statistics::median;
 
 /// Points of the room.
 const SIZES: [usize; 4] = [10_000, 100_000, 300_000, 1_000_000];

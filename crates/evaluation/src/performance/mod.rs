@@ -16,11 +16,8 @@ use anyhow::{Context, Result};
 use clap::Args;
 use rayon::ThreadPoolBuilder;
 
-use crate::{
-    page::{self, Page},
-    real_scans::cases,
-    targets::{self, Part},
-};
+use crate::real_scans::cases;
+use crate::report::{Page, Part, page, targets};
 use scene::Scene;
 
 /// What `cargo xtask bench-report` is given.
@@ -49,28 +46,26 @@ and noises in [accuracy.md](accuracy.md).";
 
 /// Why targets are missed, where they are.
 const MISSED: &str = "Where targets are missed, it is for these reasons. *Exact meshes*: parry3d is \
-told the surfaces and stops at the first triangles that cut; a probability needs every place within \
-three standard deviations, and samples 10 cm apart stand for discs that reach as far. *Fresh clouds \
-and frames*: the noise model, a robust fit over up to 60 neighbours for every point a query comes \
-near, takes most of the first query. Index and tree take most of preparation. *Hard leaf problems*: \
-SMO gives up on all of them, and the interior point method that takes over is cubic in the points. \
-*Memory*: positions, covariances, boxes and what queries have computed are all kept, in double \
-precision.";
+told the surfaces and stops at the first triangles that cut; a probability takes every place within 1.5 \
+deviations of the likeliest, though none beyond 3.5 but that one, and samples 10 cm apart stand for \
+discs that reach far. *Far*: no coarse map of distances is kept of a scene, so that every \
+query goes down both trees ([decision 14](../decisions/0014-search-by-deviations.md)). *Deep*: the \
+search stops at P > .999 only. *Fresh clouds and frames*: the noise model is computed where a query \
+first comes near, which takes more than the query itself; of a frame, preparation alone takes longer \
+than all is to take. *Hard leaf problems*: SMO finishes none within its steps, and of the interior \
+point method, though it starts beside what SMO found, every step is cubic in the points. *Memory*: \
+positions, covariances, boxes and what queries have computed are all kept, in double precision.";
 
-/// Measures and writes the page with its figures.
-///
-/// # Errors
-/// When a part cannot be measured or the page not be written.
+/// Measures and writes the page.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { poses, update_docs, ref data } = *arguments;
     let scene = Scene::draw(poses, SEED)?;
     let data = cases::folder(root, data);
     // Whatever uses rayon gets one thread; the batch brings pools of its own.
     let alone = ThreadPoolBuilder::new().num_threads(1).build().context("start a thread")?;
-    let parts: [Part<'_>; 6] = [
+    let parts: [Part<'_>; 5] = [
         ("prepared queries", &|| room::measure(&scene)),
-        ("first query", &|| fresh::first_query(&scene)),
-        ("depth frames", &|| fresh::frames(&scene, data.as_deref())),
+        ("fresh bodies", &|| fresh::measure(&scene, data.as_deref())),
         ("leaf problems", &|| solvers::measure(scene.seed)),
         ("larger scenes", &|| growth::measure(&scene)),
         ("batch", &|| batch::measure(&scene)),

@@ -4,18 +4,13 @@ use anyhow::Result;
 use cloudtouch::Detail;
 use cloudtouch_geom::TriangleMesh;
 
-use super::{
-    scene::{Class, POINTS, STD, Scene},
-    timing::{p95, ratio, time},
-    turns::{Timed, table, take_turns},
-};
-use crate::{
-    answers::Pair,
-    methods::{Boxes, Distance, Draw, ExactMeshes, Method, Ours},
-    page::Section,
-    statistics::median,
-    targets::{Findings, Target},
-};
+use super::scene::{Class, POINTS, STD, Scene};
+use super::timing::{p95, ratio, time};
+use super::turns::{Timed, table, take_turns};
+use crate::answers::Pair;
+use crate::methods::{Boxes, Distance, Draw, ExactMeshes, Method, Ours};
+use crate::report::{Findings, Section, Target};
+use crate::statistics::median;
 
 /// The larger of the two noises, m.
 const LARGE_STD: f64 = 0.01;

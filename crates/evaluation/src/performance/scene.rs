@@ -1,15 +1,14 @@
 //! The piano and the room: meshes, noisy clouds, and poses far from contact, near and deep.
 
 use anyhow::{Context, Result};
-use cloudtouch_geom::{PointCloud, TriangleMesh, seed::derive};
-use cloudtouch_testkit::{
-    exact::ExactMesh,
-    family::Observation,
-    noise::{NoiseKind, add_noise},
-    poses::{LabelledPose, poses_near_contact},
-    scene,
-    surface::{positions, sample_surface},
-};
+use cloudtouch_geom::seed::derive;
+use cloudtouch_geom::{PointCloud, TriangleMesh};
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::family::Observation;
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
+use cloudtouch_testkit::scene;
+use cloudtouch_testkit::surface::{positions, sample_surface};
 use rayon::prelude::*;
 
 use crate::methods::observed;

@@ -1,20 +1,14 @@
 //! Leaf problems by our solver and by Clarabel.
 
 use anyhow::Result;
-use cloudtouch_geom::{
-    Vector3,
-    seed::{derive, unit},
-};
+use cloudtouch_geom::Vector3;
+use cloudtouch_geom::seed::{derive, unit};
 use cloudtouch_svm::{Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
 
 use super::timing::{least_of, ratio, three_digits, times};
-use crate::{
-    leaf::{self, Leaf, SHAPES},
-    page::Section,
-    statistics::median,
-    table::Table,
-    targets::{Findings, Target},
-};
+use crate::leaf::{self, Leaf, SHAPES};
+use crate::report::{Findings, Section, Table, Target};
+use crate::statistics::median;
 
 /// The relative gap that both are asked for.
 const GAP: f64 = 1e-4;

@@ -3,17 +3,13 @@
 use anyhow::{Context, Result};
 use cloudtouch_testkit::poses::LabelledPose;
 
-use super::{
-    scene::Class,
-    timing::{ratio, time, timed, times},
-};
-use crate::{
-    answers::Pair,
-    measures::{Sample, auc},
-    methods::{Draw, Method},
-    statistics::median,
-    table::Table,
-};
+use super::scene::Class;
+use super::timing::{ratio, time, timed, times};
+use crate::answers::Pair;
+use crate::measures::{Sample, auc};
+use crate::methods::{Draw, Method};
+use crate::report::Table;
+use crate::statistics::median;
 
 /// How often each query is timed; the least counts.
 const REPEATS: usize = 7;

@@ -1,23 +1,16 @@
 //! Forty labelled poses in real scans: clear cases must be answered clearly.
 
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySettings, Report, noise::SensorModel,
-};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySettings, Report};
 use cloudtouch_io::{Geometry, LengthUnit, read_geometry};
 
 use super::cases::{self, Labelled};
-use crate::{
-    page::Section,
-    statistics::quantile,
-    table::{Table, bounds, probability},
-    targets::{Findings, Target},
-};
+use crate::report::table::{bounds, probability};
+use crate::report::{Findings, Section, Table, Target};
 
 /// The sensor of each scan, by a part of its file name.
 const SENSORS: [(&str, &str); 5] = [
@@ -27,7 +20,6 @@ const SENSORS: [(&str, &str); 5] = [
     ("samp11", "axes:0.3,0.3,0.15"),
     ("room_scan", "lidar:0.02,0.003"),
 ];
-const LABELS: [&str; 5] = ["free", "near", "contact", "shallow", "collision"];
 /// A free case must stay below, a deep one above.
 const FREE_BELOW: f64 = 0.1;
 const COLLISION_ABOVE: f64 = 0.9;
@@ -58,10 +50,8 @@ pub(super) fn evaluate(data: &Path) -> Findings {
          query at a place of a scan also pays for its noise model there.",
         cases.len(),
     );
-    let section = Section::new("Labelled poses in real scans")
-        .text(text)
-        .text(by_label(&cases, &answers))
-        .text(each(&cases, &answers));
+    let section =
+        Section::new("Labelled poses in real scans").text(text).text(each(&cases, &answers));
     Ok((section, vec![Target::none_of("labelled poses: unclear or unsound answers", &failures)]))
 }
 
@@ -106,22 +96,6 @@ fn wrong(p: f64, [low, high]: [f64; 2], wanted: Option<[f64; 2]>) -> Option<Stri
     (!(least < p && p < most)).then(|| format!("P {p} of a clear case"))
 }
 
-fn by_label(cases: &[Labelled], answers: &[Answer]) -> Table {
-    let mut table = Table::new(["label", "cases", "P min", "P median", "P max", "query (ms)"]);
-    for label in LABELS {
-        let of_label = cases.iter().zip(answers).filter(|(case, _)| case.label == label);
-        let reports: Vec<&Report> =
-            of_label.filter_map(|(_, answer)| answer.as_ref().ok()).collect();
-        let p: Vec<f64> = reports.iter().map(|report| report.collision_probability).collect();
-        let time: Vec<f64> = reports.iter().map(|report| query_ms(report)).collect();
-        let mut cells = vec![label.to_owned(), reports.len().to_string()];
-        cells.extend([0.0, 0.5, 1.0].map(|q| probability(quantile(&p, q))));
-        cells.push(format!("{:.1}", quantile(&time, 0.5)));
-        table.row(cells);
-    }
-    table
-}
-
 fn each(cases: &[Labelled], answers: &[Answer]) -> Table {
     const HEADER: &str = "case, label (basis), scene / object, smallest distance (mm), P, bounds, \
                           verdict, clearance (mm), query (ms)";
@@ -142,16 +116,12 @@ fn each(cases: &[Labelled], answers: &[Answer]) -> Table {
                 report.clearance_m.map_or("-".to_owned(), |c| {
                     format!("{:+.1} ± {:.1}", 1e3 * c.mean, 1e3 * c.std)
                 }),
-                format!("{:.1}", query_ms(report)),
+                format!("{:.1}", 1e-3 * report.stats.query_us as f64),
             ],
         });
         table.row(cells);
     }
     table
-}
-
-fn query_ms(report: &Report) -> f64 {
-    1e-3 * report.stats.query_us as f64
 }
 
 fn file_name(path: &Path) -> String {

@@ -10,10 +10,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::Args;
 
-use crate::{
-    page::{self, Page},
-    targets::{self, Part},
-};
+use crate::report::{Page, Part, page, targets};
 
 /// What `cargo xtask evaluate` is given.
 #[derive(Debug, Args)]
@@ -43,10 +40,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         ("labelled poses", &|| labelled::evaluate(&data)),
         ("approach", &|| approach::evaluate(&data)),
     ];
-    targets::require(&targets::report(
-        page,
-        &page::folder(root, arguments.update_docs),
-        "",
-        &parts,
-    )?)
+    let folder = page::folder(root, arguments.update_docs);
+    targets::require(&targets::report(page, &folder, "", &parts)?)
 }

@@ -6,12 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use anyhow::{Context, Result, ensure};
 use cloudtouch::{Cloud, Mesh, Report};
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, Vector3};
-use i_overlay::{core::fill_rule::FillRule, float::simplify::SimplifyShape};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::float::simplify::SimplifyShape;
 
-use crate::{
-    figure::{Axis, Figure, GREY, Panel, Place, RGBColor, Series},
-    statistics::quantile,
-};
+use crate::report::{Axis, Figure, GREY, Panel, Place, RGBColor, Series};
+use crate::statistics::quantile;
 
 /// Into the table, as the camera sees it (x right, y down, z forward).
 const DOWN: [f64; 3] = [0.05, 0.8, 0.6];

@@ -13,10 +13,7 @@ use std::path::Path;
 use anyhow::Result;
 use clap::Args;
 
-use crate::{
-    page::{self, Page},
-    targets::{self, Part},
-};
+use crate::report::{Page, Part, page, targets};
 
 const INTRODUCTION: &str = "What the solver and whole queries do with input that breaks careless \
 numerics: no panic, no number that is not one, bounded work, and a verdict that is right or says \
@@ -42,10 +39,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         ("queries", &queries::measure),
         ("motions", &motions::measure),
     ];
-    targets::require(&targets::report(
-        page,
-        &page::folder(root, arguments.update_docs),
-        "",
-        &parts,
-    )?)
+    let folder = page::folder(root, arguments.update_docs);
+    targets::require(&targets::report(page, &folder, "", &parts)?)
 }

@@ -2,21 +2,15 @@
 
 use anyhow::{Context, Result};
 use cloudtouch_geom::seed;
-use cloudtouch_testkit::{
-    family::{FamilyScene, Side},
-    noise::NoiseKind,
-    poses::LabelledPose,
-};
+use cloudtouch_testkit::family::{FamilyScene, Side};
+use cloudtouch_testkit::noise::NoiseKind;
+use cloudtouch_testkit::poses::LabelledPose;
 use rayon::prelude::*;
 
-use super::{
-    plan::{Plan, SEED},
-    scenes::Scenes,
-};
-use crate::{
-    answers::{Answers, Condition, Pair, Question, Row},
-    methods::{Draw, Method},
-};
+use super::plan::{Plan, SEED};
+use super::scenes::Scenes;
+use crate::answers::{Answers, Condition, Pair, Question, Row};
+use crate::methods::{Draw, Method};
 
 /// A method, and how often it is asked: slow peers answer less.
 pub struct Asked {

@@ -1,11 +1,9 @@
 //! A part of the answers, as the measures take it.
 
 use super::plan::SEED;
-use crate::{
-    answers::{Answers, Question, Row, Said},
-    measures::{Clusters, Estimate, Measure, Sample, chance_error},
-    statistics::quantile,
-};
+use crate::answers::{Answers, Question, Row, Said};
+use crate::measures::{Clusters, Estimate, Measure, Sample, chance_error};
+use crate::statistics::quantile;
 
 /// Questions picked from the table, with what several methods say of them.
 pub struct Judged<'a> {

@@ -1,20 +1,15 @@
 //! `cargo xtask sweep`: collision probabilities of many scenes, noises and methods against exact
 //! truth.
 
-mod agreement;
 mod ask;
-mod bounds;
-mod clearance;
-mod figures;
-mod grade;
 mod judged;
-mod lab_page;
+mod pages;
 mod plan;
 mod scenes;
 mod short;
+mod stated;
 mod tables;
 mod targets;
-mod user_page;
 
 use std::path::{Path, PathBuf};
 
@@ -27,10 +22,8 @@ pub use plan::{GEOMETRY, ORACLE, OURS, Plan, SEED};
 pub use scenes::Scenes;
 pub use short::run as check;
 
-use crate::{
-    methods::{Boxes, Distance, Ours, Paper, PlainSvm},
-    page,
-};
+use crate::methods::{Boxes, Distance, Ours, Paper};
+use crate::report::page;
 
 /// What `cargo xtask sweep` is given.
 #[derive(Args)]
@@ -53,10 +46,6 @@ pub struct Arguments {
 }
 
 /// Runs the sweep, and writes answers, pages and figures.
-///
-/// # Errors
-/// When a method fails, a page cannot be written, or with `--short` when accuracy is worse than
-/// recorded.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { draws, poses, short, ref data, update_docs } = *arguments;
     if short {
@@ -64,13 +53,11 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     }
     let mut plan = Plan::full(draws, poses);
     plan.families.extend(Scenes::real(&root.join(data))?);
-    let mut answers = ask(&plan, &methods()?)?;
-    grade::grade(&mut answers)?;
+    let answers = ask(&plan, &methods()?)?;
     let folder = page::folder(root, update_docs);
     let arguments = format!("--draws {draws} --poses {poses} --update-docs");
-    let bounds = bounds::section()?;
-    lab_page::page(root, &arguments, &answers, bounds).write(&folder)?;
-    user_page::page(root, &arguments, &answers).write(&if update_docs {
+    pages::in_full(root, &arguments, &answers).write(&folder)?;
+    pages::for_users(root, &arguments, &answers).write(&if update_docs {
         root.join("docs")
     } else {
         folder.join("user")
@@ -78,13 +65,12 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
 }
 
 /// Ours, the oracle, the paper's mode and the alternatives. What takes long answers less: the paper's
-/// mode and the plain machine every seventh pose, what smooths every point every second draw.
+/// mode every seventh pose, what smooths every point every second draw.
 fn methods() -> Result<Vec<Asked>> {
     let mut paper = Paper::new("paper");
     // A dense cloud beside a large mesh is to be answers, however long that takes.
     paper.query.max_mesh_parts = 1_000_000;
     let smoothed = Asked::always(Distance { smoothed: true });
-    let seventh = |asked: Asked| Asked { pose_of: 7, ..asked };
     Ok(vec![
         Asked::always(Ours::new(OURS)?),
         Asked::always(Ours::oracle(ORACLE)?),
@@ -92,7 +78,6 @@ fn methods() -> Result<Vec<Asked>> {
         Asked::always(Distance { smoothed: false }),
         Asked { draw_of: 2, ..smoothed },
         Asked::always(Boxes { side: 0.01 }),
-        seventh(Asked::always(paper)),
-        seventh(Asked::always(PlainSvm)),
+        Asked { pose_of: 7, ..Asked::always(paper) },
     ])
 }

@@ -1,6 +1,7 @@
 //! Where scenes come from: generators, and real meshes where their files are.
 
-use std::{path::Path, sync::Arc};
+use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::Result;
 use cloudtouch_geom::TriangleMesh;

@@ -3,17 +3,13 @@
 use anyhow::{Result, ensure};
 use cloudtouch_testkit::family::Family;
 
-use super::{
-    OURS,
-    ask::{Asked, ask},
-    judged::Judged,
-    plan::Plan,
-};
-use crate::{
-    answers::{Pair, Question},
-    measures::Measure,
-    methods::Ours,
-};
+use super::OURS;
+use super::ask::{Asked, ask};
+use super::judged::Judged;
+use super::plan::Plan;
+use crate::answers::{Pair, Question};
+use crate::measures::Measure;
+use crate::methods::Ours;
 
 const DRAWS: u32 = 2;
 const POSES: usize = 28;
@@ -44,9 +40,6 @@ const RECORDED: [(Family, [[f64; 2]; 2]); 16] = [
 ];
 
 /// Runs it and compares.
-///
-/// # Errors
-/// When a method fails, or a family is answered worse than recorded.
 pub fn run() -> Result<()> {
     let families = RECORDED.map(|(family, _)| family.into()).to_vec();
     let methods = [Asked::always(Ours::new(OURS)?)];

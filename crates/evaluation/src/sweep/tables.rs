@@ -1,13 +1,14 @@
 //! The answers by kind of pair, kind of scene, family and noise, as rows of tables.
 
-use cloudtouch_testkit::{family::Kind, poses::NEAR};
+use cloudtouch_testkit::family::Kind;
+use cloudtouch_testkit::poses::NEAR;
 
-use super::{GEOMETRY, ORACLE, OURS, judged::Judged, plan::STDS};
-use crate::{
-    answers::{Answers, Pair, Question},
-    measures::{Estimate, Measure},
-    table::Table,
-};
+use super::judged::Judged;
+use super::plan::STDS;
+use super::{GEOMETRY, ORACLE, OURS};
+use crate::answers::{Answers, Pair, Question};
+use crate::measures::{Estimate, Measure};
+use crate::report::Table;
 
 /// Whether a pose is within 3 cm of contact.
 pub(super) fn is_near(question: &Question) -> bool {
@@ -29,13 +30,6 @@ impl Answers {
     pub(super) fn alternatives(&self) -> impl Iterator<Item = &str> {
         let names = self.methods.iter().map(String::as_str);
         names.filter(|name| ![OURS, ORACLE, GEOMETRY].contains(name))
-    }
-
-    /// How many questions, how many of them collisions: the base rate.
-    pub(super) fn base_rate(&self, keep: impl Fn(&Question) -> bool) -> String {
-        let (count, collisions) = Judged::pick(self, &[OURS], keep).counts();
-        let share = 100.0 * collisions as f64 / count as f64;
-        format!("{count} answers, {share:.0} % of them to collisions")
     }
 
     /// A row for every method, and by how much its AUC differs from ours on the same questions.

@@ -1,17 +1,12 @@
 //! What is aimed at on ordinary scenes, and whether it is reached.
 
-use super::{
-    ORACLE, OURS, clearance,
-    judged::Judged,
-    plan::STDS,
-    tables::{is_near, ordinary},
-};
-use crate::{
-    answers::{Answers, Pair, Question},
-    measures::{Bin, Measure, observed_within},
-    page::Section,
-    targets::{self, Target},
-};
+use super::judged::Judged;
+use super::plan::STDS;
+use super::tables::{is_near, ordinary};
+use super::{ORACLE, OURS};
+use crate::answers::{Answers, Pair, Question, Said};
+use crate::measures::{Bin, Measure, observed_within};
+use crate::report::{Section, Target, targets};
 
 /// What should be reached on the ordinary families together: of which pair, whether only near
 /// contact, the measure, its limit, and up to which noise, m.
@@ -38,6 +33,12 @@ const DEEP_CERTAIN: f64 = 95.0;
 /// What may collide of poses that are stated to do so with a probability below a tenth, %.
 const STATED_FREE: f64 = 4.0;
 
+/// Poses within this of contact are judged, m.
+const NEAR: f64 = 0.05;
+/// A clearance is right within so many of its standard deviations, in so many of a hundred.
+const DEVIATIONS: f64 = 2.0;
+const RIGHT: f64 = 90.0;
+
 /// All targets.
 pub(super) fn section(answers: &Answers) -> Section {
     let mut all: Vec<Target> = LIMITS.map(|limit| limited(answers, limit)).into();
@@ -45,7 +46,7 @@ pub(super) fn section(answers: &Answers) -> Section {
         all.push(families(answers, pair));
         all.extend(stated(answers, pair));
         all.push(deep(answers, pair));
-        all.extend(clearance::targets(answers, pair));
+        all.extend(clearances(answers, pair));
         all.extend(STDS.map(|std| alternatives(answers, pair, std)));
     }
     targets::section(&all).text(format_args!(
@@ -118,6 +119,41 @@ fn deep(answers: &Answers, pair: Pair) -> Target {
         pair.name()
     );
     Target::new(what, format!("{share:.0} % of {}", said.len()), share >= DEEP_CERTAIN)
+}
+
+/// Of one kind of pair: clearances within two deviations of the truth, and lower bounds below it.
+fn clearances(answers: &Answers, pair: Pair) -> [Target; 2] {
+    let judged = Judged::pick(answers, &[OURS], |q: &Question| {
+        ordinary(pair)(q) && q.signed_distance.abs() <= NEAR
+    });
+    let truths = judged.questions().iter().map(|q| q.signed_distance);
+    let all: Vec<(&Said, f64)> = judged.said(OURS).iter().zip(truths).collect();
+    let told: Vec<bool> = all.iter().filter_map(|(said, truth)| is_right(said, *truth)).collect();
+    let percent = |count: usize, of: usize| 100.0 * count as f64 / of as f64;
+    let right = percent(told.iter().filter(|right| **right).count(), told.len());
+    let what = format!(
+        "{}: within 5 cm of contact, clearance within {DEVIATIONS} deviations in {RIGHT} %",
+        pair.name()
+    );
+    let shown =
+        format!("{right:.0} % of {}; told in {:.0} %", told.len(), percent(told.len(), all.len()));
+    let above = all
+        .iter()
+        .filter(|(said, truth)| said.clearance_at_least.is_some_and(|least| least > *truth));
+    let above = above.count();
+    let bound = format!("{}: no lower bound on the clearance above the truth", pair.name());
+    [
+        Target::new(what, shown, right >= RIGHT),
+        Target::new(bound, format!("{above} of {}", all.len()), above == 0 && !all.is_empty()),
+    ]
+}
+
+/// Whether the truth is where a clearance says, or deeper where it says so; `None` where it says
+/// nothing.
+fn is_right(said: &Said, truth: f64) -> Option<bool> {
+    let clearance = said.clearance?;
+    let (off, allowed) = (truth - clearance.mean, DEVIATIONS * clearance.std);
+    Some(off <= allowed && (clearance.is_bound || off >= -allowed))
 }
 
 /// No alternative ranks significantly better at this noise.

@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
-use anyhow::{Result, anyhow};
-use plotters::{coord::Shift, element::PointCollection, prelude::*};
+use anyhow::Result;
+use plotters::coord::Shift;
+use plotters::element::PointCollection;
+use plotters::prelude::*;
 
 use super::{Axis, Figure, GREY, Panel, Place};
 
@@ -37,9 +39,6 @@ struct Look<'a> {
 
 impl Figure {
     /// Draws it as SVG.
-    ///
-    /// # Errors
-    /// When plotters cannot draw, as in panels smaller than their labels.
     pub fn svg(&self) -> Result<String> {
         let looks = looks(self);
         let columns = self.columns.min(self.panels.len()).max(1);
@@ -51,14 +50,14 @@ impl Figure {
         let mut svg = String::new();
         {
             let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-            area.fill(&WHITE).map_err(failed)?;
-            let area = area.titled(&self.title, ("sans-serif", 19)).map_err(failed)?;
+            area.fill(&WHITE)?;
+            let area = area.titled(&self.title, ("sans-serif", 19))?;
             let (left, right) = area.split_horizontally(grid.0);
             for (panel, area) in self.panels.iter().zip(left.split_evenly((rows, columns))) {
                 draw_panel(&area, panel, &looks)?;
             }
             draw_legend(&right, &looks)?;
-            right.present().map_err(failed)?;
+            right.present()?;
         }
         Ok(svg)
     }
@@ -83,7 +82,7 @@ fn looks(figure: &Figure) -> Vec<Look<'_>> {
 }
 
 fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> {
-    let area = area.titled(&panel.title, ("sans-serif", 15)).map_err(failed)?;
+    let area = area.titled(&panel.title, ("sans-serif", 15))?;
     let places = || panel.series.iter().flat_map(|series| series.marks.iter().flatten());
     let x = panel.x.reach(places().map(|place| place.0));
     let y = panel.y.reach(places().map(|place| place.1));
@@ -91,8 +90,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         .margin(10)
         .x_label_area_size(40)
         .y_label_area_size(44)
-        .build_cartesian_2d(x, y)
-        .map_err(failed)?;
+        .build_cartesian_2d(x, y)?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -105,8 +103,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         .y_label_formatter(&label)
         .axis_desc_style(FONT)
         .label_style(FONT)
-        .draw()
-        .map_err(failed)?;
+        .draw()?;
     for series in &panel.series {
         let look = looks.iter().find(|look| look.name == series.name);
         let color = series.color.or(look.map(|look| look.color)).unwrap_or(GREY);
@@ -116,15 +113,15 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
             let places: Vec<Place> = mark.iter().copied().filter(is_finite).collect();
             if let Some(opacity) = series.fill {
                 let area = Polygon::new(places.clone(), color.mix(opacity));
-                chart.draw_series([area]).map_err(failed)?;
+                chart.draw_series([area])?;
             }
             if series.line {
                 let line = PathElement::new(places.clone(), color.stroke_width(2));
-                chart.draw_series([line]).map_err(failed)?;
+                chart.draw_series([line])?;
             }
             if series.points {
                 let marker = |at| marker(number, at, series.size, color.mix(0.8).filled());
-                chart.draw_series(places.into_iter().map(marker)).map_err(failed)?;
+                chart.draw_series(places.into_iter().map(marker))?;
             }
         }
     }
@@ -156,13 +153,13 @@ fn draw_legend(area: &Area<'_>, looks: &[Look<'_>]) -> Result<()> {
         let y = (LEGEND_ROW * row as u32 + 20) as i32;
         if look.line {
             let line = vec![(6, y), (26, y)];
-            area.draw(&PathElement::new(line, look.color.stroke_width(3))).map_err(failed)?;
+            area.draw(&PathElement::new(line, look.color.stroke_width(3)))?;
         }
         if look.points {
-            area.draw(&marker(look.number, (16, y), 5, look.color.filled())).map_err(failed)?;
+            area.draw(&marker(look.number, (16, y), 5, look.color.filled()))?;
         }
         let text = Text::new(look.name.to_owned(), (34, y - 7), FONT.into_font());
-        area.draw(&text).map_err(failed)?;
+        area.draw(&text)?;
     }
     Ok(())
 }
@@ -189,14 +186,10 @@ fn label(value: &f64) -> String {
     format!("{}", (value * 1e4).round() / 1e4 + 0.0)
 }
 
-/// Plotters' errors borrow from the drawing area, so only their text is kept.
-fn failed(error: impl std::fmt::Display) -> anyhow::Error {
-    anyhow!("draw a figure: {error}")
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{super::Series, *};
+    use super::super::Series;
+    use super::*;
 
     #[test]
     fn labels_say_what_stands_there_and_what_cannot_be_shown_does_not_widen_an_axis() {

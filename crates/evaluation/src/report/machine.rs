@@ -1,9 +1,11 @@
 //! Where and when a run took place.
 
-use std::{fs, path::Path, process::Command};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 /// The lines of a page that say when, from what and where its numbers were made.
-pub fn provenance(root: &Path, seed: u64) -> String {
+pub(super) fn provenance(root: &Path, seed: u64) -> String {
     let date = jiff::Timestamp::now().strftime("%F");
     let (commit, processor) = (commit(root), processor());
     format!("- date: {date}\n- commit: {commit}\n- machine: {processor}\n- seed: {seed}\n")

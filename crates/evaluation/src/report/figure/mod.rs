@@ -2,18 +2,6 @@
 //!
 //! Series of one name look alike in all panels of a figure and share a row of its legend; those
 //! without a name are grey and left out of it.
-//!
-//! ```
-//! use cloudtouch_evaluation::figure::{Axis, Figure, Panel, Series};
-//! let series = vec![
-//!     Series::curve("ours", [(2.0, 0.7), (10.0, 1.3)]),
-//!     Series::whiskers("ours", [(2.0, 0.2, 3.7), (10.0, 0.4, 4.8)]),
-//! ];
-//! let (x, y) = (Axis::linear("noise (mm)"), Axis::linear("time (ms)"));
-//! let panel = Panel { title: "Times".into(), x, y, series };
-//! assert!(Figure::new("Speed", [panel]).svg()?.starts_with("<svg"));
-//! # Ok::<(), anyhow::Error>(())
-//! ```
 
 mod draw;
 

@@ -4,10 +4,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::{
-    page::{Page, Section},
-    table::Table,
-};
+use super::page::{Page, Section};
+use super::table::Table;
 
 /// A target with what was measured of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,9 +46,6 @@ pub type Part<'a> = (&'static str, &'a (dyn Fn() -> Findings + Sync));
 
 /// Measures the parts one after the other, and writes a page of all targets, a note on them, and
 /// what was found.
-///
-/// # Errors
-/// When a part cannot be measured or the page not be written.
 pub fn report(
     mut page: Page,
     folder: &Path,

@@ -1,15 +1,14 @@
 //! Pages of `docs/lab/`, each wholly made by one command.
 
-use std::{
-    fmt::{self, Write as _},
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fmt::{self, Write as _};
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use cloudtouch_io::write_atomically;
 
-use crate::{figure::Figure, machine};
+use super::figure::Figure;
+use super::machine;
 
 /// What a run says, in order; a page is a Markdown file and its figures.
 #[derive(Debug)]
@@ -49,13 +48,10 @@ impl Page {
             ""
         };
         let command = format!("cargo run --release -p xtask -- {task} {arguments}");
+        let (command, provenance) = (command.trim_end(), machine::provenance(root, seed));
         let head = format!(
-            "# {title}\n\n{}\n\n{introduction}\n\n```text\n{}\n```\n{debug}\n{}",
-            format_args!(
-                "<!-- Made by `cargo xtask {task}`; edit crates/evaluation/, not this. -->"
-            ),
-            command.trim_end(),
-            machine::provenance(root, seed)
+            "# {title}\n\n<!-- Made by `cargo xtask {task}`; edit crates/evaluation/, not this. -->\n\n\
+             {introduction}\n\n```text\n{command}\n```\n{debug}\n{provenance}"
         );
         Self { name: name.to_owned(), task: task.to_owned(), head, sections: Vec::new() }
     }
@@ -66,9 +62,6 @@ impl Page {
     }
 
     /// Writes `NAME.md` and `figures/*.svg` into the folder, each file whole.
-    ///
-    /// # Errors
-    /// When a figure cannot be drawn or a file not be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let figures = folder.join("figures");
         fs::create_dir_all(&figures).with_context(|| format!("create {}", figures.display()))?;
@@ -117,7 +110,7 @@ impl Section {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Axis, Panel, Series};
+    use crate::report::figure::{Axis, Panel, Series};
 
     #[test]
     fn a_page_and_its_figures_are_written_in_order() {
