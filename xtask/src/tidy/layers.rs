@@ -1,4 +1,4 @@
-//! The layers: geom <- {noise, svm, bvh} <- cloudtouch <- cli, io and testkit on geom alone.
+//! The layers: geom <- {noise, svm, bvh} <- cloudtouch <- robot <- cli, io and testkit on geom alone.
 
 use toml::Value;
 
@@ -8,13 +8,14 @@ use super::manifest::{KINDS, Manifest};
 const TESTKIT: &str = "cloudtouch-testkit";
 
 /// From the lowest layer upwards: what a crate may use comes before it.
-const LAYERS: [&str; 8] = [
+const LAYERS: [&str; 9] = [
     "cloudtouch-geom",
     "cloudtouch-noise",
     "cloudtouch-svm",
     "cloudtouch-bvh",
     "cloudtouch",
     "cloudtouch-io",
+    "cloudtouch-robot",
     "cloudtouch-cli",
     "cloudtouch-evaluation",
 ];
@@ -27,9 +28,10 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
             &LAYERS[..1]
         }
         "cloudtouch" => &LAYERS[..4],
-        "cloudtouch-cli" => &LAYERS[..6],
+        "cloudtouch-robot" => &LAYERS[..6],
+        "cloudtouch-cli" => &LAYERS[..7],
         "cloudtouch-python" => &LAYERS[..5],
-        "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..7],
+        "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..8],
         "xtask" => &LAYERS,
         _ => return None,
     })
