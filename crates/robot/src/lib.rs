@@ -2,6 +2,7 @@
 
 mod checker;
 mod error;
+mod essential;
 mod joint;
 mod link;
 mod motion;

@@ -9,6 +9,7 @@ use cloudtouch::{Mesh, SelfMesh};
 use cloudtouch_io::ReadLimits;
 
 use crate::error::{JointsError, RobotError, RobotFault};
+use crate::essential::essential;
 use crate::joint::{Joint, JointKind};
 use crate::link::{Shape, Sources};
 use crate::srdf::disabled_pairs;
@@ -67,7 +68,7 @@ impl Robot {
     }
 
     fn parse(text: &str, sources: Sources<'_>) -> Result<Self, RobotFault> {
-        let urdf = urdf_rs::read_from_string(text)
+        let urdf = urdf_rs::read_from_string(&essential(text)?)
             .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
         let tree = Tree::try_from_urdf(&urdf)?;
         let mut shapes = Vec::new();

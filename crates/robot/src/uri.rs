@@ -21,6 +21,8 @@ pub(crate) fn locate(
     } else if let Some(rest) =
         uri.strip_prefix("package://").or_else(|| uri.strip_prefix("model://"))
     {
+        // Some write one slash too many.
+        let rest = rest.trim_start_matches('/');
         let (package, rest) = rest.split_once('/').unwrap_or((rest, ""));
         let given = packages.iter().find(|(name, _)| name == package).map(|(_, at)| at.clone());
         let Some(at) = given.or_else(|| around(folder, package)) else {
