@@ -2,6 +2,7 @@
 
 mod caution;
 mod pose;
+mod robot;
 
 use std::path::PathBuf;
 
@@ -16,6 +17,7 @@ use crate::settings_file::{self, Settings};
 pub(crate) use caution::Refine;
 use caution::{CautionArguments, EffortArguments};
 pub(crate) use pose::PoseArguments;
+pub(crate) use robot::RobotArguments;
 
 /// Sensor specs, for the help of the commands that take them.
 const SENSORS: &str = "\
@@ -37,6 +39,7 @@ Examples:
   cloudtouch query scan.pcd gripper.stl --sensor kinect --translate 0.4,0,0.9
   cloudtouch path scan.pcd gripper.stl --poses approach.csv
   cloudtouch scene workcell.json
+  cloudtouch robot scan.pcd arm.urdf --joints home.json
   cloudtouch batch cases.json --jsonl answers.jsonl
 
 Exit codes: 0 done, 1 error, 2 wrong usage; query --exit-code tells the verdict.";
@@ -59,6 +62,7 @@ impl Arguments {
             Command::Query(arguments) => arguments.check(),
             Command::Path(arguments) => arguments.check(),
             Command::Scene(arguments) => arguments.check(),
+            Command::Robot(arguments) => arguments.check(),
             Command::Batch(arguments) => arguments.common.check(&[]),
             Command::Info(_) | Command::Demo(_) | Command::Settings => Ok(()),
         }
@@ -87,6 +91,8 @@ pub(crate) enum Command {
     Path(Box<PathArguments>),
     /// Many bodies, each with its own pose: which of them may touch
     Scene(Box<SceneArguments>),
+    /// A robot (URDF) in a scan, at positions of its joints: which link touches what
+    Robot(Box<RobotArguments>),
     /// Many poses from a case file; scenes and objects are prepared once
     Batch(Box<BatchArguments>),
     /// What a cloud or mesh file holds, and which sensor suits it

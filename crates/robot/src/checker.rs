@@ -54,7 +54,10 @@ impl RobotChecker {
         let link = |place: usize| &robot.tree.links[robot.shapes[place].link];
         for i in 0..names.len() {
             for j in 0..i {
-                if touching == Touching::Surroundings || link(i) == link(j) || robot.may_touch(link(i), link(j)) {
+                if touching == Touching::Surroundings
+                    || link(i) == link(j)
+                    || robot.may_touch(link(i), link(j))
+                {
                     scene.allow(&names[i], &names[j])?;
                 }
             }
@@ -73,27 +76,24 @@ impl RobotChecker {
     /// It is [`Scene::check`], with the same bits on any number of threads.
     ///
     /// # Errors
-    /// When a joint is unknown, left out, not finite or beyond its limits. A pair that cannot be asked
+    /// When a joint is unknown, left out, not finite or beyond its limits, or a link 1e10 m
+    /// away. A pair that cannot be asked
     /// is among those returned.
     pub fn check(
         &self,
         query: &Query,
         joints: &BTreeMap<String, f64>,
     ) -> Result<Checked, JointsError> {
-        Ok(self.placed(&self.robot.tree.positions(joints)?).check(query))
+        Ok(self.placed(&self.robot.tree.positions(joints)?)?.check(query))
     }
 
     /// The scene with the joints at these positions.
-    pub(crate) fn placed(&self, positions: &[f64]) -> Scene {
+    pub(crate) fn placed(&self, positions: &[f64]) -> Result<Scene, SceneError> {
         let poses = self.robot.tree.poses(positions);
         let mut scene = self.scene.clone();
         for (name, shape) in self.names.iter().zip(&self.robot.shapes) {
-            // Every shape is in the scene, and finite joints within limits place it finitely: were it
-            // not so, the body would stay where it was.
-            let pose = self.scene_from_base.after(&poses[shape.link]);
-            let moved = scene.set_pose(name, pose);
-            debug_assert!(moved.is_ok(), "{moved:?}");
+            scene.set_pose(name, self.scene_from_base.after(&poses[shape.link]))?;
         }
-        scene
+        Ok(scene)
     }
 }

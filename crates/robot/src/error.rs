@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use cloudtouch::PrepareError;
+use cloudtouch::{PrepareError, SceneError};
 use cloudtouch_io::ReadError;
 
 /// Why a file does not describe a robot that can be checked.
@@ -139,7 +139,9 @@ pub enum RobotFault {
         package: String,
     },
     /// A mesh is somewhere that is not looked at.
-    #[error("link `{link}`: {uri}: only package://, file:// and plain paths are read: copy the file")]
+    #[error(
+        "link `{link}`: {uri}: only package://, file:// and plain paths are read: copy the file"
+    )]
     Scheme {
         /// The link.
         link: String,
@@ -221,7 +223,9 @@ impl RobotFault {
 #[non_exhaustive]
 pub enum JointsError {
     /// A joint that the robot does not have.
-    #[error("the robot has no joint `{name}` that moves: leave it out, or correct the name to one of {known}")]
+    #[error(
+        "the robot has no joint `{name}` that moves: leave it out, or correct the name to one of {known}"
+    )]
     Unknown {
         /// The name.
         name: String,
@@ -260,7 +264,9 @@ pub enum JointsError {
         hint: &'static str,
     },
     /// A joint that mimics another is given another position than that implies.
-    #[error("joint `{name}` mimics `{followed}`, by which it is at {implied}, not {value}: leave it out")]
+    #[error(
+        "joint `{name}` mimics `{followed}`, by which it is at {implied}, not {value}: leave it out"
+    )]
     Mimic {
         /// The joint.
         name: String,
@@ -271,6 +277,9 @@ pub enum JointsError {
         /// What was given.
         value: f64,
     },
+    /// A link is nowhere.
+    #[error(transparent)]
+    Place(#[from] SceneError),
 }
 
 /// Why a path of joints cannot be followed.

@@ -74,6 +74,9 @@ mod tests {
         let kept = essential(text).unwrap().replace('\"', "'");
         assert_eq!(kept, "<robot name='a'><link name='b'><collision/></link></robot>");
         let error = essential("<robot><xacro:arm name='a'/></robot>").unwrap_err().to_string();
-        assert!(error.contains("<xacro:arm> is not expanded") && error.contains("arm.urdf"), "{error}");
+        assert!(
+            error.contains("<xacro:arm> is not expanded") && error.contains("arm.urdf"),
+            "{error}"
+        );
     }
 }

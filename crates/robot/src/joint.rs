@@ -80,7 +80,8 @@ impl Joint {
             JointKind::Fixed | JointKind::Continuous => None,
         };
         let mimics = urdf.mimic.as_ref().filter(|_| kind != JointKind::Fixed).map(|mimic| {
-            let (multiplier, offset) = (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
+            let (multiplier, offset) =
+                (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
             finite(&[multiplier, offset], &place, "mimic")?;
             Ok(Mimic { joint: mimic.joint.clone(), multiplier, offset })
         });

@@ -48,8 +48,8 @@ impl Shape {
         let refused = |error| RobotFault::prepare(name, &what, error);
         let at = |p: &Point3| link_from_shape.transform_point(p);
         let vertices: Vec<Point3> = triangles.vertices().iter().map(at).collect();
-        let triangles =
-            TriangleMesh::try_new(vertices, triangles.triangles().to_vec()).map_err(|e| refused(e.into()))?;
+        let triangles = TriangleMesh::try_new(vertices, triangles.triangles().to_vec())
+            .map_err(|e| refused(e.into()))?;
         let radius = triangles.used_vertices().map(|(_, p)| p.coords.norm()).fold(0.0, f64::max);
         let body = Arc::new(Body::from(Mesh::prepare(&triangles).map_err(refused)?));
         Ok(Self { link, triangles, body, uri, radius })

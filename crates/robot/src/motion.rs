@@ -81,7 +81,12 @@ impl RobotChecker {
             positions.map_err(|error| PathError::Joints { index, error })
         };
         let path = path.iter().enumerate().map(at).collect::<Result<Vec<Vec<f64>>, _>>()?;
-        let given: Vec<Checked> = path.iter().map(|joints| self.placed(joints).check(query)).collect();
+        let check = |index, joints: &[f64]| match self.placed(joints) {
+            Ok(scene) => Ok(scene.check(query)),
+            Err(error) => Err(PathError::Joints { index, error: error.into() }),
+        };
+        let given = path.iter().enumerate().map(|(index, joints)| check(index, joints));
+        let given: Vec<Checked> = given.collect::<Result<_, _>>()?;
         let mut looked_at = given.len();
         let segments = (path.len() - 1) as f64;
         let mut certified_free_until = 0.0;
@@ -93,7 +98,7 @@ impl RobotChecker {
                 looked_at += 1;
                 let middle = 0.5 * (from + to);
                 let of = |time| between(&ends[0], &ends[1], time);
-                let pair = self.placed(&of(middle)).check(query).pairs.into_iter().next();
+                let pair = check(segment, &of(middle))?.pairs.into_iter().next();
                 if pair.is_none() && self.is_clear(query, &of(middle), [&of(from), &of(to)]) {
                     certified_free_until = (segment as f64 + to) / segments;
                 } else if to - from <= tolerance * segments {
@@ -150,8 +155,55 @@ fn farthest(tree: &Tree, shape: &Shape, [from, to]: [&[f64]; 2]) -> f64 {
         let of = &tree.joints[joint];
         let slides = of.kind == JointKind::Prismatic;
         way += half * if slides { 1.0 } else { lever };
-        lever += of.origin.translation().norm() + if slides { from.abs().max(to.abs()) } else { 0.0 };
+        lever +=
+            of.origin.translation().norm() + if slides { from.abs().max(to.abs()) } else { 0.0 };
     }
     // Rounding.
     way * (1.0 + 1e-9)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const URDF: &str = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/><link name='d'>
+        <collision><origin xyz='0.1 0.2 0'/><geometry><box size='0.5 0.1 0.2'/></geometry></collision></link>
+        <joint name='p' type='revolute'><parent link='a'/><child link='b'/><origin xyz='0.2 0 0.3' rpy='1 0 0'/>
+          <axis xyz='1 0 1'/><limit lower='-3' upper='3' effort='1' velocity='1'/></joint>
+        <joint name='q' type='prismatic'><parent link='b'/><child link='c'/><origin xyz='0 0.4 0' rpy='0 1 0'/>
+          <axis xyz='0 1 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>
+        <joint name='r' type='continuous'><parent link='c'/><child link='d'/><origin xyz='0 0 0.3'/>
+          <axis xyz='0 1 0'/></joint></robot>";
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// No corner gets farther from its place in the middle than is said, and long motions are
+        /// bounded within a factor of five.
+        #[test]
+        fn no_corner_goes_farther_than_its_bound(
+            from in prop::array::uniform3(-1.0..1.0_f64), to in prop::array::uniform3(-1.0..1.0_f64),
+            times in prop::collection::vec(0.0..=1.0_f64, 20),
+        ) {
+            let folder = tempfile::tempdir().unwrap();
+            let file = folder.path().join("r.urdf");
+            std::fs::write(&file, URDF).unwrap();
+            let Robot { tree, shapes, .. } = Robot::from_urdf(file, &[]).unwrap();
+            let bound = farthest(&tree, &shapes[0], [&from, &to]);
+            let pose = |time| tree.poses(&between(&from, &to, time))[shapes[0].link];
+            let (middle, mut most) = (pose(0.5), 0.0_f64);
+            for time in times.into_iter().chain([0.0, 1.0]) {
+                for p in shapes[0].triangles.vertices() {
+                    let way = (pose(time).transform_point(p) - middle.transform_point(p)).norm();
+                    prop_assert!(way <= bound, "{} beyond {}", way, bound);
+                    most = most.max(way);
+                }
+            }
+            let moves_much = from.iter().zip(&to).all(|(from, to)| to - from > 0.5);
+            prop_assert!(!moves_much || bound < 5.0 * most, "{} against {}", bound, most);
+        }
+    }
 }

@@ -20,7 +20,8 @@ pub(crate) fn cuboid(size: [f64; 3]) -> Result<TriangleMesh, MeshError> {
         Point3::new(along(0), along(1), along(2))
     };
     // Each face anticlockwise from outside.
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     TriangleMesh::try_new((0..8).map(corner).collect(), triangles)
 }
@@ -73,8 +74,7 @@ fn revolved(profile: &[[f64; 2]]) -> Result<TriangleMesh, MeshError> {
         triangles.push([0, at(0, k + 1), at(0, k)]);
         triangles.push([1, at(last, k), at(last, k + 1)]);
         for ring in 0..last {
-            let [a, b, c, d] =
-                [at(ring, k), at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k)];
+            let [a, b, c, d] = [at(ring, k), at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k)];
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }

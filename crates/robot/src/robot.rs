@@ -81,7 +81,8 @@ impl Robot {
             return Err(RobotFault::NoGeometry);
         }
         check_sizes(&tree, &shapes)?;
-        let unchecked = urdf.links.iter().filter(|of| of.collision.is_empty() && !of.visual.is_empty());
+        let unchecked =
+            urdf.links.iter().filter(|of| of.collision.is_empty() && !of.visual.is_empty());
         let unchecked = unchecked.map(|link| link.name.clone()).collect();
         let mut robot = Self { tree, shapes, unchecked, may_touch: BTreeSet::new() };
         robot.allow_neighbors();
@@ -128,7 +129,10 @@ impl Robot {
     ///
     /// # Errors
     /// When a joint is unknown, left out, not finite or beyond its limits.
-    pub fn link_poses(&self, joints: &BTreeMap<String, f64>) -> Result<BTreeMap<&str, Pose>, JointsError> {
+    pub fn link_poses(
+        &self,
+        joints: &BTreeMap<String, f64>,
+    ) -> Result<BTreeMap<&str, Pose>, JointsError> {
         let poses = self.tree.poses(&self.tree.positions(joints)?);
         Ok(self.tree.links.iter().map(String::as_str).zip(poses).collect())
     }
@@ -158,14 +162,22 @@ impl Robot {
     /// By the names that bodies of a scene have: that of the link, with a number from 0 where it has
     /// several shapes.
     pub(crate) fn body_names(&self) -> Vec<String> {
-        let several: BTreeSet<usize> =
-            self.shapes.windows(2).filter(|two| two[0].link == two[1].link).map(|two| two[0].link).collect();
+        let several: BTreeSet<usize> = self
+            .shapes
+            .windows(2)
+            .filter(|two| two[0].link == two[1].link)
+            .map(|two| two[0].link)
+            .collect();
         let mut count = BTreeMap::new();
         let name = |shape: &Shape| {
             let link = &self.tree.links[shape.link];
             let place = count.entry(shape.link).or_insert(0);
             *place += 1;
-            if several.contains(&shape.link) { format!("{link}/{}", *place - 1) } else { link.clone() }
+            if several.contains(&shape.link) {
+                format!("{link}/{}", *place - 1)
+            } else {
+                link.clone()
+            }
         };
         self.shapes.iter().map(name).collect()
     }
@@ -178,7 +190,8 @@ impl Robot {
         let solid: BTreeSet<usize> = self.shapes.iter().map(|shape| shape.link).collect();
         let groups = self.rigid_groups();
         for &link in &solid {
-            let with_it = solid.iter().filter(|&&other| other < link && groups[other] == groups[link]);
+            let with_it =
+                solid.iter().filter(|&&other| other < link && groups[other] == groups[link]);
             // The next with geometry on the way to the base: flanges between have none.
             let carriers = self.tree.chain(link).map(|joint| self.tree.joints[joint].parent);
             let next = carriers.into_iter().find(|carrier| solid.contains(carrier));

@@ -38,7 +38,8 @@ impl Tree {
                 return Err(RobotFault::Repeated { what: "joint", name: name() });
             }
             let place = |role, link: &urdf_rs::LinkName| {
-                let unknown = || RobotFault::UnknownLink { joint: name(), role, link: link.link.clone() };
+                let unknown =
+                    || RobotFault::UnknownLink { joint: name(), role, link: link.link.clone() };
                 index_of.get(link.link.as_str()).copied().ok_or_else(unknown)
             };
             let (parent, child) = (place("parent", &joint.parent)?, place("child", &joint.child)?);
@@ -53,8 +54,12 @@ impl Tree {
 
     /// The position of every joint in the order of [`Self::joints`], 0 of the fixed ones.
     pub(crate) fn positions(&self, given: &BTreeMap<String, f64>) -> Result<Vec<f64>, JointsError> {
-        let free: BTreeSet<&str> =
-            self.joints.iter().filter(|joint| joint.is_free()).map(|joint| joint.name.as_str()).collect();
+        let free: BTreeSet<&str> = self
+            .joints
+            .iter()
+            .filter(|joint| joint.is_free())
+            .map(|joint| joint.name.as_str())
+            .collect();
         let moves = |name: &str| {
             free.contains(name)
                 || self.joints.iter().any(|joint| joint.mimics.is_some() && joint.name == name)
@@ -151,7 +156,11 @@ fn position(joint: &Joint, given: &BTreeMap<String, f64>) -> Result<f64, JointsE
     match joint.limits {
         Some([lower, upper]) if !(lower - ROUNDING..=upper + ROUNDING).contains(&value) => {
             let name = joint.name.clone();
-            let hint = if value.abs() > std::f64::consts::TAU { ", or is it in degrees or mm?" } else { "" };
+            let hint = if value.abs() > std::f64::consts::TAU {
+                ", or is it in degrees or mm?"
+            } else {
+                ""
+            };
             Err(JointsError::Limit { name, value, lower, upper, hint })
         }
         _ => Ok(value),

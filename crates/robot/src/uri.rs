@@ -26,7 +26,11 @@ pub(crate) fn locate(
         let (package, rest) = rest.split_once('/').unwrap_or((rest, ""));
         let given = packages.iter().find(|(name, _)| name == package).map(|(_, at)| at.clone());
         let Some(at) = given.or_else(|| around(folder, package)) else {
-            return Err(RobotFault::UnknownPackage { link, uri: owned, package: package.to_owned() });
+            return Err(RobotFault::UnknownPackage {
+                link,
+                uri: owned,
+                package: package.to_owned(),
+            });
         };
         at.join(rest)
     } else if uri.contains("://") {

@@ -89,7 +89,8 @@ fn the_hand_and_no_other_link_meets_a_wall_where_it_should() {
 /// The same, seen from a camera somewhere: the base is placed in its frame.
 #[test]
 fn the_base_may_be_anywhere() {
-    let cloud_from_base = Pose::from_translation_rpy(Vector3::new(0.4, -1.0, 2.0), [2.0, 0.3, -1.0]);
+    let cloud_from_base =
+        Pose::from_translation_rpy(Vector3::new(0.4, -1.0, 2.0), [2.0, 0.3, -1.0]);
     let tip = Arm::TOP - 0.2;
     let mut seen = wall(tip - 8.0 * STD);
     seen.points.iter_mut().for_each(|p| *p = cloud_from_base.transform_point(p));
@@ -128,7 +129,10 @@ fn what_is_seen_of_the_robot_is_removed_where_it_was_and_what_is_in_the_way_stay
         Cloud::prepare(&seen, &settings).unwrap()
     };
     let verdict = |cloud: Cloud, joints: &BTreeMap<String, f64>| {
-        checker(robot.clone(), cloud, Touching::Surroundings).check(&query(), joints).unwrap().verdict()
+        checker(robot.clone(), cloud, Touching::Surroundings)
+            .check(&query(), joints)
+            .unwrap()
+            .verdict()
     };
     assert_eq!(verdict(prepare(false), &at_scan), Verdict::InCollision);
     assert_eq!(verdict(prepare(true), &at_scan), Verdict::Free);
@@ -146,9 +150,11 @@ fn a_folded_arm_meets_itself_but_for_neighbours_and_pairs_of_the_srdf() {
     // and 11 cm behind the axis, ends in the base and nowhere else.
     let folded = joints([0.0, 0.0, 2.9, 0.0, 0.0, 0.0]);
     let far = || scan(5.0);
-    let alone = checker(robot.clone(), far(), Touching::Surroundings).check(&query(), &folded).unwrap();
+    let alone =
+        checker(robot.clone(), far(), Touching::Surroundings).check(&query(), &folded).unwrap();
     assert_eq!(alone.pairs.len(), 0, "{:?}", alone.pairs);
-    let found = checker(robot.clone(), far(), Touching::AndItself).check(&query(), &folded).unwrap();
+    let found =
+        checker(robot.clone(), far(), Touching::AndItself).check(&query(), &folded).unwrap();
     assert_eq!(found.verdict(), Verdict::InCollision);
     let pairs: Vec<[&str; 2]> =
         found.pairs.iter().map(|pair| [pair.a.as_str(), pair.b.as_str()]).collect();
@@ -158,7 +164,8 @@ fn a_folded_arm_meets_itself_but_for_neighbours_and_pairs_of_the_srdf() {
     let checked = checker(allowed, far(), Touching::AndItself).check(&query(), &folded).unwrap();
     assert_eq!((checked.verdict(), checked.pairs.len()), (Verdict::Free, 0));
     let straight = joints([0.0; 6]);
-    let checked = checker(arm.robot(), far(), Touching::AndItself).check(&query(), &straight).unwrap();
+    let checked =
+        checker(arm.robot(), far(), Touching::AndItself).check(&query(), &straight).unwrap();
     assert_eq!(checked.verdict(), Verdict::Free, "{:?}", checked.pairs);
 }
 

@@ -43,7 +43,10 @@ fn what_is_wrong_is_named_with_file_value_and_remedy() {
         (mesh("old.dae", ""), vec!["`a`", "old.dae", "COLLADA", "convert it to STL or OBJ"]),
         (mesh("GONE.DAE", ""), vec!["`a`", "GONE.DAE", "convert it"]),
         (mesh("cut.stl", ""), vec!["`a`", "cut.stl"]),
-        (mesh("mm.obj", ""), vec!["`a`", "mm.obj", "173.205 m", "millimetres", "0.001 0.001 0.001"]),
+        (
+            mesh("mm.obj", ""),
+            vec!["`a`", "mm.obj", "173.205 m", "millimetres", "0.001 0.001 0.001"],
+        ),
         (mesh("cube.obj", "scale='0.001 0.001 0.001'"), vec!["`a`", "0.000 m", "scaled twice"]),
         (mesh("cube.obj", "scale='1 0 1'"), vec!["`a`", "mesh scale", "above 0"]),
         (mesh("cube.obj", "scale='1 nan 1'"), vec!["a", "NaN", "mesh scale", "finite"]),
@@ -58,7 +61,10 @@ fn what_is_wrong_is_named_with_file_value_and_remedy() {
         (joint(FIXED).replace("child link='b'", "child link='c'"), vec!["`j`", "child `c`"]),
         (joint(FIXED).replace("child link='b'", "child link='a'"), vec!["do not hang on one root"]),
         (joint(FIXED).replace("link name='b'", "link name='a'"), vec!["link `a`", "twice"]),
-        (joint(FIXED).replace("</robot>", "<link name='c'/></robot>"), vec!["`c`", "one root (`a`)"]),
+        (
+            joint(FIXED).replace("</robot>", "<link name='c'/></robot>"),
+            vec!["`c`", "one root (`a`)"],
+        ),
         (two_links(BOX, FIXED).replace("collision", "visual"), vec!["no link has <collision>"]),
         ("<robot name='x'".to_owned(), vec!["cannot be understood", "xacro"]),
     ] {
@@ -81,9 +87,11 @@ fn meshes_are_found_by_package_file_and_path_and_scaled() {
     let urdf = arm.path("arm.urdf");
     let packages = [("mine".to_owned(), arm.path("elsewhere"))];
     let scale = "scale='0.001 0.001 -0.001'";
-    for name in
-        ["package://mine/meshes/mm.obj", &format!("file://{}", file.display()), "elsewhere/meshes/mm.obj"]
-    {
+    for name in [
+        "package://mine/meshes/mm.obj",
+        &format!("file://{}", file.display()),
+        "elsewhere/meshes/mm.obj",
+    ] {
         std::fs::write(&urdf, mesh(name, scale)).unwrap();
         let robot = Robot::from_urdf(&urdf, &packages).unwrap();
         let links = robot.self_filter(&BTreeMap::new(), &Default::default(), 0.0).unwrap();

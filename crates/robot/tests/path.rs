@@ -60,7 +60,9 @@ fn a_path_in_the_open_is_certified_to_its_end() {
 fn a_position_given_that_is_not_free_ends_the_certificate() {
     let tip = Arm::TOP - 0.2;
     let checker = among(&wall(tip - 0.02), Touching::Surroundings);
-    for (path, until) in [([around(0.0), around(1.5)], 0.0..=0.0), ([around(1.5), around(0.0)], 0.5..=0.97)] {
+    for (path, until) in
+        [([around(0.0), around(1.5)], 0.0..=0.0), ([around(1.5), around(0.0)], 0.5..=0.97)]
+    {
         let found = checker.check_path(&query(), &path, TOLERANCE).unwrap();
         assert_eq!(found.verdict(), Verdict::InCollision);
         assert!(until.contains(&found.certified_free_until), "{}", found.certified_free_until);

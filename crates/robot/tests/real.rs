@@ -29,7 +29,11 @@ fn urdfs(folder: &Path, found: &mut Vec<PathBuf>) {
 /// At zero, or as near to it as its limits allow.
 fn rest(joints: &[Joint]) -> BTreeMap<String, f64> {
     let at = |joint: &Joint| joint.limits.map_or(0.0, |[low, high]| 0.0_f64.clamp(low, high));
-    joints.iter().filter(|joint| joint.is_free()).map(|joint| (joint.name.clone(), at(joint))).collect()
+    joints
+        .iter()
+        .filter(|joint| joint.is_free())
+        .map(|joint| (joint.name.clone(), at(joint)))
+        .collect()
 }
 
 /// The folder to look in, and what is there.
@@ -46,7 +50,8 @@ fn robots() -> (String, Vec<PathBuf>) {
 #[test]
 fn the_flange_of_a_panda_is_where_its_maker_says() {
     let (folder, paths) = robots();
-    let Some(path) = paths.iter().find(|path| path.ends_with("panda_description/urdf/panda.urdf")) else {
+    let Some(path) = paths.iter().find(|path| path.ends_with("panda_description/urdf/panda.urdf"))
+    else {
         println!("skipped: no panda_description/urdf/panda.urdf in {folder}");
         return;
     };
@@ -88,7 +93,9 @@ fn the_flange_of_a_panda_is_where_its_maker_says() {
 fn real_robots_are_read_and_asked_or_refused_with_the_reason() {
     let (folder, paths) = robots();
     if paths.is_empty() {
-        println!("skipped: no .urdf in {folder}; unpack one such as the wheel example-robot-data there");
+        println!(
+            "skipped: no .urdf in {folder}; unpack one such as the wheel example-robot-data there"
+        );
         return;
     }
     let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
@@ -107,7 +114,8 @@ fn real_robots_are_read_and_asked_or_refused_with_the_reason() {
         };
         let joints = rest(robot.joints());
         let cloud = Body::from(Cloud::prepare(&wall(5.0), &settings).unwrap());
-        let checker = RobotChecker::new(robot, cloud, Pose::identity(), Touching::Surroundings).unwrap();
+        let checker =
+            RobotChecker::new(robot, cloud, Pose::identity(), Touching::Surroundings).unwrap();
         match checker.check(&query(), &joints) {
             Ok(found) => {
                 for pair in &found.pairs {
@@ -124,8 +132,10 @@ fn real_robots_are_read_and_asked_or_refused_with_the_reason() {
         }
         read += 1;
     }
-    println!("{read} of {} read and asked, {tiny} links too small to be decided; {collada} have .dae; others:",
-        paths.len());
+    println!(
+        "{read} of {} read and asked, {tiny} links too small to be decided; {collada} have .dae; others:",
+        paths.len()
+    );
     others.iter().for_each(|reason| println!("  {reason}"));
     assert!(read > 0, "none of {} robots in {folder} could be read", paths.len());
 }

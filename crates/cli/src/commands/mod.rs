@@ -5,5 +5,6 @@ pub(crate) mod demo;
 pub(crate) mod info;
 pub(crate) mod path;
 pub(crate) mod query;
+pub(crate) mod robot;
 pub(crate) mod scene;
 pub(crate) mod settings;
