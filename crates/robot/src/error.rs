@@ -1,6 +1,6 @@
 //! What can be wrong with a robot's description, in words.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use cloudtouch::{PrepareError, SceneError};
 use cloudtouch_io::ReadError;
@@ -12,7 +12,7 @@ pub struct RobotError {
     /// The URDF or SRDF.
     pub file: PathBuf,
     /// What is wrong with it.
-    pub fault: RobotFault,
+    pub fault: Box<RobotFault>,
 }
 
 /// What is wrong with a robot's description.
@@ -211,6 +211,10 @@ pub enum RobotFault {
 }
 
 impl RobotFault {
+    pub(crate) fn of(self, file: &Path) -> RobotError {
+        RobotError { file: file.to_owned(), fault: Box::new(self) }
+    }
+
     /// Of triangles that were scaled or made.
     pub(crate) fn prepare(link: &str, geometry: &str, error: impl Into<PrepareError>) -> Self {
         let (link, geometry) = (link.to_owned(), geometry.to_owned());

@@ -64,7 +64,7 @@ impl Robot {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
         let read = || Self::parse(&read_text(path)?, Sources { folder, packages, limits });
-        read().map_err(|fault| RobotError { file: path.to_owned(), fault })
+        read().map_err(|fault| fault.of(path))
     }
 
     fn parse(text: &str, sources: Sources<'_>) -> Result<Self, RobotFault> {
@@ -97,7 +97,7 @@ impl Robot {
     pub fn with_srdf(mut self, path: impl AsRef<Path>) -> Result<Self, RobotError> {
         let path = path.as_ref();
         let pairs = read_text(path).and_then(|text| disabled_pairs(&text));
-        for [a, b] in pairs.map_err(|fault| RobotError { file: path.to_owned(), fault })? {
+        for [a, b] in pairs.map_err(|fault| fault.of(path))? {
             self.allow(a, b);
         }
         Ok(self)

@@ -105,7 +105,7 @@ fn real_robots_are_read_and_asked_or_refused_with_the_reason() {
         let robot = match Robot::from_urdf(path, &[]) {
             Ok(robot) => robot,
             Err(error) => {
-                match error.fault {
+                match *error.fault {
                     RobotFault::Collada { .. } => collada += 1,
                     _ => others.push(error.to_string()),
                 }
