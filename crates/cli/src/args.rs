@@ -17,7 +17,7 @@ use crate::settings_file::{self, Settings};
 pub(crate) use caution::Refine;
 use caution::{CautionArguments, EffortArguments};
 pub(crate) use pose::PoseArguments;
-pub(crate) use robot::RobotArguments;
+pub(crate) use robot::RobotOptions;
 
 /// Sensor specs, for the help of the commands that take them.
 const SENSORS: &str = "\
@@ -219,6 +219,39 @@ impl SceneArguments {
         ];
         if let Some((option, _)) = of_pairs.iter().find(|(_, is_given)| *is_given) {
             return Err(format!("{option} is of one scene and one object: leave it out"));
+        }
+        common.check(&[])
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = SENSORS)]
+pub(crate) struct RobotArguments {
+    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .stl .obj)
+    pub scan: PathBuf,
+    #[command(flatten)]
+    pub robot: RobotOptions,
+    /// Print the answer as one JSON object
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
+    /// Exit with the worst verdict: 0 free, 10 uncertain, 20 in collision, 30 undecided
+    #[arg(long, help_heading = "Output")]
+    pub exit_code: bool,
+    #[command(flatten)]
+    pub common: CommonArguments,
+}
+
+impl RobotArguments {
+    fn check(&self) -> Result<(), String> {
+        let common = &self.common;
+        if common.mode == ModeName::Paper {
+            return Err("robot is of the calibrated mode: leave --mode out".to_owned());
+        }
+        if common.object_sensor.is_some() || common.margin.is_some() {
+            return Err("--object-sensor and --margin are of one object: leave them out".to_owned());
+        }
+        if !common.robot.is_empty() {
+            return Err("--robot is of a scan without a URDF: give --scan-joints".to_owned());
         }
         common.check(&[])
     }

@@ -18,15 +18,17 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let limits = common.limits.read_limits();
     let query = Query::new(common.query_settings())?;
     load::check(&arguments.scan)?;
-    let path = joints_file::read(&arguments.joints, limits.bytes)?;
-    let base = arguments.base_pose.as_deref().map(pose_file::read).transpose()?.unwrap_or_default();
-    let mut robot = Robot::from_urdf_within(&arguments.urdf, &arguments.package, &limits)?;
-    if let Some(srdf) = &arguments.srdf {
+    let path = joints_file::read(&arguments.robot.joints, limits.bytes)?;
+    let base =
+        arguments.robot.base_pose.as_deref().map(pose_file::read).transpose()?.unwrap_or_default();
+    let mut robot =
+        Robot::from_urdf_within(&arguments.robot.urdf, &arguments.robot.package, &limits)?;
+    if let Some(srdf) = &arguments.robot.srdf {
         robot = robot.with_srdf(srdf)?;
     }
     // Wrong positions are told before a large scan is read.
     for joints in &path {
-        robot.link_poses(joints).with_context(|| arguments.joints.display().to_string())?;
+        robot.link_poses(joints).with_context(|| arguments.robot.joints.display().to_string())?;
     }
     let links = seen(arguments, &robot, &base)?;
     let scan = load::surroundings(&arguments.scan, links, common)?;
@@ -39,7 +41,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         Body::Mesh(mesh) => mesh.into(),
     };
     let touching =
-        if arguments.self_collision { Touching::AndItself } else { Touching::Surroundings };
+        if arguments.robot.self_collision { Touching::AndItself } else { Touching::Surroundings };
     let checker = RobotChecker::new(robot, body, base, touching)?;
     let threshold = query.settings().reject;
     let bodies = BTreeMap::from([(SURROUNDINGS, &scan.input)]);
@@ -81,14 +83,14 @@ fn seen(
     robot: &Robot,
     base: &Pose,
 ) -> Result<Vec<cloudtouch::SelfMesh>> {
-    let Some(path) = &arguments.scan_joints else { return Ok(Vec::new()) };
+    let Some(path) = &arguments.robot.scan_joints else { return Ok(Vec::new()) };
     let named = || path.display().to_string();
     let positions = joints_file::read(path, arguments.common.limits.read_limits().bytes)?;
     let [joints]: [Joints; 1] = positions
         .try_into()
         .map_err(|_| anyhow::anyhow!("a list: a scan is taken at one position"))
         .with_context(named)?;
-    robot.self_filter(&joints, base, arguments.padding).with_context(named)
+    robot.self_filter(&joints, base, arguments.robot.padding).with_context(named)
 }
 
 /// What was read, and what is not asked about.
@@ -105,10 +107,10 @@ fn words(robot: &Robot, arguments: &RobotArguments, scan: &str) -> String {
                 .join(", ")
         );
     }
-    if arguments.scan_joints.is_none() {
+    if arguments.robot.scan_joints.is_none() {
         text += "self filter            none: give --scan-joints if the scan shows the robot\n";
     }
-    if !arguments.self_collision {
+    if !arguments.robot.self_collision {
         text += "self collision         not asked: give --self-collision\n";
     }
     text
