@@ -5,6 +5,7 @@ mod common;
 mod limits;
 mod parse;
 mod pose;
+mod robot;
 
 use std::path::PathBuf;
 
@@ -19,6 +20,7 @@ pub(crate) use common::{CommonArguments, ModeName};
 use limits::LimitArguments;
 use parse::{parse_fraction, parse_sensor_for};
 pub(crate) use pose::PoseArguments;
+pub(crate) use robot::RobotOptions;
 
 /// Sensor specs, for the help of the commands that take them.
 const SENSORS: &str = "\
@@ -40,6 +42,7 @@ Examples:
   cloudtouch query scan.pcd gripper.stl --sensor kinect --translate 0.4,0,0.9
   cloudtouch path scan.pcd gripper.stl --poses approach.csv
   cloudtouch scene workcell.json
+  cloudtouch robot scan.pcd arm.urdf --joints home.json
   cloudtouch batch cases.json --jsonl answers.jsonl
   cloudtouch query run.mcap#/points@12.5 gripper.stl   (built with --features mcap)
 
@@ -63,6 +66,7 @@ impl Arguments {
             Command::Query(arguments) => arguments.check(),
             Command::Path(arguments) => arguments.check(),
             Command::Scene(arguments) => arguments.check(),
+            Command::Robot(arguments) => arguments.check(),
             Command::Batch(arguments) => arguments.common.check(&[]),
             Command::Info(_) | Command::Demo(_) | Command::Settings => Ok(()),
         }
@@ -91,6 +95,8 @@ pub(crate) enum Command {
     Path(Box<PathArguments>),
     /// Many bodies, each with its own pose: which of them may touch
     Scene(Box<SceneArguments>),
+    /// A robot (URDF) in a scan, at positions of its joints: which link touches what
+    Robot(Box<RobotArguments>),
     /// Many poses from a case file; scenes and objects are prepared once
     Batch(Box<BatchArguments>),
     /// What a cloud or mesh file holds, and which sensor suits it
@@ -238,6 +244,39 @@ impl SceneArguments {
         ];
         if let Some((option, _)) = of_pairs.iter().find(|(_, is_given)| *is_given) {
             return Err(format!("{option} is of one scene and one object: leave it out"));
+        }
+        common.check(&[])
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = SENSORS)]
+pub(crate) struct RobotArguments {
+    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .stl .obj)
+    pub scan: PathBuf,
+    #[command(flatten)]
+    pub robot: RobotOptions,
+    /// Print the answer as one JSON object
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
+    /// Exit with the worst verdict: 0 free, 10 uncertain, 20 in collision, 30 undecided
+    #[arg(long, help_heading = "Output")]
+    pub exit_code: bool,
+    #[command(flatten)]
+    pub common: CommonArguments,
+}
+
+impl RobotArguments {
+    fn check(&self) -> Result<(), String> {
+        let common = &self.common;
+        if common.mode == ModeName::Paper {
+            return Err("robot is of the calibrated mode: leave --mode out".to_owned());
+        }
+        if common.object_sensor.is_some() || common.margin.is_some() {
+            return Err("--object-sensor and --margin are of one object: leave them out".to_owned());
+        }
+        if !common.robot.is_empty() {
+            return Err("--robot is of a scan without a URDF: give --scan-joints".to_owned());
         }
         common.check(&[])
     }

@@ -1,6 +1,7 @@
 //! What other programs share with the `cloudtouch` tool: how its case files and options are read.
 
 pub mod case_file;
+pub mod joints_file;
 mod json_text;
 pub mod numbers;
 pub mod path_text;

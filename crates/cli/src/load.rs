@@ -6,7 +6,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result, bail, ensure};
 use cloudtouch::geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Mesh, SelfMesh};
+use cloudtouch::{Cloud, Mesh, SelfMesh};
 use cloudtouch_cli::numbers::Rigid;
 use cloudtouch_io::{
     Geometry, LengthUnit, ReadLimits, check_extension, read_geometry_within, read_mesh_within,
@@ -109,7 +109,24 @@ fn bodies_in<C: PreparedCloud>(
         }
     }
     let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
-    of_clouds(&names.join(", "), units.clouds, role, scans, sensor, common)
+    let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
+    of_clouds(&names.join(", "), (units.clouds, role), scans, sensor, common, robot)
+}
+
+/// Reads the surroundings of a robot, of which a scan may show these links.
+pub(crate) fn surroundings(
+    path: &Path,
+    robot: Vec<SelfMesh>,
+    common: &CommonArguments,
+) -> Result<Loaded<Cloud>> {
+    let units = Units::of(common);
+    match geometry(path, units, &common.limits.read_limits())? {
+        Geometry::Mesh(mesh) => of_mesh(path, units.meshes, Role::Scene, &mesh, common),
+        Geometry::Cloud(cloud) => {
+            let scene = (units.clouds, Role::Scene);
+            of_clouds(&named(path), scene, vec![cloud], common.sensor, common, robot)
+        }
+    }
 }
 
 fn of_mesh<C>(
@@ -148,11 +165,11 @@ fn of_mesh<C>(
 /// The sensor of several scans is that chosen for the first.
 fn of_clouds<C: PreparedCloud>(
     name: &str,
-    unit: LengthUnit,
-    role: Role,
+    (unit, role): (LengthUnit, Role),
     mut scans: Vec<PointCloud>,
     sensor: SensorChoice,
     common: &CommonArguments,
+    robot: Vec<SelfMesh>,
 ) -> Result<Loaded<C>> {
     if role == Role::Scene
         && let Some(Rigid(pose)) = common.sensor_pose
@@ -168,7 +185,6 @@ fn of_clouds<C: PreparedCloud>(
              --sensor per-point to use them"
         );
     }
-    let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
     let prepared = C::prepare(&scans, sensor, common.settings.as_ref(), |filter, sensor| {
         common.change(filter);
         if role == Role::Scene {

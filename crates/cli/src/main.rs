@@ -1,4 +1,4 @@
-//! The `cloudtouch` command: queries, paths, scenes, batches, file information and a demo.
+//! The `cloudtouch` command: queries, paths, scenes, robots, batches, file information and a demo.
 
 mod answer;
 mod args;
@@ -21,6 +21,7 @@ mod picture;
 mod pose_file;
 mod print;
 mod report_text;
+mod robot_answer;
 mod scene_answer;
 mod sensor;
 mod settings_file;
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
         Command::Batch(arguments) => commands::batch::run(arguments),
         Command::Path(arguments) => commands::path::run(arguments),
         Command::Scene(arguments) => commands::scene::run(arguments),
+        Command::Robot(arguments) => commands::robot::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Demo(arguments) => commands::demo::run(arguments, shows_work),
         Command::Settings => commands::settings::run(),

@@ -28,7 +28,7 @@ struct Counts {
 }
 
 #[derive(Serialize)]
-struct Pair<'a> {
+pub(crate) struct Pair<'a> {
     a: &'a str,
     b: &'a str,
     #[serde(flatten)]

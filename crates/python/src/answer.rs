@@ -1,6 +1,6 @@
 //! One report as what `cloudtouch.Report` is made of.
 
-use cloudtouch::{Report, Undecided, UnderPoses, Verdict, Within};
+use cloudtouch::{Penetration, PoseGradient, Report, Undecided, UnderPoses, Verdict, Within};
 use numpy::IntoPyArray;
 use pyo3::intern;
 use pyo3::prelude::*;

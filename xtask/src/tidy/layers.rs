@@ -1,4 +1,4 @@
-//! The layers: geom <- {noise, svm, bvh} <- cloudtouch <- cli, io and testkit on geom alone.
+//! The layers: geom <- {noise, svm, bvh} <- cloudtouch <- robot <- cli, io and testkit on geom alone.
 
 use toml::Value;
 
@@ -8,14 +8,15 @@ use super::manifest::{KINDS, Manifest};
 const TESTKIT: &str = "cloudtouch-testkit";
 
 /// From the lowest layer upwards: what a crate may use comes before it.
-const LAYERS: [&str; 9] = [
+const LAYERS: [&str; 10] = [
     "cloudtouch-geom",
     "cloudtouch-noise",
     "cloudtouch-svm",
     "cloudtouch-bvh",
     "cloudtouch",
-    "cloudtouch-page",
     "cloudtouch-io",
+    "cloudtouch-page",
+    "cloudtouch-robot",
     "cloudtouch-cli",
     "cloudtouch-evaluation",
 ];
@@ -29,8 +30,9 @@ fn may_use(name: &str) -> Option<&'static [&'static str]> {
         }
         "cloudtouch" => &LAYERS[..4],
         "cloudtouch-page" => &LAYERS[..5],
-        "cloudtouch-cli" | "cloudtouch-python" => &LAYERS[..7],
-        "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..8],
+        "cloudtouch-robot" => &LAYERS[..6],
+        "cloudtouch-cli" | "cloudtouch-python" => &LAYERS[..8],
+        "cloudtouch-benches" | "cloudtouch-fuzzing" | "cloudtouch-evaluation" => &LAYERS[..9],
         "xtask" => &LAYERS,
         _ => return None,
     })

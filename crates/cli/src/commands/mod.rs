@@ -7,5 +7,6 @@ pub(crate) mod path;
 pub(crate) mod query;
 #[cfg(feature = "mcap")]
 mod recording;
+pub(crate) mod robot;
 pub(crate) mod scene;
 pub(crate) mod settings;

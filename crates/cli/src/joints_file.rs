@@ -1,0 +1,74 @@
+//! Positions of joints in a file.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anyhow::{Context as _, Result, bail};
+use serde_json::Value;
+
+use crate::json_text::{shortened, without_bare_words};
+
+/// Positions of joints by name, rad or m.
+pub type Joints = BTreeMap<String, f64>;
+
+/// Reads an object of positions, or a list of at least two, of at most `max_bytes`.
+///
+/// # Errors
+/// When the file is larger or malformed; the message names the place in the list and the joint.
+pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<Joints>> {
+    let text = cloudtouch_io::read_bytes(path, max_bytes)?;
+    parse(&text).map_err(shortened).with_context(|| path.display().to_string())
+}
+
+/// The positions in the text of such a file.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(text: &[u8]) -> Result<Vec<Joints>> {
+    let text = without_bare_words(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text));
+    let value: Value = serde_json::from_slice(&text)
+        .context("not a JSON object of joint names and positions, nor a list of such objects")?;
+    match value {
+        Value::Array(list) if list.len() < 2 => {
+            bail!("{} positions: a path needs two; write one as an object alone", list.len())
+        }
+        Value::Array(list) => {
+            let place = |(index, one)| positions(one).with_context(|| format!("position {index}"));
+            list.into_iter().enumerate().map(place).collect()
+        }
+        one => Ok(vec![positions(one)?]),
+    }
+}
+
+fn positions(value: Value) -> Result<Joints> {
+    let Value::Object(entries) = value else {
+        bail!("not an object of joint names and positions, such as {{\"elbow\": 1.57}}")
+    };
+    let number = |(name, value): (String, Value)| match value.as_f64() {
+        Some(position) => Ok((name, position)),
+        None => bail!("joint `{name}` is at {value}: give a finite number, in rad or m"),
+    };
+    entries.into_iter().map(number).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_or_many_are_read_and_others_named() {
+        assert_eq!(parse(b"{\"a\": 1, \"b\": -0.5}").unwrap()[0]["b"], -0.5);
+        assert_eq!(parse(b"[{\"a\": 1}, {\"a\": 2}]").unwrap()[1]["a"], 2.0);
+        for (text, parts) in [
+            ("[{\"a\": 1}]", vec!["1 positions", "as an object"]),
+            ("[{\"a\": 1}, {\"a\": NaN}]", vec!["position 1", "`a`", "finite"]),
+            ("{\"a\": \"1\"}", vec!["`a`", "finite"]),
+            ("[[1, 2], [3, 4]]", vec!["position 0", "such as"]),
+            ("{\"a\"", vec!["not a JSON object"]),
+        ] {
+            let error = format!("{:#}", parse(text.as_bytes()).unwrap_err());
+            assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+        }
+    }
+}

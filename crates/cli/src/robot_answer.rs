@@ -1,0 +1,102 @@
+//! Which link of a robot touches what, for programs and for people.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use anyhow::Result;
+use cloudtouch::{Checked, PairAnswer, Verdict};
+use cloudtouch_robot::PathChecked;
+use serde::Serialize;
+use serde_json::value::RawValue;
+
+use crate::load::Input;
+use crate::print::{one_line, probability};
+use crate::scene_answer::{self, Pair};
+
+#[derive(Serialize)]
+struct Line<'a> {
+    verdict: Verdict,
+    threshold: f64,
+    certified_free_until: f64,
+    stopped: Option<Stopped<'a>>,
+    looked_at: usize,
+    /// Each as the answer to one position.
+    given: Vec<Box<RawValue>>,
+}
+
+#[derive(Serialize)]
+struct Stopped<'a> {
+    segment: usize,
+    t: f64,
+    pair: Option<Pair<'a>>,
+}
+
+pub(crate) fn path_line(
+    checked: &PathChecked,
+    threshold: f64,
+    bodies: BTreeMap<&str, &Input>,
+) -> Result<String> {
+    let given = checked.given.iter().map(|at| {
+        let line = scene_answer::json_line(at, threshold, bodies.clone())?;
+        Ok(RawValue::from_string(line)?)
+    });
+    let stopped = checked.stopped.as_ref().map(|at| Stopped {
+        segment: at.segment,
+        t: at.t,
+        pair: at.pair.as_ref().map(Pair::from),
+    });
+    let line = Line {
+        verdict: checked.verdict(),
+        threshold,
+        certified_free_until: checked.certified_free_until,
+        stopped,
+        looked_at: checked.looked_at,
+        given: given.collect::<Result<_>>()?,
+    };
+    Ok(serde_json::to_string(&line)?)
+}
+
+/// The worst pair in a few lines, above the table of all.
+pub(crate) fn worst(checked: &Checked) -> String {
+    checked.pairs.first().map_or(String::new(), |pair| described("worst pair", pair))
+}
+
+pub(crate) fn path_text(checked: &PathChecked) -> String {
+    let mut text = format!(
+        "free for certain       until {:.1} % of the path\n",
+        100.0 * checked.certified_free_until
+    );
+    if let Some(at) = &checked.stopped {
+        let _ = writeln!(text, "then                   segment {}, t = {:.3}", at.segment, at.t);
+        match &at.pair {
+            Some(pair) => text += &described("worst pair there", pair),
+            None => text += "                       free there, too near to be sure around it\n",
+        }
+    }
+    for (index, at) in checked.given.iter().enumerate() {
+        let pairs =
+            at.pairs.iter().map(|pair| format!("{} / {}", one_line(&pair.a), one_line(&pair.b)));
+        let pairs = pairs.collect::<Vec<_>>().join(", ");
+        let of = if pairs.is_empty() { String::new() } else { format!(": {pairs}") };
+        let _ = writeln!(text, "position {index:<13} {}{of}", at.verdict());
+    }
+    let _ = write!(text, "{}: {} positions looked at", checked.verdict(), checked.looked_at);
+    text
+}
+
+fn described(label: &str, pair: &PairAnswer) -> String {
+    let mut text =
+        format!("{label:<22} {} / {}: {}\n", one_line(&pair.a), one_line(&pair.b), pair.verdict());
+    let Ok(report) = &pair.answer else { return text };
+    let [low, high] = report.bounds.map(probability);
+    let p = probability(report.collision_probability);
+    let _ = writeln!(text, "collision probability  {p}   (within {low} .. {high})");
+    if let Some(contact) = report.contacts.first() {
+        let p = contact.point;
+        let _ = writeln!(text, "contact                {:.3} {:.3} {:.3} m", p.x, p.y, p.z);
+    }
+    for warning in &report.warnings {
+        let _ = writeln!(text, "warning                {warning}");
+    }
+    text
+}

@@ -1,0 +1,313 @@
+//! What can be wrong with a robot's description, in words.
+
+use std::path::{Path, PathBuf};
+
+use cloudtouch::{PrepareError, SceneError};
+use cloudtouch_io::ReadError;
+
+/// Why a file does not describe a robot that can be checked.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {fault}", file.display())]
+pub struct RobotError {
+    /// The URDF or SRDF.
+    pub file: PathBuf,
+    /// What is wrong with it.
+    pub fault: Box<RobotFault>,
+}
+
+/// What is wrong with a robot's description.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RobotFault {
+    /// The file cannot be read.
+    #[error("cannot be read: {reason}")]
+    File {
+        /// What the system said.
+        reason: std::io::Error,
+    },
+    /// Not XML, or not of its schema.
+    #[error(
+        "cannot be understood: {reason}; a .xacro is expanded first, with `xacro arm.xacro > arm.urdf`"
+    )]
+    Xml {
+        /// What the parser said.
+        reason: String,
+    },
+    /// A number is NaN or infinite.
+    #[error("{of} has {value} for its {what}: every number must be finite")]
+    NotFinite {
+        /// Link or joint.
+        of: String,
+        /// Which number.
+        what: &'static str,
+        /// What was found.
+        value: f64,
+    },
+    /// Two links or two joints of one name.
+    #[error("{what} `{name}` appears twice: names must differ")]
+    Repeated {
+        /// Link or joint.
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A joint joins a link that is not there.
+    #[error("joint `{joint}` has the {role} `{link}`, and there is no such link: correct the name")]
+    UnknownLink {
+        /// The joint.
+        joint: String,
+        /// Parent or child.
+        role: &'static str,
+        /// The name.
+        link: String,
+    },
+    /// A link hangs on two joints.
+    #[error("link `{link}` is the child of two joints, one of them `{joint}`: remove one")]
+    TwoParents {
+        /// The link.
+        link: String,
+        /// The second of its joints.
+        joint: String,
+    },
+    /// Links are not one tree.
+    #[error(
+        "links do not hang on one root (`{root}`): no chain of joints leads to `{link}`; join it, or remove it"
+    )]
+    NotATree {
+        /// The first link that is nobody's child, empty where all are.
+        root: String,
+        /// A link that is not under it.
+        link: String,
+    },
+    /// A joint that one number does not move.
+    #[error(
+        "joint `{joint}` is {kind}, which one position does not place: make it fixed, and give the pose of the base"
+    )]
+    JointKind {
+        /// The joint.
+        joint: String,
+        /// Its kind.
+        kind: &'static str,
+    },
+    /// A joint has no direction to move in.
+    #[error("joint `{joint}` has an axis of length zero: give a direction, such as 0 0 1")]
+    NoAxis {
+        /// The joint.
+        joint: String,
+    },
+    /// A lower limit above the upper.
+    #[error("joint `{joint}` has the limits {lower} .. {upper}: the lower must not be the greater")]
+    Limits {
+        /// The joint.
+        joint: String,
+        /// rad or m.
+        lower: f64,
+        /// rad or m.
+        upper: f64,
+    },
+    /// A joint follows one that it cannot follow.
+    #[error(
+        "joint `{joint}` mimics `{followed}`, which is not a joint that moves by itself: name one that does"
+    )]
+    Mimic {
+        /// The joint.
+        joint: String,
+        /// What it names.
+        followed: String,
+    },
+    /// A size that is no size.
+    #[error("link `{link}` has {value} for its {what}: it must be above 0")]
+    Size {
+        /// The link.
+        link: String,
+        /// Which size.
+        what: &'static str,
+        /// What was found.
+        value: f64,
+    },
+    /// A package whose folder is not known.
+    #[error(
+        "link `{link}`: {uri}: the folder of package `{package}` is not known: say where it is \
+         (--package {package}=FOLDER)"
+    )]
+    UnknownPackage {
+        /// The link.
+        link: String,
+        /// Where its mesh is said to be.
+        uri: String,
+        /// The package.
+        package: String,
+    },
+    /// A mesh is somewhere that is not looked at.
+    #[error(
+        "link `{link}`: {uri}: only package://, file:// and plain paths are read: copy the file"
+    )]
+    Scheme {
+        /// The link.
+        link: String,
+        /// Where its mesh is said to be.
+        uri: String,
+    },
+    /// A mesh file is not there.
+    #[error(
+        "link `{link}`: {uri}: there is no file {}: correct the path, or the folder of its package",
+        path.display()
+    )]
+    MissingMesh {
+        /// The link.
+        link: String,
+        /// As the URDF says.
+        uri: String,
+        /// Where it was looked for.
+        path: PathBuf,
+    },
+    /// A mesh in a format that is not read.
+    #[error(
+        "link `{link}`: {uri}: COLLADA (.dae) is not read: convert it to STL or OBJ (Blender, MeshLab, \
+         assimp export) and name that in <collision>"
+    )]
+    Collada {
+        /// The link.
+        link: String,
+        /// As the URDF says.
+        uri: String,
+    },
+    /// A mesh cannot be read.
+    #[error("link `{link}`: {error}")]
+    Mesh {
+        /// The link.
+        link: String,
+        /// What is wrong with the file.
+        error: ReadError,
+    },
+    /// A mesh cannot be used.
+    #[error("link `{link}`: {geometry}: {error}")]
+    Prepare {
+        /// The link.
+        link: String,
+        /// The mesh file, or the primitive.
+        geometry: String,
+        /// Why.
+        error: PrepareError,
+    },
+    /// A mesh of a size that cannot be meant.
+    #[error(
+        "link `{link}`: {uri} is {size:.3} m across, and the whole robot reaches {reach:.3} m by its \
+         joints: is the mesh in millimetres (scale=\"0.001 0.001 0.001\"), or scaled twice?"
+    )]
+    LinkSize {
+        /// The link.
+        link: String,
+        /// As the URDF says.
+        uri: String,
+        /// Diagonal of its box, m.
+        size: f64,
+        /// Sum of the distances between joints, m.
+        reach: f64,
+    },
+    /// Nothing can collide.
+    #[error("no link has <collision> geometry: nothing could be found to touch; add it")]
+    NoGeometry,
+}
+
+impl RobotFault {
+    pub(crate) fn of(self, file: &Path) -> RobotError {
+        RobotError { file: file.to_owned(), fault: Box::new(self) }
+    }
+
+    /// Of triangles that were scaled or made.
+    pub(crate) fn prepare(link: &str, geometry: &str, error: impl Into<PrepareError>) -> Self {
+        let (link, geometry) = (link.to_owned(), geometry.to_owned());
+        Self::Prepare { link, geometry, error: error.into() }
+    }
+}
+
+/// Why positions of joints place no robot.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JointsError {
+    /// A joint that the robot does not have.
+    #[error(
+        "the robot has no joint `{name}` that moves: leave it out, or correct the name to one of {known}"
+    )]
+    Unknown {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// Joints without a position; none is assumed.
+    #[error("no position is given for {names}: give one for every joint that moves")]
+    Missing {
+        /// Those without one.
+        names: String,
+    },
+    /// NaN or infinite.
+    #[error("joint `{name}` is at {value}: give a finite number, in rad or m")]
+    NotFinite {
+        /// The joint.
+        name: String,
+        /// What was given.
+        value: f64,
+    },
+    /// Beyond the limits.
+    #[error(
+        "joint `{name}` is at {value}, beyond its limits {lower} .. {upper} (rad or m): move it within \
+         them{hint}"
+    )]
+    Limit {
+        /// The joint.
+        name: String,
+        /// Where it is; of a joint that mimics another, by what that is given.
+        value: f64,
+        /// rad or m.
+        lower: f64,
+        /// rad or m.
+        upper: f64,
+        /// What may have been meant.
+        hint: &'static str,
+    },
+    /// A joint that mimics another is given another position than that implies.
+    #[error(
+        "joint `{name}` mimics `{followed}`, by which it is at {implied}, not {value}: leave it out"
+    )]
+    Mimic {
+        /// The joint.
+        name: String,
+        /// What it follows.
+        followed: String,
+        /// Where that puts it.
+        implied: f64,
+        /// What was given.
+        value: f64,
+    },
+    /// A link is nowhere.
+    #[error(transparent)]
+    Place(#[from] SceneError),
+}
+
+/// Why a path of joints cannot be followed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PathError {
+    /// No motion.
+    #[error("a path has {count} positions: give at least two")]
+    TooFew {
+        /// How many are given.
+        count: usize,
+    },
+    /// No share of the path.
+    #[error("the tolerance is {value}: give a share of the path, above 0 and at most 1")]
+    Tolerance {
+        /// What was given.
+        value: f64,
+    },
+    /// A position that places no robot.
+    #[error("position {index} of the path: {error}")]
+    Joints {
+        /// Which, from 0.
+        index: usize,
+        /// What is wrong with it.
+        error: JointsError,
+    },
+}

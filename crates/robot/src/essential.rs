@@ -1,0 +1,82 @@
+//! What of a URDF places and shapes its links.
+
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::{Reader, Writer};
+
+use crate::error::RobotFault;
+
+/// Parts that say nothing of where a link is: masses, colours, simulation, drives. Many a file leaves
+/// out half of what the schema asks for there.
+const PASSED_OVER: [&[u8]; 8] = [
+    b"inertial",
+    b"material",
+    b"gazebo",
+    b"transmission",
+    b"ros2_control",
+    b"dynamics",
+    b"calibration",
+    b"safety_controller",
+];
+
+/// The text of a URDF without these parts, and without what belongs to the namespaces of others.
+pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
+    let fault = |reason: String| RobotFault::Xml { reason };
+    let mut reader = Reader::from_str(text);
+    let mut writer = Writer::new(Vec::new());
+    loop {
+        let event = reader.read_event().map_err(|error| fault(error.to_string()))?;
+        let kept = match event {
+            Event::Eof => break,
+            Event::Start(start) if is_passed_over(&start)? => {
+                let to_end = reader.read_to_end(start.name());
+                to_end.map_err(|error| fault(error.to_string()))?;
+                continue;
+            }
+            Event::Empty(start) if is_passed_over(&start)? => continue,
+            Event::Start(start) => Event::Start(plain(&start)),
+            Event::Empty(start) => Event::Empty(plain(&start)),
+            other => other,
+        };
+        writer.write_event(kept).map_err(|error| fault(error.to_string()))?;
+    }
+    String::from_utf8(writer.into_inner()).map_err(|error| fault(error.to_string()))
+}
+
+fn is_passed_over(start: &BytesStart<'_>) -> Result<bool, RobotFault> {
+    let name = start.name();
+    match name.prefix() {
+        // Its links and joints are not there yet: the rest is not the robot.
+        Some(prefix) if prefix.as_ref() == b"xacro" => {
+            let name = String::from_utf8_lossy(name.as_ref()).into_owned();
+            Err(RobotFault::Xml { reason: format!("<{name}> is not expanded") })
+        }
+        prefix => Ok(prefix.is_some() || PASSED_OVER.contains(&name.as_ref())),
+    }
+}
+
+/// Without attributes of other namespaces, such as a comment of xacro.
+fn plain(start: &BytesStart<'_>) -> BytesStart<'static> {
+    let mut kept = start.to_owned();
+    kept.clear_attributes();
+    let own = start.attributes().flatten().filter(|attribute| attribute.key.prefix().is_none());
+    kept.extend_attributes(own);
+    kept.into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_places_nothing_is_passed_over_and_an_unexpanded_file_refused() {
+        let text = "<robot xmlns:x='http://x' name='a'><link name='b' x:c='1'><inertial><mass/></inertial>\
+                    <collision/></link><x:d><link name='e'/></x:d><gazebo/></robot>";
+        let kept = essential(text).unwrap().replace('\"', "'");
+        assert_eq!(kept, "<robot name='a'><link name='b'><collision/></link></robot>");
+        let error = essential("<robot><xacro:arm name='a'/></robot>").unwrap_err().to_string();
+        assert!(
+            error.contains("<xacro:arm> is not expanded") && error.contains("arm.urdf"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,20 @@
+#![doc = include_str!("../README.md")]
+
+mod checker;
+mod error;
+mod essential;
+mod joint;
+mod link;
+mod motion;
+mod primitive;
+mod robot;
+mod srdf;
+mod tree;
+mod uri;
+
+pub use checker::{RobotChecker, SURROUNDINGS, Touching};
+pub use error::{JointsError, PathError, RobotError, RobotFault};
+pub use joint::{Joint, JointKind, Mimic};
+pub use motion::{PathChecked, Stopped};
+pub use primitive::EXCESS;
+pub use robot::Robot;

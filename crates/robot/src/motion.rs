@@ -1,0 +1,209 @@
+//! A robot along a path of its joints: nothing between the positions given is missed.
+
+use std::collections::BTreeMap;
+
+use cloudtouch::geom::Pose;
+use cloudtouch::{BodyRef, Checked, PairAnswer, Query, Verdict};
+
+use crate::checker::{RobotChecker, SURROUNDINGS};
+use crate::error::PathError;
+use crate::joint::JointKind;
+use crate::link::Shape;
+use crate::robot::Robot;
+use crate::tree::Tree;
+
+/// What is known of a path.
+#[derive(Debug, Clone)]
+pub struct PathChecked {
+    /// What is found at each of the positions given, as [`RobotChecker::check`].
+    pub given: Vec<Checked>,
+    /// Share of the path, 0 to 1 and the same for every segment, up to which every position is free,
+    /// between those given too.
+    pub certified_free_until: f64,
+    /// What is there, where that is not the end.
+    pub stopped: Option<Stopped>,
+    /// Positions that were asked about, those given included.
+    pub looked_at: usize,
+}
+
+/// Where a path is no longer known to be free.
+#[derive(Debug, Clone)]
+pub struct Stopped {
+    /// Which segment, from 0.
+    pub segment: usize,
+    /// Share of the segment, 0 to 1.
+    pub t: f64,
+    /// The worst pair there; `None` where all read as free, but are so near that positions around
+    /// are not known to be.
+    pub pair: Option<PairAnswer>,
+}
+
+impl PathChecked {
+    /// Free where the whole path is certified; else the worst verdict found, and undecided where none
+    /// but free was.
+    pub fn verdict(&self) -> Verdict {
+        let Some(stopped) = &self.stopped else { return Verdict::Free };
+        let found: Vec<Verdict> = (self.given.iter().map(Checked::verdict))
+            .chain(stopped.pair.as_ref().map(PairAnswer::verdict))
+            .collect();
+        let worst = [Verdict::InCollision, Verdict::Undecided, Verdict::Uncertain];
+        worst.into_iter().find(|verdict| found.contains(verdict)).unwrap_or(Verdict::Undecided)
+    }
+}
+
+impl RobotChecker {
+    /// How far along a path every position is free. Between two positions each joint moves straight
+    /// from one value to the other, all in the same time.
+    ///
+    /// Over a stretch a link stays as near to its place in the middle as the turns and shifts of
+    /// its joints let it (Schwarzer, Saha, Latombe 2005); if no surface is within that distance there by
+    /// [`Query::within`], with the reject threshold of the query, the stretch is free. Else it is
+    /// halved, down to `tolerance` as a share of the path; there the search ends, so that what comes
+    /// later is known at the positions given only. With [`Detail::Full`](cloudtouch::Detail::Full).
+    ///
+    /// # Errors
+    /// With fewer than two positions, a tolerance that is not above 0 and at most 1, and when a joint
+    /// is unknown, left out, not finite or beyond its limits.
+    pub fn check_path(
+        &self,
+        query: &Query,
+        path: &[BTreeMap<String, f64>],
+        tolerance: f64,
+    ) -> Result<PathChecked, PathError> {
+        if path.len() < 2 {
+            return Err(PathError::TooFew { count: path.len() });
+        }
+        if !(tolerance > 0.0 && tolerance <= 1.0) {
+            return Err(PathError::Tolerance { value: tolerance });
+        }
+        let at = |(index, joints)| {
+            let positions = self.robot.tree.positions(joints);
+            positions.map_err(|error| PathError::Joints { index, error })
+        };
+        let path = path.iter().enumerate().map(at).collect::<Result<Vec<Vec<f64>>, _>>()?;
+        let check = |index, joints: &[f64]| match self.placed(joints) {
+            Ok(scene) => Ok(scene.check(query)),
+            Err(error) => Err(PathError::Joints { index, error: error.into() }),
+        };
+        let given = path.iter().enumerate().map(|(index, joints)| check(index, joints));
+        let given: Vec<Checked> = given.collect::<Result<_, _>>()?;
+        let mut looked_at = given.len();
+        let segments = (path.len() - 1) as f64;
+        let mut certified_free_until = 0.0;
+        let mut stopped = given[0].pairs.first().map(|pair| (0, 0.0, Some(pair.clone())));
+        for (segment, ends) in path.windows(2).enumerate() {
+            // What is before comes first.
+            let mut open = vec![[0.0, 1.0]];
+            while let (None, Some([from, to])) = (&stopped, open.pop()) {
+                looked_at += 1;
+                let middle = 0.5 * (from + to);
+                let of = |time| between(&ends[0], &ends[1], time);
+                let pair = check(segment, &of(middle))?.pairs.into_iter().next();
+                if pair.is_none() && self.is_clear(query, &of(middle), [&of(from), &of(to)]) {
+                    certified_free_until = (segment as f64 + to) / segments;
+                } else if to - from <= tolerance * segments {
+                    stopped = Some((segment, middle, pair));
+                } else {
+                    open.extend([[middle, to], [from, middle]]);
+                }
+            }
+            if stopped.is_none() {
+                let pair = given[segment + 1].pairs.first();
+                stopped = pair.map(|pair| (segment, 1.0, Some(pair.clone())));
+            }
+        }
+        let stopped = stopped.map(|(segment, t, pair)| Stopped { segment, t, pair });
+        Ok(PathChecked { given, certified_free_until, stopped, looked_at })
+    }
+
+    /// Whether no pair can meet on the way from one position to the other, of which `middle` is the
+    /// middle.
+    fn is_clear(&self, query: &Query, middle: &[f64], ends: [&[f64]; 2]) -> bool {
+        let Robot { tree, shapes, .. } = &self.robot;
+        let poses = tree.poses(middle);
+        let ways: Vec<f64> = shapes.iter().map(|shape| farthest(tree, shape, ends)).collect();
+        let at = |i: usize| self.scene_from_base.after(&poses[shapes[i].link]);
+        let is_apart = |a: BodyRef<'_>, i: usize, a_from_shape: &Pose, way: f64| {
+            let found = query.within(a, &*shapes[i].body, a_from_shape, way);
+            // What cannot be asked is not clear.
+            found.is_ok_and(|(_, within)| within.bounds[1] < query.settings().reject)
+        };
+        let Ok(surroundings) = self.scene.body(SURROUNDINGS) else { return false };
+        (0..shapes.len()).all(|i| {
+            is_apart(surroundings.into(), i, &at(i), ways[i])
+                && (0..i).all(|j| {
+                    let is_allowed = self.scene.is_allowed(&self.names[i], &self.names[j]);
+                    let j_from_i = at(j).inverse().after(&at(i));
+                    is_allowed == Ok(true)
+                        || is_apart((&*shapes[j].body).into(), i, &j_from_i, ways[i] + ways[j])
+                })
+        })
+    }
+}
+
+fn between(from: &[f64], to: &[f64], time: f64) -> Vec<f64> {
+    from.iter().zip(to).map(|(from, to)| from + (to - from) * time).collect()
+}
+
+/// No point of a shape is farther than this from where it is in the middle of a motion, m: every joint
+/// that carries it takes it along by no more than half its turn times its longest lever.
+fn farthest(tree: &Tree, shape: &Shape, [from, to]: [&[f64]; 2]) -> f64 {
+    let (mut lever, mut way) = (shape.radius, 0.0);
+    for joint in tree.chain(shape.link) {
+        let (from, to) = (from[joint], to[joint]);
+        let half = 0.5 * (to - from).abs();
+        let of = &tree.joints[joint];
+        let slides = of.kind == JointKind::Prismatic;
+        way += half * if slides { 1.0 } else { lever };
+        lever +=
+            of.origin.translation().norm() + if slides { from.abs().max(to.abs()) } else { 0.0 };
+    }
+    // Rounding.
+    way * (1.0 + 1e-9)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const URDF: &str = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/><link name='d'>
+        <collision><origin xyz='0.1 0.2 0'/><geometry><box size='0.5 0.1 0.2'/></geometry></collision></link>
+        <joint name='p' type='revolute'><parent link='a'/><child link='b'/><origin xyz='0.2 0 0.3' rpy='1 0 0'/>
+          <axis xyz='1 0 1'/><limit lower='-3' upper='3' effort='1' velocity='1'/></joint>
+        <joint name='q' type='prismatic'><parent link='b'/><child link='c'/><origin xyz='0 0.4 0' rpy='0 1 0'/>
+          <axis xyz='0 1 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>
+        <joint name='r' type='continuous'><parent link='c'/><child link='d'/><origin xyz='0 0 0.3'/>
+          <axis xyz='0 1 0'/></joint></robot>";
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// No corner gets farther from its place in the middle than is said, and long motions are
+        /// bounded within a factor of five.
+        #[test]
+        fn no_corner_goes_farther_than_its_bound(
+            from in prop::array::uniform3(-1.0..1.0_f64), to in prop::array::uniform3(-1.0..1.0_f64),
+            times in prop::collection::vec(0.0..=1.0_f64, 20),
+        ) {
+            let folder = tempfile::tempdir().unwrap();
+            let file = folder.path().join("r.urdf");
+            std::fs::write(&file, URDF).unwrap();
+            let Robot { tree, shapes, .. } = Robot::from_urdf(file, &[]).unwrap();
+            let bound = farthest(&tree, &shapes[0], [&from, &to]);
+            let pose = |time| tree.poses(&between(&from, &to, time))[shapes[0].link];
+            let (middle, mut most) = (pose(0.5), 0.0_f64);
+            for time in times.into_iter().chain([0.0, 1.0]) {
+                for p in shapes[0].triangles.vertices() {
+                    let way = (pose(time).transform_point(p) - middle.transform_point(p)).norm();
+                    prop_assert!(way <= bound, "{} beyond {}", way, bound);
+                    most = most.max(way);
+                }
+            }
+            let moves_much = from.iter().zip(&to).all(|(from, to)| to - from > 0.5);
+            prop_assert!(!moves_much || bound < 5.0 * most, "{} against {}", bound, most);
+        }
+    }
+}

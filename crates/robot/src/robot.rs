@@ -1,0 +1,235 @@
+//! A robot: links as meshes, joined to a tree.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use cloudtouch::geom::Pose;
+use cloudtouch::{Mesh, SelfMesh};
+use cloudtouch_io::ReadLimits;
+
+use crate::error::{JointsError, RobotError, RobotFault};
+use crate::essential::essential;
+use crate::joint::{Joint, JointKind};
+use crate::link::{Shape, Sources};
+use crate::srdf::disabled_pairs;
+use crate::tree::Tree;
+
+/// A robot read from a URDF, with the `<collision>` geometry of its links prepared for queries.
+///
+/// Meshes and boxes are exact; round primitives reach beyond what they stand for by at most
+/// [`EXCESS`](crate::EXCESS) of their radius, and nowhere less far. A link without `<collision>` is not
+/// there for any query, as URDF means it: [`Self::unchecked_links`] names those that can be seen.
+#[derive(Debug, Clone)]
+pub struct Robot {
+    pub(crate) tree: Tree,
+    pub(crate) shapes: Vec<Shape>,
+    unchecked: Vec<String>,
+    /// Pairs of links that may touch, by their names in order.
+    may_touch: BTreeSet<[String; 2]>,
+}
+
+/// A mesh this many times as large as the robot by its joints is in another unit.
+const LARGEST_LINK: f64 = 20.0;
+/// What a robot reaches at least, m: some have one link and no joint.
+const LEAST_REACH: f64 = 0.5;
+/// A mesh smaller than this is no link, m.
+const SMALLEST_LINK: f64 = 1e-3;
+
+impl Robot {
+    /// Reads a URDF and the meshes it names: `.stl`, `.obj` and `.ply`, in metres times their `scale`.
+    ///
+    /// `packages` are names and folders for `package://`; those in folders around the URDF are found
+    /// without.
+    ///
+    /// # Errors
+    /// When a file is missing or malformed, a number is no number, links are no tree, or a mesh is of
+    /// a size that cannot be meant; see [`RobotFault`].
+    pub fn from_urdf(
+        path: impl AsRef<Path>,
+        packages: &[(String, PathBuf)],
+    ) -> Result<Self, RobotError> {
+        Self::from_urdf_within(path, packages, &ReadLimits::default())
+    }
+
+    /// As [`Self::from_urdf`], with other limits on its mesh files than the default ones.
+    ///
+    /// # Errors
+    /// As [`Self::from_urdf`].
+    pub fn from_urdf_within(
+        path: impl AsRef<Path>,
+        packages: &[(String, PathBuf)],
+        limits: &ReadLimits,
+    ) -> Result<Self, RobotError> {
+        let path = path.as_ref();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let read = || Self::parse(&read_text(path)?, Sources { folder, packages, limits });
+        read().map_err(|fault| fault.of(path))
+    }
+
+    fn parse(text: &str, sources: Sources<'_>) -> Result<Self, RobotFault> {
+        let urdf = urdf_rs::read_from_string(&essential(text)?)
+            .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
+        let tree = Tree::try_from_urdf(&urdf)?;
+        let mut shapes = Vec::new();
+        for (index, link) in urdf.links.iter().enumerate() {
+            for collision in &link.collision {
+                shapes.push(Shape::try_from_urdf((index, &link.name), collision, sources)?);
+            }
+        }
+        if shapes.is_empty() {
+            return Err(RobotFault::NoGeometry);
+        }
+        check_sizes(&tree, &shapes)?;
+        let unchecked =
+            urdf.links.iter().filter(|of| of.collision.is_empty() && !of.visual.is_empty());
+        let unchecked = unchecked.map(|link| link.name.clone()).collect();
+        let mut robot = Self { tree, shapes, unchecked, may_touch: BTreeSet::new() };
+        robot.allow_neighbors();
+        Ok(robot)
+    }
+
+    /// Adds the pairs of links that an SRDF says not to check (`disable_collisions`). Links that
+    /// the robot does not have are passed over: many an SRDF is for several variants.
+    ///
+    /// # Errors
+    /// When the file is missing or malformed.
+    pub fn with_srdf(mut self, path: impl AsRef<Path>) -> Result<Self, RobotError> {
+        let path = path.as_ref();
+        let pairs = read_text(path).and_then(|text| disabled_pairs(&text));
+        for [a, b] in pairs.map_err(|fault| fault.of(path))? {
+            self.allow(a, b);
+        }
+        Ok(self)
+    }
+
+    /// The joints from the root outwards.
+    pub fn joints(&self) -> &[Joint] {
+        &self.tree.joints
+    }
+
+    /// The names of all links, in the order of the URDF.
+    pub fn links(&self) -> &[String] {
+        &self.tree.links
+    }
+
+    /// Links that have `<visual>` geometry and no `<collision>`: no query sees them.
+    pub fn unchecked_links(&self) -> &[String] {
+        &self.unchecked
+    }
+
+    /// Whether two links may touch: where no joint between them moves, where one is the next with
+    /// geometry along the chain from the other, and where an SRDF says so.
+    pub fn may_touch(&self, a: &str, b: &str) -> bool {
+        self.may_touch.contains(&in_order(a.to_owned(), b.to_owned()))
+    }
+
+    /// Where every link is by positions of the joints, rad and m: from its frame into that of the
+    /// base, by name. Joints that mimic others follow them.
+    ///
+    /// # Errors
+    /// When a joint is unknown, left out, not finite or beyond its limits.
+    pub fn link_poses(
+        &self,
+        joints: &BTreeMap<String, f64>,
+    ) -> Result<BTreeMap<&str, Pose>, JointsError> {
+        let poses = self.tree.poses(&self.tree.positions(joints)?);
+        Ok(self.tree.links.iter().map(String::as_str).zip(poses).collect())
+    }
+
+    /// The links where a camera saw them, for [`FilterSettings::robot`](cloudtouch::FilterSettings::robot):
+    /// points inside, or within `padding` metres of the surface, are removed from its scan. `joints` are
+    /// those at the time of the *scan*; at those asked about the filter would remove what is in the way.
+    ///
+    /// # Errors
+    /// As [`Self::link_poses`].
+    pub fn self_filter(
+        &self,
+        joints: &BTreeMap<String, f64>,
+        cloud_from_base: &Pose,
+        padding: f64,
+    ) -> Result<Vec<SelfMesh>, JointsError> {
+        let poses = self.tree.poses(&self.tree.positions(joints)?);
+        let prepared = self.shapes.iter().filter_map(|shape| {
+            // It was prepared when the robot was read.
+            let mesh = Arc::new(Mesh::prepare(&shape.triangles).ok()?);
+            let cloud_from_link = cloud_from_base.after(&poses[shape.link]);
+            Some(SelfMesh { mesh, cloud_from_link, padding })
+        });
+        Ok(prepared.collect())
+    }
+
+    /// By the names that bodies of a scene have: that of the link, with a number from 0 where it has
+    /// several shapes.
+    pub(crate) fn body_names(&self) -> Vec<String> {
+        let several: BTreeSet<usize> = self
+            .shapes
+            .windows(2)
+            .filter(|two| two[0].link == two[1].link)
+            .map(|two| two[0].link)
+            .collect();
+        let mut count = BTreeMap::new();
+        let name = |shape: &Shape| {
+            let link = &self.tree.links[shape.link];
+            let place = count.entry(shape.link).or_insert(0);
+            *place += 1;
+            if several.contains(&shape.link) {
+                format!("{link}/{}", *place - 1)
+            } else {
+                link.clone()
+            }
+        };
+        self.shapes.iter().map(name).collect()
+    }
+
+    fn allow(&mut self, a: String, b: String) {
+        self.may_touch.insert(in_order(a, b));
+    }
+
+    fn allow_neighbors(&mut self) {
+        let solid: BTreeSet<usize> = self.shapes.iter().map(|shape| shape.link).collect();
+        let groups = self.rigid_groups();
+        for &link in &solid {
+            let with_it =
+                solid.iter().filter(|&&other| other < link && groups[other] == groups[link]);
+            // The next with geometry on the way to the base: flanges between have none.
+            let carriers = self.tree.chain(link).map(|joint| self.tree.joints[joint].parent);
+            let next = carriers.into_iter().find(|carrier| solid.contains(carrier));
+            for other in with_it.copied().chain(next).collect::<Vec<usize>>() {
+                self.allow(self.tree.links[link].clone(), self.tree.links[other].clone());
+            }
+        }
+    }
+
+    /// For each link a link that it never moves against, the same for all of them.
+    fn rigid_groups(&self) -> Vec<usize> {
+        let mut groups: Vec<usize> = (0..self.tree.links.len()).collect();
+        for joint in self.tree.joints.iter().filter(|joint| joint.kind == JointKind::Fixed) {
+            groups[joint.child] = groups[joint.parent];
+        }
+        groups
+    }
+}
+
+/// Meshes in millimetres, or scaled twice.
+fn check_sizes(tree: &Tree, shapes: &[Shape]) -> Result<(), RobotFault> {
+    let reach: f64 = tree.joints.iter().map(|joint| joint.origin.translation().norm()).sum();
+    for shape in shapes {
+        let (Some(uri), size) = (&shape.uri, shape.size()) else { continue };
+        if size > LARGEST_LINK * reach.max(LEAST_REACH) || size < SMALLEST_LINK {
+            let (link, uri) = (tree.links[shape.link].clone(), uri.clone());
+            return Err(RobotFault::LinkSize { link, uri, size, reach });
+        }
+    }
+    Ok(())
+}
+
+fn in_order(a: String, b: String) -> [String; 2] {
+    let mut pair = [a, b];
+    pair.sort();
+    pair
+}
+
+fn read_text(path: &Path) -> Result<String, RobotFault> {
+    std::fs::read_to_string(path).map_err(|reason| RobotFault::File { reason })
+}

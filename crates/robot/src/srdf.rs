@@ -1,0 +1,27 @@
+//! Which links may touch, by an SRDF.
+
+use serde::Deserialize;
+
+use crate::error::RobotFault;
+
+#[derive(Deserialize)]
+struct Srdf {
+    #[serde(rename = "disable_collisions", default)]
+    disabled: Vec<Disabled>,
+}
+
+#[derive(Deserialize)]
+struct Disabled {
+    #[serde(rename = "@link1")]
+    link1: String,
+    #[serde(rename = "@link2")]
+    link2: String,
+}
+
+/// The pairs of links that an SRDF says not to check. What else it says (groups, poses, defaults to
+/// disable) is passed over, which leaves more to be checked, never less.
+pub(crate) fn disabled_pairs(text: &str) -> Result<Vec<[String; 2]>, RobotFault> {
+    let srdf: Srdf = quick_xml::de::from_str(text)
+        .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
+    Ok(srdf.disabled.into_iter().map(|pair| [pair.link1, pair.link2]).collect())
+}

@@ -1,0 +1,162 @@
+//! Descriptions that are wrong, and what is read of those that are right.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod support;
+
+use std::collections::BTreeMap;
+
+use cloudtouch::geom::Vector3;
+use cloudtouch_io::write_mesh_obj;
+use cloudtouch_robot::{JointsError, Robot};
+use cloudtouch_testkit::scene::cuboid;
+use support::{Arm, joints};
+
+/// One link of this geometry, and one that hangs on it by this joint.
+fn two_links(geometry: &str, joint: &str) -> String {
+    format!(
+        "<robot name='two'><link name='a'><collision><geometry>{geometry}</geometry></collision></link>\
+         <link name='b'/><joint name='j' {joint}<parent link='a'/><child link='b'/></joint></robot>"
+    )
+}
+
+const FIXED: &str = "type='fixed'>";
+const BOX: &str = "<box size='0.1 0.1 0.1'/>";
+
+fn mesh(file: &str, more: &str) -> String {
+    two_links(&format!("<mesh filename='{file}' {more}/>"), FIXED)
+}
+
+#[test]
+fn what_is_wrong_is_named_with_file_value_and_remedy() {
+    let arm = Arm::default();
+    let path = |name: &str| arm.path(name);
+    write_mesh_obj(path("cube.obj"), &cuboid([0.1; 3])).unwrap();
+    write_mesh_obj(path("mm.obj"), &cuboid([100.0; 3])).unwrap();
+    std::fs::write(path("old.dae"), "<COLLADA/>").unwrap();
+    std::fs::write(path("cut.stl"), "solid cut\nfacet").unwrap();
+    let joint = |joint: &str| two_links(BOX, joint);
+    let limits = "<limit lower='1' upper='-1' effort='0' velocity='0'/>";
+    for (urdf, parts) in [
+        (mesh("gone.stl", ""), vec!["link `a`", "gone.stl", "no file", "correct the path"]),
+        (mesh("package://mine/cube.obj", ""), vec!["`a`", "`mine`", "--package mine=FOLDER"]),
+        (mesh("http://x.org/cube.obj", ""), vec!["`a`", "http://x.org/cube.obj", "package://"]),
+        (mesh("old.dae", ""), vec!["`a`", "old.dae", "COLLADA", "convert it to STL or OBJ"]),
+        (mesh("GONE.DAE", ""), vec!["`a`", "GONE.DAE", "convert it"]),
+        (mesh("cut.stl", ""), vec!["`a`", "cut.stl"]),
+        (
+            mesh("mm.obj", ""),
+            vec!["`a`", "mm.obj", "173.205 m", "millimetres", "0.001 0.001 0.001"],
+        ),
+        (mesh("cube.obj", "scale='0.001 0.001 0.001'"), vec!["`a`", "0.000 m", "scaled twice"]),
+        (mesh("cube.obj", "scale='1 0 1'"), vec!["`a`", "mesh scale", "above 0"]),
+        (mesh("cube.obj", "scale='1 nan 1'"), vec!["a", "NaN", "mesh scale", "finite"]),
+        (two_links("<box size='1 -1 1'/>", FIXED), vec!["`a`", "-1", "box size"]),
+        (two_links("<sphere radius='inf'/>", FIXED), vec!["`a`", "inf", "sphere radius"]),
+        (joint("type='floating'>"), vec!["`j`", "floating", "pose of the base"]),
+        (joint("type='continuous'><axis xyz='0 0 0'/>"), vec!["`j`", "axis of length zero"]),
+        (joint("type='fixed'><origin xyz='0 nan 0'/>"), vec!["`j`", "NaN", "origin xyz"]),
+        (joint(&format!("type='revolute'>{limits}")), vec!["`j`", "1 .. -1"]),
+        (joint("type='continuous'><mimic joint='k'/>"), vec!["`j`", "mimics `k`"]),
+        (joint("type='continuous'><mimic joint='j'/>"), vec!["`j`", "mimics `j`"]),
+        (joint(FIXED).replace("child link='b'", "child link='c'"), vec!["`j`", "child `c`"]),
+        (joint(FIXED).replace("child link='b'", "child link='a'"), vec!["do not hang on one root"]),
+        (joint(FIXED).replace("link name='b'", "link name='a'"), vec!["link `a`", "twice"]),
+        (
+            joint(FIXED).replace("</robot>", "<link name='c'/></robot>"),
+            vec!["`c`", "one root (`a`)"],
+        ),
+        (two_links(BOX, FIXED).replace("collision", "visual"), vec!["no link has <collision>"]),
+        ("<robot name='x'".to_owned(), vec!["cannot be understood", "xacro"]),
+    ] {
+        let error = arm.of(&urdf).unwrap_err().to_string();
+        for part in parts.iter().chain(&["arm.urdf: "]) {
+            assert!(error.contains(part), "{part:?} in {error}");
+        }
+    }
+    let error = Robot::from_urdf(path("none.urdf"), &[]).unwrap_err().to_string();
+    assert!(error.contains("none.urdf") && error.contains("cannot be read"), "{error}");
+}
+
+#[test]
+fn meshes_are_found_by_package_file_and_path_and_scaled() {
+    let arm = Arm::default();
+    let folder = arm.path("elsewhere/meshes");
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("mm.obj");
+    write_mesh_obj(&file, &cuboid([100.0, 200.0, 300.0])).unwrap();
+    let urdf = arm.path("arm.urdf");
+    let packages = [("mine".to_owned(), arm.path("elsewhere"))];
+    let scale = "scale='0.001 0.001 -0.001'";
+    for name in [
+        "package://mine/meshes/mm.obj",
+        &format!("file://{}", file.display()),
+        "elsewhere/meshes/mm.obj",
+    ] {
+        std::fs::write(&urdf, mesh(name, scale)).unwrap();
+        let robot = Robot::from_urdf(&urdf, &packages).unwrap();
+        let links = robot.self_filter(&BTreeMap::new(), &Default::default(), 0.0).unwrap();
+        let [link] = &links[..] else { panic!("one link is a mesh") };
+        assert!((link.mesh.size() - Vector3::new(0.1, 0.2, 0.3).norm()).abs() < 1e-12);
+        assert!(link.mesh.is_watertight() && link.mesh.signed_distance(&Default::default()) < 0.0);
+    }
+    // A package is found beside the folder of the URDF, too.
+    std::fs::write(&urdf, mesh("package://elsewhere/meshes/mm.obj", scale)).unwrap();
+    Robot::from_urdf(&urdf, &[]).unwrap();
+}
+
+#[test]
+fn positions_that_place_no_robot_are_refused() {
+    let robot = Arm::default().robot();
+    let with = |name: &str, value: f64| {
+        let mut changed = joints([0.0; 6]);
+        changed.insert(name.to_owned(), value);
+        robot.link_poses(&changed).unwrap_err()
+    };
+    let unknown = with("elbo", 0.0);
+    assert!(matches!(&unknown, JointsError::Unknown { name, .. } if name == "elbo"));
+    assert!(unknown.to_string().contains("`elbow`"), "{unknown}");
+    assert!(matches!(with("elbow", f64::NAN), JointsError::NotFinite { .. }));
+    let beyond = with("elbow", 3.1);
+    assert!(beyond.to_string().contains("3.1, beyond its limits -3 .. 3"), "{beyond}");
+    assert!(with("elbow", 90.0).to_string().contains("in degrees"));
+    assert!(with("elbow", -90.0).to_string().contains("in degrees"));
+    let mut few = joints([0.0; 6]);
+    few.remove("elbow");
+    few.remove("waist");
+    let missing = robot.link_poses(&few).unwrap_err().to_string();
+    assert!(missing.contains("`elbow`, `waist`"), "{missing}");
+}
+
+/// A gripper: one finger slides, the other follows the other way.
+#[test]
+fn a_joint_that_mimics_follows() {
+    let finger = |name: &str, joint: &str, more: &str| {
+        format!(
+            "<link name='{name}'/><joint name='{joint}' type='prismatic'><parent link='palm'/>\
+             <child link='{name}'/><axis xyz='0 2 0'/>\
+             <limit lower='-0.05' upper='0.05' effort='1' velocity='1'/>{more}</joint>"
+        )
+    };
+    let urdf = format!(
+        "<robot name='gripper'><link name='palm'><collision><geometry>{BOX}</geometry></collision></link>\
+         {}{}</robot>",
+        finger("right", "right_slide", "<mimic joint='left_slide' multiplier='-2' offset='0.01'/>"),
+        finger("left", "left_slide", ""),
+    );
+    let robot = Arm::default().of(&urdf).unwrap();
+    let at = |positions: &[(&str, f64)]| {
+        let positions = positions.iter().map(|&(name, at)| (name.to_owned(), at)).collect();
+        let poses = robot.link_poses(&positions)?;
+        Ok::<_, JointsError>(["left", "right"].map(|link| poses[link].translation().y))
+    };
+    // The axis is a direction, whatever its length.
+    let [left, right] = at(&[("left_slide", 0.02)]).unwrap();
+    assert!((left - 0.02).abs() < 1e-15 && (right + 0.03).abs() < 1e-15);
+    assert_eq!(at(&[("left_slide", 0.02), ("right_slide", -0.03)]).unwrap(), [left, right]);
+    let error = at(&[("left_slide", 0.02), ("right_slide", 0.03)]).unwrap_err();
+    assert!(matches!(error, JointsError::Mimic { .. }), "{error}");
+    // What follows has limits of its own.
+    let error = at(&[("left_slide", 0.04)]).unwrap_err().to_string();
+    assert!(error.contains("`right_slide` is at -0.07"), "{error}");
+    assert!(matches!(at(&[]).unwrap_err(), JointsError::Missing { .. }));
+}
