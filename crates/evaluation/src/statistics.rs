@@ -12,3 +12,16 @@ pub fn quantile(values: &[f64], q: f64) -> f64 {
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_of_known_lists() {
+        let values: Vec<f64> = (1..=21).rev().map(f64::from).collect();
+        assert_eq!([0.0, 0.5, 1.0].map(|q| quantile(&values, q)), [1.0, 11.0, 21.0]);
+        assert_eq!(median(&[1.0, 4.0]), 2.5);
+        assert!(median(&[]).is_nan());
+    }
+}

@@ -5,12 +5,32 @@ use std::collections::BTreeSet;
 /// The page this is about.
 pub(super) const PAGE: &str = "docs/paper-map.md";
 
-/// Notes what the code of a file names anywhere, and its modules: what is gone leaves no name there.
+/// Words before the name of an item.
+const ITEMS: [&str; 8] = ["const", "enum", "fn", "mod", "static", "struct", "trait", "type"];
+
+/// Notes what a file declares, by its last name: items, fields, variants, and modules by its path.
 pub(super) fn note(path: &str, text: &str, names: &mut BTreeSet<String>) {
     names.extend(path.trim_end_matches(".rs").split('/').map(str::to_owned));
-    let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
-    let words = code.flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_'));
-    names.extend(words.map(str::to_owned));
+    for line in text.lines() {
+        let words: Vec<&str> = line
+            .split(|c: char| !c.is_alphanumeric() && c != '_')
+            .filter(|w| !w.is_empty())
+            .collect();
+        let after = |pair: &[&str]| ITEMS.contains(&pair[0]).then(|| pair[1].to_owned());
+        names.extend(words.windows(2).filter_map(after));
+        // A field, or a variant on a line of its own.
+        let line = line.trim_start();
+        let is_field = line.starts_with("pub ") && line.contains(':');
+        let is_variant = line.starts_with(char::is_uppercase)
+            && line[words.first().map_or(0, |w| w.len())..]
+                .trim_start()
+                .starts_with([',', '(', '{']);
+        if is_field {
+            names.extend(words.get(1).map(|w| (*w).to_owned()));
+        } else if is_variant {
+            names.extend(words.first().map(|w| (*w).to_owned()));
+        }
+    }
 }
 
 /// Names in code font of which there is nothing; `has_path` knows the paths below `crates/`.
@@ -54,12 +74,14 @@ mod tests {
 
     #[test]
     fn names_of_nothing_are_found() {
-        let source = "pub struct Query {\n    pub gamma: f64,\n}\nenum Kind {\n    Fast,\n}\nfn it_holds() {}\n";
+        let source = "pub struct Query {\n    pub gamma: f64,\n}\nenum Kind {\n    Fast,\n}\nfn it_holds() {\n    helper(used);\n}\n";
         let mut names = BTreeSet::new();
         note("svm/src/smo.rs", source, &mut names);
         let check = |text: &str| check(text, &names, |path| path == "svm/src/smo.rs").len();
         assert_eq!(check("`Query::gamma`, `Kind::Fast`, `smo::it_holds`, `svm/src/smo.rs`\n"), 0);
         assert_eq!(check("`cargo xtask paper` and `--points`\n"), 0);
         assert_eq!(check("`Query::{gamma,delta}`, `svm/src/{smo,qp}.rs`, `it_broke`\n"), 3);
+        // What is only used may be another's.
+        assert_eq!(check("`helper`, `Query::used`\n"), 2);
     }
 }
