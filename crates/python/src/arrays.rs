@@ -1,9 +1,9 @@
 //! Arrays of numpy in, of either precision and any strides; nothing is copied on the way.
 
-use cloudtouch::geom::Point3;
+use cloudtouch::geom::{Point3, Pose};
 use nalgebra::Matrix4;
-use numpy::ndarray::{ArrayView2, ArrayView3};
-use numpy::{Element, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::ndarray::{Array2, ArrayView2, ArrayView3};
+use numpy::{Element, IntoPyArray, PyArray2, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 
 /// Rows of three numbers, as points.
@@ -42,4 +42,10 @@ pub(crate) fn matrices(array: &PyReadonlyArray3<'_, f64>) -> Vec<Matrix4<f64>> {
     let view: ArrayView3<'_, f64> = array.as_array();
     let of = |m: ArrayView2<'_, f64>| Matrix4::from_fn(|row, column| m[(row, column)]);
     view.outer_iter().map(of).collect()
+}
+
+/// A pose as a matrix.
+pub(crate) fn of_pose<'py>(py: Python<'py>, pose: &Pose) -> Bound<'py, PyArray2<f64>> {
+    let matrix = pose.isometry().to_homogeneous();
+    Array2::from_shape_fn((4, 4), |place| matrix[place]).into_pyarray(py)
 }

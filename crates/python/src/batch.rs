@@ -103,6 +103,19 @@ impl Columns {
     }
 }
 
+/// The columns of rows that were not asked about, all for one reason.
+#[pyfunction]
+#[pyo3(signature = (message, count, /))]
+pub(crate) fn refused<'py>(
+    py: Python<'py>,
+    message: &str,
+    count: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let mut columns = Columns::default();
+    (0..count).for_each(|_| columns.push_error(message));
+    columns.into_dict(py)
+}
+
 /// A name in the letters that numpy has, filled up with zeros.
 fn name(text: &str) -> PyFixedUnicode<LETTERS> {
     let mut letters = [0; LETTERS];

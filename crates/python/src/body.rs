@@ -1,26 +1,35 @@
 //! Clouds and meshes, made ready.
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
 
 use cloudtouch::geom::{
     Covariance, Matrix3, Point3, PointCloud, Pose, TriangleMesh, Vector3, unit,
 };
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Body as Prepared, BodyRef, Cloud, CloudSettings, Mesh, OutlierSettings};
+use cloudtouch::{
+    Body as Prepared, BodyRef, Change, ChangeError, Cloud, CloudSettings, Mesh, OutlierSettings,
+    SelfMesh,
+};
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 
 use crate::arrays::{Rows, matrix};
 use crate::error::{refused, refused_for};
-use crate::pool::on_all_threads;
+use crate::pool::{on_all_threads, pool};
 
-/// A prepared body; immutable, and shared by threads.
+/// A prepared body, shared by threads.
 #[pyclass(frozen, module = "cloudtouch._native")]
 pub(crate) struct Body {
+    state: RwLock<State>,
+}
+
+struct State {
+    /// Held by others only while they ask.
     prepared: Arc<Prepared>,
-    /// As it was given, for pickling: what is prepared has lost points that were filtered out.
-    given: Given,
+    /// As it was given, for pickling: what is prepared has lost points that were filtered out. None once it
+    /// was changed.
+    given: Option<Given>,
 }
 
 /// What a body was made of.
@@ -30,95 +39,173 @@ enum Given {
 }
 
 impl Body {
-    pub(crate) fn get(&self) -> BodyRef<'_> {
-        (&*self.prepared).into()
+    fn new(prepared: impl Into<Prepared>, given: Given) -> Self {
+        let state = State { prepared: Arc::new(prepared.into()), given: Some(given) };
+        Self { state: RwLock::new(state) }
     }
 
-    pub(crate) fn prepared(&self) -> &Arc<Prepared> {
-        &self.prepared
+    /// As it is now, to be held while it is asked about. Waits for a change, and lets others run meanwhile.
+    pub(crate) fn now(&self, py: Python<'_>) -> PyResult<Arc<Prepared>> {
+        py.detach(|| self.state.read().map(|state| Arc::clone(&state.prepared)).map_err(broken))
     }
 
-    /// The points kept, to the bit as they were given; the cells of a collision map were not given.
-    fn kept(&self, cloud: &Cloud) -> Vec<Point3> {
-        match &self.given {
-            Given::Cloud(given) if !cloud.rows().is_empty() => {
-                cloud.rows().iter().map(|&row| given.points[row]).collect()
+    /// A mesh as a link that a camera saw.
+    fn mesh(&self, py: Python<'_>) -> PyResult<Mesh> {
+        let of_given = || match &self.state.read().map_err(broken)?.given {
+            Some(Given::Mesh(mesh)) => Mesh::prepare(mesh).map_err(refused),
+            _ => Err(refused("a link of a robot is a Mesh")),
+        };
+        py.detach(of_given)
+    }
+
+    /// Changes a cloud in its place, on all threads.
+    fn change(
+        &self,
+        py: Python<'_>,
+        change: impl FnOnce(&mut Cloud) -> Result<Change, ChangeError> + Send,
+    ) -> PyResult<Change> {
+        let pool = pool()?;
+        py.detach(|| {
+            // Out of the pool: a thread of it that waits for its part could take up another change.
+            let mut state = self.state.write().map_err(broken)?;
+            match Arc::get_mut(&mut state.prepared) {
+                Some(Prepared::Cloud(cloud)) => {
+                    let done = pool.install(|| change(cloud)).map_err(refused)?;
+                    state.given = None;
+                    Ok(done)
+                }
+                Some(Prepared::Mesh(_)) => Err(refused("a mesh does not change")),
+                None => Err(refused(
+                    "the cloud is being asked about by another thread: change it between queries",
+                )),
             }
-            _ => (0..cloud.len()).map(|i| cloud.point(i)).collect(),
-        }
+        })
     }
+}
+
+/// A change that panicked may have left half of it.
+fn broken<T>(_: PoisonError<T>) -> PyErr {
+    refused("a change of this cloud did not come to its end: make it anew")
 }
 
 #[pymethods]
 impl Body {
-    /// The points or vertices as given, m.
-    fn given_points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        match &self.given {
-            Given::Cloud(cloud) => rows(py, &cloud.points),
-            Given::Mesh(mesh) => rows(py, mesh.vertices()),
-        }
+    /// The points or vertices as given, m; none once they were changed.
+    fn given_points<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        Ok(match &self.state.read().map_err(broken)?.given {
+            Some(Given::Cloud(cloud)) => Some(rows(py, &cloud.points)),
+            Some(Given::Mesh(mesh)) => Some(rows(py, mesh.vertices())),
+            None => None,
+        })
     }
 
     /// The triangles as given; none for a cloud.
-    fn given_triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i64>> {
-        let triangles = match &self.given {
-            Given::Cloud(_) => &[],
-            Given::Mesh(mesh) => mesh.triangles(),
-        };
-        corners(py, triangles)
+    fn given_triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        Ok(match &self.state.read().map_err(broken)?.given {
+            Some(Given::Mesh(mesh)) => corners(py, mesh.triangles()),
+            _ => corners(py, &[]),
+        })
     }
 
-    /// The points that the filter kept, or the merged vertices, m.
-    fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        match &*self.prepared {
-            Prepared::Cloud(cloud) => rows(py, &self.kept(cloud)),
+    /// The points that the cloud has, or the merged vertices, m.
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        Ok(match &*self.now(py)? {
+            Prepared::Cloud(cloud) => {
+                table((0..cloud.len()).map(|i| cloud.point(i).coords)).into_pyarray(py)
+            }
             Prepared::Mesh(mesh) => rows(py, &mesh.faces().0),
-        }
+        })
     }
 
     /// The merged triangles; none for a cloud.
-    fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i64>> {
-        match &*self.prepared {
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        Ok(match &*self.now(py)? {
             Prepared::Cloud(_) => corners(py, &[]),
             Prepared::Mesh(mesh) => corners(py, mesh.faces().1),
-        }
+        })
     }
 
     /// For every kept point its row; empty after a collision map, and for a mesh.
-    fn rows<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        let rows = match &*self.prepared {
+    fn rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let rows = match &*self.now(py)? {
             Prepared::Cloud(cloud) => cloud.rows().iter().map(|&row| row as i64).collect(),
             Prepared::Mesh(_) => Vec::new(),
         };
-        rows.into_pyarray(py)
+        Ok(rows.into_pyarray(py))
     }
 
     /// How many points were kept, or triangles are left after merging.
-    fn count(&self) -> usize {
-        match &*self.prepared {
+    fn count(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(match &*self.now(py)? {
             Prepared::Cloud(cloud) => cloud.len(),
             Prepared::Mesh(mesh) => mesh.triangle_count(),
-        }
+        })
     }
 
     /// What each stage of the filter removed.
-    fn removed(&self) -> Vec<(&'static str, usize)> {
-        match &*self.prepared {
+    fn removed(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, usize)>> {
+        Ok(match &*self.now(py)? {
             Prepared::Cloud(cloud) => {
                 cloud.filter_stages().iter().map(|stage| (stage.stage, stage.removed)).collect()
             }
             Prepared::Mesh(_) => Vec::new(),
-        }
+        })
     }
 
     /// Whether a mesh encloses a volume.
-    fn is_watertight(&self) -> bool {
-        matches!(&*self.prepared, Prepared::Mesh(mesh) if mesh.is_watertight())
+    fn is_watertight(&self, py: Python<'_>) -> PyResult<bool> {
+        Ok(matches!(&*self.now(py)?, Prepared::Mesh(mesh) if mesh.is_watertight()))
     }
 
-    fn prepare_seconds(&self) -> f64 {
-        self.get().prepare_time().as_secs_f64()
+    fn prepare_seconds(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(BodyRef::from(&*self.now(py)?).prepare_time().as_secs_f64())
     }
+
+    #[pyo3(signature = (points, arguments, /))]
+    fn insert(
+        &self,
+        py: Python<'_>,
+        points: Rows<'_>,
+        arguments: CloudArguments<'_>,
+    ) -> PyResult<Changed> {
+        let (settings, scan) = (arguments.settings(py)?, arguments.cloud(points.points())?);
+        self.change(py, |cloud| cloud.insert(&scan, &settings)).map(changed)
+    }
+
+    #[pyo3(signature = (points, arguments, /))]
+    fn replace_frame(
+        &self,
+        py: Python<'_>,
+        points: Rows<'_>,
+        arguments: CloudArguments<'_>,
+    ) -> PyResult<Changed> {
+        let (settings, frame) = (arguments.settings(py)?, arguments.cloud(points.points())?);
+        self.change(py, |cloud| cloud.replace_frame(&frame, &settings)).map(changed)
+    }
+
+    #[pyo3(signature = (indices, /))]
+    fn remove(&self, py: Python<'_>, indices: Vec<usize>) -> PyResult<Changed> {
+        self.change(py, |cloud| cloud.remove(&indices)).map(changed)
+    }
+
+    #[pyo3(signature = (indices, places, /))]
+    fn move_points(
+        &self,
+        py: Python<'_>,
+        indices: Vec<usize>,
+        places: Rows<'_>,
+    ) -> PyResult<Changed> {
+        let moves: Vec<(usize, Point3)> = indices.into_iter().zip(places.points()).collect();
+        self.change(py, |cloud| cloud.move_points(&moves)).map(changed)
+    }
+}
+
+/// The fields of `cloudtouch.Change`, in their order.
+type Changed = (usize, usize, usize, usize, usize, bool);
+
+fn changed(change: Change) -> Changed {
+    let Change { inserted, removed, moved, surfaces_kept, surfaces_lost, is_recentred } = change;
+    (inserted, removed, moved, surfaces_kept, surfaces_lost, is_recentred)
 }
 
 /// What a cloud is made of beside its points.
@@ -134,11 +221,12 @@ pub(crate) struct CloudArguments<'py> {
     max_range: Option<f64>,
     outliers: Option<(usize, f64)>,
     collision_map: Option<f64>,
+    robot: Vec<(Bound<'py, Body>, PyReadonlyArray2<'py, f64>, f64)>,
     refined: bool,
 }
 
 impl CloudArguments<'_> {
-    fn settings(&self) -> PyResult<CloudSettings> {
+    fn settings(&self, py: Python<'_>) -> PyResult<CloudSettings> {
         let sensor: SensorModel = self.sensor.parse().map_err(refused)?;
         let mut settings = CloudSettings::new(sensor);
         let filter = &mut settings.filter;
@@ -146,6 +234,12 @@ impl CloudArguments<'_> {
         filter.max_range = self.max_range.unwrap_or(filter.max_range);
         let outliers = |(neighbors, deviations)| OutlierSettings { neighbors, deviations };
         filter.outliers = self.outliers.map(outliers).or(filter.outliers);
+        for (link, pose, padding) in &self.robot {
+            let cloud_from_link = Pose::try_from_matrix(&matrix(pose));
+            let cloud_from_link = cloud_from_link.map_err(|e| refused_for("robot", e))?;
+            let mesh = Arc::new(link.get().mesh(py)?);
+            filter.robot.push(SelfMesh { mesh, cloud_from_link, padding: *padding });
+        }
         if let Some(resolution) = self.collision_map {
             filter.collision_map = Some(resolution);
             settings.sensor = SensorModel::Grid { resolution };
@@ -188,15 +282,14 @@ pub(crate) fn cloud(
     points: Rows<'_>,
     arguments: CloudArguments<'_>,
 ) -> PyResult<Body> {
-    let settings = arguments.settings()?;
+    let settings = arguments.settings(py)?;
     let given = arguments.cloud(points.points())?;
     let refined = arguments.refined;
     let prepared = on_all_threads(py, || {
         let cloud = Cloud::prepare(&given, &settings)?;
         if refined { cloud.refined() } else { Ok(cloud) }
     })?;
-    let prepared = Arc::new(Prepared::Cloud(prepared.map_err(refused)?));
-    Ok(Body { prepared, given: Given::Cloud(given) })
+    Ok(Body::new(prepared.map_err(refused)?, Given::Cloud(given)))
 }
 
 /// A mesh, ready to be queried. The indices are from 0 to what 32 bits hold.
@@ -211,8 +304,7 @@ pub(crate) fn mesh(
     let triangles = indices.rows().into_iter().map(|t| [t[0], t[1], t[2]]).collect();
     let given = TriangleMesh::try_new(vertices.points(), triangles).map_err(refused)?;
     let prepared = on_all_threads(py, || Mesh::prepare(&given))?;
-    let prepared = Arc::new(Prepared::Mesh(prepared.map_err(refused)?));
-    Ok(Body { prepared, given: Given::Mesh(given) })
+    Ok(Body::new(prepared.map_err(refused)?, Given::Mesh(given)))
 }
 
 /// Points as rows.

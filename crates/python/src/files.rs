@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use cloudtouch::geom::{Covariance, PointCloud};
 use cloudtouch_io::{LengthUnit, ReadLimits, read_cloud_within, read_mesh, scaled_cloud};
-use numpy::ndarray::{Array2, Array3};
+use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
+use crate::arrays::of_pose;
 use crate::body::{corners, rows};
 use crate::error::refused;
 
@@ -28,8 +29,7 @@ pub(crate) fn read_cloud<'py>(
     let factor = unit.parse::<LengthUnit>().map_err(refused)?.in_metres();
     let read = py.detach(|| read_cloud_within(path, &ReadLimits::default()));
     let cloud: PointCloud = scaled_cloud(read.map_err(refused)?, factor);
-    let pose = cloud.sensor_pose.isometry().to_homogeneous();
-    let pose = Array2::from_shape_fn((4, 4), |place| pose[place]).into_pyarray(py);
+    let pose = of_pose(py, &cloud.sensor_pose);
     let covariances = cloud.covariances.as_deref().map(|all| matrices(all).into_pyarray(py));
     Ok((rows(py, &cloud.points), cloud.image_size, pose, covariances))
 }

@@ -10,11 +10,14 @@ mod files;
 mod page;
 mod pool;
 mod query;
+mod robot;
 mod scene;
 mod sweep;
 
 #[pyo3::pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::batch::refused;
     #[pymodule_export]
     use crate::body::{Body, cloud, mesh};
     #[pymodule_export]
@@ -23,6 +26,8 @@ mod _native {
     use crate::files::{read_cloud, read_faces};
     #[pymodule_export]
     use crate::query::Query;
+    #[pymodule_export]
+    use crate::robot::{Robot, RobotChecker};
     #[pymodule_export]
     use crate::scene::Scene;
 

@@ -26,7 +26,7 @@ pub(crate) fn on_all_threads<T: Send>(
 /// A forked process (`multiprocessing` on Linux before Python 3.14) has a copy of the pool and none of
 /// its threads: work given to those would never end, as it would in rayon's global pool. Whoever comes
 /// here holds the GIL, and so does who forks: the lock is free in the child.
-fn pool() -> PyResult<Arc<ThreadPool>> {
+pub(crate) fn pool() -> PyResult<Arc<ThreadPool>> {
     let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     let here = process::id();
     match &*known {

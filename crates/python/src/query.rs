@@ -74,9 +74,9 @@ impl Query {
         b: &Bound<'py, Body>,
         pose: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (a, b) = (a.get().get(), b.get().get());
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        let report = py.detach(|| self.checked.run(a, b, &pose)).map_err(refused)?;
+        let report = py.detach(|| self.checked.run(&*a, &*b, &pose)).map_err(refused)?;
         answer::report(py, &report)
     }
 
@@ -89,9 +89,9 @@ impl Query {
         pose: PyReadonlyArray2<'py, f64>,
         margin: f64,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
-        let (a, b) = (a.get().get(), b.get().get());
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        let both = py.detach(|| self.checked.within(a, b, &pose, margin));
+        let both = py.detach(|| self.checked.within(&*a, &*b, &pose, margin));
         let (report, within) = both.map_err(refused)?;
         Ok((answer::report(py, &report)?, answer::within(py, &within)?))
     }
@@ -105,9 +105,9 @@ impl Query {
         pose: PyReadonlyArray2<'py, f64>,
         share: f64,
     ) -> PyResult<[f64; 2]> {
-        let (a, b) = (a.get().get(), b.get().get());
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        py.detach(|| self.checked.clearance_interval(a, b, &pose, share)).map_err(refused)
+        py.detach(|| self.checked.clearance_interval(&*a, &*b, &pose, share)).map_err(refused)
     }
 
     #[pyo3(signature = (a, b, pose, covariance, /))]
@@ -119,12 +119,12 @@ impl Query {
         pose: PyReadonlyArray2<'py, f64>,
         covariance: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
-        let (a, b) = (a.get().get(), b.get().get());
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let mean = rigid(&matrix(&pose))?;
         let entries = covariance.as_array();
         let covariance = from_fn(|row| from_fn(|column| entries[(row, column)]));
         let poses = PoseDistribution { mean, covariance };
-        let both = on_all_threads(py, || self.checked.run_uncertain(a, b, &poses))?;
+        let both = on_all_threads(py, || self.checked.run_uncertain(&*a, &*b, &poses))?;
         let (report, under) = both.map_err(refused)?;
         Ok((answer::report(py, &report)?, answer::under_poses(py, &under)?))
     }
@@ -137,9 +137,9 @@ impl Query {
         b: &Bound<'py, Body>,
         pose: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
-        let (a, b) = (a.get().get(), b.get().get());
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        let both = py.detach(|| self.checked.gradient(a, b, &pose));
+        let both = py.detach(|| self.checked.gradient(&*a, &*b, &pose));
         let (report, gradient) = both.map_err(refused)?;
         Ok((answer::report(py, &report)?, answer::gradient(py, &gradient)?))
     }
@@ -153,9 +153,9 @@ impl Query {
         pose: PyReadonlyArray2<'py, f64>,
         probability: f64,
     ) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
-        let (a, b) = (a.get().get(), b.get().get());
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        let both = py.detach(|| self.checked.penetration(a, b, &pose, probability));
+        let both = py.detach(|| self.checked.penetration(&*a, &*b, &pose, probability));
         let (report, out) = both.map_err(refused)?;
         let out = out.map(|out| answer::penetration(py, &out)).transpose()?;
         Ok((answer::report(py, &report)?, out))
@@ -171,14 +171,15 @@ impl Query {
         is_screw: bool,
         tolerance: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (a, b) = (a.get().get(), b.get().get());
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let poses: PyResult<Vec<Pose>> = all_rigid(&poses).into_iter().collect();
         let path = match (&poses?[..], is_screw) {
             ([from, to], true) => Path::screw(from, to),
             (poses, _) => Path::through(poses),
         };
         let path = path.map_err(refused)?;
-        let swept = py.detach(|| self.checked.sweep(a, b, &path, tolerance)).map_err(refused)?;
+        let swept =
+            py.detach(|| self.checked.sweep(&*a, &*b, &path, tolerance)).map_err(refused)?;
         sweep::answer(py, &swept)
     }
 
@@ -193,7 +194,8 @@ impl Query {
         height: Option<u32>,
     ) -> PyResult<String> {
         let poses: PyResult<Vec<Pose>> = all_rigid(&poses).into_iter().collect();
-        page::answer(py, &self.checked, [a.get(), b.get()], &poses?, title, height)
+        let bodies = [a.get().now(py)?, b.get().now(py)?];
+        page::answer(py, &self.checked, bodies, &poses?, title, height)
     }
 
     #[pyo3(signature = (a, b, poses, keep_going, /))]
@@ -205,7 +207,7 @@ impl Query {
         poses: PyReadonlyArray3<'py, f64>,
         keep_going: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (a, b) = (a.get().get(), b.get().get());
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let poses = all_rigid(&poses);
         // Before any work.
         if let Some(Err(error)) = poses.iter().find(|pose| pose.is_err() && !keep_going) {
@@ -215,7 +217,7 @@ impl Query {
         for (part, poses) in poses.chunks(POSES_AT_ONCE).enumerate() {
             let good: Vec<Pose> = poses.iter().flatten().copied().collect();
             let mut reports =
-                on_all_threads(py, || self.checked.run_batch(a, b, &good))?.into_iter();
+                on_all_threads(py, || self.checked.run_batch(&*a, &*b, &good))?.into_iter();
             for (index, pose) in poses.iter().enumerate() {
                 let row = part * POSES_AT_ONCE + index;
                 let report = match pose {

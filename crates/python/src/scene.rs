@@ -1,8 +1,10 @@
 //! Many bodies by name.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use cloudtouch::{Checked, PairAnswer, Scene as Bodies};
+use cloudtouch::geom::{Point3, TriangleMesh};
+use cloudtouch::{Body as Prepared, Checked, Mesh, PairAnswer, Scene as Bodies};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,95 +18,121 @@ use crate::query::{Query, rigid};
 
 /// Named bodies with poses; several threads may ask it, one at a time changes it.
 #[pyclass(frozen, module = "cloudtouch._native")]
-#[derive(Default)]
 pub(crate) struct Scene {
-    bodies: Mutex<Bodies>,
+    named: Mutex<Named>,
+    nobody: Arc<Prepared>,
+}
+
+struct Named {
+    /// Where they are, with nobody in the place of each.
+    places: Bodies,
+    /// Who they are: a cloud may change while it is in a scene.
+    bodies: BTreeMap<String, Py<Body>>,
 }
 
 /// Names of two bodies, and their report or why there is none.
-type Pair<'py> = (String, String, Option<Bound<'py, PyDict>>, Option<String>);
+pub(crate) type Pair<'py> = (String, String, Option<Bound<'py, PyDict>>, Option<String>);
+
+/// Pairs that are not free; pairs there are, allowed, ruled out and asked.
+pub(crate) type Found<'py> = (Vec<Pair<'py>>, [usize; 4]);
 
 impl Scene {
     /// What a thread that panicked left is whole: each change is made at once or not at all.
-    fn lock(&self) -> MutexGuard<'_, Bodies> {
-        self.bodies.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self) -> MutexGuard<'_, Named> {
+        self.named.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// As it is now: to be asked while others change it.
-    fn now(&self) -> Bodies {
-        self.lock().clone()
+    fn now(&self, py: Python<'_>) -> PyResult<Bodies> {
+        let (mut scene, bodies) = {
+            let named = self.lock();
+            let bodies = named.bodies.iter().map(|(name, body)| (name.clone(), body.clone_ref(py)));
+            (named.places.clone(), bodies.collect::<Vec<_>>())
+        };
+        for (name, body) in bodies {
+            scene.replace(&name, body.get().now(py)?).map_err(refused)?;
+        }
+        Ok(scene)
     }
+}
+
+/// Stands where a body will be, so that its owner may change that.
+pub(crate) fn nobody() -> PyResult<Arc<Prepared>> {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0));
+    let triangle = TriangleMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).map_err(refused)?;
+    Ok(Arc::new(Mesh::prepare(&triangle).map_err(refused)?.into()))
 }
 
 #[pymethods]
 impl Scene {
     #[new]
-    fn new() -> Self {
-        Self::default()
+    fn new() -> PyResult<Self> {
+        let named = Named { places: Bodies::default(), bodies: BTreeMap::new() };
+        Ok(Self { named: Mutex::new(named), nobody: nobody()? })
     }
 
     #[pyo3(signature = (name, body, pose, /))]
     fn add(
         &self,
         name: String,
-        body: &Bound<'_, Body>,
+        body: Bound<'_, Body>,
         pose: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<()> {
         let pose = rigid(&matrix(&pose))?;
-        self.lock().add(name, Arc::clone(body.get().prepared()), pose).map_err(refused)
+        let mut named = self.lock();
+        named.places.add(name.clone(), Arc::clone(&self.nobody), pose).map_err(refused)?;
+        named.bodies.insert(name, body.unbind());
+        Ok(())
     }
 
     #[pyo3(signature = (name, body, /))]
-    fn replace(&self, name: &str, body: &Bound<'_, Body>) -> PyResult<()> {
-        let body = Arc::clone(body.get().prepared());
-        self.lock().replace(name, body).map(|_| ()).map_err(refused)
+    fn replace(&self, name: &str, body: Bound<'_, Body>) -> PyResult<()> {
+        let mut named = self.lock();
+        named.places.body(name).map_err(refused)?;
+        named.bodies.insert(name.to_owned(), body.unbind());
+        Ok(())
     }
 
     #[pyo3(signature = (name, /))]
     fn remove(&self, name: &str) -> PyResult<()> {
-        self.lock().remove(name).map(|_| ()).map_err(refused)
+        let mut named = self.lock();
+        named.places.remove(name).map_err(refused)?;
+        named.bodies.remove(name);
+        Ok(())
     }
 
     #[pyo3(signature = (name, pose, /))]
     fn set_pose(&self, name: &str, pose: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
         let pose = rigid(&matrix(&pose))?;
-        self.lock().set_pose(name, pose).map_err(refused)
+        self.lock().places.set_pose(name, pose).map_err(refused)
     }
 
     #[pyo3(signature = (name, to, /))]
     fn attach(&self, name: &str, to: &str) -> PyResult<()> {
-        let mut bodies = self.lock();
+        let bodies = &mut self.lock().places;
         let between = bodies.between(to, name).map_err(refused)?;
         bodies.attach(name, to, between).map_err(refused)
     }
 
     #[pyo3(signature = (name, /))]
     fn detach(&self, name: &str) -> PyResult<()> {
-        self.lock().detach(name).map_err(refused)
+        self.lock().places.detach(name).map_err(refused)
     }
 
     #[pyo3(signature = (a, b, may_touch, /))]
     fn allow(&self, a: &str, b: &str, may_touch: bool) -> PyResult<()> {
-        let mut bodies = self.lock();
+        let bodies = &mut self.lock().places;
         if may_touch { bodies.allow(a, b) } else { bodies.forbid(a, b) }.map_err(refused)
     }
 
     fn names(&self) -> Vec<String> {
-        self.lock().names().map(str::to_owned).collect()
+        self.lock().places.names().map(str::to_owned).collect()
     }
 
-    /// All pairs that are not free, the worst first; pairs there are, ruled out and asked.
     #[pyo3(signature = (query, /))]
-    fn check<'py>(
-        &self,
-        py: Python<'py>,
-        query: &Bound<'py, Query>,
-    ) -> PyResult<(Vec<Pair<'py>>, [usize; 4])> {
-        let (bodies, query) = (self.now(), query.get().checked());
-        let Checked { pairs, count, allowed, ruled_out, asked } =
-            on_all_threads(py, || bodies.check(query))?;
-        let pairs: PyResult<_> = pairs.into_iter().map(|found| pair(py, found)).collect();
-        Ok((pairs?, [count, allowed, ruled_out, asked]))
+    fn check<'py>(&self, py: Python<'py>, query: &Bound<'py, Query>) -> PyResult<Found<'py>> {
+        let (bodies, query) = (self.now(py)?, query.get().checked());
+        found(py, on_all_threads(py, || bodies.check(query))?)
     }
 
     #[pyo3(signature = (query, /))]
@@ -113,13 +141,20 @@ impl Scene {
         py: Python<'py>,
         query: &Bound<'py, Query>,
     ) -> PyResult<Option<Pair<'py>>> {
-        let (bodies, query) = (self.now(), query.get().checked());
+        let (bodies, query) = (self.now(py)?, query.get().checked());
         let found = py.detach(|| bodies.check_first(query));
         found.map(|found| pair(py, found)).transpose()
     }
 }
 
-fn pair(py: Python<'_>, found: PairAnswer) -> PyResult<Pair<'_>> {
+/// All pairs that are not free, the worst first.
+pub(crate) fn found(py: Python<'_>, checked: Checked) -> PyResult<Found<'_>> {
+    let Checked { pairs, count, allowed, ruled_out, asked } = checked;
+    let pairs: PyResult<_> = pairs.into_iter().map(|found| pair(py, found)).collect();
+    Ok((pairs?, [count, allowed, ruled_out, asked]))
+}
+
+pub(crate) fn pair(py: Python<'_>, found: PairAnswer) -> PyResult<Pair<'_>> {
     let PairAnswer { a, b, answer } = found;
     Ok(match answer {
         Ok(report) => (a, b, Some(answer::report(py, &report)?), None),

@@ -1,13 +1,11 @@
 //! What is known along a path, as what `cloudtouch.Swept` is made of.
 
-use cloudtouch::geom::Pose;
 use cloudtouch::{AlongPath, Swept};
-use numpy::ndarray::Array2;
-use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::answer::{cause, report, verdict};
+use crate::arrays::of_pose;
 
 /// The fields of a sweep, by their names in Python.
 pub(crate) fn answer<'py>(py: Python<'py>, swept: &Swept) -> PyResult<Bound<'py, PyDict>> {
@@ -34,12 +32,7 @@ fn place<'py>(py: Python<'py>, at: &AlongPath) -> PyResult<Bound<'py, PyDict>> {
     fields.set_item("segment", at.segment)?;
     fields.set_item("t", at.t)?;
     fields.set_item("share", at.share)?;
-    fields.set_item("pose", matrix(py, &at.pose))?;
+    fields.set_item("pose", of_pose(py, &at.pose))?;
     fields.set_item("report", report(py, &at.report)?)?;
     Ok(fields)
-}
-
-fn matrix<'py>(py: Python<'py>, pose: &Pose) -> Bound<'py, PyArray2<f64>> {
-    let matrix = pose.isometry().to_homogeneous();
-    Array2::from_shape_fn((4, 4), |place| matrix[place]).into_pyarray(py)
 }

@@ -77,6 +77,7 @@ def test_a_poisoned_row_is_an_error_in_its_place(root, whole):
     answers = ct.PoseChecker(root, sensor="iso:0.001")(rows)
     bad = [3, 7, 11, 15, 18]
     assert set(answers["verdict"][bad]) == {"error"} and np.isnan(answers["probability"][bad]).all()
+    assert answers["error"][3] == answers["error"][7] and "pose is not 16 numbers" in answers["error"][3]
     assert "rotation" in answers["error"][11] and "gone.xyz" in answers["error"][15]
     assert "bad.obj: line 2" in answers["error"][18] and not answers["error"][11].startswith("poses[")
     good = np.setdiff1d(np.arange(20), bad)

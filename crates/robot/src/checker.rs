@@ -25,7 +25,7 @@ pub enum Touching {
 /// A robot in its surroundings, asked about its joints.
 #[derive(Debug, Clone)]
 pub struct RobotChecker {
-    pub(crate) robot: Robot,
+    pub(crate) robot: Arc<Robot>,
     pub(crate) scene: Scene,
     /// For each shape its name in the scene.
     pub(crate) names: Vec<String>,
@@ -35,16 +35,17 @@ pub struct RobotChecker {
 impl RobotChecker {
     /// Puts a robot into a cloud or a mesh, in whose frame its base is at `scene_from_base`.
     ///
-    /// A scan must not hold the robot itself: see [`Robot::self_filter`].
+    /// Several may share a robot. A scan must not hold the robot itself: see [`Robot::self_filter`].
     ///
     /// # Errors
     /// When the pose is not finite, or a link is called [`SURROUNDINGS`].
     pub fn new(
-        robot: Robot,
+        robot: impl Into<Arc<Robot>>,
         surroundings: impl Into<Arc<Body>>,
         scene_from_base: Pose,
         touching: Touching,
     ) -> Result<Self, SceneError> {
+        let robot = robot.into();
         let mut scene = Scene::default();
         scene.add(SURROUNDINGS, surroundings, Pose::identity())?;
         let names = robot.body_names();
@@ -68,6 +69,17 @@ impl RobotChecker {
     /// The robot.
     pub fn robot(&self) -> &Robot {
         &self.robot
+    }
+
+    /// Puts others in the place of the surroundings, such as the next scan, and returns those.
+    ///
+    /// # Errors
+    /// Never as it stands: there always are surroundings.
+    pub fn replace_surroundings(
+        &mut self,
+        surroundings: impl Into<Arc<Body>>,
+    ) -> Result<Arc<Body>, SceneError> {
+        self.scene.replace(SURROUNDINGS, surroundings)
     }
 
     /// All pairs that do not read as free with the joints at these positions, rad and m, the worst

@@ -119,7 +119,7 @@ impl RobotChecker {
     /// Whether no pair can meet on the way from one position to the other, of which `middle` is the
     /// middle.
     fn is_clear(&self, query: &Query, middle: &[f64], ends: [&[f64]; 2]) -> bool {
-        let Robot { tree, shapes, .. } = &self.robot;
+        let Robot { tree, shapes, .. } = &*self.robot;
         let poses = tree.poses(middle);
         let ways: Vec<f64> = shapes.iter().map(|shape| farthest(tree, shape, ends)).collect();
         let at = |i: usize| self.scene_from_base.after(&poses[shapes[i].link]);

@@ -10,32 +10,40 @@ See ``Cloud``, ``Mesh`` and ``Query``; ``python -m cloudtouch.demo`` shows them 
 """
 
 from cloudtouch._native import CloudtouchError, __version__
-from cloudtouch.bodies import Cloud, Mesh
+from cloudtouch.bodies import Change, Cloud, Mesh, SeenLink
 from cloudtouch.checker import PoseChecker
 from cloudtouch.motion import AlongPath, Gradient, Penetration, Swept, UnderPoses
 from cloudtouch.page import Page
 from cloudtouch.query import Query
 from cloudtouch.report import Batch, Contact, Evidence, PointProbabilities, Report, Within
+from cloudtouch.robot import Joint, PathChecked, Robot, RobotChecker, Stopped
 from cloudtouch.scene import Checked, PairAnswer, Scene
 
 __all__ = [
     "AlongPath",
     "Batch",
+    "Change",
     "Checked",
     "Cloud",
     "CloudtouchError",
     "Contact",
     "Evidence",
     "Gradient",
+    "Joint",
     "Mesh",
     "Page",
     "PairAnswer",
+    "PathChecked",
     "Penetration",
     "PointProbabilities",
     "PoseChecker",
     "Query",
     "Report",
+    "Robot",
+    "RobotChecker",
     "Scene",
+    "SeenLink",
+    "Stopped",
     "Swept",
     "UnderPoses",
     "Within",

@@ -60,6 +60,23 @@ def indices(value: Any, name: str) -> npt.NDArray[np.uint32]:
     return np.require(array, dtype=np.uint32, requirements="A")
 
 
+def places(value: Any, name: str, count: int) -> list[int]:
+    """Which of so many rows, by indices or by a truth value each."""
+    array = np.asarray(value)
+    if array.size == 0 and array.ndim == 1 and array.dtype.kind != "b":
+        array = array.astype(np.int64)
+    if array.ndim != 1 or (array.dtype.kind == "b" and len(array) != count):
+        raise ValueError(f"{name} has the shape {array.shape}: give indices (K,), or truth values ({count},)")
+    if array.dtype.kind == "b":
+        array = np.flatnonzero(array)
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{name} has the type {array.dtype}: give whole numbers, such as int64, or truth values")
+    if array.size and array.min() < 0:
+        raise ValueError(f"{name} holds the index {array.min()}: points are counted from 0")
+    found: list[int] = array.tolist()
+    return found
+
+
 def _readable(array: npt.NDArray[Any], name: str) -> npt.NDArray[Any]:
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{name} has the type {array.dtype}: give numbers, float32 or float64")

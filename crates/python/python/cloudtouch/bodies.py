@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,10 +13,41 @@ import numpy.typing as npt
 from cloudtouch import _arrays, _native
 
 
+@dataclass(frozen=True, eq=False)
+class SeenLink:
+    """A part of the robot where a camera saw it; :meth:`Robot.seen` makes them."""
+
+    mesh: Mesh
+    """The part, in its own frame."""
+    pose: npt.NDArray[np.float64]
+    """(4, 4): from its frame into that of the points, m."""
+    padding: float
+    """Points this near to its surface, m, are taken for it too."""
+
+
+class Change(NamedTuple):
+    """What a change did to a cloud."""
+
+    inserted: int
+    """Points that came."""
+    removed: int
+    """Points that went."""
+    moved: int
+    """Points that are elsewhere."""
+    surfaces_kept: int
+    """Points whose surface was computed before and is kept."""
+    surfaces_lost: int
+    """Points whose surface was computed before and is computed anew."""
+    is_recentred: bool
+    """Whether the cloud has moved by more than its size: then all surfaces are lost."""
+
+
 class Cloud:
     """A noisy point cloud, ready to be queried in any pose, from many threads at once.
 
-    Preparing takes all cores and lets other Python threads run.
+    Preparing takes all cores and lets other Python threads run. :meth:`insert`, :meth:`remove`, :meth:`move_points` and
+    :meth:`replace_frame` change a cloud in its place, and scenes and robots that have it see that. They are refused
+    while another thread asks about the cloud.
 
     Parameters
     ----------
@@ -41,6 +74,9 @@ class Cloud:
         above that of all.
     collision_map
         Edge of a cell, m: points are replaced by the centres of the occupied cells.
+    robot
+        Where the robot was when the points were measured, as :meth:`Robot.seen` gives it: points in it, or as near to it
+        as its padding, are removed.
     refined
         Computes the surface everywhere now, and not where queries come near it: later ready, and each query several
         times as fast. For a scene that many poses are tested in.
@@ -70,31 +106,23 @@ class Cloud:
         max_range: float | None = None,
         outliers: tuple[int, float] | None = None,
         collision_map: float | None = None,
+        robot: Iterable[SeenLink] = (),
         refined: bool = False,
     ) -> None:
-        if not isinstance(points, np.ndarray) and hasattr(points, "points"):
-            points = points.points
-        rows, image_size = _arrays.points(points, "points")
-        count = len(rows)
-
-        def optional(value: npt.ArrayLike | None, name: str, *shape: int) -> Any:
-            # A copy: pickling must not see what its owner does to it later.
-            return None if value is None else _arrays.numbers(value, name, shape).copy()
-
         self._prepare(
-            rows,
-            {
-                "sensor": sensor,
-                "sensor_pose": optional(sensor_pose, "sensor_pose", 4, 4),
-                "image_size": image_size,
-                "covariances": optional(covariances, "covariances", count, 3, 3),
-                "normals": optional(normals, "normals", count, 3),
-                "min_range": min_range,
-                "max_range": max_range,
-                "outliers": outliers,
-                "collision_map": collision_map,
-                "refined": refined,
-            },
+            *_scan(
+                points,
+                sensor=sensor,
+                sensor_pose=sensor_pose,
+                covariances=covariances,
+                normals=normals,
+                min_range=min_range,
+                max_range=max_range,
+                outliers=outliers,
+                collision_map=collision_map,
+                robot=robot,
+                refined=refined,
+            )
         )
 
     @classmethod
@@ -134,7 +162,92 @@ class Cloud:
 
     def _prepare(self, rows: npt.NDArray[Any], arguments: dict[str, Any]) -> None:
         self._arguments = arguments
-        self._body = _native.cloud(rows, arguments)
+        self._body = _native.cloud(rows, _told(arguments))
+
+    def insert(self, points: Any, *, sensor: str | None = None, **others: Any) -> Change:
+        """Adds another scan of the same frame, behind the points that there are.
+
+        A changed cloud answers as one made of the same points does, to the bit as long as the middle of the box around
+        them stays, else up to rounding. What is kept is the surface where nothing near has changed.
+
+        Parameters
+        ----------
+        points, others
+            As for :class:`Cloud`, of this scan alone: nothing is taken over from the first.
+        sensor
+            That of the cloud where it is not given.
+
+        Raises
+        ------
+        ValueError
+            An array has the wrong shape or type.
+        CloudtouchError
+            As :class:`Cloud`, or another thread asks about the cloud; it is then as it was.
+        """
+        rows, arguments = _scan(points, sensor=self.sensor if sensor is None else sensor, **others)
+        return Change(*self._body.insert(rows, _told(arguments)))
+
+    def replace_frame(self, image: Any, *, sensor: str | None = None, **others: Any) -> Change:
+        """Brings the cloud up to date by what a camera sees now.
+
+        Points that it sees through, or measures again, go, and its own come. What is hidden, in a hole of the image or
+        beside it stays as it was.
+
+        Parameters
+        ----------
+        image
+            (height, width, 3): a depth image in the frame of the cloud, m.
+        sensor
+            That of the cloud where it is not given.
+        others
+            As for :class:`Cloud`; ``sensor_pose`` says where the camera stood.
+
+        Raises
+        ------
+        ValueError
+            An array has the wrong shape or type.
+        CloudtouchError
+            It is no image, or as :meth:`insert`.
+        """
+        rows, arguments = _scan(image, sensor=self.sensor if sensor is None else sensor, **others)
+        return Change(*self._body.replace_frame(rows, _told(arguments)))
+
+    def remove(self, which: npt.ArrayLike) -> Change:
+        """Removes points; those after them move up.
+
+        Parameters
+        ----------
+        which
+            (K,), whole numbers: indices into :attr:`points`, each once. Or (len(cloud),), truth values.
+
+        Raises
+        ------
+        ValueError
+            ``which`` has the wrong shape or type.
+        CloudtouchError
+            There is no such point, one is named twice, none would be left, or another thread asks about the cloud.
+        """
+        return Change(*self._body.remove(_arrays.places(which, "which", len(self))))
+
+    def move_points(self, which: npt.ArrayLike, places: npt.ArrayLike) -> Change:
+        """Moves points; they keep their indices and their noise.
+
+        Parameters
+        ----------
+        which
+            As of :meth:`remove`.
+        places
+            (K, 3): where to, in the frame of the cloud, m.
+
+        Raises
+        ------
+        ValueError
+            An array has the wrong shape or type.
+        CloudtouchError
+            There is no such point, one is named twice, a place is not finite, or another thread asks about the cloud.
+        """
+        indices = _arrays.places(which, "which", len(self))
+        return Change(*self._body.move_points(indices, _arrays.numbers(places, "places", (len(indices), 3))))
 
     @property
     def points(self) -> npt.NDArray[np.float64]:
@@ -143,7 +256,8 @@ class Cloud:
 
     @property
     def rows(self) -> npt.NDArray[np.int64]:
-        """(K,): for every kept point its row in what was given (of an image row by row); empty after a collision map."""
+        """(K,): for every kept point its row in what was given (of an image row by row), counted on from scan to scan where
+        others were inserted; empty after a collision map."""
         return self._body.rows()
 
     @property
@@ -171,7 +285,10 @@ class Cloud:
         return f"<Cloud: {len(self)} points{dropped}, sensor {self.sensor!r}, {_extent(self.points)}>"
 
     def __getstate__(self) -> tuple[npt.NDArray[np.float64], dict[str, Any]]:
-        return self._body.given_points(), self._arguments
+        points = self._body.given_points()
+        if points is None:
+            raise TypeError("a cloud that was changed does not pickle: pickle the scans that it was made of")
+        return points, self._arguments
 
     def __setstate__(self, state: tuple[npt.NDArray[np.float64], dict[str, Any]]) -> None:
         self._prepare(*state)
@@ -249,11 +366,57 @@ class Mesh:
         return f"<Mesh: {len(self)} triangles, {kind}, {_extent(self.vertices)}>"
 
     def __getstate__(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
-        return self._body.given_points(), self._body.given_triangles()
+        vertices = self._body.given_points()
+        assert vertices is not None, "a mesh does not change"
+        return vertices, self._body.given_triangles()
 
     def __setstate__(self, state: tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]) -> None:
         vertices, triangles = state
         self._body = _native.mesh(vertices, _arrays.indices(triangles, "triangles"))
+
+
+def _scan(
+    points: Any,
+    *,
+    sensor: str,
+    sensor_pose: npt.ArrayLike | None = None,
+    covariances: npt.ArrayLike | None = None,
+    normals: npt.ArrayLike | None = None,
+    min_range: float | None = None,
+    max_range: float | None = None,
+    outliers: tuple[int, float] | None = None,
+    collision_map: float | None = None,
+    robot: Iterable[SeenLink] = (),
+    refined: bool = False,
+) -> tuple[npt.NDArray[Any], dict[str, Any]]:
+    """Rows of points, and everything else that a cloud is made of, by its name."""
+    if not isinstance(points, np.ndarray) and hasattr(points, "points"):
+        points = points.points
+    rows, image_size = _arrays.points(points, "points")
+    count = len(rows)
+
+    def optional(value: npt.ArrayLike | None, name: str, *shape: int) -> Any:
+        # A copy: pickling must not see what its owner does to it later.
+        return None if value is None else _arrays.numbers(value, name, shape).copy()
+
+    return rows, {
+        "sensor": sensor,
+        "sensor_pose": optional(sensor_pose, "sensor_pose", 4, 4),
+        "image_size": image_size,
+        "covariances": optional(covariances, "covariances", count, 3, 3),
+        "normals": optional(normals, "normals", count, 3),
+        "min_range": min_range,
+        "max_range": max_range,
+        "outliers": outliers,
+        "collision_map": collision_map,
+        "robot": [replace(link, pose=optional(link.pose, "robot", 4, 4)) for link in robot],
+        "refined": refined,
+    }
+
+
+def _told(arguments: dict[str, Any]) -> dict[str, Any]:
+    """As the compiled half takes them."""
+    return {**arguments, "robot": [(link.mesh._body, link.pose, link.padding) for link in arguments["robot"]]}
 
 
 def _faces(source: Any) -> tuple[Any, Any]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Generic, Hashable, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from cloudtouch import _native
 from cloudtouch.bodies import Cloud, Mesh
 from cloudtouch.query import Body, Query
 from cloudtouch.report import Batch
@@ -84,31 +86,27 @@ class PoseChecker:
             A column is missing, or has another length.
         """
         count = _count(rows)
-        answers: dict[str, npt.NDArray[Any]] = {}
-        for names, places in _groups(rows, count):
-            for name, column in self._answer(names, [rows["pose"][place] for place in places]).items():
-                whole = answers.setdefault(name, np.empty((count, *column.shape[1:]), dtype=_wide(column.dtype)))
-                whole[places] = column
-        if count == 0:
-            answers = _refused("", 0).columns()
+        poses = [_sixteen(pose) for pose in rows["pose"]]
+        answers = _refused("", count).columns()
+        answers = {name: column.astype(_wide(column.dtype)) for name, column in answers.items()}
+        for names, places in _groups(rows, poses):
+            batch = self._answer(names, [poses[place] for place in places])
+            for name, column in batch.columns().items():
+                answers[name][places] = column
         return {**{name: np.asarray(column) for name, column in rows.items()}, **answers}
 
-    def _answer(self, names: tuple[str, str], poses: list[Any]) -> dict[str, npt.NDArray[Any]]:
-        matrices = np.full((len(poses), 4, 4), np.nan)
-        for matrix, pose in zip(matrices, poses):
-            numbers = _sixteen(pose)
-            # What is none stays NaN, which the query refuses by its row.
-            if numbers is not None:
-                matrix[:] = numbers
+    def _answer(self, names: tuple[str, str], poses: list[Any]) -> Batch:
+        if poses[0] is None:
+            return _refused("pose is not 16 numbers: give those of a 4 x 4 matrix, row by row", len(poses))
         try:
             scene = self._scenes.get(names[0], lambda: self._read(names[0], is_scene=True))
             body = self._objects.get(names[1], lambda: self._read(names[1], is_scene=False))
-            batch = self._query.run_batch(scene, body, matrices, errors="keep")
+            batch = self._query.run_batch(scene, body, np.stack(poses), errors="keep")
         except (ValueError, OSError) as error:
-            batch = _refused(str(error), len(poses))
+            return _refused(str(error), len(poses))
         # A row is named by the table it is in, not by its place among those of the same pair.
         words = [text.partition(": ")[2] if text.startswith("poses[") else text for text in batch.error.tolist()]
-        return {**batch.columns(), "error": np.asarray(words, dtype=np.str_)}
+        return replace(batch, error=np.asarray(words, dtype=np.str_))
 
     def _read(self, name: str, *, is_scene: bool) -> Body:
         path, (unit, cloud_unit) = self._root / name, self._units
@@ -154,14 +152,15 @@ def _count(rows: Mapping[str, npt.NDArray[Any]]) -> int:
 
 
 def _groups(
-    rows: Mapping[str, npt.NDArray[Any]], count: int
+    rows: Mapping[str, npt.NDArray[Any]], poses: list[Any]
 ) -> Iterator[tuple[tuple[str, str], npt.NDArray[np.int64]]]:
-    """Scene and object, and the rows that ask about them, in the order they first come."""
-    places: dict[tuple[str, str], list[int]] = {}
-    for place in range(count):
-        places.setdefault((str(rows["scene"][place]), str(rows["object"][place])), []).append(place)
-    for names, group in places.items():
-        yield names, np.asarray(group)
+    """Scene and object, and the rows that ask about them, in the order they first come; those without a pose apart."""
+    places: dict[tuple[str, str, bool], list[int]] = {}
+    for place, pose in enumerate(poses):
+        key = (str(rows["scene"][place]), str(rows["object"][place]), pose is None)
+        places.setdefault(key, []).append(place)
+    for (scene, body, _), group in places.items():
+        yield (scene, body), np.asarray(group)
 
 
 def _sixteen(pose: Any) -> npt.NDArray[np.float64] | None:
@@ -186,7 +185,4 @@ def _wide(dtype: np.dtype[Any]) -> np.dtype[Any] | type:
 
 def _refused(message: str, count: int) -> Batch:
     """Rows that could not be asked about, all for one reason."""
-    triangle = Mesh(np.eye(3), [[0, 1, 2]])
-    nowhere = np.full((count, 4, 4), np.nan)
-    batch = Query().run_batch(triangle, triangle, nowhere, errors="keep")
-    return Batch(**{**batch.columns(), "error": np.full(count, message)})
+    return Batch._of(_native.refused(message, count))

@@ -245,9 +245,7 @@ class Query:
         if errors not in ("raise", "keep"):
             raise ValueError(f"errors is {errors!r}: give 'raise' or 'keep'")
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
-        columns = self._query.run_batch(a._body, b._body, matrices, errors == "keep")
-        columns["error"] = np.asarray(columns["error"], dtype=np.str_)
-        return Batch(**columns)
+        return Batch._of(self._query.run_batch(a._body, b._body, matrices, errors == "keep"))
 
     def page(self, a: Body, b: Body, poses: npt.ArrayLike, *, title: str = "cloudtouch") -> Page:
         """Both bodies and the answers of :meth:`run`, to look at: a notebook shows it, :meth:`Page.save` writes it.

@@ -195,6 +195,10 @@ class Batch:
         """Every column by its name, for a table."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
+    @classmethod
+    def _of(cls, told: dict[str, Any]) -> "Batch":
+        return cls(**{**told, "error": np.asarray(told["error"], dtype=np.str_)})
+
     def __len__(self) -> int:
         return len(self.probability)
 

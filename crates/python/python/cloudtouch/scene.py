@@ -60,12 +60,18 @@ class Checked:
         """The worst of any pair."""
         return self.pairs[0].verdict if self.pairs else "free"
 
+    @classmethod
+    def _of(
+        cls, pairs: list[tuple[str, str, dict[str, Any] | None, str | None]], counts: list[int]
+    ) -> Checked:
+        return cls(tuple(map(PairAnswer._of, pairs)), *counts)
+
 
 class Scene:
     """Named bodies, each with a pose; bodies may be attached to others, and pairs may be allowed to touch.
 
-    Moving a body costs nothing. Poses are (4, 4), from the frame of the body into that of the scene, or of what it is
-    attached to, m. Names that are not there, or there already, are a :class:`CloudtouchError`.
+    Moving a body costs nothing, and a cloud that is changed is seen as it then is. Poses are (4, 4), from the frame of the
+    body into that of the scene, or of what it is attached to, m. Names that are not there, or there already, are a :class:`CloudtouchError`.
     """
 
     __slots__ = ("_scene",)
@@ -110,8 +116,7 @@ class Scene:
 
     def check(self, query: Query) -> Checked:
         """All pairs that do not read as free, the worst first, on all cores."""
-        pairs, counts = self._scene.check(query._query)
-        return Checked(tuple(map(PairAnswer._of, pairs)), *counts)
+        return Checked._of(*self._scene.check(query._query))
 
     def check_first(self, query: Query) -> PairAnswer | None:
         """One pair that does not read as free, or ``None`` where all do: sooner known."""

@@ -1,0 +1,274 @@
+"""Robots from URDF in what a camera saw: which link touches what."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from cloudtouch import _arrays, _native
+from cloudtouch.bodies import Mesh, SeenLink
+from cloudtouch.query import Body, Query
+from cloudtouch.report import Floats, Verdict
+from cloudtouch.scene import Checked, PairAnswer
+
+#: Positions of joints: by name, or (J,) in the order of ``Robot.moving``; rad, and m for those that slide.
+Positions = Union[Mapping[str, float], npt.ArrayLike]
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint of a robot: what moves a link against another."""
+
+    name: str
+    """Its name in the URDF."""
+    kind: str
+    """``"fixed"``; ``"revolute"`` or ``"continuous"``, where it turns between limits or without; ``"prismatic"``, where it
+    slides."""
+    limits: Optional[tuple[float, float]]
+    """Lower and upper, rad or m; ``None`` for continuous and fixed joints."""
+    mimics: Optional[tuple[str, float, float]]
+    """Name of the joint it follows, at so many times its position and an offset; ``None`` where it moves by itself."""
+
+
+class Robot:
+    """A robot read from a URDF, with the ``<collision>`` geometry of its links. Immutable; it does not pickle.
+
+    Meshes and boxes are exact; cylinders, capsules and spheres are closed meshes about them, larger by at most 0.25 % of
+    the radius. A link without ``<collision>`` is not there for any query: :attr:`unchecked_links` names those.
+
+    Parameters
+    ----------
+    urdf
+        The file; its meshes are ``.stl``, ``.obj`` or ``.ply``.
+    packages
+        Folders of ``package://`` by name. Those that hold the URDF, or lie beside a folder that does, are found without.
+    srdf
+        File whose disabled pairs of links may touch.
+
+    Raises
+    ------
+    CloudtouchError
+        A file is missing or malformed, a number is none, links are no tree, or a mesh is of a size that cannot be meant.
+    """
+
+    __slots__ = ("_robot",)
+
+    _robot: _native.Robot
+
+    def __init__(
+        self,
+        urdf: str | os.PathLike[str],
+        *,
+        packages: Mapping[str, str | os.PathLike[str]] | None = None,
+        srdf: str | os.PathLike[str] | None = None,
+    ) -> None:
+        self._robot = _native.Robot(urdf, list((packages or {}).items()), srdf)
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """All joints, from the base outwards."""
+        return tuple(
+            Joint(name, kind, None if limits is None else (limits[0], limits[1]), mimics)
+            for name, kind, limits, mimics in self._robot.joints()
+        )
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The joints that move by themselves, from the base outwards: a position is needed of each."""
+        return tuple(joint.name for joint in self.joints if joint.kind != "fixed" and joint.mimics is None)
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """All links, in the order of the URDF."""
+        return tuple(self._robot.links())
+
+    @property
+    def unchecked_links(self) -> tuple[str, ...]:
+        """Links that can be seen and have no ``<collision>`` geometry: no query knows of them."""
+        return tuple(self._robot.unchecked_links())
+
+    def may_touch(self, a: str, b: str) -> bool:
+        """Whether two links may touch: neighbours, those that never move against one another, and those of the SRDF."""
+        return self._robot.may_touch(a, b)
+
+    def link_poses(self, joints: Positions) -> dict[str, Floats]:
+        """(4, 4) of each link by its name: from its frame into that of the base, m.
+
+        Parameters
+        ----------
+        joints
+            By name, or (J,) in the order of :attr:`moving`; rad or m.
+
+        Raises
+        ------
+        ValueError
+            ``joints`` has the wrong shape or type.
+        CloudtouchError
+            A joint is unknown, left out, not finite or beyond its limits.
+        """
+        return dict(self._robot.link_poses(self._named(joints, "joints")))
+
+    def seen(
+        self, joints: Positions, base_pose: npt.ArrayLike | None = None, *, padding: float = 0.01
+    ) -> tuple[SeenLink, ...]:
+        """The links where a camera saw them, for ``Cloud(..., robot=...)``, which removes their points.
+
+        Parameters
+        ----------
+        joints
+            Those *when the points were measured*: at those asked about, what is in the way would be removed.
+        base_pose
+            (4, 4): from the base of the robot into the frame of the points, m; the identity where it is not given.
+        padding
+            Points this near to a link, m, are taken for it too: more than the noise and the error of the joints.
+
+        Raises
+        ------
+        ValueError, CloudtouchError
+            As :meth:`link_poses`.
+        """
+        links = self._robot.seen(self._named(joints, "joints"), _base(base_pose))
+        return tuple(SeenLink(Mesh(vertices, triangles), pose, padding) for vertices, triangles, pose in links)
+
+    def _named(self, value: Positions, name: str) -> dict[str, float]:
+        if isinstance(value, Mapping):
+            numbers = _arrays.numbers(list(value.values()), name, (len(value),)) if value else np.empty(0)
+            return dict(zip(map(str, value), numbers.tolist()))
+        moving = self.moving
+        return dict(zip(moving, _arrays.numbers(value, name, (len(moving),)).tolist()))
+
+    def __repr__(self) -> str:
+        return f"<Robot: {len(self.links)} links, moved by {', '.join(self.moving) or 'nothing'}>"
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a robot does not pickle: read its URDF where it is needed")
+
+
+@dataclass(frozen=True, eq=False)
+class Stopped:
+    """Where a path is not known to be free any more."""
+
+    segment: int
+    """From which of the positions given, counted from 0, to the next."""
+    t: float
+    """Time in the segment, from 0 to 1."""
+    pair: Optional[PairAnswer]
+    """The worst pair there; ``None`` where all are free, but too near for positions around to be known to be."""
+
+
+@dataclass(frozen=True, eq=False)
+class PathChecked:
+    """What is known of a robot along a path of its joints."""
+
+    given: tuple[Checked, ...]
+    """What is found at each of the positions given."""
+    certified_free_until: float
+    """Share of the path up to which every position is free, those between the given ones too."""
+    stopped: Optional[Stopped]
+    """What is there; ``None`` where that is the end."""
+    looked_at: int
+    """How many positions were asked about."""
+    verdict: Verdict
+    """``"free"`` where the whole path is; else the worst that was found."""
+
+
+class RobotChecker:
+    """A robot in its surroundings, asked about positions of its joints, on all cores.
+
+    Parameters
+    ----------
+    robot
+        The robot; several checkers may share it.
+    surroundings
+        A cloud or a mesh. A cloud that is changed later is seen as it then is. A scan that shows the robot itself is made
+        with ``Cloud(..., robot=robot.seen(...))``.
+    base_pose
+        (4, 4): from the base of the robot into the frame of the surroundings, m; the identity where it is not given.
+    self_collision
+        Whether links are asked about one another too, but those that :meth:`Robot.may_touch`.
+
+    Raises
+    ------
+    ValueError
+        ``base_pose`` has the wrong shape or type.
+    CloudtouchError
+        ``base_pose`` is no rigid motion, or a link is called ``surroundings``.
+    """
+
+    __slots__ = ("_checker", "_robot")
+
+    _checker: _native.RobotChecker
+    _robot: Robot
+
+    def __init__(
+        self,
+        robot: Robot,
+        surroundings: Body,
+        base_pose: npt.ArrayLike | None = None,
+        *,
+        self_collision: bool = False,
+    ) -> None:
+        self._robot = robot
+        self._checker = _native.RobotChecker(robot._robot, surroundings._body, _base(base_pose), self_collision)
+
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+        return self._robot
+
+    def check(self, query: Query, joints: Positions) -> Checked:
+        """All pairs that do not read as free, the worst first; the scan is called ``"surroundings"``.
+
+        Contacts are in the frame of the surroundings. A link with several shapes has a number from 0 behind its name.
+
+        Parameters
+        ----------
+        joints
+            By name, or (J,) in the order of :attr:`Robot.moving`; rad or m.
+
+        Raises
+        ------
+        ValueError
+            ``joints`` has the wrong shape or type.
+        CloudtouchError
+            A joint is unknown, left out, not finite or beyond its limits.
+        """
+        pairs, counts = self._checker.check(query._query, self._robot._named(joints, "joints"))
+        return Checked._of(pairs, counts)
+
+    def check_path(self, query: Query, path: Iterable[Positions], *, tolerance: float = 0.001) -> PathChecked:
+        """How far along a path every position is free, nothing between those given left out.
+
+        Between two positions each joint moves straight from one value to the other.
+
+        Parameters
+        ----------
+        path
+            (M, J), or positions by name, at least two.
+        tolerance
+            How finely it is looked at, as a share of the path.
+
+        Raises
+        ------
+        ValueError
+            A position has the wrong shape or type.
+        CloudtouchError
+            There are fewer than two, ``tolerance`` is not above 0 and at most 1, or as :meth:`check`.
+        """
+        positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(path)]
+        given, until, stopped, looked_at, verdict = self._checker.check_path(query._query, positions, tolerance)
+        place = None
+        if stopped is not None:
+            segment, t, pair = stopped
+            place = Stopped(segment, t, None if pair is None else PairAnswer._of(pair))
+        checked = tuple(Checked._of(*at) for at in given)
+        return PathChecked(checked, until, place, looked_at, verdict)
+
+
+def _base(pose: npt.ArrayLike | None) -> Floats:
+    return np.eye(4) if pose is None else _arrays.numbers(pose, "base_pose", (4, 4))

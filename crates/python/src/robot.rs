@@ -1,0 +1,181 @@
+//! Robots from URDF, and which of their links touch what.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use cloudtouch::geom::{Point3, Pose};
+use cloudtouch_robot::{
+    JointKind, PathChecked, Robot as Described, RobotChecker as Checker, Touching,
+};
+use numpy::{PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::answer::verdict;
+use crate::arrays::{matrix, of_pose};
+use crate::body::{Body, corners, rows};
+use crate::error::refused;
+use crate::pool::on_all_threads;
+use crate::query::{Query, rigid};
+use crate::scene::{Found, Pair, found, nobody, pair};
+
+type Joints = BTreeMap<String, f64>;
+type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+/// Name, kind, limits, and what it mimics by which factor and offset.
+type Joint = (String, &'static str, Option<[f64; 2]>, Option<(String, f64, f64)>);
+/// Vertices, triangles and pose.
+type Link<'py> = (Matrix<'py>, Bound<'py, PyArray2<i64>>, Matrix<'py>);
+/// Answers at the positions given, how far it is free, segment, time and worst pair of where it stops,
+/// positions looked at, and the verdict.
+type Along<'py> =
+    (Vec<Found<'py>>, f64, Option<(usize, f64, Option<Pair<'py>>)>, usize, &'static str);
+
+/// A robot read from a URDF; immutable.
+#[pyclass(frozen, module = "cloudtouch._native")]
+pub(crate) struct Robot {
+    described: Arc<Described>,
+}
+
+#[pymethods]
+impl Robot {
+    #[new]
+    #[pyo3(signature = (urdf, packages, srdf, /))]
+    fn new(
+        py: Python<'_>,
+        urdf: PathBuf,
+        packages: Vec<(String, PathBuf)>,
+        srdf: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let read = || {
+            let robot = Described::from_urdf(urdf, &packages)?;
+            match srdf {
+                Some(srdf) => robot.with_srdf(srdf),
+                None => Ok(robot),
+            }
+        };
+        Ok(Self { described: Arc::new(py.detach(read).map_err(refused)?) })
+    }
+
+    fn joints(&self) -> Vec<Joint> {
+        let joint = |joint: &cloudtouch_robot::Joint| {
+            let kind = match joint.kind {
+                JointKind::Fixed => "fixed",
+                JointKind::Revolute => "revolute",
+                JointKind::Continuous => "continuous",
+                JointKind::Prismatic => "prismatic",
+            };
+            let mimics = joint.mimics.as_ref();
+            let mimics = mimics.map(|by| (by.joint.clone(), by.multiplier, by.offset));
+            (joint.name.clone(), kind, joint.limits, mimics)
+        };
+        self.described.joints().iter().map(joint).collect()
+    }
+
+    fn links(&self) -> Vec<String> {
+        self.described.links().to_vec()
+    }
+
+    fn unchecked_links(&self) -> Vec<String> {
+        self.described.unchecked_links().to_vec()
+    }
+
+    #[pyo3(signature = (a, b, /))]
+    fn may_touch(&self, a: &str, b: &str) -> bool {
+        self.described.may_touch(a, b)
+    }
+
+    #[pyo3(signature = (joints, /))]
+    fn link_poses<'py>(
+        &self,
+        py: Python<'py>,
+        joints: Joints,
+    ) -> PyResult<Vec<(String, Matrix<'py>)>> {
+        let poses = self.described.link_poses(&joints).map_err(refused)?;
+        Ok(poses.into_iter().map(|(link, pose)| (link.to_owned(), of_pose(py, &pose))).collect())
+    }
+
+    /// The shapes of the links where a camera saw them.
+    #[pyo3(signature = (joints, base_pose, /))]
+    fn seen<'py>(
+        &self,
+        py: Python<'py>,
+        joints: Joints,
+        base_pose: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Vec<Link<'py>>> {
+        let base = rigid(&matrix(&base_pose))?;
+        // The padding is that of the cloud.
+        let links = self.described.self_filter(&joints, &base, 0.0).map_err(refused)?;
+        let link = |link: cloudtouch::SelfMesh| {
+            let (vertices, triangles): (Vec<Point3>, _) = link.mesh.faces();
+            (rows(py, &vertices), corners(py, triangles), of_pose(py, &link.cloud_from_link))
+        };
+        Ok(links.into_iter().map(link).collect())
+    }
+}
+
+/// A robot in its surroundings, which may change between two questions.
+#[pyclass(frozen, module = "cloudtouch._native")]
+pub(crate) struct RobotChecker {
+    /// With nobody around.
+    checker: Checker,
+    surroundings: Py<Body>,
+}
+
+impl RobotChecker {
+    fn now(&self, py: Python<'_>) -> PyResult<Checker> {
+        let mut checker = self.checker.clone();
+        checker.replace_surroundings(self.surroundings.get().now(py)?).map_err(refused)?;
+        Ok(checker)
+    }
+}
+
+#[pymethods]
+impl RobotChecker {
+    #[new]
+    #[pyo3(signature = (robot, surroundings, base_pose, self_collision, /))]
+    fn new(
+        robot: &Bound<'_, Robot>,
+        surroundings: Bound<'_, Body>,
+        base_pose: PyReadonlyArray2<'_, f64>,
+        self_collision: bool,
+    ) -> PyResult<Self> {
+        let base: Pose = rigid(&matrix(&base_pose))?;
+        let touching = if self_collision { Touching::AndItself } else { Touching::Surroundings };
+        let robot = Arc::clone(&robot.get().described);
+        let checker = Checker::new(robot, nobody()?, base, touching).map_err(refused)?;
+        Ok(Self { checker, surroundings: surroundings.unbind() })
+    }
+
+    #[pyo3(signature = (query, joints, /))]
+    fn check<'py>(
+        &self,
+        py: Python<'py>,
+        query: &Bound<'py, Query>,
+        joints: Joints,
+    ) -> PyResult<Found<'py>> {
+        let (checker, query) = (self.now(py)?, query.get().checked());
+        let checked = on_all_threads(py, || checker.check(query, &joints))?;
+        found(py, checked.map_err(refused)?)
+    }
+
+    #[pyo3(signature = (query, path, tolerance, /))]
+    fn check_path<'py>(
+        &self,
+        py: Python<'py>,
+        query: &Bound<'py, Query>,
+        path: Vec<Joints>,
+        tolerance: f64,
+    ) -> PyResult<Along<'py>> {
+        let (checker, query) = (self.now(py)?, query.get().checked());
+        let checked = on_all_threads(py, || checker.check_path(query, &path, tolerance))?;
+        let checked = checked.map_err(refused)?;
+        let worst = verdict(checked.verdict());
+        let PathChecked { given, certified_free_until, stopped, looked_at } = checked;
+        let given: PyResult<_> = given.into_iter().map(|at| found(py, at)).collect();
+        let stopped = stopped.map(|at| {
+            let found = at.pair.map(|found| pair(py, found)).transpose()?;
+            PyResult::Ok((at.segment, at.t, found))
+        });
+        Ok((given?, certified_free_until, stopped.transpose()?, looked_at, worst))
+    }
+}
