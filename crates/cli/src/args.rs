@@ -1,5 +1,6 @@
 //! The command line.
 
+mod answer;
 mod caution;
 mod common;
 mod limits;
@@ -15,6 +16,7 @@ use cloudtouch_io::LengthUnit;
 
 use crate::sensor::SensorChoice;
 
+pub(crate) use answer::AnswerArguments;
 pub(crate) use caution::Refine;
 pub(crate) use common::{CommonArguments, ModeName};
 use limits::LimitArguments;
@@ -186,12 +188,8 @@ pub(crate) struct PathArguments {
     /// How finely the path is looked at, as a share of it
     #[arg(long, value_name = "SHARE", value_parser = numbers::finite, default_value_t = 0.01)]
     pub tolerance: f64,
-    /// Print the answer as one JSON object
-    #[arg(long, help_heading = "Output")]
-    pub json: bool,
-    /// Exit with 0 free, 10 uncertain, 20 in collision, 30 undecided
-    #[arg(long, help_heading = "Output")]
-    pub exit_code: bool,
+    #[command(flatten)]
+    pub answer: AnswerArguments,
     /// Write a page that shows all of it in any browser
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub html: Option<PathBuf>,
@@ -204,9 +202,7 @@ pub(crate) struct PathArguments {
 
 impl PathArguments {
     fn check(&self) -> Result<(), String> {
-        if self.common.mode == ModeName::Paper {
-            return Err("path is of the calibrated mode: leave --mode out".to_owned());
-        }
+        self.common.check_calibrated("path")?;
         if self.common.margin.is_some() {
             return Err("--margin has no effect on a path: leave it out".to_owned());
         }
@@ -219,12 +215,8 @@ impl PathArguments {
 pub(crate) struct SceneArguments {
     /// Scene file (JSON); its paths are relative to it
     pub scene: PathBuf,
-    /// Print the answer as one JSON object
-    #[arg(long, help_heading = "Output")]
-    pub json: bool,
-    /// Exit with the worst verdict: 0 free, 10 uncertain, 20 in collision, 30 undecided
-    #[arg(long, help_heading = "Output")]
-    pub exit_code: bool,
+    #[command(flatten)]
+    pub answer: AnswerArguments,
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -232,9 +224,7 @@ pub(crate) struct SceneArguments {
 impl SceneArguments {
     fn check(&self) -> Result<(), String> {
         let common = &self.common;
-        if common.mode == ModeName::Paper {
-            return Err("scene is of the calibrated mode: leave --mode out".to_owned());
-        }
+        common.check_calibrated("scene")?;
         let of_pairs = [
             ("--object-sensor", common.object_sensor.is_some()),
             ("--sensor-pose", common.sensor_pose.is_some()),
@@ -256,12 +246,8 @@ pub(crate) struct RobotArguments {
     pub scan: PathBuf,
     #[command(flatten)]
     pub robot: RobotOptions,
-    /// Print the answer as one JSON object
-    #[arg(long, help_heading = "Output")]
-    pub json: bool,
-    /// Exit with the worst verdict: 0 free, 10 uncertain, 20 in collision, 30 undecided
-    #[arg(long, help_heading = "Output")]
-    pub exit_code: bool,
+    #[command(flatten)]
+    pub answer: AnswerArguments,
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -269,9 +255,7 @@ pub(crate) struct RobotArguments {
 impl RobotArguments {
     fn check(&self) -> Result<(), String> {
         let common = &self.common;
-        if common.mode == ModeName::Paper {
-            return Err("robot is of the calibrated mode: leave --mode out".to_owned());
-        }
+        common.check_calibrated("robot")?;
         if common.object_sensor.is_some() || common.margin.is_some() {
             return Err("--object-sensor and --margin are of one object: leave them out".to_owned());
         }

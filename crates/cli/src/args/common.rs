@@ -141,6 +141,16 @@ impl CommonArguments {
         }
     }
 
+    /// Refuses the paper's mode for a command that has none.
+    pub(super) fn check_calibrated(&self, command: &str) -> Result<(), String> {
+        match self.mode {
+            ModeName::Calibrated => Ok(()),
+            ModeName::Paper => {
+                Err(format!("{command} is of the calibrated mode: leave --mode out"))
+            }
+        }
+    }
+
     /// Changes the cleaning that suits a sensor; the robot and the collision map concern scenes only.
     pub(crate) fn change(&self, filter: &mut FilterSettings) {
         filter.min_range = self.min_range.unwrap_or(filter.min_range);

@@ -41,14 +41,14 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
             query.run(&scene.body, &object.body, pose)
         })?;
     }
-    let text = if arguments.json {
+    let text = if arguments.answer.json {
         path_answer::json_line(&swept, [&scene.input, &object.input])?
     } else {
         let bodies = [print::body("scene", &scene), print::body("object", &object)];
         format!("{}\n{}", bodies.join("\n"), path_answer::text(&swept))
     };
     print::to_stdout(&format!("{text}\n"))?;
-    Ok(if arguments.exit_code { print::exit_code(swept.verdict) } else { ExitCode::SUCCESS })
+    Ok(arguments.answer.exit_code(swept.verdict, false))
 }
 
 /// A path asks about as many poses as a small batch.

@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let bodies = BTreeMap::from([(SURROUNDINGS, &scan.input)]);
     let (text, verdict, failed) = if let [joints] = &path[..] {
         let checked = checker.check(&query, joints)?;
-        let text = if arguments.json {
+        let text = if arguments.answer.json {
             scene_answer::json_line(&checked, threshold, bodies)?
         } else {
             [words, robot_answer::worst(&checked), scene_answer::text(&checked, threshold)].concat()
@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         (text, checked.verdict(), checked.pairs.iter().any(|pair| pair.answer.is_err()))
     } else {
         let checked = checker.check_path(&query, &path, TOLERANCE)?;
-        let text = if arguments.json {
+        let text = if arguments.answer.json {
             robot_answer::path_line(&checked, threshold, bodies)?
         } else {
             words + &robot_answer::path_text(&checked)
@@ -65,13 +65,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         (text, checked.verdict(), pairs.any(|pair| pair.answer.is_err()))
     };
     print::to_stdout(&format!("{text}\n"))?;
-    Ok(if failed {
-        ExitCode::FAILURE
-    } else if arguments.exit_code {
-        print::exit_code(verdict)
-    } else {
-        ExitCode::SUCCESS
-    })
+    Ok(arguments.answer.exit_code(verdict, failed))
 }
 
 /// How finely a path is looked at, as a share of it.

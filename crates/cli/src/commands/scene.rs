@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     }
     let checked = scene.check(&query);
     let threshold = query.settings().reject;
-    let text = if arguments.json {
+    let text = if arguments.answer.json {
         let inputs = bodies.iter().map(|(name, prepared)| (*name, &prepared.input)).collect();
         scene_answer::json_line(&checked, threshold, inputs)?
     } else {
@@ -54,13 +54,8 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
         lines.collect::<String>() + &scene_answer::text(&checked, threshold)
     };
     print::to_stdout(&format!("{text}\n"))?;
-    Ok(if checked.pairs.iter().any(|pair| pair.answer.is_err()) {
-        ExitCode::FAILURE
-    } else if arguments.exit_code {
-        print::exit_code(checked.verdict())
-    } else {
-        ExitCode::SUCCESS
-    })
+    let has_failed = checked.pairs.iter().any(|pair| pair.answer.is_err());
+    Ok(arguments.answer.exit_code(checked.verdict(), has_failed))
 }
 
 impl Prepared {
