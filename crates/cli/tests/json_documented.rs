@@ -147,7 +147,7 @@ fn keys_of_a_scene_and_of_a_robot_are_documented() {
     let one = robot(json!({"shoulder": 0.6}));
     assert_eq!(one["verdict"], "in_collision");
     check("scene", &[scene, one]);
-    let path = robot(json!([{"shoulder": 0.0}, {"shoulder": 0.6}]));
+    let path = robot(json!([{"shoulder": 0.6}, {"shoulder": 0.0}]));
     let of_scene: BTreeSet<String> = documented("scene").into_iter().map(|row| row.key).collect();
     assert_eq!(keys(&path["given"][0]), of_scene);
     let pairs = documented("scene").into_iter().find(|row| row.key == "pairs").unwrap();
