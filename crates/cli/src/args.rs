@@ -313,6 +313,9 @@ pub(crate) struct DemoArguments {
     /// Write the pose of the full report in colour
     #[arg(long, value_name = "OUT.ply")]
     pub ply: Option<PathBuf>,
+    /// Write a page that shows all poses in any browser
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Replace an output file that is there already
     #[arg(long)]
     pub force: bool,

@@ -31,3 +31,18 @@ fn paints_the_pose_it_shows() {
     let picture = cloudtouch_io::read_cloud(inputs.path("demo.ply")).unwrap();
     assert!(picture.points.len() >= 29576 + 9000, "{} points", picture.points.len());
 }
+
+#[test]
+fn its_page_shows_all_poses_and_what_is_true_of_them() {
+    let inputs = Inputs::new();
+    let run = ["demo", "--html", "demo.html"];
+    assert!(inputs.run(&run).quiet(0).stdout().contains("demo.html"));
+    let page = std::fs::read_to_string(inputs.path("demo.html")).unwrap();
+    assert_eq!(page.matches("True of the meshes").count(), 12);
+    for number in 0..12 {
+        // The least certain of them is shown first.
+        let hidden = format!("id=\"answer-{number}\" hidden");
+        assert_eq!(page.contains(&hidden), number != 6, "{number}");
+    }
+    assert!(inputs.run(&run).stderr().contains("--force"));
+}

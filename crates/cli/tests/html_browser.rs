@@ -9,19 +9,8 @@ use std::io::BufReader;
 use std::path::Path;
 use std::process::Command;
 
+use support::browser::{chromium, flags};
 use support::{Inputs, case_at, case_file};
-
-/// Names under which distributions ship it.
-const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
-
-/// `CHROMIUM` in the environment, or what is found under one of the names.
-fn chromium() -> Option<String> {
-    let named = std::env::var("CHROMIUM").ok();
-    let names = named.into_iter().chain(NAMES.map(str::to_owned));
-    names.into_iter().find(|name| {
-        Command::new(name).arg("--version").output().is_ok_and(|found| found.status.success())
-    })
-}
 
 /// What a page gave: its elements when its script was through, and what the console said.
 struct Seen {
@@ -33,10 +22,8 @@ fn open(browser: &str, inputs: &Inputs, address: &str, more: &[&str]) -> Seen {
     let url = format!("file://{}", inputs.path(address).display());
     let profile = tempfile::tempdir().unwrap();
     let output = Command::new(browser)
-        .args(["--headless", "--no-sandbox", "--use-angle=swiftshader"])
-        .args(["--enable-unsafe-swiftshader", "--hide-scrollbars", "--enable-logging=stderr"])
-        .args(["--virtual-time-budget=5000", "--force-device-scale-factor=1"])
-        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .args(flags(profile.path()))
+        .args(["--enable-logging=stderr", "--virtual-time-budget=5000"])
         .args(more)
         .arg(url)
         .output()

@@ -9,12 +9,13 @@ use anyhow::{Context, Result};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{PaperQuery, PaperSettings, Placement, Query, QuerySettings, Report, Verdict};
-use cloudtouch_io::{LengthUnit, pcd};
+use cloudtouch_io::{LengthUnit, ReadLimits, pcd};
+use cloudtouch_page::{Fact, Page, View};
 
 use crate::args::{DemoArguments, ModeName};
 use crate::body::{self, Body, PreparedCloud};
 use crate::load::{Input, Loaded};
-use crate::{case_file, output, picture, print, report_text};
+use crate::{case_file, output, page, picture, print, report_text};
 
 const ROOM: &[u8] = include_bytes!("../../demo/room.pcd");
 const PIANO: &[u8] = include_bytes!("../../demo/piano.pcd");
@@ -26,7 +27,7 @@ const NOISE: f64 = 0.002;
 const BAR: usize = 10;
 
 pub(crate) fn run(arguments: &DemoArguments, shows_work: bool) -> Result<ExitCode> {
-    if let Some(path) = &arguments.ply {
+    for path in arguments.ply.iter().chain(&arguments.html) {
         output::check(path, [], arguments.force)?;
     }
     match arguments.mode {
@@ -67,8 +68,38 @@ fn run_by<P: body::Path>(
             let _ = writeln!(text, "picture                {}", path.display());
         }
     }
+    if let Some(path) = &arguments.html {
+        write_page(path, [&room, &piano], &poses)?;
+        let _ = writeln!(text, "page                   {}", path.display());
+    }
     print::to_stdout(&text)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// All poses with what is true of them, the one that is told in full first.
+fn write_page<C: PreparedCloud>(
+    path: &Path,
+    bodies: [&Loaded<C>; 2],
+    poses: &[Answered],
+) -> Result<()> {
+    let drawn = bodies.map(|body| page::body(body, None, &ReadLimits::default()));
+    let views = poses.iter().enumerate().map(|(index, pose)| View {
+        name: format!("pose {}", index + 1),
+        scene: 0,
+        object: 1,
+        scene_from_object: pose.room_from_piano,
+        report: &pose.report,
+        placement: Some(&pose.placement),
+        more: vec![Fact::new("True of the meshes", pose.truth())],
+    });
+    let page = Page {
+        title: "A grand piano in a furnished room".to_owned(),
+        bodies: drawn.into_iter().collect::<Result<_>>()?,
+        views: views.collect(),
+        start: most_open(poses).map_or(0, |(number, _)| number - 1),
+        ..Page::default()
+    };
+    page::write(path, &page)
 }
 
 /// A pose with what is true of it and what was answered.
@@ -81,6 +112,11 @@ struct Answered {
 }
 
 impl Answered {
+    fn truth(&self) -> String {
+        let side = if self.truth > 0.0 { "apart" } else { "overlap" };
+        format!("{side:<7} by {:>5.1} mm", 1e3 * self.truth.abs())
+    }
+
     /// Whether the verdict says the opposite of the truth; "uncertain" takes no side.
     fn is_wrong(&self) -> bool {
         match self.report.verdict {
@@ -125,12 +161,11 @@ fn table(poses: &[Answered]) -> String {
     // Writing to a string cannot fail.
     for (index, pose) in poses.iter().enumerate() {
         let report = &pose.report;
-        let side = if pose.truth > 0.0 { "apart" } else { "overlap" };
         let _ = writeln!(
             text,
-            "{:>4}  {side:<7} by {:>5.1} mm  {:>5}  {}  {:<12}  {:>14}  {:>8.1} ms{}",
+            "{:>4}  {}  {:>5}  {}  {:<12}  {:>14}  {:>8.1} ms{}",
             index + 1,
-            1e3 * pose.truth.abs(),
+            pose.truth(),
             print::probability(report.collision_probability),
             bar(report.collision_probability),
             report.verdict,

@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "every test file uses its own part of this")]
 #![allow(clippy::unwrap_used, reason = "a failing helper fails the test")]
 
+pub(crate) mod browser;
+
 use std::path::PathBuf;
 use std::process::Output;
 

@@ -1,0 +1,99 @@
+//! A report page under a hand: a drag turns the picture, the wheel and two fingers bring it nearer. Skipped, with the
+//! reason, where no Chromium is found.
+#![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+
+mod support;
+
+use serde_json::{Value, json};
+use support::browser::{Tab, chromium};
+use support::{Inputs, case_at, case_file};
+
+/// Which way the axes point, and how long the scale bar and what it stands for are: what the page shows of its camera.
+fn view(tab: &mut Tab) -> (Value, f64) {
+    tab.settle();
+    let axes = tab.value(
+        "[...document.querySelectorAll('.axes line')].flatMap((line) => ['x2', 'y2'].map(
+           (end) => Math.round(100 * line.getAttribute(end))))",
+    );
+    let bar = tab.value(
+        "(() => { const bar = document.querySelector('.bar'); const [many, unit] = bar.textContent.split(' ');
+           return bar.getBoundingClientRect().width / Number(many) / { mm: 1e-3, cm: 1e-2, m: 1, km: 1e3 }[unit]; })()",
+    );
+    (axes, bar.as_f64().unwrap())
+}
+
+fn touch(tab: &mut Tab, kind: &str, fingers: &[[i32; 2]]) {
+    let at = |(id, [x, y]): (usize, &[i32; 2])| json!({"x": x, "y": y, "id": id});
+    let points: Vec<Value> = fingers.iter().enumerate().map(at).collect();
+    tab.ask("Input.dispatchTouchEvent", json!({"type": kind, "touchPoints": points}));
+}
+
+fn page(inputs: &Inputs) -> std::path::PathBuf {
+    inputs.write("cases.json", &case_file(&[case_at("apart", 0.5), case_at("touching", 0.09)]));
+    inputs.run(&["batch", "cases.json", "--html=o.html"]).quiet(0);
+    inputs.path("o.html")
+}
+
+#[test]
+fn a_mouse_turns_the_picture_and_its_wheel_brings_it_nearer() {
+    let Some(browser) = chromium() else {
+        return println!("skipped: no Chromium is found; CHROMIUM names one");
+    };
+    let inputs = Inputs::new();
+    let mut tab = Tab::open(&browser, &page(&inputs), [1000, 700], false);
+    let (axes, pixels_per_metre) = view(&mut tab);
+    let mut mouse = |kind: &str, [x, y]: [i32; 2], more: Value| {
+        let mut event = json!({"type": kind, "x": x, "y": y, "button": "left", "clickCount": 1});
+        event.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        tab.ask("Input.dispatchMouseEvent", event);
+    };
+    mouse("mousePressed", [200, 300], json!({}));
+    mouse("mouseMoved", [260, 320], json!({"buttons": 1}));
+    mouse("mouseMoved", [320, 340], json!({"buttons": 1}));
+    mouse("mouseReleased", [320, 340], json!({}));
+    let (turned, same) = view(&mut tab);
+    assert_ne!(turned, axes, "the drag did not turn it");
+    assert!((same / pixels_per_metre - 1.0).abs() < 0.02, "{same} for {pixels_per_metre}");
+    let wheel = json!({"type": "mouseWheel", "x": 200, "y": 300, "deltaX": 0, "deltaY": -600});
+    tab.ask("Input.dispatchMouseEvent", wheel);
+    let (still, nearer) = view(&mut tab);
+    assert_eq!(still, turned);
+    assert!(nearer > 1.2 * pixels_per_metre, "{nearer} for {pixels_per_metre}");
+}
+
+#[test]
+fn on_a_phone_a_finger_turns_two_come_nearer_and_nothing_is_wider_than_the_screen() {
+    let Some(browser) = chromium() else {
+        return println!("skipped: no Chromium is found; CHROMIUM names one");
+    };
+    let inputs = Inputs::new();
+    let mut tab = Tab::open(&browser, &page(&inputs), [390, 844], true);
+    assert_eq!(tab.value("document.documentElement.scrollWidth"), 390);
+    // Buttons for a finger, text that is read without a glass, and room to scroll beside the picture.
+    let least = |name: &str, what: &str| {
+        format!("Math.min(...[...document.querySelectorAll('{name}')].map((e) => {what}))")
+    };
+    let height = tab.value(&least(".buttons button", "e.getBoundingClientRect().height"));
+    assert!(height.as_f64().unwrap() > 36.0, "{height}");
+    let letters = "parseFloat(getComputedStyle(e).fontSize)";
+    let size = tab.value(&least("aside *:not(pre):not(script), .buttons *, #legend *", letters));
+    assert!(size.as_f64().unwrap() >= 11.5, "{size}");
+    let below = tab.value("document.querySelector('aside').getBoundingClientRect().top");
+    assert!(below.as_f64().unwrap() < 0.7 * 844.0, "{below}");
+    let (axes, pixels_per_metre) = view(&mut tab);
+    touch(&mut tab, "touchStart", &[[150, 250]]);
+    touch(&mut tab, "touchMove", &[[190, 260]]);
+    touch(&mut tab, "touchMove", &[[230, 270]]);
+    touch(&mut tab, "touchEnd", &[]);
+    let (turned, same) = view(&mut tab);
+    assert_ne!(turned, axes, "the finger did not turn it");
+    assert!((same / pixels_per_metre - 1.0).abs() < 0.02, "{same} for {pixels_per_metre}");
+    touch(&mut tab, "touchStart", &[[170, 250], [210, 250]]);
+    touch(&mut tab, "touchMove", &[[140, 250], [240, 250]]);
+    touch(&mut tab, "touchMove", &[[110, 250], [270, 250]]);
+    touch(&mut tab, "touchEnd", &[]);
+    let (_, nearer) = view(&mut tab);
+    assert!(nearer > 1.5 * pixels_per_metre, "{nearer} for {pixels_per_metre}");
+    // Pixels and not the page: it is the picture that came nearer.
+    assert_eq!(tab.value("window.visualViewport.scale"), 1);
+}
