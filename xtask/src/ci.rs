@@ -18,7 +18,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     step("tidy", "cargo xtask tidy", || tidy::run(root))?;
     step("fixtures", "cargo xtask fixtures --check", || fixtures::run(root, true))?;
     // The lock file holds: what is checked is what was committed, and no network is needed.
-    let features = "--features cloudtouch-io/mcap,cloudtouch-cli/mcap";
+    let features = "--features cloudtouch-io/mcap,cloudtouch-cli/mcap,cloudtouch-fuzzing/mcap";
     run("clippy", &format!("clippy --locked --workspace --all-targets {features} -- -D warnings"))?;
     // The tool is left out: its binary and the library it wraps would share one page.
     let doc = "doc --locked --workspace --exclude cloudtouch-cli --no-deps";
@@ -34,8 +34,7 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
         succeed(cargo(root, test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
     })?;
-    let of_recordings =
-        "--package cloudtouch-io --package cloudtouch-cli --test recording --test rosbags";
+    let of_recordings = "--package cloudtouch-io --package cloudtouch-cli --package cloudtouch-fuzzing --test recording --test rosbags --test replay";
     run("recordings", &format!("test --locked {of_recordings} {features}"))?;
     step("python", "cargo xtask python", || python::run(root))
 }

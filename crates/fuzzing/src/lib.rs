@@ -4,17 +4,24 @@ mod cases;
 mod options;
 mod query;
 mod readers;
+#[cfg(feature = "mcap")]
+mod recordings;
 
 pub use cases::case_file;
 pub use options::options;
 pub use query::query;
 pub use readers::{read_obj, read_pcd, read_ply, read_pointcloud2, read_stl, read_xyz};
 
+#[cfg(feature = "mcap")]
+pub use recordings::read_mcap;
+
 /// A target: takes bytes, and panics when the code under test does what it must not.
 pub type Target = fn(&[u8]);
 
 /// Every target under the name of its folder of seeds.
-pub const TARGETS: [(&str, Target); 9] = [
+pub const TARGETS: &[(&str, Target)] = &[
+    #[cfg(feature = "mcap")]
+    ("read_mcap", read_mcap),
     ("read_pcd", read_pcd),
     ("read_ply", read_ply),
     ("read_pointcloud2", read_pointcloud2),

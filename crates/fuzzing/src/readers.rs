@@ -1,5 +1,6 @@
 //! File readers: any bytes give a cloud or mesh that they back, or an error that says where.
 
+use cloudtouch::geom::PointCloud;
 use cloudtouch_io::pointcloud2::{self, Encoding};
 use cloudtouch_io::{FormatError, Geometry, obj, pcd, ply, stl, xyz};
 
@@ -7,7 +8,7 @@ use cloudtouch_io::{FormatError, Geometry, obj, pcd, ply, stl, xyz};
 const LARGEST_EXPANSION: usize = 88;
 
 /// No message is longer: it holds an excerpt of the file, never the file.
-const LONGEST_MESSAGE: usize = 500;
+pub(crate) const LONGEST_MESSAGE: usize = 500;
 
 /// Bytes as a PCD file.
 ///
@@ -63,21 +64,7 @@ pub fn read_obj(bytes: &[u8]) {
 fn check(bytes: &[u8], points_per_byte: usize, result: Result<Geometry, FormatError>) {
     let most = points_per_byte * bytes.len();
     match result {
-        Ok(Geometry::Cloud(cloud)) => {
-            assert!(cloud.len() <= most, "{} points of {} bytes", cloud.len(), bytes.len());
-            if let Some(covariances) = &cloud.covariances {
-                assert_eq!(covariances.len(), cloud.len(), "one covariance for each point");
-                assert!(covariances.iter().all(|c| c.is_finite()), "covariances are finite");
-            }
-            if let Some((width, height)) = cloud.image_size {
-                assert_eq!(
-                    width.checked_mul(height),
-                    Some(cloud.len()),
-                    "one point for each pixel"
-                );
-            }
-            assert!(cloud.sensor_pose.non_finite_entry().is_none(), "the sensor is somewhere");
-        }
+        Ok(Geometry::Cloud(cloud)) => check_cloud(&cloud, most),
         Ok(Geometry::Mesh(mesh)) => {
             let (vertices, triangles) = (mesh.vertices().len(), mesh.triangles().len());
             assert!(vertices <= most && triangles <= most, "{triangles} triangles");
@@ -90,4 +77,17 @@ fn check(bytes: &[u8], points_per_byte: usize, result: Result<Geometry, FormatEr
             assert!(message.len() < LONGEST_MESSAGE, "{} bytes of message", message.len());
         }
     }
+}
+
+/// A cloud of no more points than there are bytes for.
+pub(crate) fn check_cloud(cloud: &PointCloud, most: usize) {
+    assert!(cloud.len() <= most, "{} points, of at most {most}", cloud.len());
+    if let Some(covariances) = &cloud.covariances {
+        assert_eq!(covariances.len(), cloud.len(), "one covariance for each point");
+        assert!(covariances.iter().all(|c| c.is_finite()), "covariances are finite");
+    }
+    if let Some((width, height)) = cloud.image_size {
+        assert_eq!(width.checked_mul(height), Some(cloud.len()), "one point for each pixel");
+    }
+    assert!(cloud.sensor_pose.non_finite_entry().is_none(), "the sensor is somewhere");
 }

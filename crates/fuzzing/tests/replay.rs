@@ -23,7 +23,7 @@ fn seeds(target: &str) -> Vec<PathBuf> {
 #[test]
 fn every_seed_passes() {
     let mut failed = Vec::new();
-    for (name, target) in cloudtouch_fuzzing::TARGETS {
+    for &(name, target) in cloudtouch_fuzzing::TARGETS {
         let paths = seeds(name);
         assert!(!paths.is_empty(), "no seeds for {name}");
         for path in paths {
@@ -43,6 +43,10 @@ fn every_folder_of_seeds_has_a_target() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
     for entry in fs::read_dir(root).unwrap() {
         let name = entry.unwrap().file_name();
+        // A build without recordings has no target for them.
+        if name == "read_mcap" && cfg!(not(feature = "mcap")) {
+            continue;
+        }
         assert!(
             cloudtouch_fuzzing::TARGETS.iter().any(|(target, _)| name == *target),
             "{name:?} has no target"
