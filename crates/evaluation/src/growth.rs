@@ -65,10 +65,15 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let panels = asked.iter().enumerate().map(|(which, &pose)| {
         let (advance, case) = &series[pose];
         let nearest = case.distance_mm;
-        let title = format!("advance {advance:+.0} mm, nearest point {nearest:+.0} mm");
+        let side = if nearest > 0.0 { "outside" } else { "inside" };
+        let title =
+            format!("advance {advance:+.0} mm: nearest point {:.0} mm {side}", nearest.abs());
         panel(title, |method, level| levels[level].iter().map(|of| of[which][method]).collect())
     });
-    let figure = Figure::new("Answers while noise is added to a real scan", panels);
+    let figure = Figure::new(
+        "What each method says of a gripper before, at and in a mug while noise is added to the scan: 1 is collision",
+        panels,
+    );
     let introduction = format!(
         "After the paper's figure 5: a gripper, known as a mesh, at {} poses of its approach to a \
          mug in a real scan, while normal noise is added to the {} measured points near it. Each \

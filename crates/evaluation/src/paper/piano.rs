@@ -78,7 +78,10 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
             panels.push(Panel { title, x, y, series });
         }
     }
-    let mut figure = Figure::new("Probability against signed distance", panels);
+    let mut figure = Figure::new(
+        "Right is orange (in collision) above, blue (free) below; left of 0 the bodies overlap",
+        panels,
+    );
     (figure.columns, figure.panel_size) = (3, (360, 280));
     let text = format!(
         "The piano in the room, {points} points each, {} poses. A false alarm is a free pose at ½ or \

@@ -32,7 +32,10 @@ pub(super) fn section() -> Result<Section> {
         ("d: noisy, crossing", -0.006, 0.002),
     ];
     let panels = cases.into_iter().map(|(title, gap, std)| panel(title, gap, std));
-    let figure = Figure::new("Separating surfaces", panels.collect::<Result<Vec<_>>>()?);
+    let figure = Figure::new(
+        "Green is where the classifier parts A from B (f = 0)",
+        panels.collect::<Result<Vec<_>>>()?,
+    );
     Ok(Section::new("Figure 2: surfaces").text(TEXT).figure(
         "paper-surfaces",
         "Surfaces f = 0 between noise-free and noisy clouds",

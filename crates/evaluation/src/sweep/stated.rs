@@ -44,5 +44,8 @@ pub(super) fn figure(answers: &Answers) -> Figure {
         let (x, y) = (Axis::unit("stated probability"), Axis::unit("share that collides"));
         Panel { title: pair.name().into(), x, y, series }
     };
-    Figure::new("What is stated and what happens", Pair::ALL.map(panel))
+    Figure::new(
+        "Does 0.7 mean seven in ten? On the grey line it does; above it more poses collide than stated",
+        Pair::ALL.map(panel),
+    )
 }
