@@ -107,6 +107,18 @@ fn the_base_may_be_anywhere() {
     assert_eq!(checker.check(&query(), &joints([0.0; 6])).unwrap().verdict(), Verdict::Free);
 }
 
+#[test]
+fn the_next_scan_takes_the_place_of_the_last() {
+    let forwards = joints([0.0, FRAC_PI_2, 0.0, 0.0, 0.0, 0.0]);
+    let mut checker = checker(Arm::default().robot(), scan(Arm::TOP), Touching::Surroundings);
+    let verdict = |checker: &RobotChecker| checker.check(&query(), &forwards).unwrap().verdict();
+    assert_eq!(verdict(&checker), Verdict::Free);
+    let last = checker.replace_surroundings(Body::from(scan(Arm::TOP - 0.2 - 8.0 * STD))).unwrap();
+    assert_eq!(verdict(&checker), Verdict::InCollision);
+    checker.replace_surroundings(last).unwrap();
+    assert_eq!(verdict(&checker), Verdict::Free);
+}
+
 /// The robot in its own scan: in collision with itself, until it is filtered at the joints of the scan.
 #[test]
 fn what_is_seen_of_the_robot_is_removed_where_it_was_and_what_is_in_the_way_stays() {
