@@ -1,16 +1,19 @@
 #![doc = include_str!("../README.md")]
 
+mod aside;
 mod block;
 mod candidates;
 mod density;
 mod discretization;
 mod error;
 mod finite;
+mod fit;
 mod grid;
 mod lanes;
 mod limited;
 mod model;
 mod motion;
+mod near;
 mod neighborhoods;
 mod parallel;
 mod patch;
