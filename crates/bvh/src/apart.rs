@@ -92,16 +92,16 @@ impl Loss {
     }
 }
 
-/// The first box in the frame of the second and the other way round.
+/// What two boxes are tested by: the second in the frame of the first.
 pub(crate) struct Between<'a> {
     a: &'a NodeData,
     b: &'a NodeData,
     moved: &'a MovedBox,
-    /// aᵢ·bⱼ by i, and by j.
+    /// Middle to middle, in the frame of A, and along the axes of A.
+    way: Array,
+    offset: Lanes,
+    /// aᵢ·bⱼ by j.
     cosines: [Lanes; 3],
-    turned: [Lanes; 3],
-    /// Middle to middle along the axes of A and of B.
-    offset: [Lanes; 2],
     /// What is to be taken off every gap, m.
     slack: f64,
 }
@@ -114,49 +114,68 @@ impl<'a> Between<'a> {
         (b, moved): (&'a NodeData, &'a MovedBox),
         rounding: f64,
     ) -> Self {
-        let axes: &[Array; 3] = a.obb.axes.as_ref();
         let of_a = by_coordinates(&a.obb.axes);
-        let of_b = &moved.axes;
         let centre = &a.obb.centre;
         let way =
             [moved.centre[0] - centre.x, moved.centre[1] - centre.y, moved.centre[2] - centre.z];
-        let cosines = [0, 1, 2].map(|k| combined(&axes[k], of_b));
-        let turned = [0, 1, 2].map(|k| combined(&moved.axis(k), &of_a));
-        let offset = [combined(&way, &of_a), combined(&way, of_b)];
-        let [x, y, z, _] = offset[0].to_array();
+        let cosine = |k| combined(&moved.axis(k), &of_a);
+        let cosines = [cosine(0), cosine(1), cosine(2)];
+        let offset = combined(&way, &of_a);
+        let [x, y, z, _] = offset.to_array();
         let size =
             a.obb.half_extents.sum() + b.obb.half_extents.sum() + x.abs() + y.abs() + z.abs();
         let slack = a.bounds.shift + b.bounds.shift + rounding + 8.0 * f64::EPSILON * size;
-        Self { a, b, moved, cosines, turned, offset, slack }
+        Self { a, b, moved, way, offset, cosines, slack }
     }
 
-    /// Bounds by the six normals of faces; B may drift from where it is.
+    /// Bounds by the six normals of faces; B may drift from where it is. Those of A alone are looked at
+    /// where these say `enough` by themselves: of deviations, and of the gap of surfaces.
     #[inline(always)]
-    pub(crate) fn by_faces(&self, margin: f64, drift: Option<&Drift>) -> Apart {
+    pub(crate) fn by_faces(
+        &self,
+        margin: f64,
+        drift: Option<&Drift>,
+        enough: (f64, f64),
+    ) -> Apart {
         match drift {
-            None => self.by_faces_less(None, margin),
-            Some(drift) => self.by_faces_of_drifting(drift, margin),
+            None => self.by_faces_less(None, margin, enough),
+            Some(drift) => self.by_faces_of_drifting(drift, margin, enough),
         }
     }
 
     /// Apart from the loop of a search at rest, which stays short.
     #[inline(never)]
-    fn by_faces_of_drifting(&self, drift: &Drift, margin: f64) -> Apart {
+    fn by_faces_of_drifting(&self, drift: &Drift, margin: f64, enough: (f64, f64)) -> Apart {
         let of = |axes| Loss::of(drift, axes, (self.b, self.moved));
-        self.by_faces_less(Some([of(self.a.obb.axes.as_ref()), of(&[0, 1, 2].map(|k| self.moved.axis(k)))]), margin)
+        let own = [0, 1, 2].map(|k| self.moved.axis(k));
+        self.by_faces_less(Some([of(self.a.obb.axes.as_ref()), of(&own)]), margin, enough)
     }
 
     #[inline(always)]
-    fn by_faces_less(&self, losses: Option<[Loss; 2]>, margin: f64) -> Apart {
+    fn by_faces_less(
+        &self,
+        losses: Option<[Loss; 2]>,
+        margin: f64,
+        (deviations, surfaces): (f64, f64),
+    ) -> Apart {
         let (a, b) = (self.a, self.b);
         let mut apart =
             Apart { deviations: 0.0, points: f64::NEG_INFINITY, surfaces: f64::NEG_INFINITY };
-        let [of_a, of_b] = losses.as_ref().map_or([None; 2], |[of_a, of_b]| [Some(of_a), Some(of_b)]);
+        let [loss_along_a, loss_along_b] =
+            losses.as_ref().map_or([None; 2], |[of_a, of_b]| [Some(of_a), Some(of_b)]);
         // Only B drifts.
-        let gaps = (&self.offset[0], &self.turned, self.slack);
-        raise_along(a, b, gaps, (None, of_a), margin, &mut apart);
-        let gaps = (&self.offset[1], &self.cosines, self.slack);
-        raise_along(b, a, gaps, (of_b, None), margin, &mut apart);
+        let gaps = (self.offset, &self.cosines, self.slack);
+        raise_along(a, b, gaps, (None, loss_along_a), margin, &mut apart);
+        let is_enough = apart.surfaces >= surfaces
+            && apart.deviations >= deviations * deviations * (1.0 + 4.0 * f64::EPSILON);
+        if !is_enough {
+            let axes: &[Array; 3] = a.obb.axes.as_ref();
+            let of_b = &self.moved.axes;
+            let cosine = |k: usize| combined(&axes[k], of_b);
+            let cosines = [cosine(0), cosine(1), cosine(2)];
+            let gaps = (combined(&self.way, of_b), &cosines, self.slack);
+            raise_along(b, a, gaps, (loss_along_b, None), margin, &mut apart);
+        }
         apart.deviations = apart.deviations.sqrt();
         apart
     }
@@ -168,7 +187,9 @@ impl<'a> Between<'a> {
             // What a drift does across two edges is not known: not to tell is the safe side.
             return false;
         }
-        let (r, t) = (self.cosines.map(f64x4::to_array), self.offset[0].to_array());
+        let by_b = self.cosines.map(f64x4::to_array);
+        let r = [0, 1, 2].map(|i| [by_b[0][i], by_b[1][i], by_b[2][i]]);
+        let t = self.offset.to_array();
         let surface = |node: &NodeData| Array::from(node.obb.half_extents + node.bounds.axis_reach);
         let (half_a, half_b) = (surface(self.a), surface(self.b));
         for i in 0..3 {
@@ -199,7 +220,7 @@ impl<'a> Between<'a> {
 fn raise_along(
     own: &NodeData,
     other: &NodeData,
-    (offset, cosines, slack): (&Lanes, &[Lanes; 3], f64),
+    (offset, cosines, slack): (Lanes, &[Lanes; 3], f64),
     (own_loss, other_loss): (Option<&Loss>, Option<&Loss>),
     margin: f64,
     apart: &mut Apart,

@@ -228,7 +228,11 @@ impl<'a> Pairs<'a> {
         let moved = &self.moved[box_of_b as usize];
         let between = Between::new(of_a, (of_b, moved), self.rounding);
         let drift = self.sought.drift.as_ref();
-        let Apart { deviations, points, surfaces } = between.by_faces(self.sought.margin, drift);
+        // A pair that is left out by some of its faces, and is farther apart by these than others that were
+        // left out, changes nothing by the rest.
+        let enough = (within.max(outcome.deviations), outcome.apart.max(0.0));
+        let Apart { deviations, points, surfaces } =
+            between.by_faces(self.sought.margin, drift, enough);
         let mut may_cross = None;
         if deviations >= within {
             let crosses = self.sought.crossings
