@@ -131,12 +131,7 @@ impl<'a> Between<'a> {
     /// Bounds by the six normals of faces; B may drift from where it is. Those of A alone are looked at
     /// where these say `enough` by themselves: of deviations, and of the gap of surfaces.
     #[inline(always)]
-    pub(crate) fn by_faces(
-        &self,
-        margin: f64,
-        drift: Option<&Drift>,
-        enough: (f64, f64),
-    ) -> Apart {
+    pub(crate) fn by_faces(&self, margin: f64, drift: Option<&Drift>, enough: (f64, f64)) -> Apart {
         match drift {
             None => self.by_faces_less(None, margin, enough),
             Some(drift) => self.by_faces_of_drifting(drift, margin, enough),
@@ -256,3 +251,48 @@ fn raise_along(
 /// Below this sine² two edges count as parallel: their cross product is mostly rounding. Leaving a
 /// direction out can only make boxes overlap, which is the safe side.
 const PARALLEL: f64 = 1e-12;
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Covariance, Pose, UncertainPoint, seed};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{Primitive, Tree, TreeSettings};
+
+    fn tree(stream: u64, std: f64) -> Tree {
+        let point = |i: u64| {
+            let draw = |k| seed::unit(seed::derive(stream, i, k)) - 0.5;
+            let mean = Point3::new(draw(0), 0.3 * draw(1), 0.02 * draw(2));
+            let covariance = Covariance::diagonal([std * std, 4.0 * std * std, 0.1 * std * std]);
+            Primitive::point(UncertainPoint { mean, covariance })
+        };
+        Tree::build((0..40).map(point).collect(), &TreeSettings::default()).unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_test_ends_early_only_where_the_rest_could_not_matter(
+            std in 0.001..0.05_f64,
+            offset in prop::array::uniform3(-1.0..1.0_f64),
+            angles in prop::array::uniform3(-3.1..3.1_f64),
+            enough in (0.0..20.0_f64, -0.1..0.5_f64),
+            margin in 0.0..0.05_f64,
+        ) {
+            let (a, b) = (tree(1, std), tree(2, std));
+            let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
+            let [a, b] = [&a, &b].map(|tree| &tree.nodes[tree.root.unwrap() as usize]);
+            let moved = MovedBox::new(&b.obb, &Motion::from(&pose));
+            let between = Between::new(a, (b, &moved), 0.0);
+            let early = between.by_faces(margin, None, enough);
+            let full = between.by_faces(margin, None, (f64::INFINITY, f64::INFINITY));
+            prop_assert!(early.deviations <= full.deviations && early.surfaces <= full.surfaces);
+            let is_all = early.deviations == full.deviations
+                && early.points == full.points
+                && early.surfaces == full.surfaces;
+            prop_assert!(is_all || early.deviations >= enough.0 && early.surfaces >= enough.1);
+        }
+    }
+}

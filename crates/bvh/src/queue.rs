@@ -69,9 +69,8 @@ mod tests {
         let queued = |(i, urgency): (usize, &f64)| Queued::new(*urgency, nodes(i), i);
         let mut heap: BinaryHeap<_> = urgencies.iter().enumerate().map(queued).collect();
         let mut expected: Vec<usize> = (0..urgencies.len()).collect();
-        expected.sort_by(|&i, &j| {
-            urgencies[i].total_cmp(&urgencies[j]).then(nodes(i).cmp(&nodes(j)))
-        });
+        expected
+            .sort_by(|&i, &j| urgencies[i].total_cmp(&urgencies[j]).then(nodes(i).cmp(&nodes(j))));
         for i in expected {
             let pair = heap.pop().unwrap();
             assert_eq!((pair.item, pair.nodes()), (i, nodes(i)));

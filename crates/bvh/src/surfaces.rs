@@ -235,9 +235,8 @@ impl<'a> Pairs<'a> {
             between.by_faces(self.sought.margin, drift, enough);
         let mut may_cross = None;
         if deviations >= within {
-            let crosses = self.sought.crossings
-                && surfaces < 0.0
-                && !between.edges_part_surfaces(drift);
+            let crosses =
+                self.sought.crossings && surfaces < 0.0 && !between.edges_part_surfaces(drift);
             if !crosses {
                 return outcome.leave_out(deviations, surfaces);
             }

@@ -110,3 +110,40 @@ fn sees(cloud: &Prepared, sensor: &Point3, place: &Point3) -> bool {
         !is_between || aside > SURFACE_SPACINGS * spacing
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::seed::{derive, unit};
+
+    use super::*;
+
+    /// By division.
+    fn square_of(direction: &Vector3, squares: usize) -> Option<usize> {
+        let axis = direction.iamax();
+        let size = direction[axis].abs();
+        if !size.is_finite() || size == 0.0 {
+            return None;
+        }
+        let along = |k: usize| {
+            let share = 0.5 * (direction[(axis + k) % 3] / size + 1.0);
+            ((share * squares as f64) as usize).min(squares - 1)
+        };
+        let face = 2 * axis + usize::from(direction[axis] < 0.0);
+        Some((face * squares + along(1)) * squares + along(2))
+    }
+
+    #[test]
+    fn comparisons_find_the_square_that_division_does() {
+        let draw = |i: u64, k| 2.0 * unit(derive(5, i, k)) - 1.0;
+        let drawn = (0..4000).map(|i| Vector3::new(draw(i, 0), draw(i, 1), draw(i, 2)));
+        let special = [Vector3::zeros(), Vector3::repeat(f64::NAN), Vector3::x(), -Vector3::z()];
+        let all: Vec<Vector3> = drawn.chain(special).collect();
+        for a_side in 1..=MOST_SQUARES {
+            let squares = Squares::new(a_side);
+            for direction in &all {
+                let expected = square_of(direction, a_side).map_or(0, |square| 1 << square);
+                assert_eq!(squares.containing(direction), expected, "{direction:?}");
+            }
+        }
+    }
+}

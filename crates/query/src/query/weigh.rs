@@ -53,8 +53,7 @@ pub(super) fn weigh<'a>(
         let log_odds = judge.log_odds_by_geometry(deviations - depth, clearness.ln_1p());
         // More evidence only raises the odds; what a classifier could take off them is taken off.
         let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
-        of(log_odds) > settings.stop_above
-            || settings.detail == Detail::Verdict && is_decided()
+        of(log_odds) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
     };
     let found = search((a, b), a_from_b, is_enough, stats)?;
     let deviations = (found.deviations - depth).max(-MOST_DEVIATIONS);
