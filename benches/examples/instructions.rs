@@ -23,8 +23,11 @@ const POINTS: usize = 3000;
 /// A count may grow by this share before the check fails.
 const GROWTH: f64 = 0.2;
 
-/// What is counted, and runs it; each says how many of its units it did.
-const KERNELS: [(&str, fn() -> u64); 6] = [
+/// Runs a kernel, and says how many of its units that were.
+type Run = fn() -> u64;
+
+/// What is counted.
+const KERNELS: [(&str, Run); 6] = [
     ("box pair", box_pairs),
     ("query near contact by geometry alone", || query(1)),
     ("query in deep overlap by geometry alone", || query(2)),

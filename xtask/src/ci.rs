@@ -36,7 +36,9 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     })?;
     // Tests build the examples too, and run none of them.
     let instructions = "run --locked --package cloudtouch-benches --example instructions";
-    step("instructions", &format!("cargo {instructions}"), || succeed(&mut example("instructions")?))?;
+    step("instructions", &format!("cargo {instructions}"), || {
+        succeed(&mut example("instructions")?)
+    })?;
     let of_recordings =
         "--package cloudtouch-io --package cloudtouch-cli --test recording --test rosbags";
     run("recordings", &format!("test --locked {of_recordings} {features}"))?;
