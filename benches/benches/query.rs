@@ -5,7 +5,9 @@
 use std::time::Duration;
 
 use cloudtouch::geom::{PointCloud, Pose};
-use cloudtouch::{PaperQuery, PaperSettings, Query, QueryError, QuerySettings, Report, Verdict};
+use cloudtouch::{
+    Judge, PaperQuery, PaperSettings, Query, QueryError, QuerySettings, Report, Verdict,
+};
 use cloudtouch_benches::piano_room::{classes, piano, prepared, prepared_by_the_paper, room};
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, criterion_group, criterion_main};
@@ -17,6 +19,10 @@ fn queries(criterion: &mut Criterion) {
     group.sample_size(10).measurement_time(Duration::from_secs(3));
     let query = Query::new(QuerySettings::default()).expect("default settings");
     measure(&mut group, "calibrated", prepared, |a, b, pose| query.run(a, b, pose));
+    // Gaps of pieces and crossings of edges through discs, and no classifier.
+    let judge = Judge::default().without_classifier();
+    let query = Query::new(QuerySettings { judge, ..Default::default() }).expect("good settings");
+    measure(&mut group, "geometry", prepared, |a, b, pose| query.run(a, b, pose));
     let query = PaperQuery::new(PaperSettings::default()).expect("default settings");
     measure(&mut group, "paper", prepared_by_the_paper, |a, b, pose| query.run(a, b, pose));
 }

@@ -1,11 +1,14 @@
-//! OBB trees: build, refit, insertion, and the traversal of two of them.
+//! OBB trees: build, refit, insertion, and the traversals of two of them, by box tests alone.
 #![allow(missing_docs, reason = "criterion_group! makes a public function without documentation")]
 
 use std::hint::black_box;
 use std::time::Duration;
 
 use cloudtouch_benches::sphere::sphere;
-use cloudtouch_bvh::{Flow, Traversal, TraversalSettings, Tree, TreeSettings, traverse};
+use cloudtouch_bvh::{
+    Flow, Sought, SurfaceFlow, Traversal, TraversalSettings, Tree, TreeSettings, traverse,
+    visit_surfaces,
+};
 use cloudtouch_geom::{Pose, Vector3};
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 
@@ -61,5 +64,22 @@ fn pairs(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, changes, pairs);
+/// The search of the default path, which sorts pairs by deviations.
+fn surfaces(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("visit_surfaces_10000x10000");
+    group.sample_size(20).measurement_time(Duration::from_secs(1));
+    let settings = TreeSettings::default();
+    let [a, b] =
+        [1, 2].map(|stream| Tree::build(sphere(stream, 10_000, 0.002), &settings).expect("a tree"));
+    let sought = Sought { within: 6.0, margin: 0.0, crossings: true, drift: None };
+    for (gap, offset) in [("3m", 4.0), ("2cm", 1.02), ("0cm", 1.0), ("-5cm", 0.95)] {
+        let pose = Pose::from_translation(Vector3::new(offset, 0.0, 0.0));
+        let run = || visit_surfaces((&a, &b), &pose, sought, |_| SurfaceFlow::Within(6.0));
+        let outcome = run().expect("finite poses");
+        assert_eq!(outcome.leaf_pairs > 0, gap.contains("cm"), "{gap}: {outcome:?}");
+        group.bench_function(BenchmarkId::new("gap", gap), |bencher| bencher.iter(run));
+    }
+}
+
+criterion_group!(benches, changes, pairs, surfaces);
 criterion_main!(benches);

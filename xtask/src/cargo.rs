@@ -12,6 +12,14 @@ pub(crate) fn cargo(root: &Path, arguments: &str) -> Command {
     command
 }
 
+/// An example that the tests of the workspace have built. By `cargo run` its crates would be built anew,
+/// for alone they have other features.
+pub(crate) fn example(name: &str) -> Result<Command> {
+    let program = std::env::current_exe()?;
+    let target = program.ancestors().nth(2).context("the target folder")?;
+    Ok(Command::new(target.join("debug/examples").join(name)))
+}
+
 /// Runs it; fails where it does.
 pub(crate) fn succeed(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| format!("start {command:?}"))?;

@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use cloudtouch_evaluation::sweep;
 
-use crate::cargo::{cargo, succeed};
+use crate::cargo::{cargo, example, succeed};
 use crate::{fixtures, python, tidy};
 
 /// Runs every step; tests come last, those in Python after those in Rust, whose build they use.
@@ -33,6 +33,11 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     let test = "test --locked --workspace --no-fail-fast";
     step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
         succeed(cargo(root, test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
+    })?;
+    // Tests build the examples too, and run none of them.
+    let instructions = "run --locked --package cloudtouch-benches --example instructions";
+    step("instructions", &format!("cargo {instructions}"), || {
+        succeed(&mut example("instructions")?)
     })?;
     let of_recordings = "--package cloudtouch-io --package cloudtouch-cli --package cloudtouch-fuzzing --test recording --test rosbags --test replay";
     run("recordings", &format!("test --locked {of_recordings} {features}"))?;

@@ -3,6 +3,7 @@
 //! This is the innermost loop of every search: plain arrays and loops, which compile to vectors.
 
 use cloudtouch_geom::{Drift, Matrix3, Motion, Point3, Vector3};
+use wide::f64x4;
 
 use crate::Obb;
 use crate::node::NodeData;
@@ -21,159 +22,169 @@ pub(crate) struct Apart {
 
 type Array = [f64; 3];
 
+/// One number for each of three axes, and a spare one.
+type Lanes = f64x4;
+
+#[inline]
+fn lanes(v: &Vector3) -> Lanes {
+    f64x4::new([v.x, v.y, v.z, 0.0])
+}
+
+/// Σₖ scales\[k\] · of\[k\].
+#[inline]
+fn combined(scales: &Array, of: &[Lanes; 3]) -> Lanes {
+    let scaled = |k: usize| f64x4::splat(scales[k]) * of[k];
+    scaled(0) + scaled(1) + scaled(2)
+}
+
 /// Middle and axes of a box in another frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MovedBox {
     centre: Array,
-    axes: [Array; 3],
+    /// The axes by coordinates.
+    axes: [Lanes; 3],
 }
 
 impl MovedBox {
     pub(crate) fn new(obb: &Obb, motion: &Motion) -> Self {
         let axes = motion.rotation() * obb.axes;
-        Self { centre: motion.point(&obb.centre).into(), axes: axes.into() }
+        Self { centre: motion.point(&obb.centre).into(), axes: by_coordinates(&axes) }
     }
 
-    fn axis(&self, k: usize) -> Vector3 {
-        Vector3::from(self.axes[k])
+    fn axis(&self, k: usize) -> Array {
+        self.axes.map(|coordinate| coordinate.as_array()[k])
     }
 }
 
-/// What a drift takes off gaps and adds to spreads along an axis.
-#[derive(Debug, Clone, Copy, Default)]
+/// The rows of a matrix whose columns are axes.
+#[inline]
+fn by_coordinates(axes: &Matrix3) -> [Lanes; 3] {
+    let row = |k: usize| f64x4::new([axes[(k, 0)], axes[(k, 1)], axes[(k, 2)], 0.0]);
+    [row(0), row(1), row(2)]
+}
+
+/// What a drift of the second box takes off gaps and adds to spreads along three axes.
+#[derive(Debug, Clone, Copy)]
 struct Loss {
-    /// How far the second box gets along the axis, m.
-    room: f64,
+    /// How far the box gets along each axis, m.
+    room: Lanes,
     /// What its turn adds to its deviations there, and to its reach, m.
-    std: f64,
-    reach: f64,
+    std: Lanes,
+    reach: Lanes,
 }
 
 impl Loss {
-    /// Along a unit vector in the frame of A.
-    fn of(drift: &Drift, axis: &Vector3, (b, moved): (&NodeData, &MovedBox)) -> Self {
+    /// Along unit vectors in the frame of A.
+    fn of(drift: &Drift, axes: &[Array; 3], (b, moved): (&NodeData, &MovedBox)) -> Self {
         let middle = Point3::from(moved.centre);
-        let axes: Matrix3 = moved.axes.into();
-        let half_axes = axes * Matrix3::from_diagonal(&b.obb.half_extents);
+        let own_axes: Matrix3 = [0, 1, 2].map(|k| moved.axis(k)).into();
+        let half_axes = own_axes * Matrix3::from_diagonal(&b.obb.half_extents);
         let around = b.bounds.shift + b.bounds.max_reach;
-        let turn = drift.turn_of(axis);
-        Self {
-            room: drift.along_of_box(axis, &middle, &half_axes, around),
-            std: turn * b.bounds.max_std,
-            reach: turn * b.bounds.max_reach,
+        let [mut room, mut std, mut reach] = [[0.0; 4]; 3];
+        for (k, axis) in axes.iter().enumerate() {
+            let axis = Vector3::from(*axis);
+            let turn = drift.turn_of(&axis);
+            room[k] = drift.along_of_box(&axis, &middle, &half_axes, around);
+            std[k] = turn * b.bounds.max_std;
+            reach[k] = turn * b.bounds.max_reach;
         }
+        Self { room: f64x4::new(room), std: f64x4::new(std), reach: f64x4::new(reach) }
     }
 }
 
-#[inline]
-fn dot(a: &Array, b: &Array) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The first box in the frame of the second and the other way round.
+/// What two boxes are tested by: the second in the frame of the first.
 pub(crate) struct Between<'a> {
     a: &'a NodeData,
     b: &'a NodeData,
-    /// aᵢ·bⱼ.
-    cosines: [Array; 3],
-    /// Middle to middle along the axes of A and of B.
-    offset: [Array; 2],
+    moved: &'a MovedBox,
+    /// Middle to middle, in the frame of A, and along the axes of A.
+    way: Array,
+    offset: Lanes,
+    /// aᵢ·bⱼ by j.
+    cosines: [Lanes; 3],
     /// What is to be taken off every gap, m.
     slack: f64,
-    /// What a drift of B does along the axes of A and of B; `None` where it keeps still.
-    losses: Option<[[Loss; 3]; 2]>,
 }
 
 impl<'a> Between<'a> {
-    /// `rounding` is what the pose may misplace a box by, m; B may drift from where it is.
-    #[inline]
+    /// `rounding` is what the pose may misplace a box by, m.
+    #[inline(always)]
     pub(crate) fn new(
         a: &'a NodeData,
-        (b, moved): (&'a NodeData, &MovedBox),
+        (b, moved): (&'a NodeData, &'a MovedBox),
         rounding: f64,
-        drift: Option<&Drift>,
     ) -> Self {
-        let axes: &[Array; 3] = a.obb.axes.as_ref();
+        let of_a = by_coordinates(&a.obb.axes);
         let centre = &a.obb.centre;
         let way =
             [moved.centre[0] - centre.x, moved.centre[1] - centre.y, moved.centre[2] - centre.z];
-        let mut cosines = [[0.0; 3]; 3];
-        let mut offset = [[0.0; 3]; 2];
-        let mut size = a.obb.half_extents.sum() + b.obb.half_extents.sum();
-        for i in 0..3 {
-            for j in 0..3 {
-                cosines[i][j] = dot(&axes[i], &moved.axes[j]);
-            }
-            offset[0][i] = dot(&axes[i], &way);
-            offset[1][i] = dot(&moved.axes[i], &way);
-            size += offset[0][i].abs();
-        }
+        let cosine = |k| combined(&moved.axis(k), &of_a);
+        let cosines = [cosine(0), cosine(1), cosine(2)];
+        let offset = combined(&way, &of_a);
+        let [x, y, z, _] = offset.to_array();
+        let size =
+            a.obb.half_extents.sum() + b.obb.half_extents.sum() + x.abs() + y.abs() + z.abs();
         let slack = a.bounds.shift + b.bounds.shift + rounding + 8.0 * f64::EPSILON * size;
-        let losses = drift.map(|drift| {
-            let of = |axis: Vector3| Loss::of(drift, &axis, (b, moved));
-            let own = |k: usize| a.obb.axes.column(k).into_owned();
-            [[own(0), own(1), own(2)].map(of), [0, 1, 2].map(|k| of(moved.axis(k)))]
-        });
-        Self { a, b, cosines, offset, slack, losses }
+        Self { a, b, moved, way, offset, cosines, slack }
     }
 
-    /// Bounds by the six normals of faces.
-    #[inline]
-    pub(crate) fn by_faces(&self, margin: f64) -> Apart {
-        let c = &self.cosines;
-        let turned = [0, 1, 2].map(|j| [c[0][j], c[1][j], c[2][j]]);
+    /// Bounds by the six normals of faces; B may drift from where it is. Those of A alone are looked at
+    /// where these say `enough` by themselves: of deviations, and of the gap of surfaces.
+    #[inline(always)]
+    pub(crate) fn by_faces(&self, margin: f64, drift: Option<&Drift>, enough: (f64, f64)) -> Apart {
+        match drift {
+            None => self.by_faces_less(None, margin, enough),
+            Some(drift) => self.by_faces_of_drifting(drift, margin, enough),
+        }
+    }
+
+    /// Apart from the loop of a search at rest, which stays short.
+    #[inline(never)]
+    fn by_faces_of_drifting(&self, drift: &Drift, margin: f64, enough: (f64, f64)) -> Apart {
+        let of = |axes| Loss::of(drift, axes, (self.b, self.moved));
+        let own = [0, 1, 2].map(|k| self.moved.axis(k));
+        self.by_faces_less(Some([of(self.a.obb.axes.as_ref()), of(&own)]), margin, enough)
+    }
+
+    #[inline(always)]
+    fn by_faces_less(
+        &self,
+        losses: Option<[Loss; 2]>,
+        margin: f64,
+        (deviations, surfaces): (f64, f64),
+    ) -> Apart {
+        let (a, b) = (self.a, self.b);
         let mut apart =
             Apart { deviations: 0.0, points: f64::NEG_INFINITY, surfaces: f64::NEG_INFINITY };
-        let none = [Loss::default(); 3];
-        let [of_a, of_b] = &self.losses.unwrap_or([none; 2]);
-        self.along_axes((self.a, &none), (self.b, of_a), (&self.offset[0], c), margin, &mut apart);
-        let (a, b) = ((self.a, &none), (self.b, of_b));
-        self.along_axes(b, a, (&self.offset[1], &turned), margin, &mut apart);
+        let [loss_along_a, loss_along_b] =
+            losses.as_ref().map_or([None; 2], |[of_a, of_b]| [Some(of_a), Some(of_b)]);
+        // Only B drifts.
+        let gaps = (self.offset, &self.cosines, self.slack);
+        raise_along(a, b, gaps, (None, loss_along_a), margin, &mut apart);
+        let is_enough = apart.surfaces >= surfaces
+            && apart.deviations >= deviations * deviations * (1.0 + 4.0 * f64::EPSILON);
+        if !is_enough {
+            let axes: &[Array; 3] = a.obb.axes.as_ref();
+            let of_b = &self.moved.axes;
+            let cosine = |k: usize| combined(&axes[k], of_b);
+            let cosines = [cosine(0), cosine(1), cosine(2)];
+            let gaps = (combined(&self.way, of_b), &cosines, self.slack);
+            raise_along(b, a, gaps, (loss_along_b, None), margin, &mut apart);
+        }
         apart.deviations = apart.deviations.sqrt();
         apart
     }
 
-    /// Raises the bounds by the three axes of a node; its deviations are squared. Of the two losses one
-    /// is none.
-    #[inline]
-    fn along_axes(
-        &self,
-        (own, own_loss): (&NodeData, &[Loss; 3]),
-        (other, other_loss): (&NodeData, &[Loss; 3]),
-        (offset, cosines): (&Array, &[Array; 3]),
-        margin: f64,
-        apart: &mut Apart,
-    ) {
-        for k in 0..3 {
-            let [x, y, z] = [cosines[k][0].abs(), cosines[k][1].abs(), cosines[k][2].abs()];
-            let along = |v: &Vector3| x * v.x + y * v.y + z * v.z;
-            let (own_loss, other_loss) = (&own_loss[k], &other_loss[k]);
-            let points = offset[k].abs()
-                - own.obb.half_extents[k]
-                - along(&other.obb.half_extents)
-                - (self.slack + own_loss.room + other_loss.room);
-            let reach = own.bounds.axis_reach[k]
-                + along(&other.bounds.axis_reach)
-                + (own_loss.reach + other_loss.reach);
-            let own_std = own.bounds.axis_std[k] + own_loss.std;
-            let std = (along(&other.bounds.axis_std) + other_loss.std).min(other.bounds.max_std);
-            let variance = own_std * own_std + std * std;
-            let positive = (points - margin).max(0.0);
-            // Nothing over nothing, of exact points that touch, is no bound: `max` passes over NaN.
-            apart.deviations = apart.deviations.max(positive * positive / variance);
-            apart.points = apart.points.max(points);
-            apart.surfaces = apart.surfaces.max(points - reach);
-        }
-    }
-
     /// Whether the boxes of the surfaces are apart along one of the nine directions across an edge of
     /// each.
-    pub(crate) fn edges_part_surfaces(&self) -> bool {
-        if self.losses.is_some() {
+    pub(crate) fn edges_part_surfaces(&self, drift: Option<&Drift>) -> bool {
+        if drift.is_some() {
             // What a drift does across two edges is not known: not to tell is the safe side.
             return false;
         }
-        let (r, t) = (&self.cosines, &self.offset[0]);
+        let by_b = self.cosines.map(f64x4::to_array);
+        let r = [0, 1, 2].map(|i| [by_b[0][i], by_b[1][i], by_b[2][i]]);
+        let t = self.offset.to_array();
         let surface = |node: &NodeData| Array::from(node.obb.half_extents + node.bounds.axis_reach);
         let (half_a, half_b) = (surface(self.a), surface(self.b));
         for i in 0..3 {
@@ -197,6 +208,91 @@ impl<'a> Between<'a> {
     }
 }
 
+/// Raises bounds by the three axes of a node, given the way to the middle of the other along each, the
+/// cosines of its axes by the axes of the other, and what is to be taken off every gap; the deviations are
+/// squared.
+#[inline(always)]
+fn raise_along(
+    own: &NodeData,
+    other: &NodeData,
+    (offset, cosines, slack): (Lanes, &[Lanes; 3], f64),
+    (own_loss, other_loss): (Option<&Loss>, Option<&Loss>),
+    margin: f64,
+    apart: &mut Apart,
+) {
+    let sizes = cosines.map(f64x4::abs);
+    let along = |v: &Vector3| combined(v.as_ref(), &sizes);
+    let (bounds, of_other) = (&own.bounds, &other.bounds);
+    let mut room = f64x4::splat(slack);
+    let mut reach = lanes(&bounds.axis_reach) + along(&of_other.axis_reach);
+    let mut own_std = lanes(&bounds.axis_std);
+    let mut std = along(&of_other.axis_std);
+    if let Some(loss) = own_loss {
+        (room, reach, own_std) = (room + loss.room, reach + loss.reach, own_std + loss.std);
+    }
+    if let Some(loss) = other_loss {
+        (room, reach, std) = (room + loss.room, reach + loss.reach, std + loss.std);
+    }
+    let std = std.fast_min(f64x4::splat(of_other.max_std));
+    let points =
+        offset.abs() - lanes(&own.obb.half_extents) - along(&other.obb.half_extents) - room;
+    let surfaces = points - reach;
+    let beyond = (points - f64x4::splat(margin)).fast_max(f64x4::ZERO);
+    let squared = beyond * beyond / (own_std * own_std + std * std);
+    let (squared, points, surfaces) = (squared.as_array(), points.as_array(), surfaces.as_array());
+    for k in 0..3 {
+        // Nothing over nothing, of exact points that touch, is no bound: `max` passes over NaN.
+        apart.deviations = apart.deviations.max(squared[k]);
+        apart.points = apart.points.max(points[k]);
+        apart.surfaces = apart.surfaces.max(surfaces[k]);
+    }
+}
+
 /// Below this sine² two edges count as parallel: their cross product is mostly rounding. Leaving a
 /// direction out can only make boxes overlap, which is the safe side.
 const PARALLEL: f64 = 1e-12;
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Covariance, Pose, UncertainPoint, seed};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{Primitive, Tree, TreeSettings};
+
+    fn tree(stream: u64, std: f64) -> Tree {
+        let point = |i: u64| {
+            let draw = |k| seed::unit(seed::derive(stream, i, k)) - 0.5;
+            let mean = Point3::new(draw(0), 0.3 * draw(1), 0.02 * draw(2));
+            let covariance = Covariance::diagonal([std * std, 4.0 * std * std, 0.1 * std * std]);
+            Primitive::point(UncertainPoint { mean, covariance })
+        };
+        Tree::build((0..40).map(point).collect(), &TreeSettings::default()).unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_test_ends_early_only_where_the_rest_could_not_matter(
+            std in 0.001..0.05_f64,
+            offset in prop::array::uniform3(-1.0..1.0_f64),
+            angles in prop::array::uniform3(-3.1..3.1_f64),
+            enough in (0.0..20.0_f64, -0.1..0.5_f64),
+            margin in 0.0..0.05_f64,
+        ) {
+            let (a, b) = (tree(1, std), tree(2, std));
+            let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
+            let [a, b] = [&a, &b].map(|tree| &tree.nodes[tree.root.unwrap() as usize]);
+            let moved = MovedBox::new(&b.obb, &Motion::from(&pose));
+            let between = Between::new(a, (b, &moved), 0.0);
+            let early = between.by_faces(margin, None, enough);
+            let full = between.by_faces(margin, None, (f64::INFINITY, f64::INFINITY));
+            prop_assert!(early.deviations <= full.deviations && early.surfaces <= full.surfaces);
+            let is_all = early.deviations == full.deviations
+                && early.points == full.points
+                && early.surfaces == full.surfaces;
+            prop_assert!(is_all || early.deviations >= enough.0 && early.surfaces >= enough.1);
+        }
+    }
+}

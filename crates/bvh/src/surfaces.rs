@@ -6,7 +6,7 @@ use cloudtouch_geom::{Drift, Motion, Pose};
 
 use crate::apart::{Apart, Between, MovedBox};
 use crate::node::{NodeData, pose_rounding};
-use crate::queue::{Queued, Urgent};
+use crate::queue::Queued;
 use crate::{NodeId, Tree, TreeError};
 
 /// Two leaves whose surfaces may touch.
@@ -94,9 +94,10 @@ pub fn visit_surfaces(
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(outcome) };
     let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought, USUAL_PAIRS);
     pairs.test_roots(root_a, root_b, within, &mut outcome);
-    while let Some(Queued(pair)) = pairs.queue.pop() {
-        if pair.apart.deviations >= within && !pairs.may_cross(&pair) {
-            outcome.leave_out(&pair.apart);
+    while let Some(pair) = pairs.queue.pop() {
+        let Waiting { deviations, surfaces, .. } = pair.item;
+        if deviations >= within && !pairs.may_cross(&pair) {
+            outcome.leave_out(deviations, surfaces);
             continue;
         }
         if pairs.test_narrower(&pair, within, &mut outcome) {
@@ -104,8 +105,8 @@ pub fn visit_surfaces(
         }
         outcome.leaf_pairs += 1;
         let may_cross = pairs.may_cross(&pair);
-        let deviations = pair.apart.deviations;
-        match visit(SurfacePair { a: NodeId(pair.a), b: NodeId(pair.b), deviations, may_cross }) {
+        let (a, b) = pair.nodes();
+        match visit(SurfacePair { a: NodeId(a), b: NodeId(b), deviations, may_cross }) {
             SurfaceFlow::Within(limit) => within = within.min(limit),
             SurfaceFlow::Stop => {
                 (outcome.deviations, outcome.apart) = (0.0, f64::NEG_INFINITY);
@@ -133,7 +134,7 @@ pub fn urgency_of_roots(
     let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought, 1);
     let mut outcome = SurfaceOutcome::NOTHING;
     pairs.test_roots(root_a, root_b, sought.within, &mut outcome);
-    Ok(pairs.queue.pop().map(|Queued(roots)| roots.urgency))
+    Ok(pairs.queue.pop().map(|roots| roots.urgency()))
 }
 
 fn check(a_from_b: &Pose, sought: &Sought) -> Result<(), TreeError> {
@@ -157,9 +158,9 @@ impl SurfaceOutcome {
         stopped: false,
     };
 
-    fn leave_out(&mut self, apart: &Apart) {
-        self.deviations = self.deviations.min(apart.deviations);
-        self.apart = self.apart.min(apart.surfaces);
+    fn leave_out(&mut self, deviations: f64, surfaces: f64) {
+        self.deviations = self.deviations.min(deviations);
+        self.apart = self.apart.min(surfaces);
     }
 }
 
@@ -174,7 +175,7 @@ struct Pairs<'a> {
     sought: Sought,
     /// How far the pose can misplace a box by rounding, m.
     rounding: f64,
-    queue: BinaryHeap<Queued<Candidate>>,
+    queue: BinaryHeap<Queued<Waiting>>,
     /// Boxes of B in the frame of A: pairs that share a node share its box.
     moved: Vec<MovedBox>,
 }
@@ -199,8 +200,8 @@ impl<'a> Pairs<'a> {
         }
     }
 
-    fn nodes(&self, pair: &Candidate) -> (&'a NodeData, &'a NodeData) {
-        (&self.a.nodes[pair.a as usize], &self.b.nodes[pair.b as usize])
+    fn nodes(&self, (a, b): (u32, u32)) -> (&'a NodeData, &'a NodeData) {
+        (&self.a.nodes[a as usize], &self.b.nodes[b as usize])
     }
 
     /// Moves the box of a node of B, and says where it is kept.
@@ -223,48 +224,60 @@ impl<'a> Pairs<'a> {
         outcome: &mut SurfaceOutcome,
     ) {
         outcome.nodes_visited += 1;
-        let (of_a, of_b) = (&self.a.nodes[a as usize], &self.b.nodes[b as usize]);
+        let (of_a, of_b) = self.nodes((a, b));
         let moved = &self.moved[box_of_b as usize];
-        let between = Between::new(of_a, (of_b, moved), self.rounding, self.sought.drift.as_ref());
-        let apart = between.by_faces(self.sought.margin);
-        let squared_size =
-            || of_a.obb.half_extents.norm_squared().min(of_b.obb.half_extents.norm_squared());
-        let beyond = apart.points - self.sought.margin;
-        let urgency = match beyond < 0.0 {
-            // A box without size is overlapped as much as can be.
-            true => (beyond / squared_size().sqrt()).max(f64::MIN),
-            false => apart.deviations,
-        };
-        let may_cross =
-            || self.sought.crossings && apart.surfaces < 0.0 && !between.edges_part_surfaces();
-        if apart.deviations >= within && !may_cross() {
-            outcome.leave_out(&apart);
-        } else {
-            self.queue.push(Queued(Candidate { a, b, box_of_b, apart, urgency }));
+        let between = Between::new(of_a, (of_b, moved), self.rounding);
+        let drift = self.sought.drift.as_ref();
+        // A pair that is left out by some of its faces, and is farther apart by these than others that were
+        // left out, changes nothing by the rest.
+        let enough = (within.max(outcome.deviations), outcome.apart.max(0.0));
+        let Apart { deviations, points, surfaces } =
+            between.by_faces(self.sought.margin, drift, enough);
+        let mut may_cross = None;
+        if deviations >= within {
+            let crosses =
+                self.sought.crossings && surfaces < 0.0 && !between.edges_part_surfaces(drift);
+            if !crosses {
+                return outcome.leave_out(deviations, surfaces);
+            }
+            may_cross = Some(crosses);
         }
+        let beyond = points - self.sought.margin;
+        let urgency = if beyond < 0.0 {
+            let [size_of_a, size_of_b] =
+                [of_a, of_b].map(|node| node.obb.half_extents.norm_squared());
+            // A box without size is overlapped as much as can be.
+            (beyond / size_of_a.min(size_of_b).sqrt()).max(f64::MIN)
+        } else {
+            deviations
+        };
+        let waiting = Waiting { box_of_b, may_cross, deviations, surfaces };
+        self.queue.push(Queued::new(urgency, (a, b), waiting));
     }
 
     /// Tests the pairs one step down, by splitting the larger node; whether there were any: not of two
     /// leaves.
     fn test_narrower(
         &mut self,
-        pair: &Candidate,
+        pair: &Queued<Waiting>,
         within: f64,
         outcome: &mut SurfaceOutcome,
     ) -> bool {
-        let (a, b) = self.nodes(pair);
-        let a_is_larger = || a.obb.half_extents.norm_squared() >= b.obb.half_extents.norm_squared();
-        match (a.children, b.children) {
+        let (a, b) = pair.nodes();
+        let (of_a, of_b) = self.nodes((a, b));
+        let a_is_larger =
+            || of_a.obb.half_extents.norm_squared() >= of_b.obb.half_extents.norm_squared();
+        match (of_a.children, of_b.children) {
             (None, None) => return false,
-            (Some(children), of_b) if of_b.is_none() || a_is_larger() => {
+            (Some(children), below_b) if below_b.is_none() || a_is_larger() => {
                 for child in children {
-                    self.test((child, pair.b), pair.box_of_b, within, outcome);
+                    self.test((child, b), pair.item.box_of_b, within, outcome);
                 }
             }
-            (_, of_b) => {
-                for child in of_b.into_iter().flatten() {
+            (_, below_b) => {
+                for child in below_b.into_iter().flatten() {
                     let box_of_child = self.moved(child);
-                    self.test((pair.a, child), box_of_child, within, outcome);
+                    self.test((a, child), box_of_child, within, outcome);
                 }
             }
         }
@@ -273,33 +286,26 @@ impl<'a> Pairs<'a> {
 
     /// Whether the boxes of the surfaces overlap: what the normals of their faces leave open, the
     /// directions across two edges decide.
-    fn may_cross(&self, pair: &Candidate) -> bool {
-        let (a, b) = self.nodes(pair);
-        let moved = &self.moved[pair.box_of_b as usize];
-        let drift = self.sought.drift.as_ref();
-        self.sought.crossings
-            && pair.apart.surfaces < 0.0
-            && !Between::new(a, (b, moved), self.rounding, drift).edges_part_surfaces()
+    fn may_cross(&self, pair: &Queued<Waiting>) -> bool {
+        let Waiting { box_of_b, may_cross, surfaces, .. } = pair.item;
+        may_cross.unwrap_or_else(|| {
+            let (a, b) = self.nodes(pair.nodes());
+            let moved = &self.moved[box_of_b as usize];
+            self.sought.crossings
+                && surfaces < 0.0
+                && !Between::new(a, (b, moved), self.rounding)
+                    .edges_part_surfaces(self.sought.drift.as_ref())
+        })
     }
 }
 
-/// A pair that waits.
+/// What is known of a pair that waits.
 #[derive(Debug, Clone, Copy)]
-struct Candidate {
-    a: u32,
-    b: u32,
+struct Waiting {
     box_of_b: u32,
-    apart: Apart,
-    /// Negative for an overlap, relative to the smaller node, else deviations.
-    urgency: f64,
-}
-
-impl Urgent for Candidate {
-    fn urgency(&self) -> f64 {
-        self.urgency
-    }
-
-    fn nodes(&self) -> (u32, u32) {
-        (self.a, self.b)
-    }
+    /// `None` where it was not asked yet.
+    may_cross: Option<bool>,
+    /// As in [`Apart`].
+    deviations: f64,
+    surfaces: f64,
 }

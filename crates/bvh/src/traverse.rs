@@ -6,7 +6,7 @@ use cloudtouch_geom::{Pose, Vector3, normal};
 
 use crate::examine::{Examined, Examiner};
 use crate::leakage::bound_at;
-use crate::queue::{Queued, Urgent};
+use crate::queue::Queued;
 use crate::{NodeId, TraversalSettings, Tree, TreeError};
 
 /// Two leaves whose points may touch.
@@ -136,12 +136,12 @@ fn walk(
             let pair = examiner.examine(ids, wanted_within);
             outcome.nodes_visited += 1;
             if pair.descend {
-                queue.push(Queued(pair));
+                queue.push(Queued::new(pair.urgency, (pair.a, pair.b), pair));
             } else {
                 cull(&pair, &mut outcome);
             }
         }
-        let Some(Queued(pair)) = queue.pop() else { break };
+        let Some(Queued { item: pair, .. }) = queue.pop() else { break };
         if pair.deviations >= wanted_within {
             cull(&pair, &mut outcome);
         } else if let Some(narrower) = examiner.narrower_pairs(&pair) {
@@ -153,7 +153,7 @@ fn walk(
                 Flow::Above(bound) => wanted_within = wanted_within.min(-normal::quantile(bound)),
                 Flow::Stop => {
                     outcome.stopped = true;
-                    let deviations = queue.iter().map(|Queued(pair)| pair.deviations);
+                    let deviations = queue.iter().map(|queued| queued.item.deviations);
                     outcome.pending_bound = bound_at(deviations.fold(f64::INFINITY, f64::min));
                     break;
                 }
@@ -168,16 +168,6 @@ impl From<Examined> for LeafPair {
     fn from(pair: Examined) -> Self {
         let Examined { a, b, gap, axis, deviations, .. } = pair;
         Self { a: NodeId(a), b: NodeId(b), gap, axis, bound: bound_at(deviations) }
-    }
-}
-
-impl Urgent for Examined {
-    fn urgency(&self) -> f64 {
-        self.urgency
-    }
-
-    fn nodes(&self) -> (u32, u32) {
-        (self.a, self.b)
     }
 }
 
@@ -310,24 +300,5 @@ mod tests {
             let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
             check_culls_are_certified(kind, noise, &pose, refined);
         }
-    }
-
-    #[test]
-    fn the_most_urgent_pair_comes_out_first() {
-        let candidate = |urgency, a, b| {
-            let deviations = f64::NEG_INFINITY;
-            let axis = Vector3::x();
-            Queued(Examined { a, b, gap: urgency, axis, deviations, urgency, descend: true })
-        };
-        let mut queue: BinaryHeap<_> = [
-            candidate(0.1, 0, 0),
-            candidate(-0.5, 3, 1),
-            candidate(-0.5, 3, 0),
-            candidate(-0.5, 2, 9),
-            candidate(0.0, 1, 1),
-        ]
-        .into();
-        let order: Vec<_> = std::iter::from_fn(|| queue.pop()).map(|c| (c.0.a, c.0.b)).collect();
-        assert_eq!(order, [(2, 9), (3, 0), (3, 1), (1, 1), (0, 0)]);
     }
 }

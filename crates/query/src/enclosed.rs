@@ -8,7 +8,8 @@ use crate::shape::Shape;
 
 /// Points that stand for the surface around, at most.
 const MOST_POINTS: usize = 4096;
-/// Directions are told apart by squares on the faces of a cube, so many a side at most.
+/// Directions are told apart by squares on the faces of a cube, so many a side at most: all of them are
+/// the bits of one number.
 const MOST_SQUARES: usize = 4;
 /// So many points are expected to fall in each square of a closed surface.
 const POINTS_PER_SQUARE: f64 = 8.0;
@@ -46,30 +47,54 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
     let count = points.len().div_ceil(step);
     let squares = (count as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt().floor() as usize;
     let squares = squares.clamp(1, MOST_SQUARES);
-    let mut is_filled = vec![false; 6 * squares * squares];
+    let all = 6 * squares * squares;
+    let enough = (CLOSED * all as f64).ceil() as u32;
+    let squares = Squares::new(squares);
+    let mut filled = 0_u128;
     for point in points.iter().step_by(step) {
-        if let Some(square) = square_of(&(point - place), squares) {
-            is_filled[square] = true;
+        let before = filled;
+        filled |= squares.containing(&(point - place));
+        if filled != before && filled.count_ones() >= enough {
+            // More points fill no less.
+            return !cloud.sensor_origins().iter().any(|sensor| sees(cloud, sensor, place));
         }
     }
-    let filled = is_filled.iter().filter(|filled| **filled).count();
-    filled as f64 >= CLOSED * is_filled.len() as f64
-        && !cloud.sensor_origins().iter().any(|sensor| sees(cloud, sensor, place))
+    false
 }
 
-/// Which square of the cube around the origin a direction passes; `None` for none.
-fn square_of(direction: &Vector3, squares: usize) -> Option<usize> {
-    let axis = direction.iamax();
-    let size = direction[axis].abs();
-    if size.is_nan() || size == 0.0 {
-        return None;
+/// The squares that directions are told apart by, so many a side.
+struct Squares {
+    a_side: u32,
+    /// Where each but the first begins, from −1 to 1; infinity beyond the last.
+    begins: [f64; MOST_SQUARES - 1],
+}
+
+impl Squares {
+    fn new(a_side: usize) -> Self {
+        let begin = |k: usize| 2.0 * (k + 1) as f64 / a_side as f64 - 1.0;
+        let begins = std::array::from_fn(|k| if k + 1 < a_side { begin(k) } else { f64::INFINITY });
+        Self { a_side: a_side as u32, begins }
     }
-    let along = |k: usize| {
-        let share = 0.5 * (direction[(axis + k) % 3] / size + 1.0);
-        ((share * squares as f64) as usize).min(squares - 1)
-    };
-    let face = 2 * axis + usize::from(direction[axis] < 0.0);
-    Some((face * squares + along(1)) * squares + along(2))
+
+    /// The bit of the square that a direction passes; none for no direction.
+    ///
+    /// Without branches but for that: thousands of directions, each to another square.
+    fn containing(&self, direction: &Vector3) -> u128 {
+        let around = [direction.x, direction.y, direction.z, direction.x, direction.y];
+        let [x, y, z] = [direction.x.abs(), direction.y.abs(), direction.z.abs()];
+        let most = x.max(y);
+        let axis = if z > most { 2 } else { usize::from(y > x) };
+        let size = most.max(z);
+        if size == 0.0 || !size.is_finite() {
+            return 0;
+        }
+        let along = |value: f64| -> u32 {
+            self.begins.iter().map(|begin| u32::from(value >= begin * size)).sum()
+        };
+        let face = 2 * axis as u32 + u32::from(around[axis] < 0.0);
+        let square = (face * self.a_side + along(around[axis + 1])) * self.a_side;
+        1 << (square + along(around[axis + 2]))
+    }
 }
 
 /// Whether no point of the cloud is near the way from its sensor to a place.
@@ -84,4 +109,41 @@ fn sees(cloud: &Prepared, sensor: &Point3, place: &Point3) -> bool {
         let is_between = along > 0.0 && along < length;
         !is_between || aside > SURFACE_SPACINGS * spacing
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::seed::{derive, unit};
+
+    use super::*;
+
+    /// By division.
+    fn square_of(direction: &Vector3, squares: usize) -> Option<usize> {
+        let axis = direction.iamax();
+        let size = direction[axis].abs();
+        if !size.is_finite() || size == 0.0 {
+            return None;
+        }
+        let along = |k: usize| {
+            let share = 0.5 * (direction[(axis + k) % 3] / size + 1.0);
+            ((share * squares as f64) as usize).min(squares - 1)
+        };
+        let face = 2 * axis + usize::from(direction[axis] < 0.0);
+        Some((face * squares + along(1)) * squares + along(2))
+    }
+
+    #[test]
+    fn comparisons_find_the_square_that_division_does() {
+        let draw = |i: u64, k| 2.0 * unit(derive(5, i, k)) - 1.0;
+        let drawn = (0..4000).map(|i| Vector3::new(draw(i, 0), draw(i, 1), draw(i, 2)));
+        let special = [Vector3::zeros(), Vector3::repeat(f64::NAN), Vector3::x(), -Vector3::z()];
+        let all: Vec<Vector3> = drawn.chain(special).collect();
+        for a_side in 1..=MOST_SQUARES {
+            let squares = Squares::new(a_side);
+            for direction in &all {
+                let expected = square_of(direction, a_side).map_or(0, |square| 1 << square);
+                assert_eq!(squares.containing(direction), expected, "{direction:?}");
+            }
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! The evidence of one pair of bodies: the search, and the classifier where that leaves doubt.
 
+use std::cell::Cell;
+
 use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
@@ -39,13 +41,19 @@ pub(super) fn weigh<'a>(
     stats.leaves_prepared += looked.leaves_prepared;
     let depth = looked.deepest.map_or(0.0, |inside| inside.deviations);
     let of = |log_odds| probability(log_odds, settings.prior);
+    let told = Cell::new(None);
     let is_enough = |deviations: f64, clearness: f64| {
+        if task.clock.is_over() {
+            return true;
+        }
+        // Most pairs of leaves change neither, and what was not enough is not now.
+        if told.replace(Some((deviations, clearness))) == Some((deviations, clearness)) {
+            return false;
+        }
         let log_odds = judge.log_odds_by_geometry(deviations - depth, clearness.ln_1p());
         // More evidence only raises the odds; what a classifier could take off them is taken off.
         let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
-        of(log_odds) > settings.stop_above
-            || settings.detail == Detail::Verdict && is_decided()
-            || task.clock.is_over()
+        of(log_odds) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
     };
     let found = search((a, b), a_from_b, is_enough, stats)?;
     let deviations = (found.deviations - depth).max(-MOST_DEVIATIONS);

@@ -207,7 +207,8 @@ impl Slab {
 
     /// Whether some place between two ends may be so near to the height of a disc, m.
     pub(super) fn may_hold(&self, ends: &[Point3; 2], distance: f64) -> bool {
-        let [from, to] = ends.map(|end| end.coords.dot(&self.direction));
+        let [from, to] = ends;
+        let (from, to) = (from.coords.dot(&self.direction), to.coords.dot(&self.direction));
         from.max(to) + distance >= self.low && from.min(to) - distance <= self.high
     }
 }
