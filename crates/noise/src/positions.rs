@@ -15,6 +15,9 @@ use crate::overlay::{GONE, Overlay};
 /// Squares of differences of such coordinates, and sums of three, are still finite.
 const LARGEST_COORDINATE: f64 = 1e150;
 
+/// Positions whose squared distance (m²) is no more may be the same.
+const SAME_PLACE: f64 = 1e-300;
+
 /// A nearby point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Neighbor {
@@ -74,12 +77,9 @@ impl Positions {
         }
         let (distinct, tree) = (points.len(), self.tree.clone());
         let changed = Self { points, distinct, tree, overlay, id: Arc::default() };
-        let mut found = Vec::new();
-        for index in new() {
-            changed.search(&changed.points[index], 2, false, &mut found);
-            if found.iter().any(|near| near.index != index && near.squared_distance == 0.0) {
-                return Ok(None);
-            }
+        let is_alone = |place: &Point3| changed.hits_within(place, SAME_PLACE).len() == 1;
+        if !new().all(|index: usize| is_alone(&changed.points[index])) {
+            return Ok(None);
         }
         Ok(Some(changed))
     }
@@ -156,23 +156,30 @@ impl Positions {
             found.extend(hits.iter().filter_map(|hit| neighbor(hit.item, hit.distance, &[])));
             return;
         };
-        // Those that are gone take places of others.
+        let mut came = Vec::new();
+        if let Some(wanted) = NonZeroUsize::new(wanted.get().min(overlay.added_count)) {
+            let hits = nearest(&overlay.added, wanted);
+            came.extend(hits.iter().filter_map(|hit| neighbor(hit.item, hit.distance, &[])));
+        }
         let (mut most, all) = (wanted, overlay.now.len());
         loop {
             found.clear();
             let hits = nearest(&self.tree, most);
             let now = &overlay.now;
             found.extend(hits.iter().filter_map(|hit| neighbor(hit.item, hit.distance, now)));
-            if found.len() >= wanted.get() || most.get() >= all {
-                break;
+            let is_all = found.len() >= wanted.get() || most.get() >= all;
+            found.extend(&came);
+            found.sort_unstable_by(in_order);
+            if is_all {
+                return;
+            }
+            if let Some(last) = found.get(wanted.get() - 1) {
+                // Those that are gone took the places of others, which are no farther than these.
+                *found = self.hits_within(place, last.squared_distance);
+                found.sort_unstable_by(in_order);
+                return;
             }
             most = most.saturating_mul(NonZeroUsize::MIN.saturating_add(1));
-        }
-        if overlay.added_count > 0 {
-            let least = wanted.min(overlay.added_count.try_into().unwrap_or(wanted));
-            let hits = nearest(&overlay.added, least);
-            found.extend(hits.iter().filter_map(|hit| neighbor(hit.item, hit.distance, &[])));
-            found.sort_unstable_by(in_order);
         }
     }
 

@@ -3,13 +3,17 @@
 
 mod common;
 
+use std::collections::BTreeMap;
+
 use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Undecided, Verdict};
+use cloudtouch::{
+    Cloud, CloudSettings, FilterSettings, Judge, Query, QuerySettings, Undecided, Verdict,
+};
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
-use common::{at, mesh};
+use common::{at, mesh, uniform};
 
 fn camera() -> DepthCamera {
     DepthCamera { width: 48, height: 36, focal_px: 42.0, ..DepthCamera::default() }
@@ -102,29 +106,90 @@ fn a_camera_that_keeps_still_adds_nothing_for_ever() {
     assert!(cloud.len() * 10 < first * 12, "{first} points at first, {} now", cloud.len());
 }
 
-/// Points of a cloud along a walk about a room at 10 frames a second, one round in four seconds.
-fn walk(frames: u64) -> Vec<usize> {
-    let room = ExactMesh::new(&scene::room());
-    let by = settings();
-    let place = |k: u64| {
-        let turn = std::f64::consts::TAU * k as f64 / 40.0;
-        // Level, and looking along its way: z forward, y down.
-        let level =
-            Pose::from_translation_rpy(Vector3::zeros(), [-std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
-        let way = Pose::from_translation_rpy(
-            Vector3::new(1.2 * turn.cos(), 0.9 * turn.sin(), 1.3),
-            [0.0, 0.0, turn],
-        );
-        way.after(&level)
-    };
-    let image = |k: u64| frame(&[&room], &place(k), k);
-    let mut cloud = Cloud::prepare(&image(0), &by).unwrap();
-    let mut counts = vec![cloud.len()];
-    for k in 1..frames {
-        cloud.replace_frame(&image(k), &by).unwrap();
-        counts.push(cloud.len());
+/// Where the camera is at a frame of a walk about a room at 10 frames a second, one round in four seconds.
+fn place(k: u64) -> Pose {
+    let turn = std::f64::consts::TAU * k as f64 / 40.0;
+    // Level, and looking along its way: z forward, y down.
+    let level =
+        Pose::from_translation_rpy(Vector3::zeros(), [-std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
+    let way = Pose::from_translation_rpy(
+        Vector3::new(1.2 * turn.cos(), 0.9 * turn.sin(), 1.3),
+        [0.0, 0.0, turn],
+    );
+    way.after(&level)
+}
+
+/// A walk about a room: the cloud at its end, how many points it had at each frame, and how often its tree was
+/// built anew.
+struct Walk {
+    room: ExactMesh,
+    cloud: Cloud,
+    counts: Vec<usize>,
+    rebuilds: usize,
+}
+
+impl Walk {
+    fn of(frames: u64) -> Self {
+        let room = ExactMesh::new(&scene::room());
+        let by = settings();
+        let mut cloud = Cloud::prepare(&frame(&[&room], &place(0), 0), &by).unwrap();
+        let (mut counts, mut rebuilds) = (vec![cloud.len()], 0);
+        for k in 1..frames {
+            let change = cloud.replace_frame(&frame(&[&room], &place(k), k), &by).unwrap();
+            rebuilds += usize::from(change.is_rebuilt);
+            counts.push(cloud.len());
+        }
+        Self { room, cloud, counts, rebuilds }
     }
-    counts
+
+    /// A cloud prepared from the points that there are at the end, each with the noise it was seen with.
+    fn fresh(&self) -> Cloud {
+        let pixels = camera().width * camera().height;
+        let mut seen: BTreeMap<usize, PointCloud> = BTreeMap::new();
+        let covariances = self.cloud.rows().iter().map(|row| {
+            let (k, pixel) = (row / pixels, row % pixels);
+            let image =
+                seen.entry(k).or_insert_with(|| frame(&[&self.room], &place(k as u64), k as u64));
+            let alone = PointCloud {
+                points: vec![image.points[pixel]],
+                sensor_pose: image.sensor_pose,
+                ..PointCloud::default()
+            };
+            SensorModel::Kinect.covariances(&alone).unwrap()[0]
+        });
+        let scan = PointCloud {
+            covariances: Some(covariances.collect()),
+            ..PointCloud::from_points(
+                (0..self.cloud.len()).map(|index| self.cloud.point(index)).collect(),
+            )
+        };
+        let by = CloudSettings {
+            filter: FilterSettings::default(),
+            ..CloudSettings::new(SensorModel::PerPoint)
+        };
+        let fresh = Cloud::prepare(&scan, &by).unwrap();
+        assert_eq!(fresh.len(), self.cloud.len());
+        fresh
+    }
+
+    /// How far probabilities by geometry are from those of a fresh cloud, all over the room.
+    fn apart(&self) -> Vec<f64> {
+        let settings = QuerySettings {
+            judge: Judge::default().without_classifier(),
+            stop_above: 1.0,
+            ..QuerySettings::default()
+        };
+        let (query, ball, fresh) =
+            (Query::new(settings).unwrap(), mesh(&scene::sphere(0.15, 2)), self.fresh());
+        let apart = |k: u64| {
+            let draw = |n| uniform(7, 3 * k + n);
+            let pose = at(5.0 * draw(0) - 2.5, 4.0 * draw(1) - 2.0, 2.6 * draw(2));
+            let [p, q] = [&self.cloud, &fresh]
+                .map(|cloud| query.run(cloud, &ball, &pose).unwrap().collision_probability);
+            (p - q).abs()
+        };
+        (0..300).map(apart).collect()
+    }
 }
 
 /// The largest number of points in a round.
@@ -132,21 +197,52 @@ fn most(counts: &[usize]) -> usize {
     counts.iter().copied().max().unwrap()
 }
 
+fn share(apart: &[f64], within: f64) -> f64 {
+    apart.iter().filter(|apart| **apart <= within).count() as f64 / apart.len() as f64
+}
+
 #[test]
 fn a_camera_that_walks_about_a_room_has_seen_it_after_some_rounds() {
-    let counts = walk(120);
-    let [second, third] = [most(&counts[40..80]), most(&counts[80..])];
+    let walk = Walk::of(120);
+    let [second, third] = [most(&walk.counts[40..80]), most(&walk.counts[80..])];
     println!("at most {second} points in the second round, {third} in the third");
     assert!(third * 100 < second * 115, "{second} and {third}");
+    // The tree is built anew when as many points came or went as there are, not at each frame.
+    assert!((1..40).contains(&walk.rebuilds), "{} rebuilds", walk.rebuilds);
+    let apart = walk.apart();
+    let worst = most_of(&apart);
+    println!(
+        "within 1e-9: {:.3}, within 1e-3: {:.3}, worst {worst:.4}",
+        share(&apart, 1e-9),
+        share(&apart, 1e-3)
+    );
+    assert!(share(&apart, 1e-9) > 0.9 && share(&apart, 1e-3) > 0.97, "{apart:?}");
+}
+
+fn most_of(apart: &[f64]) -> f64 {
+    apart.iter().copied().fold(0.0, f64::max)
 }
 
 /// `cargo test --release -p cloudtouch --test frames -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn ten_minutes_of_frames_take_no_more_memory_than_one() {
-    let counts = walk(6000);
-    let rounds: Vec<usize> = counts.chunks(600).map(most).collect();
+    let start = std::time::Instant::now();
+    let walk = Walk::of(6000);
+    let rounds: Vec<usize> = walk.counts.chunks(600).map(most).collect();
     let pages = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
-    println!("most points minute by minute: {rounds:?}; pages of memory at the end: {pages}");
+    println!(
+        "6000 frames in {:.0} s; pages of memory at the end: {pages}",
+        start.elapsed().as_secs_f64()
+    );
+    println!("most points minute by minute: {rounds:?}; {} rebuilds", walk.rebuilds);
     assert!(rounds[9] * 100 < rounds[1] * 110, "{rounds:?}");
+    let apart = walk.apart();
+    let worst = most_of(&apart);
+    println!(
+        "within 1e-9: {:.3}, within 1e-3: {:.3}, worst {worst:.4}",
+        share(&apart, 1e-9),
+        share(&apart, 1e-3)
+    );
+    assert!(share(&apart, 1e-9) > 0.9 && share(&apart, 1e-3) > 0.97, "{apart:?}");
 }
