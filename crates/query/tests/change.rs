@@ -101,16 +101,33 @@ impl Step {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Where a few points stand for all, index and tree are built anew at each change.
+    /// Built anew, or where samples are denser than their noise, which is built anew at each change.
     #[test]
-    fn where_samples_are_denser_than_their_noise_answers_are_those_of_a_fresh_cloud_to_the_bit(
+    fn the_answers_of_a_rebuilt_cloud_are_those_of_a_fresh_one_to_the_bit(
         steps in steps(),
+        std in prop::sample::select(vec![0.001, 0.004, 0.03]),
         is_refined in any::<bool>(),
         seed in any::<u64>(),
     ) {
-        let (changed, fresh) = changed_and_fresh(&steps, 0.03, corners(), is_refined, seed);
+        let (mut changed, fresh) = changed_and_fresh(&steps, std, corners(), is_refined, seed);
+        if std < 0.03 {
+            prop_assert!(changed.rebuild().unwrap().is_rebuilt);
+        }
         let query = Query::new(QuerySettings::default()).unwrap();
         prop_assert_eq!(answers(&query, &changed, seed), answers(&query, &fresh, seed));
+    }
+
+    /// Where the box grows or shrinks the changed cloud keeps its local frame, and rounds otherwise.
+    #[test]
+    fn in_a_frame_of_its_own_a_rebuilt_cloud_answers_as_a_fresh_one_up_to_rounding(
+        steps in steps(),
+        seed in any::<u64>(),
+    ) {
+        let (mut changed, fresh) = changed_and_fresh(&steps, 0.001, Vec::new(), false, seed);
+        changed.rebuild().unwrap();
+        for apart in apart(&changed, &fresh, seed) {
+            prop_assert!(apart <= 1e-9, "{apart}");
+        }
     }
 
     /// Where no sample is lonely, as on a ball that is sampled evenly, nothing differs.
@@ -329,9 +346,21 @@ fn cost_of_changing_one_point_in_a_hundred() {
         }
         let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
         let share = |work: f64| 100.0 * work / whole;
+        // How much more a search looks at in the end.
+        let fresh = cloud(&points, &by);
+        let fresh = if is_refined { fresh.refined().unwrap() } else { fresh };
+        let query = Query::new(QuerySettings::default()).unwrap();
+        let visited = |cloud: &Cloud| -> usize {
+            let at = |k: u64| points[(uniform(5, k) * points.len() as f64) as usize];
+            let poses =
+                (0..200).map(|k| Pose::from_translation(at(k).coords + Vector3::z() * 0.06));
+            poses.map(|pose| query.run(cloud, &finger(), &pose).unwrap().stats.nodes_visited).sum()
+        };
+        let looser = visited(&changed) as f64 / visited(&fresh) as f64;
         println!(
             "{} points, {}: made in {:.0} ms; a change {:.0} ms ({:.1} %), {} of {CHANGES} with a rebuild {:.0} ms; \
-             all in all {:.1} % a change, {} surfaces computed anew at each",
+             all in all {:.1} % a change, {} surfaces computed anew at each, and searches visit {looser:.3} times as many \
+             pairs of nodes in the end",
             points.len(),
             if is_refined { "refined" } else { "as prepared" },
             1e3 * whole,

@@ -5,7 +5,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, FilterSettings, Judge, Query, QuerySettings, Undecided, Verdict,
@@ -142,8 +142,9 @@ impl Walk {
         Self { room, cloud, counts, rebuilds }
     }
 
-    /// A cloud prepared from the points that there are at the end, each with the noise it was seen with.
-    fn fresh(&self) -> Cloud {
+    /// A cloud prepared from the points that there are at the end, each with the noise it was seen with, and
+    /// from others.
+    fn fresh(&self, others: &[Point3]) -> Cloud {
         let pixels = camera().width * camera().height;
         let mut seen: BTreeMap<usize, PointCloud> = BTreeMap::new();
         let covariances = self.cloud.rows().iter().map(|row| {
@@ -157,38 +158,60 @@ impl Walk {
             };
             SensorModel::Kinect.covariances(&alone).unwrap()[0]
         });
-        let scan = PointCloud {
-            covariances: Some(covariances.collect()),
-            ..PointCloud::from_points(
-                (0..self.cloud.len()).map(|index| self.cloud.point(index)).collect(),
-            )
-        };
+        let exact = others.iter().map(|_| Covariance::isotropic(1e-6));
+        let covariances = covariances.chain(exact).collect();
+        let own = (0..self.cloud.len()).map(|index| self.cloud.point(index));
+        let points = own.chain(others.iter().copied()).collect();
+        let scan = PointCloud { covariances: Some(covariances), ..PointCloud::from_points(points) };
         let by = CloudSettings {
             filter: FilterSettings::default(),
             ..CloudSettings::new(SensorModel::PerPoint)
         };
         let fresh = Cloud::prepare(&scan, &by).unwrap();
-        assert_eq!(fresh.len(), self.cloud.len());
+        assert_eq!(fresh.len(), self.cloud.len() + others.len());
         fresh
     }
 
-    /// How far probabilities by geometry are from those of a fresh cloud, all over the room.
-    fn apart(&self) -> Vec<f64> {
+    /// How far probabilities by geometry are from those of a fresh cloud, all over the room: of this cloud, and
+    /// of a fresh one with a few points far off, whose tree is cut elsewhere.
+    fn apart(&self) -> [Apart; 2] {
         let settings = QuerySettings {
             judge: Judge::default().without_classifier(),
             stop_above: 1.0,
             ..QuerySettings::default()
         };
-        let (query, ball, fresh) =
-            (Query::new(settings).unwrap(), mesh(&scene::sphere(0.15, 2)), self.fresh());
-        let apart = |k: u64| {
+        let (query, ball) = (Query::new(settings).unwrap(), mesh(&scene::sphere(0.15, 2)));
+        let far = [-4.0, 4.0].map(|side| Point3::new(side, 0.3 * side, 0.5 * side));
+        let [fresh, other] = [self.fresh(&[]), self.fresh(&far)];
+        let of = |cloud: &Cloud, k: u64| {
             let draw = |n| uniform(7, 3 * k + n);
             let pose = at(5.0 * draw(0) - 2.5, 4.0 * draw(1) - 2.0, 2.6 * draw(2));
-            let [p, q] = [&self.cloud, &fresh]
-                .map(|cloud| query.run(cloud, &ball, &pose).unwrap().collision_probability);
-            (p - q).abs()
+            query.run(cloud, &ball, &pose).unwrap().collision_probability
         };
-        (0..300).map(apart).collect()
+        [&self.cloud, &other]
+            .map(|cloud| Apart((0..1000).map(|k| (of(cloud, k) - of(&fresh, k)).abs()).collect()))
+    }
+}
+
+/// Differences of probabilities.
+struct Apart(Vec<f64>);
+
+impl Apart {
+    fn within(&self, most: f64) -> f64 {
+        self.0.iter().filter(|apart| **apart <= most).count() as f64 / self.0.len() as f64
+    }
+
+    fn mean(&self) -> f64 {
+        self.0.iter().sum::<f64>() / self.0.len() as f64
+    }
+
+    fn print(&self, what: &str) {
+        let (mean, worst) = (self.mean(), self.0.iter().copied().fold(0.0, f64::max));
+        let [rounding, a_thousandth, a_hundredth] =
+            [1e-9, 1e-3, 1e-2].map(|most| self.within(most));
+        println!(
+            "{what}: {rounding:.3} up to rounding, {a_thousandth:.3} within .001, {a_hundredth:.3} within .01; mean {mean:.5}, worst {worst:.3}"
+        );
     }
 }
 
@@ -197,8 +220,17 @@ fn most(counts: &[usize]) -> usize {
     counts.iter().copied().max().unwrap()
 }
 
-fn share(apart: &[f64], within: f64) -> f64 {
-    apart.iter().filter(|apart| **apart <= within).count() as f64 / apart.len() as f64
+/// What changes in place leave is of the size of what a few points far off do to a fresh cloud; built anew, nothing
+/// differs.
+fn answers_as_a_fresh_cloud(mut walk: Walk) {
+    let [changed, other] = walk.apart();
+    changed.print("changed and fresh");
+    other.print("fresh with points far off and fresh");
+    assert!(changed.within(1e-3) > 0.93 && changed.mean() < 3.0 * other.mean());
+    walk.cloud.rebuild().unwrap();
+    let [rebuilt, _] = walk.apart();
+    rebuilt.print("rebuilt and fresh");
+    assert!(rebuilt.within(1e-9) == 1.0);
 }
 
 #[test]
@@ -209,18 +241,7 @@ fn a_camera_that_walks_about_a_room_has_seen_it_after_some_rounds() {
     assert!(third * 100 < second * 115, "{second} and {third}");
     // The tree is built anew when as many points came or went as there are, not at each frame.
     assert!((1..40).contains(&walk.rebuilds), "{} rebuilds", walk.rebuilds);
-    let apart = walk.apart();
-    let worst = most_of(&apart);
-    println!(
-        "within 1e-9: {:.3}, within 1e-3: {:.3}, worst {worst:.4}",
-        share(&apart, 1e-9),
-        share(&apart, 1e-3)
-    );
-    assert!(share(&apart, 1e-9) > 0.9 && share(&apart, 1e-3) > 0.97, "{apart:?}");
-}
-
-fn most_of(apart: &[f64]) -> f64 {
-    apart.iter().copied().fold(0.0, f64::max)
+    answers_as_a_fresh_cloud(walk);
 }
 
 /// `cargo test --release -p cloudtouch --test frames -- --ignored --nocapture`.
@@ -237,12 +258,5 @@ fn ten_minutes_of_frames_take_no_more_memory_than_one() {
     );
     println!("most points minute by minute: {rounds:?}; {} rebuilds", walk.rebuilds);
     assert!(rounds[9] * 100 < rounds[1] * 110, "{rounds:?}");
-    let apart = walk.apart();
-    let worst = most_of(&apart);
-    println!(
-        "within 1e-9: {:.3}, within 1e-3: {:.3}, worst {worst:.4}",
-        share(&apart, 1e-9),
-        share(&apart, 1e-3)
-    );
-    assert!(share(&apart, 1e-9) > 0.9 && share(&apart, 1e-3) > 0.97, "{apart:?}");
+    answers_as_a_fresh_cloud(walk);
 }
