@@ -48,7 +48,7 @@ impl Prepared {
             || is_kind(scans) != is_kind(&self.scans)
             || drift as f64 > MOST_DRIFT * self.len() as f64
             || self.tree.should_rebuild(LOOSEST)
-            || new().any(|index| !(scans.noise[index].max_std() < MOST_STD))
+            || new().any(|index| scans.noise[index].max_std() > MOST_STD)
         {
             return Ok(None);
         }

@@ -199,9 +199,13 @@ impl UnderPoses {
     /// The mean of probabilities with their bounds.
     fn mean(asked: &[(f64, [f64; 2])]) -> Self {
         let count = asked.len() as f64;
-        let mean = |of: &dyn Fn(&(f64, [f64; 2])) -> f64| asked.iter().map(of).sum::<f64>() / count;
-        let [probability, low, high, square] =
-            [mean(&|(p, _)| *p), mean(&|(_, b)| b[0]), mean(&|(_, b)| b[1]), mean(&|(p, _)| p * p)];
+        let mut means = [0.0; 4];
+        for &(p, [low, high]) in asked {
+            for (mean, value) in means.iter_mut().zip([p, low, high, p * p]) {
+                *mean += value / count;
+            }
+        }
+        let [probability, low, high, square] = means;
         let std_error = ((square - probability * probability).max(0.0) / count).sqrt();
         Self { probability, bounds: [low, high], std_error, poses: asked.len() }
     }
