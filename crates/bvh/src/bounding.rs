@@ -24,11 +24,7 @@ impl Tree {
         refined.resize(self.primitives.len(), None);
         for leaf in self.leaves() {
             let bounds = bounds_of(leaf);
-            let is_length = |value: f64| value >= 0.0 && value.is_finite();
-            if !(bounds.std >= 0.0 && is_length(bounds.shift) && is_length(bounds.reach)) {
-                let LeafBounds { std, shift, reach } = bounds;
-                return Err(TreeError::LeafBounds { leaf: leaf.id().index(), std, shift, reach });
-            }
+            bounds.check(leaf.id().index())?;
             for &index in leaf.primitive_indices() {
                 refined[index as usize] = Some(bounds);
             }

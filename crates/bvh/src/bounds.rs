@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Covariance, Matrix3, Vector3};
 
-use crate::Primitive;
+use crate::{Primitive, TreeError};
 
 /// What a later refinement may do to the points of a leaf.
 ///
@@ -18,6 +18,19 @@ pub struct LeafBounds {
     /// How far (m) the surface that any of the points stands for may reach from its mean, in any
     /// direction; finite.
     pub reach: f64,
+}
+
+impl LeafBounds {
+    /// Refuses what bounds nothing.
+    pub(crate) fn check(&self, leaf: usize) -> Result<(), TreeError> {
+        let Self { std, shift, reach } = *self;
+        let is_length = |value: f64| value >= 0.0 && value.is_finite();
+        if std >= 0.0 && is_length(shift) && is_length(reach) {
+            Ok(())
+        } else {
+            Err(TreeError::LeafBounds { leaf, std, shift, reach })
+        }
+    }
 }
 
 /// Bounds on all points of a node.

@@ -40,7 +40,7 @@ impl Tree {
         self.set_shape(right, right_moments, right_box);
     }
 
-    fn fitted(&self, id: u32) -> (Moments, Obb) {
+    pub(crate) fn fitted(&self, id: u32) -> (Moments, Obb) {
         fitted(self.corners_of(id))
     }
 
@@ -49,7 +49,7 @@ impl Tree {
         self.indices_of(id).iter().map(|&i| self.primitives[i as usize].corners())
     }
 
-    fn set_shape(&mut self, id: u32, moments: Moments, obb: Obb) {
+    pub(crate) fn set_shape(&mut self, id: u32, moments: Moments, obb: Obb) {
         let node = &mut self.nodes[id as usize];
         (node.moments, node.obb) = (moments, obb);
         node.outside.take();

@@ -40,7 +40,7 @@ impl Tree {
     }
 
     /// Goes down to the child whose squared diagonal grows least, the smaller one if equal.
-    fn leaf_of_least_growth(&self, root: u32, primitive: &Primitive) -> u32 {
+    pub(crate) fn leaf_of_least_growth(&self, root: u32, primitive: &Primitive) -> u32 {
         let cost = |id: u32| {
             let obb = self.nodes[id as usize].obb;
             let mut grown = obb;
@@ -75,7 +75,7 @@ impl Tree {
     }
 }
 
-fn include(obb: &mut Obb, primitive: &Primitive) {
+pub(crate) fn include(obb: &mut Obb, primitive: &Primitive) {
     for corner in primitive.corners() {
         obb.include(corner);
     }

@@ -15,6 +15,7 @@ mod moments;
 mod node;
 mod obb;
 mod parts;
+mod patch;
 mod primitive;
 mod queue;
 mod refit;
@@ -33,6 +34,7 @@ pub use gap::{Gap, signed_gap};
 pub use moments::Moments;
 pub use node::NodeId;
 pub use obb::Obb;
+pub use patch::Patched;
 pub use primitive::Primitive;
 pub use settings::{Traversal, TraversalSettings, TreeSettings};
 pub use surfaces::{

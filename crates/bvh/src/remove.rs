@@ -26,7 +26,8 @@ impl Tree {
         if self.nodes[leaf as usize].count > 0 {
             self.update_up(leaf);
         } else {
-            self.unlink(leaf);
+            let above = self.detach(leaf);
+            above.into_iter().for_each(|above| self.update_up(above));
         }
         Ok(primitive)
     }
@@ -48,13 +49,14 @@ impl Tree {
         }
     }
 
-    /// Removes an empty leaf and its parent; the sibling moves up and keeps its name.
-    fn unlink(&mut self, leaf: u32) {
+    /// Removes an empty leaf and its parent; the sibling moves up and keeps its name. Returns what is above
+    /// them.
+    pub(crate) fn detach(&mut self, leaf: u32) -> Option<u32> {
         let parent = self.nodes[leaf as usize].parent;
         self.release(leaf);
         let Some(parent) = parent else {
             self.root = None;
-            return;
+            return None;
         };
         let grandparent = self.nodes[parent as usize].parent;
         let siblings = self.nodes[parent as usize].children.unwrap_or([leaf; 2]);
@@ -69,9 +71,9 @@ impl Tree {
                         *child = sibling;
                     }
                 }
-                self.update_up(above);
             }
         }
+        grandparent
     }
 
     fn release(&mut self, id: u32) {

@@ -185,6 +185,9 @@ pub(crate) struct PathArguments {
     /// JSON list of 4x4 row-major matrices, or lines of x,y,z,qw,qx,qy,qz
     #[arg(long, value_name = "PATH.json|csv")]
     pub poses: PathBuf,
+    /// From pose to pose about one axis and along it, as a joint turns; not straight
+    #[arg(long)]
+    pub screw: bool,
     /// How finely the path is looked at, as a share of it
     #[arg(long, value_name = "SHARE", value_parser = numbers::finite, default_value_t = 0.01)]
     pub tolerance: f64,

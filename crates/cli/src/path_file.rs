@@ -4,10 +4,12 @@ use anyhow::{Context, Result};
 use cloudtouch::Path;
 use cloudtouch_cli::path_text;
 
-pub(crate) fn read(file: &std::path::Path) -> Result<Path> {
+/// The poses of a file, each joined to the next by a screw or by a straight way and slerp.
+pub(crate) fn read(file: &std::path::Path, is_screw: bool) -> Result<Path> {
     let named = || file.display().to_string();
     let text = std::fs::read_to_string(file)
         .with_context(|| format!("{}: cannot read the path", file.display()))?;
     let poses = path_text::parse(&text).with_context(named)?;
-    Path::through(&poses).with_context(named)
+    let path = if is_screw { Path::through_by_screws(&poses) } else { Path::through(&poses) };
+    path.with_context(named)
 }

@@ -61,6 +61,21 @@ fn a_path_above_the_floor_is_free_and_says_so() {
     assert!(text.contains("free for certain       until 100.0 % of the path"), "{text}");
 }
 
+/// Half a turn about an axis half a metre up leads down through the floor; the straight way does not.
+#[test]
+fn a_screw_leads_where_a_straight_way_does_not() {
+    let inputs = Inputs::new();
+    let turn = (-85.0_f64).to_radians();
+    let end = format!("0.5,0.02,0.5,{},0,{},0\n", turn.cos(), turn.sin());
+    inputs.write("turn.csv", &format!("x,y,z,qw,qx,qy,qz\n-0.5,0.02,0.5,1,0,0,0\n{end}"));
+    let straight = path(&inputs, "turn.csv", &["--json"]).quiet(0).json_lines().remove(0);
+    assert_eq!(straight["verdict"], "free");
+    let screw = path(&inputs, "turn.csv", &["--json", "--screw"]).quiet(0).json_lines().remove(0);
+    assert_eq!(screw["verdict"], "in_collision");
+    let height = screw["first"]["pose"][2][3].as_f64().unwrap();
+    assert!(height < 0.2, "{height}");
+}
+
 #[test]
 fn a_path_in_millimetres_is_undecided_and_says_why() {
     let inputs = Inputs::new();

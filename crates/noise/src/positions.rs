@@ -7,11 +7,16 @@ use std::sync::Arc;
 use cloudtouch_geom::Point3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
+use crate::entries::{Entry, entry, tree_of};
 use crate::error::NoiseError;
 use crate::finite::is_finite;
+use crate::overlay::{GONE, Overlay};
 
 /// Squares of differences of such coordinates, and sums of three, are still finite.
 const LARGEST_COORDINATE: f64 = 1e150;
+
+/// Positions whose squared distance (m²) is no more may be the same.
+const SAME_PLACE: f64 = 1e-300;
 
 /// A nearby point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +32,10 @@ pub struct Neighbor {
 pub(crate) struct Positions {
     points: Vec<Point3>,
     distinct: usize,
-    tree: ImmutableKdTree<f64, 3>,
+    /// Of the positions when the tree was last built.
+    tree: Arc<ImmutableKdTree<f64, 3>>,
+    /// What became of them since.
+    overlay: Option<Overlay>,
     /// Tells it from any other while somebody keeps this.
     id: Arc<()>,
 }
@@ -42,10 +50,38 @@ impl Positions {
             return Err(NoiseError::CoordinateRange { index, point: points[index] });
         }
         let entries = distinct_entries(&points);
-        let tree = ImmutableKdTree::new_from_entries(&entries).map_err(|error| {
-            NoiseError::Index { points: points.len(), reason: error.to_string() }
-        })?;
-        Ok(Self { points, distinct: entries.len(), tree, id: Arc::default() })
+        let tree = Arc::new(tree_of(&entries)?);
+        Ok(Self { points, distinct: entries.len(), tree, overlay: None, id: Arc::default() })
+    }
+
+    /// The index of what the cloud became: `before` says which index each point had, if it is where it
+    /// was. It shares the tree of this one. `None` where a new one is better: where positions coincide or
+    /// are not finite, or too much has changed since the tree was built.
+    pub(crate) fn changed(
+        &self,
+        points: Vec<Point3>,
+        before: &[Option<u32>],
+    ) -> Result<Option<Self>, NoiseError> {
+        if self.distinct != self.points.len() {
+            return Ok(None);
+        }
+        let is_usable = |p: &Point3| is_finite(p) && p.coords.amax() <= LARGEST_COORDINATE;
+        let new = || (0..).zip(before).filter(|(_, before)| before.is_none()).map(|(i, _)| i);
+        if !new().all(|index: usize| is_usable(&points[index])) {
+            return Ok(None);
+        }
+        let earlier = self.overlay.as_ref();
+        let overlay = Overlay::after(earlier, self.distinct, &points, before)?;
+        if overlay.is_none() {
+            return Ok(None);
+        }
+        let (distinct, tree) = (points.len(), self.tree.clone());
+        let changed = Self { points, distinct, tree, overlay, id: Arc::default() };
+        let is_alone = |place: &Point3| changed.hits_within(place, SAME_PLACE).len() == 1;
+        if !new().all(|index: usize| is_alone(&changed.points[index])) {
+            return Ok(None);
+        }
+        Ok(Some(changed))
     }
 
     /// The points it was built from, in the order given.
@@ -78,27 +114,73 @@ impl Positions {
 
     /// The positions within a distance of a place, in no order.
     pub(crate) fn hits_within(&self, place: &Point3, squared_distance: f64) -> Vec<Neighbor> {
-        let query: [f64; 3] = place.coords.into();
-        // The slack keeps the tree's box tests, which round, from losing one.
-        let within = self
-            .tree
-            .query(&query)
-            .within::<SquaredEuclidean<f64>>(squared_distance * (1.0 + 1e-9))
-            .unsorted()
-            .execute();
-        within
-            .iter()
-            .filter(|hit| hit.distance <= squared_distance)
-            .map(|hit| Neighbor { index: hit.item as usize, squared_distance: hit.distance })
-            .collect()
+        let within = |tree: &ImmutableKdTree<f64, 3>, found: &mut Vec<Neighbor>, now: &[u32]| {
+            let query: [f64; 3] = place.coords.into();
+            // The slack keeps the tree's box tests, which round, from losing one.
+            let hits = tree
+                .query(&query)
+                .within::<SquaredEuclidean<f64>>(squared_distance * (1.0 + 1e-9))
+                .unsorted()
+                .execute();
+            let hits = hits.iter().filter(|hit| hit.distance <= squared_distance);
+            found.extend(hits.filter_map(|hit| neighbor(hit.item, hit.distance, now)));
+        };
+        let mut found = Vec::new();
+        match &self.overlay {
+            None => within(&self.tree, &mut found, &[]),
+            Some(overlay) => {
+                within(&self.tree, &mut found, &overlay.now);
+                within(&overlay.added, &mut found, &[]);
+            }
+        }
+        found
     }
 
     /// The distance of the position that is `k`-th nearest to a place, or of the last, m.
     pub(crate) fn distance_of_nearest(&self, place: &Point3, k: usize) -> f64 {
         let Some(wanted) = NonZeroUsize::new(k.min(self.distinct)) else { return 0.0 };
+        let mut found = Vec::new();
+        self.nearest(place, wanted, &mut found);
+        let distances = found.iter().take(wanted.get()).map(|near| near.squared_distance);
+        distances.fold(0.0, f64::max).sqrt()
+    }
+
+    /// The positions nearest to a place, in order of distance: so many at least, or all.
+    fn nearest(&self, place: &Point3, wanted: NonZeroUsize, found: &mut Vec<Neighbor>) {
         let query: [f64; 3] = place.coords.into();
-        let nearest = self.tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(wanted).execute();
-        nearest.iter().map(|hit| hit.distance).fold(0.0, f64::max).sqrt()
+        let nearest = |tree: &ImmutableKdTree<f64, 3>, most: NonZeroUsize| {
+            tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(most).execute()
+        };
+        let Some(overlay) = &self.overlay else {
+            let hits = nearest(&self.tree, wanted);
+            found.extend(hits.iter().filter_map(|hit| neighbor(hit.item, hit.distance, &[])));
+            return;
+        };
+        let mut came = Vec::new();
+        if let Some(wanted) = NonZeroUsize::new(wanted.get().min(overlay.added_count)) {
+            let hits = nearest(&overlay.added, wanted);
+            came.extend(hits.iter().filter_map(|hit| neighbor(hit.item, hit.distance, &[])));
+        }
+        let (mut most, all) = (wanted, overlay.now.len());
+        loop {
+            found.clear();
+            let hits = nearest(&self.tree, most);
+            let now = &overlay.now;
+            found.extend(hits.iter().filter_map(|hit| neighbor(hit.item, hit.distance, now)));
+            let is_all = found.len() >= wanted.get() || most.get() >= all;
+            found.extend(&came);
+            found.sort_unstable_by(in_order);
+            if is_all {
+                return;
+            }
+            if let Some(last) = found.get(wanted.get() - 1) {
+                // Those that are gone took the places of others, which are no farther than these.
+                *found = self.hits_within(place, last.squared_distance);
+                found.sort_unstable_by(in_order);
+                return;
+            }
+            most = most.saturating_mul(NonZeroUsize::MIN.saturating_add(1));
+        }
     }
 
     /// The `k` positions nearest to a place, with or without one at the place itself, in order of
@@ -116,24 +198,16 @@ impl Positions {
         let Some(wanted) = NonZeroUsize::new(wanted).filter(|_| k > 0 && is_finite(place)) else {
             return;
         };
-        let query: [f64; 3] = place.coords.into();
-        let take = |item: u32, squared_distance: f64| {
-            let index = item as usize;
-            let left_out = leave_out_place && self.points[index] == *place;
-            (!left_out).then_some(Neighbor { index, squared_distance })
-        };
-        let nearest = self.tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(wanted).execute();
-        found.extend(nearest.iter().filter_map(|hit| take(hit.item, hit.distance)));
+        let is_taken = |near: &Neighbor| !leave_out_place || self.points[near.index] != *place;
+        self.nearest(place, wanted, found);
+        found.retain(is_taken);
         if let (Some(last), Some(next)) = (found.get(k - 1), found.get(k))
             && last.squared_distance == next.squared_distance
         {
             // Which of the tied ones the tree returned is its own affair, so all of them are
             // fetched.
-            let all = self.hits_within(place, last.squared_distance);
-            found.clear();
-            found.extend(
-                all.iter().filter_map(|near| take(near.index as u32, near.squared_distance)),
-            );
+            *found = self.hits_within(place, last.squared_distance);
+            found.retain(is_taken);
         }
         found.sort_unstable_by(in_order);
         found.truncate(k);
@@ -144,13 +218,19 @@ pub(crate) fn in_order(a: &Neighbor, b: &Neighbor) -> Ordering {
     a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
 }
 
+/// What a tree has under an item, where that is still there: under the index that it has `now`, if any
+/// index changed.
+fn neighbor(item: u32, squared_distance: f64, now: &[u32]) -> Option<Neighbor> {
+    let index = now.get(item as usize).copied().unwrap_or(item);
+    (index != GONE).then_some(Neighbor { index: index as usize, squared_distance })
+}
+
 /// Every finite position once, with the lowest index that has it, in the order of these indices.
-fn distinct_entries(points: &[Point3]) -> Vec<(u32, [f64; 3])> {
-    let mut entries: Vec<(u32, [f64; 3])> = (0_u32..)
+fn distinct_entries(points: &[Point3]) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = (0_u32..)
         .zip(points)
         .filter(|(_, point)| is_finite(point))
-        // Adding zero turns -0 into 0, which is the same place.
-        .map(|(index, point)| (index, point.coords.map(|v| v + 0.0).into()))
+        .map(|(index, point)| entry(index, point))
         .collect();
     // Equal positions have equal keys; different ones hardly ever have, so most of the time there is
     // nothing to be looked at twice.
@@ -159,13 +239,13 @@ fn distinct_entries(points: &[Point3]) -> Vec<(u32, [f64; 3])> {
     keys.sort_unstable();
     let mut is_copy = vec![false; entries.len()];
     for equal in keys.chunk_by_mut(|a, b| a.0 == b.0).filter(|equal| equal.len() > 1) {
-        let entry = |place: u32| &entries[place as usize].1;
+        let at = |place: u32| &entries[place as usize].1;
         equal.sort_by(|&(_, i), &(_, j)| {
-            let [x, y, z] = [0, 1, 2].map(|axis| entry(i)[axis].total_cmp(&entry(j)[axis]));
+            let [x, y, z] = [0, 1, 2].map(|axis| at(i)[axis].total_cmp(&at(j)[axis]));
             x.then(y).then(z).then(i.cmp(&j))
         });
         for pair in equal.windows(2) {
-            is_copy[pair[1].1 as usize] = entry(pair[0].1) == entry(pair[1].1);
+            is_copy[pair[1].1 as usize] = at(pair[0].1) == at(pair[1].1);
         }
     }
     let mut is_copy = is_copy.into_iter();

@@ -25,7 +25,10 @@ fn brute_force(
 }
 
 fn check_all(points: &[Point3], k: usize) {
-    let index = Neighborhoods::try_new(points.to_vec()).expect("an index");
+    check(&Neighborhoods::try_new(points.to_vec()).expect("an index"), points, k);
+}
+
+fn check(index: &Neighborhoods, points: &[Point3], k: usize) {
     // Buffers that have seen another cloud, and each point in turn, near or far.
     let moved = points.iter().map(|p| p + Vector3::x()).collect();
     let other = Neighborhoods::try_new(moved).expect("an index");
@@ -66,6 +69,66 @@ proptest! {
     ) {
         check_all(&points, k);
     }
+}
+
+proptest! {
+    /// Several changes one after the other, each of a few points that go, come and move.
+    #[test]
+    fn a_changed_index_agrees_with_brute_force(
+        points in prop::collection::vec(
+            prop::array::uniform3(-1.0..1.0_f64).prop_map(Point3::from), 60..200),
+        changes in prop::collection::vec((0..50_usize, 0..5_usize, any::<u64>()), 1..4),
+        k in 1..20_usize,
+    ) {
+        let mut points = points;
+        let mut index = Neighborhoods::try_new(points.clone()).expect("an index");
+        for (at, count, stream) in changes {
+            let place = |i: usize| {
+                let draw = |k| 2.0 * seed::unit(seed::derive(stream, i as u64, k)) - 1.0;
+                Point3::new(draw(0), draw(1), draw(2))
+            };
+            let mut before: Vec<Option<u32>> = (0..points.len() as u32).map(Some).collect();
+            before.drain(at..at + count);
+            points.drain(at..at + count);
+            for i in 0..count {
+                (points[i], before[i]) = (place(i), None);
+                points.push(place(9 + i));
+                before.push(None);
+            }
+            match index.changed(points.clone(), &before).expect("an index") {
+                Some(changed) => index = changed,
+                None => index = Neighborhoods::try_new(points.clone()).expect("an index"),
+            }
+            check(&index, &points, k);
+        }
+    }
+}
+
+/// A changed index says so where it would not be one over distinct positions, or a slow one.
+#[test]
+fn an_index_is_built_anew_where_that_is_better() {
+    let points: Vec<Point3> =
+        (0..100).map(|i| Point3::new(f64::from(i % 10), f64::from(i / 10), 0.0)).collect();
+    let index = Neighborhoods::try_new(points.clone()).unwrap();
+    let becomes = |place: Option<Point3>, kept: u32| {
+        let kept = 0..kept;
+        let mut now: Vec<Point3> = kept.clone().map(|i| points[i as usize]).collect();
+        let mut before: Vec<Option<u32>> = kept.map(Some).collect();
+        now.extend(place);
+        before.extend(place.map(|_| None));
+        index.changed(now, &before).unwrap().is_some()
+    };
+    assert!(becomes(Some(Point3::new(0.5, 0.0, 0.0)), 100) && becomes(None, 80));
+    assert!(!becomes(Some(points[50]), 100) && !becomes(None, 70));
+    assert!(!becomes(Some(Point3::new(f64::NAN, 0.0, 0.0)), 100));
+    // A position that went may come again.
+    let (mut now, mut before) = (points.clone(), (0..100).map(Some).collect::<Vec<_>>());
+    now.swap(0, 1);
+    (before[0], before[1]) = (None, None);
+    let swapped = index.changed(now.clone(), &before).unwrap().unwrap();
+    check(&swapped, &now, 7);
+    let twice = Neighborhoods::try_new(vec![points[0]; 30]).unwrap();
+    assert!(twice.changed(vec![points[0]; 29], &before[..29]).unwrap().is_none());
 }
 
 #[test]

@@ -101,60 +101,136 @@ impl Step {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The first noise is below the spacing of the ball, where every point stands for itself; at the last
-    /// a few stand for all.
+    /// Built anew, or where samples are denser than their noise, which is built anew at each change.
     #[test]
-    fn the_answers_are_those_of_a_fresh_cloud_to_the_bit(
+    fn the_answers_of_a_rebuilt_cloud_are_those_of_a_fresh_one_to_the_bit(
         steps in steps(),
         std in prop::sample::select(vec![0.001, 0.004, 0.03]),
         is_refined in any::<bool>(),
         seed in any::<u64>(),
     ) {
-        let by = settings(std);
-        let mut points = corners();
-        points.extend(measured(&scene::sphere(0.1, 3), 0.01, 0.001, seed));
-        let mut changed = cloud(&points, &by);
-        if is_refined {
-            changed = changed.refined().unwrap();
+        let (mut changed, fresh) = changed_and_fresh(&steps, std, corners(), is_refined, seed);
+        if std < 0.03 {
+            prop_assert!(changed.rebuild().unwrap().is_rebuilt);
         }
-        for step in &steps {
-            step.take(&mut changed, &mut points, 8, &by);
-        }
-        let mut fresh = cloud(&points, &by);
-        if is_refined {
-            fresh = fresh.refined().unwrap();
-        }
-        prop_assert!((0..points.len()).all(|i| changed.point(i) == points[i]));
         let query = Query::new(QuerySettings::default()).unwrap();
         prop_assert_eq!(answers(&query, &changed, seed), answers(&query, &fresh, seed));
     }
 
     /// Where the box grows or shrinks the changed cloud keeps its local frame, and rounds otherwise.
     #[test]
-    fn in_a_frame_of_its_own_the_answers_are_those_of_a_fresh_cloud_up_to_rounding(
+    fn in_a_frame_of_its_own_a_rebuilt_cloud_answers_as_a_fresh_one_up_to_rounding(
         steps in steps(),
         seed in any::<u64>(),
     ) {
-        let by = settings(0.001);
-        let mut points = measured(&scene::sphere(0.1, 3), 0.01, 0.001, seed);
-        points.push(Point3::new(0.3, 0.1, 0.0));
-        let mut changed = cloud(&points, &by);
-        changed.remove(&[points.len() - 1]).unwrap();
-        points.pop();
-        for step in &steps {
-            step.take(&mut changed, &mut points, 0, &by);
-        }
-        let fresh = cloud(&points, &by);
-        let judge = Judge::default().without_classifier();
-        // A search that ends early knows what came first.
-        let usual = QuerySettings { stop_above: 1.0, ..QuerySettings::default() };
-        let query = Query::new(QuerySettings { judge, ..usual }).unwrap();
-        for (found, expected) in answers(&query, &changed, seed).iter().zip(answers(&query, &fresh, seed)) {
-            let apart = (found.collision_probability - expected.collision_probability).abs();
+        let (mut changed, fresh) = changed_and_fresh(&steps, 0.001, Vec::new(), false, seed);
+        changed.rebuild().unwrap();
+        for apart in apart(&changed, &fresh, seed) {
             prop_assert!(apart <= 1e-9, "{apart}");
-            prop_assert_eq!(found.verdict, expected.verdict);
         }
     }
+
+    /// Where no sample is lonely, as on a ball that is sampled evenly, nothing differs.
+    #[test]
+    fn where_no_sample_is_lonely_answers_are_those_of_a_fresh_cloud(
+        changes in prop::collection::vec((0..1500_usize, 1..12_usize), 1..5),
+        is_refined in any::<bool>(),
+        seed in any::<u64>(),
+    ) {
+        let by = settings(0.001);
+        // A Fibonacci lattice, a centimetre from sample to sample.
+        let place = |i: usize| {
+            let z = 1.0 - (2.0 * i as f64 + 1.0) / 1600.0;
+            let (turn, off) = (2.399_963_229_728_653 * i as f64, 1e-3 * uniform(seed, i as u64));
+            let flat = (1.0 - z * z).sqrt();
+            Point3::from(Vector3::new(flat * turn.cos(), flat * turn.sin(), z) * (0.1128 + off))
+        };
+        let mut points: Vec<Point3> = (0..1600).map(place).collect();
+        let made = |points: &[Point3]| {
+            let cloud = cloud(points, &by);
+            if is_refined { cloud.refined().unwrap() } else { cloud }
+        };
+        let mut changed = made(&points);
+        for (at, count) in changes {
+            let moves: Vec<(usize, Point3)> =
+                (at..at + count).map(|i| (i, points[i] + Vector3::new(5e-4, -5e-4, 5e-4))).collect();
+            changed.move_points(&moves).unwrap();
+            moves.iter().for_each(|(i, place)| points[*i] = *place);
+            // One goes, and another comes near its place.
+            let place = points.remove(at / 2) + Vector3::z() * 5e-4;
+            changed.remove(&[at / 2]).unwrap();
+            let scan = PointCloud::from_points(vec![place]);
+            prop_assert!(!changed.insert(&scan, &by).unwrap().is_rebuilt);
+            points.push(place);
+        }
+        for apart in apart(&changed, &made(&points), seed) {
+            prop_assert!(apart <= 1e-9, "{apart}");
+        }
+    }
+}
+
+/// A ball that changed by steps, and one prepared from the same points.
+fn changed_and_fresh(
+    steps: &[Step],
+    std: f64,
+    fixed: Vec<Point3>,
+    is_refined: bool,
+    seed: u64,
+) -> (Cloud, Cloud) {
+    let by = settings(std);
+    let (mut points, fixed) = (fixed.clone(), fixed.len());
+    points.extend(measured(&scene::sphere(0.1, 3), 0.01, 0.001, seed));
+    let made = |points: &[Point3]| {
+        let cloud = cloud(points, &by);
+        if is_refined { cloud.refined().unwrap() } else { cloud }
+    };
+    let mut changed = made(&points);
+    steps.iter().for_each(|step| step.take(&mut changed, &mut points, fixed, &by));
+    assert!((0..points.len()).all(|i| changed.point(i) == points[i]));
+    (changed, made(&points))
+}
+
+/// How far probabilities of two clouds are apart, without a classifier and at the end of each search: a search
+/// that ends early knows what came first.
+fn apart(changed: &Cloud, fresh: &Cloud, seed: u64) -> Vec<f64> {
+    let judge = Judge::default().without_classifier();
+    let settings = QuerySettings { judge, stop_above: 1.0, ..QuerySettings::default() };
+    let query = Query::new(settings).unwrap();
+    let pairs = answers(&query, changed, seed).into_iter().zip(answers(&query, fresh, seed));
+    pairs.map(|(p, q)| (p.collision_probability - q.collision_probability).abs()).collect()
+}
+
+/// Elsewhere the tree is changed in place. The limit to the spacing of lonely samples is told from the boxes of
+/// the tree, and so may differ from that in a fresh cloud: how often that matters, over histories that throw
+/// samples 2 cm off a ball sampled every 1 cm.
+#[test]
+fn all_but_a_few_answers_are_those_of_a_fresh_cloud_up_to_rounding() {
+    let mut all = Vec::new();
+    for seed in 0..60 {
+        let pick = |k: u64, count: usize| (uniform(seed, k) * count as f64) as usize;
+        let steps: Vec<Step> = (0..4)
+            .map(|k| match pick(k, 3) {
+                0 => Step::Insert { count: 1 + pick(10 + k, 80), seed: seed + k },
+                1 => Step::Remove { every: 2 + pick(10 + k, 38), from: pick(20 + k, 40) },
+                _ => Step::Move {
+                    every: 5 + pick(10 + k, 195),
+                    by: 0.04 * uniform(seed, 20 + k) - 0.02,
+                },
+            })
+            .collect();
+        let fixed = if seed % 2 == 0 { corners() } else { Vec::new() };
+        let (changed, fresh) = changed_and_fresh(&steps, 0.001, fixed, seed % 3 == 0, seed);
+        all.extend(apart(&changed, &fresh, seed));
+    }
+    let share = |most: f64| all.iter().filter(|d| **d <= most).count() as f64 / all.len() as f64;
+    let worst = all.iter().copied().fold(0.0, f64::max);
+    println!(
+        "within 1e-9: {:.3}, 1e-6: {:.3}, 1e-3: {:.3}, worst {worst:.4}",
+        share(1e-9),
+        share(1e-6),
+        share(1e-3)
+    );
+    assert!(share(1e-6) >= 0.95 && share(1e-3) >= 0.99);
 }
 
 #[test]
@@ -174,15 +250,14 @@ fn noise_of_each_point_comes_goes_and_moves_with_it() {
     let (first, second) = all.split_at(500);
     let mut changed = Cloud::prepare(&scan(first), &by).unwrap();
     changed.insert(&scan(second), &by).unwrap();
-    let query = Query::new(QuerySettings::default()).unwrap();
     let fresh = Cloud::prepare(&scan(&all), &by).unwrap();
-    assert_eq!(answers(&query, &changed, 1), answers(&query, &fresh, 1));
+    assert!(apart(&changed, &fresh, 1).iter().all(|apart| *apart <= 1e-6));
     let gone: Vec<usize> = (100..all.len()).step_by(7).collect();
     changed.remove(&gone).unwrap();
     let left: Vec<Point3> =
         all.iter().enumerate().filter(|(i, _)| !gone.contains(i)).map(|(_, p)| *p).collect();
     let fresh = Cloud::prepare(&scan(&left), &by).unwrap();
-    assert_eq!(answers(&query, &changed, 2), answers(&query, &fresh, 2));
+    assert!(apart(&changed, &fresh, 2).iter().all(|apart| *apart <= 1e-6));
     assert_eq!(changed.rows().len(), left.len());
     assert_eq!((changed.rows()[100], changed.rows()[499]), (101, 566));
 }
@@ -232,46 +307,71 @@ fn what_cannot_be_meant_is_refused_and_leaves_the_cloud_as_it_was() {
     assert_eq!(answers(&query, &changed, 1), answers(&query, &cloud(&points, &by), 1));
 }
 
-/// Prints the work that a change takes beside preparing anew: `cargo test --release -p cloudtouch --test change --
-/// --ignored --nocapture cost`.
+/// Prints the work that changes take beside preparing anew: `cargo test --release -p cloudtouch --test change --
+/// --ignored --nocapture cost`. Of a room of 171,000 points one in a hundred moves, those nearest to a place
+/// that is another each time; the index and the tree are built anew now and then.
 #[test]
 #[ignore = "measures time"]
 fn cost_of_changing_one_point_in_a_hundred() {
+    const CHANGES: usize = 30;
     let by = settings(0.001);
-    let points = measured(&scene::room(), 0.0302, 0.001, 1);
-    let near = |i: &usize| (points[*i] - points[5000]).norm();
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by(|i, j| near(i).total_cmp(&near(j)));
-    let some: Vec<(usize, Point3)> = order
-        .iter()
-        .take(points.len() / 100)
-        .map(|&i| (i, points[i] + Vector3::z() * 1e-3))
-        .collect();
+    let mut points = measured(&scene::room(), 0.0302, 0.001, 1);
     let seconds = |work: &mut dyn FnMut()| {
         let start = cpu_seconds();
         work();
         cpu_seconds() - start
     };
-    let mut changed = None;
-    let prepare = seconds(&mut || changed = Some(cloud(&points, &by)));
-    let mut changed = changed.unwrap();
-    let lazy = seconds(&mut || assert!(changed.move_points(&some).is_ok()));
-    let mut refined = None;
-    let whole = seconds(&mut || refined = Some(cloud(&points, &by).refined().unwrap()));
-    let mut refined = refined.unwrap();
-    let mut change = None;
-    let again = seconds(&mut || change = Some(refined.move_points(&some).unwrap()));
-    println!(
-        "{} points, {} moved: prepared in {:.0} ms, changed in {:.0} ms; refined in {:.0} ms, changed in {:.0} ms ({:.0} %), {:?}",
-        points.len(),
-        some.len(),
-        1e3 * prepare,
-        1e3 * lazy,
-        1e3 * whole,
-        1e3 * again,
-        100.0 * again / whole,
-        change.unwrap()
-    );
+    for is_refined in [false, true] {
+        let mut made = None;
+        let whole = seconds(&mut || {
+            let prepared = cloud(&points, &by);
+            made = Some(if is_refined { prepared.refined().unwrap() } else { prepared });
+        });
+        let mut changed = made.unwrap();
+        let (mut single, mut rebuilt, mut lost) = (Vec::new(), Vec::new(), 0);
+        for k in 0..CHANGES {
+            let about = points[(k + 1) * points.len() / (CHANGES + 1)];
+            let mut order: Vec<usize> = (0..points.len()).collect();
+            order.sort_by(|&i, &j| {
+                (points[i] - about).norm().total_cmp(&(points[j] - about).norm())
+            });
+            let moves: Vec<(usize, Point3)> = (order.iter().take(points.len() / 100))
+                .map(|&i| (i, points[i] + Vector3::z() * 1e-3))
+                .collect();
+            let mut change = None;
+            let work = seconds(&mut || change = Some(changed.move_points(&moves).unwrap()));
+            moves.iter().for_each(|(i, place)| points[*i] = *place);
+            lost += change.unwrap().surfaces_lost;
+            if change.unwrap().is_rebuilt { rebuilt.push(work) } else { single.push(work) }
+        }
+        let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
+        let share = |work: f64| 100.0 * work / whole;
+        // How much more a search looks at in the end.
+        let fresh = cloud(&points, &by);
+        let fresh = if is_refined { fresh.refined().unwrap() } else { fresh };
+        let query = Query::new(QuerySettings::default()).unwrap();
+        let visited = |cloud: &Cloud| -> usize {
+            let at = |k: u64| points[(uniform(5, k) * points.len() as f64) as usize];
+            let poses =
+                (0..200).map(|k| Pose::from_translation(at(k).coords + Vector3::z() * 0.06));
+            poses.map(|pose| query.run(cloud, &finger(), &pose).unwrap().stats.nodes_visited).sum()
+        };
+        let looser = visited(&changed) as f64 / visited(&fresh) as f64;
+        println!(
+            "{} points, {}: made in {:.0} ms; a change {:.0} ms ({:.1} %), {} of {CHANGES} with a rebuild {:.0} ms; \
+             all in all {:.1} % a change, {} surfaces computed anew at each, and searches visit {looser:.3} times as many \
+             pairs of nodes in the end",
+            points.len(),
+            if is_refined { "refined" } else { "as prepared" },
+            1e3 * whole,
+            1e3 * mean(&single),
+            share(mean(&single)),
+            rebuilt.len(),
+            1e3 * mean(&rebuilt),
+            share((single.iter().sum::<f64>() + rebuilt.iter().sum::<f64>()) / CHANGES as f64),
+            lost / CHANGES,
+        );
+    }
 }
 
 /// What this process has worked, on all cores and whatever else the machine does, s.

@@ -3,13 +3,17 @@
 
 mod common;
 
-use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+use std::collections::BTreeMap;
+
+use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Undecided, Verdict};
+use cloudtouch::{
+    Cloud, CloudSettings, FilterSettings, Judge, Query, QuerySettings, Undecided, Verdict,
+};
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
-use common::{at, mesh};
+use common::{at, mesh, uniform};
 
 fn camera() -> DepthCamera {
     DepthCamera { width: 48, height: 36, focal_px: 42.0, ..DepthCamera::default() }
@@ -102,29 +106,113 @@ fn a_camera_that_keeps_still_adds_nothing_for_ever() {
     assert!(cloud.len() * 10 < first * 12, "{first} points at first, {} now", cloud.len());
 }
 
-/// Points of a cloud along a walk about a room at 10 frames a second, one round in four seconds.
-fn walk(frames: u64) -> Vec<usize> {
-    let room = ExactMesh::new(&scene::room());
-    let by = settings();
-    let place = |k: u64| {
-        let turn = std::f64::consts::TAU * k as f64 / 40.0;
-        // Level, and looking along its way: z forward, y down.
-        let level =
-            Pose::from_translation_rpy(Vector3::zeros(), [-std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
-        let way = Pose::from_translation_rpy(
-            Vector3::new(1.2 * turn.cos(), 0.9 * turn.sin(), 1.3),
-            [0.0, 0.0, turn],
-        );
-        way.after(&level)
-    };
-    let image = |k: u64| frame(&[&room], &place(k), k);
-    let mut cloud = Cloud::prepare(&image(0), &by).unwrap();
-    let mut counts = vec![cloud.len()];
-    for k in 1..frames {
-        cloud.replace_frame(&image(k), &by).unwrap();
-        counts.push(cloud.len());
+/// Where the camera is at a frame of a walk about a room at 10 frames a second, one round in four seconds.
+fn place(k: u64) -> Pose {
+    let turn = std::f64::consts::TAU * k as f64 / 40.0;
+    // Level, and looking along its way: z forward, y down.
+    let level =
+        Pose::from_translation_rpy(Vector3::zeros(), [-std::f64::consts::FRAC_PI_2, 0.0, 0.0]);
+    let way = Pose::from_translation_rpy(
+        Vector3::new(1.2 * turn.cos(), 0.9 * turn.sin(), 1.3),
+        [0.0, 0.0, turn],
+    );
+    way.after(&level)
+}
+
+/// A walk about a room: the cloud at its end, how many points it had at each frame, and how often its tree was
+/// built anew.
+struct Walk {
+    room: ExactMesh,
+    cloud: Cloud,
+    counts: Vec<usize>,
+    rebuilds: usize,
+}
+
+impl Walk {
+    fn of(frames: u64) -> Self {
+        let room = ExactMesh::new(&scene::room());
+        let by = settings();
+        let mut cloud = Cloud::prepare(&frame(&[&room], &place(0), 0), &by).unwrap();
+        let (mut counts, mut rebuilds) = (vec![cloud.len()], 0);
+        for k in 1..frames {
+            let change = cloud.replace_frame(&frame(&[&room], &place(k), k), &by).unwrap();
+            rebuilds += usize::from(change.is_rebuilt);
+            counts.push(cloud.len());
+        }
+        Self { room, cloud, counts, rebuilds }
     }
-    counts
+
+    /// A cloud prepared from the points that there are at the end, each with the noise it was seen with, and
+    /// from others.
+    fn fresh(&self, others: &[Point3]) -> Cloud {
+        let pixels = camera().width * camera().height;
+        let mut seen: BTreeMap<usize, PointCloud> = BTreeMap::new();
+        let covariances = self.cloud.rows().iter().map(|row| {
+            let (k, pixel) = (row / pixels, row % pixels);
+            let image =
+                seen.entry(k).or_insert_with(|| frame(&[&self.room], &place(k as u64), k as u64));
+            let alone = PointCloud {
+                points: vec![image.points[pixel]],
+                sensor_pose: image.sensor_pose,
+                ..PointCloud::default()
+            };
+            SensorModel::Kinect.covariances(&alone).unwrap()[0]
+        });
+        let exact = others.iter().map(|_| Covariance::isotropic(1e-6));
+        let covariances = covariances.chain(exact).collect();
+        let own = (0..self.cloud.len()).map(|index| self.cloud.point(index));
+        let points = own.chain(others.iter().copied()).collect();
+        let scan = PointCloud { covariances: Some(covariances), ..PointCloud::from_points(points) };
+        let by = CloudSettings {
+            filter: FilterSettings::default(),
+            ..CloudSettings::new(SensorModel::PerPoint)
+        };
+        let fresh = Cloud::prepare(&scan, &by).unwrap();
+        assert_eq!(fresh.len(), self.cloud.len() + others.len());
+        fresh
+    }
+
+    /// How far probabilities by geometry are from those of a fresh cloud, all over the room: of this cloud, and
+    /// of a fresh one with a few points far off, whose tree is cut elsewhere.
+    fn apart(&self) -> [Apart; 2] {
+        let settings = QuerySettings {
+            judge: Judge::default().without_classifier(),
+            stop_above: 1.0,
+            ..QuerySettings::default()
+        };
+        let (query, ball) = (Query::new(settings).unwrap(), mesh(&scene::sphere(0.15, 2)));
+        let far = [-4.0, 4.0].map(|side| Point3::new(side, 0.3 * side, 0.5 * side));
+        let [fresh, other] = [self.fresh(&[]), self.fresh(&far)];
+        let of = |cloud: &Cloud, k: u64| {
+            let draw = |n| uniform(7, 3 * k + n);
+            let pose = at(5.0 * draw(0) - 2.5, 4.0 * draw(1) - 2.0, 2.6 * draw(2));
+            query.run(cloud, &ball, &pose).unwrap().collision_probability
+        };
+        [&self.cloud, &other]
+            .map(|cloud| Apart((0..1000).map(|k| (of(cloud, k) - of(&fresh, k)).abs()).collect()))
+    }
+}
+
+/// Differences of probabilities.
+struct Apart(Vec<f64>);
+
+impl Apart {
+    fn within(&self, most: f64) -> f64 {
+        self.0.iter().filter(|apart| **apart <= most).count() as f64 / self.0.len() as f64
+    }
+
+    fn mean(&self) -> f64 {
+        self.0.iter().sum::<f64>() / self.0.len() as f64
+    }
+
+    fn print(&self, what: &str) {
+        let (mean, worst) = (self.mean(), self.0.iter().copied().fold(0.0, f64::max));
+        let [rounding, a_thousandth, a_hundredth] =
+            [1e-9, 1e-3, 1e-2].map(|most| self.within(most));
+        println!(
+            "{what}: {rounding:.3} up to rounding, {a_thousandth:.3} within .001, {a_hundredth:.3} within .01; mean {mean:.5}, worst {worst:.3}"
+        );
+    }
 }
 
 /// The largest number of points in a round.
@@ -132,21 +220,43 @@ fn most(counts: &[usize]) -> usize {
     counts.iter().copied().max().unwrap()
 }
 
+/// What changes in place leave is of the size of what a few points far off do to a fresh cloud; built anew, nothing
+/// differs.
+fn answers_as_a_fresh_cloud(mut walk: Walk) {
+    let [changed, other] = walk.apart();
+    changed.print("changed and fresh");
+    other.print("fresh with points far off and fresh");
+    assert!(changed.within(1e-3) > 0.9 && changed.mean() < 0.003, "mean {}", changed.mean());
+    walk.cloud.rebuild().unwrap();
+    let [rebuilt, _] = walk.apart();
+    rebuilt.print("rebuilt and fresh");
+    assert!(rebuilt.within(1e-9) == 1.0);
+}
+
 #[test]
 fn a_camera_that_walks_about_a_room_has_seen_it_after_some_rounds() {
-    let counts = walk(120);
-    let [second, third] = [most(&counts[40..80]), most(&counts[80..])];
+    let walk = Walk::of(120);
+    let [second, third] = [most(&walk.counts[40..80]), most(&walk.counts[80..])];
     println!("at most {second} points in the second round, {third} in the third");
     assert!(third * 100 < second * 115, "{second} and {third}");
+    // The tree is built anew when as many points came or went as there are, not at each frame.
+    assert!((1..40).contains(&walk.rebuilds), "{} rebuilds", walk.rebuilds);
+    answers_as_a_fresh_cloud(walk);
 }
 
 /// `cargo test --release -p cloudtouch --test frames -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn ten_minutes_of_frames_take_no_more_memory_than_one() {
-    let counts = walk(6000);
-    let rounds: Vec<usize> = counts.chunks(600).map(most).collect();
+    let start = std::time::Instant::now();
+    let walk = Walk::of(6000);
+    let rounds: Vec<usize> = walk.counts.chunks(600).map(most).collect();
     let pages = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
-    println!("most points minute by minute: {rounds:?}; pages of memory at the end: {pages}");
+    println!(
+        "6000 frames in {:.0} s; pages of memory at the end: {pages}",
+        start.elapsed().as_secs_f64()
+    );
+    println!("most points minute by minute: {rounds:?}; {} rebuilds", walk.rebuilds);
     assert!(rounds[9] * 100 < rounds[1] * 110, "{rounds:?}");
+    answers_as_a_fresh_cloud(walk);
 }

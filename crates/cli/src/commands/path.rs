@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
         let inputs = files.into_iter().chain(&common.robot).map(PathBuf::as_path);
         output::check(output, inputs, arguments.force)?;
     }
-    let path = path_file::read(&arguments.poses)?;
+    let path = path_file::read(&arguments.poses, arguments.screw)?;
     let object_sensor = common.object_sensor.unwrap_or(common.sensor);
     let scene =
         load::bodies::<Cloud>(&[arguments.scene.as_path()], Role::Scene, common.sensor, common)?;

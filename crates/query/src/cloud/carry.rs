@@ -11,17 +11,15 @@ use super::slots::Fitted;
 
 /// Relative rounding of a distance, generously.
 const ROUNDING: f64 = 1e-9;
-/// A point that was not in the cloud before.
-pub(super) const NEW: u32 = u32::MAX;
 
 impl Prepared {
     /// Takes the surface of a cloud for this one, which it became, where it was computed and would come
-    /// out the same to the bit; says at how many points. `before` has the index that each point had, and
+    /// out the same to the bit; says at how many points. `before` has the index that each point had, if any, and
     /// `changed` the places (local frame, m) that points left, came to or moved between.
     pub(super) fn carry_over(
         &self,
         of: &Self,
-        before: &[u32],
+        before: &[Option<u32>],
         changed: Vec<Point3>,
     ) -> Result<usize, PrepareError> {
         // Where a few points stand for all, which they are hangs on all.
@@ -35,14 +33,13 @@ impl Prepared {
             return Ok(0);
         }
         let changed = Neighborhoods::try_new(changed)?;
-        let mut after = vec![NEW; of.len()];
-        for (index, &before) in (0..).zip(before) {
-            if let Some(after) = after.get_mut(before as usize) {
-                *after = index;
-            }
+        let mut after = vec![0; of.len()];
+        for (index, before) in (0..).zip(before) {
+            before.iter().for_each(|&before| after[before as usize] = index);
         }
         let carried = (before.par_iter().enumerate()).filter(|&(piece, &before)| {
-            let fitted = if before == NEW { None } else { of.known(before) };
+            let Some(before) = before else { return false };
+            let fitted = of.known(before);
             let of_cap = |fitted: &Fitted| {
                 let spacing = fitted.surfel.spacing;
                 let [cap, cap_before] =

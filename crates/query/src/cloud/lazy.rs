@@ -57,8 +57,10 @@ impl Prepared {
 
     /// The pieces nearest to one, where its surface was computed and tells.
     pub(super) fn known_nearest(&self, piece: u32) -> Option<[u32; NEIGHBORS]> {
-        let slot = self.surface.surfels.get(piece as usize)?;
-        slot.get()?.basis.nearest
+        match self.surface.surfels.get(piece as usize) {
+            Some(slot) => slot.get()?.basis.nearest,
+            None => self.surface.bases.get(piece as usize)?.nearest,
+        }
     }
 
     /// Whether the surface at one piece was computed already.
@@ -80,7 +82,7 @@ impl Prepared {
     }
 
     /// Computes the surface at one piece.
-    fn fitted(&self, piece: u32, scratch: &mut Scratch) -> Fitted {
+    pub(super) fn fitted(&self, piece: u32, scratch: &mut Scratch) -> Fitted {
         let index = self.pieces.index(piece);
         let cap = self.surface.spacing_caps[piece as usize];
         let near = &self.neighborhoods;

@@ -64,7 +64,7 @@ impl Makeup {
             spacing: typical_spacing(kept, SAMPLE),
             std,
             distinct: kept.distinct(),
-            is_line: is_line(points),
+            is_line: !has_area(points, (corners[1] - corners[0]).norm()) && is_line(points),
             missing,
             sensor_doubts,
         }
@@ -87,6 +87,21 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     let middle = values.len() / 2;
     values.sort_unstable_by(f64::total_cmp);
     values.get(middle).copied().unwrap_or(0.0)
+}
+
+/// Whether a few of the points make a triangle that no line passes so closely, the cloud being of such a size:
+/// then it is none, and the rest need no look.
+fn has_area(points: &[Point3], size: f64) -> bool {
+    let step = points.len().div_ceil(SAMPLE).max(1);
+    let some: Vec<&Point3> = points.iter().step_by(step).collect();
+    let far =
+        |from: &Point3| some.iter().map(|p| *p - from).max_by(|p, q| p.norm().total_cmp(&q.norm()));
+    let Some((first, side)) = some.first().and_then(|first| Some((*first, far(first)?))) else {
+        return false;
+    };
+    // Of points within ε of a line none has a product above 6 ε times the longest side.
+    let area = some.iter().map(|p| (*p - first).cross(&side).norm()).fold(0.0, f64::max);
+    area > 8.0 * LINE_SHARE * size * side.norm()
 }
 
 /// Whether the points spread along one direction only, or along none.

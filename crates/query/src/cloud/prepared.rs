@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{LeafBounds, Primitive, Tree, TreeSettings};
+use cloudtouch_bvh::{LeafBounds, Node, Primitive, Tree, TreeSettings};
 use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, Vector3, bounding_box};
 use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 
@@ -36,13 +36,15 @@ pub(crate) struct Prepared {
     pub(super) noise: NoiseModel,
     pub(super) tree: Tree,
     pub(super) surface: LazySurface,
-    makeup: Makeup,
+    pub(super) makeup: Makeup,
     /// Depth images that it was seen in.
     pub(super) views: Vec<SingleView>,
     /// Where sensors stood, in the local frame, where the scans say so.
-    sensor_origins: Vec<Point3>,
+    pub(super) sensor_origins: Vec<Point3>,
     /// r of the ellipsoid of each point (eq. 11, 12), where they bring their own; else empty.
     radii: Vec<f64>,
+    /// Points that came or went since the tree was built.
+    pub(super) drift: usize,
     pub(super) prepare_time: Duration,
 }
 
@@ -77,22 +79,12 @@ impl Prepared {
         origin: Option<Vector3>,
         weigh: impl Fn(&Neighborhoods, usize) -> f64,
     ) -> Result<Self, PrepareError> {
-        let Some((low, high)) = bounding_box(&all.points) else {
-            return Err(PrepareError::NothingLeft { before: 0, stages: String::new() });
-        };
+        let (low, high) = corners_of(&all)?;
         let sensor = &all.noise;
         let origin = origin.unwrap_or_else(|| nalgebra::center(&low, &high).coords);
         let points: Vec<Point3> = all.points.iter().map(|p| p - origin).collect();
         let neighborhoods = Neighborhoods::try_new(points)?;
-        let makeup = Makeup::new(
-            [low - origin, high - origin],
-            (&neighborhoods, sensor),
-            all.missing,
-            all.sensor_doubts.clone(),
-        );
-        if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
-            return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
-        }
+        let makeup = makeup_of(&all, &neighborhoods, &origin)?;
         // A surface that is known needs no others to be told from, and one point is as good as the next.
         let is_fitted =
             noise.settings().combination == Combination::SurfacePosterior && all.normals.is_none();
@@ -100,36 +92,17 @@ impl Prepared {
             true => Pieces::chosen(&neighborhoods, sensor)?,
             false => Pieces::all(),
         };
-        let primitive = |index: usize| Primitive::Point {
-            point: UncertainPoint {
-                mean: neighborhoods.points()[index],
-                covariance: sensor[index],
-            },
-            weight: weigh(&neighborhoods, index),
-        };
         let indices = pieces.indices(&neighborhoods);
-        let primitives = indices.iter().map(|&index| primitive(index)).collect();
+        let primitive = |&index: &usize| {
+            measured_point(index, &neighborhoods, sensor, weigh(&neighborhoods, index))
+        };
+        let primitives = indices.iter().map(primitive).collect();
         let mut tree = Tree::build(primitives, by_tree)?;
         let surface = LazySurface::new(&tree, indices.len());
-        let mut scratch = Scratch::default();
+        let (measured, mut scratch) = ((&noise, &neighborhoods, sensor), Scratch::default());
         tree.set_leaf_bounds(|leaf| {
-            let cap = surface.spacing_cap(leaf);
-            let reach = DISC_SPACINGS * cap;
-            let mut bounds = LeafBounds { std: 0.0, shift: 0.0, reach };
-            for &piece in leaf.primitive_indices() {
-                let index = indices[piece as usize];
-                let point = noise.bounds(&sensor[index], cap);
-                let std = if point.std.is_finite() {
-                    point.std
-                } else {
-                    // What only the neighbours tell, they are asked for.
-                    let refined = noise.refine(index, &neighborhoods, sensor, cap, &mut scratch);
-                    refined.point.covariance.max_std() * (1.0 + ROUNDING)
-                };
-                bounds.std = bounds.std.max(std);
-                bounds.shift = bounds.shift.max(point.shift);
-            }
-            bounds
+            let index = |piece: u32| indices[piece as usize];
+            leaf_bounds(leaf, surface.spacing_cap(leaf), index, measured, &mut scratch)
         })?;
         let view = |(sensor, points): (Point3, _)| SingleView::new(sensor - origin, points);
         let images = std::mem::take(&mut all.images);
@@ -144,6 +117,7 @@ impl Prepared {
             views: images.into_iter().map(view).collect(),
             sensor_origins: all.origins.iter().map(|place| place - origin).collect(),
             radii: Vec::new(),
+            drift: 0,
             prepare_time: Duration::ZERO,
             scans: all,
         })
@@ -235,4 +209,65 @@ impl Prepared {
     pub(crate) fn views(&self) -> &[SingleView] {
         &self.views
     }
+}
+
+/// Corners of the box around the points of scans, in the file's frame.
+fn corners_of(all: &Scans) -> Result<(Point3, Point3), PrepareError> {
+    let stages = String::new();
+    bounding_box(&all.points).ok_or(PrepareError::NothingLeft { before: 0, stages })
+}
+
+/// What a cloud of these scans is like as a whole, in a local frame about an origin.
+///
+/// # Errors
+/// When there is no point, or they have more noise than the cloud has size.
+pub(super) fn makeup_of(
+    all: &Scans,
+    points: &Neighborhoods,
+    origin: &Vector3,
+) -> Result<Makeup, PrepareError> {
+    let (low, high) = corners_of(all)?;
+    let corners = [low - origin, high - origin];
+    let makeup = Makeup::new(corners, (points, &all.noise), all.missing, all.sensor_doubts.clone());
+    if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
+        return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
+    }
+    Ok(makeup)
+}
+
+/// A point as it was measured.
+pub(super) fn measured_point(
+    index: usize,
+    points: &Neighborhoods,
+    sensor: &SensorNoise,
+    weight: f64,
+) -> Primitive {
+    let (mean, covariance) = (points.points()[index], sensor[index]);
+    Primitive::Point { point: UncertainPoint { mean, covariance }, weight }
+}
+
+/// What refinement may do to the points of a leaf, given what the spacing of each is limited to (m), the
+/// index of each piece and all that was measured.
+pub(super) fn leaf_bounds(
+    leaf: Node<'_>,
+    cap: f64,
+    index: impl Fn(u32) -> usize,
+    (noise, points, sensor): (&NoiseModel, &Neighborhoods, &SensorNoise),
+    scratch: &mut Scratch,
+) -> LeafBounds {
+    let mut bounds = LeafBounds { std: 0.0, shift: 0.0, reach: DISC_SPACINGS * cap };
+    for &piece in leaf.primitive_indices() {
+        let index = index(piece);
+        let point = noise.bounds(&sensor[index], cap);
+        let std = if point.std.is_finite() {
+            point.std
+        } else {
+            // What only the neighbours tell, they are asked for.
+            let refined = noise.refine(index, points, sensor, cap, scratch);
+            refined.point.covariance.max_std() * (1.0 + ROUNDING)
+        };
+        bounds.std = bounds.std.max(std);
+        bounds.shift = bounds.shift.max(point.shift);
+    }
+    bounds
 }

@@ -39,16 +39,24 @@ impl Prepared {
         let mut primitives =
             vec![Primitive::point(UncertainPoint::exact(Point3::origin())); pieces];
         for leaf in self.tree.leaves() {
-            let surfels = self.leaf(leaf.id()).0.iter().zip(self.near_halves(leaf.id()));
-            for (&piece, (surfel, edges)) in leaf.primitive_indices().iter().zip(surfels) {
-                extents[piece as usize] = extent(surfel, edges);
-                primitives[piece as usize] = Primitive::point(surfel.point);
+            for (piece, primitive, extent) in self.primitives_of(leaf.id()) {
+                (primitives[piece as usize], extents[piece as usize]) = (primitive, extent);
             }
         }
         self.tree.refit(&primitives)?;
         self.tree.set_extents(extents)?;
         self.prepare_time += start.elapsed();
         Ok(())
+    }
+
+    /// What the tree is to hold of the pieces of a leaf, once their surface is known, and how far that reaches.
+    pub(super) fn primitives_of(&self, leaf: NodeId) -> Vec<(u32, Primitive, Covariance)> {
+        let Some(node) = self.tree.leaf(leaf) else { return Vec::new() };
+        let surfels = self.leaf(leaf).0.iter().zip(self.near_halves(leaf));
+        let of = |(&piece, (surfel, edges)): (&u32, (&Surfel, [f64; 2]))| {
+            (piece, Primitive::point(surfel.point), extent(surfel, edges))
+        };
+        node.primitive_indices().iter().zip(surfels).map(of).collect()
     }
 
     /// For each point of a leaf how far the near halves of its edges reach along its disc and across

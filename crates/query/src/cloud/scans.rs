@@ -125,22 +125,28 @@ impl Scans {
         self.points.extend(points);
     }
 
-    /// Keeps only these points, given in order.
-    pub(super) fn keep(&mut self, kept: &[u32]) {
+    /// The same with only these points, given in order.
+    pub(super) fn kept(&self, kept: &[u32]) -> Self {
         fn of<T: Copy>(all: &[T], kept: &[u32]) -> Vec<T> {
             kept.iter().map(|&index| all[index as usize]).collect()
         }
-        self.points = of(&self.points, kept);
-        self.noise = match self.noise.as_uniform() {
+        let noise = match self.noise.as_uniform() {
             Some(same) => SensorNoise::uniform(*same, kept.len()),
             None => {
                 let each: Vec<Covariance> = kept.iter().map(|&i| self.noise[i as usize]).collect();
                 each.into()
             }
         };
-        self.normals = self.normals.take().map(|normals| of(&normals, kept));
-        if !self.rows.is_empty() {
-            self.rows = of(&self.rows, kept);
+        Self {
+            points: of(&self.points, kept),
+            noise,
+            normals: self.normals.as_ref().map(|normals| of(normals, kept)),
+            rows: if self.rows.is_empty() { Vec::new() } else { of(&self.rows, kept) },
+            stages: self.stages.clone(),
+            origins: self.origins.clone(),
+            sensor_doubts: self.sensor_doubts.clone(),
+            images: self.images.clone(),
+            ..*self
         }
     }
 }

@@ -63,20 +63,32 @@ impl LazySurface {
         }
     }
 
+    /// Of no pieces.
+    pub(super) fn empty() -> Self {
+        Self {
+            surfels: Vec::new(),
+            bases: Vec::new(),
+            leaves: Vec::new(),
+            shared: Vec::new(),
+            edges: Vec::new(),
+            spacing_caps: Vec::new(),
+        }
+    }
+
     /// What the spacing of each point of a leaf is limited to, m.
     pub(super) fn spacing_cap(&self, leaf: Node<'_>) -> f64 {
         leaf.primitive_indices().first().map_or(0.0, |&index| self.spacing_caps[index as usize])
     }
 }
 
-fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
+pub(super) fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
     (0..count).map(|_| OnceLock::new()).collect()
 }
 
 /// The spacing a point of a leaf may be given at most, on which the tree's bounds rest: half more
 /// than that of as many points spread evenly over the two longest sides of the region's box, or on a
 /// line.
-fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
+pub(super) fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
     let around = region(tree, leaf);
     let mut sides: [f64; 3] = (2.0 * around.obb().half_extents).into();
     sides.sort_by(f64::total_cmp);

@@ -43,6 +43,14 @@ impl Path {
         Self::of(poses, Leg::linear)
     }
 
+    /// Through poses, from each to the next as in [`Self::screw`].
+    ///
+    /// # Errors
+    /// As [`Self::through`].
+    pub fn through_by_screws(poses: &[Pose]) -> Result<Self, QueryError> {
+        Self::of(poses, Leg::screw)
+    }
+
     fn of(poses: &[Pose], leg: impl Fn(Pose, Pose) -> Leg) -> Result<Self, QueryError> {
         let count = poses.len();
         let bad = |(index, pose): (usize, &Pose)| bad_entry(pose).map(|value| (index, value));

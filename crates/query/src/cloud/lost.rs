@@ -1,0 +1,102 @@
+//! Of a cloud that changes: where the surface may come out otherwise.
+
+use std::collections::BTreeMap;
+
+use cloudtouch_bvh::{NodeId, Patched};
+use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_noise::Neighborhoods;
+use rayon::prelude::*;
+
+use super::prepared::Prepared;
+use super::slots::{Basis, LazySurface};
+use super::surfel::Surfel;
+
+/// Relative rounding of a distance, generously.
+const ROUNDING: f64 = 1e-9;
+/// The index of a point that is gone.
+const GONE: u32 = u32::MAX;
+
+/// The surface as it was, by the indices that points had.
+pub(super) struct Before {
+    pub surface: LazySurface,
+    /// Of a refined cloud: the pieces of leaves that hold others now.
+    pub moved_house: BTreeMap<u32, Surfel>,
+}
+
+impl Before {
+    pub(super) fn basis(&self, piece: u32) -> Option<&Basis> {
+        match self.surface.surfels.get(piece as usize) {
+            Some(slot) => slot.get().map(|fitted| &fitted.basis),
+            None => self.surface.bases.get(piece as usize),
+        }
+    }
+
+    /// Of a piece of a leaf that holds others now.
+    fn spacing(&self, piece: u32) -> Option<f64> {
+        match self.surface.surfels.get(piece as usize) {
+            Some(slot) => slot.get().map(|fitted| fitted.surfel.spacing),
+            None => self.moved_house.get(&piece).map(|surfel| surfel.spacing),
+        }
+    }
+}
+
+impl Prepared {
+    /// The pieces whose surface is not known or may come out otherwise now, those of a leaf together.
+    pub(super) fn lost(
+        &self,
+        old: &Before,
+        before: &[Option<u32>],
+        changed: &Neighborhoods,
+        patched: &Patched,
+    ) -> Vec<u32> {
+        let mut is_new_leaf = vec![false; self.tree.node_slots()];
+        patched.leaves.iter().for_each(|leaf| is_new_leaf[leaf.index()] = true);
+        let points = self.points();
+        let basis = |piece: u32| old.basis(before[piece as usize]?);
+        let of_leaf = |leaf: NodeId| {
+            let pieces = self.tree.leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
+            let places = || pieces.iter().map(|&piece| points[piece as usize]);
+            let middle = Point3::from(
+                places().map(|p| p.coords).sum::<Vector3>() / pieces.len().max(1) as f64,
+            );
+            let radius = places().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+            let reaches = pieces.iter().map(|&piece| basis(piece).map_or(0.0, |basis| basis.reach));
+            let reach = (radius + reaches.fold(0.0, f64::max)) * (1.0 + ROUNDING);
+            let is_new = is_new_leaf[leaf.index()];
+            let is_near = is_new || reach.is_infinite() || changed.is_any_within(&middle, reach);
+            let is_lost = |piece: u32| {
+                let Some(basis) = basis(piece) else { return true };
+                let reach = basis.reach * (1.0 + ROUNDING);
+                reach.is_infinite()
+                    || changed.is_any_within(&points[piece as usize], reach)
+                    || is_new && !self.is_within_caps(old, before, piece)
+            };
+            let is_unknown = |piece: u32| basis(piece).is_none();
+            let lost = pieces.iter().copied();
+            lost.filter(|&piece| if is_near { is_lost(piece) } else { is_unknown(piece) })
+                .collect::<Vec<u32>>()
+        };
+        let leaves: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
+        leaves.par_iter().flat_map_iter(|&leaf| of_leaf(leaf)).collect()
+    }
+
+    /// Whether the limit to the spacing of a piece that is kept changes nothing.
+    fn is_within_caps(&self, old: &Before, before: &[Option<u32>], piece: u32) -> bool {
+        let cap = self.surface.spacing_caps[piece as usize];
+        before[piece as usize].is_some_and(|before| {
+            let cap_before = old.surface.spacing_caps[before as usize];
+            cap == cap_before || old.spacing(before).is_some_and(|s| s < cap_before && s <= cap)
+        })
+    }
+}
+
+/// By the indices of before, those that points have now.
+pub(super) fn after(before: &[Option<u32>], count: usize) -> Vec<u32> {
+    let mut after = vec![GONE; count];
+    for (index, before) in (0..).zip(before) {
+        if let Some(before) = before {
+            after[*before as usize] = index;
+        }
+    }
+    after
+}

@@ -1,0 +1,236 @@
+//! A cloud that changes in place: index, tree and surface are made anew where something changed, and
+//! kept elsewhere.
+
+use std::collections::BTreeMap;
+use std::mem;
+
+use cloudtouch_bvh::{Patched, Primitive};
+use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_noise::Neighborhoods;
+use rayon::prelude::*;
+
+use crate::error::PrepareError;
+
+use super::lost::{Before, after};
+use super::makeup::Makeup;
+use super::pieces::Pieces;
+use super::prepared::{Prepared, makeup_of, measured_point};
+use super::scans::Scans;
+use super::slots::{LazySurface, slots, spacing_cap};
+use super::view::SingleView;
+
+/// A tree is built anew when so many times as many points as it holds have come or gone ...
+const MOST_DRIFT: f64 = 1.0;
+/// ... or its leaves are so many times as loose ([`cloudtouch_bvh::Tree::quality`]).
+const LOOSEST: f64 = 1.5;
+/// A standard deviation so large (m) overflows somewhere: such a cloud is prepared anew, or refused.
+const MOST_STD: f64 = 1e50;
+
+/// What a changed cloud has been found to be before anything is changed.
+#[derive(Debug)]
+pub(super) struct Prospect {
+    near: Neighborhoods,
+    makeup: Makeup,
+}
+
+impl Prepared {
+    /// Whether the cloud can become that of other points in place, and what it will be like: `before`
+    /// says which index each point had, if it is where it was. `None` where it is to be prepared anew.
+    pub(super) fn prospect(
+        &self,
+        scans: &Scans,
+        before: &[Option<u32>],
+    ) -> Result<Option<Prospect>, PrepareError> {
+        let new = || before.iter().enumerate().filter(|(_, b)| b.is_none()).map(|(index, _)| index);
+        let is_kind = |all: &Scans| (all.noise.as_uniform().is_some(), all.normals.is_some());
+        let drift = self.drift_after(before);
+        if !self.pieces.is_each()
+            || is_kind(scans) != is_kind(&self.scans)
+            || drift as f64 > MOST_DRIFT * self.len() as f64
+            || self.tree.should_rebuild(LOOSEST)
+            || new().any(|index| scans.noise[index].max_std() > MOST_STD)
+        {
+            return Ok(None);
+        }
+        let points: Vec<Point3> = scans.points.iter().map(|point| point - self.origin).collect();
+        let near = match self.neighborhoods.changed(points.clone(), before)? {
+            Some(near) => near,
+            None => Neighborhoods::try_new(points)?,
+        };
+        let is_each = scans.normals.is_some() || Pieces::chosen(&near, &scans.noise)?.is_each();
+        if !is_each {
+            return Ok(None);
+        }
+        let makeup = makeup_of(scans, &near, &self.origin)?;
+        Ok(Some(Prospect { near, makeup }))
+    }
+
+    /// Points that came or went since the tree was built, after one more change.
+    fn drift_after(&self, before: &[Option<u32>]) -> usize {
+        let kept = before.iter().flatten().count();
+        self.drift + (before.len() - kept).max(self.len() - kept)
+    }
+
+    /// Becomes the cloud of other points, as was found to be possible; says at how many the surface is
+    /// kept. `changed` are the places (local frame, m) that points left, came to or moved between.
+    pub(super) fn patch(
+        &mut self,
+        mut scans: Scans,
+        Prospect { near, makeup }: Prospect,
+        before: &[Option<u32>],
+        changed: Vec<Point3>,
+    ) -> Result<usize, PrepareError> {
+        let changed = Neighborhoods::try_new(changed)?;
+        let new = before.iter().enumerate().filter(|(_, before)| before.is_none());
+        let added: Vec<Primitive> =
+            new.map(|(index, _)| measured_point(index, &near, &scans.noise, 1.0)).collect();
+        let patched = self.tree.patch(before, &added)?;
+        self.drift = self.drift_after(before);
+
+        let measured = (self.points(), self.sensor());
+        let settled = |view: &SingleView| view.settled(measured, &Vector3::zeros());
+        let mut views: Vec<SingleView> = self.views.iter().filter_map(settled).collect();
+        let image = |(sensor, points): (Point3, _)| SingleView::new(sensor - self.origin, points);
+        views.extend(mem::take(&mut scans.images).into_iter().map(image));
+        self.views = views;
+        self.sensor_origins = scans.origins.iter().map(|place| place - self.origin).collect();
+        (self.neighborhoods, self.makeup, self.scans) = (near, makeup, scans);
+
+        let old = self.take_surface(before, &patched);
+        let lost = self.lost(&old, before, &changed, &patched);
+        self.regrow(old, before, &patched, &lost)
+    }
+
+    /// Gives the surface room for the new points, with what leaves that did not change hold.
+    fn take_surface(&mut self, before: &[Option<u32>], patched: &Patched) -> Before {
+        let tree = &self.tree;
+        let surface = &mut self.surface;
+        let caps = &surface.spacing_caps;
+        let cap = |before: &Option<u32>| before.map_or(0.0, |before| caps[before as usize]);
+        let mut spacing_caps: Vec<f64> = before.iter().map(cap).collect();
+        for leaf in patched.leaves.iter().filter_map(|&id| tree.leaf(id)) {
+            let cap = spacing_cap(tree, leaf);
+            leaf.primitive_indices().iter().for_each(|&i| spacing_caps[i as usize] = cap);
+        }
+        let fresh = LazySurface { spacing_caps, ..LazySurface::empty() };
+        let mut old = mem::replace(surface, fresh);
+        let mut moved_house = BTreeMap::new();
+        for leaf in &patched.stale {
+            old.edges[leaf.index()].take();
+            let surfels = old.leaves[leaf.index()].take().unwrap_or_default();
+            moved_house.extend(surfels.into_iter().map(|surfel| (surfel.index, surfel)));
+        }
+        surface.leaves = mem::take(&mut old.leaves);
+        surface.edges = mem::take(&mut old.edges);
+        surface.leaves.resize_with(tree.node_slots(), Default::default);
+        surface.edges.resize_with(tree.node_slots(), Default::default);
+        surface.shared = slots(tree.node_slots());
+        if (0..).zip(before).any(|(index, before)| before.is_some_and(|before| before != index)) {
+            let after = after(before, old.spacing_caps.len());
+            surface.leaves.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|surfels| {
+                surfels.iter_mut().for_each(|s| s.index = after[s.index as usize]);
+            });
+            surface.edges.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|edges| {
+                edges.iter_mut().for_each(|e| e.points = e.points.map(|p| after[p as usize]));
+            });
+        }
+        Before { surface: old, moved_house }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{PointCloud, seed};
+    use cloudtouch_noise::{Scratch, SensorModel};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{Cloud, CloudSettings};
+
+    fn unit(stream: u64, index: u64) -> f64 {
+        2.0 * seed::unit(seed::derive(stream, index, 0)) - 1.0
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// A surface is that of a fresh cloud, to the bit, wherever no limit to its spacing acts; and each
+        /// of its edges is there.
+        #[test]
+        fn what_is_kept_and_what_is_computed_is_the_surface_of_a_fresh_cloud(
+            seed in any::<u64>(),
+            changes in prop::collection::vec((0..700_usize, 1..40_usize, -0.03..0.03_f64), 1..5),
+            is_refined in any::<bool>(),
+        ) {
+            let by = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+            // A wavy sheet of 30 cm, with corners that keep the middle of its box where it is.
+            let at = |i: u64| {
+                let (x, y) = (0.15 * unit(seed, 2 * i), 0.15 * unit(seed, 2 * i + 1));
+                Point3::new(x, y, 0.03 * (20.0 * x).sin())
+            };
+            let corners = [-1.0, 1.0].map(|side| Point3::new(side, side, side));
+            let mut points: Vec<Point3> = corners.into_iter().chain((0..900).map(at)).collect();
+            let made = |points: &[Point3]| {
+                let scan = PointCloud::from_points(points.to_vec());
+                let cloud = Cloud::prepare(&scan, &by).unwrap();
+                if is_refined { cloud.refined().unwrap() } else { cloud }
+            };
+            let mut changed = made(&points);
+            let mut scratch = Scratch::default();
+            for (first, count, by_m) in changes {
+                for piece in (0..changed.len() as u32).step_by(2) {
+                    changed.prepared.surfel(piece, &mut scratch);
+                }
+                let moved: Vec<(usize, Point3)> = (2 + first..2 + first + count)
+                    .map(|i| (i, points[i] + Vector3::new(by_m, 0.3 * by_m, 0.1 * by_m)))
+                    .collect();
+                prop_assert!(!changed.move_points(&moved).unwrap().is_rebuilt);
+                moved.iter().for_each(|(i, place)| points[*i] = *place);
+                let gone: Vec<usize> = (2 + first / 2..2 + first / 2 + count).step_by(3).collect();
+                changed.remove(&gone).unwrap();
+                for &index in gone.iter().rev() {
+                    points.remove(index);
+                }
+            }
+            let fresh = made(&points);
+            let [changed, fresh] = [&changed.prepared, &fresh.prepared];
+            prop_assert_eq!(changed.tree.validate(), Ok(()));
+            let mut kept = 0;
+            for piece in 0..points.len() as u32 {
+                let [one, other] = [changed, fresh].map(|c| *c.surfel(piece, &mut scratch));
+                let is_limited = [changed, fresh].iter().zip([one, other]).any(|(cloud, surfel)| {
+                    surfel.spacing >= cloud.surface.spacing_caps[piece as usize]
+                });
+                if !is_limited {
+                    prop_assert_eq!(one, other);
+                    kept += 1;
+                }
+            }
+            prop_assert!(2 * kept > points.len(), "{kept}");
+            let edges = |cloud: &Prepared| {
+                let ids: Vec<_> = cloud.tree.leaves().map(|leaf| leaf.id()).collect();
+                let mut all: Vec<[u32; 2]> = ids
+                    .iter()
+                    .flat_map(|&id| cloud.leaf_edges(id))
+                    .map(|edge| {
+                        let [p, q] = edge.points;
+                        [p.min(q), p.max(q)]
+                    })
+                    .filter(|ends| {
+                        // Of ends that no limit acts on.
+                        ends.iter().all(|&piece| {
+                            [changed, fresh].iter().all(|cloud| {
+                                let spacing = cloud.surfel(piece, &mut Scratch::default()).spacing;
+                                spacing < cloud.surface.spacing_caps[piece as usize]
+                            })
+                        })
+                    })
+                    .collect();
+                all.sort_unstable();
+                all.dedup();
+                all
+            };
+            prop_assert_eq!(edges(changed), edges(fresh));
+        }
+    }
+}
