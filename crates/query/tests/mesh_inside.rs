@@ -220,3 +220,27 @@ fn samples_of_the_mesh_itself_are_in_contact_with_it() {
         assert_ne!(report.verdict, Verdict::Free, "{mode:?}: {report:?}");
     }
 }
+
+/// Samples 7 mm apart reach as far along their sheet as they are deep inside: what parts them from the
+/// surface above was counted against their being inside, and they read free.
+#[test]
+fn a_coarse_sheet_within_a_slab_is_not_free() {
+    let slab = mesh(&scene::cuboid([0.6, 0.4, 0.03]));
+    let sheet = (0..100).map(|i| {
+        let [x, y] = [i % 10, i / 10].map(|k| 0.007 * (f64::from(k) - 4.5));
+        Point3::new(x, y, 0.0)
+    });
+    for std in [0.0005, 0.002] {
+        let cloud = prepare(sheet.clone().collect(), std, Mode::Calibrated);
+        let mut last = 1.0;
+        for depth in [0.015, 0.01, 0.005, 0.003] {
+            let report = ask(Mode::Calibrated, &slab, &cloud, &at(0.0, 0.0, 0.015 - depth));
+            let p = report.collision_probability;
+            assert!(report.verdict != Verdict::Free && p <= last, "{std}, {depth}: {report:?}");
+            assert!(p > if depth > 0.008 { 0.95 } else { 0.4 }, "{std}, {depth}: {p}");
+            last = p;
+        }
+        let outside = ask(Mode::Calibrated, &slab, &cloud, &at(0.0, 0.0, 0.045));
+        assert_eq!(outside.verdict, Verdict::Free);
+    }
+}

@@ -5,7 +5,7 @@ use cloudtouch_geom::{Drift, Pose};
 use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
-use crate::judge::{MOST_DEVIATIONS, probability};
+use crate::judge::probability;
 use crate::query::{Query, QuerySettings};
 use crate::report::Stats;
 use crate::search::{greatest_depth, reach_of};
@@ -42,14 +42,16 @@ impl Drifting<'_> {
         let is_above = |deviations: f64, clearness: f64| {
             at_most(settings, deviations, clearness) > cut || clock.is_over()
         };
-        let is_deep = |depth: f64| is_above(MOST_DEVIATIONS - depth, 0.0);
+        let is_deep = |depth: f64| depth > 0.0 && is_above(-depth, 0.0);
         let depth = greatest_depth((a, b), &local, &self.drift, is_deep, stats);
         if is_deep(depth) {
             return Ok(1.0);
         }
-        let is_enough = |deviations: f64, clearness: f64| is_above(deviations - depth, clearness);
+        // Of what gets inside, the distance from the surface may part nothing.
+        let given = |between: f64| if depth > 0.0 { -depth } else { between };
+        let is_enough = |between: f64, clearness: f64| is_above(given(between), clearness);
         let reach = reach_of((a, b), &local, &self.drift, is_enough, stats)?;
-        let upper = at_most(settings, reach.deviations - depth, reach.clearness);
+        let upper = at_most(settings, given(reach.deviations), reach.clearness);
         Ok(if reach.is_complete { upper } else { 1.0 })
     }
 

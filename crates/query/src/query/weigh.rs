@@ -6,7 +6,7 @@ use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
+use crate::judge::{ContactEvidence, probability};
 use crate::report::Stats;
 use crate::search::{Found, Looked, look_inside, search};
 
@@ -39,7 +39,6 @@ pub(super) fn weigh<'a>(
     let looked = look_inside((a, b), a_from_b, &task.clock);
     stats.nodes_visited += looked.nodes_visited;
     stats.leaves_prepared += looked.leaves_prepared;
-    let depth = looked.deepest.map_or(0.0, |inside| inside.deviations);
     let of = |log_odds| probability(log_odds, settings.prior);
     let told = Cell::new(None);
     let is_enough = |deviations: f64, clearness: f64| {
@@ -50,13 +49,14 @@ pub(super) fn weigh<'a>(
         if told.replace(Some((deviations, clearness))) == Some((deviations, clearness)) {
             return false;
         }
-        let log_odds = judge.log_odds_by_geometry(deviations - depth, clearness.ln_1p());
+        let deviations = looked.deviations_given(deviations);
+        let log_odds = judge.log_odds_by_geometry(deviations, clearness.ln_1p());
         // More evidence only raises the odds; what a classifier could take off them is taken off.
         let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
         of(log_odds) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
     };
     let found = search((a, b), a_from_b, is_enough, stats)?;
-    let deviations = (found.deviations - depth).max(-MOST_DEVIATIONS);
+    let deviations = looked.deviations_given(found.deviations);
     let crossing = found.crossings.clearness().ln_1p();
     let of_geometry = ContactEvidence { deviations, crossing, misclassified: None };
     let by_geometry = judge.log_odds_by_geometry(deviations, crossing);

@@ -37,8 +37,15 @@ impl Inside {
     }
 
     /// The same of the deviations.
-    pub(crate) fn deviations_by_pose(&self, mesh_is_a: bool) -> Wrench {
+    fn deviations_by_pose(&self, mesh_is_a: bool) -> Wrench {
         self.depth_by_pose(mesh_is_a) * (self.deviations / self.depth)
+    }
+
+    /// How far what is between the surfaces still counts: all of it for a point on the surface, nothing
+    /// for one that is a standard deviation inside, whose distance from the surface no longer parts the
+    /// bodies.
+    fn share_of_between(&self) -> f64 {
+        (1.0 - self.depth / self.std).max(0.0)
     }
 }
 
@@ -113,6 +120,30 @@ fn deepest(
 }
 
 impl Looked {
+    /// The deviations between two bodies, given those between their surfaces: negative inside. Rises with
+    /// these.
+    pub(crate) fn deviations_given(&self, between: f64) -> f64 {
+        let of_inside = |inside: Inside| between * inside.share_of_between() - inside.deviations;
+        self.deepest.map_or(between, of_inside).max(-MOST_DEVIATIONS)
+    }
+
+    /// What these change by as the pose does, given those between the surfaces and what they change by.
+    pub(crate) fn deviations_by_pose(
+        &self,
+        between: f64,
+        between_by_pose: Wrench,
+        mesh_is_a: bool,
+    ) -> Wrench {
+        let Some(inside) = self.deepest else { return between_by_pose };
+        let share = inside.share_of_between();
+        let of_inside = inside.deviations_by_pose(mesh_is_a);
+        if share == 0.0 {
+            return -of_inside;
+        }
+        let share_by_pose = inside.depth_by_pose(mesh_is_a) * (-1.0 / inside.std);
+        between_by_pose * share + share_by_pose * between - of_inside
+    }
+
     fn deviations(&self) -> f64 {
         self.deepest.map_or(0.0, |inside| inside.deviations)
     }

@@ -10,8 +10,8 @@ use crate::mesh::Mesh;
 use crate::report::Stats;
 
 /// Deviations, at most, up to where `is_enough` of them; 0 where no point gets inside, or neither body is
-/// a closed mesh. No place gets deeper by more than it drifts. Twice [`MOST_DEVIATIONS`] outweigh
-/// everything else. Local frames.
+/// a closed mesh. No place gets deeper by more than it drifts. [`MOST_DEVIATIONS`] outweigh everything
+/// else. Local frames.
 pub(crate) fn greatest_depth(
     (a, b): (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
@@ -56,7 +56,7 @@ fn deepest(
     };
     cloud.tree().visit_nodes(|node| {
         stats.nodes_visited += 1;
-        if is_enough(most) || most >= 2.0 * MOST_DEVIATIONS {
+        if is_enough(most) || most >= MOST_DEVIATIONS {
             return Visit::Prune;
         }
         let obb = node.obb();

@@ -255,7 +255,7 @@ mod tests {
                     "{clearness} above {} at {s}", reach.clearness);
                 let clock = Clock::new(std::time::Instant::now(), None);
                 let inside = look_inside(pair, &there, &clock).deepest;
-                let is_deeper = |d: f64| d > depth * (1.0 + 1e-9) && depth < 2.0 * MOST_DEVIATIONS;
+                let is_deeper = |d: f64| d > depth * (1.0 + 1e-9) && depth < MOST_DEVIATIONS;
                 prop_assert!(!inside.is_some_and(|inside| is_deeper(inside.deviations)), "{s}");
             }
         }
