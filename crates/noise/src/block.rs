@@ -150,10 +150,10 @@ impl Kernel for Select<'_> {
     }
 }
 
-/// Buckets that neighbours are sorted by, at least and at most.
-const BUCKETS: [usize; 2] = [64, 256];
+/// Buckets that neighbours are sorted by.
+const BUCKETS: usize = 64;
 /// More are sorted by comparison.
-const MOST_BUCKETED: usize = 4 * BUCKETS[1];
+const MOST_BUCKETED: usize = 4 * BUCKETS;
 
 /// Sorts neighbours by distance, then index. On a surface their squared distances are spread evenly,
 /// so that each bucket gets about one.
@@ -191,19 +191,17 @@ impl Sorted {
         let hits = &self.hits[..self.count];
         sorted.clear();
         sorted.extend_from_slice(hits);
-        let [least_buckets, most_buckets] = BUCKETS;
-        let buckets = hits.len().next_power_of_two().clamp(least_buckets, most_buckets);
-        let scale = buckets as f64 / most;
+        let scale = BUCKETS as f64 / most;
         if hits.len() > MOST_BUCKETED || !scale.is_finite() {
             sorted.sort_unstable_by(in_order);
             return;
         }
-        let bucket = |hit: &Neighbor| ((hit.squared_distance * scale) as usize).min(buckets - 1);
-        let mut starts = [0_u16; BUCKETS[1] + 1];
+        let bucket = |hit: &Neighbor| ((hit.squared_distance * scale) as usize).min(BUCKETS - 1);
+        let mut starts = [0_u16; BUCKETS + 1];
         for hit in hits {
             starts[bucket(hit) + 1] += 1;
         }
-        for b in 0..buckets {
+        for b in 0..BUCKETS {
             starts[b + 1] += starts[b];
         }
         for hit in hits {

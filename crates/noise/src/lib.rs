@@ -1,6 +1,5 @@
 #![doc = include_str!("../README.md")]
 
-mod aside;
 mod block;
 mod candidates;
 mod density;
@@ -8,13 +7,11 @@ mod discretization;
 mod entries;
 mod error;
 mod finite;
-mod fit;
 mod grid;
 mod lanes;
 mod limited;
 mod model;
 mod motion;
-mod near;
 mod neighborhoods;
 mod overlay;
 mod parallel;

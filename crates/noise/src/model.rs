@@ -7,11 +7,12 @@ use crate::error::NoiseError;
 use crate::limited::limited;
 use crate::neighborhoods::Neighborhoods;
 use crate::parallel::parallel;
-use crate::patch::NEAR_NEIGHBORS;
+use crate::patch::MOST_NEIGHBORS;
+use crate::positions::Neighbor;
 use crate::posterior::{disc, posterior};
 use crate::refined::{Bounds, Refined};
 use crate::representatives::Representatives;
-use crate::scratch::{Scratch, reach};
+use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::settings::{Combination, NoiseSettings};
 use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
@@ -100,7 +101,7 @@ impl NoiseModel {
         let points = neighborhoods.points();
         assert_eq!(sensor.len(), points.len(), "one sensor covariance for each point");
         let count = match self.settings.combination {
-            Combination::SurfacePosterior => NEAR_NEIGHBORS,
+            Combination::SurfacePosterior => MOST_NEIGHBORS,
             _ => self.settings.discretization.neighbors.max(SPACING_NEIGHBORS),
         };
         let Scratch { block, neighbors, .. } = scratch;
@@ -228,4 +229,9 @@ impl NoiseModel {
         let psi = sampling_error(neighborhoods, index, nearest, settings)?;
         Some(if settings.is_capped { limited(psi, spacing_cap) } else { psi })
     }
+}
+
+/// How far the last of so many neighbours is, m; with fewer, any point would be one more.
+fn reach(neighbors: &[Neighbor], count: usize) -> f64 {
+    neighbors.get(count - 1).map_or(f64::INFINITY, |last| last.squared_distance.sqrt())
 }

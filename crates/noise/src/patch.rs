@@ -4,10 +4,8 @@ use cloudtouch_geom::{Covariance, Vector3};
 
 use crate::lanes::{Lanes, Machine, Stored, WIDTH};
 
-/// The neighbours that every fit looks at, if there are as many.
-pub(crate) const NEAR_NEIGHBORS: usize = 60;
 /// The most neighbours a patch can hold.
-pub(crate) const MOST_NEIGHBORS: usize = 240;
+pub(crate) const MOST_NEIGHBORS: usize = 60;
 /// Groups of lanes that these and one more take.
 pub(crate) const GROUPS: usize = MOST_NEIGHBORS / WIDTH + 1;
 

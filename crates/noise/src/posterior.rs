@@ -3,7 +3,6 @@
 use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
 
 use crate::lanes::{Kernel, Lanes, Machine, WIDTH, run};
-use crate::near::{About, near_surface};
 use crate::neighborhoods::Neighborhoods;
 use crate::patch::{MOST_NEIGHBORS, Patch};
 use crate::posterior_settings::PosteriorSettings;
@@ -12,7 +11,7 @@ use crate::representatives::Representatives;
 use crate::scratch::Scratch;
 use crate::sensor_noise::SensorNoise;
 use crate::spacing::{SPACING_NEIGHBORS, is_noisy, spacing_around, spacing_of_rank};
-use crate::surface::Surface;
+use crate::surface::{Surface, fit_surface};
 use crate::wide::wide_surface;
 
 /// A neighbour so many standard deviations off the surface is not a sample of it.
@@ -38,16 +37,16 @@ pub(crate) fn posterior(
 ) -> Option<Refined> {
     let points = neighborhoods.points();
     let around = spacing_around(&scratch.neighbors)?;
-    let about = About { index, points, sensor, spacing: around };
     let is_wide = is_noisy(&sensor[index], around);
     if is_wide || representatives.is_some() {
         // Which points stand for the others hangs on all of them.
         scratch.reach = f64::INFINITY;
     }
-    let wide = is_wide.then(|| wide_surface(about, neighborhoods, scratch)).flatten();
-    let surface = wide.or_else(|| near_surface(about, neighborhoods, scratch))?;
+    let wide =
+        is_wide.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
     let Scratch { neighbors, patch, kept_block, wide_neighbors, wide_patch, .. } = scratch;
     let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
+    let surface = wide.or_else(|| fit_surface(&patch))?;
     let spacing = match representatives {
         None => tangential_spacing(&patch, &surface)?,
         Some(kept) => {
@@ -71,8 +70,6 @@ pub(crate) fn posterior(
         + error.hidden * surface.hidden
         + error.bend * surface.bend
         + error.misfit * surface.misfit
-        + error.suspected * surface.suspected.min(surface.hidden)
-        + error.aside * surface.aside
         + error.disagreement * surface.disagreement
         + error.tilt * surface.tilt * noise;
     if surface.height.powi(2)

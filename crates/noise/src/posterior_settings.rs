@@ -35,12 +35,6 @@ pub struct SurfaceError {
     pub bend: f64,
     /// Of the variance of the residuals beyond the noise.
     pub misfit: f64,
-    /// Of what the residuals of as wide a neighbourhood or a wider one vary by beyond noise and chance,
-    /// as far as those of the fit could hide it.
-    pub suspected: f64,
-    /// Of the variance by which neighbours a few standard deviations off the surface spread about it:
-    /// another face, which the noise half hides.
-    pub aside: f64,
     /// Of what fits to other neighbourhoods differ in height.
     pub disagreement: f64,
     /// Of the variance of the noise, times the squared sine between the normals of these fits.
@@ -57,7 +51,7 @@ impl Default for PosteriorSettings {
     fn default() -> Self {
         Self {
             disc_std: 0.35,
-            sampling_std: 0.004,
+            sampling_std: 0.01,
             most_shift: 3.0,
             trusted_offset: 3.5,
             surface_error: SurfaceError::default(),
@@ -69,15 +63,13 @@ impl Default for SurfaceError {
     fn default() -> Self {
         Self {
             leverage: 1.0,
-            hidden: 0.03,
-            bend: 1.6,
-            misfit: 1.0,
-            suspected: 5.0,
-            aside: 0.6,
-            disagreement: 0.1,
+            hidden: 1.0,
+            bend: 1.4,
+            misfit: 1.6,
+            disagreement: 0.22,
             tilt: 0.1,
-            doubt: 1.5,
-            own_noise: 0.5,
+            doubt: 1.4,
+            own_noise: 0.14,
             turn: 25.0,
         }
     }
@@ -94,8 +86,6 @@ impl PosteriorSettings {
             hidden,
             bend,
             misfit,
-            suspected,
-            aside,
             disagreement,
             tilt,
             doubt,
@@ -111,8 +101,6 @@ impl PosteriorSettings {
             ("posterior.surface_error.hidden", hidden),
             ("posterior.surface_error.bend", bend),
             ("posterior.surface_error.misfit", misfit),
-            ("posterior.surface_error.suspected", suspected),
-            ("posterior.surface_error.aside", aside),
             ("posterior.surface_error.disagreement", disagreement),
             ("posterior.surface_error.tilt", tilt),
             ("posterior.surface_error.doubt", doubt),

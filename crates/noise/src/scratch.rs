@@ -12,8 +12,6 @@ use crate::sensor_noise::SensorNoise;
 pub struct Scratch {
     /// Of the cloud, about the last point.
     pub(crate) block: Block,
-    /// The same of more of them.
-    pub(crate) far_block: Block,
     pub(crate) neighbors: Vec<Neighbor>,
     pub(crate) patch: Buffers,
     /// Of the thinned clouds.
@@ -70,9 +68,4 @@ impl Buffers {
         };
         Patch::new(&self.offsets, noise, &sensor[index], spacing)
     }
-}
-
-/// How far the last of so many neighbours is, m; with fewer, any point would be one more.
-pub(crate) fn reach(neighbors: &[Neighbor], count: usize) -> f64 {
-    neighbors.get(count - 1).map_or(f64::INFINITY, |last| last.squared_distance.sqrt())
 }

@@ -4,11 +4,11 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use cloudtouch_geom::Point3;
 
-use crate::near::{About, widening};
 use crate::neighborhoods::Neighborhoods;
-use crate::positions::Neighbor;
+use crate::patch::MOST_NEIGHBORS;
 use crate::scratch::Scratch;
-use crate::surface::Surface;
+use crate::sensor_noise::SensorNoise;
+use crate::surface::{Surface, fit_surface};
 
 /// How often a wider neighbourhood is gathered at most.
 const PASSES: usize = 3;
@@ -21,30 +21,35 @@ const WIDER: f64 = 2.0;
 /// is not plainly worse than a narrower one. Among as many neighbours, of a fourth and of a sixteenth
 /// of the cloud. `None` where none of them determines a plane.
 pub(crate) fn wide_surface(
-    about: About<'_>,
+    index: usize,
     neighborhoods: &Neighborhoods,
+    sensor: &SensorNoise,
+    spacing: f64,
     scratch: &mut Scratch,
 ) -> Option<Surface> {
     let points = neighborhoods.points();
-    let point = points[about.index];
     let Scratch { wide_blocks, wide_neighbors, wide_patch, .. } = scratch;
     let mut found: Option<Surface> = None;
-    let mut place = point;
+    let mut place = points[index];
     for (thinned, block) in neighborhoods.thinned().iter().zip(wide_blocks) {
         let around = |place: &Point3| {
-            let gather = |count: usize, neighbors: &mut Vec<Neighbor>| {
-                // One more than are used, for the point itself is the measurement, not a part of what
-                // it is held against.
-                block.nearest_into(thinned.positions(), place, count + 1, false, neighbors);
-                for near in neighbors.iter_mut() {
-                    near.index = thinned.index(near.index);
-                }
-                neighbors.retain(|near| points[near.index] != point);
-                neighbors.truncate(count);
-            };
-            widening(about, gather, wide_neighbors, wide_patch)
+            // One more than are used, for the point itself is the measurement, not a part of what it
+            // is held against.
+            let most = MOST_NEIGHBORS + 1;
+            block.nearest_into(thinned.positions(), place, most, false, wide_neighbors);
+            for near in wide_neighbors.iter_mut() {
+                near.index = thinned.index(near.index);
+            }
+            let others = wide_neighbors.iter().filter(|near| points[near.index] != points[index]);
+            fit_surface(&wide_patch.patch(
+                index,
+                others.take(MOST_NEIGHBORS),
+                points,
+                sensor,
+                spacing,
+            ))
         };
-        let Some((mut wide, at)) = settled(point, place, around) else { continue };
+        let Some((mut wide, at)) = settled(points[index], place, around) else { continue };
         place = at;
         // Residuals of twice as many neighbours hide less.
         if found.is_some() {

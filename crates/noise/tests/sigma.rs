@@ -4,22 +4,27 @@ mod common;
 
 use common::sigma::{HONEST, Row, Spread, rows};
 
-/// Where they are not yet, with what was found. Too large: planes and low noise, where next to nothing is
-/// wrong with fits to hundreds of points. Too small: boards thinner than the noise, whose two sides look
-/// like one, and balls that bend by about as much. At most this much.
-const MISSED: [(&str, f64, f64, &str, f64, f64); 12] = [
-    ("plane", 0.015, 0.002, "faces", 0.70, 1.25),
-    ("plane", 0.015, 0.01, "faces", 0.69, 1.25),
-    ("plane", 0.015, 0.02, "faces", 0.67, 1.25),
-    ("board, 30 mm", 0.015, 0.02, "faces", 0.8, 1.46),
-    ("board, 30 mm", 0.035, 0.002, "edges", 0.70, 1.25),
-    ("board, 15 mm", 0.015, 0.02, "faces", 0.8, 1.81),
-    ("board, 15 mm", 0.015, 0.02, "edges", 0.8, 1.46),
-    ("board, 15 mm", 0.035, 0.002, "edges", 0.68, 1.25),
-    ("board, 15 mm", 0.035, 0.02, "faces", 0.8, 1.81),
-    ("board, 15 mm", 0.035, 0.02, "edges", 0.8, 1.46),
-    ("sphere, radius 20 cm", 0.015, 0.02, "faces", 0.8, 1.40),
-    ("sphere, radius 10 cm", 0.015, 0.01, "faces", 0.8, 1.30),
+/// Where they are not yet, with what was found: faces of boards whose two sides the noise hides from
+/// one another, their edges, and a ball of five standard deviations, at which the residuals hardly
+/// show what is wrong (too small); and boards of 2 mm of noise sampled more coarsely than they are
+/// thick, near edges (too large). At most this much.
+const MISSED: [(&str, f64, f64, &str, f64, f64); 16] = [
+    ("board, 30 mm", 0.015, 0.01, "faces", 0.8, 1.30),
+    ("board, 30 mm", 0.015, 0.01, "edges", 0.8, 1.29),
+    ("board, 30 mm", 0.015, 0.02, "faces", 0.8, 1.40),
+    ("board, 30 mm", 0.015, 0.02, "edges", 0.8, 1.31),
+    ("board, 30 mm", 0.035, 0.002, "edges", 0.73, 1.25),
+    ("board, 30 mm", 0.035, 0.01, "faces", 0.8, 1.52),
+    ("board, 30 mm", 0.035, 0.01, "edges", 0.8, 1.42),
+    ("board, 30 mm", 0.035, 0.02, "faces", 0.8, 1.43),
+    ("board, 30 mm", 0.035, 0.02, "edges", 0.8, 1.31),
+    ("board, 15 mm", 0.015, 0.01, "faces", 0.8, 1.47),
+    ("board, 15 mm", 0.015, 0.01, "edges", 0.8, 1.31),
+    ("board, 15 mm", 0.035, 0.002, "edges", 0.74, 1.25),
+    ("board, 15 mm", 0.035, 0.01, "faces", 0.8, 1.47),
+    ("board, 15 mm", 0.035, 0.01, "edges", 0.8, 1.31),
+    ("sphere, radius 10 cm", 0.015, 0.02, "faces", 0.8, 1.28),
+    ("sphere, radius 10 cm", 0.035, 0.02, "faces", 0.8, 1.43),
 ];
 
 #[test]
