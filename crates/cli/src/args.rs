@@ -185,7 +185,7 @@ pub(crate) struct PathArguments {
     /// JSON list of 4x4 row-major matrices, or lines of x,y,z,qw,qx,qy,qz
     #[arg(long, value_name = "PATH.json|csv")]
     pub poses: PathBuf,
-    /// From pose to pose as a screw turns, about and along one axis; not straight
+    /// Turns about and along one axis from pose to pose; not straight
     #[arg(long)]
     pub screw: bool,
     /// How finely the path is looked at, as a share of it

@@ -198,14 +198,19 @@ impl Body {
         let moves: Vec<(usize, Point3)> = indices.into_iter().zip(places.points()).collect();
         self.change(py, |cloud| cloud.move_points(&moves)).map(changed)
     }
+
+    fn rebuild(&self, py: Python<'_>) -> PyResult<Changed> {
+        self.change(py, Cloud::rebuild).map(changed)
+    }
 }
 
 /// The fields of `cloudtouch.Change`, in their order.
-type Changed = (usize, usize, usize, usize, usize, bool);
+type Changed = (usize, usize, usize, usize, usize, bool, bool);
 
 fn changed(change: Change) -> Changed {
-    let Change { inserted, removed, moved, surfaces_kept, surfaces_lost, is_recentred } = change;
-    (inserted, removed, moved, surfaces_kept, surfaces_lost, is_recentred)
+    let Change { inserted, removed, moved, surfaces_kept, surfaces_lost, .. } = change;
+    let Change { is_recentred, is_rebuilt, .. } = change;
+    (inserted, removed, moved, surfaces_kept, surfaces_lost, is_recentred, is_rebuilt)
 }
 
 /// What a cloud is made of beside its points.
