@@ -233,14 +233,9 @@ impl<'a> Pairs<'a> {
         let enough = (within.max(outcome.deviations), outcome.apart.max(0.0));
         let Apart { deviations, points, surfaces } =
             between.by_faces(self.sought.margin, drift, enough);
-        let mut may_cross = None;
-        if deviations >= within {
-            let crosses =
-                self.sought.crossings && surfaces < 0.0 && !between.edges_part_surfaces(drift);
-            if !crosses {
-                return outcome.leave_out(deviations, surfaces);
-            }
-            may_cross = Some(crosses);
+        let may_cross = deviations >= within && self.overlap(&between, surfaces);
+        if deviations >= within && !may_cross {
+            return outcome.leave_out(deviations, surfaces);
         }
         let beyond = points - self.sought.margin;
         let urgency = if beyond < 0.0 {
@@ -288,14 +283,18 @@ impl<'a> Pairs<'a> {
     /// directions across two edges decide.
     fn may_cross(&self, pair: &Queued<Waiting>) -> bool {
         let Waiting { box_of_b, may_cross, surfaces, .. } = pair.item;
-        may_cross.unwrap_or_else(|| {
+        may_cross || {
             let (a, b) = self.nodes(pair.nodes());
             let moved = &self.moved[box_of_b as usize];
-            self.sought.crossings
-                && surfaces < 0.0
-                && !Between::new(a, (b, moved), self.rounding)
-                    .edges_part_surfaces(self.sought.drift.as_ref())
-        })
+            surfaces < 0.0 && self.overlap(&Between::new(a, (b, moved), self.rounding), surfaces)
+        }
+    }
+
+    /// The same, given what the normals say.
+    fn overlap(&self, between: &Between<'_>, surfaces: f64) -> bool {
+        self.sought.crossings
+            && surfaces < 0.0
+            && !between.edges_part_surfaces(self.sought.drift.as_ref())
     }
 }
 
@@ -303,8 +302,8 @@ impl<'a> Pairs<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Waiting {
     box_of_b: u32,
-    /// `None` where it was not asked yet.
-    may_cross: Option<bool>,
+    /// Else it was not asked yet.
+    may_cross: bool,
     /// As in [`Apart`].
     deviations: f64,
     surfaces: f64,

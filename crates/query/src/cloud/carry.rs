@@ -6,11 +6,9 @@ use rayon::prelude::*;
 
 use crate::error::PrepareError;
 
+use super::lost::{after, is_within_caps, may_change};
 use super::prepared::Prepared;
 use super::slots::Fitted;
-
-/// Relative rounding of a distance, generously.
-const ROUNDING: f64 = 1e-9;
 
 impl Prepared {
     /// Takes the surface of a cloud for this one, which it became, where it was computed and would come
@@ -23,33 +21,24 @@ impl Prepared {
         changed: Vec<Point3>,
     ) -> Result<usize, PrepareError> {
         // Where a few points stand for all, which they are hangs on all.
-        let is_uniform = |cloud: &Self| cloud.scans.noise.as_uniform().is_some();
-        let has_normals = |cloud: &Self| cloud.scans.normals.is_some();
         if !(self.pieces.is_each() && of.pieces.is_each())
             || self.origin != of.origin
-            || is_uniform(self) != is_uniform(of)
-            || has_normals(self) != has_normals(of)
+            || !self.scans.is_like(&of.scans)
         {
             return Ok(0);
         }
         let changed = Neighborhoods::try_new(changed)?;
-        let mut after = vec![0; of.len()];
-        for (index, before) in (0..).zip(before) {
-            before.iter().for_each(|&before| after[before as usize] = index);
-        }
+        let after = after(before, of.len());
         let carried = (before.par_iter().enumerate()).filter(|&(piece, &before)| {
             let Some(before) = before else { return false };
             let fitted = of.known(before);
             let of_cap = |fitted: &Fitted| {
-                let spacing = fitted.surfel.spacing;
-                let [cap, cap_before] =
-                    [&self.surface.spacing_caps[piece], &of.surface.spacing_caps[before as usize]];
-                cap == cap_before || (spacing < *cap_before && spacing <= *cap)
+                let caps = [&of.surface, &self.surface].map(|surface| &surface.spacing_caps);
+                let caps = [caps[0][before as usize], caps[1][piece]];
+                is_within_caps(caps, || Some(fitted.surfel.spacing))
             };
-            let is_same = |fitted: &Fitted| {
-                let reach = fitted.basis.reach * (1.0 + ROUNDING);
-                !(reach.is_infinite() || changed.is_any_within(&self.points()[piece], reach))
-            };
+            let is_same =
+                |fitted: &Fitted| !may_change(&self.points()[piece], fitted.basis.reach, &changed);
             let Some(mut fitted) = fitted.filter(of_cap).filter(is_same) else { return false };
             fitted.surfel.index = piece as u32;
             // None of them went.

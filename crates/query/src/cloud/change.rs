@@ -131,16 +131,7 @@ impl Cloud {
         let known = self.prepared.known_count();
         let (scans, origin) = (self.prepared.scans.clone(), self.prepared.origin);
         let surfaces_kept = self.prepare_anew(scans, origin, &same, Vec::new())?;
-        self.prepared.prepare_time = start.elapsed();
-        Ok(Change {
-            inserted: 0,
-            removed: 0,
-            moved: 0,
-            surfaces_kept,
-            surfaces_lost: known - surfaces_kept,
-            is_recentred: false,
-            is_rebuilt: true,
-        })
+        Ok(self.changed(start, [known, surfaces_kept], false, true))
     }
 
     /// Keeps points, given in order, and adds others.
@@ -201,18 +192,21 @@ impl Cloud {
             Some(prospect) => own.patch(scans, prospect, &before, local)?,
             None => self.prepare_anew(scans, origin, &before, local)?,
         };
+        Ok(self.changed(start, [known, surfaces_kept], is_recentred, is_rebuilt))
+    }
+
+    /// A change that is done, but for the points that came, went or moved.
+    fn changed(
+        &mut self,
+        start: Instant,
+        [known, surfaces_kept]: [usize; 2],
+        is_recentred: bool,
+        is_rebuilt: bool,
+    ) -> Change {
         self.prepared.prepare_time = start.elapsed();
-        let surfaces_lost = known - surfaces_kept;
         let [inserted, removed, moved] = [0; 3];
-        Ok(Change {
-            inserted,
-            removed,
-            moved,
-            surfaces_kept,
-            surfaces_lost,
-            is_recentred,
-            is_rebuilt,
-        })
+        let surfaces_lost = known - surfaces_kept;
+        Change { inserted, removed, moved, surfaces_kept, surfaces_lost, is_recentred, is_rebuilt }
     }
 
     /// The same with an index and a tree that are built anew; `changed` are places in the new local frame.

@@ -21,6 +21,8 @@ pub(super) struct Before {
     pub surface: LazySurface,
     /// Of a refined cloud: the pieces of leaves that hold others now.
     pub moved_house: BTreeMap<u32, Surfel>,
+    /// The index that each point has now.
+    pub after: Vec<u32>,
 }
 
 impl Before {
@@ -61,14 +63,12 @@ impl Prepared {
             );
             let radius = places().map(|p| (p - middle).norm()).fold(0.0, f64::max);
             let reaches = pieces.iter().map(|&piece| basis(piece).map_or(0.0, |basis| basis.reach));
-            let reach = (radius + reaches.fold(0.0, f64::max)) * (1.0 + ROUNDING);
+            let reach = radius + reaches.fold(0.0, f64::max);
             let is_new = is_new_leaf[leaf.index()];
-            let is_near = is_new || reach.is_infinite() || changed.is_any_within(&middle, reach);
+            let is_near = is_new || may_change(&middle, reach, changed);
             let is_lost = |piece: u32| {
                 let Some(basis) = basis(piece) else { return true };
-                let reach = basis.reach * (1.0 + ROUNDING);
-                reach.is_infinite()
-                    || changed.is_any_within(&points[piece as usize], reach)
+                may_change(&points[piece as usize], basis.reach, changed)
                     || is_new && !self.is_within_caps(old, before, piece)
             };
             let is_unknown = |piece: u32| basis(piece).is_none();
@@ -85,9 +85,23 @@ impl Prepared {
         let cap = self.surface.spacing_caps[piece as usize];
         before[piece as usize].is_some_and(|before| {
             let cap_before = old.surface.spacing_caps[before as usize];
-            cap == cap_before || old.spacing(before).is_some_and(|s| s < cap_before && s <= cap)
+            is_within_caps([cap_before, cap], || old.spacing(before))
         })
     }
+}
+
+/// Whether what was computed about a place, looking so far (m), may come out otherwise.
+pub(super) fn may_change(place: &Point3, reach: f64, changed: &Neighborhoods) -> bool {
+    let reach = reach * (1.0 + ROUNDING);
+    reach.is_infinite() || changed.is_any_within(place, reach)
+}
+
+/// Whether a spacing is the same under the limits of before and of now: these are equal, or neither acts.
+pub(super) fn is_within_caps(
+    [before, now]: [f64; 2],
+    spacing: impl FnOnce() -> Option<f64>,
+) -> bool {
+    now == before || spacing().is_some_and(|spacing| spacing < before && spacing <= now)
 }
 
 /// By the indices of before, those that points have now.

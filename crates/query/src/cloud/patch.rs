@@ -42,10 +42,9 @@ impl Prepared {
         before: &[Option<u32>],
     ) -> Result<Option<Prospect>, PrepareError> {
         let new = || before.iter().enumerate().filter(|(_, b)| b.is_none()).map(|(index, _)| index);
-        let is_kind = |all: &Scans| (all.noise.as_uniform().is_some(), all.normals.is_some());
         let drift = self.drift_after(before);
         if !self.pieces.is_each()
-            || is_kind(scans) != is_kind(&self.scans)
+            || !scans.is_like(&self.scans)
             || drift as f64 > MOST_DRIFT * self.len() as f64
             || self.tree.should_rebuild(LOOSEST)
             || new().any(|index| scans.noise[index].max_std() > MOST_STD)
@@ -125,8 +124,8 @@ impl Prepared {
         surface.leaves.resize_with(tree.node_slots(), Default::default);
         surface.edges.resize_with(tree.node_slots(), Default::default);
         surface.shared = slots(tree.node_slots());
+        let after = after(before, old.spacing_caps.len());
         if (0..).zip(before).any(|(index, before)| before.is_some_and(|before| before != index)) {
-            let after = after(before, old.spacing_caps.len());
             surface.leaves.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|surfels| {
                 surfels.iter_mut().for_each(|s| s.index = after[s.index as usize]);
             });
@@ -134,7 +133,7 @@ impl Prepared {
                 edges.iter_mut().for_each(|e| e.points = e.points.map(|p| after[p as usize]));
             });
         }
-        Before { surface: old, moved_house }
+        Before { surface: old, moved_house, after }
     }
 }
 

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::error::PrepareError;
 
-use super::lost::{Before, after};
+use super::lost::Before;
 use super::prepared::{Prepared, leaf_bounds};
 use super::slots::{Basis, Fitted};
 use super::surfel::Surfel;
@@ -24,9 +24,8 @@ impl Prepared {
     ) -> Result<usize, PrepareError> {
         let mut is_lost = vec![false; before.len()];
         lost.iter().for_each(|&piece| is_lost[piece as usize] = true);
-        let after = after(before, old.surface.spacing_caps.len());
         let renumbered = |basis: &Basis| Basis {
-            nearest: basis.nearest.map(|near| near.map(|index| after[index as usize])),
+            nearest: basis.nearest.map(|near| near.map(|index| old.after[index as usize])),
             ..*basis
         };
         let kept = before.len() - lost.len();

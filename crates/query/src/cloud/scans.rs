@@ -125,6 +125,12 @@ impl Scans {
         self.points.extend(points);
     }
 
+    /// Whether the noise of all points is the same, and normals are known, in both or in neither.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        let kind = |all: &Self| (all.noise.as_uniform().is_some(), all.normals.is_some());
+        kind(self) == kind(other)
+    }
+
     /// The same with only these points, given in order.
     pub(super) fn kept(&self, kept: &[u32]) -> Self {
         fn of<T: Copy>(all: &[T], kept: &[u32]) -> Vec<T> {

@@ -114,8 +114,11 @@ impl Weighed<'_> {
         let judge = &task.settings.judge;
         let (deviations, crossing) = (self.of_geometry.deviations, self.of_geometry.crossing);
         let mesh_is_a = matches!(a, BodyRef::Mesh(_));
-        let between = (self.found.deviations, self.found.deviations_by_pose());
-        let of_deviations = self.looked.deviations_by_pose(between.0, between.1, mesh_is_a);
+        let of_deviations = self.looked.deviations_by_pose(
+            self.found.deviations,
+            self.found.deviations_by_pose(),
+            mesh_is_a,
+        );
         // The crossing is ln(1 + s).
         let of_crossing = self.found.crossings.clearness_by_pose() * (-crossing).exp();
         let [by_deviations, by_crossing] = judge.slopes_by_geometry(deviations, crossing);

@@ -271,6 +271,8 @@ mod tests {
             let axes = PoseDistribution::from_std(Pose::identity(), stds).axes().unwrap();
             motions(&axes, &Vector6::new(0.0, 0.3, 1.0, 0.0, 0.0, 0.0), MORE_PAIRS, 2 * MORE_PAIRS)
         };
+        let known = PoseDistribution::from_std(Pose::identity(), [0.0; 6]);
+        assert!(known.axes().unwrap().is_empty());
         let along = of([0.0, 0.0, 0.02, 0.0, 0.0, 0.0]);
         assert!(along.iter().all(|m| m[0] == 0.0 && m[3] == 0.0));
         // One of sixteen is in each of as many equally likely parts.
