@@ -1,6 +1,11 @@
 //! The standard normal distribution with tails that keep their relative accuracy.
 
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI, SQRT_2};
+
+/// Density of a standard normal variable at `z`: φ(z), what [`cdf`] rises by.
+pub fn density(z: f64) -> f64 {
+    0.5 * FRAC_1_SQRT_2 * FRAC_2_SQRT_PI * (-0.5 * z * z).exp()
+}
 
 /// Probability that a standard normal variable is below `z`: Φ(z).
 ///
@@ -78,6 +83,14 @@ mod tests {
         assert_eq!(cdf(f64::INFINITY), 1.0);
         assert_eq!(upper_tail(f64::INFINITY), 0.0);
         assert!(cdf(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn the_density_is_what_the_distribution_rises_by() {
+        for z in [-3.0, -0.5, 0.0, 1.2, 4.0] {
+            let slope = (cdf(z + 1e-6) - cdf(z - 1e-6)) / 2e-6;
+            assert!((slope - density(z)).abs() < 1e-9, "{z}: {slope} {}", density(z));
+        }
     }
 
     #[test]

@@ -70,6 +70,7 @@ pub(crate) fn posterior(
         + error.hidden * surface.hidden
         + error.bend * surface.bend
         + error.misfit * surface.misfit
+        + error.suspected * surface.suspected
         + error.disagreement * surface.disagreement
         + error.tilt * surface.tilt * noise;
     if surface.height.powi(2)

@@ -35,6 +35,9 @@ pub struct SurfaceError {
     pub bend: f64,
     /// Of the variance of the residuals beyond the noise.
     pub misfit: f64,
+    /// Of what residuals of a larger neighbourhood show beyond noise and chance, as far as those of the
+    /// chosen one may hide it: the other side of a thing thinner than the noise.
+    pub suspected: f64,
     /// Of what fits to other neighbourhoods differ in height.
     pub disagreement: f64,
     /// Of the variance of the noise, times the squared sine between the normals of these fits.
@@ -51,7 +54,7 @@ impl Default for PosteriorSettings {
     fn default() -> Self {
         Self {
             disc_std: 0.35,
-            sampling_std: 0.01,
+            sampling_std: 0.006,
             most_shift: 3.0,
             trusted_offset: 3.5,
             surface_error: SurfaceError::default(),
@@ -62,14 +65,15 @@ impl Default for PosteriorSettings {
 impl Default for SurfaceError {
     fn default() -> Self {
         Self {
-            leverage: 1.0,
-            hidden: 1.0,
-            bend: 1.4,
-            misfit: 1.6,
-            disagreement: 0.22,
-            tilt: 0.1,
-            doubt: 1.4,
-            own_noise: 0.14,
+            leverage: 0.75,
+            hidden: 1.35,
+            bend: 1.23,
+            misfit: 1.5,
+            suspected: 11.0,
+            disagreement: 0.08,
+            tilt: 0.2,
+            doubt: 1.3,
+            own_noise: 0.22,
             turn: 25.0,
         }
     }
@@ -86,6 +90,7 @@ impl PosteriorSettings {
             hidden,
             bend,
             misfit,
+            suspected,
             disagreement,
             tilt,
             doubt,
@@ -101,6 +106,7 @@ impl PosteriorSettings {
             ("posterior.surface_error.hidden", hidden),
             ("posterior.surface_error.bend", bend),
             ("posterior.surface_error.misfit", misfit),
+            ("posterior.surface_error.suspected", suspected),
             ("posterior.surface_error.disagreement", disagreement),
             ("posterior.surface_error.tilt", tilt),
             ("posterior.surface_error.doubt", doubt),

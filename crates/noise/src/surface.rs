@@ -33,6 +33,9 @@ pub(crate) struct Surface {
     pub(crate) bend: f64,
     /// What the noise does not explain of the variance of the residuals, m².
     pub(crate) misfit: f64,
+    /// What the residuals of a larger neighbourhood vary by beyond noise and chance, as far as this one
+    /// may hide it, m².
+    pub(crate) suspected: f64,
     /// How far the heights of fits to other neighbourhoods differ beyond their errors, squared, m².
     pub(crate) disagreement: f64,
     /// The mean squared sine between the normals of these fits and this one.
@@ -110,7 +113,7 @@ fn fitted<S: Machine>(machine: S, patch: &Patch) -> Option<Surface> {
     }
     let best = best?;
     let (disagreement, tilt) = disagreement(&best, &tried);
-    Some(Surface { disagreement, tilt, ..best })
+    Some(Surface { disagreement, tilt, suspected: suspected(&best, &tried), ..best })
 }
 
 /// The plane after a pass by each cut.
@@ -148,6 +151,23 @@ fn disagreement(best: &Surface, tried: &[Option<Surface>]) -> (f64, f64) {
     (apart / count, tilt / count)
 }
 
+/// What the most telling size no smaller than the chosen one leaves of the variance of its residuals
+/// beyond noise and chance, no more than the chosen one may hide, m².
+///
+/// The second side of a thin board shows in many residuals at once; the size that is chosen is the
+/// one where by chance it does not.
+#[inline(always)]
+fn suspected(best: &Surface, tried: &[Option<Surface>]) -> f64 {
+    let mut most = 0.0_f64;
+    for other in tried.iter().flatten() {
+        // More neighbours, less by chance.
+        if other.hidden <= best.hidden {
+            most = most.max(other.misfit - other.hidden);
+        }
+    }
+    most.min(best.hidden)
+}
+
 /// Height and expected squared error of the surface at the point.
 #[inline(always)]
 fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surface> {
@@ -174,6 +194,7 @@ fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surf
         hidden: error.chance,
         bend: error.bend,
         misfit: error.beyond.max(0.0),
+        suspected: 0.0,
         disagreement: 0.0,
         tilt: 0.0,
         frame,

@@ -82,9 +82,10 @@ fn an_exact_coplanar_cloud_has_exact_normals_and_does_not_move() {
     {
         assert_eq!(refined.point.mean, *point);
         assert!(refined.normal.unwrap().z.abs() > 1.0 - 1e-12);
-        // (0.01 h)² is all that is left along the normal.
+        // What bends between samples is all that is left along the normal.
+        let sampling = PosteriorSettings::default().sampling_std;
         let along = refined.point.covariance.std_along(&refined.normal.unwrap());
-        assert!((along - 0.01 * refined.spacing).abs() < 1e-12);
+        assert!((along - sampling * refined.spacing).abs() < 1e-12);
     }
 }
 
