@@ -8,11 +8,16 @@ use clap::Args;
 use cloudtouch::{
     CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
 };
+use cloudtouch_testkit::family::Kind;
 
 use crate::answers::Answers;
 use crate::measures::{Axis, SurfaceSample, fit_surface};
 use crate::methods::{Fitted, Ours};
 use crate::sweep::{Asked, ORACLE, OURS, Plan, ask};
+
+/// What a pose of a scene that was chosen to be hard counts for, beside one of ordinary scenes: users live
+/// in these, and should be told what is true there (docs/decisions/0020-whom-the-judge-serves.md).
+const ADVERSARIAL: f64 = 0.25;
 
 /// What `cargo xtask calibrate` is given.
 #[derive(Args)]
@@ -49,39 +54,55 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     if update { fitted.write(root) } else { Ok(()) }
 }
 
+/// One answer that is fitted to.
+struct Record {
+    evidence: ContactEvidence,
+    collides: bool,
+    weight: f64,
+}
+
+impl Record {
+    fn at(&self, at: [f64; 2]) -> SurfaceSample {
+        SurfaceSample { at, came: self.collides, weight: self.weight }
+    }
+}
+
 /// Fitted on all families but one, on clouds and on meshes alike.
 fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> {
     let method = answers.index(method).with_context(|| format!("{method} did not answer"))?;
-    let mut records: Vec<(ContactEvidence, bool)> = Vec::new();
+    let mut records: Vec<Record> = Vec::new();
     for (question, said) in &answers.rows {
         if without != Some(question.family) {
             let evidence =
                 said[method].and_then(|s| s.evidence).context("an answer without evidence")?;
-            records.push((evidence, question.collides));
+            let weight = if question.kind == Kind::Adversarial { ADVERSARIAL } else { 1.0 };
+            records.push(Record { evidence, collides: question.collides, weight });
         }
     }
     fit_judge(&records)
 }
 
 /// The surface over geometry first; then, where that leaves doubt, how the classifier revises it.
-fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
+fn fit_judge(records: &[Record]) -> Result<Judge> {
     // Fewer deviations make a collision more probable: the axis is turned round, and back again.
     let mut nearness = DEVIATION_KNOTS.map(|z| -z);
     nearness.reverse();
-    let mut geometry: Vec<SurfaceSample> =
-        records.iter().map(|(e, collides)| ([-e.deviations, e.crossing], *collides)).collect();
+    let by_both =
+        |record: &Record| record.at([-record.evidence.deviations, record.evidence.crossing]);
+    let mut geometry: Vec<SurfaceSample> = records.iter().map(by_both).collect();
     geometry.extend(within());
     let nearness = Axis { knots: nearness, usual: 3.0 };
     let crossing = Axis { knots: CROSSING_KNOTS, usual: 1.0 };
     let mut by_geometry = fit_surface(&geometry, nearness, crossing, false);
     by_geometry.reverse();
     let mut judge = Judge { by_geometry, ..Judge::default() };
-    let doubtful = |(e, collides): &(ContactEvidence, bool)| -> Option<SurfaceSample> {
+    let doubtful = |record: &Record| -> Option<SurfaceSample> {
+        let e = &record.evidence;
         let by_geometry = judge.log_odds_by_geometry(e.deviations, e.crossing);
         let [least, .., most] = DOUBT_KNOTS;
         let is_doubtful = least < by_geometry && by_geometry < most;
         // Where the noise is as large as the patches the classifier says nothing.
-        is_doubtful.then_some(([by_geometry, e.ln_misclassified()?], *collides))
+        is_doubtful.then_some(record.at([by_geometry, e.ln_misclassified()?]))
     };
     let in_doubt: Vec<SurfaceSample> = records.iter().filter_map(doubtful).collect();
     let doubt = Axis { knots: DOUBT_KNOTS, usual: 1.0 };
@@ -95,11 +116,11 @@ fn fit_judge(records: &[(ContactEvidence, bool)]) -> Result<Judge> {
 /// is a collision by what the words mean, whatever crosses.
 fn within() -> impl Iterator<Item = SurfaceSample> {
     const CLEARLY_INSIDE: f64 = -4.0;
-    const WEIGHT: usize = 100;
+    const WEIGHT: f64 = 100.0;
     let inside = DEVIATION_KNOTS.into_iter().filter(|&z| z <= CLEARLY_INSIDE);
     let places =
         inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| [-z, crossing]));
-    places.flat_map(|place| std::iter::repeat_n((place, true), WEIGHT))
+    places.map(|at| SurfaceSample { at, came: true, weight: WEIGHT })
 }
 
 #[cfg(test)]
@@ -116,7 +137,8 @@ mod tests {
             let count = 10.0 * unit(i, 2) * unit(i, 2);
             let evidence = ContactEvidence { deviations, crossing, misclassified: Some(count) };
             let log_odds = crossing - 1.5 * deviations + 0.5 * (count - 3.0);
-            (evidence, unit(i, 3) < 1.0 / (1.0 + (-log_odds).exp()))
+            let collides = unit(i, 3) < 1.0 / (1.0 + (-log_odds).exp());
+            Record { evidence, collides, weight: 1.0 }
         };
         let records: Vec<_> = (0..30_000).map(record).collect();
         let judge = fit_judge(&records).unwrap();

@@ -28,8 +28,16 @@ pub struct Axis<const N: usize> {
     pub usual: f64,
 }
 
-/// What the surface is fitted to: the two numbers, and whether the event came.
-pub type Sample = ([f64; 2], bool);
+/// What the surface is fitted to.
+#[derive(Debug, Clone, Copy)]
+pub struct Sample {
+    /// The two numbers.
+    pub at: [f64; 2],
+    /// Whether the event came.
+    pub came: bool,
+    /// As how many samples it counts.
+    pub weight: f64,
+}
 
 /// Fits values at the knots, by rows. The first and the last row are the knots themselves where
 /// `pins_border`.
@@ -42,8 +50,8 @@ pub fn fit_surface<const N: usize, const M: usize>(
     columns: Axis<M>,
     pins_border: bool,
 ) -> [[f64; M]; N] {
-    let shares: Vec<([(usize, f64); 4], bool)> =
-        samples.iter().map(|&(x, came)| (shares(&rows, &columns, x), came)).collect();
+    let shares: Vec<([(usize, f64); 4], &Sample)> =
+        samples.iter().map(|sample| (shares(&rows, &columns, sample.at), sample)).collect();
     let differences = differences(&rows, &columns);
     let pins: &[usize] = if pins_border { &[0, N - 1] } else { &[] };
     let mut values = DVector::zeros(N * M);
@@ -58,10 +66,10 @@ pub fn fit_surface<const N: usize, const M: usize>(
                 }
             }
         };
-        for (at, came) in &shares {
+        for (at, Sample { came, weight, .. }) in &shares {
             let probability = 1.0 / (1.0 + (-value(at, &values)).exp());
             let error = probability - f64::from(u8::from(*came));
-            add(at, error, (probability * (1.0 - probability)).max(1e-9));
+            add(at, weight * error, weight * (probability * (1.0 - probability)).max(1e-9));
         }
         for (terms, usual) in &differences {
             let found = value(terms, &values);
@@ -171,7 +179,8 @@ mod tests {
         let unit = |i, k| seed::unit(seed::derive(7, i, k));
         let sample = |i| {
             let (x, y) = (4.0 * unit(i, 0), 3.0 * unit(i, 1));
-            ([x, y], unit(i, 2) < 1.0 / (1.0 + (-log_odds(x, y)).exp()))
+            let came = unit(i, 2) < 1.0 / (1.0 + (-log_odds(x, y)).exp());
+            Sample { at: [x, y], came, weight: 1.0 }
         };
         (0..20_000).map(sample).collect()
     }
@@ -185,6 +194,14 @@ mod tests {
                 assert!((found - plane(x, y)).abs() < 0.4, "{x} {y}: {found}");
             }
         }
+    }
+
+    #[test]
+    fn a_weight_is_so_many_samples() {
+        let samples = drawn(|x, y| x + y - 3.0);
+        let heavy = samples.iter().map(|sample| Sample { weight: 3.0, ..*sample });
+        let heavy = fit_surface(&heavy.collect::<Vec<_>>(), ROWS, COLUMNS, false);
+        assert_eq!(heavy, fit_surface(&samples.repeat(3), ROWS, COLUMNS, false));
     }
 
     #[test]

@@ -57,7 +57,8 @@ fn fit_margins(answers: &Answers) -> Result<[f64; WITHIN_KNOTS.len()]> {
         let method = answers.index(&name(margin)).context("a margin that was asked about")?;
         for (question, said) in &answers.rows {
             let deviations = said[method].context("an answer")?.score;
-            samples.push(([-deviations, 0.0], question.signed_distance < margin));
+            let came = question.signed_distance < margin;
+            samples.push(SurfaceSample { at: [-deviations, 0.0], came, weight: 1.0 });
         }
     }
     let mut nearness = WITHIN_KNOTS.map(|z| -z);

@@ -29,46 +29,78 @@ pub(super) struct Misclassified {
     pub bounds: [f64; 2],
     /// Whether a patch was left to geometry: the noise is as large as it.
     is_indistinct: bool,
-    /// The patch with that value, by its place among all.
-    patch: Option<usize>,
+    /// What has that value.
+    told_by: MisclassifiedBy,
+}
+
+/// Who tells how many points are misclassified.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum MisclassifiedBy {
+    /// Nothing that changes with the pose.
+    Nothing,
+    /// A patch, by its place among all.
+    Patch(usize),
+    /// The point that is most clearly inside a closed mesh.
+    Inside,
 }
 
 impl Misclassified {
     /// Anything may be found by a classifier that was not asked.
-    pub(super) const NOT_ASKED: Self =
-        Self { value: None, bounds: [0.0, f64::INFINITY], is_indistinct: false, patch: None };
-    const NOTHING: Self = Self { value: None, bounds: [0.0; 2], is_indistinct: false, patch: None };
+    pub(super) const NOT_ASKED: Self = Self { bounds: [0.0, f64::INFINITY], ..Self::NOTHING };
+    const NOTHING: Self = Self {
+        value: None,
+        bounds: [0.0; 2],
+        is_indistinct: false,
+        told_by: MisclassifiedBy::Nothing,
+    };
 
     fn known(value: f64, patch: usize) -> Self {
-        let patch = Some(patch);
-        Self { value: Some(value), bounds: [value; 2], is_indistinct: false, patch }
+        let told_by = MisclassifiedBy::Patch(patch);
+        Self { value: Some(value), bounds: [value; 2], told_by, ..Self::NOTHING }
     }
 
     /// Of a patch of so many points that no solver could decide.
     fn undecided(points: usize) -> Self {
         let points = points as f64;
-        Self { value: Some(0.5 * points), bounds: [0.0, points], is_indistinct: false, patch: None }
+        Self { value: Some(0.5 * points), bounds: [0.0, points], ..Self::NOTHING }
     }
 
     /// Of a patch of so many points that nothing separates and nothing joins.
     fn indistinct(points: usize) -> Self {
-        Self { value: None, bounds: [0.0, points as f64], is_indistinct: true, patch: None }
+        Self { bounds: [0.0, points as f64], is_indistinct: true, ..Self::NOTHING }
     }
 
     fn or_more(self, other: Self) -> Self {
         let [[low, high], [other_low, other_high]] = [self.bounds, other.bounds];
         let larger = |p: f64, q: f64| p.max(q);
-        let (value, patch) = match (self.value, other.value) {
-            (Some(p), Some(q)) if q > p => (other.value, other.patch),
-            (None, _) => (other.value, other.patch),
-            _ => (self.value, self.patch),
+        let (value, told_by) = match (self.value, other.value) {
+            (Some(p), Some(q)) if q > p => (other.value, other.told_by),
+            (None, _) => (other.value, other.told_by),
+            _ => (self.value, self.told_by),
         };
         Self {
             value,
-            patch,
+            told_by,
             bounds: [larger(low, other_low), larger(high, other_high)],
             is_indistinct: self.is_indistinct || other.is_indistinct,
         }
+    }
+
+    /// The same where a point is inside a closed mesh as surely as that, from 0 to 1: whatever surface
+    /// parts the samples, it is on the wrong side.
+    pub(super) fn or_inside(self, surely: f64) -> Self {
+        match self.value {
+            Some(value) if value < surely => {
+                let bounds = self.bounds.map(|bound| bound.max(surely));
+                Self { value: Some(surely), bounds, told_by: MisclassifiedBy::Inside, ..self }
+            }
+            _ => self,
+        }
+    }
+
+    /// What tells how many are misclassified.
+    pub(super) fn told_by(&self) -> MisclassifiedBy {
+        self.told_by
     }
 
     /// The log odds with what is known; where a patch was left to geometry, at least those of it.
@@ -131,8 +163,8 @@ pub(super) fn ask_classifier(
     Ok(all)
 }
 
-/// What the misclassified points of the patch that has most change by as the pose does; nothing where no
-/// patch is known, or where a classifier cannot tell a little aside.
+/// What the misclassified points of a patch change by as the pose does; nothing where a classifier
+/// cannot tell a little aside.
 ///
 /// ΣP is no optimum of what the classifier minimises, so that the envelope theorem does not give its
 /// derivative, and the multipliers that are at a bound change with the pose: the same points are moved a
@@ -140,13 +172,12 @@ pub(super) fn ask_classifier(
 pub(super) fn misclassified_by_pose(
     (a, b): (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
-    (found, misclassified): (&Found<'_>, &Misclassified),
+    (found, patch): (&Found<'_>, usize),
     task: &Task<'_>,
     stats: &mut Stats,
 ) -> Result<Wrench, QueryError> {
     let patches = patches((a, b), a_from_b, found, task.settings.max_mesh_parts)?;
-    let points = misclassified.patch.and_then(|patch| patches.get(patch));
-    let Some(points) = points else { return Ok(Wrench::zeros()) };
+    let Some(points) = patches.get(patch) else { return Ok(Wrench::zeros()) };
     let settings = ClassifierSettings {
         relative_gap: task.classifier.relative_gap.min(TIGHT),
         ..task.classifier
@@ -202,6 +233,19 @@ mod tests {
         assert!(clear.log_odds(&judge, 0.0) < -0.5);
         assert_eq!(all.log_odds(&judge, 0.0), 0.0);
         assert!(judge.revise(0.0, all.bounds[1]) > 0.1);
+    }
+
+    /// A sheet within a slab is easily separated from its faces, which took its odds down.
+    #[test]
+    fn a_point_inside_is_misclassified_by_any_surface_between_the_samples() {
+        let judge = Judge::default();
+        let clear = Misclassified::known(0.001, 0);
+        let inside = clear.or_inside(0.9);
+        assert_eq!((inside.value, inside.bounds), (Some(0.9), [0.9; 2]));
+        assert!(inside.log_odds(&judge, 0.0) > 0.3 + clear.log_odds(&judge, 0.0));
+        assert_eq!(clear.or_inside(0.0), clear);
+        assert_eq!(Misclassified::known(3.0, 1).or_inside(0.9).value, Some(3.0));
+        assert_eq!(Misclassified::NOT_ASKED.or_inside(0.9), Misclassified::NOT_ASKED);
     }
 
     #[test]

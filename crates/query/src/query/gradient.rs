@@ -9,7 +9,7 @@ use crate::exact::nearest_places;
 use crate::report::{Report, Stats};
 use crate::search::{Wrench, force_at, in_object_frame};
 
-use super::classify::misclassified_by_pose;
+use super::classify::{MisclassifiedBy, misclassified_by_pose};
 use super::estimate::exact;
 use super::gap_by_pose::gap_by_pose;
 use super::run::Query;
@@ -126,8 +126,14 @@ impl Weighed<'_> {
         let [by_geometry, by_count] = self.misclassified.slopes(judge, self.by_geometry);
         let mut all = of_geometry * by_geometry;
         if by_count != 0.0 {
-            let told = (&self.found, &self.misclassified);
-            all += misclassified_by_pose((a, b), a_from_b, told, task, stats)? * by_count;
+            let of_count = match self.misclassified.told_by() {
+                MisclassifiedBy::Nothing => Wrench::zeros(),
+                MisclassifiedBy::Inside => self.looked.surely_inside_by_pose(mesh_is_a),
+                MisclassifiedBy::Patch(patch) => {
+                    misclassified_by_pose((a, b), a_from_b, (&self.found, patch), task, stats)?
+                }
+            };
+            all += of_count * by_count;
         }
         Ok(all)
     }

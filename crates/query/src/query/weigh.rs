@@ -71,6 +71,7 @@ pub(super) fn weigh<'a>(
     let is_wanted = is_open && !(settings.detail == Detail::Verdict && is_settled());
     let misclassified = if is_complete && is_wanted {
         ask_classifier((a, b), a_from_b, &found, by_geometry, task, stats)?
+            .or_inside(looked.surely_inside())
     } else {
         Misclassified::NOT_ASKED
     };

@@ -2,7 +2,7 @@
 //! within.
 
 use cloudtouch_bvh::Visit;
-use cloudtouch_geom::{Point3, Pose, Vector3};
+use cloudtouch_geom::{Point3, Pose, Vector3, normal};
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
@@ -142,6 +142,18 @@ impl Looked {
         }
         let share_by_pose = inside.depth_by_pose(mesh_is_a) * (-1.0 / inside.std);
         between_by_pose * share + share_by_pose * between - of_inside
+    }
+
+    /// How surely a point is inside: from 0, with none or one on the surface, to 1.
+    pub(crate) fn surely_inside(&self) -> f64 {
+        1.0 - 2.0 * normal::upper_tail(self.deviations())
+    }
+
+    /// What this changes by as the pose does.
+    pub(crate) fn surely_inside_by_pose(&self, mesh_is_a: bool) -> Wrench {
+        let slope = 2.0 * normal::density(self.deviations());
+        let of_inside = self.deepest.map(|inside| inside.deviations_by_pose(mesh_is_a) * slope);
+        of_inside.unwrap_or_else(Wrench::zeros)
     }
 
     fn deviations(&self) -> f64 {
