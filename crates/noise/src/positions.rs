@@ -11,6 +11,7 @@ use crate::entries::{Entry, entry, tree_of};
 use crate::error::NoiseError;
 use crate::finite::is_finite;
 use crate::overlay::{GONE, Overlay};
+use crate::places::Places;
 
 /// Squares of differences of such coordinates, and sums of three, are still finite.
 const LARGEST_COORDINATE: f64 = 1e150;
@@ -227,37 +228,10 @@ fn neighbor(item: u32, squared_distance: f64, now: &[u32]) -> Option<Neighbor> {
 
 /// Every finite position once, with the lowest index that has it, in the order of these indices.
 fn distinct_entries(points: &[Point3]) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = (0_u32..)
+    let mut places = Places::of(points);
+    (0_u32..)
         .zip(points)
-        .filter(|(_, point)| is_finite(point))
+        .filter(|&(index, point)| is_finite(point) && places.is_first(index as usize))
         .map(|(index, point)| entry(index, point))
-        .collect();
-    // Equal positions have equal keys; different ones hardly ever have, so most of the time there is
-    // nothing to be looked at twice.
-    let mut keys: Vec<(u64, u32)> =
-        entries.iter().zip(0..).map(|((_, position), place)| (key(position), place)).collect();
-    keys.sort_unstable();
-    let mut is_copy = vec![false; entries.len()];
-    for equal in keys.chunk_by_mut(|a, b| a.0 == b.0).filter(|equal| equal.len() > 1) {
-        let at = |place: u32| &entries[place as usize].1;
-        equal.sort_by(|&(_, i), &(_, j)| {
-            let [x, y, z] = [0, 1, 2].map(|axis| at(i)[axis].total_cmp(&at(j)[axis]));
-            x.then(y).then(z).then(i.cmp(&j))
-        });
-        for pair in equal.windows(2) {
-            is_copy[pair[1].1 as usize] = at(pair[0].1) == at(pair[1].1);
-        }
-    }
-    let mut is_copy = is_copy.into_iter();
-    entries.retain(|_| is_copy.next() == Some(false));
-    entries
-}
-
-/// A number that is the same for the same position.
-fn key(position: &[f64; 3]) -> u64 {
-    // Multipliers without a pattern: 2⁶⁴ over the golden ratio, made odd.
-    let mixed = |state: u64, value: f64| {
-        (state ^ value.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29)
-    };
-    position.iter().fold(0, |state, &value| mixed(state, value))
+        .collect()
 }

@@ -12,9 +12,9 @@ use crate::bias::Slack;
 use crate::cone::{Scaling, longest_step, product, quotient};
 use crate::newton::Newton;
 use crate::problem::Problem;
-use crate::smo::Tools;
-use crate::state::{Certificate, Margin, Numbers, State, certify, largest_violation};
+use crate::state::{Certificate, Dual, Margin, certify, largest_violation};
 use crate::status::{Rung, Status};
+use crate::watch::Watch;
 
 /// Seven to twelve iterations are usual at 1e-4; past this rounding has stopped the progress.
 const MAX_ITERATIONS: usize = 60;
@@ -31,7 +31,7 @@ const STEP: f64 = 0.99;
 const START: f64 = 10.0;
 
 /// Beyond this relative gap a dual point is no start: its multipliers are of the wrong size.
-const FAR: f64 = 0.4;
+pub(crate) const FAR: f64 = 0.4;
 /// A start beside a dual point that has not led to the tolerance by then leads nowhere.
 const NEAR_ITERATIONS: usize = 15;
 /// Products with s and ξ that the start beside a dual point has at least, over the mean of the gap.
@@ -65,44 +65,45 @@ struct Direction {
 }
 
 /// How far the method came.
-pub(crate) struct Reached<'a> {
-    /// The best state found; none where not even the first was finite.
-    pub(crate) state: Option<State<'a>>,
+pub(crate) struct Reached {
+    /// The best multipliers and cone vectors found; none where not even the first were finite.
+    pub(crate) duals: Option<Vec<Dual>>,
     pub(crate) iterations: usize,
     pub(crate) status: Status,
 }
 
 /// Solves the dual to `relative_gap`, or as far as rounding and `allowed` iterations let it.
 ///
-/// It starts beside the point of SMO or, where that is far from the optimum or leads nowhere, cold.
-pub(crate) fn solve<'a>(
-    so_far: &State<'a>,
+/// It starts beside a dual point, that of SMO, or, where that is far from the optimum or leads nowhere,
+/// cold.
+pub(crate) fn solve(
+    problem: &Problem,
+    so_far: &[Dual],
     relative_gap: f64,
     allowed: usize,
-    tools: &mut Tools<'_, '_>,
-) -> Reached<'a> {
-    let problem = so_far.problem;
+    watch: &mut Watch<'_>,
+) -> Reached {
     let Some(mut newton) = Newton::of(problem) else {
-        return Reached { state: None, iterations: 0, status: Status::TooLarge };
+        return Reached { duals: None, iterations: 0, status: Status::TooLarge };
     };
     let mut slack = Slack::default();
     let mut run = Run { best: None, iterations: 0 };
-    if let Some(near) = Iterate::near(so_far, &mut newton, &mut slack) {
+    if let Some(near) = Iterate::near(problem, so_far, &mut newton, &mut slack) {
         let allowed = allowed.min(NEAR_ITERATIONS);
-        let status = run.go_on(near, &mut newton, &mut slack, relative_gap, allowed, tools);
+        let status = run.go_on(near, &mut newton, &mut slack, relative_gap, allowed, watch);
         if matches!(status, Status::Converged | Status::Cancelled) {
-            return run.end(status, problem, tools);
+            return run.end(status);
         }
     }
     let reaches = problem.points.iter().map(|p| problem.kernel.squared_reach(&p.x));
     let least = (START / reaches.fold(0.0, f64::max)).min(f64::MAX);
     // Where SMO got stuck its multipliers are of the right size, if nothing more: an iteration changes
     // them by a bounded factor, so that large penalties take many from a small start.
-    let sum: f64 = (0..problem.len()).map(|i| so_far.numbers.alpha.at(i)).sum();
+    let sum: f64 = so_far.iter().map(|(alpha, _)| alpha).sum();
     let start = Iterate::start(problem, least.max(sum / problem.len() as f64));
     let allowed = (run.iterations + MAX_ITERATIONS).min(allowed);
-    let status = run.go_on(start, &mut newton, &mut slack, relative_gap, allowed, tools);
-    run.end(status, problem, tools)
+    let status = run.go_on(start, &mut newton, &mut slack, relative_gap, allowed, watch);
+    run.end(status)
 }
 
 /// The iterations so far, and the best multipliers among them with their gap.
@@ -120,7 +121,7 @@ impl Run {
         slack: &mut Slack,
         relative_gap: f64,
         allowed: usize,
-        tools: &mut Tools<'_, '_>,
+        watch: &mut Watch<'_>,
     ) -> Status {
         let (mut least, mut worse) = (f64::INFINITY, 0);
         while self.iterations < allowed {
@@ -128,12 +129,8 @@ impl Run {
             let certificate = at.certificate(slack);
             let gap = certificate.relative_gap();
             let violation = || largest_violation(&at.problem.points, |i| at.violation(i));
-            let stop = tools.watch.shows_stop(
-                Rung::InteriorPoint,
-                self.iterations,
-                &certificate,
-                violation,
-            );
+            let stop =
+                watch.shows_stop(Rung::InteriorPoint, self.iterations, &certificate, violation);
             if gap.is_finite() && self.best.as_ref().is_none_or(|(_, least)| gap < *least) {
                 self.best = Some((at.z.clone(), gap));
             }
@@ -155,19 +152,11 @@ impl Run {
         Status::IterationLimit
     }
 
-    fn end<'a>(
-        self,
-        status: Status,
-        problem: &'a Problem,
-        tools: &mut Tools<'_, '_>,
-    ) -> Reached<'a> {
-        let state = self.best.map(|(z, _)| {
-            let duals = z.iter().map(|z| (z[0], tail(z)));
-            State::from_duals(problem, Numbers::default(), duals, tools.rows)
-        });
-        let nothing = state.is_none() && status == Status::Stalled;
+    fn end(self, status: Status) -> Reached {
+        let duals = self.best.map(|(z, _)| z.iter().map(|z| (z[0], tail(z))).collect());
+        let nothing = duals.is_none() && status == Status::Stalled;
         let status = if nothing { Status::NotFinite } else { status };
-        Reached { state, iterations: self.iterations, status }
+        Reached { duals, iterations: self.iterations, status }
     }
 }
 
@@ -202,13 +191,16 @@ impl<'a> Iterate<'a> {
     ///
     /// With b and the excesses y − cb of the certificate, ξ = (y − cb)₊ + δ and
     /// s = (|g| + (y − cb)₋ + δ, g) do: complementarity is then the gap and δΣC.
-    fn near(so_far: &State<'a>, newton: &mut Newton, slack: &mut Slack) -> Option<Self> {
-        let problem = so_far.problem;
+    fn near(
+        problem: &'a Problem,
+        so_far: &[Dual],
+        newton: &mut Newton,
+        slack: &mut Slack,
+    ) -> Option<Self> {
         let points = &problem.points;
         let mut at = Self::start(problem, 1.0);
-        for (i, z) in at.z.iter_mut().enumerate() {
-            let p = so_far.numbers.p(i);
-            *z = Vector4::new(so_far.numbers.alpha.at(i), p.x, p.y, p.z);
+        for (z, (alpha, p)) in at.z.iter_mut().zip(so_far) {
+            *z = Vector4::new(*alpha, p.x, p.y, p.z);
         }
         newton.product(&at.z, &mut at.moved);
         let certificate = at.certificate(slack);

@@ -1,9 +1,9 @@
 //! The ladder: SMO first, then the dense interior point method, then Clarabel.
 
+use crate::active::interior_point;
 use crate::bounds::{bias_spread, error_bounds, is_collapsed};
 #[cfg(feature = "clarabel")]
 use crate::clarabel_dual;
-use crate::interior;
 use crate::problem::Problem;
 use crate::settings::Settings;
 use crate::smo::{Limits, Tools, improve};
@@ -95,7 +95,7 @@ fn climb_to<'a>(
         {
             break;
         }
-        let (other, end) = fall_back(fallback, &state, tolerance, tools);
+        let (other, end) = fall_back(fallback, &mut state, tolerance, tools);
         ends.note(fallback, end);
         let Some(mut other) = other else { continue };
         let mut second = other.certificate();
@@ -117,7 +117,7 @@ fn climb_to<'a>(
 /// What another rung finds, and how it ended.
 fn fall_back<'a>(
     rung: Rung,
-    so_far: &State<'a>,
+    so_far: &mut State<'a>,
     relative_gap: f64,
     tools: &mut Tools<'_, '_>,
 ) -> (Option<State<'a>>, Status) {
@@ -131,9 +131,7 @@ fn fall_back<'a>(
     let Some(allowed) = work::interior_iterations(problem) else {
         return (None, Status::TooLarge);
     };
-    let found = interior::solve(so_far, relative_gap, allowed, tools);
-    tools.effort.interior_iterations += found.iterations;
-    (found.state, found.status)
+    interior_point(so_far, relative_gap, allowed, tools)
 }
 
 #[cfg(not(feature = "clarabel"))]

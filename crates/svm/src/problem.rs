@@ -157,9 +157,13 @@ impl Problem {
             .enumerate()
             .map(|(index, sample)| prepare(index, sample, &centre))
             .collect::<Result<Vec<PreparedPoint>, _>>()?;
+        Ok(Self::of_points(kernel, centre, points))
+    }
+
+    fn of_points(kernel: Kernel, centre: Point3, points: Vec<PreparedPoint>) -> Self {
         let has_uncertain = points.iter().any(PreparedPoint::is_uncertain);
         let lanes = |of: &dyn Fn(&PreparedPoint) -> f64| Lanes::new(points.iter().map(of));
-        Ok(Self {
+        Self {
             kernel,
             centre,
             places: std::array::from_fn(|axis| lanes(&|p| p.x[axis])),
@@ -168,7 +172,13 @@ impl Problem {
             penalties: lanes(&|p| p.penalty),
             points,
             has_uncertain,
-        })
+        }
+    }
+
+    /// The problem of some of the samples alone, about the same centre.
+    pub(crate) fn of_some(&self, samples: &[usize]) -> Self {
+        let points = samples.iter().map(|&i| self.points[i].clone()).collect();
+        Self::of_points(self.kernel, self.centre, points)
     }
 
     /// How many samples there are.

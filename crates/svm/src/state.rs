@@ -9,6 +9,9 @@ use crate::problem::{PreparedPoint, Problem};
 use crate::rows::KernelRows;
 use crate::spread::{Field, Source};
 
+/// α and p of a sample: the cone vector in the eigenbasis of its covariance, |p| ≤ α.
+pub(crate) type Dual = (f64, Vector3);
+
 /// Dual variables and, kept in step with them, f₀ and its gradient at every sample.
 #[derive(Debug)]
 pub(crate) struct State<'a> {
@@ -83,7 +86,7 @@ impl<'a> State<'a> {
     pub(crate) fn from_duals(
         problem: &'a Problem,
         numbers: Numbers,
-        duals: impl IntoIterator<Item = (f64, Vector3)>,
+        duals: impl IntoIterator<Item = Dual>,
         rows: &mut KernelRows,
     ) -> Self {
         let mut state = Self::cold(problem, numbers);
@@ -111,9 +114,12 @@ impl<'a> State<'a> {
 
     /// A copy of the dual point.
     pub(crate) fn copied(&self, rows: &mut KernelRows) -> Self {
-        let n = self.problem.len();
-        let duals = (0..n).map(|i| (self.numbers.alpha.at(i), self.numbers.p(i)));
+        let duals = (0..self.problem.len()).map(|i| self.dual(i));
         Self::from_duals(self.problem, Numbers::default(), duals, rows)
+    }
+
+    pub(crate) fn dual(&self, i: usize) -> Dual {
+        (self.numbers.alpha.at(i), self.numbers.p(i))
     }
 
     /// Computes f₀ and its gradient from the dual variables alone.
@@ -137,6 +143,11 @@ impl<'a> State<'a> {
     pub(crate) fn violation(&self, i: usize) -> f64 {
         let field = &self.numbers.field;
         1.0 - self.problem.points[i].sign * field.f.at(i) + field.norm.at(i)
+    }
+
+    /// y − cb: how far the worst point of the ellipsoid is inside the margin with this bias.
+    pub(crate) fn excess(&self, i: usize, bias: f64) -> f64 {
+        self.violation(i) - self.problem.points[i].sign * bias
     }
 
     /// Objective values and gap, from the f₀ and gradients at hand.

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use crate::state::Certificate;
 use crate::status::Rung;
 
-/// One entry of the iteration log.
+/// One entry of the iteration log. Where the interior point method works on some of the points, the values
+/// are those of a problem of these alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Progress {
