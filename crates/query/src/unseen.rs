@@ -13,11 +13,12 @@ use crate::warning::Which;
 pub(crate) fn unseen(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> Option<Unseen> {
     let of_b = || look(image(a)?, b, a_from_b, Which::B);
     let of_a = || look(image(b)?, a, &a_from_b.inverse(), Which::A);
-    if image(a).is_some() && image(b).is_some() && a.size() < b.size() {
-        of_a()
-    } else {
-        of_b().or_else(of_a)
-    }
+    if is_image(a) && is_image(b) && a.size() < b.size() { of_a() } else { of_b().or_else(of_a) }
+}
+
+/// Whether a body is a depth image, which knows what it did not see.
+pub(crate) fn is_image(body: Shape<'_>) -> bool {
+    image(body).is_some()
 }
 
 fn image(body: Shape<'_>) -> Option<&Prepared> {

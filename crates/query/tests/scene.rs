@@ -231,6 +231,31 @@ fn a_body_far_behind_the_camera_is_undecided_though_boxes_rule_it_out() {
     assert_eq!((found.verdict(), found.ruled_out), (Verdict::Undecided, 2));
 }
 
+/// Nor of sizes: one that is in millimetres beside the others is doubted with each, wherever they are, and
+/// so is one with nothing but a line of points.
+#[test]
+fn what_is_wrong_with_a_body_itself_counts_however_far_away_it_is() {
+    let mut scene = Scene::default();
+    scene.add("cube", mesh(&scene::cuboid([0.1; 3])), at(0.0, 0.0, 0.0)).unwrap();
+    scene.add("far", mesh(&scene::cuboid([0.1; 3])), at(3.0, 0.0, 0.0)).unwrap();
+    let found = assert_same(&scene, &query());
+    assert_eq!((found.ruled_out, found.pairs.len()), (1, 0));
+    scene.add("millimetres", mesh(&scene::cuboid([180.0; 3])), at(0.0, 150.0, 0.0)).unwrap();
+    let found = assert_same(&scene, &query());
+    assert_eq!((found.ruled_out, found.pairs.len()), (1, 2));
+    scene.remove("millimetres").unwrap();
+    let line = (0..50).map(|k| [0.01 * f64::from(k), 0.0, 0.0].into()).collect();
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+    let line = Cloud::prepare(&PointCloud::from_points(line), &settings).unwrap();
+    scene.add("line", Body::from(line), at(0.0, 1.0, 0.0)).unwrap();
+    let found = assert_same(&scene, &query());
+    assert_eq!((found.ruled_out, found.pairs.len()), (1, 2));
+    let noisy = cloud(&scene::cuboid([0.1; 3]), 0.01, 0.3, 1);
+    scene.replace("line", noisy).unwrap();
+    let found = assert_same(&scene, &query());
+    assert_eq!((found.ruled_out, found.pairs.len()), (1, 2));
+}
+
 #[test]
 fn far_from_one_body_is_no_doubt_and_far_from_all_is() {
     let screw = Arc::new(mesh(&scene::sphere(0.005, 2)));

@@ -10,6 +10,7 @@ use crate::{
     answers::{Answers, Pair, Question, Said},
     methods::{Draw, Method, Prepared},
     page::Section,
+    statistics::median,
     table::Table,
     targets::{Findings, Target},
 };
@@ -145,8 +146,10 @@ fn judge(answers: &Answers) -> (Section, Vec<Target>) {
 fn row(pair: Pair, std: f64, overlaps: &[Overlap]) -> [String; 10] {
     let told = || overlaps.iter().filter_map(|o| Some((o.exact, o.told.as_ref()?)));
     let off = |of: fn(&Told) -> f64| {
-        format!("{:+.1} mm", 1e3 * median(told().map(|(exact, told)| of(told) - exact)))
+        let off: Vec<f64> = told().map(|(exact, told)| of(told) - exact).collect();
+        format!("{:+.1} mm", 1e3 * median(&off))
     };
+    let seconds: Vec<f64> = told().map(|(_, told)| 1e-6 * told.micros).collect();
     let part = |is_met: fn(&Overlap) -> bool| format!("{:.2}", share(overlaps, is_met));
     [
         pair.name().to_owned(),
@@ -158,18 +161,12 @@ fn row(pair: Pair, std: f64, overlaps: &[Overlap]) -> [String; 10] {
         off(|told| told.distance),
         part(Overlap::is_enough),
         (overlaps.len() - told().count()).to_string(),
-        format!("{:.2} s", 1e-6 * median(told().map(|(_, told)| told.micros))),
+        format!("{:.2} s", median(&seconds)),
     ]
 }
 
 fn share(overlaps: &[Overlap], is_met: fn(&Overlap) -> bool) -> f64 {
     overlaps.iter().filter(|overlap| is_met(overlap)).count() as f64 / overlaps.len() as f64
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

@@ -14,6 +14,11 @@ use super::run::Query;
 const PRECISION: f64 = 0.01;
 /// See [`PRECISION`].
 const FINEST: f64 = 1e-4;
+/// As long as others may be shorter it need not be known as well.
+const ROUGHLY: f64 = 0.04;
+/// A direction no farther than this from one that was looked along is not another, rad: contacts of one face
+/// share their normal, and often an axis with it.
+const SAME: f64 = 0.1;
 /// A direction that is not free at this share of the shortest way out is given up.
 const SHORTER: f64 = 0.97;
 /// Of directions that nothing speaks for, a place this much nearer is tried too: on the way there may be
@@ -34,16 +39,20 @@ pub struct Penetration {
     pub direction: Vector3,
     /// How far until a collision is less likely than asked for, m.
     pub distance_m: f64,
-    /// How far until it is as likely as not, m: how deep the object is in, as far as is known.
+    /// How far until it is as likely as not, m: how deep the object is in, as far as is known. Of the
+    /// probability, not of its upper bound.
     pub depth_m: f64,
     /// Half of how much farther it is until a collision is one standard deviation less likely than not than
     /// until it is one more likely, m: what the surfaces leave open of the distance along the direction.
     pub std_m: f64,
 }
 
-/// Two bodies at a pose, and below which probability the object is out.
+/// Two bodies at a pose, and when the object is out.
 struct Overlap<'a> {
+    /// Decides at the probability it is out below.
     query: Query,
+    /// What is to be below it.
+    told: fn(&Report) -> f64,
     bodies: (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &'a Pose,
 }
@@ -102,44 +111,62 @@ impl Query {
             };
             return Ok((report, Some(here)));
         }
-        let overlap = Overlap { query: self.deciding(probability), bodies, a_from_b };
+        let query = self.deciding(probability);
+        let overlap = Overlap { query, told: |report| report.bounds[1], bodies, a_from_b };
         let mut likely: Vec<Vector3> = report.contacts.iter().map(|c| c.normal_a_to_b).collect();
         let climb = |gradient: &[f64; 6]| a_from_b.transform_vector(&first(gradient));
         likely.push(-climb(&gradient.log_odds));
         likely.extend(gradient.clearance.as_ref().map(climb));
         likely.extend(axes(a_from_b));
         let mut best = None;
+        let mut known: Vec<Vector3> = Vec::new();
         for direction in likely.iter().filter_map(|d| d.try_normalize(0.0)) {
-            overlap.shorten(&mut best, direction, &[SHORTER, 0.5, 0.25, 0.125, 0.0625])?;
+            if is_another(&mut known, direction) {
+                overlap.shorten(&mut best, direction, &[SHORTER, 0.5, 0.25, 0.125, 0.0625])?;
+            }
         }
         for direction in sphere() {
-            overlap.shorten(&mut best, direction, &[SHORTER, NEARER])?;
+            if is_another(&mut known, direction) {
+                overlap.shorten(&mut best, direction, &[SHORTER, NEARER])?;
+            }
         }
         let Some(mut best) = best else { return Ok((report, None)) };
         for _ in 0..TURNS {
-            let known = best;
-            let toward = overlap.normal_at(best.0 * best.1, self)?;
+            let before = best;
+            let toward = overlap.normal_at(best.direction * best.free, self)?;
             if let Some(normal) = toward {
                 best = overlap.shortened(best, normal, &[SHORTER])?;
             }
-            if best.1 > SHORTER * known.1 {
+            if best.free > SHORTER * before.free {
                 break;
             }
         }
         for angle in ANGLES {
-            let (around, _) = best;
+            let around = best.direction;
             for direction in ring(&around, angle) {
                 best = overlap.shortened(best, direction, &[SHORTER])?;
             }
         }
-        let (direction, distance_m) = best;
+        let Way { direction, free: distance_m, .. } = overlap.between(best, PRECISION)?;
+        // No guarantees but expectations: bounds, which are wider the less is known, would only add to them.
         let [near, depth_m, far] = LIKELY.map(|likely| {
-            let of_likely = Overlap { query: self.deciding(likely), ..overlap };
-            of_likely.way_out(&direction, distance_m)
+            let query = self.deciding(likely);
+            let of_likely =
+                Overlap { query, told: |report| report.collision_probability, ..overlap };
+            of_likely.way_out(direction, distance_m)
         });
         let (depth_m, std_m) = (depth_m?, 0.5 * (far? - near?));
         Ok((report, Some(Penetration { direction, distance_m, depth_m, std_m })))
     }
+}
+
+/// Whether a direction is none of those known, to which it is added.
+fn is_another(known: &mut Vec<Vector3>, direction: Vector3) -> bool {
+    let is_new = known.iter().all(|other| other.dot(&direction) < SAME.cos());
+    if is_new {
+        known.push(direction);
+    }
+    is_new
 }
 
 /// The translation of a gradient.
@@ -147,15 +174,22 @@ fn first(gradient: &[f64; 6]) -> Vector3 {
     Vector3::new(gradient[0], gradient[1], gradient[2])
 }
 
-/// A unit vector, and how far along it the object is free, m.
-type Way = (Vector3, f64);
+/// A way out along a unit vector.
+#[derive(Clone, Copy)]
+struct Way {
+    direction: Vector3,
+    /// So far along it the object is not out, or has not moved, m.
+    stuck: f64,
+    /// So far along it is, m.
+    free: f64,
+}
 
 impl Overlap<'_> {
     fn is_free(&self, offset: Vector3) -> Result<bool, QueryError> {
         let (a, b) = self.bodies;
         let pose = Pose::from_translation(offset).after(self.a_from_b);
         let report = self.query.run(a, b, &pose)?;
-        Ok(report.bounds[1] < self.query.settings().reject)
+        Ok((self.told)(&report) < self.query.settings().reject)
     }
 
     /// Takes a way along `direction` that is free at one of these shares of the best, if there is one.
@@ -174,9 +208,9 @@ impl Overlap<'_> {
 
     fn shortened(&self, best: Way, direction: Vector3, shares: &[f64]) -> Result<Way, QueryError> {
         for share in shares {
-            let high = share * best.1;
-            if self.is_free(direction * high)? {
-                return Ok((direction, self.between(&direction, 0.0, high)?));
+            let free = share * best.free;
+            if self.is_free(direction * free)? {
+                return self.between(Way { direction, stuck: 0.0, free }, ROUGHLY);
             }
         }
         Ok(best)
@@ -186,36 +220,39 @@ impl Overlap<'_> {
     /// both bodies are apart.
     fn first_way(&self, direction: Vector3) -> Result<Option<Way>, QueryError> {
         let far = self.apart(&direction);
-        let (mut low, mut high) = (0.0, 10.0 * FINEST);
-        while !self.is_free(direction * high)? {
-            if high > far {
+        let mut way = Way { direction, stuck: 0.0, free: 10.0 * FINEST };
+        while !self.is_free(direction * way.free)? {
+            if way.free > far {
                 return Ok(None);
             }
-            (low, high) = (high, 2.0 * high);
+            way = Way { stuck: way.free, free: 2.0 * way.free, ..way };
         }
-        Ok(Some((direction, self.between(&direction, low, high)?)))
+        self.between(way, ROUGHLY).map(Some)
     }
 
     /// How far it is free along a direction, near to where it is for another probability.
-    fn way_out(&self, direction: &Vector3, near: f64) -> Result<f64, QueryError> {
-        let far = self.apart(direction);
-        let (mut low, mut high) = (0.0, near);
-        while !self.is_free(direction * high)? {
-            if high > far {
-                return Ok(high);
+    fn way_out(&self, direction: Vector3, near: f64) -> Result<f64, QueryError> {
+        let far = self.apart(&direction);
+        let mut way = Way { direction, stuck: 0.0, free: near };
+        while !self.is_free(direction * way.free)? {
+            if way.free > far {
+                return Ok(way.free);
             }
-            (low, high) = (high, 1.5 * high);
+            way = Way { stuck: way.free, free: 1.5 * way.free, ..way };
         }
-        self.between(direction, low, high)
+        Ok(self.between(way, PRECISION)?.free)
     }
 
-    /// Between a place that is not free and one that is, by bisection.
-    fn between(&self, direction: &Vector3, mut low: f64, mut high: f64) -> Result<f64, QueryError> {
-        while high - low > FINEST.max(PRECISION * high) {
-            let middle = 0.5 * (low + high);
-            if self.is_free(direction * middle)? { high = middle } else { low = middle }
+    /// The same way, known to a share of it by bisection.
+    fn between(&self, mut way: Way, precision: f64) -> Result<Way, QueryError> {
+        while way.free - way.stuck > FINEST.max(precision * way.free) {
+            let middle = 0.5 * (way.stuck + way.free);
+            match self.is_free(way.direction * middle)? {
+                true => way.free = middle,
+                false => way.stuck = middle,
+            }
         }
-        Ok(high)
+        Ok(way)
     }
 
     /// Where the surfaces lead out most directly after a translation, as a unit vector.

@@ -14,8 +14,8 @@ use crate::report::{Report, Stats, Verdict};
 use crate::safeguards::Safeguards;
 use crate::shape::Shape;
 use crate::undecided::Undecided;
-use crate::unseen::unseen;
-use crate::warning::Warning;
+use crate::unseen::{is_image, unseen};
+use crate::warning::{Warning, Which};
 
 use super::closeness::Closeness;
 use super::estimate::{Estimate, Places};
@@ -103,14 +103,27 @@ impl Terms {
         local: &Pose,
         warnings: &[Warning],
     ) -> Option<Undecided> {
+        let enclosed = || is_enclosed(a, b, local).then_some(Undecided::Enclosed);
+        warnings.iter().find_map(|warning| self.reason(warning)).or_else(enclosed)
+    }
+
+    /// Why a pair with this warning does not read as free; `None` where it may.
+    fn reason(&self, warning: &Warning) -> Option<Undecided> {
+        if matches!(warning, Warning::FarAway { .. }) && !self.doubts_distance {
+            return None;
+        }
         let counts =
             |reason: &Undecided| *reason != Undecided::Units || self.safeguards.doubt_units;
-        let is_doubted = |warning: &&Warning| {
-            self.doubts_distance || !matches!(warning, Warning::FarAway { .. })
-        };
-        let enclosed = || is_enclosed(a, b, local).then_some(Undecided::Enclosed);
-        let doubted = warnings.iter().filter(is_doubted);
-        doubted.filter_map(Warning::undecides).find(counts).or_else(enclosed)
+        warning.undecides().filter(counts)
+    }
+
+    /// Whether A may be doubted wherever it lies beside a body no smaller than B: what it is like, how large
+    /// it is beside B, and what it did not see.
+    pub(crate) fn may_doubt(&self, (a, b): (Shape<'_>, Shape<'_>)) -> bool {
+        let is_of_a = |warning: &&Warning| warning.body() == Some(Which::A);
+        let warnings = doubts((a, b), &Pose::identity(), None, &self.safeguards);
+        let mut of_a = warnings.iter().filter(is_of_a);
+        is_image(a) || of_a.any(|warning| self.reason(warning).is_some())
     }
 
     fn report(

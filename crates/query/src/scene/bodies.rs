@@ -12,7 +12,7 @@ use crate::range::bad_entry;
 /// Named bodies, each with its own pose, of which [`Self::check`] tells which may touch.
 ///
 /// A pose maps the file frame of a body into that of the scene, or of the body it is attached to, m.
-/// Moving a body costs nothing: nothing is built over their poses. A body is owned by the scene or
+/// Moving a body costs nothing: what a check needs to know of their poses it finds out by itself. A body is owned by the scene or
 /// shared, and may be in it under several names.
 ///
 /// ```

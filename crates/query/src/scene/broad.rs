@@ -1,18 +1,25 @@
-//! Which pairs have to be asked: the others are known to be free by one test of two boxes.
+//! Which pairs have to be asked: the others are known to be free by their boxes.
 //!
-//! A pair is ruled out only where the query would have answered that it is free: its own first test, of
-//! the boxes around both bodies, grown by how far their noise model may move points, by how uncertain
-//! they are and by how far their surfaces reach, leaves out everything; what is then said of a pair reads
-//! as free; and no doubt speaks against it. Doubts are looked for as for a pair that is asked.
+//! A pair is ruled out only where the query would have answered that it is free: nothing of one body is
+//! within six deviations of the other, no surface reaches it; what is then said of a pair reads as free; and
+//! no doubt speaks against it. Boxes along the axes of the scene rule out most pairs without looking at them;
+//! a body that may be doubted however far away it is gets a box without end. What is left takes the query's
+//! own first test, of the boxes around both bodies, and is doubted as a pair that is asked.
 
 use cloudtouch_bvh::{Sought, urgency_of_roots};
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::judge::{MOST_DEVIATIONS, probability};
 use crate::query::Query;
-use crate::range::bad_entry;
+use crate::range::{LARGEST_COORDINATE, bad_entry};
 use crate::record::Terms;
+use crate::shape::Shape;
+
+use super::near::{Corners, everywhere};
+
+/// What poses and sums may misplace a box by, as a share of the coordinates.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Decides which pairs have to be asked.
 #[derive(Debug)]
@@ -30,6 +37,18 @@ impl BroadPhase {
         let log_odds = settings.judge.revise(by_geometry, f64::INFINITY);
         let nothing_is_free = probability(log_odds, settings.prior) < settings.reject;
         Self { terms: query.terms_in_scene(), nothing_is_free }
+    }
+
+    /// Beyond this box (in the frame of the scene, m) a body meets nothing that is beyond its own; all of
+    /// space for one whose pairs have to be looked at wherever it is. `smallest` is the smallest body of the
+    /// scene that has a size.
+    pub(super) fn zone(&self, shape: Shape<'_>, pose: &Pose, smallest: Shape<'_>) -> Corners {
+        // Two such poses are no farther from each other than can be reckoned with.
+        let is_placed = pose.translation().norm() < 0.25 * LARGEST_COORDINATE;
+        if !is_placed || !self.nothing_is_free || self.terms.may_doubt((shape, smallest)) {
+            return everywhere();
+        }
+        around(shape, pose)
     }
 
     /// How urgent it is to ask about a pair, the less the sooner; `None` where it is known to be free.
@@ -54,4 +73,21 @@ impl BroadPhase {
         }
         self.terms.doubt_at((shape_a, shape_b), a_from_b).0.map(|_| f64::INFINITY)
     }
+}
+
+/// The box around all that a body's points may be within six deviations, and all that its surface reaches.
+fn around(shape: Shape<'_>, pose: &Pose) -> Corners {
+    let local = pose.after(&Pose::from_translation(shape.origin()));
+    // Without a point there is nothing to meet, and nothing saved by saying so.
+    let Some(root) = shape.tree().root() else { return everywhere() };
+    let centre = local.transform_point(&root.obb().centre);
+    let coordinates = pose.translation().amax() + shape.origin().amax() + centre.coords.amax();
+    let turned_back = pose.rotation().inverse();
+    let half = [0, 1, 2].map(|k| {
+        let along = turned_back * Vector3::ith(k, 1.0);
+        let beyond = root.reach().max(MOST_DEVIATIONS * root.std_along(&along));
+        root.obb().half_width_along(&along) + root.shift() + beyond
+    });
+    let half = Vector3::from(half).map(|half| half + ROUNDING * (coordinates + half));
+    [centre - half, centre + half]
 }

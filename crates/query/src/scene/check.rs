@@ -11,6 +11,7 @@ use crate::query::Query;
 use super::answer::{Checked, PairAnswer};
 use super::bodies::Scene;
 use super::broad::BroadPhase;
+use super::near::{Corners, everywhere, meeting};
 use super::stray::strays;
 
 impl Scene {
@@ -21,17 +22,19 @@ impl Scene {
     /// most rule them out; with one difference: being far from one body is no reason to doubt the pose
     /// of another ([`Undecided::Units`](crate::Undecided::Units)), only being far from all of them.
     /// A pair without an answer, and one that is undecided for whatever reason, such as space that a
-    /// depth image did not see, is among those returned. Each pair takes a test of two boxes, and those
-    /// near each other, or in doubt, a query.
+    /// depth image did not see, is among those returned. Pairs whose boxes do not meet are not looked at,
+    /// the others take a test of two boxes, and those near each other, or in doubt, a query.
     pub fn check(&self, query: &Query) -> Checked {
-        let (count, candidates) = self.candidates();
         let broad = BroadPhase::new(query);
+        let candidates = self.candidates(&broad);
         let asked: Vec<PairAnswer> = candidates
             .par_iter()
             .filter(|pair| broad.urgency(pair.bodies(), &pair.a_from_b, pair.is_astray).is_some())
             .map(|pair| pair.ask(query))
             .collect();
-        let (allowed, ruled_out) = (count - candidates.len(), candidates.len() - asked.len());
+        let bodies = self.bodies.len();
+        let (count, allowed) = (bodies * bodies.saturating_sub(1) / 2, self.allowed.len());
+        let ruled_out = count - allowed - asked.len();
         let mut checked = Checked { count, allowed, ruled_out, asked: asked.len(), pairs: asked };
         checked.pairs.retain(|pair| !pair.is_free());
         checked.pairs.sort_by(PairAnswer::by_gravity);
@@ -44,8 +47,8 @@ impl Scene {
     ///
     /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest.
     pub fn check_first(&self, query: &Query) -> Option<PairAnswer> {
-        let (_, candidates) = self.candidates();
         let broad = BroadPhase::new(query);
+        let candidates = self.candidates(&broad);
         let urgency =
             |pair: &Candidate<'_>| broad.urgency(pair.bodies(), &pair.a_from_b, pair.is_astray);
         let mut open: Vec<(f64, &Candidate<'_>)> =
@@ -54,8 +57,8 @@ impl Scene {
         open.into_iter().map(|(_, pair)| pair.ask(query)).find(|pair| !pair.is_free())
     }
 
-    /// How many pairs there are, and those of them that may not touch.
-    fn candidates(&self) -> (usize, Vec<Candidate<'_>>) {
+    /// The pairs that may not touch and whose boxes meet.
+    fn candidates(&self, broad: &BroadPhase) -> Vec<Candidate<'_>> {
         let mut bodies: Vec<Member<'_>> = Vec::with_capacity(self.bodies.len());
         for (name, placed) in &self.bodies {
             // Every name of the map is in the scene.
@@ -69,20 +72,19 @@ impl Scene {
         }
         // The larger is A: of a pair the query takes A for the surroundings.
         bodies.sort_by(|p, q| q.size.total_cmp(&p.size));
+        let smallest = bodies.iter().rfind(|of| of.size > 0.0).or(bodies.last());
+        let Some(smallest) = smallest.map(|of| of.body.shape()) else { return Vec::new() };
+        let zone = |of: &Member<'_>| match of.is_astray {
+            true => everywhere(),
+            false => broad.zone(of.body.shape(), &of.pose, smallest),
+        };
+        let zones: Vec<Corners> = bodies.iter().map(zone).collect();
         let allowed: BTreeSet<[&str; 2]> =
             self.allowed.iter().map(|pair| pair.each_ref().map(String::as_str)).collect();
-        let mut count = 0;
-        let mut candidates = Vec::new();
-        for (k, a) in bodies.iter().enumerate() {
-            let a_from_scene = a.pose.inverse();
-            for b in &bodies[k + 1..] {
-                count += 1;
-                if !allowed.contains(&[a.name.min(b.name), a.name.max(b.name)]) {
-                    candidates.push(Candidate::new(a, b, &a_from_scene));
-                }
-            }
-        }
-        (count, candidates)
+        let near = meeting(&zones).into_iter().map(|pair| pair.map(|k| &bodies[k]));
+        near.filter(|[a, b]| !allowed.contains(&[a.name.min(b.name), a.name.max(b.name)]))
+            .map(|[a, b]| Candidate::new(a, b))
+            .collect()
     }
 }
 
@@ -107,12 +109,12 @@ struct Candidate<'a> {
 }
 
 impl<'a> Candidate<'a> {
-    fn new(a: &Member<'a>, b: &Member<'a>, a_from_scene: &Pose) -> Self {
+    fn new(a: &Member<'a>, b: &Member<'a>) -> Self {
         Self {
             names: [a.name, b.name],
             bodies: [a.body, b.body],
             scene_from_a: a.pose,
-            a_from_b: a_from_scene.after(&b.pose),
+            a_from_b: a.pose.inverse().after(&b.pose),
             is_astray: a.is_astray || b.is_astray,
         }
     }

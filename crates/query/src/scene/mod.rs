@@ -6,6 +6,7 @@ mod attached;
 mod bodies;
 mod broad;
 mod check;
+mod near;
 mod stray;
 
 pub use answer::{Checked, PairAnswer};
