@@ -9,9 +9,7 @@ mod tidy;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use cloudtouch_evaluation::{
-    calibrate, growth, motion, paper, performance, real_scans, settings, stability, sweep,
-};
+use cloudtouch_evaluation::{calibrate, motion, paper, performance, real_scans, stability, sweep};
 
 /// Project tasks.
 #[derive(Parser)]
@@ -28,18 +26,14 @@ enum Task {
     Sweep(sweep::Arguments),
     /// Fits the constants that turn evidence into a probability.
     Calibrate(calibrate::Arguments),
-    /// Hard cases, and motions that must change nothing.
+    /// Hard cases through solver and queries.
     Stability(stability::Arguments),
     /// Times of ours and of its peers on the same scenes, against the targets, with figures.
     BenchReport(performance::Arguments),
-    /// Answers to fixed poses in a real scan while noise is added to it.
-    Growth(growth::Arguments),
     /// The figures of the paper with our data, by its method as printed and by ours.
     Paper(paper::Arguments),
     /// How well stated margins are.
     Motion(motion::Arguments),
-    /// Query time against error, one setting changed at a time.
-    Settings(settings::Arguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {
         /// Compares with the stored files and writes nothing.
@@ -59,10 +53,8 @@ fn main() -> anyhow::Result<()> {
         Task::Calibrate(arguments) => calibrate::run(&root, &arguments),
         Task::Stability(arguments) => stability::run(&root, &arguments),
         Task::BenchReport(arguments) => performance::run(&root, &arguments),
-        Task::Growth(arguments) => growth::run(&root, &arguments),
         Task::Paper(arguments) => paper::run(&root, &arguments),
         Task::Motion(arguments) => motion::run(&root, &arguments),
-        Task::Settings(arguments) => settings::run(&root, &arguments),
         Task::Fixtures { check } => fixtures::run(&root, check),
     }
 }

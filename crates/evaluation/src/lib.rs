@@ -7,7 +7,6 @@
 
 pub mod answers;
 pub mod calibrate;
-pub mod growth;
 pub mod leaf;
 pub mod measures;
 pub mod methods;
@@ -16,7 +15,6 @@ pub mod paper;
 pub mod performance;
 pub mod real_scans;
 pub mod report;
-pub mod settings;
 pub mod stability;
 pub mod statistics;
 pub mod sweep;

@@ -59,7 +59,7 @@ pub enum ReadError {
     /// It is a recording, which only a build with the feature `mcap` reads.
     #[error(
         "{}: is a recording, and this build reads none: build it with `--features mcap`, as in \
-         `cargo install --path crates/cli --features mcap`",
+         `cargo install --locked --path crates/cli --features mcap`",
         path.display()
     )]
     NoRecordings {

@@ -1,8 +1,11 @@
 //! Many reports as columns.
+//!
+//! A report becomes a row on the thread that asked: contacts and points that no column tells are given back
+//! while they are in its cache, and not kept for all poses.
 
 use cloudtouch::Report;
 use cloudtouch::geom::Vector3;
-use numpy::{IntoPyArray, PyFixedUnicode};
+use numpy::{Element, IntoPyArray, PyArray1, PyFixedUnicode};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -12,95 +15,109 @@ use crate::body::table;
 /// Letters of the longest name: "in_collision".
 const LETTERS: usize = 12;
 
-/// The columns of a batch, a row for each pose; NaN where a report has no number.
-#[derive(Default)]
-pub(crate) struct Columns {
-    probability: Vec<f64>,
-    lower: Vec<f64>,
-    upper: Vec<f64>,
-    verdict: Vec<PyFixedUnicode<LETTERS>>,
-    undecided_by: Vec<PyFixedUnicode<LETTERS>>,
-    log_likelihood_ratio: Vec<f64>,
-    clearance: Vec<f64>,
-    clearance_std: Vec<f64>,
-    clearance_is_bound: Vec<bool>,
-    clearance_at_least: Vec<f64>,
-    contact_point: Vec<Vector3>,
-    contact_normal: Vec<Vector3>,
-    contact_count: Vec<i64>,
-    warning_count: Vec<i64>,
-    seconds: Vec<f64>,
-    error: Vec<String>,
+/// What a batch tells of a pose; NaN where a report has no number.
+pub(crate) struct Row {
+    probability: f64,
+    lower: f64,
+    upper: f64,
+    verdict: &'static str,
+    undecided_by: &'static str,
+    log_likelihood_ratio: f64,
+    clearance: f64,
+    clearance_std: f64,
+    clearance_is_bound: bool,
+    clearance_at_least: f64,
+    contact_point: Vector3,
+    contact_normal: Vector3,
+    contact_count: usize,
+    warning_count: usize,
+    seconds: f64,
+    error: String,
 }
 
-impl Columns {
-    pub(crate) fn push(&mut self, report: &Report) {
+impl From<&Report> for Row {
+    fn from(report: &Report) -> Self {
         let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        let [lower, upper] = report.bounds;
-        self.probability.push(report.collision_probability);
-        self.lower.push(lower);
-        self.upper.push(upper);
-        self.verdict.push(name(verdict(report.verdict)));
-        self.undecided_by.push(name(report.undecided_by.map_or("", cause)));
-        self.log_likelihood_ratio.push(or_nan(report.log_likelihood_ratio));
-        let clearance = report.clearance_m;
-        self.clearance.push(or_nan(clearance.map(|c| c.mean)));
-        self.clearance_std.push(or_nan(clearance.map(|c| c.std)));
-        self.clearance_is_bound.push(clearance.is_some_and(|c| c.is_bound));
-        self.clearance_at_least.push(or_nan(report.clearance_at_least_m));
+        let (clearance, contact) = (report.clearance_m, report.contacts.first());
         let nowhere = Vector3::repeat(f64::NAN);
-        let contact = report.contacts.first();
-        self.contact_point.push(contact.map_or(nowhere, |c| c.point.coords));
-        self.contact_normal.push(contact.map_or(nowhere, |c| c.normal_a_to_b));
-        self.contact_count.push(report.contacts.len() as i64);
-        self.warning_count.push(report.warnings.len() as i64);
-        self.seconds.push(seconds(report));
-        self.error.push(String::new());
+        let [lower, upper] = report.bounds;
+        Self {
+            probability: report.collision_probability,
+            lower,
+            upper,
+            verdict: verdict(report.verdict),
+            undecided_by: report.undecided_by.map_or("", cause),
+            log_likelihood_ratio: or_nan(report.log_likelihood_ratio),
+            clearance: or_nan(clearance.map(|c| c.mean)),
+            clearance_std: or_nan(clearance.map(|c| c.std)),
+            clearance_is_bound: clearance.is_some_and(|c| c.is_bound),
+            clearance_at_least: or_nan(report.clearance_at_least_m),
+            contact_point: contact.map_or(nowhere, |c| c.point.coords),
+            contact_normal: contact.map_or(nowhere, |c| c.normal_a_to_b),
+            contact_count: report.contacts.len(),
+            warning_count: report.warnings.len(),
+            seconds: seconds(report),
+            error: String::new(),
+        }
     }
+}
 
-    /// A row without an answer, which never reads as free.
-    pub(crate) fn push_error(&mut self, message: &str) {
-        self.probability.push(f64::NAN);
-        self.lower.push(f64::NAN);
-        self.upper.push(f64::NAN);
-        self.verdict.push(name("error"));
-        self.undecided_by.push(name(""));
-        self.log_likelihood_ratio.push(f64::NAN);
-        self.clearance.push(f64::NAN);
-        self.clearance_std.push(f64::NAN);
-        self.clearance_is_bound.push(false);
-        self.clearance_at_least.push(f64::NAN);
-        self.contact_point.push(Vector3::repeat(f64::NAN));
-        self.contact_normal.push(Vector3::repeat(f64::NAN));
-        self.contact_count.push(0);
-        self.warning_count.push(0);
-        self.seconds.push(0.0);
-        self.error.push(message.to_owned());
+impl Row {
+    /// No answer, which never reads as free.
+    pub(crate) fn refused(error: String) -> Self {
+        Self {
+            probability: f64::NAN,
+            lower: f64::NAN,
+            upper: f64::NAN,
+            verdict: "error",
+            undecided_by: "",
+            log_likelihood_ratio: f64::NAN,
+            clearance: f64::NAN,
+            clearance_std: f64::NAN,
+            clearance_is_bound: false,
+            clearance_at_least: f64::NAN,
+            contact_point: Vector3::repeat(f64::NAN),
+            contact_normal: Vector3::repeat(f64::NAN),
+            contact_count: 0,
+            warning_count: 0,
+            seconds: 0.0,
+            error,
+        }
     }
+}
 
-    /// By their names in Python.
-    pub(crate) fn into_dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let columns = PyDict::new(py);
-        columns.set_item("probability", self.probability.into_pyarray(py))?;
-        columns.set_item("lower", self.lower.into_pyarray(py))?;
-        columns.set_item("upper", self.upper.into_pyarray(py))?;
-        columns.set_item("verdict", self.verdict.into_pyarray(py))?;
-        columns.set_item("undecided_by", self.undecided_by.into_pyarray(py))?;
-        columns.set_item("log_likelihood_ratio", self.log_likelihood_ratio.into_pyarray(py))?;
-        columns.set_item("clearance", self.clearance.into_pyarray(py))?;
-        columns.set_item("clearance_std", self.clearance_std.into_pyarray(py))?;
-        columns.set_item("clearance_is_bound", self.clearance_is_bound.into_pyarray(py))?;
-        columns.set_item("clearance_at_least", self.clearance_at_least.into_pyarray(py))?;
-        columns
-            .set_item("contact_point", table(self.contact_point.into_iter()).into_pyarray(py))?;
-        let normals = table(self.contact_normal.into_iter());
-        columns.set_item("contact_normal", normals.into_pyarray(py))?;
-        columns.set_item("contact_count", self.contact_count.into_pyarray(py))?;
-        columns.set_item("warning_count", self.warning_count.into_pyarray(py))?;
-        columns.set_item("seconds", self.seconds.into_pyarray(py))?;
-        columns.set_item("error", self.error)?;
-        Ok(columns)
-    }
+/// The columns by their names in Python.
+pub(crate) fn columns<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    columns.set_item("probability", column(py, rows, |row| row.probability))?;
+    columns.set_item("lower", column(py, rows, |row| row.lower))?;
+    columns.set_item("upper", column(py, rows, |row| row.upper))?;
+    columns.set_item("verdict", column(py, rows, |row| name(row.verdict)))?;
+    columns.set_item("undecided_by", column(py, rows, |row| name(row.undecided_by)))?;
+    let ratios = column(py, rows, |row| row.log_likelihood_ratio);
+    columns.set_item("log_likelihood_ratio", ratios)?;
+    columns.set_item("clearance", column(py, rows, |row| row.clearance))?;
+    columns.set_item("clearance_std", column(py, rows, |row| row.clearance_std))?;
+    columns.set_item("clearance_is_bound", column(py, rows, |row| row.clearance_is_bound))?;
+    columns.set_item("clearance_at_least", column(py, rows, |row| row.clearance_at_least))?;
+    let points = table(rows.iter().map(|row| row.contact_point));
+    columns.set_item("contact_point", points.into_pyarray(py))?;
+    let normals = table(rows.iter().map(|row| row.contact_normal));
+    columns.set_item("contact_normal", normals.into_pyarray(py))?;
+    columns.set_item("contact_count", column(py, rows, |row| row.contact_count as i64))?;
+    columns.set_item("warning_count", column(py, rows, |row| row.warning_count as i64))?;
+    columns.set_item("seconds", column(py, rows, |row| row.seconds))?;
+    let errors: Vec<&str> = rows.iter().map(|row| row.error.as_str()).collect();
+    columns.set_item("error", errors)?;
+    Ok(columns)
+}
+
+fn column<'py, T: Element>(
+    py: Python<'py>,
+    rows: &[Row],
+    of: impl Fn(&Row) -> T,
+) -> Bound<'py, PyArray1<T>> {
+    rows.iter().map(of).collect::<Vec<T>>().into_pyarray(py)
 }
 
 /// The columns of rows that were not asked about, all for one reason.
@@ -111,9 +128,8 @@ pub(crate) fn refused<'py>(
     message: &str,
     count: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let mut columns = Columns::default();
-    (0..count).for_each(|_| columns.push_error(message));
-    columns.into_dict(py)
+    let rows: Vec<Row> = (0..count).map(|_| Row::refused(message.to_owned())).collect();
+    columns(py, &rows)
 }
 
 /// A name in the letters that numpy has, filled up with zeros.

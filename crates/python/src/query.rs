@@ -9,16 +9,17 @@ use nalgebra::Matrix4;
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rayon::prelude::*;
 
 use crate::answer;
 use crate::arrays::{matrices, matrix};
-use crate::batch::Columns;
+use crate::batch::{Row, columns};
 use crate::body::Body;
 use crate::error::{refused, refused_for};
 use crate::pool::on_all_threads;
 use crate::{page, sweep};
 
-/// Between so many poses Python is asked whether Ctrl-C was pressed, and reports make room for others.
+/// Between so many poses Python is asked whether Ctrl-C was pressed.
 const POSES_AT_ONCE: usize = 1024;
 
 /// Settings, checked.
@@ -213,29 +214,30 @@ impl Query {
         if let Some(Err(error)) = poses.iter().find(|pose| pose.is_err() && !keep_going) {
             return Err(error.clone_ref(py));
         }
-        let mut columns = Columns::default();
+        let ask = |pose: &Pose| self.checked.run(&*a, &*b, pose).map(|report| Row::from(&report));
+        let mut rows = Vec::with_capacity(poses.len());
         for (part, poses) in poses.chunks(POSES_AT_ONCE).enumerate() {
             let good: Vec<Pose> = poses.iter().flatten().copied().collect();
-            let mut reports =
-                on_all_threads(py, || self.checked.run_batch(&*a, &*b, &good))?.into_iter();
+            let answers: Vec<_> = on_all_threads(py, || good.par_iter().map(ask).collect())?;
+            let mut answers = answers.into_iter();
             for (index, pose) in poses.iter().enumerate() {
-                let row = part * POSES_AT_ONCE + index;
-                let report = match pose {
+                let row = match pose {
                     Ok(_) => {
-                        let report = reports.next().expect("a report for each good pose");
-                        report.map_err(|e| refused_for(format!("poses[{row}]"), e))
+                        let place = || format!("poses[{}]", part * POSES_AT_ONCE + index);
+                        let answer = answers.next().expect("an answer for each good pose");
+                        answer.map_err(|e| refused_for(place(), e))
                     }
                     Err(error) => Err(error.clone_ref(py)),
                 };
-                match report {
-                    Ok(report) => columns.push(&report),
-                    Err(error) if keep_going => columns.push_error(&error.value(py).to_string()),
+                rows.push(match row {
+                    Ok(row) => row,
+                    Err(error) if keep_going => Row::refused(error.value(py).to_string()),
                     Err(error) => return Err(error),
-                }
+                });
             }
             py.check_signals()?;
         }
-        columns.into_dict(py)
+        columns(py, &rows)
     }
 }
 

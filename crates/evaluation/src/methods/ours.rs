@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use cloudtouch::bvh::TreeSettings;
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     BodyRef, Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query,
@@ -18,11 +17,9 @@ use crate::answers::{Pair, Said};
 /// The query with some settings.
 pub struct Ours {
     name: String,
-    /// Settings of the query; the judge is that fitted without the family asked about, unless all
-    /// evidence is gathered for a new one.
+    /// The judge is that fitted without the family asked about, unless all evidence is gathered for a
+    /// new one.
     pub query: QuerySettings,
-    /// Settings of the trees of clouds.
-    pub tree: TreeSettings,
     /// Whether the surface is computed everywhere beforehand.
     is_refined: bool,
     /// Whether it is given the points without noise and the true normals.
@@ -40,7 +37,6 @@ impl Ours {
         Ok(Self {
             name: name.to_owned(),
             query: QuerySettings::default(),
-            tree: CloudSettings::new(SensorModel::Exact).tree,
             is_refined: false,
             sees_truth: false,
             fitted: Fitted::stored()?,
@@ -84,8 +80,7 @@ impl Ours {
         } else {
             (&observation.cloud, sensor_of(observation))
         };
-        let settings = CloudSettings { tree: self.tree, ..CloudSettings::new(sensor) };
-        let cloud = Cloud::prepare(cloud, &settings)?;
+        let cloud = Cloud::prepare(cloud, &CloudSettings::new(sensor))?;
         if self.is_refined { Ok(cloud.refined()?) } else { Ok(cloud) }
     }
 }

@@ -13,25 +13,24 @@ use parry3d_f64::shape::{Shape, TriMesh, Voxels};
 use super::{Draw, Method, Prepared, cleaned};
 use crate::answers::{Pair, Said};
 
-/// Boxes of this side around the points, m.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Boxes {
-    /// Side of a box, m.
-    pub side: f64,
-}
+/// Boxes of 1 cm around the points.
+pub struct Boxes;
+
+/// Side of a box, m.
+const SIDE: f64 = 0.01;
 
 /// The surfaces that the clouds were drawn from.
 pub struct ExactMeshes(pub [TriangleMesh; 2]);
 
 impl Method for Boxes {
     fn name(&self) -> String {
-        format!("{:.0} cm boxes", 100.0 * self.side)
+        "1 cm boxes".into()
     }
 
     fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let around = |points: &[Point3]| -> Box<dyn Shape> {
             let points: Vec<Vector> = points.iter().map(vector).collect();
-            Box::new(Voxels::from_points(Vector::splat(self.side), &points))
+            Box::new(Voxels::from_points(Vector::splat(SIDE), &points))
         };
         let [a, b] = [draw.a, draw.b].map(cleaned);
         shapes(around(&a?.points), around(&b?.points), draw.mesh)

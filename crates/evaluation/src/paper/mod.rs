@@ -30,8 +30,8 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { poses, points, update_docs } = *arguments;
     let introduction = "The figures of the paper that show what its method does, drawn anew with our \
         scenes. `printed` is the paper's mode at its defaults, `amended` the same with all our \
-        amendments (`PaperSettings::amended`), `default` the product's own path. Figure 5 is in \
-        [growth.md](growth.md), the limit of figure 3 c a test \
+        amendments (`PaperSettings::amended`), `default` the product's own path. Figure 5 is \
+        the approach in [real-scans.md](real-scans.md), the limit of figure 3 c a test \
         (`query/tests/paper_switches.rs`).";
     let command = format!("--poses {poses} --points {points} --update-docs");
     let title = ("paper", "The paper's figures");

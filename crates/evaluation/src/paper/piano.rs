@@ -73,7 +73,10 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
             row.extend([0.5, 0.95].map(|share| format!("{:.2}", quantile(&times, share))));
             table.row(row);
             let (x, y) = (Axis::linear("signed distance (mm)"), Axis::unit("probability"));
-            let series = vec![Series::points("free", free), Series::points("in collision", hit)];
+            let series = vec![
+                Series::points("free", free).named_at(35.0, 0.62),
+                Series::points("in collision", hit).named_at(-55.0, 0.25),
+            ];
             let title = format!("{}, {:.0} mm", method.name(), 1e3 * std);
             panels.push(Panel { title, x, y, series });
         }

@@ -60,15 +60,20 @@ fn panel(title: &str, gap: f64, std: f64) -> Result<Panel> {
     let none = if zeros.is_none() { ": nothing separates" } else { "" };
     let places =
         |cloud: &PointCloud| cloud.points.iter().map(|p| in_mm(p.x, p.z)).collect::<Vec<_>>();
+    let [a, b, f] = if gap > 0.0 {
+        [(20.0, 50.0), (17.0, 28.0), (-92.0, 19.0)]
+    } else {
+        [(30.0, 21.0), (38.0, 0.0), (-45.0, 51.0)]
+    };
     let surface = Series { size: 1, ..Series::points("f = 0", zeros.unwrap_or_default()) };
     Ok(Panel {
         title: format!("{title}{none}"),
         x: Axis::linear("x (mm)"),
         y: Axis::linear("z (mm)"),
         series: vec![
-            Series::points("A", places(&clouds[0])),
-            Series::points("B", places(&clouds[1])),
-            surface,
+            Series::points("A", places(&clouds[0])).named_at(a.0, a.1),
+            Series::points("B", places(&clouds[1])).named_at(b.0, b.1),
+            surface.named_at(f.0, f.1),
         ],
     })
 }

@@ -41,15 +41,14 @@ const INTRODUCTION: &str = "How long queries, preparation and the solver take, b
 libraries on the same scenes in the same run. Times are wall times of single calls on one thread, \
 but for the batch. Methods that are compared take turns, so that a slow minute of the machine slows \
 all of them. No speed without its error: each table of times of methods says what they get wrong on \
-the same poses. Speed against error over the settings is in [settings.md](settings.md), over methods \
-and noises in [accuracy.md](accuracy.md).";
+the same poses. Speed against error over methods and noises is in [accuracy.md](accuracy.md).";
 
 /// Why targets are missed, where they are.
 const MISSED: &str = "Where targets are missed, it is for these reasons. *Exact meshes*: parry3d is \
 told the surfaces and stops at the first triangles that cut; a probability takes every place within 1.5 \
 deviations of the likeliest, though none beyond 3.5 but that one, and samples 10 cm apart stand for \
 discs that reach far. *Far*: no coarse map of distances is kept of a scene, so that every \
-query goes down both trees ([decision 14](../decisions/0014-search-by-deviations.md)). *Deep*: the \
+query goes down both trees ([decision 15](../decisions/0015-fewer-instructions.md)). *Deep*: the \
 search stops at P > .999 only. *Fresh clouds and frames*: the noise model is computed where a query \
 first comes near, which takes more than the query itself; of a frame, preparation alone takes longer \
 than all is to take. *Hard leaf problems*: SMO finishes none within its steps, and of the interior \

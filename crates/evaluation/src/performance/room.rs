@@ -79,7 +79,7 @@ fn ask(scene: &Scene, std: f64) -> Result<Vec<Timed>> {
         &Ours::new("ours, not refined")?,
         &geometry,
         &ExactMeshes(scene.meshes(POINTS)),
-        &Boxes { side: 0.01 },
+        &Boxes,
         &Distance { smoothed: false },
     ];
     take_turns(&methods, &draw, Pair::CloudCloud, &scene.poses)

@@ -13,7 +13,7 @@ use cloudtouch_geom::{Point3, Pose};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
 
 use super::{cases, side_view};
-use crate::report::{Axis, Figure, Findings, Panel, Section, Series, Target};
+use crate::report::{Axis, Figure, Findings, Panel, Place, Section, Series, Target};
 
 /// A fall of the probability by this much along the approach is noise.
 const NOISE_OF_PROBABILITY: f64 = 0.05;
@@ -21,12 +21,8 @@ const NOISE_OF_PROBABILITY: f64 = 0.05;
 const CONTACT_REACH: f64 = 0.015;
 /// Standard deviation that the sensor is said to have, m, and who answers. The first run is checked:
 /// the scan has about that noise. The last is by the paper.
-const RUNS: [(f64, &str); 4] = [
-    (0.005, "calibrated, sensor of 5 mm"),
-    (0.002, "calibrated, sensor of 2 mm"),
-    (0.015, "calibrated, sensor of 15 mm"),
-    (0.005, "paper, sensor of 5 mm"),
-];
+const RUNS: [(f64, &str); 4] =
+    [(0.005, "told 5 mm"), (0.002, "told 2 mm"), (0.015, "told 15 mm"), (0.005, "paper")];
 /// How far past first contact the pictured poses are, mm.
 const PICTURED: [f64; 3] = [-30.0, -2.0, 40.0];
 
@@ -65,8 +61,8 @@ pub(super) fn evaluate(data: &Path) -> Findings {
     let text = format!(
         "A PR2 gripper, known as a mesh, moves along a straight line towards a mug on a table, from \
          {:.0} mm before its first contact with a measured point to {:.0} mm past it. Largest fall \
-         of P below its running maximum: {}. The first run is checked, the scan has about that \
-         noise.",
+         of P below its running maximum, by what the sensor is said to have: {}, told 5 mm. The \
+         first run is checked, the scan has about that noise.",
         -advances[0],
         advances[advances.len() - 1],
         drops.join(", "),
@@ -111,29 +107,33 @@ fn largest_drop(reports: &[Report]) -> f64 {
 
 /// Our mode beside the paper's, and ours told of three sensors.
 fn figure(advances: &[f64], answers: &[Vec<Report>]) -> Figure {
-    let panel = |(title, runs): (&str, &[usize])| {
+    let panel = |(title, runs): (&str, &[(usize, Place)])| {
         let mut series = vec![Series::line("", [(0.0, 0.0), (0.0, 1.0)])];
-        for &run in runs {
+        for &(run, (x, y)) in runs {
             let said = || advances.iter().zip(&answers[run]);
             let bounds = said().map(|(x, r)| (*x, r.bounds[0], r.bounds[1]));
             let p = said().map(|(x, r)| (*x, r.collision_probability));
             let name = RUNS[run].1;
-            series.extend([Series::band(name, bounds), Series::curve(name, p)]);
+            series.extend([Series::band(name, bounds), Series::curve(name, p).named_at(x, y)]);
         }
         let x = Axis::linear("advance past first contact (mm)");
         Panel { title: title.into(), x, y: Axis::unit("collision probability"), series }
     };
-    let panels: [(&str, &[usize]); 2] = [
-        ("the calibrated mode and the paper's", &[0, 3]),
-        ("the calibrated mode, told of three sensors", &[0, 1, 2]),
+    // With where their names fit beside them.
+    let panels: [(&str, &[(usize, Place)]); 2] = [
+        ("calibrated and paper, told of a sensor of 5 mm", &[(0, (6.0, 0.9)), (3, (-44.0, 0.9))]),
+        (
+            "calibrated, told of three sensors",
+            &[(0, (-48.0, 0.7)), (1, (-44.0, 0.6)), (2, (8.0, 0.8))],
+        ),
     ];
     let turns = |run: usize| {
         let mut said = advances.iter().zip(&answers[run]);
         said.find(|(_, r)| r.collision_probability >= 0.5).map_or(f64::NAN, |(x, _)| *x)
     };
     let title = format!(
-        "A gripper on its way to a mug: collision likelier than not from {:+.0} mm past first contact \
-         on, in the paper's mode from {:+.0} mm",
+        "A gripper nears a mug: collision likelier than not from {:+.0} mm past first contact on, for \
+         the paper from {:+.0} mm",
         turns(0),
         turns(3)
     );

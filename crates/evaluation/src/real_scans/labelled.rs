@@ -9,7 +9,7 @@ use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Query, QueryError, QuerySetti
 use cloudtouch_io::{Geometry, LengthUnit, read_geometry};
 
 use super::cases::{self, Labelled};
-use crate::report::table::{bounds, probability};
+use crate::report::table::probability;
 use crate::report::{Findings, Section, Table, Target};
 
 /// The sensor of each scan, by a part of its file name.
@@ -111,7 +111,7 @@ fn each(cases: &[Labelled], answers: &[Answer]) -> Table {
             Err(_) => ["no answer", "-", "-", "-", "-"].map(String::from),
             Ok(report) => [
                 probability(report.collision_probability),
-                bounds(report.bounds),
+                report.bounds.map(probability).join(" .. "),
                 report.verdict.to_string(),
                 report.clearance_m.map_or("-".to_owned(), |c| {
                     format!("{:+.1} ± {:.1}", 1e3 * c.mean, 1e3 * c.std)

@@ -24,8 +24,8 @@ const SQUARE: f64 = 0.4;
 /// Points and contacts at least this likely are marked.
 const LIKELY: f64 = 0.3;
 
-const POINTS: &str = "measured points of the scene";
-const GRIPPER: RGBColor = RGBColor(150, 195, 235);
+const POINTS: &str = "scan";
+const GRIPPER: RGBColor = RGBColor(110, 165, 220);
 const RED: RGBColor = RGBColor(215, 25, 28);
 const BLACK: RGBColor = RGBColor(0, 0, 0);
 
@@ -82,16 +82,14 @@ pub(super) fn figure(
         let x = Axis { range: Some(-SIDEWAYS..SIDEWAYS), ..Axis::linear("sideways (cm)") };
         let y = Axis { range: Some(HEIGHTS), ..Axis::linear("height above the table (cm)") };
         let painted = |series, color| Series { color: Some(color), size: 2, ..series };
+        let gripper = Series::polygons("gripper", outline(&view, object, pose));
         let series = vec![
-            // First in the legend, and drawn as circles.
+            // Circles are the markers of the first.
             painted(Series::points(POINTS, []), GREY),
-            painted(
-                Series::polygons("gripper, known exactly", outline(&view, object, pose)),
-                GRIPPER,
-            ),
-            painted(Series::points(POINTS, other), GREY),
-            painted(Series::points("points in contact or inside", likely), RED),
-            painted(Series::polygons("contact: place and direction", arrow(&view, report)), BLACK),
+            painted(gripper, GRIPPER).named_at(3.5, 28.5),
+            painted(Series::points(POINTS, other), GREY).named_at(-8.5, 1.9),
+            painted(Series::points("in contact", likely), RED).named_at(-9.8, 10.4),
+            painted(Series::polygons("normal", arrow(&view, report)), BLACK).named_at(-5.4, 8.7),
         ];
         let p = report.collision_probability;
         Panel { title: format!("P = {p:.2}: {}", report.verdict), x, y, series }

@@ -52,16 +52,6 @@ pub fn probability(p: f64) -> String {
     if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
 }
 
-/// A number that may be very small or none.
-pub fn small(value: f64) -> String {
-    if value == 0.0 { "0".into() } else { format!("{value:.0e}") }
-}
-
-/// Lower and upper bound of a probability.
-pub fn bounds([low, high]: [f64; 2]) -> String {
-    format!("{} .. {}", probability(low), probability(high))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -77,7 +77,7 @@ fn methods() -> Result<Vec<Asked>> {
         Asked::always(Ours::new(GEOMETRY)?.without_classifier()),
         Asked::always(Distance { smoothed: false }),
         Asked { draw_of: 2, ..smoothed },
-        Asked::always(Boxes { side: 0.01 }),
+        Asked::always(Boxes),
         Asked { pose_of: 7, ..Asked::always(paper) },
     ])
 }

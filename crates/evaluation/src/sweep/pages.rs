@@ -69,7 +69,7 @@ classifier, `paper` \
 the method as printed. Alternatives: the least distance of the points, as measured or after our own \
 surface fit, in units of noise and spacing; 1 cm boxes around the points (yes or no). They rank poses and \
 state no probability. `paper` answers every seventh pose, the smoothed distance every second draw.
-Noise by noise, with the best alternative, is in [accuracy.md](../accuracy.md).
+Noise by noise, with the best alternative, and stated against observed: [accuracy.md](../accuracy.md).
 
 `a [b, c]` is a value with its 95 % interval: draws are resampled within each family, then the \
 poses of a draw, with all conditions of a pose together. False stops: the share of free poses that \
@@ -98,11 +98,6 @@ pub(super) fn in_full(root: &Path, arguments: &str, answers: &Answers) -> Page {
         let section = Section::new(&format!("{}: families", capitalised(pair)));
         page.section(section.text(answers.by_family(pair)));
     }
-    page.section(Section::new("Figures").figure(
-        "sweep-reliability",
-        "Stated probability against observed rate",
-        stated::figure(answers),
-    ));
     page
 }
 

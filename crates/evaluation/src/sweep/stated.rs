@@ -34,12 +34,15 @@ pub(super) fn table(answers: &Answers) -> Table {
 pub(super) fn figure(answers: &Answers) -> Figure {
     let panel = |pair: Pair| {
         let mut series = vec![Series::line("", [(0.0, 0.0), (1.0, 1.0)])];
-        let kinds =
-            [("ordinary scenes", Kind::Ordinary), ("adversarial scenes", Kind::Adversarial)];
-        for (name, kind) in kinds {
+        let kinds = [
+            ("ordinary scenes", Kind::Ordinary, [0.36, 0.82]),
+            ("adversarial scenes", Kind::Adversarial, [0.6, 0.38]),
+        ];
+        for (name, kind, [x, y]) in kinds {
             let judged = Judged::pick(answers, &[OURS], is_of(pair, kind));
             let bins = reliability(judged.sample(OURS));
-            series.push(Series::curve(name, bins.iter().map(|b| (b.mean, b.observed))));
+            let curve = Series::curve(name, bins.iter().map(|b| (b.mean, b.observed)));
+            series.push(curve.named_at(x, y));
         }
         let (x, y) = (Axis::unit("stated probability"), Axis::unit("share that collides"));
         Panel { title: pair.name().into(), x, y, series }

@@ -12,29 +12,18 @@ use super::{Axis, Figure, GREY, Panel, Place};
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 const TITLE_HEIGHT: u32 = 34;
-/// Row of the legend, pixels.
-const LEGEND_ROW: u32 = 24;
-const FONT: (&str, u32) = ("sans-serif", 13);
+const FONT: (&str, u32) = ("sans-serif", 16);
 
 /// The colours of Okabe and Ito, without the yellow that white paper swallows.
-const PALETTE: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(230, 159, 0),
-    RGBColor(204, 121, 167),
-    RGBColor(0, 0, 0),
-    RGBColor(86, 180, 233),
-];
+const PALETTE: [RGBColor; 4] =
+    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(230, 159, 0)];
 
-/// How a name looks wherever it stands.
+/// How what has a name looks in every panel.
 struct Look<'a> {
     name: &'a str,
     /// Which marker its points get.
     number: usize,
     color: RGBColor,
-    line: bool,
-    points: bool,
 }
 
 impl Figure {
@@ -44,20 +33,16 @@ impl Figure {
         let columns = self.columns.min(self.panels.len()).max(1);
         let rows = self.panels.len().div_ceil(columns);
         let grid = (columns as u32 * self.panel_size.0, rows as u32 * self.panel_size.1);
-        // About seven pixels a letter.
-        let longest = looks.iter().map(|look| look.name.chars().count()).max().unwrap_or(0);
-        let size = (grid.0 + 7 * longest as u32 + 50, grid.1 + TITLE_HEIGHT);
         let mut svg = String::new();
         {
-            let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+            let area = SVGBackend::with_string(&mut svg, (grid.0, grid.1 + TITLE_HEIGHT))
+                .into_drawing_area();
             area.fill(&WHITE)?;
-            let area = area.titled(&self.title, ("sans-serif", 19))?;
-            let (left, right) = area.split_horizontally(grid.0);
-            for (panel, area) in self.panels.iter().zip(left.split_evenly((rows, columns))) {
+            let area = area.titled(&self.title, ("sans-serif", 20))?;
+            for (panel, area) in self.panels.iter().zip(area.split_evenly((rows, columns))) {
                 draw_panel(&area, panel, &looks)?;
             }
-            draw_legend(&right, &looks)?;
-            right.present()?;
+            area.present()?;
         }
         Ok(svg)
     }
@@ -70,26 +55,23 @@ fn looks(figure: &Figure) -> Vec<Look<'_>> {
     let series = figure.panels.iter().flat_map(|panel| &panel.series);
     for series in series.filter(|series| !series.name.is_empty()) {
         let (name, number) = (series.name.as_str(), looks.len());
-        let at = looks.iter().position(|look| look.name == name).unwrap_or_else(|| {
+        if looks.iter().all(|look| look.name != name) {
             let color = series.color.unwrap_or(PALETTE[number % PALETTE.len()]);
-            looks.push(Look { name, number, color, line: false, points: false });
-            number
-        });
-        looks[at].points |= series.points;
-        looks[at].line |= series.line || series.fill.is_some();
+            looks.push(Look { name, number, color });
+        }
     }
     looks
 }
 
 fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> {
-    let area = area.titled(&panel.title, ("sans-serif", 15))?;
+    let area = area.titled(&panel.title, ("sans-serif", 17))?;
     let places = || panel.series.iter().flat_map(|series| series.marks.iter().flatten());
     let x = panel.x.reach(places().map(|place| place.0));
     let y = panel.y.reach(places().map(|place| place.1));
     let mut chart = ChartBuilder::on(&area)
         .margin(10)
         .x_label_area_size(40)
-        .y_label_area_size(44)
+        .y_label_area_size(54)
         .build_cartesian_2d(x, y)?;
     chart
         .configure_mesh()
@@ -108,6 +90,11 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         let look = looks.iter().find(|look| look.name == series.name);
         let color = series.color.or(look.map(|look| look.color)).unwrap_or(GREY);
         let number = look.map_or(0, |look| look.number);
+        let has_marks = series.marks.iter().any(|mark| !mark.is_empty());
+        if let Some(place) = series.name_at.filter(|_| has_marks) {
+            let style = FONT.into_font().color(&color);
+            chart.draw_series([Text::new(series.name.clone(), place, style)])?;
+        }
         for mark in &series.marks {
             let is_finite = |place: &Place| place.0.is_finite() && place.1.is_finite();
             let places: Vec<Place> = mark.iter().copied().filter(is_finite).collect();
@@ -145,23 +132,6 @@ where
         1 => TriangleMarker::new(at, size + 1, style).into_dyn(),
         _ => Cross::new(at, size, style.stroke_width(2)).into_dyn(),
     }
-}
-
-/// Names beside the look of their series, from the top of the area.
-fn draw_legend(area: &Area<'_>, looks: &[Look<'_>]) -> Result<()> {
-    for (row, look) in looks.iter().enumerate() {
-        let y = (LEGEND_ROW * row as u32 + 20) as i32;
-        if look.line {
-            let line = vec![(6, y), (26, y)];
-            area.draw(&PathElement::new(line, look.color.stroke_width(3)))?;
-        }
-        if look.points {
-            area.draw(&marker(look.number, (16, y), 5, look.color.filled()))?;
-        }
-        let text = Text::new(look.name.to_owned(), (34, y - 7), FONT.into_font());
-        area.draw(&text)?;
-    }
-    Ok(())
 }
 
 impl Axis {
@@ -202,19 +172,20 @@ mod tests {
     }
 
     #[test]
-    fn one_name_is_one_row_of_the_legend_and_neighbours_differ() {
+    fn names_stand_where_they_are_wanted_and_neighbours_differ() {
         let of = |name: &str| Series::points(name, [(1.0, 2.0)]);
         let panel = |series| {
             let (x, y) = (Axis::linear("x"), Axis::linear("y"));
             Panel { title: String::new(), x, y, series }
         };
-        let whiskers = Series::whiskers("a", [(1.0, 1.0, 3.0)]);
-        let panels = [panel(vec![of("a"), whiskers, of("")]), panel(vec![of("b"), of("a")])];
+        let band = Series::band("a", [(1.0, 1.0, 3.0), (2.0, 1.0, 3.0)]);
+        let panels =
+            [panel(vec![of("a").named_at(1.0, 2.5), band, of("")]), panel(vec![of("b"), of("a")])];
         let figure = Figure::new("Two", panels);
         let looks = looks(&figure);
         assert_eq!(looks.iter().map(|look| look.name).collect::<Vec<_>>(), ["a", "b"]);
-        assert!(looks[0].color != looks[1].color && looks[0].line && !looks[1].line);
+        assert!(looks[0].color != looks[1].color);
         let svg = figure.svg().unwrap();
-        assert_eq!([">\na\n<", ">\nb\n<"].map(|name| svg.matches(name).count()), [1, 1]);
+        assert_eq!([">\na\n<", ">\nb\n<"].map(|name| svg.matches(name).count()), [1, 0]);
     }
 }

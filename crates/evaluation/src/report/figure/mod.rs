@@ -1,7 +1,7 @@
 //! One kind of figure for every report: panels with axes, and series of marks as plain data.
 //!
-//! Series of one name look alike in all panels of a figure and share a row of its legend; those
-//! without a name are grey and left out of it.
+//! Series of one name look alike in all panels of a figure, and their name stands beside them where
+//! it is wanted; those without a name are grey.
 
 mod draw;
 
@@ -15,7 +15,7 @@ pub type Place = (f64, f64);
 /// The grey of what has no name.
 pub const GREY: RGBColor = RGBColor(120, 120, 120);
 
-/// Panels in a grid under one title, with one legend at their right.
+/// Panels in a grid under one title.
 #[derive(Debug, Clone)]
 pub struct Figure {
     pub(crate) title: String,
@@ -64,6 +64,8 @@ pub struct Series {
     pub color: Option<RGBColor>,
     /// Half the width of markers, pixels.
     pub size: u32,
+    /// Where the name begins, if there are marks.
+    pub(crate) name_at: Option<Place>,
 }
 
 impl Figure {
@@ -90,7 +92,21 @@ impl Series {
     /// Marks that nothing shows yet.
     fn new(name: &str, marks: impl IntoIterator<Item = Vec<Place>>) -> Self {
         let (name, marks) = (name.to_owned(), marks.into_iter().collect());
-        Self { name, line: false, points: false, fill: None, marks, color: None, size: 4 }
+        Self {
+            name,
+            line: false,
+            points: false,
+            fill: None,
+            marks,
+            color: None,
+            size: 4,
+            name_at: None,
+        }
+    }
+
+    /// The same with its name written from this place on, in the units of the axes.
+    pub fn named_at(self, x: f64, y: f64) -> Self {
+        Self { name_at: Some((x, y)), ..self }
     }
 
     /// A line through the places in order.
@@ -106,12 +122,6 @@ impl Series {
     /// A line through the places in order with a marker at each.
     pub fn curve(name: &str, places: impl IntoIterator<Item = Place>) -> Self {
         Self { points: true, ..Self::line(name, places) }
-    }
-
-    /// Upright bars of error: x, and y from and to.
-    pub fn whiskers(name: &str, spans: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
-        let ends = spans.into_iter().map(|(x, low, high)| vec![(x, low), (x, high)]);
-        Self { line: true, ..Self::new(name, ends) }
     }
 
     /// The area between two curves, to see through: x, and y from and to.
