@@ -154,38 +154,45 @@ pub(super) fn uses(all: &Modules) -> BTreeMap<&str, BTreeSet<&str>> {
         };
         let imported = module.imports.iter().filter(wanted).map(|import| &import.path);
         for path in imported.chain(&module.mentions) {
-            of_file.extend(owner(all, name, path, 0).filter(|file| *file != module.file));
+            of_file.extend(owner(all, name, path, 0, true).filter(|file| *file != module.file));
         }
     }
     edges
 }
 
 /// The file of the module that defines what a path in module `at` leads to; `None` for a module
-/// as a whole and for what is not of this crate.
-fn owner<'a>(all: &'a Modules, at: &[String], path: &[String], depth: usize) -> Option<&'a str> {
+/// as a whole and for what is not of this crate. What a `use` names does not come `by_glob` of the same
+/// module: else two globs of other crates would lead to one another, time and again.
+fn owner<'a>(
+    all: &'a Modules,
+    at: &[String],
+    path: &[String],
+    depth: usize,
+    by_glob: bool,
+) -> Option<&'a str> {
     /// Names that are re-exported more often than this go round in circles.
     const DEPTH: usize = 20;
     let (first, rest) = path.split_first().filter(|_| depth < DEPTH)?;
     let module = all.get(at)?;
     let child = [at, std::slice::from_ref(first)].concat();
     match first.as_str() {
-        "crate" => return owner(all, &[], rest, depth + 1),
-        "self" => return owner(all, at, rest, depth + 1),
-        "super" => return owner(all, &at[..at.len().checked_sub(1)?], rest, depth + 1),
+        "crate" => return owner(all, &[], rest, depth + 1, true),
+        "self" => return owner(all, at, rest, depth + 1, true),
+        "super" => return owner(all, &at[..at.len().checked_sub(1)?], rest, depth + 1, true),
         "*" => return (!module.items.is_empty()).then_some(&module.file),
         _ if !rest.is_empty() && all.contains_key(&child) => {
-            return owner(all, &child, rest, depth + 1);
+            return owner(all, &child, rest, depth + 1, true);
         }
         _ if module.items.contains(first) => return Some(&module.file),
         _ => {}
     }
     module.imports.iter().find_map(|import| {
         let onwards = match import.name.as_str() {
-            "*" => [&import.path[..import.path.len() - 1], path].concat(),
+            "*" if by_glob => [&import.path[..import.path.len() - 1], path].concat(),
             name if name == first => [&import.path[..], rest].concat(),
             _ => return None,
         };
         // A path that leads to itself, as `use serde` in a module, is of another crate.
-        (onwards != path).then(|| owner(all, at, &onwards, depth + 1)).flatten()
+        (onwards != path).then(|| owner(all, at, &onwards, depth + 1, false)).flatten()
     })
 }

@@ -16,9 +16,9 @@ use crate::scene::Bodies;
 
 /// What the log odds of a collision are to be below: P < .01.
 const LOG_ODDS: f64 = -4.6;
-/// What the clearance is to be above where it is told, m. Deep in a collision, where log odds stand still,
-/// it says where to.
-const CLEARANCE: f64 = 0.01;
+/// What the clearance is to be above where it is told, m: enough for what lies between the poses, which are
+/// all that is asked. Deep in a collision, where log odds stand still, it says where to.
+const CLEARANCE: f64 = 0.02;
 /// What counts as much as one in the log odds: of clearance, of the path's bend at a pose, and of moving it in
 /// one round, m.
 const SCALES: [f64; 3] = [0.002, 0.004, 0.008];
