@@ -44,8 +44,9 @@ pub struct ContactEvidence {
     /// most, s being the sum of standard deviations of the crossings there, up to 6 each.
     pub crossing: f64,
     /// ΣP (eq. 16): how many points of a contact patch are expected on the wrong side of the
-    /// surface that separates it best, largest over the patches; `None` where geometry leaves no
-    /// doubt and no classifier was trained.
+    /// surface that separates it best, largest over the patches, and no fewer than a point is surely
+    /// inside a closed mesh (2Φ(depth in deviations) − 1); `None` where geometry leaves no doubt and no
+    /// classifier was trained.
     pub misclassified: Option<f64>,
 }
 
