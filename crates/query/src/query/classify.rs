@@ -30,7 +30,7 @@ pub(super) struct Misclassified {
     /// Whether a patch was left to geometry: the noise is as large as it.
     is_indistinct: bool,
     /// What has that value.
-    told_by: MisclassifiedBy,
+    pub told_by: MisclassifiedBy,
 }
 
 /// Who tells how many points are misclassified.
@@ -96,11 +96,6 @@ impl Misclassified {
             }
             _ => self,
         }
-    }
-
-    /// What tells how many are misclassified.
-    pub(super) fn told_by(&self) -> MisclassifiedBy {
-        self.told_by
     }
 
     /// The log odds with what is known; where a patch was left to geometry, at least those of it.

@@ -126,7 +126,7 @@ impl Weighed<'_> {
         let [by_geometry, by_count] = self.misclassified.slopes(judge, self.by_geometry);
         let mut all = of_geometry * by_geometry;
         if by_count != 0.0 {
-            let of_count = match self.misclassified.told_by() {
+            let of_count = match self.misclassified.told_by {
                 MisclassifiedBy::Nothing => Wrench::zeros(),
                 MisclassifiedBy::Inside => self.looked.surely_inside_by_pose(mesh_is_a),
                 MisclassifiedBy::Patch(patch) => {
