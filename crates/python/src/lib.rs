@@ -1,6 +1,8 @@
 //! What the Python package `cloudtouch` is built on. Nobody imports this by itself: checks of arrays,
 //! names and documentation are in `python/cloudtouch`, which calls in here with arrays of numbers.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod answer;
 mod arrays;
 mod batch;

@@ -47,7 +47,6 @@ pub(super) fn measure(scene: &Scene) -> Findings {
         queries.push(ours);
         let [tree, all] = rates.map(million);
         table.row([points.to_string(), time(ours), time(meshes), tree, all, format!("{held:.0}")]);
-        eprintln!("bench-report: {points} points done");
     }
     let section = Section::new("Larger scenes").text(format_args!(
         "The room in more and more points, the piano in {POINTS}, {} mm of noise, {POSES} poses, \
