@@ -51,7 +51,7 @@ def costs():
     """On one thread, for times of queries to add up to the time of a batch."""
     a, b = bodies()
     query = ct.Query()
-    for name, low, high, count in [("10 to 30 cm off", 0.1, 0.3, 20_000), ("-1 to 3 cm off", -0.01, 0.03, 500)]:
+    for name, low, high, count in [("10 to 30 cm off", 0.1, 0.3, 20_000), ("-1 to 3 cm off", -0.01, 0.03, 3_000)]:
         many = poses(count, low, high)
         query.run_batch(a, b, many)
         calls = np.array([call(query, a, b, pose) for pose in many[:2000]])
