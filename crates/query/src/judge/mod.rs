@@ -45,8 +45,8 @@ pub struct ContactEvidence {
     pub crossing: f64,
     /// ΣP (eq. 16): how many points of a contact patch are expected on the wrong side of the
     /// surface that separates it best, largest over the patches, and no fewer than a point is surely
-    /// inside a closed mesh (2Φ(depth in deviations) − 1); `None` where geometry leaves no doubt and no
-    /// classifier was trained.
+    /// inside a closed mesh (2Φ(depth in deviations) − 1); `None` where geometry leaves no doubt, or the
+    /// noise is as large as the spacing of the points, and no classifier was trained.
     pub misclassified: Option<f64>,
 }
 
@@ -115,9 +115,16 @@ impl Judge {
     }
 
     /// The same without the classifier: it is never asked.
-    pub fn without_classifier(mut self) -> Self {
+    pub fn without_classifier(self) -> Self {
+        self.trusting(0.0)
+    }
+
+    /// The same with this share, from 0 to 1, of what the classifier revises.
+    pub(crate) fn trusting(mut self, share: f64) -> Self {
         for (row, knot) in self.revised.iter_mut().zip(DOUBT_KNOTS) {
-            row.fill(knot);
+            for value in row {
+                *value = share * *value + (1.0 - share) * knot;
+            }
         }
         self
     }

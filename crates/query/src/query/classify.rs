@@ -150,7 +150,7 @@ pub(super) fn ask_classifier(
         };
         all = all.or_more(of_patch);
         let [.., most] = DOUBT_KNOTS;
-        if all.log_odds(&task.settings.judge, by_geometry) >= most {
+        if all.log_odds(&task.judge, by_geometry) >= most {
             // No doubt is left, and further patches could only say more of the same.
             break;
         }

@@ -40,7 +40,7 @@ impl Weighed<'_> {
 
     /// The log odds of a collision.
     pub(super) fn log_odds(&self, task: &Task<'_>) -> f64 {
-        self.misclassified.log_odds(&task.settings.judge, self.by_geometry)
+        self.misclassified.log_odds(&task.judge, self.by_geometry)
     }
 
     /// The estimate; with places, and points to `evidence`, where spots are given.
@@ -53,12 +53,14 @@ impl Weighed<'_> {
         let Self { found, by_geometry, misclassified, .. } = self;
         let settings = task.settings;
         let of = |log_odds| probability(log_odds, settings.prior);
-        let revised = |count| of(settings.judge.revise(*by_geometry, count));
+        let revised = |count| of(task.judge.revise(*by_geometry, count));
         let [low, high] = misclassified.bounds.map(revised);
         let log_odds = self.log_odds(task);
-        // More evidence only raises the odds; what was not looked at may be any.
-        let bounds = [low, if self.is_complete { high } else { 1.0 }];
         let probability = of(log_odds);
+        // More evidence only raises the odds; what was not looked at may be any. Where the classifier can
+        // change nothing, both bounds are the probability but for the rounding of the judge.
+        let high = if self.is_complete { high.max(probability) } else { 1.0 };
+        let bounds = [low.min(probability), high];
         let at_least = Some(found.at_least).filter(|least| least.is_finite());
         let places = match spots {
             None => Places { at_least, ..Places::default() },

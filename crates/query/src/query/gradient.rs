@@ -85,7 +85,7 @@ impl Query {
                     });
                     return exact((a, b), local, evidence);
                 }
-                let task = query.task(start);
+                let task = query.task(start, (a, b));
                 let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;
                 let spots = weighed.spots((a, b));
                 let estimate = weighed.estimate(Some(&spots), &task, evidence);
@@ -111,7 +111,7 @@ impl Weighed<'_> {
         task: &Task<'_>,
         stats: &mut Stats,
     ) -> Result<Wrench, QueryError> {
-        let judge = &task.settings.judge;
+        let judge = &task.judge;
         let (deviations, crossing) = (self.of_geometry.deviations, self.of_geometry.crossing);
         let mesh_is_a = matches!(a, BodyRef::Mesh(_));
         let of_deviations = self.looked.deviations_by_pose(

@@ -16,6 +16,7 @@ mod run;
 mod settings;
 mod spots;
 mod task;
+mod trust;
 mod uncertain;
 mod weigh;
 mod within;

@@ -14,6 +14,7 @@ use crate::report::Report;
 use super::estimate::estimate;
 use super::settings::{Detail, QuerySettings};
 use super::task::Task;
+use super::trust::judge_of;
 
 /// A checked set of settings that answers queries; cheap to copy, shared by threads.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,9 +71,10 @@ impl Query {
         }
     }
 
-    pub(super) fn task(&self, start: Instant) -> Task<'_> {
-        let classifier = self.settings.classifier();
-        Task { settings: &self.settings, classifier, clock: self.clock(start) }
+    pub(super) fn task(&self, start: Instant, bodies: (BodyRef<'_>, BodyRef<'_>)) -> Task<'_> {
+        let (settings, classifier) = (&self.settings, self.settings.classifier());
+        let judge = judge_of(&settings.judge, bodies);
+        Task { settings, judge, classifier, clock: self.clock(start) }
     }
 
     /// How likely it is that the surfaces behind two bodies collide.
@@ -117,7 +119,7 @@ impl Query {
         a_from_b: &Pose,
     ) -> Result<Report, QueryError> {
         terms.ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
-            estimate((a, b), local, &self.task(start), evidence)
+            estimate((a, b), local, &self.task(start, (a, b)), evidence)
         })
     }
 }

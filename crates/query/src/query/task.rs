@@ -2,6 +2,8 @@
 
 use crate::classifier::{ClassifierSettings, Clock};
 
+use crate::judge::Judge;
+
 use super::settings::QuerySettings;
 
 /// What every part of one query goes by.
@@ -9,6 +11,8 @@ use super::settings::QuerySettings;
 pub(super) struct Task<'a> {
     /// Checked.
     pub settings: &'a QuerySettings,
+    /// That of the settings, as far as it believes the classifier of these bodies.
+    pub judge: Judge,
     pub classifier: ClassifierSettings,
     pub clock: Clock,
 }

@@ -35,7 +35,7 @@ pub(super) fn weigh<'a>(
     task: &Task<'_>,
     stats: &mut Stats,
 ) -> Result<Weighed<'a>, QueryError> {
-    let (settings, judge) = (task.settings, &task.settings.judge);
+    let (settings, judge) = (task.settings, &task.judge);
     let looked = look_inside((a, b), a_from_b, &task.clock);
     stats.nodes_visited += looked.nodes_visited;
     stats.leaves_prepared += looked.leaves_prepared;
