@@ -1,6 +1,6 @@
 //! The neighbours of a point.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use cloudtouch_geom::Point3;
 
@@ -55,6 +55,11 @@ impl Neighborhoods {
     /// The points it was built from, in the order given.
     pub fn points(&self) -> &[Point3] {
         self.positions.points()
+    }
+
+    /// The same, for who keeps them longer without a copy.
+    pub fn shared_points(&self) -> Arc<Vec<Point3>> {
+        self.positions.points().clone()
     }
 
     /// How many different finite positions there are.
