@@ -11,8 +11,9 @@ use crate::positions::{Neighbor, Positions, in_order};
 /// A block is made so wide that on a surface it holds about so many positions: enough for the
 /// neighbours of many places.
 const HELD: f64 = 190.0;
-/// Its radius in distances of the last neighbour asked for, at least and at most.
-const REACH: [f64; 2] = [1.5, 4.5];
+/// Its radius in distances of the last neighbour asked for, at least and at most. Where the noise exceeds
+/// the spacing it holds as many as the cube of that, and not the square.
+const REACH: [f64; 2] = [1.5, 2.5];
 /// The neighbours of the next point are looked for up to so many distances of the last neighbour of
 /// the one before.
 const SEARCHED: f64 = 1.12;
@@ -152,6 +153,8 @@ impl Kernel for Select<'_> {
 
 /// Buckets that neighbours are sorted by.
 const BUCKETS: usize = 64;
+/// So few are put in order without buckets.
+const MOST_INSERTED: usize = 20;
 /// More are sorted by comparison.
 const MOST_BUCKETED: usize = 4 * BUCKETS;
 
@@ -191,6 +194,10 @@ impl Sorted {
         let hits = &self.hits[..self.count];
         sorted.clear();
         sorted.extend_from_slice(hits);
+        if hits.len() <= MOST_INSERTED {
+            insert_in_order(sorted);
+            return;
+        }
         let scale = BUCKETS as f64 / most;
         if hits.len() > MOST_BUCKETED || !scale.is_finite() {
             sorted.sort_unstable_by(in_order);
@@ -209,15 +216,20 @@ impl Sorted {
             sorted[usize::from(*start)] = *hit;
             *start += 1;
         }
-        for at in 1..sorted.len() {
-            let hit = sorted[at];
-            let mut to = at;
-            while to > 0 && is_before(&hit, &sorted[to - 1]) {
-                sorted[to] = sorted[to - 1];
-                to -= 1;
-            }
-            sorted[to] = hit;
+        insert_in_order(sorted);
+    }
+}
+
+/// Puts neighbours in order that are nearly so, or few.
+fn insert_in_order(sorted: &mut [Neighbor]) {
+    for at in 1..sorted.len() {
+        let hit = sorted[at];
+        let mut to = at;
+        while to > 0 && is_before(&hit, &sorted[to - 1]) {
+            sorted[to] = sorted[to - 1];
+            to -= 1;
         }
+        sorted[to] = hit;
     }
 }
 
