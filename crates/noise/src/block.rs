@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::{Point3, bounding_box};
 
 use crate::finite::is_finite;
 use crate::lanes::{Kernel, Lanes, Machine, Stored, WIDTH, run};
@@ -17,6 +17,10 @@ const REACH: [f64; 2] = [1.5, 2.5];
 /// The neighbours of the next point are looked for up to so many distances of the last neighbour of
 /// the one before.
 const SEARCHED: f64 = 1.12;
+/// Places are served together up to so many distances of the last neighbour from their middle, by what
+/// is so many farther.
+const GATHERED: f64 = 2.0;
+const SPARE: f64 = 1.4;
 /// A block made by the reach of the last place has at most so many positions, else the reach is
 /// measured.
 const MOST_HELD: usize = 600;
@@ -80,6 +84,18 @@ impl Block {
         }
         found.truncate(k);
         self.reach = found.last().map_or(0.0, |last| last.squared_distance.sqrt());
+    }
+
+    /// Makes ready for the neighbours of some places near one another, as many of each as were asked for
+    /// last, where these are not much farther apart than that reaches.
+    pub(crate) fn gather(&mut self, cloud: &Positions, places: &[Point3]) {
+        let is_same = self.cloud.as_ref().is_some_and(|id| Arc::ptr_eq(id, cloud.id()));
+        let Some((low, high)) = bounding_box(places).filter(|_| is_same) else { return };
+        let centre = low + 0.5 * (high - low);
+        let apart = places.iter().map(|place| (place - centre).norm()).fold(0.0, f64::max);
+        if apart <= GATHERED * self.reach {
+            self.fill(cloud, &centre, apart + SPARE * self.reach);
+        }
     }
 
     /// Holds what is within a distance of a place from now on, which may be nothing.

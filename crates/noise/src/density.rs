@@ -1,9 +1,12 @@
 //! How dense the samples of a cloud are about each of them.
 
+use cloudtouch_geom::Point3;
+use rayon::prelude::*;
+
 use crate::block::Block;
 use crate::positions::{Neighbor, Positions};
 use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
-use crate::spatial_order::{in_spatial_order, spatial_order};
+use crate::spatial_order::spatial_order;
 
 /// How dense the samples are about a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,19 +32,39 @@ impl Density {
 
     /// About every point, on all threads of the pool.
     pub(crate) fn everywhere(cloud: &Positions) -> Vec<Self> {
-        in_spatial_order(cloud.points(), |index, buffers| Self::around(cloud, index, buffers))
+        let order = spatial_order(cloud.points());
+        let groups = order.par_chunks(GROUP);
+        let of_groups: Vec<Vec<Self>> =
+            groups.map_init(Buffers::default, |b, group| Self::of_group(cloud, group, b)).collect();
+        in_place(&order, of_groups.into_iter().flatten())
     }
 
     /// The same on this thread.
     pub(crate) fn everywhere_on_this_thread(cloud: &Positions) -> Vec<Self> {
-        let mut buffers = Buffers::default();
-        let nowhere = Self { spacing: f64::INFINITY, squares: 0.0 };
-        let mut densities = vec![nowhere; cloud.points().len()];
-        for index in spatial_order(cloud.points()) {
-            densities[index as usize] = Self::around(cloud, index as usize, &mut buffers);
-        }
-        densities
+        let (order, mut buffers) = (spatial_order(cloud.points()), Buffers::default());
+        let groups = order.chunks(GROUP);
+        in_place(&order, groups.flat_map(|group| Self::of_group(cloud, group, &mut buffers)))
     }
+
+    /// About points near one another.
+    fn of_group(cloud: &Positions, group: &[u32], buffers: &mut Buffers) -> Vec<Self> {
+        let places: Vec<Point3> = group.iter().map(|&i| cloud.points()[i as usize]).collect();
+        buffers.0.gather(cloud, &places);
+        group.iter().map(|&index| Self::around(cloud, index as usize, buffers)).collect()
+    }
+}
+
+/// How many points are served together.
+const GROUP: usize = 8;
+
+/// What comes in an order of indices, by index.
+fn in_place(order: &[u32], ordered: impl Iterator<Item = Density>) -> Vec<Density> {
+    let nowhere = Density { spacing: f64::INFINITY, squares: 0.0 };
+    let mut densities = vec![nowhere; order.len()];
+    for (&index, density) in order.iter().zip(ordered) {
+        densities[index as usize] = density;
+    }
+    densities
 }
 
 /// What the neighbours of points near one another are found with.
@@ -58,7 +81,7 @@ pub(crate) fn densest_first(densities: &[Density]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{Point3, seed};
+    use cloudtouch_geom::seed;
 
     use super::*;
 

@@ -99,7 +99,7 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
         if is_noisy(noise, spacing) {
             let std = noise.max_std();
             let reach = std.min((REACH_SPACINGS * spacing).max(REACH_STD * std));
-            for near in cloud.positions().within(at, reach * reach) {
+            for near in cloud.positions().hits_within(&cloud.points()[at], reach * reach) {
                 let noise = sensor[near.index].max_std();
                 is_represented[near.index] |= near.squared_distance <= noise * noise;
             }
