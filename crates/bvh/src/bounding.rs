@@ -3,6 +3,7 @@
 use cloudtouch_geom::{Covariance, Matrix3, Vector3};
 
 use crate::bounds::{SpreadBounds, along};
+use crate::bounds_list::BoundsList;
 use crate::{LeafBounds, Node, Tree, TreeError};
 
 impl Tree {
@@ -18,21 +19,26 @@ impl Tree {
     /// then unchanged.
     pub fn set_leaf_bounds(
         &mut self,
-        mut bounds_of: impl FnMut(Node<'_>) -> LeafBounds,
+        bounds_of: impl FnMut(Node<'_>) -> LeafBounds,
     ) -> Result<(), TreeError> {
-        let mut refined = self.refined.clone();
-        refined.resize(self.primitives.len(), None);
-        for leaf in self.leaves() {
-            let bounds = bounds_of(leaf);
-            bounds.check(leaf.id().index())?;
-            for &index in leaf.primitive_indices() {
-                refined[index as usize] = Some(bounds);
-            }
-        }
-        self.refined = refined;
+        self.refined = self.listed(bounds_of)?;
         self.extents.clear();
         self.update_bounds(self.root);
         Ok(())
+    }
+
+    /// What is said of every leaf, by the primitives of the leaves.
+    pub(crate) fn listed(
+        &self,
+        mut bounds_of: impl FnMut(Node<'_>) -> LeafBounds,
+    ) -> Result<BoundsList, TreeError> {
+        let mut listed = BoundsList::default();
+        for leaf in self.leaves() {
+            let bounds = bounds_of(leaf);
+            bounds.check(leaf.id().index())?;
+            listed.set(leaf.primitive_indices(), bounds, self.primitives.len());
+        }
+        Ok(listed)
     }
 
     /// Sets, by index, how far the surface that a primitive stands for reaches from its mean, and
@@ -52,17 +58,16 @@ impl Tree {
             return Err(TreeError::Count { expected, found });
         }
         self.extents = extents;
-        self.refined = Vec::new();
+        self.refined = BoundsList::default();
         self.update_bounds(self.root);
         Ok(())
     }
 
     /// The bounds of one primitive seen along `axes`.
     pub(crate) fn bounds_of_primitive(&self, index: u32, axes: &Matrix3) -> SpreadBounds {
-        let index = index as usize;
-        let extent = self.extents.get(index);
-        let refined = self.refined.get(index).copied().flatten();
-        SpreadBounds::of(&self.primitives[index], refined, extent, axes)
+        let extent = self.extents.get(index as usize);
+        let covariance = self.primitives.covariance(index);
+        SpreadBounds::of(covariance, self.refined.get(index), extent, axes)
     }
 
     /// Recomputes the bounds of everything below `from` and of itself, children before parents.
@@ -79,15 +84,22 @@ impl Tree {
     pub(crate) fn bounds_of(&self, id: u32) -> SpreadBounds {
         let node = &self.nodes[id as usize];
         let axes = &node.obb.axes;
-        let largest = |all: SpreadBounds, one: SpreadBounds| all.max(&one);
         let Some(children) = node.children else {
-            return (self.indices_of(id).iter())
-                .map(|&index| self.bounds_of_primitive(index, axes))
-                .fold(SpreadBounds::NONE, largest);
+            let mut bounds = SpreadBounds::NONE;
+            let mut last = None;
+            for &index in self.indices_of(id) {
+                // Those of a leaf were mostly given the same.
+                let refined = self.refined.get(index);
+                if refined.is_none() || refined != last {
+                    bounds = bounds.max(&self.bounds_of_primitive(index, axes));
+                }
+                last = refined;
+            }
+            return bounds;
         };
         let from_children = (children.map(|child| &self.nodes[child as usize]).iter())
             .map(|child| child.bounds.turned(&child.obb.axes, axes))
-            .fold(SpreadBounds::NONE, largest);
+            .fold(SpreadBounds::NONE, |all, one| all.max(&one));
         if self.extents.is_empty() {
             return from_children;
         }
@@ -97,11 +109,10 @@ impl Tree {
             ..from_children
         };
         for &index in self.indices_of(id) {
-            let index = index as usize;
-            if let Some(extent) = self.extents.get(index) {
+            if let Some(extent) = self.extents.get(index as usize) {
                 tight.axis_reach = tight.axis_reach.sup(&along(extent, axes));
             }
-            if let Some(covariance) = self.primitives[index].covariance() {
+            if let Some(covariance) = self.primitives.covariance(index) {
                 tight.axis_std = tight.axis_std.sup(&along(covariance, axes));
             }
         }

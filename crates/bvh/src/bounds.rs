@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Covariance, Matrix3, Vector3};
 
-use crate::{Primitive, TreeError};
+use crate::TreeError;
 
 /// What a later refinement may do to the points of a leaf.
 ///
@@ -57,10 +57,10 @@ impl SpreadBounds {
         axis_reach: Vector3::new(0.0, 0.0, 0.0),
     };
 
-    /// The bounds of one primitive seen along `axes`: those given for its refinement, else its
-    /// own covariance and the extent given.
+    /// The bounds of one primitive of this covariance (`None` for a triangle) seen along `axes`: those
+    /// given for its refinement, else the covariance and the extent given.
     pub(crate) fn of(
-        primitive: &Primitive,
+        covariance: Option<&Covariance>,
         refined: Option<LeafBounds>,
         extent: Option<&Covariance>,
         axes: &Matrix3,
@@ -69,7 +69,7 @@ impl SpreadBounds {
         if let Some(LeafBounds { std, shift, reach }) = refined {
             return Self { shift, ..own.with_std(std).with_reach(reach) };
         }
-        let own = match primitive.covariance() {
+        let own = match covariance {
             None => own,
             Some(covariance) => match covariance.isotropic_variance() {
                 Some(variance) => own.with_std(variance.sqrt()),

@@ -6,9 +6,10 @@ use std::sync::OnceLock;
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
 use crate::bounds::SpreadBounds;
+use crate::bounds_list::BoundsList;
 use crate::node::NodeData;
 use crate::parts::Parts;
-use crate::{Moments, Obb, Primitive, Tree, TreeError, TreeSettings};
+use crate::{LeafBounds, Moments, Node, Obb, Primitive, Primitives, Tree, TreeError, TreeSettings};
 
 /// Indices are 32 bit.
 const MAX_PRIMITIVES: usize = u32::MAX as usize - 1;
@@ -26,18 +27,40 @@ impl Tree {
     /// When a setting is out of range, or a coordinate, covariance or weight is not a usable
     /// number.
     pub fn build(primitives: Vec<Primitive>, settings: &TreeSettings) -> Result<Self, TreeError> {
+        let mut tree = Self::partitioned(Primitives::Each(primitives), settings)?;
+        tree.update_bounds(tree.root);
+        Ok(tree)
+    }
+
+    /// [`Self::build`] and [`Self::set_leaf_bounds`] in one: bounds that would be replaced at once are
+    /// never computed. `bounds_of` is given the tree and each of its leaves in turn, in which all is as
+    /// it will be but the bounds.
+    ///
+    /// # Errors
+    /// As either of the two.
+    pub fn build_bounded(
+        primitives: Primitives,
+        settings: &TreeSettings,
+        mut bounds_of: impl FnMut(&Self, Node<'_>) -> LeafBounds,
+    ) -> Result<Self, TreeError> {
+        let mut tree = Self::partitioned(primitives, settings)?;
+        tree.refined = tree.listed(|leaf| bounds_of(&tree, leaf))?;
+        tree.update_bounds(tree.root);
+        Ok(tree)
+    }
+
+    /// All but the bounds.
+    fn partitioned(primitives: Primitives, settings: &TreeSettings) -> Result<Self, TreeError> {
         settings.validate()?;
         if primitives.len() > MAX_PRIMITIVES {
             return Err(TreeError::TooMany { count: primitives.len() });
         }
-        for (index, primitive) in primitives.iter().enumerate() {
-            primitive.check(index)?;
-        }
+        primitives.check()?;
         let count = primitives.len();
         let mut tree = Self {
             settings: *settings,
             primitives,
-            refined: Vec::new(),
+            refined: BoundsList::default(),
             extents: Vec::new(),
             leaf_of: vec![None; count],
             order: (0..count as u32).collect(),
@@ -59,23 +82,30 @@ impl Tree {
         // The order of indices, so that the result is that of a build and not of the history.
         self.order.sort_unstable();
         self.grow();
+        self.update_bounds(self.root);
     }
 
-    /// Makes all nodes for `order`.
+    /// Makes all nodes for `order`, without bounds.
     fn grow(&mut self) {
         self.root = None;
         if !self.order.is_empty() {
             let root = self.new_node(None, 0, self.order.len() as u32);
             self.root = Some(root);
             self.fit_root();
-            self.subdivide(root);
+            self.partition(root);
         }
+        self.nodes.shrink_to_fit();
         self.spread_when_built = self.spread();
     }
 
     /// Splits a fitted leaf, and its halves, as often as the settings ask for; then sets the
     /// bounds of what is below it.
     pub(crate) fn subdivide(&mut self, leaf: u32) {
+        self.partition(leaf);
+        self.update_bounds(Some(leaf));
+    }
+
+    fn partition(&mut self, leaf: u32) {
         let start = self.nodes[leaf as usize].start;
         let mut parts = Parts::of(&self.primitives, self.indices_of(leaf));
         let mut stack = vec![leaf];
@@ -100,7 +130,6 @@ impl Tree {
         for (slot, part) in self.order[start as usize..].iter_mut().zip(&parts.all) {
             *slot = part.index;
         }
-        self.update_bounds(Some(leaf));
     }
 
     pub(crate) fn should_split(&self, id: u32, variation: f64) -> bool {

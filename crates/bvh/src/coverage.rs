@@ -9,13 +9,10 @@ const NEGLIGIBLE: f64 = 9.0;
 
 /// 1 − P_cov = Σ w_i P_out(x_i) / Σ w_i, in \[0, 1\]; the largest P_out when every weight is zero,
 /// 0 when there is no primitive.
-pub(crate) fn fraction_outside<'a>(
-    primitives: impl Iterator<Item = &'a Primitive>,
-    obb: &Obb,
-) -> f64 {
+pub(crate) fn fraction_outside(primitives: impl Iterator<Item = Primitive>, obb: &Obb) -> f64 {
     let (mut outside, mut total, mut worst) = (0.0, 0.0, 0.0_f64);
     for primitive in primitives {
-        let (out, weight) = (probability_outside(primitive, obb), primitive.weight());
+        let (out, weight) = (probability_outside(&primitive, obb), primitive.weight());
         outside += weight * out;
         total += weight;
         worst = worst.max(out);
@@ -118,7 +115,7 @@ mod tests {
 
     #[test]
     fn fraction_weighs_and_survives_zero_weights() {
-        let fraction = |points: &[Primitive]| fraction_outside(points.iter(), &unit_box());
+        let fraction = |points: &[Primitive]| fraction_outside(points.iter().copied(), &unit_box());
         let on_face = |weight| point([1.0, 0.0, 0.0], [1e-6, 0.0, 0.0], weight);
         let in_middle = |weight| point([0.0; 3], [1e-6, 0.0, 0.0], weight);
         assert!((fraction(&[on_face(3.0), in_middle(1.0)]) - 0.375).abs() < 1e-12);

@@ -46,7 +46,7 @@ impl Tree {
 
     /// The corners of each primitive of a node.
     fn corners_of(&self, id: u32) -> impl Iterator<Item = &[Point3]> + Clone {
-        self.indices_of(id).iter().map(|&i| self.primitives[i as usize].corners())
+        self.indices_of(id).iter().map(|&i| self.primitives.corners(i))
     }
 
     pub(crate) fn set_shape(&mut self, id: u32, moments: Moments, obb: Obb) {

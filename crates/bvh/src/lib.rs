@@ -4,6 +4,7 @@
 mod apart;
 mod bounding;
 mod bounds;
+mod bounds_list;
 mod build;
 mod coverage;
 mod error;
@@ -18,6 +19,7 @@ mod obb;
 mod parts;
 mod patch;
 mod primitive;
+mod primitives;
 mod queue;
 mod refit;
 mod remove;
@@ -37,6 +39,7 @@ pub use node::NodeId;
 pub use obb::Obb;
 pub use patch::Patched;
 pub use primitive::Primitive;
+pub use primitives::Primitives;
 pub use settings::{Traversal, TraversalSettings, TreeSettings};
 pub use surfaces::{
     Sought, SurfaceFlow, SurfaceOutcome, SurfacePair, urgency_of_roots, visit_surfaces,

@@ -1,6 +1,7 @@
 //! Oriented boxes: containment, projections, and the ways a box grows.
 
 use cloudtouch_geom::{Matrix3, Motion, Point3, Pose, Vector3};
+use wide::f64x4;
 
 /// An oriented bounding box; extents may be zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,14 +26,25 @@ impl Obb {
         origin: Point3,
         corners: impl Iterator<Item = &'a Point3>,
     ) -> Self {
-        let to_axes = axes.transpose();
-        let mut low = Vector3::repeat(f64::INFINITY);
-        let mut high = Vector3::repeat(f64::NEG_INFINITY);
+        // PERF: all three axes at once.
+        let [x, y, z] = [0, 1, 2].map(|k| {
+            let row = axes.row(k);
+            f64x4::from([row[0], row[1], row[2], 0.0])
+        });
+        let mut low = f64x4::splat(f64::INFINITY);
+        let mut high = f64x4::splat(f64::NEG_INFINITY);
         for corner in corners {
-            let local = to_axes * (corner - origin);
-            low = low.inf(&local);
-            high = high.sup(&local);
+            let offset = corner - origin;
+            let local = x * f64x4::splat(offset.x)
+                + y * f64x4::splat(offset.y)
+                + z * f64x4::splat(offset.z);
+            low = low.fast_min(local);
+            high = high.fast_max(local);
         }
+        let [low, high] = [low, high].map(|lanes| {
+            let [x, y, z, _] = lanes.to_array();
+            Vector3::new(x, y, z)
+        });
         let centre = origin + axes * (0.5 * (low + high));
         Self { centre, axes, half_extents: 0.5 * (high - low) }.with_rounding()
     }

@@ -7,7 +7,8 @@ use std::slice;
 use cloudtouch_geom::{Point3, Vector3};
 
 use crate::fit::fitted;
-use crate::{Moments, Obb, Primitive};
+use crate::primitive::centroid;
+use crate::{Moments, Obb, Primitives};
 
 /// A primitive that finds its place.
 #[derive(Debug, Clone, Copy)]
@@ -22,55 +23,75 @@ pub(crate) struct Parts {
     pub(crate) all: Vec<Part>,
     /// Whether all are points, which their centroids tell all of.
     are_points: bool,
-    /// By place in the range that is halved, with the position along the axis.
-    keys: Vec<(f64, u32, u32)>,
+    /// The positions along the axis of the range that is halved.
+    along: Vec<f64>,
+    /// These in order with the index of the primitive and its place in the range.
+    keys: Vec<u128>,
     sorted: Vec<Part>,
 }
 
 impl Parts {
-    pub(crate) fn of(primitives: &[Primitive], indices: &[u32]) -> Self {
-        let part = |&index: &u32| Part { centroid: primitives[index as usize].centroid(), index };
-        let is_point = |&index: &u32| matches!(primitives[index as usize], Primitive::Point { .. });
+    pub(crate) fn of(primitives: &Primitives, indices: &[u32]) -> Self {
+        let part = |&index: &u32| Part { centroid: centroid(primitives.corners(index)), index };
+        let is_point = |&index: &u32| primitives.is_point(index);
         Self {
             all: indices.iter().map(part).collect(),
             are_points: indices.iter().all(is_point),
+            along: Vec::new(),
             keys: Vec::new(),
             sorted: Vec::new(),
         }
     }
 
     /// Moments and box of a range.
-    pub(crate) fn fitted(&self, primitives: &[Primitive], range: Range<usize>) -> (Moments, Obb) {
+    pub(crate) fn fitted(&self, primitives: &Primitives, range: Range<usize>) -> (Moments, Obb) {
         let parts = &self.all[range];
         if self.are_points {
-            fitted(parts.iter().map(|part| slice::from_ref(&part.centroid)))
+            let moments = Moments::of(parts.iter().map(|part| slice::from_ref(&part.centroid)));
+            let places = parts.iter().map(|part| &part.centroid);
+            (moments, Obb::enclosing(moments.axes(), moments.mean, places))
         } else {
-            fitted(parts.iter().map(|part| primitives[part.index as usize].corners()))
+            fitted(parts.iter().map(|part| primitives.corners(part.index)))
         }
     }
 
     /// Parts a range at its median along an axis: the lower half of it comes first.
     pub(crate) fn halve(&mut self, range: Range<usize>, axis: &Vector3, mean: &Point3) {
-        let Self { all, keys, sorted, .. } = self;
+        let Self { all, along, keys, sorted, .. } = self;
         let parts = &mut all[range];
-        keys.clear();
-        keys.extend(
-            parts
-                .iter()
-                .zip(0..)
-                .map(|(part, place)| (axis.dot(&(part.centroid - mean)), part.index, place)),
-        );
+        along.clear();
+        along.extend(parts.iter().map(|part| axis.dot(&(part.centroid - mean))));
         // The sign of an eigenvector is arbitrary and an odd count halves unevenly; letting the
         // longer tail point up makes the partition independent of the frame.
-        if keys.iter().map(|(key, ..)| key * key * key).sum::<f64>() < 0.0 {
-            for (key, ..) in &mut *keys {
-                *key = -*key;
-            }
-        }
+        let is_turned = along.iter().map(|along| along * along * along).sum::<f64>() < 0.0;
+        keys.clear();
+        keys.extend(along.iter().zip(parts.iter()).zip(0_u32..).map(|((&along, part), place)| {
+            let along = if is_turned { -along } else { along };
+            let tie = u64::from(part.index) << 32 | u64::from(place);
+            u128::from(ordered(along)) << 64 | u128::from(tie)
+        }));
         let half = parts.len() / 2;
-        keys.select_nth_unstable_by(half, |a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+        keys.select_nth_unstable(half);
         sorted.clear();
-        sorted.extend(keys.iter().map(|&(.., place)| parts[place as usize]));
+        sorted.extend(keys.iter().map(|&key| parts[key as u32 as usize]));
         parts.copy_from_slice(sorted);
+    }
+}
+
+/// A whole number that is in the order of [`f64::total_cmp`], by which a machine sorts sooner.
+fn ordered(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if value.is_sign_negative() { !bits } else { bits | 1 << 63 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_are_in_the_order_of_what_they_stand_for() {
+        let mut values = [0.0, -0.0, 1.0, -1.0, 1e-310, -1e-310, f64::MAX, f64::MIN, 2.5, -2.5];
+        values.sort_by(f64::total_cmp);
+        assert!(values.map(ordered).is_sorted_by(|a, b| a < b));
     }
 }

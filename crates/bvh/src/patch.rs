@@ -55,7 +55,7 @@ impl Tree {
         };
         let mut changed = self.renumber(before, &after, &new, added);
         for &index in &new {
-            let leaf = self.leaf_of_least_growth(root, &self.primitives[index as usize]);
+            let leaf = self.leaf_of_least_growth(root, &self.primitives.get(index));
             self.leaf_of[index as usize] = Some(leaf);
             changed.entry(leaf).or_default().push(index);
             self.raise(index);
@@ -95,7 +95,7 @@ impl Tree {
         }
         let mut leaves = Vec::new();
         for (index, primitive, extent) in amended {
-            self.primitives[*index as usize] = *primitive;
+            self.primitives.set(*index, *primitive);
             self.extents[*index as usize] = *extent;
             self.raise(*index);
             leaves.extend(self.leaf_of[*index as usize]);
@@ -122,10 +122,11 @@ impl Tree {
             bounds.check(leaf.id().index())?;
             all.push((leaf.id().0, bounds));
         }
-        self.refined.resize(self.primitives.len(), None);
+        let count = self.primitives.len();
         for (leaf, bounds) in all {
-            for index in self.indices_of(leaf).to_vec() {
-                self.refined[index as usize] = Some(bounds);
+            let indices = self.indices_of(leaf).to_vec();
+            self.refined.set(&indices, bounds, count);
+            for index in indices {
                 self.raise(index);
             }
             self.nodes[leaf as usize].bounds = self.bounds_of(leaf);
@@ -160,16 +161,12 @@ impl Tree {
         }
         let gone = after.iter().zip(&self.leaf_of).filter(|(after, _)| **after == GONE);
         let changed = gone.filter_map(|(_, leaf)| Some(((*leaf)?, Vec::new()))).collect();
-        if let Some(any) = added.first().or(self.primitives.first()).copied() {
-            self.primitives = of(&self.primitives, before, any);
-        }
+        self.primitives.renumber(before);
         for (&index, primitive) in new.iter().zip(added) {
-            self.primitives[index as usize] = *primitive;
+            self.primitives.set(index, *primitive);
         }
         self.leaf_of = of(&self.leaf_of, before, None);
-        if !self.refined.is_empty() {
-            self.refined = of(&self.refined, before, None);
-        }
+        self.refined.renumber(before);
         if !self.extents.is_empty() {
             self.extents = of(&self.extents, before, Covariance::zero());
         }
@@ -201,7 +198,7 @@ impl Tree {
 
     /// Lets boxes and bounds of all nodes around a primitive hold it.
     fn raise(&mut self, index: u32) {
-        let primitive = self.primitives[index as usize];
+        let primitive = self.primitives.get(index);
         let mut next = self.leaf_of[index as usize];
         while let Some(id) = next {
             let bounds = self.bounds_of_primitive(index, &self.nodes[id as usize].obb.axes);

@@ -69,11 +69,7 @@ impl Primitive {
 
     /// Refuses values that no box could hold.
     pub(crate) fn check(&self, index: usize) -> Result<(), TreeError> {
-        for &value in self.corners().iter().flat_map(|corner| corner.iter()) {
-            if !(-MAX_COORDINATE..=MAX_COORDINATE).contains(&value) {
-                return Err(TreeError::Coordinate { index, value });
-            }
-        }
+        check_coordinates(self.corners(), index)?;
         if let Self::Point { point, weight } = self {
             for value in point.covariance.upper_triangle() {
                 if !(-MAX_VARIANCE..=MAX_VARIANCE).contains(&value) {
@@ -86,6 +82,16 @@ impl Primitive {
         }
         Ok(())
     }
+}
+
+/// Refuses corners that no box could hold.
+pub(crate) fn check_coordinates(corners: &[Point3], index: usize) -> Result<(), TreeError> {
+    for &value in corners.iter().flat_map(|corner| corner.iter()) {
+        if !(-MAX_COORDINATE..=MAX_COORDINATE).contains(&value) {
+            return Err(TreeError::Coordinate { index, value });
+        }
+    }
+    Ok(())
 }
 
 /// The centroid of a point or of the three corners of a triangle.

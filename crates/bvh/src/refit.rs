@@ -1,6 +1,6 @@
 //! Refit: positions change, the partition stays; and how to tell when it no longer fits.
 
-use crate::{Primitive, Tree, TreeError};
+use crate::{Primitive, Primitives, Tree, TreeError};
 
 impl Tree {
     /// Replaces every primitive, by index, and fits moments, boxes, coverages and bounds anew
@@ -22,7 +22,7 @@ impl Tree {
         for &index in &self.order {
             primitives[index as usize].check(index as usize)?;
         }
-        self.primitives.copy_from_slice(primitives);
+        self.primitives = Primitives::Each(primitives.to_vec());
         self.tighten();
         Ok(())
     }

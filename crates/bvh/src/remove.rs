@@ -17,11 +17,9 @@ impl Tree {
             .copied()
             .flatten()
             .ok_or(TreeError::NoSuchPrimitive { index })?;
-        let primitive = self.primitives[index];
+        let primitive = self.primitives.get(index as u32);
         self.leaf_of[index] = None;
-        if let Some(refined) = self.refined.get_mut(index) {
-            *refined = None;
-        }
+        self.refined.clear(index as u32);
         self.close_gap(leaf, index as u32);
         if self.nodes[leaf as usize].count > 0 {
             self.update_up(leaf);

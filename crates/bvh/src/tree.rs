@@ -2,9 +2,10 @@
 
 use cloudtouch_geom::Covariance;
 
+use crate::bounds_list::BoundsList;
 use crate::coverage::fraction_outside;
 use crate::node::NodeData;
-use crate::{LeafBounds, NodeId, Primitive, TreeSettings};
+use crate::{NodeId, Primitive, Primitives, TreeSettings};
 
 /// An oriented bounding box tree over uncertain points and exact triangles, in one frame.
 ///
@@ -14,9 +15,9 @@ use crate::{LeafBounds, NodeId, Primitive, TreeSettings};
 pub struct Tree {
     pub(crate) settings: TreeSettings,
     /// By index; removed ones keep their slot.
-    pub(crate) primitives: Vec<Primitive>,
-    /// By index: the bounds set for the refinement of a primitive; shorter when none were set.
-    pub(crate) refined: Vec<Option<LeafBounds>>,
+    pub(crate) primitives: Primitives,
+    /// The bounds set for the refinement of primitives.
+    pub(crate) refined: BoundsList,
     /// By index: how far the surface of a primitive reaches; shorter when none was set.
     pub(crate) extents: Vec<Covariance>,
     /// By index: the leaf that holds a primitive, `None` once removed.
@@ -53,8 +54,8 @@ impl Tree {
     }
 
     /// The primitive with this index; `None` when there is none or it was removed.
-    pub fn primitive(&self, index: usize) -> Option<&Primitive> {
-        self.leaf_of.get(index).copied().flatten().map(|_| &self.primitives[index])
+    pub fn primitive(&self, index: usize) -> Option<Primitive> {
+        self.leaf_of(index).map(|_| self.primitives.get(index as u32))
     }
 
     /// The leaf that holds this primitive; `None` when there is none or it was removed.
@@ -77,7 +78,7 @@ impl Tree {
     pub(crate) fn fraction_outside(&self, id: u32) -> f64 {
         let node = &self.nodes[id as usize];
         *node.outside.get_or_init(|| {
-            let below = self.indices_of(id).iter().map(|&i| &self.primitives[i as usize]);
+            let below = self.indices_of(id).iter().map(|&i| self.primitives.get(i));
             fraction_outside(below, &node.obb)
         })
     }

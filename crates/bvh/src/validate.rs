@@ -77,8 +77,8 @@ impl Tree {
         let unit = (node.obb.axes.tr_mul(&node.obb.axes) - Matrix3::identity()).amax() < ROUNDING;
         self.require(id, unit, "the box axes are not orthonormal")?;
         for &index in self.indices_of(id) {
-            let primitive = &self.primitives[index as usize];
-            let inside = primitive.corners().iter().all(|corner| node.obb.contains(corner));
+            let corners = self.primitives.corners(index);
+            let inside = corners.iter().all(|corner| node.obb.contains(corner));
             self.require(id, inside, "a corner lies outside the box")?;
         }
         self.require(id, node.moments.count == node.count as usize, "the moments miscount")?;
@@ -86,7 +86,7 @@ impl Tree {
         let slack = ROUNDING * (node.obb.radius() + node.obb.centre.coords.amax());
         let central = (0..3).all(|k| inside[k].abs() <= node.obb.half_extents[k] + slack);
         self.require(id, central, "the mean lies outside the box")?;
-        let below = self.indices_of(id).iter().map(|&i| &self.primitives[i as usize]);
+        let below = self.indices_of(id).iter().map(|&i| self.primitives.get(i));
         let kept =
             node.outside.get().is_none_or(|&kept| kept == fraction_outside(below, &node.obb));
         self.require(id, kept, "the coverage kept is that of other points")

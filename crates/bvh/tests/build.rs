@@ -2,7 +2,11 @@
 
 mod common;
 
-use cloudtouch_bvh::{Primitive, Tree, TreeError, TreeSettings, Visit};
+use std::sync::Arc;
+
+use cloudtouch_bvh::{
+    LeafBounds, Node, NodeId, Primitive, Primitives, Tree, TreeError, TreeSettings, Visit,
+};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3};
 use common::{bumpy_sheet, degenerate_clouds, noisy};
 use proptest::prelude::*;
@@ -217,4 +221,52 @@ proptest! {
         let tree = Tree::build(cloud, &settings.clone()).unwrap();
         prop_assert_eq!(tree.validate(), Ok(()));
     }
+}
+
+/// Bounds given while it is built are those given after it, and points listed by their places alone
+/// are those listed one by one.
+#[test]
+fn a_tree_built_with_bounds_is_one_that_is_given_them() {
+    let settings = TreeSettings::default();
+    let covariance = Covariance::isotropic(1e-4);
+    let means: Vec<Point3> =
+        bumpy_sheet(5, 1500, Vector3::zeros()).iter().map(|p| p.centroid()).collect();
+    let point = |&mean: &Point3| Primitive::point(UncertainPoint { mean, covariance });
+    let listed: Vec<Primitive> = means.iter().map(point).collect();
+    let mut after = Tree::build(listed.clone(), &settings).unwrap();
+    let bounds_of = |leaf: Node<'_>| {
+        let std = leaf.obb().radius();
+        LeafBounds { std, shift: 0.1 * std, reach: 0.2 * std }
+    };
+    let told = |tree: &Tree| {
+        let mut told = Vec::new();
+        let mut next: Vec<NodeId> = tree.root().map(|root| root.id()).into_iter().collect();
+        while let Some(id) = next.pop() {
+            let node = tree.node(id).unwrap();
+            let bounds = [node.max_std(), node.shift(), node.reach(), node.coverage()];
+            let along = node.std_along(&Vector3::new(0.6, 0.0, 0.8));
+            let shape = (*node.obb(), *node.moments());
+            told.push((id, node.primitive_indices().to_vec(), bounds, along, shape));
+            next.extend(node.children().into_iter().flatten());
+        }
+        told
+    };
+    let unbounded = told(&after);
+    after.set_leaf_bounds(bounds_of).unwrap();
+    assert_ne!(told(&after), unbounded);
+    let alike = Primitives::Alike { means: Arc::new(means), covariance };
+    for primitives in [Primitives::Each(listed.clone()), alike] {
+        let built = Tree::build_bounded(primitives, &settings, |_, leaf| bounds_of(leaf)).unwrap();
+        assert_eq!(told(&built), told(&after));
+        assert_eq!(built.validate(), Ok(()));
+        assert!((0..1500).all(|index| built.primitive(index) == Some(listed[index])));
+    }
+    let nothing_known =
+        |_: &Tree, _: Node<'_>| LeafBounds { std: f64::NAN, shift: 0.0, reach: 0.0 };
+    let refused = Tree::build_bounded(Primitives::Each(listed), &settings, nothing_known);
+    assert!(matches!(refused, Err(TreeError::LeafBounds { .. })));
+    let far = vec![Point3::origin(), Point3::new(1e101, 0.0, 0.0)];
+    let far = Primitives::Alike { means: Arc::new(far), covariance };
+    let refused = Tree::build_bounded(far, &settings, |_, leaf| bounds_of(leaf));
+    assert!(matches!(refused, Err(TreeError::Coordinate { index: 1, .. })));
 }

@@ -30,7 +30,7 @@ fn search(a: &Tree, b: &Tree, pose: &Pose, settings: &TraversalSettings) -> (f64
 }
 
 fn all_of(tree: &Tree) -> Vec<cloudtouch_bvh::Primitive> {
-    (0..tree.index_count()).filter_map(|i| tree.primitive(i)).copied().collect()
+    (0..tree.index_count()).filter_map(|i| tree.primitive(i)).collect()
 }
 
 proptest! {

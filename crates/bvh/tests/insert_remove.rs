@@ -104,7 +104,7 @@ proptest! {
             prop_assert_eq!(tree.len(), present.len());
         }
         for index in 0..tree.index_count() {
-            prop_assert_eq!(tree.primitive(index), present.get(&index));
+            prop_assert_eq!(tree.primitive(index), present.get(&index).copied());
             let listed = tree.leaf_of(index).and_then(|leaf| tree.leaf(leaf));
             let found = listed.is_some_and(|leaf| leaf.primitive_indices().contains(&(index as u32)));
             prop_assert_eq!(found, present.contains_key(&index));

@@ -58,7 +58,7 @@ fn agrees(tree: &Tree, all: &[Primitive]) -> Result<(), TestCaseError> {
     prop_assert_eq!(tree.validate(), Ok(()));
     prop_assert_eq!(tree.len(), all.len());
     for (index, primitive) in all.iter().enumerate() {
-        prop_assert_eq!(tree.primitive(index), Some(primitive));
+        prop_assert_eq!(tree.primitive(index), Some(*primitive));
     }
     Ok(())
 }

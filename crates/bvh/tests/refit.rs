@@ -52,7 +52,7 @@ proptest! {
         rebuilt.rebuild();
         prop_assert_eq!(rebuilt.validate(), Ok(()));
         prop_assert_eq!(rebuilt.quality(), 1.0);
-        let flat = flat_answer(&after, &(0..150).map(|i| *other.primitive(i).unwrap()).collect::<Vec<_>>());
+        let flat = flat_answer(&after, &(0..150).map(|i| other.primitive(i).unwrap()).collect::<Vec<_>>());
         for tree in [&refitted, &rebuilt] {
             let (lower, upper) = interval(tree, &other);
             prop_assert!(lower <= flat * (1.0 + 1e-9) && flat <= upper * (1.0 + 1e-6));
@@ -122,7 +122,7 @@ fn bad_refits_change_nothing() {
     let mut broken = shaken(&cloud, 1, 0.1);
     broken[77] = noisy(Point3::new(0.0, 0.0, f64::NEG_INFINITY), 0.1);
     assert!(matches!(tree.refit(&broken), Err(TreeError::Coordinate { index: 77, .. })));
-    assert_eq!(tree.primitive(0), Some(&cloud[0]));
+    assert_eq!(tree.primitive(0), Some(cloud[0]));
     // The slot of a removed primitive is not looked at.
     tree.remove(77).unwrap();
     tree.refit(&broken).unwrap();

@@ -109,7 +109,7 @@ proptest! {
         prop_assert_eq!(outcome.leaf_pairs, all.len());
         prop_assert!(outcome.deviations >= within);
         let point = |tree: &Tree, i: usize| match tree.primitive(i) {
-            Some(Primitive::Point { point, .. }) => *point,
+            Some(Primitive::Point { point, .. }) => point,
             _ => unreachable!(),
         };
         for i in 0..a.index_count() {
@@ -197,7 +197,7 @@ proptest! {
             pivot + linear * s + turn.transform_vector(&(place - pivot))
         };
         let point = |tree: &Tree, i: usize| match tree.primitive(i) {
-            Some(Primitive::Point { point, .. }) => *point,
+            Some(Primitive::Point { point, .. }) => point,
             _ => unreachable!(),
         };
         for i in 0..a.index_count() {

@@ -27,6 +27,8 @@ enum Form {
 
 /// Relative size of what counts as rounding when a matrix is checked.
 const ROUNDING: f64 = 1e-9;
+/// Relative slack of a largest variance, far above the rounding of eigenvalues.
+const WITHIN: f64 = 1e-12;
 /// Larger entries could overflow when a few are added or a pair is multiplied.
 const LARGEST: f64 = 1e200;
 
@@ -221,6 +223,15 @@ impl Covariance {
         }
     }
 
+    /// Whether no standard deviation is above this one, m: soon told, without eigenvalues. Perhaps not
+    /// where the largest is less than 1e-12 below it; never where it is above.
+    pub fn is_within(&self, std: f64) -> bool {
+        match &self.0 {
+            Form::Isotropic(_) | Form::Axis(_) => self.max_std() <= std,
+            Form::Full(symmetric) => symmetric.is_within(std * std * (1.0 - WITHIN)),
+        }
+    }
+
     /// Whether there is no uncertainty at all.
     pub fn is_zero(&self) -> bool {
         *self == Self::zero()
@@ -330,6 +341,10 @@ mod tests {
             let along = a.std_along(&direction);
             prop_assert!(along <= a.max_std() * (1.0 + 1e-9));
             prop_assert!(a.max_std() <= a.std_bound() * (1.0 + 1e-9));
+            let most = a.max_std();
+            prop_assert!(a.is_within(most * (1.0 + 1e-11)));
+            prop_assert!(a.is_within(f64::INFINITY));
+            prop_assert!(most == 0.0 || !a.is_within(most * (1.0 - 1e-15)));
         }
 
         /// What each form answers is what its matrix does.

@@ -94,6 +94,20 @@ impl Symmetric {
         Self::average(&(axes * Matrix3::from_diagonal(&values) * axes.transpose()))
     }
 
+    /// Whether no eigenvalue is larger, up to rounding.
+    pub(crate) fn is_within(&self, largest: f64) -> bool {
+        let [xx, xy, xz, yy, yz, zz] = self.entries();
+        let rest = Self {
+            xx: largest - xx,
+            xy: -xy,
+            xz: -xz,
+            yy: largest - yy,
+            yz: -yz,
+            zz: largest - zz,
+        };
+        rest.has_root()
+    }
+
     /// Whether a Cholesky decomposition runs to its end, which it does, up to rounding, only where
     /// no eigenvalue is negative (Higham, Accuracy and Stability, theorem 10.3).
     fn has_root(&self) -> bool {

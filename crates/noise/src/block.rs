@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::{Point3, bounding_box};
 
 use crate::finite::is_finite;
 use crate::lanes::{Kernel, Lanes, Machine, Stored, WIDTH, run};
@@ -11,11 +11,16 @@ use crate::positions::{Neighbor, Positions, in_order};
 /// A block is made so wide that on a surface it holds about so many positions: enough for the
 /// neighbours of many places.
 const HELD: f64 = 190.0;
-/// Its radius in distances of the last neighbour asked for, at least and at most.
-const REACH: [f64; 2] = [1.5, 4.5];
+/// Its radius in distances of the last neighbour asked for, at least and at most. Where the noise exceeds
+/// the spacing it holds as many as the cube of that, and not the square.
+const REACH: [f64; 2] = [1.5, 2.5];
 /// The neighbours of the next point are looked for up to so many distances of the last neighbour of
 /// the one before.
 const SEARCHED: f64 = 1.12;
+/// Places are served together up to so many distances of the last neighbour from their middle, by what
+/// is so many farther.
+const GATHERED: f64 = 2.0;
+const SPARE: f64 = 1.4;
 /// A block made by the reach of the last place has at most so many positions, else the reach is
 /// measured.
 const MOST_HELD: usize = 600;
@@ -79,6 +84,18 @@ impl Block {
         }
         found.truncate(k);
         self.reach = found.last().map_or(0.0, |last| last.squared_distance.sqrt());
+    }
+
+    /// Makes ready for the neighbours of some places near one another, as many of each as were asked for
+    /// last, where these are not much farther apart than that reaches.
+    pub(crate) fn gather(&mut self, cloud: &Positions, places: &[Point3]) {
+        let is_same = self.cloud.as_ref().is_some_and(|id| Arc::ptr_eq(id, cloud.id()));
+        let Some((low, high)) = bounding_box(places).filter(|_| is_same) else { return };
+        let centre = low + 0.5 * (high - low);
+        let apart = places.iter().map(|place| (place - centre).norm()).fold(0.0, f64::max);
+        if apart <= GATHERED * self.reach {
+            self.fill(cloud, &centre, apart + SPARE * self.reach);
+        }
     }
 
     /// Holds what is within a distance of a place from now on, which may be nothing.
@@ -152,6 +169,8 @@ impl Kernel for Select<'_> {
 
 /// Buckets that neighbours are sorted by.
 const BUCKETS: usize = 64;
+/// So few are put in order without buckets.
+const MOST_INSERTED: usize = 20;
 /// More are sorted by comparison.
 const MOST_BUCKETED: usize = 4 * BUCKETS;
 
@@ -191,6 +210,10 @@ impl Sorted {
         let hits = &self.hits[..self.count];
         sorted.clear();
         sorted.extend_from_slice(hits);
+        if hits.len() <= MOST_INSERTED {
+            insert_in_order(sorted);
+            return;
+        }
         let scale = BUCKETS as f64 / most;
         if hits.len() > MOST_BUCKETED || !scale.is_finite() {
             sorted.sort_unstable_by(in_order);
@@ -209,15 +232,20 @@ impl Sorted {
             sorted[usize::from(*start)] = *hit;
             *start += 1;
         }
-        for at in 1..sorted.len() {
-            let hit = sorted[at];
-            let mut to = at;
-            while to > 0 && is_before(&hit, &sorted[to - 1]) {
-                sorted[to] = sorted[to - 1];
-                to -= 1;
-            }
-            sorted[to] = hit;
+        insert_in_order(sorted);
+    }
+}
+
+/// Puts neighbours in order that are nearly so, or few.
+fn insert_in_order(sorted: &mut [Neighbor]) {
+    for at in 1..sorted.len() {
+        let hit = sorted[at];
+        let mut to = at;
+        while to > 0 && is_before(&hit, &sorted[to - 1]) {
+            sorted[to] = sorted[to - 1];
+            to -= 1;
         }
+        sorted[to] = hit;
     }
 }
 

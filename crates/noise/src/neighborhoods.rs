@@ -1,9 +1,10 @@
 //! The neighbours of a point.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use cloudtouch_geom::Point3;
 
+use crate::density::{Density, densest_first};
 use crate::error::NoiseError;
 use crate::finite::is_finite;
 use crate::positions::{Neighbor, Positions};
@@ -18,6 +19,8 @@ use crate::thinned::Thinned;
 #[derive(Debug)]
 pub struct Neighborhoods {
     positions: Positions,
+    /// Their indices in order of density, the densest first; known when first asked for.
+    densest_first: OnceLock<Vec<u32>>,
     /// A part of them, for fits to many; made when first asked for.
     thinned: OnceLock<Vec<Thinned>>,
 }
@@ -29,7 +32,7 @@ impl Neighborhoods {
     /// When there are more points than an index can hold (2³² − 1), or a finite coordinate is
     /// beyond 1e150, where squared distances overflow.
     pub fn try_new(points: Vec<Point3>) -> Result<Self, NoiseError> {
-        Ok(Self { positions: Positions::try_new(points)?, thinned: OnceLock::new() })
+        Ok(Self::of(Positions::try_new(points)?))
     }
 
     /// The index of what the cloud became, which shares most of this one and finds the same as one that is
@@ -49,12 +52,21 @@ impl Neighborhoods {
     ) -> Result<Option<Self>, NoiseError> {
         assert_eq!(points.len(), before.len(), "one entry for each point");
         let positions = self.positions.changed(points, before)?;
-        Ok(positions.map(|positions| Self { positions, thinned: OnceLock::new() }))
+        Ok(positions.map(Self::of))
+    }
+
+    fn of(positions: Positions) -> Self {
+        Self { positions, densest_first: OnceLock::new(), thinned: OnceLock::new() }
     }
 
     /// The points it was built from, in the order given.
     pub fn points(&self) -> &[Point3] {
         self.positions.points()
+    }
+
+    /// The same, for who keeps them longer without a copy.
+    pub fn shared_points(&self) -> Arc<Vec<Point3>> {
+        self.positions.points().clone()
     }
 
     /// How many different finite positions there are.
@@ -68,7 +80,22 @@ impl Neighborhoods {
 
     /// A fourth and a sixteenth of them.
     pub(crate) fn thinned(&self) -> &[Thinned] {
-        self.thinned.get_or_init(|| Thinned::fourth_and_sixteenth(&self.positions))
+        self.thinned.get_or_init(|| {
+            // One after the other: whoever waits here for other threads may be given another point to
+            // refine meanwhile, which would wait for this.
+            let densest_first = self.densest_first.get_or_init(|| {
+                densest_first(&Density::everywhere_on_this_thread(&self.positions))
+            });
+            Thinned::fourth_and_sixteenth(&self.positions, densest_first)
+        })
+    }
+
+    /// How dense the samples are about every point, on all threads of the pool, and the order of the
+    /// indices by that.
+    pub(crate) fn densities(&self) -> (Vec<Density>, &[u32]) {
+        let densities = Density::everywhere(&self.positions);
+        let order = self.densest_first.get_or_init(|| densest_first(&densities));
+        (densities, order)
     }
 
     /// The `k` positions nearest to point `index` other than its own, fewer when there are fewer,
@@ -92,8 +119,8 @@ impl Neighborhoods {
         k: usize,
         scratch: &'a mut Scratch,
     ) -> &'a [Neighbor] {
-        let Scratch { block, neighbors, .. } = scratch;
-        block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
+        let Scratch { few_block, neighbors, .. } = scratch;
+        few_block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
         neighbors
     }
 

@@ -31,7 +31,7 @@ pub struct Neighbor {
 /// The distinct positions of a cloud, and which are nearest to a place.
 #[derive(Debug)]
 pub(crate) struct Positions {
-    points: Vec<Point3>,
+    points: Arc<Vec<Point3>>,
     distinct: usize,
     /// Of the positions when the tree was last built.
     tree: Arc<ImmutableKdTree<f64, 3>>,
@@ -52,7 +52,8 @@ impl Positions {
         }
         let entries = distinct_entries(&points);
         let tree = Arc::new(tree_of(&entries)?);
-        Ok(Self { points, distinct: entries.len(), tree, overlay: None, id: Arc::default() })
+        let (points, distinct) = (Arc::new(points), entries.len());
+        Ok(Self { points, distinct, tree, overlay: None, id: Arc::default() })
     }
 
     /// The index of what the cloud became: `before` says which index each point had, if it is where it
@@ -76,7 +77,7 @@ impl Positions {
         if overlay.is_none() {
             return Ok(None);
         }
-        let (distinct, tree) = (points.len(), self.tree.clone());
+        let (distinct, tree, points) = (points.len(), self.tree.clone(), Arc::new(points));
         let changed = Self { points, distinct, tree, overlay, id: Arc::default() };
         let is_alone = |place: &Point3| changed.hits_within(place, SAME_PLACE).len() == 1;
         if !new().all(|index: usize| is_alone(&changed.points[index])) {
@@ -86,7 +87,7 @@ impl Positions {
     }
 
     /// The points it was built from, in the order given.
-    pub(crate) fn points(&self) -> &[Point3] {
+    pub(crate) fn points(&self) -> &Arc<Vec<Point3>> {
         &self.points
     }
 

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Point3;
 
-use crate::density::{Density, densest_first};
+use crate::density::Density;
 use crate::error::NoiseError;
 use crate::neighborhoods::Neighborhoods;
 use crate::positions::Positions;
@@ -76,8 +76,8 @@ impl Representatives {
 fn is_crowded(cloud: &Neighborhoods, sensor: &SensorNoise) -> bool {
     let count = cloud.points().len();
     let sampled = count.min(SAMPLE);
-    let mut found = Vec::new();
-    let mut spacing = |index| Density::around(cloud.positions(), index, &mut found).spacing;
+    let mut buffers = Default::default();
+    let mut spacing = |index| Density::around(cloud.positions(), index, &mut buffers).spacing;
     let noisy = (0..sampled)
         .map(|s| s * count / sampled)
         .filter(|&index| is_noisy(&sensor[index], spacing(index)))
@@ -86,10 +86,10 @@ fn is_crowded(cloud: &Neighborhoods, sensor: &SensorNoise) -> bool {
 }
 
 fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
-    let densities = Density::everywhere(cloud.positions());
+    let (densities, densest_first) = cloud.densities();
     let mut is_represented = vec![false; densities.len()];
     let mut chosen = Vec::new();
-    for index in densest_first(&densities) {
+    for &index in densest_first {
         let at = index as usize;
         if is_represented[at] {
             continue;
@@ -99,7 +99,7 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
         if is_noisy(noise, spacing) {
             let std = noise.max_std();
             let reach = std.min((REACH_SPACINGS * spacing).max(REACH_STD * std));
-            for near in cloud.positions().within(at, reach * reach) {
+            for near in cloud.positions().hits_within(&cloud.points()[at], reach * reach) {
                 let noise = sensor[near.index].max_std();
                 is_represented[near.index] |= near.squared_distance <= noise * noise;
             }

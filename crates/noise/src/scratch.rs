@@ -12,6 +12,9 @@ use crate::sensor_noise::SensorNoise;
 pub struct Scratch {
     /// Of the cloud, about the last point.
     pub(crate) block: Block,
+    /// The same for the few that are asked for without a fit: a block of many would be too wide for
+    /// them, and theirs too narrow for the next fit.
+    pub(crate) few_block: Block,
     pub(crate) neighbors: Vec<Neighbor>,
     pub(crate) patch: Buffers,
     /// Of the thinned clouds.

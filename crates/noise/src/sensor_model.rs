@@ -1,6 +1,6 @@
 //! The sensors that have a text form.
 
-use cloudtouch_geom::{Covariance, Point3, PointCloud};
+use cloudtouch_geom::{Covariance, PointCloud};
 
 use crate::error::{NoiseError, check_value_not_negative, check_value_positive};
 use crate::finite::is_finite;
@@ -126,16 +126,15 @@ fn brought(cloud: &PointCloud) -> Result<SensorNoise, NoiseError> {
         let (points, covariances) = (cloud.len(), all.len());
         return Err(NoiseError::CovarianceCount { points, covariances });
     }
-    let one = |(index, (point, covariance)): (usize, (&Point3, &Covariance))| {
-        if !is_finite(point) {
-            Ok(Covariance::zero())
+    let mut checked = Vec::with_capacity(all.len());
+    for (index, (point, covariance)) in cloud.points.iter().zip(all).enumerate() {
+        checked.push(if !is_finite(point) {
+            Covariance::zero()
         } else if covariance.is_finite() {
-            Ok(*covariance)
+            *covariance
         } else {
-            Err(NoiseError::CovarianceNotFinite { index, point: *point })
-        }
-    };
-    let checked: Result<Vec<Covariance>, NoiseError> =
-        cloud.points.iter().zip(all).enumerate().map(one).collect();
-    Ok(checked?.into())
+            return Err(NoiseError::CovarianceNotFinite { index, point: *point });
+        });
+    }
+    Ok(checked.into())
 }

@@ -28,7 +28,7 @@ pub(crate) fn in_spatial_order<B: Default, T: Send + Copy>(
 
 /// The indices of points, along a curve of Morton through the box around them; those that are not
 /// finite come first.
-fn spatial_order(points: &[Point3]) -> Vec<u32> {
+pub(crate) fn spatial_order(points: &[Point3]) -> Vec<u32> {
     let finite = points.iter().filter(|point| is_finite(point));
     let (low, high) = bounding_box(finite).unwrap_or_default();
     let longest = (high - low).max();

@@ -1,6 +1,5 @@
 //! A part of a cloud, evenly taken, that stands for it where a fit needs no more.
 
-use crate::density::{Density, densest_first};
 use crate::finite::is_finite;
 use crate::positions::Positions;
 
@@ -15,14 +14,9 @@ pub(crate) struct Thinned {
 impl Thinned {
     /// Every fourth and every sixteenth position, in order of density: dense places and sparse ones
     /// keep their part, and neither the frame nor the order of the points matters.
-    pub(crate) fn fourth_and_sixteenth(cloud: &Positions) -> Vec<Self> {
+    pub(crate) fn fourth_and_sixteenth(cloud: &Positions, densest_first: &[u32]) -> Vec<Self> {
         let points = cloud.points();
-        let mut found = Vec::new();
-        // One after the other: whoever waits here for other threads may be given another point to
-        // refine meanwhile, which would wait for this.
-        let densities: Vec<Density> =
-            (0..points.len()).map(|index| Density::around(cloud, index, &mut found)).collect();
-        let mut order = densest_first(&densities);
+        let mut order = densest_first.to_vec();
         order.retain(|&index| is_finite(&points[index as usize]));
         // Copies of a position have the same neighbours, and so stand together.
         order.dedup_by(|later, first| points[*later as usize] == points[*first as usize]);
@@ -52,6 +46,7 @@ mod tests {
     use cloudtouch_geom::{Point3, seed};
 
     use super::*;
+    use crate::density::{Density, densest_first};
 
     fn cloud(copies: usize) -> Positions {
         let place = |i: u64| Point3::from([0, 1, 2].map(|k| seed::unit(seed::derive(2, i, k))));
@@ -64,11 +59,14 @@ mod tests {
         places
     }
 
+    fn thin(cloud: &Positions) -> Vec<Thinned> {
+        Thinned::fourth_and_sixteenth(cloud, &densest_first(&Density::everywhere(cloud)))
+    }
+
     /// A cloud stored twice is the cloud.
     #[test]
     fn copies_do_not_count() {
         let (once, twice) = (cloud(1), cloud(2));
-        let thin = |cloud| Thinned::fourth_and_sixteenth(cloud);
         for (once, twice) in thin(&once).iter().zip(&thin(&twice)) {
             assert_eq!(places(once), places(twice));
         }
@@ -80,10 +78,7 @@ mod tests {
     fn the_same_are_taken_of_points_in_another_order() {
         let points = cloud(1).points().to_vec();
         let reversed = Positions::try_new(points.iter().rev().copied().collect()).unwrap();
-        for (a, b) in Thinned::fourth_and_sixteenth(&cloud(1))
-            .iter()
-            .zip(&Thinned::fourth_and_sixteenth(&reversed))
-        {
+        for (a, b) in thin(&cloud(1)).iter().zip(&thin(&reversed)) {
             assert_eq!(places(a), places(b));
             assert_eq!(a.positions().points()[3], cloud(1).points()[a.index(3)]);
         }

@@ -151,5 +151,5 @@ pub(crate) fn flat_answer<'a>(
 /// The primitives of a leaf.
 pub(crate) fn held(tree: &Tree, leaf: cloudtouch_bvh::NodeId) -> Vec<Primitive> {
     let indices = tree.leaf(leaf).expect("a leaf").primitive_indices();
-    indices.iter().filter_map(|&i| tree.primitive(i as usize)).copied().collect()
+    indices.iter().filter_map(|&i| tree.primitive(i as usize)).collect()
 }

@@ -219,7 +219,7 @@ impl Cloud {
     ) -> Result<usize, ChangeError> {
         let own = &self.prepared;
         let mut prepared =
-            Prepared::of_scans(scans, own.noise, own.tree.settings(), Some(origin), |_, _| 1.0)?;
+            Prepared::of_scans(scans, own.noise, own.tree.settings(), Some(origin), None)?;
         let surfaces_kept = prepared.carry_over(own, before, changed)?;
         let shift = origin - own.origin;
         let measured = (own.points(), own.sensor());

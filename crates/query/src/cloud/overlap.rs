@@ -90,7 +90,7 @@ mod tests {
             tree: &TreeSettings { max_leaf_points: 16, sibling_overlap, ..TreeSettings::default() },
             motion: MotionNoise::default(),
         };
-        Prepared::new(&[(&PointCloud::from_points(points), by)], |_, _| 1.0).unwrap()
+        Prepared::new(&[(&PointCloud::from_points(points), by)], None).unwrap()
     }
 
     /// No point was in two leaves, whatever ε: what was cut there was nowhere whole.

@@ -41,7 +41,7 @@ impl Cloud {
     pub fn merge(scans: &[(&PointCloud, &CloudSettings)]) -> Result<Self, PrepareError> {
         let scans: Vec<_> = scans.iter().map(|&(scan, by)| (scan, by.preparation())).collect();
         // The certified traversal goes by bounds, not by coverage: any weight would do.
-        Ok(Self { prepared: Prepared::new(&scans, |_, _| 1.0)? })
+        Ok(Self { prepared: Prepared::new(&scans, None)? })
     }
 
     /// Computes the surface at every point, on all threads of the pool, and fits the tree to it.

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{LeafBounds, Node, Primitive, Tree, TreeSettings};
-use cloudtouch_geom::{Point3, PointCloud, UncertainPoint, Vector3, bounding_box};
+use cloudtouch_bvh::{LeafBounds, Node, Primitive, Primitives, Tree, TreeSettings};
+use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, Vector3, bounding_box};
 use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 
 use crate::error::PrepareError;
@@ -14,13 +14,16 @@ use super::makeup::Makeup;
 use super::pieces::Pieces;
 use super::preparation::Preparation;
 use super::scans::Scans;
-use super::slots::LazySurface;
+use super::slots::{LazySurface, spacing_cap};
 use super::view::SingleView;
 
 /// Points with more noise than half the size of their cloud say nothing.
 const MOST_NOISE: f64 = 0.5;
 /// Relative rounding of an eigenvalue, generously.
 const ROUNDING: f64 = 1e-9;
+
+/// How much surface a point of a cloud stands for in the coverage of a node.
+pub(crate) type Weight<'a> = &'a dyn Fn(&Neighborhoods, usize) -> f64;
 
 /// A noisy cloud, ready to be queried in any pose, from many threads at once. Each path wraps it in
 /// a type of its own.
@@ -51,10 +54,10 @@ pub(crate) struct Prepared {
 impl Prepared {
     /// Filters scans of one frame, models their sensors, and builds one index and tree over them, by
     /// the noise model and tree of the first. `weigh` says how much surface each of the points kept
-    /// stands for in the coverage of a node.
+    /// stands for in the coverage of a node; without it all stand for as much.
     pub(crate) fn new(
         scans: &[(&PointCloud, Preparation<'_>)],
-        weigh: impl Fn(&Neighborhoods, usize) -> f64,
+        weigh: Option<Weight<'_>>,
     ) -> Result<Self, PrepareError> {
         let start = Instant::now();
         let count: usize = scans.iter().map(|(scan, _)| scan.len()).sum();
@@ -77,7 +80,7 @@ impl Prepared {
         noise: NoiseModel,
         by_tree: &TreeSettings,
         origin: Option<Vector3>,
-        weigh: impl Fn(&Neighborhoods, usize) -> f64,
+        weigh: Option<Weight<'_>>,
     ) -> Result<Self, PrepareError> {
         let (low, high) = corners_of(&all)?;
         let sensor = &all.noise;
@@ -92,18 +95,15 @@ impl Prepared {
             true => Pieces::chosen(&neighborhoods, sensor)?,
             false => Pieces::all(),
         };
-        let indices = pieces.indices(&neighborhoods);
-        let primitive = |&index: &usize| {
-            measured_point(index, &neighborhoods, sensor, weigh(&neighborhoods, index))
-        };
-        let primitives = indices.iter().map(primitive).collect();
-        let mut tree = Tree::build(primitives, by_tree)?;
-        let surface = LazySurface::new(&tree, indices.len());
+        let primitives = primitives_of(&neighborhoods, &pieces, sensor, weigh);
         let (measured, mut scratch) = ((&noise, &neighborhoods, sensor), Scratch::default());
-        tree.set_leaf_bounds(|leaf| {
-            let index = |piece: u32| indices[piece as usize];
-            leaf_bounds(leaf, surface.spacing_cap(leaf), index, measured, &mut scratch)
+        let mut caps = vec![0.0; pieces.neighborhoods(&neighborhoods).points().len()];
+        let tree = Tree::build_bounded(primitives, by_tree, |tree, leaf| {
+            let cap = spacing_cap(tree, leaf);
+            leaf.primitive_indices().iter().for_each(|&piece| caps[piece as usize] = cap);
+            leaf_bounds(leaf, cap, |piece| pieces.index(piece), measured, &mut scratch)
         })?;
+        let surface = LazySurface::new(&tree, caps);
         let view = |(sensor, points): (Point3, _)| SingleView::new(sensor - origin, points);
         let images = std::mem::take(&mut all.images);
         Ok(Self {
@@ -235,6 +235,23 @@ pub(super) fn makeup_of(
     Ok(makeup)
 }
 
+/// What the tree is to hold of the pieces of a cloud.
+fn primitives_of(
+    points: &Neighborhoods,
+    pieces: &Pieces,
+    sensor: &SensorNoise,
+    weigh: Option<Weight<'_>>,
+) -> Primitives {
+    if let (Some(covariance), None) = (sensor.as_uniform(), weigh) {
+        let means = pieces.neighborhoods(points).shared_points();
+        return Primitives::Alike { means, covariance: *covariance };
+    }
+    let weight = |index| weigh.map_or(1.0, |weigh| weigh(points, index));
+    let indices = pieces.indices(points).into_iter();
+    let primitives = indices.map(|index| measured_point(index, points, sensor, weight(index)));
+    Primitives::Each(primitives.collect())
+}
+
 /// A point as it was measured.
 pub(super) fn measured_point(
     index: usize,
@@ -255,19 +272,33 @@ pub(super) fn leaf_bounds(
     (noise, points, sensor): (&NoiseModel, &Neighborhoods, &SensorNoise),
     scratch: &mut Scratch,
 ) -> LeafBounds {
-    let mut bounds = LeafBounds { std: 0.0, shift: 0.0, reach: DISC_SPACINGS * cap };
-    for &piece in leaf.primitive_indices() {
-        let index = index(piece);
-        let point = noise.bounds(&sensor[index], cap);
-        let std = if point.std.is_finite() {
-            point.std
-        } else {
-            // What only the neighbours tell, they are asked for.
+    let indices = || leaf.primitive_indices().iter().map(|&piece| index(piece));
+    // The noisiest point is bounded by what bounds all.
+    let all = noise.bounds(&noisiest(indices().map(|index| &sensor[index])), cap);
+    let std = if all.std.is_finite() {
+        all.std
+    } else {
+        // What only the neighbours tell, they are asked for.
+        let mut refined_std = |index| {
             let refined = noise.refine(index, points, sensor, cap, scratch);
             refined.point.covariance.max_std() * (1.0 + ROUNDING)
         };
-        bounds.std = bounds.std.max(std);
-        bounds.shift = bounds.shift.max(point.shift);
+        indices().map(&mut refined_std).fold(0.0, f64::max)
+    };
+    LeafBounds { std, shift: all.shift, reach: DISC_SPACINGS * cap }
+}
+
+/// One with the largest standard deviation of them.
+fn noisiest<'a>(all: impl Iterator<Item = &'a Covariance>) -> Covariance {
+    let (mut noisiest, mut most) = (Covariance::zero(), 0.0);
+    for noise in all {
+        // PERF: eigenvalues of few, for those of a leaf are much the same.
+        if !noise.is_within(most) {
+            let std = noise.max_std();
+            if std > most {
+                (noisiest, most) = (*noise, std);
+            }
+        }
     }
-    bounds
+    noisiest
 }

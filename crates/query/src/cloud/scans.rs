@@ -83,9 +83,11 @@ impl Scans {
             let origin = Some(kept.sensor_origin()).filter(|place| *place != Point3::origin());
             all.origins.extend(origin);
             have_rows &= !filtered.rows.is_empty();
-            all.rows.extend(filtered.rows.iter().map(|row| first_row + row));
+            let mut rows = filtered.rows;
+            rows.iter_mut().for_each(|row| *row += first_row);
+            append(&mut all.rows, rows);
             all.stages.extend(filtered.stages);
-            all.points.extend(kept.points);
+            append(&mut all.points, kept.points);
             all.row_count += scan.len();
         }
         if !have_rows {
@@ -154,6 +156,15 @@ impl Scans {
             images: self.images.clone(),
             ..*self
         }
+    }
+}
+
+/// Puts a list behind another, without a copy of the first that comes.
+fn append<T>(all: &mut Vec<T>, mut others: Vec<T>) {
+    if all.is_empty() {
+        *all = others;
+    } else {
+        all.append(&mut others);
     }
 }
 

@@ -45,16 +45,10 @@ pub(super) struct LazySurface {
 }
 
 impl LazySurface {
-    pub(super) fn new(tree: &Tree, pieces: usize) -> Self {
-        let mut spacing_caps = vec![0.0; pieces];
-        for leaf in tree.leaves() {
-            let cap = spacing_cap(tree, leaf);
-            for &index in leaf.primitive_indices() {
-                spacing_caps[index as usize] = cap;
-            }
-        }
+    /// For a tree with pieces of these limits.
+    pub(super) fn new(tree: &Tree, spacing_caps: Vec<f64>) -> Self {
         Self {
-            surfels: slots(pieces),
+            surfels: slots(spacing_caps.len()),
             bases: Vec::new(),
             leaves: slots(tree.node_slots()),
             shared: slots(tree.node_slots()),

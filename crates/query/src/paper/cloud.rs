@@ -1,7 +1,7 @@
 //! The cloud of the paper's path.
 
 use cloudtouch_geom::PointCloud;
-use cloudtouch_noise::{NoiseError, RadiusRule};
+use cloudtouch_noise::{Neighborhoods, NoiseError, RadiusRule};
 
 use crate::cloud::{Prepared, cloud_accessors};
 use crate::error::PrepareError;
@@ -41,9 +41,9 @@ impl PaperCloud {
     /// When there is no scan, or as [`Self::prepare`] for one of them.
     pub fn merge(scans: &[(&PointCloud, &PaperCloudSettings)]) -> Result<Self, PrepareError> {
         let neighbors = scans.first().map_or(0, |(_, by)| by.model.discretization.neighbors);
-        let area = |near: &_, index| sphere_area(near, index, neighbors);
+        let area = |near: &Neighborhoods, index| sphere_area(near, index, neighbors);
         let scans: Vec<_> = scans.iter().map(|&(scan, by)| (scan, by.preparation())).collect();
-        Ok(Self { prepared: Prepared::new(&scans, area)? })
+        Ok(Self { prepared: Prepared::new(&scans, Some(&area))? })
     }
 
     /// How many points the leaves of the tree hold, one that lies where siblings overlap counted in each
@@ -90,7 +90,7 @@ mod tests {
         let cloud = PointCloud::from_points(points);
         let settings = PaperCloudSettings::new(SensorModel::Isotropic { std: 0.01 });
         let by_area = PaperCloud::prepare(&cloud, &settings).unwrap();
-        let by_number = Prepared::new(&[(&cloud, settings.preparation())], |_, _| 1.0).unwrap();
+        let by_number = Prepared::new(&[(&cloud, settings.preparation())], None).unwrap();
         let leakage = |cloud: &Prepared| 1.0 - cloud.tree().root().unwrap().coverage();
         let (by_area, by_number) = (leakage(by_area.prepared()), leakage(&by_number));
         // Of 125 points 98 lie on faces, each with at least half a chance of being outside.
