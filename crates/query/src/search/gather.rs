@@ -107,7 +107,7 @@ pub(super) fn add_mesh_through_discs(
             continue;
         }
         let outline = Outline::new(middle, normal, radius);
-        if outline.through(facets.facets.iter()).off.value.is_infinite() {
+        if !outline.is_passed_by(&facets.facets) {
             continue;
         }
         // Once, and by all of the mesh there: however its triangles are shared out to leaves.

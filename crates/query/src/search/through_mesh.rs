@@ -43,6 +43,25 @@ impl Outline {
         Self { middle, radius, normal, across: [first, normal.cross(&first)] }
     }
 
+    /// Whether one of some facets passes the disc.
+    pub(super) fn is_passed_by(&self, facets: &[Facet]) -> bool {
+        facets.iter().any(|facet| {
+            let ways = facet.corners.map(|corner| corner - self.middle);
+            // Most are above the disc or below.
+            let are_below = ways.map(|way| self.normal.dot(&way) < 0.0);
+            if are_below == [are_below[0]; 3] {
+                return false;
+            }
+            let corners = ways.map(|way| self.local(&way));
+            !self.is_aside(&corners)
+                && passes_nearest(&corners).is_some_and(|reached| self.is_within(&reached))
+        })
+    }
+
+    fn is_within(&self, reached: &Reached) -> bool {
+        reached.at.norm() <= self.radius
+    }
+
     /// Adds up what some facets do; no height counts beyond the radius.
     pub(super) fn through<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Through {
         let level = Reached { at: Vector3::zeros(), force: Vector3::zeros() };
@@ -60,8 +79,7 @@ impl Outline {
                     below = reached;
                 }
             });
-            let passes =
-                passes_nearest(&corners).filter(|reached| reached.at.norm() <= self.radius);
+            let passes = passes_nearest(&corners).filter(|reached| self.is_within(reached));
             if let Some(reached) = passes {
                 let is_nearer = |known: Reached| reached.at.norm() < known.at.norm();
                 if nearest.is_none_or(is_nearer) {
