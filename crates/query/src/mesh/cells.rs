@@ -7,12 +7,12 @@ use cloudtouch_geom::{Point3, Vector3};
 const CELLS_PER_TRIANGLE: usize = 8;
 /// ... but no fewer and no more than these.
 const LEAST_CELLS: usize = 4096;
-const MOST_CELLS: usize = 65_536;
+const MOST_CELLS: usize = 32_768;
 /// A cell counts as crossed by what misses it by this share of the size of the mesh, far more than
 /// rounding.
 const ROUNDING: f64 = 1e-9;
-/// Rings of cells are counted up to this many.
-const MOST_RINGS: u8 = 100;
+/// Rings of cells are counted up to this many: what reaches farther is looked at in parts.
+const MOST_RINGS: u8 = 7;
 
 /// What is known of all places of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,18 +99,18 @@ impl Cells {
         let first = self.containing(&(a.inf(&b.inf(c)) - room));
         let last = self.containing(&(a.sup(&b.sup(c)) + room));
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0);
+        // What the heights of middles rise by from cell to cell; a triangle without a normal may be
+        // anywhere in its box.
+        let normal = normal.unwrap_or_else(Vector3::zeros);
+        let (rise, reach) = (normal.x * self.side, 0.5 * self.side * normal.lp_norm(1) + rounding);
         for z in first[2]..=last[2] {
             for y in first[1]..=last[1] {
-                for x in first[0]..=last[0] {
-                    let at = [x, y, z];
-                    // A triangle without a normal may be anywhere in its box.
-                    let is_passed = normal.is_none_or(|normal| {
-                        let height = normal.dot(&(self.middle(at) - a)).abs();
-                        height <= 0.5 * self.side * normal.lp_norm(1) + rounding
-                    });
-                    if is_passed {
-                        let index = self.index(at);
-                        self.cells[index] = Cell::Crossed;
+                let start = [first[0], y, z];
+                let height = normal.dot(&(self.middle(start) - a));
+                let row = self.index(start);
+                for (k, cell) in self.cells[row..=row + last[0] - first[0]].iter_mut().enumerate() {
+                    if (k as f64).mul_add(rise, height).abs() <= reach {
+                        *cell = Cell::Crossed;
                     }
                 }
             }
@@ -159,11 +159,11 @@ impl Cells {
     /// Counts along one axis after the other: the rings that are free in all directions are those that
     /// the least free cell of each line of cells leaves.
     fn count_rings(&mut self) {
-        let outside = |cell: &Cell| if matches!(cell, Cell::Outside(_)) { MOST_RINGS } else { 0 };
-        let mut free: Vec<u8> = self.cells.iter().map(outside).collect();
-        let (counts, mut step) = (self.counts, 1);
-        // free: one more than the rings.
-        for count in counts {
+        // One more than the rings.
+        let free = |cell: &Cell| if matches!(cell, Cell::Outside(_)) { MOST_RINGS + 1 } else { 0 };
+        let mut free: Vec<u8> = self.cells.iter().map(free).collect();
+        let mut step = 1;
+        for count in self.counts {
             for start in 0..free.len() {
                 if start / step % count == 0 {
                     spread(&mut free, start, step, count);
@@ -179,20 +179,19 @@ impl Cells {
     }
 }
 
-/// To each cell of a line the least over all cells of it of the larger of what is free there and how
-/// far it is.
+/// To each cell of a line the least, over all cells of it, of the larger of what is free there and how
+/// far that is.
 fn spread(free: &mut [u8], start: usize, step: usize, count: usize) {
     let line: Vec<u8> = (0..count).map(|k| free[start + k * step]).collect();
-    for k in 0..count {
-        let mut least = line[k];
-        for away in 1..count {
-            if away >= usize::from(least) {
-                break;
+    for (k, &here) in line.iter().enumerate() {
+        let mut least = here;
+        let mut away = 1;
+        while away < least {
+            let before = k.checked_sub(usize::from(away)).and_then(|k| line.get(k));
+            for &free in [before, line.get(k + usize::from(away))].into_iter().flatten() {
+                least = least.min(free.max(away));
             }
-            let far = |other: Option<&u8>| other.map_or(MOST_RINGS, |&f| f.max(away as u8));
-            least = least
-                .min(far(line.get(k + away)))
-                .min(far(k.checked_sub(away).and_then(|k| line.get(k))));
+            away += 1;
         }
         free[start + k * step] = least;
     }
