@@ -19,12 +19,21 @@ pub(super) struct Through {
     pub place: Point3,
 }
 
-/// A place of a mesh in the coordinates of a disc, and what its height, or its distance from the middle,
-/// changes by as the mesh moves.
+/// A place of a mesh in the coordinates of a disc.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
     at: Vector3,
-    force: Vector3,
+    pulled_by: Pull,
+}
+
+/// What the height of a place, or its distance from the middle, changes by as the mesh moves.
+#[derive(Debug, Clone, Copy)]
+enum Pull {
+    Known(Vector3),
+    /// On an edge that runs so, where it passes the wall of the cylinder.
+    Wall(Vector3),
+    /// On the rim of the disc in a plane with this normal.
+    Rim(Vector3),
 }
 
 /// A disc, seen along its normal.
@@ -64,7 +73,7 @@ impl Outline {
 
     /// Adds up what some facets do; no height counts beyond the radius.
     pub(super) fn through<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Through {
-        let level = Reached { at: Vector3::zeros(), force: Vector3::zeros() };
+        let level = Reached { at: Vector3::zeros(), pulled_by: Pull::Known(Vector3::zeros()) };
         let (mut above, mut below, mut nearest) = (level, level, None);
         for facet in facets {
             let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
@@ -107,7 +116,20 @@ impl Outline {
     }
 
     fn wrench(&self, reached: &Reached) -> Wrench {
-        force_at(&self.place(&reached.at), &self.vector(&reached.force))
+        force_at(&self.place(&reached.at), &self.vector(&self.force(reached)))
+    }
+
+    /// Of few places, so that it is told when it is asked for.
+    fn force(&self, Reached { at, pulled_by }: &Reached) -> Vector3 {
+        match pulled_by {
+            Pull::Known(force) => *force,
+            Pull::Wall(along) => {
+                // It keeps to the wall, by its way along the edge.
+                let outward = Vector3::new(at.x, at.y, 0.0) / self.radius;
+                Vector3::z() - outward * (along.z / outward.dot(along))
+            }
+            Pull::Rim(normal) => normal / normal.z,
+        }
     }
 
     fn place(&self, local: &Vector3) -> Point3 {
@@ -180,14 +202,9 @@ impl Outline {
         }
         let along = to - from;
         [start, end].map(|t| {
-            let at = from + along * t;
-            let mut force = Vector3::z();
-            if t > 0.0 && t < 1.0 {
-                // On the wall it keeps to the wall, by its way along the edge.
-                let outward = Vector3::new(at.x, at.y, 0.0) / self.radius;
-                force -= outward * (along.z / outward.dot(&along));
-            }
-            Some(Reached { at, force })
+            let is_on_wall = t > 0.0 && t < 1.0;
+            let pulled_by = if is_on_wall { Pull::Wall(along) } else { Pull::Known(Vector3::z()) };
+            Some(Reached { at: from + along * t, pulled_by })
         })
     }
 
@@ -211,7 +228,7 @@ impl Outline {
             };
             let sides = [side(0), side(1), side(2)];
             let inside = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
-            inside.then(|| Reached { at: Vector3::new(at.x, at.y, z), force: n / n.z })
+            inside.then(|| Reached { at: Vector3::new(at.x, at.y, z), pulled_by: Pull::Rim(n) })
         })
     }
 }
@@ -237,7 +254,7 @@ fn passes_nearest(corners: &[Vector3; 3]) -> Option<Reached> {
         let edge = if t > 0.0 { edge_to } else { edge_from };
         away - Vector3::z() * (away.dot(&edge) / edge.z)
     };
-    Some(Reached { at, force })
+    Some(Reached { at, pulled_by: Pull::Known(force) })
 }
 
 #[cfg(test)]
