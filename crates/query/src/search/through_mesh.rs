@@ -259,6 +259,8 @@ fn passes_nearest(corners: &[Vector3; 3]) -> Option<Reached> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn disc() -> Outline {
@@ -310,5 +312,18 @@ mod tests {
         assert_eq!(disc().through([rod(0.12)].iter()).off.value, f64::INFINITY);
         let above = facet([[0.0, 0.0, 0.01], [0.2, 0.0, 0.01], [0.0, 0.2, 0.5]]);
         assert_eq!(disc().through([above].iter()).off.value, f64::INFINITY);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_disc_is_passed_where_the_passage_has_a_place(
+            corners in prop::array::uniform3(prop::array::uniform3(-0.2..0.2_f64)),
+        ) {
+            let facets = [facet(corners)];
+            let through = disc().through(facets.iter());
+            prop_assert_eq!(disc().is_passed_by(&facets), through.off.value.is_finite());
+        }
     }
 }
