@@ -164,11 +164,10 @@ impl<'a> Between<'a> {
         let is_enough = apart.surfaces >= surfaces
             && apart.deviations >= deviations * deviations * (1.0 + 4.0 * f64::EPSILON);
         if !is_enough {
-            let axes: &[Array; 3] = a.obb.axes.as_ref();
-            let of_b = &self.moved.axes;
-            let cosine = |k: usize| combined(&axes[k], of_b);
+            let [x, y, z] = self.cosines.map(f64x4::to_array);
+            let cosine = |k: usize| f64x4::new([x[k], y[k], z[k], 0.0]);
             let cosines = [cosine(0), cosine(1), cosine(2)];
-            let gaps = (combined(&self.way, of_b), &cosines, self.slack);
+            let gaps = (combined(&self.way, &self.moved.axes), &cosines, self.slack);
             raise_along(b, a, gaps, (loss_along_b, None), margin, &mut apart);
         }
         apart.deviations = apart.deviations.sqrt();

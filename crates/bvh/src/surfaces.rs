@@ -167,6 +167,9 @@ impl SurfaceOutcome {
 /// Room for as many pairs as a search has waiting at once, as a rule.
 const USUAL_PAIRS: usize = 256;
 
+/// So many nodes of B are remembered.
+const RECENT: usize = 256;
+
 /// The pairs that wait, and what they are tested by.
 struct Pairs<'a> {
     a: &'a Tree,
@@ -178,6 +181,9 @@ struct Pairs<'a> {
     queue: BinaryHeap<Queued<Waiting>>,
     /// Boxes of B in the frame of A: pairs that share a node share its box.
     moved: Vec<MovedBox>,
+    /// Of nodes that were moved lately, each at its name modulo [`RECENT`]: which they are and where their
+    /// box is kept. Most nodes are met again, beside other nodes of A.
+    recent: [(u32, u32); RECENT],
 }
 
 impl<'a> Pairs<'a> {
@@ -197,6 +203,7 @@ impl<'a> Pairs<'a> {
             rounding: pose_rounding(roots, a_from_b),
             queue: BinaryHeap::with_capacity(capacity),
             moved: Vec::with_capacity(capacity),
+            recent: [(u32::MAX, 0); RECENT],
         }
     }
 
@@ -206,8 +213,12 @@ impl<'a> Pairs<'a> {
 
     /// Moves the box of a node of B, and says where it is kept.
     fn moved(&mut self, b: u32) -> u32 {
-        self.moved.push(MovedBox::new(&self.b.nodes[b as usize].obb, &self.a_from_b));
-        (self.moved.len() - 1) as u32
+        let recent = &mut self.recent[b as usize % RECENT];
+        if recent.0 != b {
+            *recent = (b, self.moved.len() as u32);
+            self.moved.push(MovedBox::new(&self.b.nodes[b as usize].obb, &self.a_from_b));
+        }
+        recent.1
     }
 
     fn test_roots(&mut self, a: u32, b: u32, within: f64, outcome: &mut SurfaceOutcome) {

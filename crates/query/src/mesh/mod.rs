@@ -1,5 +1,6 @@
 //! Triangle meshes prepared for queries: exact surfaces, with an inside where they are closed.
 
+mod cells;
 mod coverage;
 mod near;
 mod parts;

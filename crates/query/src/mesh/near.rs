@@ -1,6 +1,6 @@
 //! Which triangles are near a place.
 
-use cloudtouch_bvh::Visit;
+use cloudtouch_bvh::{Node, Visit};
 use cloudtouch_geom::Point3;
 
 use super::prepare::Mesh;
@@ -14,6 +14,20 @@ impl Mesh {
         radius: f64,
         mut visit: impl FnMut(u32, [Point3; 3]),
     ) {
+        self.visit_leaves_near(place, radius, |leaf| {
+            for &triangle in leaf.primitive_indices() {
+                visit(triangle, self.corners(triangle as usize));
+            }
+        });
+    }
+
+    /// Calls `visit` for every leaf whose triangles may come so near.
+    pub(crate) fn visit_leaves_near(
+        &self,
+        place: &Point3,
+        radius: f64,
+        mut visit: impl FnMut(Node<'_>),
+    ) {
         self.tree().visit_nodes(|node| {
             let obb = node.obb();
             let beyond = (obb.to_local(place).abs() - obb.half_extents).map(|d| d.max(0.0));
@@ -21,9 +35,7 @@ impl Mesh {
                 return Visit::Prune;
             }
             if node.is_leaf() {
-                for &triangle in node.primitive_indices() {
-                    visit(triangle, self.corners(triangle as usize));
-                }
+                visit(node);
             }
             Visit::Descend
         });

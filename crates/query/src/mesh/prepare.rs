@@ -11,6 +11,7 @@ use parry3d_f64::shape::TriMesh;
 use crate::error::{PrepareError, SubdivisionError};
 use crate::range::check_points;
 
+use super::cells::Cells;
 use super::parts::{Part, parts};
 use super::subdivide::{SampleRegion, sample_region};
 use super::winding::Winding;
@@ -35,6 +36,8 @@ pub struct Mesh {
     pub(super) winding: Winding,
     watertight: bool,
     closed: bool,
+    /// On which side places are, once that is needed.
+    pub(super) cells: OnceLock<Cells>,
     /// Places that stand for the surface, once they are needed.
     samples: OnceLock<Vec<Point3>>,
     prepare_time: Duration,
@@ -82,8 +85,17 @@ impl Mesh {
         let tree = Tree::build(primitives, &settings)?;
         let winding = Winding::new(triangles);
         let prepare_time = start.elapsed();
-        let samples = OnceLock::new();
-        Ok(Self { origin, surface, tree, winding, watertight, closed, samples, prepare_time })
+        Ok(Self {
+            origin,
+            surface,
+            tree,
+            winding,
+            watertight,
+            closed,
+            cells: OnceLock::new(),
+            samples: OnceLock::new(),
+            prepare_time,
+        })
     }
 
     /// Whether every edge joins two triangles, consistently turned, and every part encloses a

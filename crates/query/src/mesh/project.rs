@@ -5,6 +5,7 @@ use parry3d_f64::math;
 use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::Segment;
 
+use super::cells::Cell;
 use super::prepare::{Mesh, vector};
 use super::side::Side;
 
@@ -39,12 +40,18 @@ impl Mesh {
         if !point.iter().all(|v| v.is_finite()) {
             return Projection { point: *point, triangle: None, signed_distance: f64::NAN };
         }
-        let (projection, (triangle, _)) =
-            self.surface().project_local_point_and_get_location(vector(point), false);
-        let nearest = Point3::new(projection.point.x, projection.point.y, projection.point.z);
+        let (nearest, triangle) = self.nearest(point);
         let distance = (point - nearest).norm();
         let signed_distance = if self.encloses(point) { -distance } else { distance };
-        Projection { point: nearest, triangle: Some(triangle as usize), signed_distance }
+        Projection { point: nearest, triangle: Some(triangle), signed_distance }
+    }
+
+    /// The nearest place of the surface to a finite place in the local frame, and its triangle.
+    pub(crate) fn nearest(&self, local: &Point3) -> (Point3, usize) {
+        let (projection, (triangle, _)) =
+            self.surface().project_local_point_and_get_location(vector(local), false);
+        let nearest = Point3::new(projection.point.x, projection.point.y, projection.point.z);
+        (nearest, triangle as usize)
     }
 
     /// Whether every place within a distance (m) of this one, in the local frame, is outside.
@@ -52,7 +59,17 @@ impl Mesh {
         let near = |p: &Point3| {
             self.surface().project_local_point_with_max_dist(vector(p), false, distance).is_some()
         };
-        self.distance_to_box(local) >= distance || !(self.encloses(local) || near(local))
+        self.is_surely_clear_of(local, distance)
+            || self.cell(local) != Some(Cell::Inside) && !near(local) && !self.encloses(local)
+    }
+
+    /// The same, told at once; no too where it takes a closer look.
+    pub(crate) fn is_surely_clear_of(&self, local: &Point3, distance: f64) -> bool {
+        let to_box = self.distance_to_box(local);
+        let [low, high] = self.corners_of_box();
+        // The way on from the nearest place of the box turns by a right angle at least.
+        to_box >= distance
+            || to_box.hypot(self.clear_around(&local.sup(&low).inf(&high))) >= distance
     }
 
     /// Whether every place within a distance (m) of a straight way, in the local frame, is outside.

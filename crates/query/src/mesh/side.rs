@@ -2,6 +2,7 @@
 
 use cloudtouch_geom::{Point3, Vector3};
 
+use super::cells::{Cell, Cells};
 use super::prepare::Mesh;
 use super::winding::FarRadii;
 
@@ -44,9 +45,32 @@ impl Mesh {
     /// Overlapping parts are inside, cavities and both sides of a sheet with a back face outside. An
     /// open mesh has sides as far as it surrounds a place: far from its opening.
     pub(crate) fn side(&self, local: &Point3) -> Side {
-        if self.is_closed() && self.is_off_box(local) {
-            return Side::Outside;
+        match self.cell(local) {
+            Some(Cell::Inside) => Side::Inside,
+            Some(Cell::Outside(_)) => Side::Outside,
+            Some(Cell::Crossed) | None => self.side_by_winding(local),
         }
+    }
+
+    /// What is known of the surroundings of a place; `None` where the mesh is open.
+    pub(super) fn cell(&self, local: &Point3) -> Option<Cell> {
+        let beyond = self.distance_to_box(local) > 0.0;
+        self.is_closed().then(|| if beyond { Cell::Outside(0) } else { self.cells().at(local) })
+    }
+
+    /// How far (m) everything around a place within the box is outside, for certain; nothing is known of
+    /// an open mesh.
+    pub(super) fn clear_around(&self, local: &Point3) -> f64 {
+        if self.is_closed() { self.cells().clear_around(local) } else { 0.0 }
+    }
+
+    fn cells(&self) -> &Cells {
+        let is_inside = |place: &Point3| self.side_by_winding(place) == Side::Inside;
+        self.cells
+            .get_or_init(|| Cells::new(self.winding.triangles(), self.corners_of_box(), is_inside))
+    }
+
+    fn side_by_winding(&self, local: &Point3) -> Side {
         let is_near_limit = |number: f64, doubt: f64| {
             [INSIDE, OUTSIDE].iter().any(|limit| (number.abs() - limit).abs() < doubt)
         };
@@ -58,10 +82,6 @@ impl Mesh {
             number = self.winding.plain(local);
         }
         Side::of(number)
-    }
-
-    fn is_off_box(&self, local: &Point3) -> bool {
-        self.distance_to_box(local) > 0.0
     }
 
     /// Distance of a place in the local frame to the box around the mesh, m; 0 within.

@@ -105,7 +105,7 @@ fn merge_repeated(points: &mut Vec<Point3>) {
     let order = |p: &Point3, q: &Point3| {
         p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(p.z.total_cmp(&q.z))
     };
-    points.sort_by(order);
+    points.sort_unstable_by(order);
     points.dedup();
 }
 

@@ -67,6 +67,11 @@ impl Winding {
         Self { groups, triangles }
     }
 
+    /// The triangles it is of, in an order of its own.
+    pub(super) fn triangles(&self) -> &[[Point3; 3]] {
+        &self.triangles
+    }
+
     /// The winding number around a place off the surface.
     pub(super) fn fast(&self, place: &Point3, FarRadii(radii): FarRadii) -> f64 {
         let (mut half_angles, mut dipoles) = (0.0, 0.0);

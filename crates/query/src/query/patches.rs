@@ -132,9 +132,14 @@ fn of_mesh(
     let mut triangles = Vec::new();
     mesh.visit_triangles_near(place, radius, |_, corners| triangles.push(corners));
     let region = SampleRegion { center: *place, core: radius, radius, spacing: seed.spacing };
-    let mut points = sample_region(triangles, &region, max_parts)?;
-    let distance = |p: &Point3| (p - place).norm();
-    points.sort_by(|p, q| distance(p).total_cmp(&distance(q)));
-    points.truncate(MOST_POINTS);
-    Ok(points)
+    let points = sample_region(triangles, &region, max_parts)?;
+    // There are hundreds: of equally near ones the first count.
+    let mut near: Vec<(f64, usize)> = points.iter().map(|p| (p - place).norm()).zip(0..).collect();
+    let order = |p: &(f64, usize), q: &(f64, usize)| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1));
+    if near.len() > MOST_POINTS {
+        near.select_nth_unstable_by(MOST_POINTS, order);
+        near.truncate(MOST_POINTS);
+    }
+    near.sort_unstable_by(order);
+    Ok(near.into_iter().map(|(_, index)| points[index]).collect())
 }

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Point3;
 
-use crate::cloud::{DISC_SPACINGS, SLOPE};
+use crate::cloud::{DISC_SPACINGS, SLOPE, Surfel};
 
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
@@ -41,6 +41,12 @@ pub(super) fn add_edges_through_discs(
     found: &mut Crossings,
 ) {
     let (around, slab) = (of_discs.ball, of_discs.slab);
+    let surfels = of_discs.surfels.iter().enumerate();
+    let discs: Vec<(usize, &Surfel)> =
+        surfels.filter(|(_, disc)| of_edges.edge_slab.may_hold_disc_of(disc)).collect();
+    if discs.is_empty() {
+        return;
+    }
     // Taken out, for the edges are borrowed while probabilities are raised.
     let mut of_ends = std::mem::take(&mut of_edges.crossing);
     for edge in of_edges.edges() {
@@ -51,13 +57,13 @@ pub(super) fn add_edges_through_discs(
         if !around.is_within(&middle, edge.half_length + DISC_SPACINGS * around.spacing) {
             continue;
         }
-        for (disc, of_disc) in of_discs.surfels.iter().zip(&mut of_discs.crossing) {
+        for &(at, disc) in &discs {
             let reach = edge.half_length + DISC_SPACINGS * disc.spacing;
             if (disc.point.mean - middle).norm_squared() > reach * reach {
                 continue;
             }
             let Some(crossing) = through_disc(edge, disc) else { continue };
-            *of_disc = of_disc.max(crossing.probability);
+            of_discs.crossing[at] = of_discs.crossing[at].max(crossing.probability);
             for place in edge.own.into_iter().flatten() {
                 of_ends[place] = of_ends[place].max(crossing.probability);
             }
@@ -107,7 +113,7 @@ pub(super) fn add_mesh_through_discs(
             continue;
         }
         let outline = Outline::new(middle, normal, radius);
-        if outline.through(facets.facets.iter()).off.value.is_infinite() {
+        if !outline.is_passed_by(&facets.facets) {
             continue;
         }
         // Once, and by all of the mesh there: however its triangles are shared out to leaves.

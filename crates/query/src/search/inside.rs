@@ -99,7 +99,14 @@ fn deepest(
         }
         let obb = node.obb();
         let middle = mesh_from_cloud.transform_point(&obb.centre);
-        if mesh.is_clear_of(&middle, obb.radius() + node.shift()) {
+        let reach = obb.radius() + node.shift();
+        // Above the leaves it costs less to go on than to look closer.
+        let is_clear = if node.is_leaf() {
+            mesh.is_clear_of(&middle, reach)
+        } else {
+            mesh.is_surely_clear_of(&middle, reach)
+        };
+        if is_clear {
             return Visit::Prune;
         }
         if node.is_leaf() {
@@ -172,18 +179,18 @@ impl Looked {
         if !mesh.encloses(&at) {
             return;
         }
-        let projection = mesh.project(&at);
-        let depth = -projection.signed_distance;
+        let (place, _) = mesh.nearest(&at);
+        let depth = (at - place).norm();
         let deviations = depth / surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
         // On the surface itself no direction is outward.
-        let Some(outward) = (projection.point - at).try_normalize(0.0) else { return };
+        let Some(outward) = (place - at).try_normalize(0.0) else { return };
         if deviations > self.deviations() {
             let in_cloud = cloud_from_mesh.transform_vector(&outward);
             self.deepest = Some(Inside {
                 deviations,
                 depth,
                 std: surfel.point.covariance.std_along(&in_cloud),
-                place: projection.point,
+                place,
                 outward,
                 spacing: surfel.spacing,
             });

@@ -34,6 +34,8 @@ pub(crate) struct NoisyLeaf<'a> {
     pub surfels: Cow<'a, [Surfel]>,
     /// `None` until they are needed.
     edges: Option<Cow<'a, [Edge]>>,
+    /// Between which heights these are.
+    pub(super) edge_slab: Slab,
     /// For each surfel lengths in its standard deviations; empty until they are needed.
     whitenings: Vec<Whitening>,
     /// For each surfel the squared deviations to the nearest piece of the other body, at most those
@@ -102,17 +104,20 @@ impl<'a> Leaf<'a> {
 
 impl ExactLeaf {
     fn load(mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> Self {
-        let indices = mesh.tree().leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
-        let facets: Vec<Facet> = indices
-            .iter()
-            .map(|&triangle| {
-                let facet = Facet::new(triangle, mesh.corners(triangle as usize));
-                motion.map_or(facet, |motion| facet.moved(motion))
-            })
-            .collect();
+        let facets = facets_of(mesh, id, motion);
         let ball = Ball::around_points(facets.iter().flat_map(|facet| &facet.corners));
         Self { facets, ball }
     }
+}
+
+/// The triangles of a leaf of a mesh, moved to the frame of A by `motion`, or of A itself.
+pub(super) fn facets_of(mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> Vec<Facet> {
+    let indices = mesh.tree().leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
+    let facets = indices.iter().map(|&triangle| {
+        let facet = Facet::new(triangle, mesh.corners(triangle as usize));
+        motion.map_or(facet, |motion| facet.moved(motion))
+    });
+    facets.collect()
 }
 
 impl<'a> NoisyLeaf<'a> {
@@ -132,8 +137,17 @@ impl<'a> NoisyLeaf<'a> {
         let thin =
             cloud.tree().node(id).map_or_else(Vector3::z, |leaf| leaf.obb().axes.column(2).into());
         let slab = Slab::around(&surfels, motion.map_or(thin, |motion| motion.vector(&thin)));
-        let whitenings = Vec::new();
-        Self { surfels, edges: None, whitenings, squared, crossing, is_pierced, ball, slab }
+        Self {
+            surfels,
+            edges: None,
+            edge_slab: Slab::empty(slab.direction),
+            whitenings: Vec::new(),
+            squared,
+            crossing,
+            is_pierced,
+            ball,
+            slab,
+        }
     }
 
     /// Lengths in the standard deviations of each surfel, beside what is changed with them.
@@ -146,13 +160,18 @@ impl<'a> NoisyLeaf<'a> {
 
     /// Gets its edges, once.
     pub(super) fn load_edges(&mut self, cloud: &'a Cloud, id: NodeId, motion: Option<&Motion>) {
-        self.edges.get_or_insert_with(|| {
-            let edges = cloud.leaf_edges(id);
-            match motion {
-                None => Cow::Borrowed(edges),
-                Some(motion) => edges.iter().map(|e| e.moved(motion)).collect(),
-            }
-        });
+        if self.edges.is_some() {
+            return;
+        }
+        let edges = cloud.leaf_edges(id);
+        let edges: Cow<'_, [Edge]> = match motion {
+            None => Cow::Borrowed(edges),
+            Some(motion) => edges.iter().map(|e| e.moved(motion)).collect(),
+        };
+        for end in edges.iter().flat_map(|edge| &edge.ends) {
+            self.edge_slab.include(end, 0.0);
+        }
+        self.edges = Some(edges);
     }
 
     /// None before they were loaded.
@@ -176,15 +195,32 @@ impl<'a> NoisyLeaf<'a> {
 
 impl Slab {
     fn around(surfels: &[Surfel], direction: Vector3) -> Self {
-        let mut slab = Self { direction, low: f64::INFINITY, high: f64::NEG_INFINITY };
+        let mut slab = Self::empty(direction);
         for surfel in surfels {
             let Some(normal) = surfel.normal else { continue };
-            let height = surfel.point.mean.coords.dot(&direction);
             let reach = DISC_SPACINGS * surfel.spacing * slab.sine(&normal);
-            slab.low = slab.low.min(height - reach);
-            slab.high = slab.high.max(height + reach);
+            slab.include(&surfel.point.mean, reach);
         }
         slab
+    }
+
+    fn empty(direction: Vector3) -> Self {
+        Self { direction, low: f64::INFINITY, high: f64::NEG_INFINITY }
+    }
+
+    /// Grows to what reaches so far (m) from the height of a place.
+    fn include(&mut self, place: &Point3, reach: f64) {
+        let height = place.coords.dot(&self.direction);
+        self.low = self.low.min(height - reach);
+        self.high = self.high.max(height + reach);
+    }
+
+    /// Whether it holds a place of the disc about a surfel.
+    pub(super) fn may_hold_disc_of(&self, surfel: &Surfel) -> bool {
+        surfel.normal.is_some_and(|normal| {
+            let reach = DISC_SPACINGS * surfel.spacing * self.sine(&normal);
+            self.is_within(&surfel.point.mean, reach)
+        })
     }
 
     /// A tilt smaller than this is rounding.

@@ -10,6 +10,7 @@ use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
+use super::around::Around;
 use super::crossings::Crossings;
 use super::facet::Facet;
 use super::gather::{
@@ -46,6 +47,7 @@ pub(crate) struct Found<'a> {
     /// The least deviations between two pieces of surface, at most [`MOST_DEVIATIONS`].
     pub deviations: f64,
     pub crossings: Crossings,
+    around: Around,
     /// Whether what was left out can change neither of these.
     pub is_complete: bool,
     /// No two pieces are nearer than this, m; negative where surfaces may cross.
@@ -110,7 +112,8 @@ impl<'a> Found<'a> {
         self.at_least = self.at_least.min(leaf_a.distance(leaf_b));
         let nearest = (pair.deviations < most).then(|| nearest_pieces(leaf_a, leaf_b, most));
         if pair.may_cross {
-            cross((a, b), a_from_b, pair, (leaf_a, leaf_b), &mut self.crossings);
+            let found = (&mut self.crossings, &mut self.around);
+            cross((a, b), a_from_b, pair, (leaf_a, leaf_b), found);
         }
         let Some(nearest) = nearest.flatten() else { return };
         self.deviations = self.deviations.min(nearest.squared.sqrt());
@@ -126,7 +129,7 @@ fn cross<'a>(
     a_from_b: &Motion,
     pair: &SurfacePair,
     leaves: (&mut Leaf<'a>, &mut Leaf<'a>),
-    crossings: &mut Crossings,
+    (crossings, known): (&mut Crossings, &mut Around),
 ) {
     match leaves {
         (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
@@ -142,13 +145,13 @@ fn cross<'a>(
         (Leaf::Noisy(noisy), Leaf::Exact(exact)) if may_reach_facets(noisy, exact) => {
             load_edges(noisy, a, pair.a, None);
             add_edges_through_facets(true, noisy, exact, crossings);
-            let around = |place: &Point3, radius| facets_around(b, Some(a_from_b), place, radius);
+            let around = |place: &Point3, radius| known.facets(b, Some(a_from_b), place, radius);
             add_mesh_through_discs(true, noisy, exact, around, crossings);
         }
         (Leaf::Exact(exact), Leaf::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
             load_edges(noisy, b, pair.b, Some(a_from_b));
             add_edges_through_facets(false, noisy, exact, crossings);
-            let around = |place: &Point3, radius| facets_around(a, None, place, radius);
+            let around = |place: &Point3, radius| known.facets(a, None, place, radius);
             add_mesh_through_discs(false, noisy, exact, around, crossings);
         }
         _ => {}

@@ -19,12 +19,21 @@ pub(super) struct Through {
     pub place: Point3,
 }
 
-/// A place of a mesh in the coordinates of a disc, and what its height, or its distance from the middle,
-/// changes by as the mesh moves.
+/// A place of a mesh in the coordinates of a disc.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
     at: Vector3,
-    force: Vector3,
+    pulled_by: Pull,
+}
+
+/// What the height of a place, or its distance from the middle, changes by as the mesh moves.
+#[derive(Debug, Clone, Copy)]
+enum Pull {
+    Known(Vector3),
+    /// On an edge that runs so, where it passes the wall of the cylinder.
+    Wall(Vector3),
+    /// On the rim of the disc in a plane with this normal.
+    Rim(Vector3),
 }
 
 /// A disc, seen along its normal.
@@ -43,9 +52,28 @@ impl Outline {
         Self { middle, radius, normal, across: [first, normal.cross(&first)] }
     }
 
+    /// Whether one of some facets passes the disc.
+    pub(super) fn is_passed_by(&self, facets: &[Facet]) -> bool {
+        facets.iter().any(|facet| {
+            let ways = facet.corners.map(|corner| corner - self.middle);
+            // Most are above the disc or below.
+            let are_below = ways.map(|way| self.normal.dot(&way) < 0.0);
+            if are_below == [are_below[0]; 3] {
+                return false;
+            }
+            let corners = ways.map(|way| self.local(&way));
+            !self.is_aside(&corners)
+                && passes_nearest(&corners).is_some_and(|reached| self.is_within(&reached))
+        })
+    }
+
+    fn is_within(&self, reached: &Reached) -> bool {
+        reached.at.norm() <= self.radius
+    }
+
     /// Adds up what some facets do; no height counts beyond the radius.
     pub(super) fn through<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Through {
-        let level = Reached { at: Vector3::zeros(), force: Vector3::zeros() };
+        let level = Reached { at: Vector3::zeros(), pulled_by: Pull::Known(Vector3::zeros()) };
         let (mut above, mut below, mut nearest) = (level, level, None);
         for facet in facets {
             let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
@@ -60,8 +88,7 @@ impl Outline {
                     below = reached;
                 }
             });
-            let passes =
-                passes_nearest(&corners).filter(|reached| reached.at.norm() <= self.radius);
+            let passes = passes_nearest(&corners).filter(|reached| self.is_within(reached));
             if let Some(reached) = passes {
                 let is_nearer = |known: Reached| reached.at.norm() < known.at.norm();
                 if nearest.is_none_or(is_nearer) {
@@ -89,7 +116,20 @@ impl Outline {
     }
 
     fn wrench(&self, reached: &Reached) -> Wrench {
-        force_at(&self.place(&reached.at), &self.vector(&reached.force))
+        force_at(&self.place(&reached.at), &self.vector(&self.force(reached)))
+    }
+
+    /// Of few places, so that it is told when it is asked for.
+    fn force(&self, Reached { at, pulled_by }: &Reached) -> Vector3 {
+        match pulled_by {
+            Pull::Known(force) => *force,
+            Pull::Wall(along) => {
+                // It keeps to the wall, by its way along the edge.
+                let outward = Vector3::new(at.x, at.y, 0.0) / self.radius;
+                Vector3::z() - outward * (along.z / outward.dot(along))
+            }
+            Pull::Rim(normal) => normal / normal.z,
+        }
     }
 
     fn place(&self, local: &Vector3) -> Point3 {
@@ -162,14 +202,9 @@ impl Outline {
         }
         let along = to - from;
         [start, end].map(|t| {
-            let at = from + along * t;
-            let mut force = Vector3::z();
-            if t > 0.0 && t < 1.0 {
-                // On the wall it keeps to the wall, by its way along the edge.
-                let outward = Vector3::new(at.x, at.y, 0.0) / self.radius;
-                force -= outward * (along.z / outward.dot(&along));
-            }
-            Some(Reached { at, force })
+            let is_on_wall = t > 0.0 && t < 1.0;
+            let pulled_by = if is_on_wall { Pull::Wall(along) } else { Pull::Known(Vector3::z()) };
+            Some(Reached { at: from + along * t, pulled_by })
         })
     }
 
@@ -193,7 +228,7 @@ impl Outline {
             };
             let sides = [side(0), side(1), side(2)];
             let inside = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
-            inside.then(|| Reached { at: Vector3::new(at.x, at.y, z), force: n / n.z })
+            inside.then(|| Reached { at: Vector3::new(at.x, at.y, z), pulled_by: Pull::Rim(n) })
         })
     }
 }
@@ -219,11 +254,13 @@ fn passes_nearest(corners: &[Vector3; 3]) -> Option<Reached> {
         let edge = if t > 0.0 { edge_to } else { edge_from };
         away - Vector3::z() * (away.dot(&edge) / edge.z)
     };
-    Some(Reached { at, force })
+    Some(Reached { at, pulled_by: Pull::Known(force) })
 }
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn disc() -> Outline {
@@ -275,5 +312,18 @@ mod tests {
         assert_eq!(disc().through([rod(0.12)].iter()).off.value, f64::INFINITY);
         let above = facet([[0.0, 0.0, 0.01], [0.2, 0.0, 0.01], [0.0, 0.2, 0.5]]);
         assert_eq!(disc().through([above].iter()).off.value, f64::INFINITY);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_disc_is_passed_where_the_passage_has_a_place(
+            corners in prop::array::uniform3(prop::array::uniform3(-0.2..0.2_f64)),
+        ) {
+            let facets = [facet(corners)];
+            let through = disc().through(facets.iter());
+            prop_assert_eq!(disc().is_passed_by(&facets), through.off.value.is_finite());
+        }
     }
 }
