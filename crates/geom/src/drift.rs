@@ -44,18 +44,28 @@ impl Drift {
     }
 
     /// u: where a point at a place is headed, m.
+    #[inline]
     pub fn first_order(&self, place: &Point3) -> Vector3 {
         self.linear + self.angular.cross(&(place - self.pivot))
     }
 
     /// How far along a unit vector a point gets from a place at most, either way, m.
+    #[inline]
     pub fn along(&self, direction: &Vector3, place: &Point3) -> f64 {
         // What the arc adds is across the axis.
-        let across = direction.cross(&self.axis).norm();
+        let across = self.across_axis(direction);
         self.first_order(place).dot(direction).abs() + across * self.beyond_first_order(place, 0.0)
     }
 
+    /// How long the part of a unit vector across the axis is: what the arc adds along it is that share of
+    /// [`Self::beyond_first_order`]. 0 without a turn.
+    #[inline]
+    pub fn across_axis(&self, direction: &Vector3) -> f64 {
+        direction.cross(&self.axis).norm()
+    }
+
     /// How far in any direction, m.
+    #[inline]
     pub fn in_any_direction(&self, place: &Point3) -> f64 {
         self.first_order(place).norm() + self.beyond_first_order(place, 0.0)
     }
@@ -75,21 +85,24 @@ impl Drift {
         self.first_order(middle).dot(direction).abs()
             + half_axes.tr_mul(&slope).abs().sum()
             + slope.norm() * around
-            + direction.cross(&self.axis).norm() * self.beyond_first_order(middle, radius)
+            + self.across_axis(direction) * self.beyond_first_order(middle, radius)
     }
 
     /// By how much a direction that turns with the body gets from itself at most, as a length of the
     /// difference; 0 along the axis.
+    #[inline]
     pub fn turn_of(&self, direction: &Vector3) -> f64 {
-        self.chord * direction.cross(&self.axis).norm()
+        self.chord * self.across_axis(direction)
     }
 
     /// The same of any direction.
+    #[inline]
     pub fn turn(&self) -> f64 {
         self.chord
     }
 
     /// What the arc adds anywhere within a radius of a place, m; no more is left out of s·u.
+    #[inline]
     pub fn beyond_first_order(&self, place: &Point3, radius: f64) -> f64 {
         if self.bend == 0.0 {
             return self.skew;
@@ -130,6 +143,15 @@ mod tests {
             let back = pivot + turn.inverse() * (place - pivot - linear * s);
             let in_box = drift.along_of_box(&direction, &middle, &half_axes, 0.0);
             prop_assert!(drift.along(&direction, &place) <= in_box + 1e-12);
+            let first_order = drift.first_order(&place) * s;
+            let rests = [there - place - first_order, back - place + first_order];
+            let beyond = drift.beyond_first_order(&place, 0.0);
+            for rest in rests {
+                prop_assert!(rest.norm() <= beyond + 1e-12);
+                prop_assert!(
+                    rest.dot(&direction).abs() <= drift.across_axis(&direction) * beyond + 1e-12
+                );
+            }
             for moved in [there, back] {
                 let by = moved - place;
                 prop_assert!(by.dot(&direction).abs() <= drift.along(&direction, &place) + 1e-12);
