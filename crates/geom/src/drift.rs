@@ -79,6 +79,9 @@ impl Drift {
         half_axes: &Matrix3,
         around: f64,
     ) -> f64 {
+        if self.angular == Vector3::zeros() {
+            return self.linear.dot(direction).abs();
+        }
         // n·(ω × y) = (n × ω)·y.
         let slope = direction.cross(&self.angular);
         let radius = half_axes.norm() + around;

@@ -209,12 +209,7 @@ impl Slab {
     pub(super) fn may_hold(&self, ends: &[Point3; 2], distance: f64) -> bool {
         let [from, to] = ends;
         let (from, to) = (from.coords.dot(&self.direction), to.coords.dot(&self.direction));
-        self.meets([from.min(to) - distance, from.max(to) + distance])
-    }
-
-    /// Whether some disc may be between two heights, m.
-    pub(super) fn meets(&self, [low, high]: [f64; 2]) -> bool {
-        high >= self.low && low <= self.high
+        from.max(to) + distance >= self.low && from.min(to) - distance <= self.high
     }
 }
 

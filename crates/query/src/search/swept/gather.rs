@@ -37,13 +37,17 @@ pub(super) fn may_reach_facets(of_edges: &SweptCloud<'_>, facets: &ExactLeaf) ->
     })
 }
 
-/// Whether any edge, all of them looked at as one box, may get to the heights of the discs of another leaf.
-pub(super) fn get_to(edges: &SweptEdges, of_discs: &NoisyLeaf<'_>, drift: &Drift) -> bool {
-    let slab = &of_discs.slab;
-    edges.hull.is_some_and(|hull| {
-        let [low, high] = hull.heights(&slab.direction, &Point3::origin(), drift);
-        slab.meets([low, high])
-    })
+/// Whether any edge of a leaf may meet a disc of another, all of each looked at as one box.
+pub(super) fn may_meet(
+    is_a: bool,
+    (of_edges, edges): (&SweptCloud<'_>, &SweptEdges),
+    of_discs: &SweptCloud<'_>,
+    drift: &Drift,
+) -> bool {
+    let (Some(edges), Some(discs)) = (&edges.hull, &of_discs.discs) else { return false };
+    let (still, drifting) = if is_a { (edges, discs) } else { (discs, edges) };
+    let thin = [of_discs, of_edges].map(|leaf| leaf.leaf.slab.direction);
+    thin.iter().all(|n| still.meets_along(drifting, n, drift))
 }
 
 /// Adds the passages of edges of one leaf through discs of another.
@@ -87,7 +91,8 @@ pub(super) fn add_edges_through_facets(
     found: &mut Passages,
 ) {
     let Some(SweptEdges { tracks, hull: Some(hull) }) = of_edges.edges() else { return };
-    let met = facets.facets.iter().filter(|facet| hull.gets_to_plane(facet, drift));
+    let thin = &of_edges.leaf.slab.direction;
+    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, drift));
     let met: Vec<&Facet> = met.collect();
     if met.is_empty() {
         return;
@@ -116,7 +121,8 @@ pub(super) fn add_mesh_through_discs(
     found: &mut Passages,
 ) {
     let Some(hull) = discs.discs else { return };
-    let met = facets.facets.iter().filter(|facet| hull.gets_to_plane(facet, drift));
+    let thin = &discs.leaf.slab.direction;
+    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, drift));
     let met: Vec<Facet> = met.copied().collect();
     if met.is_empty() {
         return;

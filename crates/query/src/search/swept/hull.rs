@@ -34,21 +34,35 @@ impl Hull {
         })
     }
 
-    /// Between which heights above a place everything in it keeps along a unit vector while one of the two
-    /// drifts, m.
-    pub(super) fn heights(&self, n: &Vector3, place: &Point3, drift: &Drift) -> [f64; 2] {
-        let height = n.dot(&(self.middle - place));
-        let half = self.half_axes.tr_mul(n).abs().sum()
-            + drift.along_of_box(n, &self.middle, &self.half_axes, 0.0);
+    /// Between which heights everything in it is along a unit vector, m; never too narrow by rounding.
+    fn heights(&self, n: &Vector3) -> [f64; 2] {
+        let (height, half) = (n.dot(&self.middle.coords), self.half_axes.tr_mul(n).abs().sum());
         let room = half + ROUNDING * (half + height.abs());
         [height - room, height + room]
     }
 
-    /// Whether anything in it may get to the plane of a triangle; one without a plane is anywhere.
-    pub(super) fn gets_to_plane(&self, facet: &Facet, drift: &Drift) -> bool {
-        facet.normal.is_none_or(|n| {
-            let [low, high] = self.heights(&n, &facet.corners[0], drift);
-            low <= 0.0 && high >= 0.0
-        })
+    /// Whether two boxes may meet while the second drifts, as far as one direction tells.
+    pub(super) fn meets_along(&self, drifting: &Self, n: &Vector3, drift: &Drift) -> bool {
+        let room = drift.along_of_box(n, &drifting.middle, &drifting.half_axes, 0.0);
+        let ([low, high], [from, to]) = (self.heights(n), drifting.heights(n));
+        from - room <= high && to + room >= low
+    }
+
+    /// Whether a triangle may meet it while one of them drifts, as far as the plane of the triangle and one
+    /// direction tell.
+    pub(super) fn meets_facet(&self, facet: &Facet, direction: &Vector3, drift: &Drift) -> bool {
+        let gets_to_plane = |n: Vector3| {
+            let room = drift.along_of_box(&n, &self.middle, &self.half_axes, 0.0);
+            let ([low, high], at) = (self.heights(&n), n.dot(&facet.corners[0].coords));
+            low - room <= at && at <= high + room
+        };
+        let [low, high] = self.heights(direction);
+        let (mut is_above, mut is_below) = (true, true);
+        for corner in &facet.corners {
+            let (at, room) = (direction.dot(&corner.coords), drift.along(direction, corner));
+            is_above &= at - room > high;
+            is_below &= at + room < low;
+        }
+        !is_above && !is_below && facet.normal.is_none_or(gets_to_plane)
     }
 }

@@ -9,7 +9,7 @@ use super::super::crossing::{CLEAREST, known_to, weight_at};
 use super::super::facet::Facet;
 use super::super::through_mesh::Outline;
 use super::leaf::EdgeTrack;
-use super::track::{Direction, facet_keeps_off, gap_along, piece_keeps_off};
+use super::track::{Direction, facet_keeps_off, piece_keeps_off};
 
 /// A passage that may be.
 #[derive(Debug, Clone, Copy)]
@@ -177,9 +177,13 @@ pub(super) fn may_pierce(
     drift: &Drift,
 ) -> Option<f64> {
     let middle = disc.point.mean;
-    let keeps =
-        |side: f64, facet: &Facet| gap_along(&middle, facet, false, drift, &(normal * side)) > 0.0;
-    let passes = facets.iter().filter(|facet| !keeps(1.0, facet) && !keeps(-1.0, facet));
+    let passes = facets.iter().filter(|facet| {
+        let heights = facet.corners.map(|corner| {
+            let (at, by) = (normal.dot(&(corner - middle)), drift.along(normal, &corner));
+            (at - by, at + by)
+        });
+        heights.iter().any(|(low, _)| *low <= 0.0) && heights.iter().any(|(_, high)| *high >= 0.0)
+    });
     let off = passes.map(|facet| facet_keeps_off(&middle, facet, !is_a, drift));
     let off = off.fold(f64::INFINITY, f64::min);
     (off <= DISC_SPACINGS * disc.spacing * (1.0 + ROUNDING)).then_some(off)

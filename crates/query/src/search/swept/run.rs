@@ -10,14 +10,14 @@ use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
-use super::super::leaf::{ExactLeaf, NoisyLeaf};
+use super::super::leaf::ExactLeaf;
 use super::super::run::facets_around;
 use super::facets::may_touch;
 use super::gather::{
-    add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, get_to, may_reach,
+    add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_meet, may_reach,
     may_reach_facets,
 };
-use super::leaf::{Swept, SweptCloud, SweptEdges};
+use super::leaf::{Swept, SweptCloud};
 use super::pieces::{between_discs, to_facet, turned_variance};
 use super::pool::Passages;
 use super::track::Direction;
@@ -152,17 +152,19 @@ fn cross_discs<'a>(
     is_a: bool,
     of_edges: &mut SweptCloud<'a>,
     (body, id, motion): (BodyRef<'a>, NodeId, Option<&Motion>),
-    of_discs: &NoisyLeaf<'_>,
+    of_discs: &SweptCloud<'_>,
     drift: &Drift,
     passages: &mut Passages,
 ) {
-    let may_get = |edges: &SweptEdges| get_to(edges, of_discs, drift);
-    if !of_edges.edges().is_none_or(may_get) || !may_reach(of_edges, of_discs, drift) {
+    let may_meet = |of_edges: &SweptCloud<'_>| {
+        of_edges.edges().is_none_or(|edges| may_meet(is_a, (of_edges, edges), of_discs, drift))
+    };
+    if !may_meet(of_edges) || !may_reach(of_edges, &of_discs.leaf, drift) {
         return;
     }
     of_edges.load_edges(body, id, motion, drift);
-    if of_edges.edges().is_some_and(may_get) {
-        add_edges_through_discs(is_a, of_edges, of_discs, drift, passages);
+    if may_meet(of_edges) {
+        add_edges_through_discs(is_a, of_edges, &of_discs.leaf, drift, passages);
     }
 }
 
@@ -176,8 +178,8 @@ fn cross<'a>(
 ) {
     match leaves {
         (Swept::Noisy(on_a), Swept::Noisy(on_b)) => {
-            cross_discs(true, on_a, (a, pair.a, None), &on_b.leaf, drift, passages);
-            cross_discs(false, on_b, (b, pair.b, Some(a_from_b)), &on_a.leaf, drift, passages);
+            cross_discs(true, on_a, (a, pair.a, None), on_b, drift, passages);
+            cross_discs(false, on_b, (b, pair.b, Some(a_from_b)), on_a, drift, passages);
         }
         (Swept::Noisy(noisy), Swept::Exact(exact)) if may_reach_facets(noisy, exact) => {
             noisy.load_edges(a, pair.a, None, drift);
