@@ -70,8 +70,27 @@ impl Drift {
         self.first_order(place).norm() + self.beyond_first_order(place, 0.0)
     }
 
-    /// The largest of [`Self::along`] in a box, given by its middle and its half axes (columns), and
-    /// `around` metres about it.
+    /// What it does to a box, given by its middle and its half axes (columns), and to what is `around`
+    /// metres about it.
+    #[inline]
+    pub fn of_box(&self, middle: &Point3, half_axes: &Matrix3, around: f64) -> BoxDrift {
+        let way = self.first_order(middle);
+        if self.angular == Vector3::zeros() {
+            return BoxDrift { way, turning: None };
+        }
+        let beyond = self.beyond_first_order(middle, half_axes.norm() + around);
+        let angle = self.angular.norm();
+        BoxDrift {
+            way,
+            turning: Some(Turning {
+                axis: self.axis,
+                half_ways: half_axes * angle,
+                beside: angle * around + beyond,
+            }),
+        }
+    }
+
+    /// The largest of [`Self::along`] in such a box.
     pub fn along_of_box(
         &self,
         direction: &Vector3,
@@ -79,16 +98,7 @@ impl Drift {
         half_axes: &Matrix3,
         around: f64,
     ) -> f64 {
-        if self.angular == Vector3::zeros() {
-            return self.linear.dot(direction).abs();
-        }
-        // n·(ω × y) = (n × ω)·y.
-        let slope = direction.cross(&self.angular);
-        let radius = half_axes.norm() + around;
-        self.first_order(middle).dot(direction).abs()
-            + half_axes.tr_mul(&slope).abs().sum()
-            + slope.norm() * around
-            + self.across_axis(direction) * self.beyond_first_order(middle, radius)
+        self.of_box(middle, half_axes, around).along(direction)
     }
 
     /// By how much a direction that turns with the body gets from itself at most, as a length of the
@@ -111,6 +121,39 @@ impl Drift {
             return self.skew;
         }
         self.bend * (self.axis.cross(&(place - self.pivot)).norm() + radius) + self.skew
+    }
+}
+
+/// How far the points of a box get: what a [`Drift`] says of it along any direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxDrift {
+    /// Where its middle is headed, m.
+    way: Vector3,
+    turning: Option<Turning>,
+}
+
+/// What a turn adds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Turning {
+    axis: Vector3,
+    /// The half axes (columns) times the angle, m.
+    half_ways: Matrix3,
+    /// What is about the box, times the angle, and what the arc adds, m.
+    beside: f64,
+}
+
+impl BoxDrift {
+    /// How far along a unit vector any point of it gets from its place at most, either way, m.
+    #[inline]
+    pub fn along(&self, direction: &Vector3) -> f64 {
+        let of_middle = self.way.dot(direction).abs();
+        self.turning.as_ref().map_or(of_middle, |turning| {
+            // n·(ω × y) = (n × ω)·y.
+            let across = direction.cross(&turning.axis);
+            let ways = turning.half_ways.tr_mul(&across);
+            let beside = across.norm() * turning.beside;
+            of_middle + ways.x.abs() + ways.y.abs() + ways.z.abs() + beside
+        })
     }
 }
 

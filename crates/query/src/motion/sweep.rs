@@ -192,25 +192,32 @@ impl Sweep<'_> {
             }
             let Interval { segment, times: [from, to], .. } = interval;
             let middle = interval.middle();
-            self.test(segment, middle)?;
-            for times in [[from, middle], [middle, to]] {
-                let half = Interval { times, ..interval };
-                // What cannot matter any more keeps the bound of the whole.
-                waiting.push(match half.start() < self.tested.end() {
-                    true => self.bounded(segment, times)?,
-                    false => half,
-                });
+            let first = self.bounded(segment, [from, middle])?;
+            // Where all of the first half is free, so is the pose at its end.
+            if !self.is_free(&first) {
+                self.test(segment, middle)?;
             }
+            waiting.push(first);
+            let second = Interval { times: [middle, to], ..interval };
+            // What cannot matter any more keeps the bound of the whole.
+            waiting.push(match second.start() < self.tested.end() {
+                true => self.bounded(segment, second.times)?,
+                false => second,
+            });
         }
         Ok(looked_at)
     }
 
     /// Whether a closer look could change the answer by more than the tolerances.
     fn is_wanted(&self, interval: &Interval) -> bool {
-        let is_free = interval.upper < self.query.settings().reject && !interval.is_doubtful;
+        let may_become_free = !self.is_free(interval) && self.may_be_free(interval);
         interval.length() > self.tolerance
             && interval.start() < self.tested.end()
-            && (interval.upper > self.cut(interval) || !is_free && self.may_be_free(interval))
+            && (interval.upper > self.cut(interval) || may_become_free)
+    }
+
+    fn is_free(&self, interval: &Interval) -> bool {
+        interval.upper < self.query.settings().reject && !interval.is_doubtful
     }
 
     /// A pose before the first that is known not to be free may be free.

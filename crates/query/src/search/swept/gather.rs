@@ -42,12 +42,11 @@ pub(super) fn may_meet(
     is_a: bool,
     (of_edges, edges): (&SweptCloud<'_>, &SweptEdges),
     of_discs: &SweptCloud<'_>,
-    drift: &Drift,
 ) -> bool {
     let (Some(edges), Some(discs)) = (&edges.hull, &of_discs.discs) else { return false };
     let (still, drifting) = if is_a { (edges, discs) } else { (discs, edges) };
     let thin = [of_discs, of_edges].map(|leaf| leaf.leaf.slab.direction);
-    thin.iter().all(|n| still.meets_along(drifting, n, drift))
+    thin.iter().all(|n| still.meets_along(drifting, n))
 }
 
 /// Adds the passages of edges of one leaf through discs of another.

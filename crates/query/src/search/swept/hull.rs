@@ -1,6 +1,6 @@
 //! Boxes about what is in a leaf: most of what another leaf could meet there is told by one of them.
 
-use cloudtouch_geom::{Drift, Matrix3, Point3, Vector3};
+use cloudtouch_geom::{BoxDrift, Drift, Matrix3, Point3, Vector3};
 
 use super::super::facet::Facet;
 
@@ -10,6 +10,8 @@ pub(super) struct Hull {
     middle: Point3,
     /// Half its size along each of its axes, as columns.
     half_axes: Matrix3,
+    /// How far what is in it gets.
+    drift: BoxDrift,
 }
 
 /// What heights are rounded by, relative to the size of the box and its way.
@@ -21,6 +23,7 @@ impl Hull {
     pub(super) fn around(
         axes: &Matrix3,
         places: impl Iterator<Item = (Point3, Vector3)>,
+        drift: &Drift,
     ) -> Option<Self> {
         let span = places
             .map(|(place, reach)| {
@@ -28,9 +31,10 @@ impl Hull {
                 (at - reach, at + reach)
             })
             .reduce(|(low, high), (from, to)| (low.inf(&from), high.sup(&to)));
-        span.map(|(low, high)| Self {
-            middle: Point3::from(axes * (0.5 * (low + high))),
-            half_axes: axes * Matrix3::from_diagonal(&(0.5 * (high - low))),
+        span.map(|(low, high)| {
+            let middle = Point3::from(axes * (0.5 * (low + high)));
+            let half_axes = axes * Matrix3::from_diagonal(&(0.5 * (high - low)));
+            Self { middle, half_axes, drift: drift.of_box(&middle, &half_axes, 0.0) }
         })
     }
 
@@ -42,8 +46,8 @@ impl Hull {
     }
 
     /// Whether two boxes may meet while the second drifts, as far as one direction tells.
-    pub(super) fn meets_along(&self, drifting: &Self, n: &Vector3, drift: &Drift) -> bool {
-        let room = drift.along_of_box(n, &drifting.middle, &drifting.half_axes, 0.0);
+    pub(super) fn meets_along(&self, drifting: &Self, n: &Vector3) -> bool {
+        let room = drifting.drift.along(n);
         let ([low, high], [from, to]) = (self.heights(n), drifting.heights(n));
         from - room <= high && to + room >= low
     }
@@ -52,7 +56,7 @@ impl Hull {
     /// direction tell.
     pub(super) fn meets_facet(&self, facet: &Facet, direction: &Vector3, drift: &Drift) -> bool {
         let gets_to_plane = |n: Vector3| {
-            let room = drift.along_of_box(&n, &self.middle, &self.half_axes, 0.0);
+            let room = self.drift.along(&n);
             let ([low, high], at) = (self.heights(&n), n.dot(&facet.corners[0].coords));
             low - room <= at && at <= high + room
         };

@@ -97,7 +97,7 @@ impl<'a> SweptCloud<'a> {
             let reach = axes.tr_mul(&normal).map(sine) * (DISC_SPACINGS * s.spacing);
             Some((s.point.mean, reach))
         };
-        let discs = Hull::around(&axes, leaf.surfels.iter().filter_map(of_disc));
+        let discs = Hull::around(&axes, leaf.surfels.iter().filter_map(of_disc), drift);
         let layer = Layer::around(&leaf.surfels, Direction::new(leaf.slab.direction, drift));
         Self { leaf, tracks, discs, layer, axes, edges: None }
     }
@@ -125,7 +125,7 @@ impl<'a> SweptCloud<'a> {
 impl SweptEdges {
     fn new(edges: &[Edge], axes: &Matrix3, drift: &Drift) -> Self {
         let ends = edges.iter().flat_map(|edge| edge.ends);
-        let hull = Hull::around(axes, ends.map(|end| (end, Vector3::zeros())));
+        let hull = Hull::around(axes, ends.map(|end| (end, Vector3::zeros())), drift);
         Self { tracks: edges.iter().map(|edge| EdgeTrack::of(edge, drift)).collect(), hull }
     }
 }

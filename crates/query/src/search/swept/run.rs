@@ -157,7 +157,7 @@ fn cross_discs<'a>(
     passages: &mut Passages,
 ) {
     let may_meet = |of_edges: &SweptCloud<'_>| {
-        of_edges.edges().is_none_or(|edges| may_meet(is_a, (of_edges, edges), of_discs, drift))
+        of_edges.edges().is_none_or(|edges| may_meet(is_a, (of_edges, edges), of_discs))
     };
     if !may_meet(of_edges) || !may_reach(of_edges, &of_discs.leaf, drift) {
         return;
