@@ -67,8 +67,8 @@ fn by_coordinates(axes: &Matrix3) -> [Lanes; 3] {
 /// What a drift does to a box, known once for all that it is tested against.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Carried {
-    drift: BoxDrift,
-    turn: Drift,
+    drift: Drift,
+    of_box: BoxDrift,
     /// The largest standard deviation and reach of what is in it, m.
     max_std: f64,
     max_reach: f64,
@@ -84,7 +84,7 @@ impl Carried {
         let around = b.bounds.shift + max_reach;
         let of_box = drift.of_box(&Point3::from(moved.centre), &half_axes, around);
         let none = Loss { room: Lanes::ZERO, std: Lanes::ZERO, reach: Lanes::ZERO };
-        let mut carried = Self { drift: of_box, turn: *drift, max_std, max_reach, along_own: none };
+        let mut carried = Self { drift: *drift, of_box, max_std, max_reach, along_own: none };
         carried.along_own = carried.along(&own);
         carried
     }
@@ -95,8 +95,8 @@ impl Carried {
         let [mut room, mut std, mut reach] = [[0.0; 4]; 3];
         for (k, axis) in axes.iter().enumerate() {
             let axis = Vector3::from(*axis);
-            let turn = self.turn.turn_of(&axis);
-            room[k] = self.drift.along(&axis);
+            let turn = self.drift.turn_of(&axis);
+            room[k] = self.of_box.along(&axis);
             std[k] = turn * self.max_std;
             reach[k] = turn * self.max_reach;
         }

@@ -90,17 +90,6 @@ impl Drift {
         }
     }
 
-    /// The largest of [`Self::along`] in such a box.
-    pub fn along_of_box(
-        &self,
-        direction: &Vector3,
-        middle: &Point3,
-        half_axes: &Matrix3,
-        around: f64,
-    ) -> f64 {
-        self.of_box(middle, half_axes, around).along(direction)
-    }
-
     /// By how much a direction that turns with the body gets from itself at most, as a length of the
     /// difference; 0 along the axis.
     #[inline]
@@ -187,7 +176,7 @@ mod tests {
             let turn = UnitQuaternion::new(angular * s);
             let there = pivot + linear * s + turn * (place - pivot);
             let back = pivot + turn.inverse() * (place - pivot - linear * s);
-            let in_box = drift.along_of_box(&direction, &middle, &half_axes, 0.0);
+            let in_box = drift.of_box(&middle, &half_axes, 0.0).along(&direction);
             prop_assert!(drift.along(&direction, &place) <= in_box + 1e-12);
             let first_order = drift.first_order(&place) * s;
             let rests = [there - place - first_order, back - place + first_order];

@@ -16,7 +16,7 @@ use super::track::{Direction, Track};
 /// A leaf in the frame of A, and where its pieces get to.
 #[derive(Debug)]
 pub(super) enum Swept<'a> {
-    Noisy(SweptCloud<'a>),
+    Noisy(Box<SweptCloud<'a>>),
     Exact(ExactLeaf),
 }
 
@@ -72,10 +72,10 @@ impl<'a> Swept<'a> {
     ) -> Self {
         match (body, Leaf::load(body, id, motion, stats)) {
             (BodyRef::Cloud(cloud), Leaf::Noisy(leaf)) => {
-                Self::Noisy(SweptCloud::new(leaf, axes_of(cloud, id, motion), drift))
+                Self::Noisy(Box::new(SweptCloud::new(leaf, axes_of(cloud, id, motion), drift)))
             }
             (_, Leaf::Noisy(leaf)) => {
-                Self::Noisy(SweptCloud::new(leaf, Matrix3::identity(), drift))
+                Self::Noisy(Box::new(SweptCloud::new(leaf, Matrix3::identity(), drift)))
             }
             (_, Leaf::Exact(leaf)) => Self::Exact(leaf),
         }
