@@ -192,9 +192,13 @@ impl Sweep<'_> {
             }
             let Interval { segment, times: [from, to], .. } = interval;
             let middle = interval.middle();
-            let first = self.bounded(segment, [from, middle])?;
             // Where all of the first half is free, so is the pose at its end.
-            if !self.is_free(&first) {
+            let may_be_free = self.may_be_free(&interval);
+            if !may_be_free {
+                self.test(segment, middle)?;
+            }
+            let first = self.bounded(segment, [from, middle])?;
+            if may_be_free && !self.is_free(&first) {
                 self.test(segment, middle)?;
             }
             waiting.push(first);
