@@ -2,10 +2,11 @@
 //!
 //! This is the innermost loop of every search: plain arrays and loops, which compile to vectors.
 
-use cloudtouch_geom::{Drift, Matrix3, Motion, Point3, Vector3};
+use cloudtouch_geom::{BoxDrift, Drift, Matrix3, Motion, Point3, Vector3};
 use wide::f64x4;
 
 use crate::Obb;
+use crate::bounds::SpreadBounds;
 use crate::node::NodeData;
 
 /// What the normals of the faces of two boxes say of what is in them.
@@ -63,6 +64,46 @@ fn by_coordinates(axes: &Matrix3) -> [Lanes; 3] {
     [row(0), row(1), row(2)]
 }
 
+/// What a drift does to a box, known once for all that it is tested against.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Carried {
+    drift: Drift,
+    of_box: BoxDrift,
+    /// The largest standard deviation and reach of what is in it, m.
+    max_std: f64,
+    max_reach: f64,
+    along_own: Loss,
+}
+
+impl Carried {
+    /// Of a box of B in the frame of A.
+    pub(crate) fn new(b: &NodeData, moved: &MovedBox, drift: &Drift) -> Self {
+        let own = [0, 1, 2].map(|k| moved.axis(k));
+        let half_axes = Matrix3::from(own) * Matrix3::from_diagonal(&b.obb.half_extents);
+        let SpreadBounds { max_std, max_reach, .. } = b.bounds;
+        let around = b.bounds.shift + max_reach;
+        let of_box = drift.of_box(&Point3::from(moved.centre), &half_axes, around);
+        let none = Loss { room: Lanes::ZERO, std: Lanes::ZERO, reach: Lanes::ZERO };
+        let mut carried = Self { drift: *drift, of_box, max_std, max_reach, along_own: none };
+        carried.along_own = carried.along(&own);
+        carried
+    }
+
+    /// Along unit vectors in the frame of A.
+    #[inline]
+    fn along(&self, axes: &[Array; 3]) -> Loss {
+        let [mut room, mut std, mut reach] = [[0.0; 4]; 3];
+        for (k, axis) in axes.iter().enumerate() {
+            let axis = Vector3::from(*axis);
+            let turn = self.drift.turn_of(&axis);
+            room[k] = self.of_box.along(&axis);
+            std[k] = turn * self.max_std;
+            reach[k] = turn * self.max_reach;
+        }
+        Loss { room: f64x4::new(room), std: f64x4::new(std), reach: f64x4::new(reach) }
+    }
+}
+
 /// What a drift of the second box takes off gaps and adds to spreads along three axes.
 #[derive(Debug, Clone, Copy)]
 struct Loss {
@@ -71,25 +112,6 @@ struct Loss {
     /// What its turn adds to its deviations there, and to its reach, m.
     std: Lanes,
     reach: Lanes,
-}
-
-impl Loss {
-    /// Along unit vectors in the frame of A.
-    fn of(drift: &Drift, axes: &[Array; 3], (b, moved): (&NodeData, &MovedBox)) -> Self {
-        let middle = Point3::from(moved.centre);
-        let own_axes: Matrix3 = [0, 1, 2].map(|k| moved.axis(k)).into();
-        let half_axes = own_axes * Matrix3::from_diagonal(&b.obb.half_extents);
-        let around = b.bounds.shift + b.bounds.max_reach;
-        let [mut room, mut std, mut reach] = [[0.0; 4]; 3];
-        for (k, axis) in axes.iter().enumerate() {
-            let axis = Vector3::from(*axis);
-            let turn = drift.turn_of(&axis);
-            room[k] = drift.along_of_box(&axis, &middle, &half_axes, around);
-            std[k] = turn * b.bounds.max_std;
-            reach[k] = turn * b.bounds.max_reach;
-        }
-        Self { room: f64x4::new(room), std: f64x4::new(std), reach: f64x4::new(reach) }
-    }
 }
 
 /// What two boxes are tested by: the second in the frame of the first.
@@ -131,19 +153,23 @@ impl<'a> Between<'a> {
     /// Bounds by the six normals of faces; B may drift from where it is. Those of A alone are looked at
     /// where these say `enough` by themselves: of deviations, and of the gap of surfaces.
     #[inline(always)]
-    pub(crate) fn by_faces(&self, margin: f64, drift: Option<&Drift>, enough: (f64, f64)) -> Apart {
-        match drift {
+    pub(crate) fn by_faces(
+        &self,
+        margin: f64,
+        carried: Option<&Carried>,
+        enough: (f64, f64),
+    ) -> Apart {
+        match carried {
             None => self.by_faces_less(None, margin, enough),
-            Some(drift) => self.by_faces_of_drifting(drift, margin, enough),
+            Some(carried) => self.by_faces_of_drifting(carried, margin, enough),
         }
     }
 
     /// Apart from the loop of a search at rest, which stays short.
     #[inline(never)]
-    fn by_faces_of_drifting(&self, drift: &Drift, margin: f64, enough: (f64, f64)) -> Apart {
-        let of = |axes| Loss::of(drift, axes, (self.b, self.moved));
-        let own = [0, 1, 2].map(|k| self.moved.axis(k));
-        self.by_faces_less(Some([of(self.a.obb.axes.as_ref()), of(&own)]), margin, enough)
+    fn by_faces_of_drifting(&self, carried: &Carried, margin: f64, enough: (f64, f64)) -> Apart {
+        let along_a = carried.along(self.a.obb.axes.as_ref());
+        self.by_faces_less(Some([along_a, carried.along_own]), margin, enough)
     }
 
     #[inline(always)]
@@ -176,11 +202,7 @@ impl<'a> Between<'a> {
 
     /// Whether the boxes of the surfaces are apart along one of the nine directions across an edge of
     /// each.
-    pub(crate) fn edges_part_surfaces(&self, drift: Option<&Drift>) -> bool {
-        if drift.is_some() {
-            // What a drift does across two edges is not known: not to tell is the safe side.
-            return false;
-        }
+    pub(crate) fn edges_part_surfaces(&self) -> bool {
         let by_b = self.cosines.map(f64x4::to_array);
         let r = [0, 1, 2].map(|i| [by_b[0][i], by_b[1][i], by_b[2][i]]);
         let t = self.offset.to_array();

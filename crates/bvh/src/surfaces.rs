@@ -4,7 +4,7 @@ use std::collections::BinaryHeap;
 
 use cloudtouch_geom::{Drift, Motion, Pose};
 
-use crate::apart::{Apart, Between, MovedBox};
+use crate::apart::{Apart, Between, Carried, MovedBox};
 use crate::node::{NodeData, pose_rounding};
 use crate::queue::Queued;
 use crate::{NodeId, Tree, TreeError};
@@ -184,6 +184,8 @@ struct Pairs<'a> {
     /// Of nodes that were moved lately, each at its name modulo [`RECENT`]: which they are and where their
     /// box is kept. Most nodes are met again, beside other nodes of A.
     recent: [(u32, u32); RECENT],
+    /// What a drift does to each of them; empty where B keeps still.
+    carried: Vec<Carried>,
 }
 
 impl<'a> Pairs<'a> {
@@ -204,6 +206,7 @@ impl<'a> Pairs<'a> {
             queue: BinaryHeap::with_capacity(capacity),
             moved: Vec::with_capacity(capacity),
             recent: [(u32::MAX, 0); RECENT],
+            carried: Vec::new(),
         }
     }
 
@@ -216,7 +219,10 @@ impl<'a> Pairs<'a> {
         let recent = &mut self.recent[b as usize % RECENT];
         if recent.0 != b {
             *recent = (b, self.moved.len() as u32);
-            self.moved.push(MovedBox::new(&self.b.nodes[b as usize].obb, &self.a_from_b));
+            let of_b = &self.b.nodes[b as usize];
+            let moved = MovedBox::new(&of_b.obb, &self.a_from_b);
+            self.carried.extend(self.sought.drift.map(|drift| Carried::new(of_b, &moved, &drift)));
+            self.moved.push(moved);
         }
         recent.1
     }
@@ -238,12 +244,12 @@ impl<'a> Pairs<'a> {
         let (of_a, of_b) = self.nodes((a, b));
         let moved = &self.moved[box_of_b as usize];
         let between = Between::new(of_a, (of_b, moved), self.rounding);
-        let drift = self.sought.drift.as_ref();
+        let carried = self.carried.get(box_of_b as usize);
         // A pair that is left out by some of its faces, and is farther apart by these than others that were
         // left out, changes nothing by the rest.
         let enough = (within.max(outcome.deviations), outcome.apart.max(0.0));
         let Apart { deviations, points, surfaces } =
-            between.by_faces(self.sought.margin, drift, enough);
+            between.by_faces(self.sought.margin, carried, enough);
         let may_cross = deviations >= within && self.overlap(&between, surfaces);
         if deviations >= within && !may_cross {
             return outcome.leave_out(deviations, surfaces);
@@ -303,9 +309,9 @@ impl<'a> Pairs<'a> {
 
     /// The same, given what the normals say.
     fn overlap(&self, between: &Between<'_>, surfaces: f64) -> bool {
-        self.sought.crossings
-            && surfaces < 0.0
-            && !between.edges_part_surfaces(self.sought.drift.as_ref())
+        // What a drift does across two edges is not known: not to tell is the safe side.
+        let may_part = self.sought.drift.is_none();
+        self.sought.crossings && surfaces < 0.0 && !(may_part && between.edges_part_surfaces())
     }
 }
 

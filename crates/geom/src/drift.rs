@@ -44,57 +44,105 @@ impl Drift {
     }
 
     /// u: where a point at a place is headed, m.
+    #[inline]
     pub fn first_order(&self, place: &Point3) -> Vector3 {
         self.linear + self.angular.cross(&(place - self.pivot))
     }
 
     /// How far along a unit vector a point gets from a place at most, either way, m.
+    #[inline]
     pub fn along(&self, direction: &Vector3, place: &Point3) -> f64 {
         // What the arc adds is across the axis.
-        let across = direction.cross(&self.axis).norm();
+        let across = self.across_axis(direction);
         self.first_order(place).dot(direction).abs() + across * self.beyond_first_order(place, 0.0)
     }
 
+    /// How long the part of a unit vector across the axis is: what the arc adds along it is that share of
+    /// [`Self::beyond_first_order`]. 0 without a turn.
+    #[inline]
+    pub fn across_axis(&self, direction: &Vector3) -> f64 {
+        direction.cross(&self.axis).norm()
+    }
+
     /// How far in any direction, m.
+    #[inline]
     pub fn in_any_direction(&self, place: &Point3) -> f64 {
         self.first_order(place).norm() + self.beyond_first_order(place, 0.0)
     }
 
-    /// The largest of [`Self::along`] in a box, given by its middle and its half axes (columns), and
-    /// `around` metres about it.
-    pub fn along_of_box(
-        &self,
-        direction: &Vector3,
-        middle: &Point3,
-        half_axes: &Matrix3,
-        around: f64,
-    ) -> f64 {
-        // n·(ω × y) = (n × ω)·y.
-        let slope = direction.cross(&self.angular);
-        let radius = half_axes.norm() + around;
-        self.first_order(middle).dot(direction).abs()
-            + half_axes.tr_mul(&slope).abs().sum()
-            + slope.norm() * around
-            + direction.cross(&self.axis).norm() * self.beyond_first_order(middle, radius)
+    /// What it does to a box, given by its middle and its half axes (columns), and to what is `around`
+    /// metres about it.
+    #[inline]
+    pub fn of_box(&self, middle: &Point3, half_axes: &Matrix3, around: f64) -> BoxDrift {
+        let way = self.first_order(middle);
+        if self.angular == Vector3::zeros() {
+            return BoxDrift { way, turning: None };
+        }
+        let beyond = self.beyond_first_order(middle, half_axes.norm() + around);
+        let angle = self.angular.norm();
+        BoxDrift {
+            way,
+            turning: Some(Turning {
+                axis: self.axis,
+                half_ways: half_axes * angle,
+                beside: angle * around + beyond,
+            }),
+        }
     }
 
     /// By how much a direction that turns with the body gets from itself at most, as a length of the
     /// difference; 0 along the axis.
+    #[inline]
     pub fn turn_of(&self, direction: &Vector3) -> f64 {
-        self.chord * direction.cross(&self.axis).norm()
+        self.chord * self.across_axis(direction)
     }
 
     /// The same of any direction.
+    #[inline]
     pub fn turn(&self) -> f64 {
         self.chord
     }
 
     /// What the arc adds anywhere within a radius of a place, m; no more is left out of s·u.
+    #[inline]
     pub fn beyond_first_order(&self, place: &Point3, radius: f64) -> f64 {
         if self.bend == 0.0 {
             return self.skew;
         }
         self.bend * (self.axis.cross(&(place - self.pivot)).norm() + radius) + self.skew
+    }
+}
+
+/// How far the points of a box get: what a [`Drift`] says of it along any direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxDrift {
+    /// Where its middle is headed, m.
+    way: Vector3,
+    turning: Option<Turning>,
+}
+
+/// What a turn adds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Turning {
+    axis: Vector3,
+    /// The half axes (columns) times the angle, m.
+    half_ways: Matrix3,
+    /// What is about the box, times the angle, and what the arc adds, m.
+    beside: f64,
+}
+
+impl BoxDrift {
+    /// How far along a unit vector any point of it gets from its place at most, either way, m.
+    #[inline]
+    pub fn along(&self, direction: &Vector3) -> f64 {
+        let of_middle = self.way.dot(direction).abs();
+        self.turning.as_ref().map_or(of_middle, |turning| {
+            // n·(ω × y) = (n × ω)·y.
+            let across = direction.cross(&turning.axis);
+            let ways = turning.half_ways.tr_mul(&across);
+            let beside = across.norm() * turning.beside;
+            of_middle + ways.x.abs() + ways.y.abs() + ways.z.abs() + beside
+        })
     }
 }
 
@@ -128,8 +176,17 @@ mod tests {
             let turn = UnitQuaternion::new(angular * s);
             let there = pivot + linear * s + turn * (place - pivot);
             let back = pivot + turn.inverse() * (place - pivot - linear * s);
-            let in_box = drift.along_of_box(&direction, &middle, &half_axes, 0.0);
+            let in_box = drift.of_box(&middle, &half_axes, 0.0).along(&direction);
             prop_assert!(drift.along(&direction, &place) <= in_box + 1e-12);
+            let first_order = drift.first_order(&place) * s;
+            let rests = [there - place - first_order, back - place + first_order];
+            let beyond = drift.beyond_first_order(&place, 0.0);
+            for rest in rests {
+                prop_assert!(rest.norm() <= beyond + 1e-12);
+                prop_assert!(
+                    rest.dot(&direction).abs() <= drift.across_axis(&direction) * beyond + 1e-12
+                );
+            }
             for moved in [there, back] {
                 let by = moved - place;
                 prop_assert!(by.dot(&direction).abs() <= drift.along(&direction, &place) + 1e-12);

@@ -26,7 +26,7 @@ pub use bounding_box::bounding_box;
 pub use cloud::PointCloud;
 pub use covariance::Covariance;
 pub use covariance_error::CovarianceError;
-pub use drift::Drift;
+pub use drift::{BoxDrift, Drift};
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshError, TriangleMesh};
 pub use motion::Motion;

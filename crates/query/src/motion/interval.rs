@@ -10,6 +10,8 @@ pub(super) struct Interval {
     pub times: [f64; 2],
     /// No pose of it is more probable.
     pub upper: f64,
+    /// The upper bound was not looked for beyond this: 1 stands for more.
+    pub cut: f64,
     /// Whether something speaks against believing that its middle is free.
     pub is_doubtful: bool,
 }

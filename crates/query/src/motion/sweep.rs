@@ -185,36 +185,65 @@ impl Sweep<'_> {
                 looked_at.push(interval);
                 continue;
             }
+            if interval.upper == 1.0 && interval.cut < self.cut(&interval) {
+                // More than it was looked for may be little enough now.
+                waiting.push(self.bounded(interval.segment, interval.times)?);
+                continue;
+            }
             let Interval { segment, times: [from, to], .. } = interval;
             let middle = interval.middle();
-            self.test(segment, middle)?;
-            for times in [[from, middle], [middle, to]] {
-                let half = Interval { times, ..interval };
-                // What cannot matter any more keeps the bound of the whole.
-                waiting.push(match half.start() < self.tested.end() {
-                    true => self.bounded(segment, times)?,
-                    false => half,
-                });
+            // Where all of the first half is free, so is the pose at its end.
+            let may_be_free = self.may_be_free(&interval);
+            if !may_be_free {
+                self.test(segment, middle)?;
             }
+            let first = self.bounded(segment, [from, middle])?;
+            if may_be_free && !self.is_free(&first) {
+                self.test(segment, middle)?;
+            }
+            waiting.push(first);
+            let second = Interval { times: [middle, to], ..interval };
+            // What cannot matter any more keeps the bound of the whole.
+            waiting.push(match second.start() < self.tested.end() {
+                true => self.bounded(segment, second.times)?,
+                false => second,
+            });
         }
         Ok(looked_at)
     }
 
     /// Whether a closer look could change the answer by more than the tolerances.
     fn is_wanted(&self, interval: &Interval) -> bool {
-        let is_free = interval.upper < self.query.settings().reject && !interval.is_doubtful;
-        // A pose before the first that is known not to be free may be free.
-        let may_be_free = !is_free && interval.start() < self.tested.not_free_from;
+        let may_become_free = !self.is_free(interval) && self.may_be_free(interval);
         interval.length() > self.tolerance
             && interval.start() < self.tested.end()
-            && (interval.upper > self.cut() || may_be_free)
+            && (interval.upper > self.cut(interval) || may_become_free)
     }
 
-    /// Bounds up to this need no closer look.
-    fn cut(&self) -> f64 {
+    fn is_free(&self, interval: &Interval) -> bool {
+        interval.upper < self.query.settings().reject && !interval.is_doubtful
+    }
+
+    /// A pose before the first that is known not to be free may be free.
+    fn may_be_free(&self, interval: &Interval) -> bool {
+        interval.start() < self.tested.not_free_from
+    }
+
+    /// Bounds of a stretch up to this need no closer look.
+    fn cut(&self, interval: &Interval) -> f64 {
         let settings = self.query.settings();
+        let is_shortest = interval.length() <= self.tolerance;
         if self.tested.first.is_some() {
-            return settings.accept;
+            // Beside the threshold it only matters where the path ceases to be free.
+            let is_open = !is_shortest && self.may_be_free(interval);
+            return if is_open { settings.reject } else { settings.accept };
+        }
+        if is_shortest {
+            // These are not halved: of them all that can be told counts.
+            return 1.0;
+        }
+        if self.may_be_free(interval) {
+            return settings.reject;
         }
         let known = self.tested.most_probable.report.collision_probability;
         (known + PROBABILITY_TOLERANCE).max(settings.reject).min(settings.accept)
@@ -237,7 +266,7 @@ impl Sweep<'_> {
     fn bounded(&mut self, segment: usize, times: [f64; 2]) -> Result<Interval, QueryError> {
         let (a, b) = self.bodies;
         let leg = self.path.leg(segment);
-        let mut interval = Interval { segment, times, upper: 1.0, is_doubtful: false };
+        let mut interval = Interval { segment, times, upper: 1.0, cut: 1.0, is_doubtful: false };
         if interval.end() >= self.tested.end() {
             // It holds the pose that exceeds the threshold: nothing is left to bound.
             return Ok(interval);
@@ -246,9 +275,9 @@ impl Sweep<'_> {
         let a_from_b = leg.at(interval.middle());
         let drift = leg.drift(times, &a.shape().origin());
         let drifting = Drifting { bodies: (a, b), a_from_b, drift };
-        // The shortest ones are not halved: of them all that can be told counts.
-        let cut = if interval.length() > self.tolerance { self.cut() } else { 1.0 };
-        interval.upper = drifting.upper_bound(self.query, cut, &self.clock, &mut self.stats)?;
+        interval.cut = self.cut(&interval);
+        interval.upper =
+            drifting.upper_bound(self.query, interval.cut, &self.clock, &mut self.stats)?;
         if interval.upper < self.query.settings().reject {
             let at = segment as f64 + interval.middle();
             let shapes = (a.shape(), b.shape());

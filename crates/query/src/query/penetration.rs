@@ -39,11 +39,11 @@ pub struct Penetration {
     pub direction: Vector3,
     /// How far until a collision is less likely than asked for, m.
     pub distance_m: f64,
-    /// How far until it is as likely as not, m: how deep the object is in, as far as is known. Of the
-    /// probability, not of its upper bound.
+    /// How far until it is as likely as not, whichever way that is shortest, m: how deep the object is in, as
+    /// far as is known. Of the probability, not of its upper bound.
     pub depth_m: f64,
     /// Half of how much farther it is until a collision is one standard deviation less likely than not than
-    /// until it is one more likely, m: what the surfaces leave open of the distance along the direction.
+    /// until it is one more likely, along that way, m: what the surfaces leave open of the depth.
     pub std_m: f64,
 }
 
@@ -141,21 +141,25 @@ impl Query {
                 break;
             }
         }
-        for angle in ANGLES {
-            let around = best.direction;
-            for direction in ring(&around, angle) {
-                best = overlap.shortened(best, direction, &[SHORTER])?;
-            }
-        }
+        best = overlap.turned_aside(best)?;
         let Way { direction, free: distance_m, .. } = overlap.between(best, PRECISION)?;
         // No guarantees but expectations: bounds, which are wider the less is known, would only add to them.
-        let [near, depth_m, far] = LIKELY.map(|likely| {
+        let until = |likely: f64| {
             let query = self.deciding(likely);
-            let of_likely =
-                Overlap { query, told: |report| report.collision_probability, ..overlap };
-            of_likely.way_out(direction, distance_m)
-        });
-        let (depth_m, std_m) = (depth_m?, 0.5 * (far? - near?));
+            Overlap { query, told: |report: &Report| report.collision_probability, ..overlap }
+        };
+        let [least_likely, even, most_likely] = LIKELY.map(until);
+        // The way that is shortest until then may be another.
+        let mut depth = even.way_out(direction, distance_m)?;
+        if depth.free > FINEST {
+            for direction in known {
+                depth = even.shortened(depth, direction, &[SHORTER])?;
+            }
+            depth = even.between(even.turned_aside(depth)?, PRECISION)?;
+        }
+        let [near, far] = [least_likely, most_likely]
+            .map(|until| until.way_out(depth.direction, depth.free).map(|way| way.free));
+        let (depth_m, std_m) = (depth.free, 0.5 * (far? - near?));
         Ok((report, Some(Penetration { direction, distance_m, depth_m, std_m })))
     }
 }
@@ -230,17 +234,28 @@ impl Overlap<'_> {
         self.between(way, ROUGHLY).map(Some)
     }
 
-    /// How far it is free along a direction, near to where it is for another probability.
-    fn way_out(&self, direction: Vector3, near: f64) -> Result<f64, QueryError> {
+    /// The way along a direction to where it is free, near to where it is for another probability.
+    fn way_out(&self, direction: Vector3, near: f64) -> Result<Way, QueryError> {
         let far = self.apart(&direction);
         let mut way = Way { direction, stuck: 0.0, free: near };
         while !self.is_free(direction * way.free)? {
             if way.free > far {
-                return Ok(way.free);
+                return Ok(way);
             }
             way = Way { stuck: way.free, free: 1.5 * way.free, ..way };
         }
-        Ok(self.between(way, PRECISION)?.free)
+        self.between(way, PRECISION)
+    }
+
+    /// The best of ways a little aside.
+    fn turned_aside(&self, mut best: Way) -> Result<Way, QueryError> {
+        for angle in ANGLES {
+            let around = best.direction;
+            for direction in ring(&around, angle) {
+                best = self.shortened(best, direction, &[SHORTER])?;
+            }
+        }
+        Ok(best)
     }
 
     /// The same way, known to a share of it by bisection.

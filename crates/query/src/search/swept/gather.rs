@@ -7,64 +7,74 @@ use crate::cloud::{DISC_SPACINGS, SLOPE};
 use super::super::crossings::Witness;
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, NoisyLeaf};
+use super::leaf::{SweptCloud, SweptEdges};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
 use super::pool::Passages;
-use super::track::Track;
+use super::track::Direction;
 
 /// Whether an edge may get to a disc of another leaf, as `search/gather.rs` asks of leaves that keep
 /// still.
-pub(super) fn may_reach(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>, drift: &Drift) -> bool {
+pub(super) fn may_reach(
+    of_edges: &SweptCloud<'_>,
+    of_discs: &NoisyLeaf<'_>,
+    drift: &Drift,
+) -> bool {
     let NoisyLeaf { ball, slab, .. } = of_discs;
-    let turn = drift.turn();
-    of_edges.surfels.iter().any(|surfel| {
+    let (turn, direction) = (drift.turn(), Direction::new(slab.direction, drift));
+    of_edges.leaf.surfels.iter().zip(&of_edges.tracks).any(|(surfel, track)| {
         let Some(normal) = surfel.normal else { return false };
         let half = DISC_SPACINGS * surfel.spacing;
-        let middle = &surfel.point.mean;
         let across = SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)) + turn;
-        slab.is_within(middle, half * across + drift.along(&slab.direction, middle))
-            && Track::of(middle, drift).gets_to(ball, half + DISC_SPACINGS * ball.spacing)
+        slab.is_within(&track.place, half * across + track.along(&direction))
+            && track.gets_to(ball, half + DISC_SPACINGS * ball.spacing)
     })
 }
 
 /// The same of the facets of a mesh.
-pub(super) fn may_reach_facets(
-    of_edges: &NoisyLeaf<'_>,
-    facets: &ExactLeaf,
-    drift: &Drift,
-) -> bool {
-    of_edges.surfels.iter().any(|surfel| {
-        let middle = &surfel.point.mean;
-        let track = Track::of(middle, drift);
+pub(super) fn may_reach_facets(of_edges: &SweptCloud<'_>, facets: &ExactLeaf) -> bool {
+    of_edges.leaf.surfels.iter().zip(&of_edges.tracks).any(|(surfel, track)| {
         surfel.normal.is_some() && track.gets_to(&facets.ball, DISC_SPACINGS * surfel.spacing)
     })
+}
+
+/// Whether any edge of a leaf may meet a disc of another, all of each looked at as one box.
+pub(super) fn may_meet(
+    is_a: bool,
+    (of_edges, edges): (&SweptCloud<'_>, &SweptEdges),
+    of_discs: &SweptCloud<'_>,
+) -> bool {
+    let (Some(edges), Some(discs)) = (&edges.hull, &of_discs.discs) else { return false };
+    let (still, drifting) = if is_a { (edges, discs) } else { (discs, edges) };
+    let thin = [of_discs, of_edges].map(|leaf| leaf.leaf.slab.direction);
+    thin.iter().all(|n| still.meets_along(drifting, n))
 }
 
 /// Adds the passages of edges of one leaf through discs of another.
 pub(super) fn add_edges_through_discs(
     is_a: bool,
-    of_edges: &NoisyLeaf<'_>,
+    of_edges: &SweptCloud<'_>,
     of_discs: &NoisyLeaf<'_>,
     drift: &Drift,
     found: &mut Passages,
 ) {
+    let Some(edges) = of_edges.edges() else { return };
     let (around, slab) = (of_discs.ball, of_discs.slab);
-    for edge in of_edges.edges() {
-        let room = edge.ends.map(|end| drift.along(&slab.direction, &end));
-        if !slab.may_hold(&edge.ends, room[0].max(room[1])) {
+    let direction = Direction::new(slab.direction, drift);
+    for (edge, track) in of_edges.leaf.edges().iter().zip(&edges.tracks) {
+        let room = track.ends[0].along(&direction).max(track.ends[1].along(&direction));
+        if !slab.may_hold(&edge.ends, room) {
             continue;
         }
-        let adrift = Adrift::new(is_a, edge, drift);
-        let track = Track::of(&nalgebra::center(&edge.ends[0], &edge.ends[1]), drift);
-        // Its ends may get ahead of its middle by the turn.
-        let half = edge.half_length * (1.0 + drift.turn());
-        if !track.gets_to(&around, half + DISC_SPACINGS * around.spacing) {
+        let half = edge.half_length;
+        if !track.middle.gets_to(&around, half + DISC_SPACINGS * around.spacing) {
             continue;
         }
+        let adrift = Adrift::new(is_a, edge, track);
         for disc in of_discs.surfels.iter() {
-            if track.keeps_off(&disc.point.mean) > half + DISC_SPACINGS * disc.spacing {
-                continue;
-            }
-            if let Some(passage) = adrift.through_disc(disc, drift) {
+            let near =
+                track.middle.times_near(&disc.point.mean, half + DISC_SPACINGS * disc.spacing);
+            let Some(times) = near else { continue };
+            if let Some(passage) = adrift.through_disc(disc, times, drift) {
                 found.add(Witness::edge(is_a, edge), &passage);
             }
         }
@@ -74,18 +84,24 @@ pub(super) fn add_edges_through_discs(
 /// Adds the passages of edges of a leaf through the triangles of another.
 pub(super) fn add_edges_through_facets(
     is_a: bool,
-    of_edges: &NoisyLeaf<'_>,
+    of_edges: &SweptCloud<'_>,
     facets: &ExactLeaf,
     drift: &Drift,
     found: &mut Passages,
 ) {
-    for edge in of_edges.edges() {
-        let adrift = Adrift::new(is_a, edge, drift);
-        let track = Track::of(&nalgebra::center(&edge.ends[0], &edge.ends[1]), drift);
-        if !track.gets_to(&facets.ball, edge.half_length * (1.0 + drift.turn())) {
+    let Some(SweptEdges { tracks, hull: Some(hull) }) = of_edges.edges() else { return };
+    let thin = &of_edges.leaf.slab.direction;
+    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, drift));
+    let met: Vec<&Facet> = met.collect();
+    if met.is_empty() {
+        return;
+    }
+    for (edge, track) in of_edges.leaf.edges().iter().zip(tracks) {
+        if !track.middle.gets_to(&facets.ball, edge.half_length) {
             continue;
         }
-        for facet in &facets.facets {
+        let adrift = Adrift::new(is_a, edge, track);
+        for facet in &met {
             if let Some(passage) = adrift.through_facet(facet, drift) {
                 found.add(Witness::edge(is_a, edge), &passage);
             }
@@ -97,19 +113,25 @@ pub(super) fn add_edges_through_facets(
 /// all triangles of the mesh within a distance of a place.
 pub(super) fn add_mesh_through_discs(
     is_a: bool,
-    discs: &NoisyLeaf<'_>,
+    discs: &SweptCloud<'_>,
     facets: &ExactLeaf,
     around: impl Fn(&Point3, f64) -> Vec<Facet>,
     drift: &Drift,
     found: &mut Passages,
 ) {
-    for disc in discs.surfels.iter() {
+    let Some(hull) = discs.discs else { return };
+    let thin = &discs.leaf.slab.direction;
+    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, drift));
+    let met: Vec<Facet> = met.copied().collect();
+    if met.is_empty() {
+        return;
+    }
+    for (disc, track) in discs.leaf.surfels.iter().zip(&discs.tracks) {
         let Some(normal) = disc.normal else { continue };
-        let track = Track::of(&disc.point.mean, drift);
         if !track.gets_to(&facets.ball, DISC_SPACINGS * disc.spacing) {
             continue;
         }
-        let off = may_pierce(is_a, disc, &normal, &facets.facets, drift);
+        let off = may_pierce(is_a, disc, &normal, &met, drift);
         if let Some(off) = off.filter(|_| disc.spacing > 0.0) {
             let passage = mesh_through_disc(is_a, disc, (normal, off), &around, drift);
             found.add(Witness::disc(is_a, disc), &passage);

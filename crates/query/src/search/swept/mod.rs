@@ -4,6 +4,8 @@
 mod depth;
 mod facets;
 mod gather;
+mod hull;
+mod leaf;
 mod passage;
 mod pieces;
 mod pool;

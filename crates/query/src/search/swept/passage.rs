@@ -8,7 +8,8 @@ use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
 use super::super::crossing::{CLEAREST, known_to, weight_at};
 use super::super::facet::Facet;
 use super::super::through_mesh::Outline;
-use super::track::{facet_keeps_off, gap_along, piece_keeps_off};
+use super::leaf::EdgeTrack;
+use super::track::{Direction, facet_keeps_off, piece_keeps_off};
 
 /// A passage that may be.
 #[derive(Debug, Clone, Copy)]
@@ -28,28 +29,32 @@ pub(super) struct Passage {
 pub(super) struct Adrift<'a> {
     edge: &'a Edge,
     is_a: bool,
-    /// How far its ends get in any direction, m.
-    by: f64,
+    track: &'a EdgeTrack,
 }
 
 impl<'a> Adrift<'a> {
-    pub(super) fn new(is_a: bool, edge: &'a Edge, drift: &Drift) -> Self {
-        let [p, q] = edge.ends.map(|end| drift.in_any_direction(&end));
-        Self { edge, is_a, by: p.max(q) }
+    pub(super) fn new(is_a: bool, edge: &'a Edge, track: &'a EdgeTrack) -> Self {
+        Self { edge, is_a, track }
     }
 
-    /// Where it passes a plane, given as its unit normal and a place on it.
+    /// Where it passes a plane between two times, given as its unit normal and a place on it.
     fn crossed(
         &self,
-        (normal, place): (&Vector3, &Point3),
+        (normal, place): (Vector3, &Point3),
+        [from, to]: [f64; 2],
         stds: [f64; 2],
         drift: &Drift,
     ) -> Option<Crossed> {
-        let ends = &self.edge.ends;
-        let heights = ends.map(|end| normal.dot(&(end - place)));
-        let changes = ends.map(|end| drift.along(normal, &end));
-        let turn = drift.turn_of(normal) * 2.0 * self.edge.half_length;
-        let crossed = Crossed::of(heights, changes, turn, stds)?;
+        let direction = Direction::new(normal, drift);
+        let home = self.edge.ends.map(|end| normal.dot(&(end - place)));
+        let turn = drift.turn() * direction.across * 2.0 * self.edge.half_length;
+        let apart = [home[0] - home[1] - turn, home[0] - home[1] + turn];
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let slopes = self.track.ends.map(|end| end.way.dot(&normal));
+        let heights = [0, 1].map(|k| home[k] + middle * slopes[k]);
+        let by_arc = self.track.ends.map(|end| direction.across * end.beside);
+        let changes = [0, 1].map(|k| half * slopes[k].abs() + by_arc[k]);
+        let crossed = Crossed::of(heights, changes, apart, stds)?;
         // The leaf of the end that is nearer to the plane counts it: either, where both may be.
         let counts = |k: usize| crossed.nearer[k] && self.edge.own[k].is_some();
         (counts(0) || counts(1)).then_some(crossed)
@@ -61,12 +66,17 @@ impl<'a> Adrift<'a> {
         crossed.shares.map(|share| from + (to - from) * share)
     }
 
-    /// Of the disc about a sample of the other body.
-    pub(super) fn through_disc(&self, disc: &Surfel, drift: &Drift) -> Option<Passage> {
+    /// Of the disc about a sample of the other body, which it is within reach of between two times.
+    pub(super) fn through_disc(
+        &self,
+        disc: &Surfel,
+        times: [f64; 2],
+        drift: &Drift,
+    ) -> Option<Passage> {
         let (normal, middle) = (disc.normal?, disc.point.mean);
         let across = disc.variance_across();
         let stds = self.edge.across.map(|own| known_to((own + across).sqrt(), disc.spacing));
-        let crossed = self.crossed((&normal, &middle), stds, drift)?;
+        let crossed = self.crossed((normal, &middle), times, stds, drift)?;
         let part = self.part(&crossed);
         let off = (piece_keeps_off(&part, &middle, drift) / disc.spacing).max(0.0);
         if off > DISC_SPACINGS {
@@ -86,7 +96,7 @@ impl<'a> Adrift<'a> {
         let normal = facet.normal?;
         let spacing = 2.0 * self.edge.half_length;
         let stds = self.edge.across.map(|own| known_to(own.sqrt(), spacing));
-        let crossed = self.crossed((&normal, &facet.corners[0]), stds, drift)?;
+        let crossed = self.crossed((normal, &facet.corners[0]), [-1.0, 1.0], stds, drift)?;
         let [from, to] = self.part(&crossed);
         let (middle, half) = (nalgebra::center(&from, &to), 0.5 * (to - from).norm());
         let off = facet_keeps_off(&middle, facet, !self.is_a, drift);
@@ -96,7 +106,7 @@ impl<'a> Adrift<'a> {
 
     fn passage(&self, clear: f64, weight: f64, part: [Point3; 2], spacing: f64) -> Passage {
         let middle = nalgebra::center(&part[0], &part[1]);
-        let radius = 0.5 * (part[1] - part[0]).norm() + if self.is_a { 0.0 } else { self.by };
+        let radius = 0.5 * (part[1] - part[0]).norm() + if self.is_a { 0.0 } else { self.track.by };
         Passage { clear, weight, middle, radius, spacing }
     }
 }
@@ -115,11 +125,11 @@ struct Crossed {
 }
 
 impl Crossed {
-    /// Of ends at heights that change by so much, and by `turn` against one another. `None` where both
-    /// keep on one side.
-    fn of(heights: [f64; 2], changes: [f64; 2], turn: f64, stds: [f64; 2]) -> Option<Self> {
-        let from_above = Self::one_way(heights, changes, turn, stds);
-        let from_below = Self::one_way(heights.map(|h| -h), changes, turn, stds);
+    /// Of ends at heights that change by so much, the first above the second by no less and no more than
+    /// `apart`. `None` where both keep on one side.
+    fn of(heights: [f64; 2], changes: [f64; 2], apart: [f64; 2], stds: [f64; 2]) -> Option<Self> {
+        let from_above = Self::one_way(heights, changes, apart, stds);
+        let from_below = Self::one_way(heights.map(|h| -h), changes, [-apart[1], -apart[0]], stds);
         match (from_above, from_below) {
             (Some(p), Some(q)) => Some(Self {
                 clear: p.clear.max(q.clear),
@@ -131,11 +141,15 @@ impl Crossed {
     }
 
     /// With the first end above the plane and the second below it.
-    fn one_way(heights: [f64; 2], changes: [f64; 2], turn: f64, stds: [f64; 2]) -> Option<Self> {
+    fn one_way(
+        heights: [f64; 2],
+        changes: [f64; 2],
+        apart: [f64; 2],
+        stds: [f64; 2],
+    ) -> Option<Self> {
         let (above, below) = (heights[0], -heights[1]);
         let least = [(above - changes[0]).max(0.0), (below - changes[1]).max(0.0)];
-        let apart = above + below;
-        let most_apart = (apart + turn).min(above + changes[0] + below + changes[1]);
+        let most_apart = apart[1].min(above + changes[0] + below + changes[1]);
         let most = [
             (above + changes[0]).min(most_apart - least[1]),
             (below + changes[1]).min(most_apart - least[0]),
@@ -144,7 +158,7 @@ impl Crossed {
             return None;
         }
         let clear = (most[0] / stds[0]).min(most[1] / stds[1]).min(CLEAREST);
-        let least_apart = (apart - turn).max(least[0] + least[1]);
+        let least_apart = apart[0].max(least[0] + least[1]);
         let to = most[0] / least_apart.max(most[0]);
         Some(Self {
             clear: clear.min(most_apart / (stds[0] + stds[1])),
@@ -163,9 +177,13 @@ pub(super) fn may_pierce(
     drift: &Drift,
 ) -> Option<f64> {
     let middle = disc.point.mean;
-    let keeps =
-        |side: f64, facet: &Facet| gap_along(&middle, facet, false, drift, &(normal * side)) > 0.0;
-    let passes = facets.iter().filter(|facet| !keeps(1.0, facet) && !keeps(-1.0, facet));
+    let passes = facets.iter().filter(|facet| {
+        let heights = facet.corners.map(|corner| {
+            let (at, by) = (normal.dot(&(corner - middle)), drift.along(normal, &corner));
+            (at - by, at + by)
+        });
+        heights.iter().any(|(low, _)| *low <= 0.0) && heights.iter().any(|(_, high)| *high >= 0.0)
+    });
     let off = passes.map(|facet| facet_keeps_off(&middle, facet, !is_a, drift));
     let off = off.fold(f64::INFINITY, f64::min);
     (off <= DISC_SPACINGS * disc.spacing * (1.0 + ROUNDING)).then_some(off)

@@ -11,14 +11,18 @@ use crate::cloud::Surfel;
 
 use super::super::facet::{Facet, Whitening, nearest_to_origin};
 use super::super::meeting::{LEAST_STD, solve};
-use super::track::{directions, gap_along, least_at, nearest_time};
+use super::track::{Direction, Track, directions, gap_along, least_at, nearest_time};
 
-/// The pieces of two clouds, that of B drifting; `None` where they have `limit` or more.
-pub(super) fn between_discs(a: &Surfel, b: &Surfel, drift: &Drift, limit: f64) -> Option<f64> {
-    let offset = b.point.mean - a.point.mean;
-    let way = drift.first_order(&b.point.mean);
-    let reach = drift.beyond_first_order(&b.point.mean, 0.0)
-        + limit * (a.most_variance + b.most_variance).sqrt();
+/// The pieces of two clouds, that of B drifting along its track; `None` where they have `limit` or more.
+pub(super) fn between_discs(
+    a: &Surfel,
+    (b, track): (&Surfel, &Track),
+    drift: &Drift,
+    limit: f64,
+) -> Option<f64> {
+    let offset = track.place - a.point.mean;
+    let way = track.way;
+    let reach = track.beside + limit * (a.most_variance + b.most_variance).sqrt();
     // No direction has more variance than this: most pairs end here.
     if (offset + way * nearest_time(&offset, &way)).norm_squared() > reach * reach {
         return None;
@@ -27,8 +31,9 @@ pub(super) fn between_discs(a: &Surfel, b: &Surfel, drift: &Drift, limit: f64) -
     let (of_offset, of_way) = (solve(&joint, &offset)?, solve(&joint, &way)?);
     let time = least_at(way.dot(&of_offset), way.dot(&of_way));
     let Some(n) = (of_offset + of_way * time).try_normalize(0.0) else { return Some(0.0) };
-    let gap = n.dot(&offset) - drift.along(&n, &b.point.mean);
-    let of_a = a.point.covariance.variance_along(&n);
+    let n = Direction::new(n, drift);
+    let gap = n.n.dot(&offset) - track.along(&n);
+    let of_a = a.point.covariance.variance_along(&n.n);
     let deviations = gap / (of_a + turned_variance(b, &n, drift)).max(LEAST_STD.powi(2)).sqrt();
     (deviations < limit).then_some(deviations.max(0.0))
 }
@@ -45,15 +50,14 @@ pub(super) fn to_facet(
     let along = |n: &Vector3| {
         let gap = gap_along(&mean, facet, is_facet_still, drift, n);
         let variance = match is_facet_still {
-            true => turned_variance(surfel, n, drift),
+            true => turned_variance(surfel, &Direction::new(*n, drift), drift),
             false => surfel.point.covariance.variance_along(n),
         };
         (gap, gap / variance.max(LEAST_STD.powi(2)).sqrt())
     };
     if let Some(n) = facet.normal {
         let n = if facet.height(&mean) > 0.0 { -n } else { n };
-        if gap_along(&mean, facet, is_facet_still, drift, &n) > limit * surfel.most_variance.sqrt()
-        {
+        if along(&n).1 >= limit {
             return None;
         }
     }
@@ -83,8 +87,11 @@ pub(super) fn to_facet(
 }
 
 /// nᵀΣn of a piece at any turn of the drift.
-fn turned_variance(surfel: &Surfel, n: &Vector3, drift: &Drift) -> f64 {
+pub(super) fn turned_variance(surfel: &Surfel, n: &Direction, drift: &Drift) -> f64 {
+    if drift.turn() == 0.0 {
+        return surfel.point.covariance.variance_along(&n.n);
+    }
     let most = surfel.most_variance.sqrt();
-    let turned = surfel.point.covariance.std_along(n) + drift.turn_of(n) * most;
+    let turned = surfel.point.covariance.std_along(&n.n) + drift.turn() * n.across * most;
     turned.min(most).powi(2)
 }

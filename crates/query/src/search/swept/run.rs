@@ -10,16 +10,17 @@ use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
-use super::super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
-use super::super::run::{facets_around, load_edges};
+use super::super::leaf::ExactLeaf;
+use super::super::run::facets_around;
 use super::facets::may_touch;
 use super::gather::{
-    add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach,
+    add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_meet, may_reach,
     may_reach_facets,
 };
-use super::pieces::{between_discs, to_facet};
+use super::leaf::{Swept, SweptCloud};
+use super::pieces::{between_discs, to_facet, turned_variance};
 use super::pool::Passages;
-use super::track::Track;
+use super::track::Direction;
 
 /// What the evidence can be on the way, at most.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +68,7 @@ pub(crate) fn reach_of<'a>(
     Ok(Reach { deviations: way.deviations, clearness, is_complete: !outcome.stopped })
 }
 
-type Leaves<'a> = BTreeMap<NodeId, Leaf<'a>>;
+type Leaves<'a> = BTreeMap<NodeId, Swept<'a>>;
 
 struct Way<'a, 'd> {
     bodies: (BodyRef<'a>, BodyRef<'a>),
@@ -83,9 +84,10 @@ impl<'a> Way<'a, '_> {
         let (a, b) = self.bodies;
         let motion = &self.a_from_b;
         let leaf_a = self.leaves.0.entry(pair.a);
-        let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, stats));
+        let leaf_a = leaf_a.or_insert_with(|| Swept::load(a, pair.a, None, self.drift, stats));
         let leaf_b = self.leaves.1.entry(pair.b);
-        let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(motion), stats));
+        let leaf_b =
+            leaf_b.or_insert_with(|| Swept::load(b, pair.b, Some(motion), self.drift, stats));
         if pair.deviations < self.deviations {
             self.deviations = least_of(leaf_a, leaf_b, self.drift, self.deviations);
         }
@@ -96,46 +98,45 @@ impl<'a> Way<'a, '_> {
 }
 
 /// The fewest deviations of two pieces of two leaves; `most` where none have fewer.
-fn least_of(a: &mut Leaf<'_>, b: &mut Leaf<'_>, drift: &Drift, most: f64) -> f64 {
+fn least_of(a: &mut Swept<'_>, b: &mut Swept<'_>, drift: &Drift, most: f64) -> f64 {
     match (a, b) {
-        (Leaf::Noisy(a), Leaf::Noisy(b)) => between_noisy(a, b, drift, most),
-        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b, false, drift, most),
-        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a, true, drift, most),
-        (Leaf::Exact(a), Leaf::Exact(b)) => {
+        (Swept::Noisy(a), Swept::Noisy(b)) => between_noisy(a, b, drift, most),
+        (Swept::Noisy(a), Swept::Exact(b)) => to_exact(a, b, false, drift, most),
+        (Swept::Exact(a), Swept::Noisy(b)) => to_exact(b, a, true, drift, most),
+        (Swept::Exact(a), Swept::Exact(b)) => {
             let touches = |p| b.facets.iter().any(|q| may_touch(p, q, drift));
             if a.facets.iter().any(touches) { 0.0 } else { most }
         }
     }
 }
 
-fn between_noisy(a: &NoisyLeaf<'_>, b: &NoisyLeaf<'_>, drift: &Drift, most: f64) -> f64 {
+fn between_noisy(a: &SweptCloud<'_>, b: &SweptCloud<'_>, drift: &Drift, most: f64) -> f64 {
     let mut least = most;
-    for on_b in b.surfels.iter() {
-        let mean = &on_b.point.mean;
-        let reach = least * (on_b.most_variance + a.ball.variance).sqrt();
-        if !Track::of(mean, drift).gets_to(&a.ball, reach) {
+    let ball = &a.leaf.ball;
+    for (on_b, track) in b.leaf.surfels.iter().zip(&b.tracks) {
+        let reach = least * (on_b.most_variance + ball.variance).sqrt();
+        let variance = |n: &Direction| turned_variance(on_b, n, drift);
+        if !track.gets_to(ball, reach) || a.layer.deviations(track, variance) >= least {
             continue;
         }
-        for on_a in a.surfels.iter() {
-            least = between_discs(on_a, on_b, drift, least).unwrap_or(least);
+        for on_a in a.leaf.surfels.iter() {
+            least = between_discs(on_a, (on_b, track), drift, least).unwrap_or(least);
         }
     }
     least
 }
 
 fn to_exact(
-    noisy: &mut NoisyLeaf<'_>,
+    noisy: &mut SweptCloud<'_>,
     exact: &ExactLeaf,
     is_facet_still: bool,
     drift: &Drift,
     most: f64,
 ) -> f64 {
     let mut least = most;
-    let (surfels, whitenings, _) = noisy.whitened();
-    for (surfel, whitening) in surfels.iter().zip(whitenings) {
-        let mean = &surfel.point.mean;
-        let reach = least * surfel.most_variance.sqrt();
-        if !Track::of(mean, drift).gets_to(&exact.ball, reach) {
+    let (surfels, whitenings, _) = noisy.leaf.whitened();
+    for ((surfel, whitening), track) in surfels.iter().zip(whitenings).zip(&noisy.tracks) {
+        if !track.gets_to(&exact.ball, least * surfel.most_variance.sqrt()) {
             continue;
         }
         for facet in &exact.facets {
@@ -146,33 +147,48 @@ fn to_exact(
     least
 }
 
+/// Adds the passages of edges of one leaf through discs of another, where there may be any.
+fn cross_discs<'a>(
+    is_a: bool,
+    of_edges: &mut SweptCloud<'a>,
+    (body, id, motion): (BodyRef<'a>, NodeId, Option<&Motion>),
+    of_discs: &SweptCloud<'_>,
+    drift: &Drift,
+    passages: &mut Passages,
+) {
+    let may_meet = |of_edges: &SweptCloud<'_>| {
+        of_edges.edges().is_none_or(|edges| may_meet(is_a, (of_edges, edges), of_discs))
+    };
+    if !may_meet(of_edges) || !may_reach(of_edges, &of_discs.leaf, drift) {
+        return;
+    }
+    of_edges.load_edges(body, id, motion, drift);
+    if may_meet(of_edges) {
+        add_edges_through_discs(is_a, of_edges, &of_discs.leaf, drift, passages);
+    }
+}
+
 fn cross<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Motion,
     pair: &SurfacePair,
-    leaves: (&mut Leaf<'a>, &mut Leaf<'a>),
+    leaves: (&mut Swept<'a>, &mut Swept<'a>),
     drift: &Drift,
     passages: &mut Passages,
 ) {
     match leaves {
-        (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
-            if may_reach(on_a, on_b, drift) {
-                load_edges(on_a, a, pair.a, None);
-                add_edges_through_discs(true, on_a, on_b, drift, passages);
-            }
-            if may_reach(on_b, on_a, drift) {
-                load_edges(on_b, b, pair.b, Some(a_from_b));
-                add_edges_through_discs(false, on_b, on_a, drift, passages);
-            }
+        (Swept::Noisy(on_a), Swept::Noisy(on_b)) => {
+            cross_discs(true, on_a, (a, pair.a, None), on_b, drift, passages);
+            cross_discs(false, on_b, (b, pair.b, Some(a_from_b)), on_a, drift, passages);
         }
-        (Leaf::Noisy(noisy), Leaf::Exact(exact)) if may_reach_facets(noisy, exact, drift) => {
-            load_edges(noisy, a, pair.a, None);
+        (Swept::Noisy(noisy), Swept::Exact(exact)) if may_reach_facets(noisy, exact) => {
+            noisy.load_edges(a, pair.a, None, drift);
             add_edges_through_facets(true, noisy, exact, drift, passages);
             let around = |place: &Point3, radius| facets_around(b, Some(a_from_b), place, radius);
             add_mesh_through_discs(true, noisy, exact, around, drift, passages);
         }
-        (Leaf::Exact(exact), Leaf::Noisy(noisy)) if may_reach_facets(noisy, exact, drift) => {
-            load_edges(noisy, b, pair.b, Some(a_from_b));
+        (Swept::Exact(exact), Swept::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
+            noisy.load_edges(b, pair.b, Some(a_from_b), drift);
             add_edges_through_facets(false, noisy, exact, drift, passages);
             let around = |place: &Point3, radius| facets_around(a, None, place, radius);
             add_mesh_through_discs(false, noisy, exact, around, drift, passages);

@@ -7,13 +7,28 @@ use super::super::leaf::Ball;
 
 /// How often the nearest place of a facet and the time of it are looked for in turn.
 const TURNS: usize = 3;
+/// What times and distances are rounded by, relative.
+const ROUNDING: f64 = 1e-9;
 
 /// A straight way through a place, and how far beside it the point may be, m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Track {
-    place: Point3,
-    way: Vector3,
-    beside: f64,
+    pub place: Point3,
+    pub way: Vector3,
+    pub beside: f64,
+}
+
+/// A unit vector, with what a turn takes of it: [`Drift::across_axis`].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Direction {
+    pub n: Vector3,
+    pub across: f64,
+}
+
+impl Direction {
+    pub(super) fn new(n: Vector3, drift: &Drift) -> Self {
+        Self { n, across: drift.across_axis(&n) }
+    }
 }
 
 impl Track {
@@ -22,14 +37,38 @@ impl Track {
         Self { place: *place, way, beside }
     }
 
+    /// How far along a direction it gets from its place at most, either way, m.
+    pub(super) fn along(&self, direction: &Direction) -> f64 {
+        self.way.dot(&direction.n).abs() + direction.across * self.beside
+    }
+
+    /// How far in any direction, m.
+    pub(super) fn in_any_direction(&self) -> f64 {
+        self.way.norm() + self.beside
+    }
+
+    /// From when to when it may be within a distance of a place, as the s from −1 to 1; `None` where it
+    /// never is.
+    pub(super) fn times_near(&self, place: &Point3, distance: f64) -> Option<[f64; 2]> {
+        let reach = (distance + self.beside) * (1.0 + ROUNDING);
+        let offset = self.place - place;
+        let (slope, curvature) = (offset.dot(&self.way), self.way.norm_squared());
+        let nearest = offset.norm_squared() - reach * reach;
+        if curvature <= f64::MIN_POSITIVE {
+            return (nearest <= 0.0).then_some([-1.0, 1.0]);
+        }
+        let root = slope * slope - curvature * nearest;
+        if root < 0.0 {
+            return None;
+        }
+        let half = root.sqrt() * (1.0 + ROUNDING) / curvature;
+        let (from, to) = (-slope / curvature - half, -slope / curvature + half);
+        (from <= 1.0 && to >= -1.0).then(|| [from.max(-1.0), to.min(1.0)])
+    }
+
     /// Whether it gets within a distance of a ball, m; never no by rounding.
     pub(super) fn gets_to(&self, ball: &Ball, distance: f64) -> bool {
         ball.is_within(&self.nearest_to(&ball.middle), distance + self.beside)
-    }
-
-    /// It stays at least so far from a place, m.
-    pub(super) fn keeps_off(&self, place: &Point3) -> f64 {
-        (self.nearest_to(place) - place).norm() - self.beside
     }
 
     fn nearest_to(&self, place: &Point3) -> Point3 {

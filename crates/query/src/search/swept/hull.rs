@@ -1,0 +1,72 @@
+//! Boxes about what is in a leaf: most of what another leaf could meet there is told by one of them.
+
+use cloudtouch_geom::{BoxDrift, Drift, Matrix3, Point3, Vector3};
+
+use super::super::facet::Facet;
+
+/// A box, in the frame of A.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hull {
+    middle: Point3,
+    /// Half its size along each of its axes, as columns.
+    half_axes: Matrix3,
+    /// How far what is in it gets.
+    drift: BoxDrift,
+}
+
+/// What heights are rounded by, relative to the size of the box and its way.
+const ROUNDING: f64 = 1e-9;
+
+impl Hull {
+    /// About places, each with how far what is there reaches along each of the axes (columns), m; `None`
+    /// about nothing.
+    pub(super) fn around(
+        axes: &Matrix3,
+        places: impl Iterator<Item = (Point3, Vector3)>,
+        drift: &Drift,
+    ) -> Option<Self> {
+        let span = places
+            .map(|(place, reach)| {
+                let at = axes.tr_mul(&place.coords);
+                (at - reach, at + reach)
+            })
+            .reduce(|(low, high), (from, to)| (low.inf(&from), high.sup(&to)));
+        span.map(|(low, high)| {
+            let middle = Point3::from(axes * (0.5 * (low + high)));
+            let half_axes = axes * Matrix3::from_diagonal(&(0.5 * (high - low)));
+            Self { middle, half_axes, drift: drift.of_box(&middle, &half_axes, 0.0) }
+        })
+    }
+
+    /// Between which heights everything in it is along a unit vector, m; never too narrow by rounding.
+    fn heights(&self, n: &Vector3) -> [f64; 2] {
+        let (height, half) = (n.dot(&self.middle.coords), self.half_axes.tr_mul(n).abs().sum());
+        let room = half + ROUNDING * (half + height.abs());
+        [height - room, height + room]
+    }
+
+    /// Whether two boxes may meet while the second drifts, as far as one direction tells.
+    pub(super) fn meets_along(&self, drifting: &Self, n: &Vector3) -> bool {
+        let room = drifting.drift.along(n);
+        let ([low, high], [from, to]) = (self.heights(n), drifting.heights(n));
+        from - room <= high && to + room >= low
+    }
+
+    /// Whether a triangle may meet it while one of them drifts, as far as the plane of the triangle and one
+    /// direction tell.
+    pub(super) fn meets_facet(&self, facet: &Facet, direction: &Vector3, drift: &Drift) -> bool {
+        let gets_to_plane = |n: Vector3| {
+            let room = self.drift.along(&n);
+            let ([low, high], at) = (self.heights(&n), n.dot(&facet.corners[0].coords));
+            low - room <= at && at <= high + room
+        };
+        let [low, high] = self.heights(direction);
+        let (mut is_above, mut is_below) = (true, true);
+        for corner in &facet.corners {
+            let (at, room) = (direction.dot(&corner.coords), drift.along(direction, corner));
+            is_above &= at - room > high;
+            is_below &= at + room < low;
+        }
+        !is_above && !is_below && facet.normal.is_none_or(gets_to_plane)
+    }
+}

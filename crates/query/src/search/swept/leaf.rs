@@ -1,0 +1,163 @@
+//! Leaves of a search among surfaces of which one drifts: what is told once of a leaf for all others that
+//! it meets.
+
+use cloudtouch_bvh::NodeId;
+use cloudtouch_geom::{Drift, Matrix3, Motion, Vector3};
+
+use crate::body::BodyRef;
+use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
+use crate::report::Stats;
+
+use super::super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
+use super::super::run::load_edges;
+use super::hull::Hull;
+use super::track::{Direction, Track};
+
+/// A leaf in the frame of A, and where its pieces get to.
+#[derive(Debug)]
+pub(super) enum Swept<'a> {
+    Noisy(Box<SweptCloud<'a>>),
+    Exact(ExactLeaf),
+}
+
+/// A leaf of a cloud.
+#[derive(Debug)]
+pub(super) struct SweptCloud<'a> {
+    pub leaf: NoisyLeaf<'a>,
+    /// Of its pieces.
+    pub tracks: Vec<Track>,
+    /// About its discs.
+    pub discs: Option<Hull>,
+    pub layer: Layer,
+    axes: Matrix3,
+    edges: Option<SweptEdges>,
+}
+
+/// The edges of a leaf.
+#[derive(Debug)]
+pub(super) struct SweptEdges {
+    pub tracks: Vec<EdgeTrack>,
+    /// About all of them; `None` where there are none.
+    pub hull: Option<Hull>,
+}
+
+/// Where an edge gets to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EdgeTrack {
+    pub middle: Track,
+    pub ends: [Track; 2],
+    /// How far its ends get in any direction, m.
+    pub by: f64,
+}
+
+/// Between which heights the pieces of a leaf are along the direction it is thinnest, and how well they are
+/// known along it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layer {
+    direction: Direction,
+    low: f64,
+    high: f64,
+    /// The largest variance along it, m².
+    variance: f64,
+}
+
+impl<'a> Swept<'a> {
+    /// A leaf of a body, moved to the frame of A by `motion`, or of A itself.
+    pub(super) fn load(
+        body: BodyRef<'a>,
+        id: NodeId,
+        motion: Option<&Motion>,
+        drift: &Drift,
+        stats: &mut Stats,
+    ) -> Self {
+        match (body, Leaf::load(body, id, motion, stats)) {
+            (BodyRef::Cloud(cloud), Leaf::Noisy(leaf)) => {
+                Self::Noisy(Box::new(SweptCloud::new(leaf, axes_of(cloud, id, motion), drift)))
+            }
+            (_, Leaf::Noisy(leaf)) => {
+                Self::Noisy(Box::new(SweptCloud::new(leaf, Matrix3::identity(), drift)))
+            }
+            (_, Leaf::Exact(leaf)) => Self::Exact(leaf),
+        }
+    }
+}
+
+/// The axes of the box of a leaf, as columns.
+fn axes_of(cloud: &Cloud, id: NodeId, motion: Option<&Motion>) -> Matrix3 {
+    let axes = cloud.tree().node(id).map_or_else(Matrix3::identity, |leaf| leaf.obb().axes);
+    motion.map_or(axes, |motion| motion.rotation() * axes)
+}
+
+impl<'a> SweptCloud<'a> {
+    fn new(leaf: NoisyLeaf<'a>, axes: Matrix3, drift: &Drift) -> Self {
+        let tracks = leaf.surfels.iter().map(|s| Track::of(&s.point.mean, drift)).collect();
+        let of_disc = |s: &Surfel| {
+            let normal = s.normal?;
+            let sine = |cosine: f64| (1.0 - cosine * cosine).max(0.0).sqrt();
+            let reach = axes.tr_mul(&normal).map(sine) * (DISC_SPACINGS * s.spacing);
+            Some((s.point.mean, reach))
+        };
+        let discs = Hull::around(&axes, leaf.surfels.iter().filter_map(of_disc), drift);
+        let layer = Layer::around(&leaf.surfels, Direction::new(leaf.slab.direction, drift));
+        Self { leaf, tracks, discs, layer, axes, edges: None }
+    }
+
+    /// Gets its edges, once.
+    pub(super) fn load_edges(
+        &mut self,
+        body: BodyRef<'a>,
+        id: NodeId,
+        motion: Option<&Motion>,
+        drift: &Drift,
+    ) {
+        if self.edges.is_none() {
+            load_edges(&mut self.leaf, body, id, motion);
+            self.edges = Some(SweptEdges::new(self.leaf.edges(), &self.axes, drift));
+        }
+    }
+
+    /// `None` before they were loaded.
+    pub(super) fn edges(&self) -> Option<&SweptEdges> {
+        self.edges.as_ref()
+    }
+}
+
+impl SweptEdges {
+    fn new(edges: &[Edge], axes: &Matrix3, drift: &Drift) -> Self {
+        let ends = edges.iter().flat_map(|edge| edge.ends);
+        let hull = Hull::around(axes, ends.map(|end| (end, Vector3::zeros())), drift);
+        Self { tracks: edges.iter().map(|edge| EdgeTrack::of(edge, drift)).collect(), hull }
+    }
+}
+
+impl EdgeTrack {
+    fn of(edge: &Edge, drift: &Drift) -> Self {
+        let [from, to] = &edge.ends;
+        let ends = [Track::of(from, drift), Track::of(to, drift)];
+        let by = ends[0].in_any_direction().max(ends[1].in_any_direction());
+        Self { middle: Track::of(&nalgebra::center(from, to), drift), ends, by }
+    }
+}
+
+impl Layer {
+    fn around(surfels: &[Surfel], direction: Direction) -> Self {
+        let mut layer =
+            Self { direction, low: f64::INFINITY, high: f64::NEG_INFINITY, variance: 0.0 };
+        for Surfel { point, .. } in surfels {
+            let height = direction.n.dot(&point.mean.coords);
+            let variance = point.covariance.variance_along(&direction.n);
+            layer.low = layer.low.min(height);
+            layer.high = layer.high.max(height);
+            layer.variance = layer.variance.max(variance);
+        }
+        layer
+    }
+
+    /// No piece of the leaf has fewer deviations along its direction to a piece of the other body, which has
+    /// so large a variance at any turn.
+    pub(super) fn deviations(&self, track: &Track, variance: impl Fn(&Direction) -> f64) -> f64 {
+        let height = self.direction.n.dot(&track.place.coords);
+        let gap = (height - self.high).max(self.low - height) - track.along(&self.direction);
+        if gap <= 0.0 { 0.0 } else { gap / (self.variance + variance(&self.direction)).sqrt() }
+    }
+}
