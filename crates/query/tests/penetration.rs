@@ -65,6 +65,25 @@ fn to_be_out_more_likely_takes_no_less() {
     assert!(of(0.02) >= of(0.1) && of(0.1) >= of(0.4));
 }
 
+/// It was told along the way that is shortest until a collision is less likely than a tenth.
+#[test]
+fn the_depth_is_that_of_its_own_shortest_way() {
+    let cube = scene::cuboid([SIZE; 3]);
+    // About as deep across two faces.
+    for (seed, deeper) in (1..=6).zip([0.0, 0.002, -0.002, 0.004, -0.004, 0.006]) {
+        let (a, b) = (body(&cube, false, 0.01, seed), body(&cube, false, 0.01, !seed));
+        let offset = Vector3::new(0.05 + deeper - SIZE, 0.01, 0.05 - SIZE);
+        let pose = Pose::from_translation(offset);
+        let (_, out) = query().penetration(&a, &b, &pose, 0.1).unwrap();
+        let depth = out.unwrap().depth_m;
+        for direction in [-Vector3::x(), -Vector3::z()] {
+            let nearer = Pose::from_translation(direction * (0.95 * depth)).after(&pose);
+            let probability = query().run(&a, &b, &nearer).unwrap().collision_probability;
+            assert!(probability > 0.5, "{seed} {direction}: {probability} at {depth}");
+        }
+    }
+}
+
 #[test]
 fn what_is_out_need_not_move() {
     let cube = scene::cuboid([SIZE; 3]);

@@ -52,7 +52,7 @@ class Penetration:
     depth: float
     """How far, until it is as likely as not: how deep B is in, m."""
     std: float
-    """What the surfaces leave open of that along the direction, m."""
+    """What the surfaces leave open of the depth along its own way, m."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -176,7 +176,7 @@ class Query:
     ) -> tuple[Report, Penetration | None]:
         """The report of :meth:`run`, and the least translation of ``b`` found that ends the collision.
 
-        ``None`` where no direction frees it. Takes some two hundred queries in a collision.
+        ``None`` where no direction frees it. Takes some three hundred queries in a collision.
 
         Parameters
         ----------

@@ -66,8 +66,8 @@ impl Query {
     /// along the axes of both bodies and evenly in all directions, and turns the best toward the normal at
     /// its end. Only translations are tried, and only where they end: on the way the object may pass through
     /// something. `None` where no direction frees it, as where a doubt about the bodies themselves, their
-    /// units say, keeps every place from reading as free. Takes some two hundred queries in a collision and
-    /// one elsewhere.
+    /// units say, keeps every place from reading as free. Takes some three hundred queries in a collision
+    /// and one elsewhere.
     ///
     /// ```
     /// use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
@@ -148,7 +148,7 @@ impl Query {
             let query = self.deciding(likely);
             Overlap { query, told: |report: &Report| report.collision_probability, ..overlap }
         };
-        let [least_likely, even, most_likely] = LIKELY.map(until);
+        let [nearer, even, farther] = LIKELY.map(until);
         // The way that is shortest until then may be another.
         let mut depth = even.way_out(direction, distance_m)?;
         if depth.free > FINEST {
@@ -157,7 +157,7 @@ impl Query {
             }
             depth = even.between(even.turned_aside(depth)?, PRECISION)?;
         }
-        let [near, far] = [least_likely, most_likely]
+        let [near, far] = [nearer, farther]
             .map(|until| until.way_out(depth.direction, depth.free).map(|way| way.free));
         let (depth_m, std_m) = (depth.free, 0.5 * (far? - near?));
         Ok((report, Some(Penetration { direction, distance_m, depth_m, std_m })))
