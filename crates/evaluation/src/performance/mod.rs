@@ -50,10 +50,9 @@ deviations of the likeliest, though none beyond 3.5 but that one, and samples 10
 discs that reach far. *Far*: no coarse map of distances is kept of a scene, so that every \
 query goes down both trees ([decision 15](../decisions/0015-fewer-instructions.md)). *Deep*: the \
 search stops at P > .999 only. *Fresh clouds and frames*: the noise model is computed where a query \
-first comes near, which takes more than the query itself; of a frame, preparation alone takes longer \
-than all is to take. *Hard leaf problems*: SMO finishes none within its steps, and of the interior \
-point method, though it starts beside what SMO found, every step is cubic in the points. *Memory*: \
-positions, covariances, boxes and what queries have computed are all kept, in double precision.";
+first comes near, which takes more than the query itself; of a frame, preparation alone takes as long \
+as all is to take. *Hard leaf problems*: SMO finishes none within its steps, and of the interior \
+point method, though it starts beside what SMO found, every step is cubic in the points.";
 
 /// Measures and writes the page.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
