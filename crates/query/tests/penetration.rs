@@ -84,6 +84,23 @@ fn the_depth_is_that_of_its_own_shortest_way() {
     }
 }
 
+/// It read as in by .1 mm, the finest that ways are told to.
+#[test]
+fn what_is_likelier_out_than_in_is_in_by_nothing() {
+    let cube = scene::cuboid([SIZE; 3]);
+    let (a, b) = (body(&cube, false, 0.002, 1), body(&cube, false, 0.002, 2));
+    let aside =
+        (0..20).map(|k| Pose::from_translation(Vector3::x() * (SIZE + 0.001 * f64::from(k))));
+    let is_doubtful = |pose: &Pose| {
+        let probability = query().run(&a, &b, pose).unwrap().collision_probability;
+        0.1 < probability && probability < 0.5
+    };
+    let pose = aside.into_iter().find(is_doubtful).unwrap();
+    let (_, out) = query().penetration(&a, &b, &pose, 0.1).unwrap();
+    let out = out.unwrap();
+    assert!(out.depth_m == 0.0 && out.distance_m > 0.0, "{out:?}");
+}
+
 #[test]
 fn what_is_out_need_not_move() {
     let cube = scene::cuboid([SIZE; 3]);

@@ -234,10 +234,14 @@ impl Overlap<'_> {
         self.between(way, ROUGHLY).map(Some)
     }
 
-    /// The way along a direction to where it is free, near to where it is for another probability.
+    /// The way along a direction to where it is free, near to where it is for another probability; none
+    /// where it is free already.
     fn way_out(&self, direction: Vector3, near: f64) -> Result<Way, QueryError> {
         let far = self.apart(&direction);
-        let mut way = Way { direction, stuck: 0.0, free: near };
+        if self.is_free(Vector3::zeros())? {
+            return Ok(Way { direction, stuck: 0.0, free: 0.0 });
+        }
+        let mut way = Way { direction, stuck: 0.0, free: near.max(FINEST) };
         while !self.is_free(direction * way.free)? {
             if way.free > far {
                 return Ok(way);
