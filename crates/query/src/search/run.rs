@@ -12,7 +12,6 @@ use crate::report::Stats;
 
 use super::around::Around;
 use super::crossings::Crossings;
-use super::facet::Facet;
 use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach,
     may_reach_facets,
@@ -167,23 +166,6 @@ pub(super) fn load_edges<'a>(
     if let BodyRef::Cloud(cloud) = body {
         leaf.load_edges(cloud, id, motion);
     }
-}
-
-/// The triangles of a mesh within a distance of a place in the frame of A.
-pub(super) fn facets_around(
-    body: BodyRef<'_>,
-    a_from_mesh: Option<&Motion>,
-    place: &Point3,
-    radius: f64,
-) -> Vec<Facet> {
-    let BodyRef::Mesh(mesh) = body else { return Vec::new() };
-    let local = a_from_mesh.map_or(*place, |motion| motion.point_back(place));
-    let mut facets = Vec::new();
-    mesh.visit_triangles_near(&local, radius, |triangle, corners| {
-        let facet = Facet::new(triangle, corners);
-        facets.push(a_from_mesh.map_or(facet, |motion| facet.moved(motion)));
-    });
-    facets
 }
 
 #[cfg(test)]

@@ -115,7 +115,7 @@ pub(super) fn add_mesh_through_discs(
     is_a: bool,
     discs: &SweptCloud<'_>,
     facets: &ExactLeaf,
-    around: impl Fn(&Point3, f64) -> Vec<Facet>,
+    mut around: impl FnMut(&Point3, f64) -> Vec<Facet>,
     drift: &Drift,
     found: &mut Passages,
 ) {
@@ -133,7 +133,7 @@ pub(super) fn add_mesh_through_discs(
         }
         let off = may_pierce(is_a, disc, &normal, &met, drift);
         if let Some(off) = off.filter(|_| disc.spacing > 0.0) {
-            let passage = mesh_through_disc(is_a, disc, (normal, off), &around, drift);
+            let passage = mesh_through_disc(is_a, disc, (normal, off), &mut around, drift);
             found.add(Witness::disc(is_a, disc), &passage);
         }
     }

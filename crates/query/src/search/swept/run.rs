@@ -10,8 +10,8 @@ use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
+use super::super::around::Around;
 use super::super::leaf::ExactLeaf;
-use super::super::run::facets_around;
 use super::facets::may_touch;
 use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_meet, may_reach,
@@ -50,6 +50,7 @@ pub(crate) fn reach_of<'a>(
         leaves: Default::default(),
         deviations: MOST_DEVIATIONS,
         passages: Passages::default(),
+        around: Around::default(),
     };
     let trees = (a.shape().tree(), b.shape().tree());
     let is_exact = matches!((a, b), (BodyRef::Mesh(_), BodyRef::Mesh(_)));
@@ -77,6 +78,7 @@ struct Way<'a, 'd> {
     leaves: (Leaves<'a>, Leaves<'a>),
     deviations: f64,
     passages: Passages,
+    around: Around,
 }
 
 impl<'a> Way<'a, '_> {
@@ -92,7 +94,8 @@ impl<'a> Way<'a, '_> {
             self.deviations = least_of(leaf_a, leaf_b, self.drift, self.deviations);
         }
         if pair.may_cross {
-            cross((a, b), motion, pair, (leaf_a, leaf_b), self.drift, &mut self.passages);
+            let told = (&mut self.passages, &mut self.around);
+            cross((a, b), motion, pair, (leaf_a, leaf_b), self.drift, told);
         }
     }
 }
@@ -174,7 +177,7 @@ fn cross<'a>(
     pair: &SurfacePair,
     leaves: (&mut Swept<'a>, &mut Swept<'a>),
     drift: &Drift,
-    passages: &mut Passages,
+    (passages, known): (&mut Passages, &mut Around),
 ) {
     match leaves {
         (Swept::Noisy(on_a), Swept::Noisy(on_b)) => {
@@ -184,13 +187,13 @@ fn cross<'a>(
         (Swept::Noisy(noisy), Swept::Exact(exact)) if may_reach_facets(noisy, exact) => {
             noisy.load_edges(a, pair.a, None, drift);
             add_edges_through_facets(true, noisy, exact, drift, passages);
-            let around = |place: &Point3, radius| facets_around(b, Some(a_from_b), place, radius);
+            let around = |place: &Point3, radius| known.facets(b, Some(a_from_b), place, radius);
             add_mesh_through_discs(true, noisy, exact, around, drift, passages);
         }
         (Swept::Exact(exact), Swept::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
             noisy.load_edges(b, pair.b, Some(a_from_b), drift);
             add_edges_through_facets(false, noisy, exact, drift, passages);
-            let around = |place: &Point3, radius| facets_around(a, None, place, radius);
+            let around = |place: &Point3, radius| known.facets(a, None, place, radius);
             add_mesh_through_discs(false, noisy, exact, around, drift, passages);
         }
         _ => {}
