@@ -174,6 +174,11 @@ impl Prepared {
         self.radii = radii;
     }
 
+    /// Whether its tree holds every point, not a few that stand for all.
+    pub(crate) fn is_searched_at_every_point(&self) -> bool {
+        self.pieces.is_each()
+    }
+
     /// Which pieces of surface are near which, by their numbers in the tree.
     pub(super) fn near_pieces(&self) -> &Neighborhoods {
         self.pieces.neighborhoods(&self.neighborhoods)

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Point3;
 
-use crate::cloud::{DISC_SPACINGS, SLOPE, Surfel};
+use crate::cloud::{DISC_SPACINGS, Edge, SLOPE};
 
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
@@ -10,18 +10,50 @@ use super::facet::Facet;
 use super::leaf::{ExactLeaf, NoisyLeaf};
 use super::through_mesh::Outline;
 
-/// Whether an edge may cross a disc of another leaf near its end at a piece of the first: that can be
+/// Pieces of a leaf by their places in it, those from the last bit on together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Places(u64);
+
+impl Places {
+    const NONE: Self = Self(0);
+
+    fn one(place: usize) -> Self {
+        Self(1 << place.min(u64::BITS as usize - 1))
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether one of the pieces that an edge joins is among them.
+    fn joined_by(self, edge: &Edge) -> bool {
+        let ends = edge.own.iter().flatten();
+        ends.fold(0, |all, &place| all | Self::one(place).0) & self.0 != 0
+    }
+
+    pub(super) fn is_none(self) -> bool {
+        self == Self::NONE
+    }
+}
+
+/// The pieces of a leaf near which an edge from there may cross a disc of another leaf: that can be
 /// told before the edges are known, for half of one is not longer than a disc reaches, and runs along
 /// the surface.
-pub(super) fn may_reach(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> bool {
+pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Places {
     let NoisyLeaf { ball, slab, .. } = of_discs;
-    of_edges.surfels.iter().any(|surfel| {
-        let Some(normal) = surfel.normal else { return false };
+    let mut reaching = Places::NONE;
+    for (place, surfel) in of_edges.surfels.iter().enumerate() {
+        let Some(normal) = surfel.normal else { continue };
         let half = DISC_SPACINGS * surfel.spacing;
         let middle = &surfel.point.mean;
-        slab.is_within(middle, half * SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)))
-            && ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
-    })
+        if ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
+            && slab
+                .is_within(middle, half * SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)))
+        {
+            reaching = reaching.with(Places::one(place));
+        }
+    }
+    reaching
 }
 
 /// Whether a facet may be within reach of a disc or of the near half of an edge.
@@ -32,32 +64,40 @@ pub(super) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> 
     })
 }
 
-/// Adds the crossings of edges of one leaf with discs of another; the points they join, and those of
-/// the discs, are as probable as their clearest crossing.
+/// Adds the crossings of edges of one leaf with discs of another near its pieces that [`reaching`] gave;
+/// the points they join, and those of the discs, are as probable as their clearest crossing. `places` is
+/// memory to use again.
 pub(super) fn add_edges_through_discs(
     is_a: bool,
-    of_edges: &mut NoisyLeaf<'_>,
+    (of_edges, near): (&mut NoisyLeaf<'_>, Places),
     of_discs: &mut NoisyLeaf<'_>,
+    places: &mut Vec<usize>,
     found: &mut Crossings,
 ) {
     let (around, slab) = (of_discs.ball, of_discs.slab);
-    let surfels = of_discs.surfels.iter().enumerate();
-    let discs: Vec<(usize, &Surfel)> =
-        surfels.filter(|(_, disc)| of_edges.edge_slab.may_hold_disc_of(disc)).collect();
-    if discs.is_empty() {
+    // Half of an edge is no longer than a disc of the pieces it is near to.
+    let reach = DISC_SPACINGS * of_edges.ball.spacing;
+    places.clear();
+    places.extend((0..of_discs.surfels.len()).filter(|&at| {
+        let disc = &of_discs.surfels[at];
+        of_edges.ball.is_within(&disc.point.mean, reach + DISC_SPACINGS * disc.spacing)
+            && of_edges.edge_slab.may_hold_disc_of(disc)
+    }));
+    if places.is_empty() {
         return;
     }
     // Taken out, for the edges are borrowed while probabilities are raised.
     let mut of_ends = std::mem::take(&mut of_edges.crossing);
     for edge in of_edges.edges() {
-        if !slab.may_hold(&edge.ends, 0.0) {
+        if !near.joined_by(edge) || !slab.may_hold(&edge.ends, 0.0) {
             continue;
         }
         let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
         if !around.is_within(&middle, edge.half_length + DISC_SPACINGS * around.spacing) {
             continue;
         }
-        for &(at, disc) in &discs {
+        for &at in places.iter() {
+            let disc = &of_discs.surfels[at];
             let reach = edge.half_length + DISC_SPACINGS * disc.spacing;
             if (disc.point.mean - middle).norm_squared() > reach * reach {
                 continue;

@@ -13,8 +13,8 @@ use crate::report::Stats;
 use super::around::Around;
 use super::crossings::Crossings;
 use super::gather::{
-    add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach,
-    may_reach_facets,
+    add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach_facets,
+    reaching,
 };
 use super::leaf::{Leaf, NoisyLeaf};
 use super::meeting::{Meeting, deviations_by_pose};
@@ -47,6 +47,8 @@ pub(crate) struct Found<'a> {
     pub deviations: f64,
     pub crossings: Crossings,
     around: Around,
+    /// Of pieces of a leaf; empty but for a moment.
+    places: Vec<usize>,
     /// Whether what was left out can change neither of these.
     pub is_complete: bool,
     /// No two pieces are nearer than this, m; negative where surfaces may cross.
@@ -111,7 +113,7 @@ impl<'a> Found<'a> {
         self.at_least = self.at_least.min(leaf_a.distance(leaf_b));
         let nearest = (pair.deviations < most).then(|| nearest_pieces(leaf_a, leaf_b, most));
         if pair.may_cross {
-            let found = (&mut self.crossings, &mut self.around);
+            let found = (&mut self.crossings, &mut self.around, &mut self.places);
             cross((a, b), a_from_b, pair, (leaf_a, leaf_b), found);
         }
         let Some(nearest) = nearest.flatten() else { return };
@@ -128,17 +130,19 @@ fn cross<'a>(
     a_from_b: &Motion,
     pair: &SurfacePair,
     leaves: (&mut Leaf<'a>, &mut Leaf<'a>),
-    (crossings, known): (&mut Crossings, &mut Around),
+    (crossings, known, places): (&mut Crossings, &mut Around, &mut Vec<usize>),
 ) {
     match leaves {
         (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
-            if may_reach(on_a, on_b) {
+            let near = reaching(on_a, on_b);
+            if !near.is_none() {
                 load_edges(on_a, a, pair.a, None);
-                add_edges_through_discs(true, on_a, on_b, crossings);
+                add_edges_through_discs(true, (on_a, near), on_b, places, crossings);
             }
-            if may_reach(on_b, on_a) {
+            let near = reaching(on_b, on_a);
+            if !near.is_none() {
                 load_edges(on_b, b, pair.b, Some(a_from_b));
-                add_edges_through_discs(false, on_b, on_a, crossings);
+                add_edges_through_discs(false, (on_b, near), on_a, places, crossings);
             }
         }
         (Leaf::Noisy(noisy), Leaf::Exact(exact)) if may_reach_facets(noisy, exact) => {

@@ -1,10 +1,14 @@
 //! A body with the surface of the other all around it: nothing near says that it touches, and nothing
 //! says on which side of that surface it is.
 
+mod open_side;
+
 use cloudtouch_geom::{Point3, Pose, Vector3};
 
 use crate::cloud::Prepared;
 use crate::shape::Shape;
+
+use open_side::has_open_side;
 
 /// Points that stand for the surface around, at most.
 const MOST_POINTS: usize = 4096;
@@ -15,6 +19,9 @@ const MOST_SQUARES: usize = 4;
 const POINTS_PER_SQUARE: f64 = 8.0;
 /// With this share of the squares filled there is no way out.
 const CLOSED: f64 = 0.97;
+/// From so many points on a side of [`has_open_side`] is four whole squares of [`MOST_SQUARES`] a side:
+/// more than may be empty.
+const MANY_POINTS: usize = 1024;
 
 /// A way that keeps so many spacings from every point passes no surface.
 const SURFACE_SPACINGS: f64 = 1.0;
@@ -43,6 +50,12 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
         return false;
     }
     let points = cloud.points();
+    if points.len() >= MANY_POINTS
+        && cloud.is_searched_at_every_point()
+        && has_open_side(cloud.tree(), points, place)
+    {
+        return false;
+    }
     let step = points.len().div_ceil(MOST_POINTS).max(1);
     let count = points.len().div_ceil(step);
     let squares = (count as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt().floor() as usize;
@@ -130,6 +143,14 @@ mod tests {
         };
         let face = 2 * axis + usize::from(direction[axis] < 0.0);
         Some((face * squares + along(1)) * squares + along(2))
+    }
+
+    #[test]
+    fn an_open_side_leaves_too_few_squares_filled() {
+        let squares_a_side = (MANY_POINTS as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt() as usize;
+        assert!(squares_a_side >= MOST_SQUARES);
+        let all = 6 * MOST_SQUARES * MOST_SQUARES;
+        assert!(((all - 4) as f64) < CLOSED * all as f64);
     }
 
     #[test]

@@ -1,0 +1,105 @@
+//! A side of a place without any point, told by the boxes of a tree: most places beside a scan have one,
+//! and so need no look at all of its points.
+
+use cloudtouch_bvh::{Obb, Tree, Visit};
+use cloudtouch_geom::{Point3, Vector3};
+
+/// Sides are pyramids along the axes of the frame, as wide as this times their height to either hand.
+const SLOPE: f64 = 0.5;
+/// So much wider, and boxes so much larger, that rounding cannot leave a point out.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether one of the six pyramids with their tops at a place holds no point; `points` by their indices
+/// in the tree.
+pub(super) fn has_open_side(tree: &Tree, points: &[Point3], place: &Point3) -> bool {
+    let mut sides = (0..3).flat_map(|axis| [1.0, -1.0].map(|sign| Side { axis, sign }));
+    sides.any(|side| {
+        let mut is_open = true;
+        tree.visit_nodes(|node| {
+            if !is_open || !side.may_hold(node.obb(), place) {
+                return Visit::Prune;
+            }
+            let mut all = node.primitive_indices().iter();
+            if node.is_leaf() && all.any(|&index| side.holds(&(points[index as usize] - place))) {
+                is_open = false;
+            }
+            Visit::Descend
+        });
+        is_open
+    })
+}
+
+/// The directions that are nearest to one of an axis, to the half of what lies between it and the others.
+#[derive(Clone, Copy)]
+struct Side {
+    axis: usize,
+    sign: f64,
+}
+
+impl Side {
+    /// How far a place is within each of its four faces, in no unit.
+    fn within_faces(self, offset: &Vector3) -> [f64; 4] {
+        let half = SLOPE * (1.0 + ROUNDING) * self.sign * offset[self.axis];
+        let [p, q] = [1, 2].map(|k| offset[(self.axis + k) % 3]);
+        [half - p, half + p, half - q, half + q]
+    }
+
+    fn holds(self, offset: &Vector3) -> bool {
+        self.within_faces(offset).iter().all(|&within| within >= 0.0)
+    }
+
+    /// Whether some place of a box may be in it: not where a face parts them.
+    fn may_hold(self, obb: &Obb, place: &Point3) -> bool {
+        let offset = obb.centre - place;
+        let mut most = self.within_faces(&offset);
+        for (axis, half) in obb.axes.column_iter().zip(&obb.half_extents) {
+            let along = self.within_faces(&axis.into_owned());
+            for (most, along) in most.iter_mut().zip(along) {
+                *most += half * along.abs();
+            }
+        }
+        let rounding = ROUNDING * (offset.lp_norm(1) + obb.half_extents.sum());
+        most.iter().all(|&most| most >= -rounding)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_bvh::{Primitive, TreeSettings};
+    use cloudtouch_geom::seed::{derive, unit};
+    use cloudtouch_geom::{Covariance, UncertainPoint};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// By looking at every point.
+        #[test]
+        fn a_side_is_open_where_it_holds_no_point(
+            seed in any::<u64>(),
+            count in 20_u64..400,
+            // Beyond .3 the most of a ball is missing.
+            up_to in -0.9..1.0_f64,
+            place in prop::array::uniform3(-0.7..0.7_f64),
+        ) {
+            let draw = |i, k| 2.0 * unit(derive(seed, i, k)) - 1.0;
+            let drawn = (0..count).map(|i| Vector3::new(draw(i, 0), draw(i, 1), draw(i, 2)));
+            let points: Vec<Point3> = drawn
+                .filter_map(|p| p.try_normalize(0.01))
+                .filter(|p| p.x + 0.3 * p.y < up_to)
+                .map(Point3::from)
+                .collect();
+            prop_assume!(!points.is_empty());
+            let covariance = Covariance::isotropic(1e-3);
+            let primitive = |&mean: &Point3| Primitive::point(UncertainPoint { mean, covariance });
+            let tree = Tree::build(points.iter().map(primitive).collect(), &TreeSettings::default());
+            let place = Point3::from(Vector3::from(place));
+            let sides = (0..3).flat_map(|axis| [1.0, -1.0].map(|sign| Side { axis, sign }));
+            let expected =
+                sides.into_iter().any(|side| !points.iter().any(|p| side.holds(&(p - place))));
+            prop_assert_eq!(has_open_side(&tree.unwrap(), &points, &place), expected);
+        }
+    }
+}
