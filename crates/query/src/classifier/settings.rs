@@ -45,8 +45,8 @@ impl Default for ClassifierSettings {
     /// The defaults of the default path.
     fn default() -> Self {
         Self {
-            kernel: Kernel::Gaussian { gamma: 10.0 },
-            penalty: 100.0,
+            kernel: Kernel::Gaussian { gamma: 3.0 },
+            penalty: 10.0,
             is_balanced: true,
             mesh_penalty_factor: 10.0,
             ellipsoid_radius: 1.0,

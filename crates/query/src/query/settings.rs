@@ -75,8 +75,8 @@ impl Default for QuerySettings {
             reject: 0.1,
             judge: Judge::default(),
             prior: 0.5,
-            gamma: 10.0,
-            penalty: 100.0,
+            gamma: 3.0,
+            penalty: 10.0,
             mesh_penalty_factor: 10.0,
             // κ = 0.84: an ellipsoid of one standard deviation.
             ellipsoid_radius: 1.0,
