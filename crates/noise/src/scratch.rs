@@ -1,9 +1,9 @@
 //! Memory that refinement works in.
 
-use cloudtouch_geom::{Covariance, Point3};
+use cloudtouch_geom::Point3;
 
 use crate::block::Block;
-use crate::patch::{Offsets, Patch, PatchNoise};
+use crate::patch::{NoiseLanes, Offsets, Patch, PatchNoise};
 use crate::positions::Neighbor;
 use crate::sensor_noise::SensorNoise;
 
@@ -48,7 +48,7 @@ impl Scratch {
 pub(crate) struct Buffers {
     offsets: Offsets,
     /// Empty where it is the same for all.
-    noise: Vec<Covariance>,
+    noise: NoiseLanes,
 }
 
 impl Buffers {
@@ -65,8 +65,7 @@ impl Buffers {
         let noise = if let Some(covariance) = sensor.as_uniform() {
             PatchNoise::Uniform(covariance)
         } else {
-            self.noise.clear();
-            self.noise.extend(neighbors.map(|n| sensor[n.index]));
+            self.noise.set(neighbors.map(|n| &sensor[n.index]));
             PatchNoise::Each(&self.noise)
         };
         Patch::new(&self.offsets, noise, &sensor[index], spacing)
