@@ -15,6 +15,8 @@ pub struct Scratch {
     /// The same for the few that are asked for without a fit: a block of many would be too wide for
     /// them, and theirs too narrow for the next fit.
     pub(crate) few_block: Block,
+    /// What is asked for together.
+    pub(crate) places: Vec<Point3>,
     pub(crate) neighbors: Vec<Neighbor>,
     pub(crate) patch: Buffers,
     /// Of the thinned clouds.
