@@ -86,15 +86,28 @@ impl Block {
         self.reach = found.last().map_or(0.0, |last| last.squared_distance.sqrt());
     }
 
-    /// Makes ready for the neighbours of some places near one another, as many of each as were asked for
-    /// last, where these are not much farther apart than that reaches.
-    pub(crate) fn gather(&mut self, cloud: &Positions, places: &[Point3]) {
-        let is_same = self.cloud.as_ref().is_some_and(|id| Arc::ptr_eq(id, cloud.id()));
-        let Some((low, high)) = bounding_box(places).filter(|_| is_same) else { return };
+    /// Makes ready for the `k` neighbours of each of some places near one another, where these are not much
+    /// farther apart than their neighbours reach: so far as is given (m), as the last ones did, or else as
+    /// those of their middle do.
+    pub(crate) fn gather(
+        &mut self,
+        cloud: &Positions,
+        places: &[Point3],
+        k: usize,
+        reach: Option<f64>,
+    ) {
+        let corners = bounding_box(places).filter(|(low, high)| is_finite(low) && is_finite(high));
+        let Some((low, high)) = corners else { return };
         let centre = low + 0.5 * (high - low);
+        let is_same = self.cloud.as_ref().is_some_and(|id| Arc::ptr_eq(id, cloud.id()));
+        let reach = reach
+            .or((is_same && self.reach > 0.0).then_some(self.reach))
+            .unwrap_or_else(|| cloud.distance_of_nearest(&centre, k + 1));
         let apart = places.iter().map(|place| (place - centre).norm()).fold(0.0, f64::max);
-        if apart <= GATHERED * self.reach {
-            self.fill(cloud, &centre, apart + SPARE * self.reach);
+        if apart <= GATHERED * reach {
+            self.cloud = Some(cloud.id().clone());
+            self.reach = reach;
+            self.fill(cloud, &centre, apart + SPARE * reach);
         }
     }
 
@@ -129,8 +142,9 @@ impl Block {
         let complete = (self.radius * (1.0 - ROUNDING) - (place - self.centre).norm()).max(0.0);
         let is_whole = self.radius == f64::INFINITY;
         // Most of the time a little farther than for the last point is far enough.
-        for within in [SEARCHED * self.reach, complete] {
-            let most = within.min(complete).powi(2);
+        let likely = Some(SEARCHED * self.reach).filter(|likely| *likely < complete);
+        for within in likely.into_iter().chain([complete]) {
+            let most = within.powi(2);
             run(Select { block: self, place, most });
             if self.sorted.len() >= wanted || (is_whole && within == complete) {
                 self.sorted.finish(most, found);
@@ -160,6 +174,11 @@ impl Kernel for Select<'_> {
             let from = |values, value| Lanes::load(machine, values) - Lanes::splat(machine, value);
             let [x, y, z] = [from(x, place.x), from(y, place.y), from(z, place.z)];
             let squares = (x * x + y * y + z * z).stored();
+            // PERF: those of a group are near one another, so that mostly all of them are too far.
+            let [p, q, r, s] = squares;
+            if !((p <= most) | (q <= most) | (r <= most) | (s <= most)) {
+                continue;
+            }
             for (index, square) in indices.iter().zip(squares) {
                 sorted.push_if(square <= most, *index, square);
             }
@@ -169,6 +188,8 @@ impl Kernel for Select<'_> {
 
 /// Buckets that neighbours are sorted by.
 const BUCKETS: usize = 64;
+/// Numbers from here on, up to its double, are one apart.
+const LARGE: f64 = (1_u64 << 52) as f64;
 /// So few are put in order without buckets.
 const MOST_INSERTED: usize = 20;
 /// More are sorted by comparison.
@@ -219,7 +240,11 @@ impl Sorted {
             sorted.sort_unstable_by(in_order);
             return;
         }
-        let bucket = |hit: &Neighbor| ((hit.squared_distance * scale) as usize).min(BUCKETS - 1);
+        // PERF: the integer part, rounded, are the last bits of a number so large.
+        let bucket = |hit: &Neighbor| {
+            let rounded = (hit.squared_distance * scale + LARGE).to_bits() as usize;
+            (rounded & (2 * BUCKETS - 1)).min(BUCKETS - 1)
+        };
         let mut starts = [0_u16; BUCKETS + 1];
         for hit in hits {
             starts[bucket(hit) + 1] += 1;

@@ -49,7 +49,7 @@ impl Density {
     /// About points near one another.
     fn of_group(cloud: &Positions, group: &[u32], buffers: &mut Buffers) -> Vec<Self> {
         let places: Vec<Point3> = group.iter().map(|&i| cloud.points()[i as usize]).collect();
-        buffers.0.gather(cloud, &places);
+        buffers.0.gather(cloud, &places, SPACING_NEIGHBORS, None);
         group.iter().map(|&index| Self::around(cloud, index as usize, buffers)).collect()
     }
 }

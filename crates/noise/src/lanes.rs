@@ -79,6 +79,18 @@ impl<S: Machine> Lanes<S> {
         Self(self.0, self.0.max_f64s(self.1, self.0.splat_f64s(0.0)))
     }
 
+    /// One number for what is less.
+    #[inline(always)]
+    pub(crate) fn at_least(self, least: f64) -> Self {
+        Self(self.0, self.0.max_f64s(self.1, self.0.splat_f64s(least)))
+    }
+
+    /// One over each.
+    #[inline(always)]
+    pub(crate) fn inverse(self) -> Self {
+        Self(self.0, self.0.div_f64s(self.0.splat_f64s(1.0), self.1))
+    }
+
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
         let [a, b, c, d] = self.stored();

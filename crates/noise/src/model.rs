@@ -89,6 +89,33 @@ impl NoiseModel {
         self.refined(index, neighborhoods, Some(representatives), sensor, spacing_cap, scratch)
     }
 
+    /// Makes buffers ready for the refinement of some points near one another, each by itself afterwards:
+    /// it is faster then, and comes out the same. `reach` is how far about the refinement of one nearby
+    /// looked ([`Scratch::reach`]), m, where that is known.
+    ///
+    /// # Panics
+    /// When an index does not belong to the cloud.
+    pub fn gather(
+        &self,
+        indices: impl Iterator<Item = usize>,
+        neighborhoods: &Neighborhoods,
+        reach: Option<f64>,
+        scratch: &mut Scratch,
+    ) {
+        let Scratch { block, places, .. } = scratch;
+        places.clear();
+        places.extend(indices.map(|index| neighborhoods.points()[index]));
+        block.gather(neighborhoods.positions(), places, self.neighbors(), reach);
+    }
+
+    /// How many neighbours a point is refined by.
+    fn neighbors(&self) -> usize {
+        match self.settings.combination {
+            Combination::SurfacePosterior => MOST_NEIGHBORS,
+            _ => self.settings.discretization.neighbors.max(SPACING_NEIGHBORS),
+        }
+    }
+
     fn refined(
         &self,
         index: usize,
@@ -100,10 +127,7 @@ impl NoiseModel {
     ) -> Refined {
         let points = neighborhoods.points();
         assert_eq!(sensor.len(), points.len(), "one sensor covariance for each point");
-        let count = match self.settings.combination {
-            Combination::SurfacePosterior => MOST_NEIGHBORS,
-            _ => self.settings.discretization.neighbors.max(SPACING_NEIGHBORS),
-        };
+        let count = self.neighbors();
         let Scratch { block, neighbors, .. } = scratch;
         block.nearest_into(neighborhoods.positions(), &points[index], count, true, neighbors);
         scratch.reach = reach(&scratch.neighbors, count);

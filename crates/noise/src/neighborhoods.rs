@@ -124,6 +124,17 @@ impl Neighborhoods {
         neighbors
     }
 
+    /// Makes buffers ready for [`Self::nearest_with`] of some points near one another.
+    ///
+    /// # Panics
+    /// When an index is out of range.
+    pub fn gather(&self, indices: impl Iterator<Item = usize>, k: usize, scratch: &mut Scratch) {
+        let Scratch { few_block, places, .. } = scratch;
+        places.clear();
+        places.extend(indices.map(|index| self.points()[index]));
+        few_block.gather(&self.positions, places, k, None);
+    }
+
     /// The `k` positions nearest to any place, fewer when there are fewer, in order of distance,
     /// then index. A place that is not finite has none.
     pub fn nearest_to(&self, place: &Point3, k: usize) -> Vec<Neighbor> {

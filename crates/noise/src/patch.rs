@@ -55,6 +55,29 @@ impl Offsets {
     }
 }
 
+/// Covariances Σⱼ of neighbours, m²: the six entries xx, xy, xz, yy, yz, zz in lanes of their own.
+#[derive(Debug, Default)]
+pub(crate) struct NoiseLanes {
+    groups: Vec<[Stored; 6]>,
+}
+
+impl NoiseLanes {
+    /// Takes others instead.
+    pub(crate) fn set<'a>(&mut self, noise: impl Iterator<Item = &'a Covariance>) {
+        self.groups.clear();
+        for (index, covariance) in noise.enumerate() {
+            if index % WIDTH == 0 {
+                // Lanes without a neighbour have a precision that a weight of zero makes zero.
+                self.groups.push([[1.0; WIDTH]; 6]);
+            }
+            let group = &mut self.groups[index / WIDTH];
+            for (lanes, entry) in group.iter_mut().zip(covariance.upper_triangle()) {
+                lanes[index % WIDTH] = entry;
+            }
+        }
+    }
+}
+
 /// Neighbours in order of distance, relative to the point they surround.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Patch<'a> {
@@ -76,23 +99,34 @@ pub(crate) struct Patch<'a> {
 pub(crate) enum PatchNoise<'a> {
     /// The same for all.
     Uniform(&'a Covariance),
-    Each(&'a [Covariance]),
+    Each(&'a NoiseLanes),
 }
 
 /// The inverse variances of neighbours along a direction, 1/m².
-#[expect(clippy::large_enum_variant, reason = "one at a time, for one pass over the neighbours")]
-pub(crate) enum Precisions {
+pub(crate) enum Precisions<'a> {
     Same(f64),
-    Each([Stored; GROUPS]),
+    Each {
+        noise: &'a NoiseLanes,
+        along: Vector3,
+        /// The least variance, m².
+        floor: f64,
+    },
 }
 
-impl Precisions {
+impl Precisions<'_> {
     #[inline(always)]
     pub(crate) fn group<S: Machine>(&self, machine: S, group: usize) -> Lanes<S> {
-        match self {
-            Self::Same(precision) => Lanes::splat(machine, *precision),
-            Self::Each(all) => Lanes::load(machine, all[group]),
-        }
+        let (noise, n, floor) = match self {
+            Self::Same(precision) => return Lanes::splat(machine, *precision),
+            Self::Each { noise, along, floor } => (noise, along, *floor),
+        };
+        let [xx, xy, xz, yy, yz, zz] = noise.groups[group];
+        let load = |entries| Lanes::load(machine, entries);
+        let (xx, xy, xz, yy, yz, zz) = (load(xx), load(xy), load(xz), load(yy), load(yz), load(zz));
+        let variance = (xx * n.x + (xy * n.y + xz * n.z) * 2.0) * n.x
+            + (yy * n.y + yz * 2.0 * n.z) * n.y
+            + zz * n.z * n.z;
+        variance.at_least(floor).inverse()
     }
 }
 
@@ -171,19 +205,16 @@ impl<'a> Patch<'a> {
     /// The inverse of the variances that residuals of the neighbours along a unit normal are judged
     /// by.
     #[inline(always)]
-    pub(crate) fn precisions(&self, normal: &Vector3) -> Precisions {
+    pub(crate) fn precisions(&self, normal: &Vector3) -> Precisions<'a> {
         if let Some(precision) = self.same {
             return Precisions::Same(precision);
         }
-        let along = |noise: &Covariance| 1.0 / noise.variance_along(normal).max(self.floor);
         match self.noise {
-            PatchNoise::Uniform(noise) => Precisions::Same(along(noise)),
-            PatchNoise::Each(all) => {
-                let mut precisions = [[0.0; WIDTH]; GROUPS];
-                for (index, noise) in all[..self.count].iter().enumerate() {
-                    precisions[index / WIDTH][index % WIDTH] = along(noise);
-                }
-                Precisions::Each(precisions)
+            PatchNoise::Uniform(noise) => {
+                Precisions::Same(1.0 / noise.variance_along(normal).max(self.floor))
+            }
+            PatchNoise::Each(noise) => {
+                Precisions::Each { noise, along: *normal, floor: self.floor }
             }
         }
     }

@@ -119,13 +119,14 @@ impl Positions {
         let within = |tree: &ImmutableKdTree<f64, 3>, found: &mut Vec<Neighbor>, now: &[u32]| {
             let query: [f64; 3] = place.coords.into();
             // The slack keeps the tree's box tests, which round, from losing one.
-            let hits = tree
-                .query(&query)
+            tree.query(&query)
                 .within::<SquaredEuclidean<f64>>(squared_distance * (1.0 + 1e-9))
                 .unsorted()
-                .execute();
-            let hits = hits.iter().filter(|hit| hit.distance <= squared_distance);
-            found.extend(hits.filter_map(|hit| neighbor(hit.item, hit.distance, now)));
+                .visit(|hit| {
+                    if hit.distance <= squared_distance {
+                        found.extend(neighbor(hit.item, hit.distance, now));
+                    }
+                });
         };
         let mut found = Vec::new();
         match &self.overlay {

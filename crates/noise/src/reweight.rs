@@ -86,7 +86,7 @@ mod tests {
 
     use super::*;
     use crate::lanes::{Kernel, run};
-    use crate::patch::{Offsets, PatchNoise};
+    use crate::patch::{NoiseLanes, Offsets, PatchNoise};
 
     struct Reweight<'a>(&'a Patch<'a>, &'a Plane);
 
@@ -138,7 +138,9 @@ mod tests {
             let noise: Vec<Covariance> = (0..places.len())
                 .map(|i| Covariance::diagonal(variances).scaled(if is_uniform { 1.0 } else { 1.0 + i as f64 }))
                 .collect();
-            let by = if is_uniform { PatchNoise::Uniform(&noise[0]) } else { PatchNoise::Each(&noise) };
+            let mut lanes = NoiseLanes::default();
+            lanes.set(noise.iter());
+            let by = if is_uniform { PatchNoise::Uniform(&noise[0]) } else { PatchNoise::Each(&lanes) };
             let patch = Patch::new(&offsets, by, &noise[0], 0.5);
             let plane = Plane { normal: Vector3::new(tilt, 0.0, 1.0).normalize(), height: 0.01 };
             let floor = (0.03_f64 * 0.5).powi(2);

@@ -1,9 +1,9 @@
 //! Memory that refinement works in.
 
-use cloudtouch_geom::{Covariance, Point3};
+use cloudtouch_geom::Point3;
 
 use crate::block::Block;
-use crate::patch::{Offsets, Patch, PatchNoise};
+use crate::patch::{NoiseLanes, Offsets, Patch, PatchNoise};
 use crate::positions::Neighbor;
 use crate::sensor_noise::SensorNoise;
 
@@ -15,6 +15,8 @@ pub struct Scratch {
     /// The same for the few that are asked for without a fit: a block of many would be too wide for
     /// them, and theirs too narrow for the next fit.
     pub(crate) few_block: Block,
+    /// What is asked for together.
+    pub(crate) places: Vec<Point3>,
     pub(crate) neighbors: Vec<Neighbor>,
     pub(crate) patch: Buffers,
     /// Of the thinned clouds.
@@ -48,7 +50,7 @@ impl Scratch {
 pub(crate) struct Buffers {
     offsets: Offsets,
     /// Empty where it is the same for all.
-    noise: Vec<Covariance>,
+    noise: NoiseLanes,
 }
 
 impl Buffers {
@@ -65,8 +67,7 @@ impl Buffers {
         let noise = if let Some(covariance) = sensor.as_uniform() {
             PatchNoise::Uniform(covariance)
         } else {
-            self.noise.clear();
-            self.noise.extend(neighbors.map(|n| sensor[n.index]));
+            self.noise.set(neighbors.map(|n| &sensor[n.index]));
             PatchNoise::Each(&self.noise)
         };
         Patch::new(&self.offsets, noise, &sensor[index], spacing)

@@ -1,7 +1,10 @@
 //! The index against brute force, on clouds that break k-d trees.
 
-use cloudtouch_geom::{Point3, Vector3, seed};
-use cloudtouch_noise::{Neighbor, Neighborhoods, NoiseError, Scratch, typical_spacing};
+use cloudtouch_geom::{Covariance, Point3, Vector3, seed};
+use cloudtouch_noise::{
+    Combination, Neighbor, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, Scratch,
+    SensorNoise, typical_spacing,
+};
 use proptest::prelude::*;
 
 /// The reference: every other position once, sorted by distance, then index.
@@ -177,6 +180,58 @@ fn blocks_find_what_single_searches_find() {
             walk.iter().step_by(7).chain((0..points.len()).step_by(53).collect::<Vec<_>>().iter())
         {
             assert_eq!(index.nearest_with(i, k, &mut scratch), index.nearest(i, k), "point {i}");
+        }
+    }
+}
+
+/// A lattice, whose neighbours are tied, with places stored twice, or a dense patch in a sparse one.
+fn tied_or_uneven(is_lattice: bool, seed: u64) -> Vec<Point3> {
+    let place = |i: u64| {
+        let draw = |k| seed::unit(seed::derive(seed, i, k));
+        let size = if i % 3 == 0 { 10.0 } else { 0.5 };
+        match is_lattice {
+            true => Point3::new((i % 23) as f64, (i / 23 % 19) as f64, 0.0),
+            false => Point3::new(size * draw(0), size * draw(1), 0.01 * draw(2)),
+        }
+    };
+    (0..600).map(place).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// Whatever group a block is made for, and however far its neighbours are said to reach.
+    #[test]
+    fn gathered_blocks_tell_what_single_searches_tell(
+        is_lattice in any::<bool>(),
+        seed in any::<u64>(),
+        about in 0..600_usize,
+        group in 1..30_usize,
+        k in 1..80_usize,
+        reach in prop::option::of(0.0..8.0_f64),
+    ) {
+        let points = tied_or_uneven(is_lattice, seed);
+        let index = Neighborhoods::try_new(points.clone()).unwrap();
+        let sensor = SensorNoise::uniform(Covariance::isotropic(1e-6), points.len());
+        let model = NoiseModel::try_new(NoiseSettings {
+            combination: Combination::SurfacePosterior,
+            ..NoiseSettings::default()
+        }).unwrap();
+        let mut members: Vec<usize> =
+            index.nearest(about, group).iter().map(|near| near.index).collect();
+        members.push((about + 300) % 600);
+        let mut scratch = Scratch::default();
+        for members in [&members[..group.min(members.len() - 1)], &members] {
+            index.gather(members.iter().copied(), k, &mut scratch);
+            for &i in members {
+                prop_assert_eq!(index.nearest_with(i, k, &mut scratch), index.nearest(i, k));
+            }
+            model.gather(members.iter().copied(), &index, reach, &mut scratch);
+            for &i in members {
+                let refine = |s: &mut Scratch| model.refine(i, &index, &sensor, 1e3, s);
+                prop_assert_eq!(refine(&mut scratch), refine(&mut Scratch::default()));
+                prop_assert_eq!(scratch.neighbors(), index.nearest(i, 60));
+            }
         }
     }
 }

@@ -32,6 +32,7 @@ impl Prepared {
 pub(crate) fn edges_of(cloud: &Prepared, indices: &[u32], scratch: &mut Scratch) -> Vec<Edge> {
     let places: BTreeMap<u32, usize> = indices.iter().copied().zip(0..).collect();
     let mut nearest = Nearest { cloud, known: BTreeMap::new() };
+    nearest.gather(&places, scratch);
     let mut edges = Vec::new();
     for (&p, &place) in &places {
         for q in nearest.of(p, scratch) {
@@ -63,6 +64,25 @@ struct Nearest<'a> {
 }
 
 impl Nearest<'_> {
+    /// Makes buffers ready for what will be asked of the points of other leaves.
+    fn gather(&mut self, places: &BTreeMap<u32, usize>, scratch: &mut Scratch) {
+        let near = self.cloud.near_pieces();
+        let indices = |of: &[u32]| of.iter().map(|&index| index as usize).collect::<Vec<_>>();
+        let unknown = |of: &u32| self.cloud.known_nearest(*of).is_none();
+        let own: Vec<u32> = places.keys().copied().filter(unknown).collect();
+        near.gather(indices(&own).into_iter(), NEIGHBORS, scratch);
+        let mut others: Vec<u32> = Vec::new();
+        for &index in places.keys() {
+            others.extend(self.of(index, scratch).iter().filter(|q| !places.contains_key(q)));
+        }
+        others.sort_unstable();
+        others.dedup();
+        others.retain(|other| self.cloud.known_nearest(*other).is_none());
+        near.gather(indices(&others).into_iter(), NEIGHBORS, scratch);
+        let reach = places.keys().find_map(|&own| self.cloud.known_reach(own));
+        self.cloud.gather(&others, reach, scratch);
+    }
+
     /// With fewer neighbours the point itself fills the rest, to which no edge leads.
     fn of(&mut self, index: u32, scratch: &mut Scratch) -> [u32; NEIGHBORS] {
         if let Some(nearest) = self.cloud.known_nearest(index) {

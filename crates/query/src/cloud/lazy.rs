@@ -23,6 +23,9 @@ impl Prepared {
         let surfels = self.surface.leaves[id.index()].get_or_init(|| {
             computed = true;
             let Some(leaf) = self.tree.node(id) else { return Vec::new() };
+            let pieces = leaf.primitive_indices();
+            let known = pieces.iter().find_map(|&piece| self.known_reach(piece));
+            self.gather(pieces, known, scratch);
             let surfel = |&piece: &u32| *self.surfel(piece, scratch);
             leaf.primitive_indices().iter().map(surfel).collect()
         });
@@ -34,6 +37,21 @@ impl Prepared {
         let mut scratch = Scratch::default();
         let nearest = self.near_pieces().nearest_to(place, count);
         nearest.iter().map(|near| *self.surfel(near.index as u32, &mut scratch)).collect()
+    }
+
+    /// Makes buffers ready for the fits at those of some pieces near one another where the surface is not
+    /// known, given how far one of them looked, m, if any is known. Where a few stand for all their fits
+    /// look elsewhere.
+    pub(super) fn gather(&self, pieces: &[u32], reach: Option<f64>, scratch: &mut Scratch) {
+        if !self.pieces.is_each() || self.scans.normals.is_some() {
+            return;
+        }
+        let is_unknown = |piece: &&u32| !self.is_known(**piece);
+        let unknown: Vec<usize> =
+            pieces.iter().filter(is_unknown).map(|&piece| piece as usize).collect();
+        if unknown.len() > 1 {
+            self.noise.gather(unknown.into_iter(), &self.neighborhoods, reach, scratch);
+        }
     }
 
     /// The surface at one piece.
@@ -61,6 +79,12 @@ impl Prepared {
             Some(slot) => slot.get()?.basis.nearest,
             None => self.surface.bases.get(piece as usize)?.nearest,
         }
+    }
+
+    /// How far the fit at a piece looked, m, where that is known and not everywhere.
+    pub(super) fn known_reach(&self, piece: u32) -> Option<f64> {
+        let fitted = self.surface.surfels.get(piece as usize)?.get()?;
+        Some(fitted.basis.reach).filter(|reach| reach.is_finite())
     }
 
     /// Whether the surface at one piece was computed already.
