@@ -5,6 +5,11 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
+/// The features by which recordings of robots are read. All steps have them: with others most crates of
+/// others are built once more.
+pub(crate) const RECORDINGS: &str =
+    "--features cloudtouch-io/mcap,cloudtouch-cli/mcap,cloudtouch-fuzzing/mcap";
+
 /// The cargo that runs this task, in the project's folder.
 pub(crate) fn cargo(root: &Path, arguments: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));

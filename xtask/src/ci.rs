@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use cloudtouch_evaluation::sweep;
 
-use crate::cargo::{cargo, example, succeed};
+use crate::cargo::{RECORDINGS, cargo, example, succeed};
 use crate::{fixtures, python, tidy};
 
 /// Runs every step; tests come last, those in Python after those in Rust, whose build they use.
@@ -18,8 +18,10 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     step("tidy", "cargo xtask tidy", || tidy::run(root))?;
     step("fixtures", "cargo xtask fixtures --check", || fixtures::run(root, true))?;
     // The lock file holds: what is checked is what was committed, and no network is needed.
-    let features = "--features cloudtouch-io/mcap,cloudtouch-cli/mcap,cloudtouch-fuzzing/mcap";
-    run("clippy", &format!("clippy --locked --workspace --all-targets {features} -- -D warnings"))?;
+    run(
+        "clippy",
+        &format!("clippy --locked --workspace --all-targets {RECORDINGS} -- -D warnings"),
+    )?;
     // The tool is left out: its binary and the library it wraps would share one page.
     let doc = "doc --locked --workspace --exclude cloudtouch-cli --no-deps";
     step("doc", &format!("RUSTDOCFLAGS='-D warnings' cargo {doc}"), || {
@@ -29,17 +31,15 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     let exclude: String = unpublished.iter().map(|name| format!(" --exclude {name}")).collect();
     run("package", &format!("package --locked --workspace{exclude} --allow-dirty --no-verify"))?;
     step("sweep", "cargo xtask sweep --short", sweep::check)?;
-    let test = "test --locked --workspace --no-fail-fast";
+    let test = format!("test --locked --workspace {RECORDINGS} --no-fail-fast");
     step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
-        succeed(cargo(root, test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
+        succeed(cargo(root, &test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
     })?;
     // Tests build the examples too, and run none of them.
     let instructions = "run --locked --package cloudtouch-benches --example instructions";
     step("instructions", &format!("cargo {instructions}"), || {
         succeed(&mut example("instructions")?)
     })?;
-    let of_recordings = "--package cloudtouch-io --package cloudtouch-cli --package cloudtouch-fuzzing --test recording --test rosbags --test replay";
-    run("recordings", &format!("test --locked {of_recordings} {features}"))?;
     step("python", "cargo xtask python", || python::run(root))
 }
 

@@ -69,6 +69,7 @@ def test_a_mesh_of_a_file_is_that_of_its_triangles(tmp_path, table, plate):
         ("none.pcd", None, "none.pcd"),
         ("scan.las", "", ".pcd"),
         ("bad.xyz", "1 2 3\n1 abc 3\n", "bad.xyz: line 2"),
+        ("run.mcap", "", "run.mcap: is a recording"),
     ],
 )
 def test_bad_files_are_named(tmp_path, name, text, words):

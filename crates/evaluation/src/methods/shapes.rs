@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use anyhow::{Result, anyhow};
 use cloudtouch_geom::{Point3, TriangleMesh};
-use glamx::DPose3;
-use parry3d_f64::math::Vector;
+use cloudtouch_testkit::exact::parry_pose;
+use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::intersection_test;
 use parry3d_f64::shape::{Shape, TriMesh, Voxels};
 
@@ -57,8 +57,8 @@ fn shapes(a: Box<dyn Shape>, b: Box<dyn Shape>, mesh: &TriangleMesh) -> Result<P
             Pair::CloudCloud => &*b,
             Pair::CloudMesh => &mesh,
         };
-        let pose = DPose3::from(*a_from_b.isometry());
-        let touch = intersection_test(&DPose3::IDENTITY, &*a, &pose, moving)?.intersecting;
+        let pose = parry_pose(a_from_b);
+        let touch = intersection_test(&Pose::IDENTITY, &*a, &pose, moving)?.intersecting;
         Ok(Some(Said::score(f64::from(u8::from(touch)), start)))
     }))
 }

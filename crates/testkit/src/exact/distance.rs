@@ -10,7 +10,7 @@ use parry3d_f64::{
     shape::TriMesh,
 };
 
-use super::{ExactMesh, parry_vector};
+use super::{ExactMesh, parry_pose, parry_vector};
 
 /// Vertices from which a first bound is looked for.
 const STARTS: usize = 16;
@@ -21,7 +21,7 @@ impl ExactMesh {
         if self.intersects(other, self_from_other) {
             return 0.0;
         }
-        let placed = glamx::DPose3::from(*self_from_other.isometry());
+        let placed = parry_pose(self_from_other);
         let (here, there) = (self.shape(), other.shape());
         let least = Cell::new(self.bound(other, self_from_other));
         let near = |box_here: Aabb, box_there: Aabb| {
@@ -40,7 +40,7 @@ impl ExactMesh {
     /// A distance of two of their points: from vertices of the other to and fro.
     fn bound(&self, other: &Self, self_from_other: &Pose) -> f64 {
         let onto = |shape: &TriMesh, p: Vector| shape.project_local_point(p, false).point;
-        let placed = glamx::DPose3::from(*self_from_other.isometry());
+        let placed = parry_pose(self_from_other);
         let vertices = other.mesh().vertices();
         let starts = vertices.iter().step_by(vertices.len().div_ceil(STARTS));
         let ways = starts.map(|vertex| {

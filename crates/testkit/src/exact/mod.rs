@@ -11,7 +11,11 @@ mod penetration;
 mod touch;
 
 use cloudtouch_geom::{Pose, TriangleMesh, Vector3};
-use parry3d_f64::{math::Vector, query, shape::TriMesh};
+use parry3d_f64::{
+    math::{self, Vector},
+    query,
+    shape::TriMesh,
+};
 
 use component::{Component, components};
 
@@ -47,8 +51,8 @@ impl ExactMesh {
     /// `self_from_other` places the other mesh. One solid wholly inside another does not count:
     /// see [`Self::solids_overlap`]. May go either way when they touch within about 1e-9 m.
     pub fn intersects(&self, other: &Self, self_from_other: &Pose) -> bool {
-        let placed = glamx::DPose3::from(*self_from_other.isometry());
-        query::intersection_test(&glamx::DPose3::IDENTITY, &self.shape, &placed, &other.shape)
+        let placed = parry_pose(self_from_other);
+        query::intersection_test(&math::Pose::IDENTITY, &self.shape, &placed, &other.shape)
             .expect("parry intersects triangle meshes")
             .intersecting
     }
@@ -70,4 +74,13 @@ impl ExactMesh {
 /// The bridge from nalgebra to parry.
 pub(crate) fn parry_vector(v: &Vector3) -> Vector {
     Vector::new(v.x, v.y, v.z)
+}
+
+/// A pose as parry has it.
+pub fn parry_pose(pose: &Pose) -> math::Pose {
+    let q = pose.rotation();
+    math::Pose::from_parts(
+        parry_vector(&pose.translation()),
+        math::Rotation::from_xyzw(q.i, q.j, q.k, q.w),
+    )
 }

@@ -6,6 +6,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::{guided::reaching, pair::Pair, seeing::Seen};
+use crate::exact::parry_pose;
 use crate::{
     poses::{Approach, CONTACT_GAP},
     random::direction_near,
@@ -55,8 +56,8 @@ impl Grasp {
 
 fn first_contact_is_seen(pair: Pair, seen: &Seen, approach: &Approach) -> bool {
     let Seen::Image(view) = seen else { return true };
-    let placed = glamx::DPose3::from(*approach.pose(approach.contact).isometry());
-    let here = glamx::DPose3::IDENTITY;
+    let placed = parry_pose(&approach.pose(approach.contact));
+    let here = parry3d_f64::math::Pose::IDENTITY;
     let nearest =
         closest_points(&here, pair.a.shape(), &placed, pair.b.shape(), 10.0 * CONTACT_GAP)
             .expect("parry finds closest points of triangle meshes");
