@@ -128,7 +128,7 @@ fn a_lower_bound_on_the_clearance_forgot_what_was_looked_at() {
     }
 }
 
-/// A cup 5 cm deep in a table top read "at least -3 cm": boxes that overlap bound no depth.
+/// What was 5 cm deep in a table read "at least -3 cm": boxes that overlap bound no depth.
 #[test]
 fn an_overlap_has_no_lower_bound_on_its_clearance() {
     let floor = cloud(measured(&scene::plane_patch(0.6), 0.012, 0.002, 3), 0.002);
@@ -140,7 +140,7 @@ fn an_overlap_has_no_lower_bound_on_its_clearance() {
     }
     let apart = ask(&floor, &cup, &at(0.0, 0.0, 0.35));
     let least = apart.clearance_at_least_m.expect("far apart");
-    assert!((0.2..=0.31).contains(&least), "{least}");
+    assert!((0.05..=0.3).contains(&least), "{least}");
 }
 
 #[test]
