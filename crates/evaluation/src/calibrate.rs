@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use cloudtouch::{
     CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
+    NOISE_KNOTS,
 };
 use cloudtouch_testkit::family::Kind;
 
@@ -18,6 +19,9 @@ use crate::sweep::{Asked, ORACLE, OURS, Plan, ask};
 /// What a pose of a scene that was chosen to be hard counts for, beside one of ordinary scenes: users live
 /// in these, and should be told what is true there (docs/decisions/0020-whom-the-judge-serves.md).
 const ADVERSARIAL: f64 = 0.25;
+
+/// Values of a surface over geometry.
+const GEOMETRY_VALUES: usize = DEVIATION_KNOTS.len() * CROSSING_KNOTS.len();
 
 /// What `cargo xtask calibrate` is given.
 #[derive(Args)]
@@ -62,7 +66,7 @@ struct Record {
 }
 
 impl Record {
-    fn at(&self, at: [f64; 2]) -> SurfaceSample {
+    fn at<const D: usize>(&self, at: [f64; D]) -> SurfaceSample<D> {
         SurfaceSample { at, came: self.collides, weight: self.weight }
     }
 }
@@ -87,40 +91,49 @@ fn fit_judge(records: &[Record]) -> Result<Judge> {
     // Fewer deviations make a collision more probable: the axis is turned round, and back again.
     let mut nearness = DEVIATION_KNOTS.map(|z| -z);
     nearness.reverse();
-    let by_both =
-        |record: &Record| record.at([-record.evidence.deviations, record.evidence.crossing]);
-    let mut geometry: Vec<SurfaceSample> = records.iter().map(by_both).collect();
-    geometry.extend(within());
-    let nearness = Axis { knots: nearness, usual: 3.0 };
-    let crossing = Axis { knots: CROSSING_KNOTS, usual: 1.0 };
-    let mut by_geometry = fit_surface(&geometry, nearness, crossing, false);
-    by_geometry.reverse();
-    let mut judge = Judge { by_geometry, ..Judge::default() };
-    let doubtful = |record: &Record| -> Option<SurfaceSample> {
+    let by_all = |record: &Record| {
         let e = &record.evidence;
-        let by_geometry = judge.log_odds_by_geometry(e.deviations, e.crossing);
+        record.at([e.noise_over_spacing, -e.deviations, e.crossing])
+    };
+    let mut geometry: Vec<SurfaceSample<3>> = records.iter().map(by_all).collect();
+    geometry.extend(within());
+    let noise = Axis { knots: &NOISE_KNOTS, usual: None };
+    let nearness = Axis { knots: &nearness, usual: Some(3.0) };
+    let crossing = Axis { knots: &CROSSING_KNOTS, usual: Some(1.0) };
+    let fitted = fit_surface(&geometry, [noise, nearness, crossing], false);
+    let mut judge = Judge::default();
+    for (surface, values) in judge.by_geometry.iter_mut().zip(fitted.chunks(GEOMETRY_VALUES)) {
+        surface.as_flattened_mut().copy_from_slice(values);
+        surface.reverse();
+    }
+    let doubtful = |record: &Record| -> Option<SurfaceSample<2>> {
+        let e = &record.evidence;
+        let by_geometry = judge.log_odds_by_geometry(e);
         let [least, .., most] = DOUBT_KNOTS;
         let is_doubtful = least < by_geometry && by_geometry < most;
         // Where the noise is as large as the patches the classifier says nothing.
         is_doubtful.then_some(record.at([by_geometry, e.ln_misclassified()?]))
     };
-    let in_doubt: Vec<SurfaceSample> = records.iter().filter_map(doubtful).collect();
-    let doubt = Axis { knots: DOUBT_KNOTS, usual: 1.0 };
-    let misclassified = Axis { knots: MISCLASSIFIED_KNOTS, usual: 0.2 };
-    judge.revised = fit_surface(&in_doubt, doubt, misclassified, true);
+    let in_doubt: Vec<SurfaceSample<2>> = records.iter().filter_map(doubtful).collect();
+    let doubt = Axis { knots: &DOUBT_KNOTS, usual: Some(1.0) };
+    let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, usual: Some(0.2) };
+    let revised = fit_surface(&in_doubt, [doubt, misclassified], true);
+    judge.revised.as_flattened_mut().copy_from_slice(&revised);
     judge.validate()?;
     Ok(judge)
 }
 
 /// Clouds wholly within solids, which hardly a pose that comes from outside is: a point clearly inside
 /// is a collision by what the words mean, whatever crosses.
-fn within() -> impl Iterator<Item = SurfaceSample> {
+fn within() -> impl Iterator<Item = SurfaceSample<3>> {
     const CLEARLY_INSIDE: f64 = -4.0;
     const WEIGHT: f64 = 100.0;
     let inside = DEVIATION_KNOTS.into_iter().filter(|&z| z <= CLEARLY_INSIDE);
     let places =
-        inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| [-z, crossing]));
-    places.map(|at| SurfaceSample { at, came: true, weight: WEIGHT })
+        inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| (-z, crossing)));
+    let at_each = |(nearness, crossing)| NOISE_KNOTS.map(|noise| [noise, nearness, crossing]);
+    let weight = WEIGHT / NOISE_KNOTS.len() as f64;
+    places.flat_map(at_each).map(move |at| SurfaceSample { at, came: true, weight })
 }
 
 #[cfg(test)]
@@ -129,22 +142,31 @@ mod tests {
 
     use super::*;
 
+    fn evidence(deviations: f64, crossing: f64, count: f64, noise: f64) -> ContactEvidence {
+        let misclassified = Some(count);
+        ContactEvidence { deviations, crossing, misclassified, noise_over_spacing: noise }
+    }
+
     #[test]
     fn a_judge_that_made_the_truth_is_found_again() {
         let unit = |i: u64, k: u64| seed::unit(seed::derive(7, i, k));
         let record = |i| {
             let (deviations, crossing) = (6.0 * unit(i, 0), 5.0 * unit(i, 1));
             let count = 10.0 * unit(i, 2) * unit(i, 2);
-            let evidence = ContactEvidence { deviations, crossing, misclassified: Some(count) };
-            let log_odds = crossing - 1.5 * deviations + 0.5 * (count - 3.0);
+            let noise = 2.0 * unit(i, 4);
+            let evidence = evidence(deviations, crossing, count, noise);
+            let log_odds = crossing * (1.2 - 0.4 * noise) - 1.5 * deviations + 0.5 * (count - 3.0);
             let collides = unit(i, 3) < 1.0 / (1.0 + (-log_odds).exp());
             Record { evidence, collides, weight: 1.0 }
         };
         let records: Vec<_> = (0..30_000).map(record).collect();
         let judge = fit_judge(&records).unwrap();
         // Averaged over what the classifier says, odds are nearer to even.
-        let odds = judge.log_odds_by_geometry(1.0, 3.6);
-        assert!((1.0..2.4).contains(&odds), "{odds}");
-        assert!(judge.revise(0.0, 8.0) > 0.8 && judge.revise(0.0, 0.1) < -0.5);
+        let odds = |noise| judge.log_odds_by_geometry(&evidence(1.0, 3.6, 3.0, noise));
+        assert!((1.0..2.4).contains(&odds(0.5)), "{}", odds(0.5));
+        assert!((1.5..3.5).contains(&(odds(0.0) - odds(2.0))), "{} {}", odds(0.0), odds(2.0));
+        // Where geometry leaves it open, the classifier decides.
+        let counted = |count| judge.log_odds(&evidence(2.4, 3.6, count, 0.5));
+        assert!(counted(8.0) > 0.5 && counted(0.1) < -0.5, "{} {}", counted(8.0), counted(0.1));
     }
 }

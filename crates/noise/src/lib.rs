@@ -63,4 +63,4 @@ pub use sensor_model::SensorModel;
 pub use sensor_noise::SensorNoise;
 pub use settings::{Combination, NoiseSettings};
 pub use settings_error::SettingsError;
-pub use typical_spacing::typical_spacing;
+pub use typical_spacing::{typical_spacing, typical_spacing_at};

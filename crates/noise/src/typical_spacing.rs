@@ -12,11 +12,19 @@ use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
 pub fn typical_spacing(neighborhoods: &Neighborhoods, sample: usize) -> f64 {
     let count = neighborhoods.points().len();
     let sample = sample.min(count);
+    // The product fits: an index holds at most 2³² points.
+    let index = |s: usize| (s as u64 * count as u64 / sample as u64) as usize;
+    typical_spacing_at(neighborhoods, (0..sample).map(index))
+}
+
+/// The same over these points.
+pub fn typical_spacing_at(
+    neighborhoods: &Neighborhoods,
+    indices: impl Iterator<Item = usize>,
+) -> f64 {
     let mut found = Vec::new();
-    let mut spacings = Vec::with_capacity(sample);
-    for s in 0..sample {
-        // The product fits: an index holds at most 2³² points.
-        let index = (s as u64 * count as u64 / sample as u64) as usize;
+    let mut spacings = Vec::with_capacity(indices.size_hint().0);
+    for index in indices {
         neighborhoods.nearest_into(index, SPACING_NEIGHBORS, &mut found);
         spacings.extend(spacing_around(&found));
     }

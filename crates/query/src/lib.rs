@@ -38,7 +38,7 @@ pub use filter::{
 };
 pub use judge::{
     CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
-    WITHIN_KNOTS, between_knots,
+    NOISE_KNOTS, OverDoubt, OverGeometry, WITHIN_KNOTS, between_knots,
 };
 pub use mesh::Mesh;
 pub use mode::Mode;

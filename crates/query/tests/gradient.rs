@@ -190,7 +190,7 @@ fn the_report_is_that_of_a_query() {
 
 #[test]
 fn two_clouds() {
-    check([false, false], 60, [10, 5, 10]);
+    check([false, false], 150, [10, 5, 10]);
 }
 
 #[test]

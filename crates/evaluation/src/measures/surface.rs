@@ -1,7 +1,5 @@
-//! Log odds as a surface over two numbers: values at knots, straight lines between them, fitted by
-//! penalised maximum likelihood (Newton's method) and monotone.
-
-use std::array;
+//! Log odds as a surface over a few numbers: values at knots, straight lines between them, fitted by
+//! penalised maximum likelihood (Newton's method) and monotone in what is evidence.
 
 use cloudtouch::between_knots;
 use nalgebra::{DMatrix, DVector};
@@ -19,44 +17,49 @@ const PINNED: f64 = 1e8;
 /// Newton's method is done long before.
 const MOST_STEPS: usize = 100;
 
-/// One of the two numbers; more of it makes the event more probable.
+/// One of the numbers.
 #[derive(Debug, Clone, Copy)]
-pub struct Axis<const N: usize> {
+pub struct Axis<'a> {
     /// Where the surface has values, ascending.
-    pub knots: [f64; N],
-    /// By how much a unit of it changes log odds where hardly a sample is.
-    pub usual: f64,
+    pub knots: &'a [f64],
+    /// Of evidence, more of which makes the event more probable, by how much a unit of it changes log odds
+    /// where hardly a sample is; `None` of what is no evidence itself, and only says what the rest is worth:
+    /// log odds are drawn to the same along it.
+    pub usual: Option<f64>,
 }
 
 /// What the surface is fitted to.
 #[derive(Debug, Clone, Copy)]
-pub struct Sample {
-    /// The two numbers.
-    pub at: [f64; 2],
+pub struct Sample<const D: usize> {
+    /// The numbers.
+    pub at: [f64; D],
     /// Whether the event came.
     pub came: bool,
     /// As how many samples it counts.
     pub weight: f64,
 }
 
-/// Fits values at the knots, by rows. The first and the last row are the knots themselves where
-/// `pins_border`.
+/// Fits values at the knots, the last axis running fastest. The first and the last values along the
+/// first axis are its knots themselves where `pins_border`.
 ///
 /// # Panics
 /// When a knot is not finite: then nothing can be solved.
-pub fn fit_surface<const N: usize, const M: usize>(
-    samples: &[Sample],
-    rows: Axis<N>,
-    columns: Axis<M>,
+pub fn fit_surface<const D: usize>(
+    samples: &[Sample<D>],
+    axes: [Axis<'_>; D],
     pins_border: bool,
-) -> [[f64; M]; N] {
-    let shares: Vec<([(usize, f64); 4], &Sample)> =
-        samples.iter().map(|sample| (shares(&rows, &columns, sample.at), sample)).collect();
-    let differences = differences(&rows, &columns);
-    let pins: &[usize] = if pins_border { &[0, N - 1] } else { &[] };
-    let mut values = DVector::zeros(N * M);
+) -> Vec<f64> {
+    let shares: Vec<(Terms, &Sample<D>)> =
+        samples.iter().map(|sample| (shares(&axes, sample.at), sample)).collect();
+    let penalties = penalties(&axes);
+    let count: usize = axes.iter().map(|axis| axis.knots.len()).product();
+    let row = count / axes[0].knots.len();
+    let (least, most) = (axes[0].knots[0], axes[0].knots[axes[0].knots.len() - 1]);
+    let borders = [(0..row, least), (count - row..count, most)];
+    let pins = if pins_border { &borders[..] } else { &[] };
+    let mut values = DVector::zeros(count);
     for _ in 0..MOST_STEPS {
-        let mut hessian = DMatrix::from_diagonal_element(N * M, N * M, RIDGE);
+        let mut hessian = DMatrix::from_diagonal_element(count, count, RIDGE);
         let mut gradient = RIDGE * &values;
         let mut add = |terms: &[(usize, f64)], slope: f64, curvature: f64| {
             for &(i, w) in terms {
@@ -71,18 +74,18 @@ pub fn fit_surface<const N: usize, const M: usize>(
             let error = probability - f64::from(u8::from(*came));
             add(at, weight * error, weight * (probability * (1.0 - probability)).max(1e-9));
         }
-        for (terms, usual) in &differences {
+        for Penalty { terms, weight, usual } in &penalties {
             let found = value(terms, &values);
             let (penalty, excess) = match usual {
-                None => (SMOOTHNESS, found),
                 Some(_) if found < 0.0 => (MONOTONE, found),
-                Some(usual) => (WEAK, found - usual),
+                Some(usual) => (*weight, found - usual),
+                None => (*weight, found),
             };
             add(terms, penalty * excess, penalty);
         }
-        for &row in pins {
-            for k in row * M..(row + 1) * M {
-                add(&[(k, 1.0)], PINNED * (values[k] - rows.knots[row]), PINNED);
+        for (places, knot) in pins {
+            for k in places.clone() {
+                add(&[(k, 1.0)], PINNED * (values[k] - knot), PINNED);
             }
         }
         let step = hessian.cholesky().expect("a positive definite matrix").solve(&gradient);
@@ -93,76 +96,89 @@ pub fn fit_surface<const N: usize, const M: usize>(
             break;
         }
     }
-    let mut table = array::from_fn(|i| array::from_fn(|j| values[i * M + j]));
-    round(&mut table);
-    if pins_border {
-        let [least, most] = [rows.knots[0], rows.knots[N - 1]];
-        table.as_flattened_mut().iter_mut().for_each(|value| *value = value.clamp(least, most));
-        table[0].fill(least);
-        table[N - 1].fill(most);
+    let mut table: Vec<f64> = values.iter().copied().collect();
+    round(&mut table, &axes);
+    for (places, knot) in pins {
+        table.iter_mut().for_each(|value| *value = value.clamp(least, most));
+        table[places.clone()].fill(*knot);
     }
     table
 }
 
-/// Which values a place between the knots is made from, and how much of each.
-fn shares<const N: usize, const M: usize>(
-    rows: &Axis<N>,
-    columns: &Axis<M>,
-    [x, y]: [f64; 2],
-) -> [(usize, f64); 4] {
-    let ((i, s), (j, t)) = (between_knots(&rows.knots, x), between_knots(&columns.knots, y));
-    [
-        (i * M + j, (1.0 - s) * (1.0 - t)),
-        (i * M + j + 1, (1.0 - s) * t),
-        ((i + 1) * M + j, s * (1.0 - t)),
-        ((i + 1) * M + j + 1, s * t),
-    ]
-}
-
 type Terms = Vec<(usize, f64)>;
+
+/// Which values a place between the knots is made from, and how much of each.
+fn shares<const D: usize>(axes: &[Axis<'_>; D], at: [f64; D]) -> Terms {
+    let mut terms = vec![(0, 1.0)];
+    for (axis, x) in axes.iter().zip(at) {
+        let (knot, part) = between_knots(axis.knots, x);
+        let of = |&(index, weight): &(usize, f64)| {
+            let first = index * axis.knots.len() + knot;
+            [(first, (1.0 - part) * weight), (first + 1, part * weight)]
+        };
+        terms = terms.iter().flat_map(of).collect();
+    }
+    terms
+}
 
 fn value(terms: &[(usize, f64)], values: &DVector<f64>) -> f64 {
     terms.iter().map(|&(k, w)| w * values[k]).sum()
 }
 
-/// Differences between neighbouring values with what they usually are, and without that between
-/// neighbouring slopes, scaled by the distances of the knots.
-fn differences<const N: usize, const M: usize>(
-    rows: &Axis<N>,
-    columns: &Axis<M>,
-) -> Vec<(Terms, Option<f64>)> {
+/// A difference of values that is to be small, or what it usually is where that is given.
+struct Penalty {
+    terms: Terms,
+    weight: f64,
+    usual: Option<f64>,
+}
+
+/// Of differences between neighbouring values, and between neighbouring slopes, scaled by the distances of
+/// the knots. Surfaces beside one another along an axis that is no evidence share what holds one of them.
+fn penalties<const D: usize>(axes: &[Axis<'_>; D]) -> Vec<Penalty> {
+    let beside: usize =
+        axes.iter().filter(|axis| axis.usual.is_none()).map(|axis| axis.knots.len()).product();
+    let count: usize = axes.iter().map(|axis| axis.knots.len()).product();
     let mut all = Vec::new();
-    let mut along = |knots: &[f64], usual: f64, k: usize, index: &dyn Fn(usize) -> usize| {
+    let mut stride = count;
+    for Axis { knots, usual } in axes {
+        stride /= knots.len();
+        let smoothness = if usual.is_some() { SMOOTHNESS / beside as f64 } else { SMOOTHNESS };
         let width = |k: usize| knots[k + 1] - knots[k];
-        if k + 1 < knots.len() {
-            let rise = vec![(index(k + 1), 1.0), (index(k), -1.0)];
-            all.push((rise, Some(usual * width(k))));
-        }
-        if k > 0 && k + 1 < knots.len() {
-            let [before, after] = [width(k - 1), width(k)];
-            let mean = 0.5 * (before + after);
-            let (low, high) = (mean / before, mean / after);
-            let bend = vec![(index(k - 1), low), (index(k), -low - high), (index(k + 1), high)];
-            all.push((bend, None));
-        }
-    };
-    for i in 0..N {
-        for j in 0..M {
-            along(&rows.knots, rows.usual, i, &|k| k * M + j);
-            along(&columns.knots, columns.usual, j, &|k| i * M + k);
+        for index in 0..count {
+            let k = index / stride % knots.len();
+            if k + 1 < knots.len() {
+                let terms = vec![(index + stride, 1.0), (index, -1.0)];
+                all.push(Penalty {
+                    terms,
+                    weight: WEAK,
+                    usual: usual.map(|usual| usual * width(k)),
+                });
+            }
+            if k > 0 && k + 1 < knots.len() {
+                let [before, after] = [width(k - 1), width(k)];
+                let mean = 0.5 * (before + after);
+                let (low, high) = (mean / before, mean / after);
+                let terms =
+                    vec![(index - stride, low), (index, -low - high), (index + stride, high)];
+                all.push(Penalty { terms, weight: smoothness, usual: None });
+            }
         }
     }
     all
 }
 
 /// To thousandths, and exactly monotone: what is left of slopes against the evidence is levelled.
-fn round<const M: usize>(table: &mut [[f64; M]]) {
-    for i in 0..table.len() {
-        for j in 0..M {
-            let above = if i > 0 { table[i - 1][j] } else { f64::NEG_INFINITY };
-            let beside = if j > 0 { table[i][j - 1] } else { f64::NEG_INFINITY };
-            table[i][j] = ((1e3 * table[i][j]).round() / 1e3).max(above).max(beside);
+fn round<const D: usize>(table: &mut [f64], axes: &[Axis<'_>; D]) {
+    for index in 0..table.len() {
+        let mut least = f64::NEG_INFINITY;
+        let mut stride = table.len();
+        for Axis { knots, usual } in axes {
+            stride /= knots.len();
+            if usual.is_some() && index / stride % knots.len() > 0 {
+                least = least.max(table[index - stride]);
+            }
         }
+        table[index] = ((1e3 * table[index]).round() / 1e3).max(least);
     }
 }
 
@@ -172,11 +188,14 @@ mod tests {
 
     use super::*;
 
-    const ROWS: Axis<4> = Axis { knots: [0.0, 1.0, 2.0, 4.0], usual: 1.0 };
-    const COLUMNS: Axis<3> = Axis { knots: [0.0, 1.0, 3.0], usual: 1.0 };
+    const ROWS: Axis<'_> = Axis { knots: &[0.0, 1.0, 2.0, 4.0], usual: Some(1.0) };
+    const COLUMNS: Axis<'_> = Axis { knots: &[0.0, 1.0, 3.0], usual: Some(1.0) };
 
-    fn drawn(log_odds: impl Fn(f64, f64) -> f64) -> Vec<Sample> {
-        let unit = |i, k| seed::unit(seed::derive(7, i, k));
+    fn unit(i: u64, k: u64) -> f64 {
+        seed::unit(seed::derive(7, i, k))
+    }
+
+    fn drawn(log_odds: impl Fn(f64, f64) -> f64) -> Vec<Sample<2>> {
         let sample = |i| {
             let (x, y) = (4.0 * unit(i, 0), 3.0 * unit(i, 1));
             let came = unit(i, 2) < 1.0 / (1.0 + (-log_odds(x, y)).exp());
@@ -188,11 +207,29 @@ mod tests {
     #[test]
     fn a_plane_is_found_again() {
         let plane = |x: f64, y: f64| 0.5 + 0.8 * x + 1.1 * y;
-        let table = fit_surface(&drawn(plane), ROWS, COLUMNS, false);
-        for (row, x) in table.iter().zip(ROWS.knots) {
+        let table = fit_surface(&drawn(plane), [ROWS, COLUMNS], false);
+        for (row, x) in table.chunks(3).zip(ROWS.knots) {
             for (&found, y) in row.iter().zip(COLUMNS.knots) {
-                assert!((found - plane(x, y)).abs() < 0.4, "{x} {y}: {found}");
+                assert!((found - plane(*x, *y)).abs() < 0.4, "{x} {y}: {found}");
             }
+        }
+    }
+
+    #[test]
+    fn what_evidence_is_worth_may_rise_and_fall_beside_it() {
+        let worth = |noise: f64| 0.3 + 2.0 * (noise - 1.0).abs();
+        let sample = |i| {
+            let (noise, x) = (2.0 * unit(i, 0), 4.0 * unit(i, 1));
+            let came = unit(i, 2) < 1.0 / (1.0 + (2.0 - worth(noise) * x).exp());
+            Sample { at: [noise, x], came, weight: 1.0 }
+        };
+        let samples: Vec<_> = (0..20_000).map(sample).collect();
+        let noise = Axis { knots: &[0.0, 1.0, 2.0], usual: None };
+        let table = fit_surface(&samples, [noise, ROWS], false);
+        for (row, at) in table.chunks(4).zip(noise.knots) {
+            assert!(row.is_sorted(), "{row:?}");
+            let slope = row[1] - row[0];
+            assert!((slope - worth(*at)).abs() < 0.4, "{at}: {slope}");
         }
     }
 
@@ -200,17 +237,18 @@ mod tests {
     fn a_weight_is_so_many_samples() {
         let samples = drawn(|x, y| x + y - 3.0);
         let heavy = samples.iter().map(|sample| Sample { weight: 3.0, ..*sample });
-        let heavy = fit_surface(&heavy.collect::<Vec<_>>(), ROWS, COLUMNS, false);
-        assert_eq!(heavy, fit_surface(&samples.repeat(3), ROWS, COLUMNS, false));
+        let heavy = fit_surface(&heavy.collect::<Vec<_>>(), [ROWS, COLUMNS], false);
+        assert_eq!(heavy, fit_surface(&samples.repeat(3), [ROWS, COLUMNS], false));
     }
 
     #[test]
     fn what_goes_against_the_evidence_is_levelled_and_borders_are_kept() {
-        let table = fit_surface(&drawn(|x, y| x - y), ROWS, COLUMNS, false);
-        for (row, next) in table.iter().zip(&table[1..]) {
-            assert!(row.is_sorted() && row.iter().zip(next).all(|(a, b)| a <= b), "{table:?}");
+        let table = fit_surface(&drawn(|x, y| x - y), [ROWS, COLUMNS], false);
+        let rows: Vec<&[f64]> = table.chunks(3).collect();
+        for pair in rows.windows(2) {
+            assert!(pair[0].is_sorted() && pair[0].iter().zip(pair[1]).all(|(a, b)| a <= b));
         }
-        let pinned = fit_surface(&drawn(|x, y| x + y), ROWS, COLUMNS, true);
-        assert_eq!((pinned[0][2], pinned[3][0]), (0.0, 4.0));
+        let pinned = fit_surface(&drawn(|x, y| x + y), [ROWS, COLUMNS], true);
+        assert_eq!((pinned[2], pinned[9]), (0.0, 4.0));
     }
 }

@@ -52,21 +52,27 @@ impl Fitted {
     pub fn as_source(&self) -> String {
         let mut text = format!("//! Made by `{} --update`.\n\n", self.command);
         text += "#![allow(clippy::approx_constant, reason = \"what is fitted may look like π\")]\n";
+        text += "\nuse super::{NOISE_KNOTS, OverDoubt, OverGeometry};\n";
         let Judge { by_geometry, revised } = &self.all;
-        add(&mut text, "BY_GEOMETRY", by_geometry);
-        add(&mut text, "REVISED", revised);
+        text += "\npub(super) const BY_GEOMETRY: [OverGeometry; NOISE_KNOTS.len()] = [\n";
+        for surface in by_geometry {
+            text += "    [\n";
+            add(&mut text, "        ", surface);
+            text += "    ],\n";
+        }
+        text += "];\n\npub(super) const REVISED: OverDoubt = [\n";
+        add(&mut text, "    ", revised);
+        text += "];\n";
         text
     }
 }
 
-fn add<const N: usize, const M: usize>(text: &mut String, name: &str, values: &[[f64; M]; N]) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "\npub(super) const {name}: [[f64; {M}]; {N}] = [");
-    for row in values {
+fn add<const M: usize>(text: &mut String, indent: &str, rows: &[[f64; M]]) {
+    for row in rows {
         let numbers: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
-        let _ = writeln!(text, "    [{}],", numbers.join(", "));
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{indent}[{}],", numbers.join(", "));
     }
-    text.push_str("];\n");
 }
 
 #[cfg(test)]

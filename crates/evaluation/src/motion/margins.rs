@@ -1,6 +1,6 @@
 //! How likely bodies are within a margin of each other, against how often they are.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use cloudtouch::WITHIN_KNOTS;
 use cloudtouch_testkit::family::Kind;
 
@@ -52,21 +52,21 @@ fn name(margin: f64) -> String {
 
 /// Log odds at the knots, by answers about the wider margins.
 fn fit_margins(answers: &Answers) -> Result<[f64; WITHIN_KNOTS.len()]> {
-    let mut samples: Vec<SurfaceSample> = Vec::new();
+    let mut samples: Vec<SurfaceSample<1>> = Vec::new();
     for margin in MARGINS.into_iter().skip(1) {
         let method = answers.index(&name(margin)).context("a margin that was asked about")?;
         for (question, said) in &answers.rows {
             let deviations = said[method].context("an answer")?.score;
             let came = question.signed_distance < margin;
-            samples.push(SurfaceSample { at: [-deviations, 0.0], came, weight: 1.0 });
+            samples.push(SurfaceSample { at: [-deviations], came, weight: 1.0 });
         }
     }
     let mut nearness = WITHIN_KNOTS.map(|z| -z);
     nearness.reverse();
-    let only = Axis { knots: [0.0, 1.0], usual: 0.0 };
-    let mut fitted = fit_surface(&samples, Axis { knots: nearness, usual: 2.0 }, only, false);
+    let axis = Axis { knots: &nearness, usual: Some(2.0) };
+    let mut fitted = fit_surface(&samples, [axis], false);
     fitted.reverse();
-    Ok(fitted.map(|[value, _]| value))
+    fitted.try_into().map_err(|_| anyhow!("a value for each knot"))
 }
 
 fn margins(answers: &Answers) -> Findings {

@@ -35,6 +35,8 @@ class Evidence(NamedTuple):
     """How clearly one surface passes through the other: ln(1 + s), s a sum of standard deviations."""
     misclassified: Optional[float]
     """Points expected on the wrong side of the best separating surface; ``None`` where there was no doubt."""
+    noise_over_spacing: float
+    """Noise over the spacing of the points, of both bodies together: what the rest is worth depends on it."""
 
 
 class PointProbabilities(NamedTuple):
@@ -74,7 +76,7 @@ class Report:
     clearance_is_bound: bool
     """Whether the overlap may be deeper than ``clearance`` says."""
     clearance_at_least: Optional[float]
-    """No sampled surface of one body is nearer to the other than this, m; zero or less where they may touch."""
+    """No sampled surface of one body is nearer to the other than this, m; ``None`` where they may touch."""
     unseen: Optional[float]
     """Share of a body's surface where the depth image of the other saw nothing, 0 to 1; ``None`` without such an
     image."""

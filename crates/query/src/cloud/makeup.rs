@@ -1,7 +1,7 @@
 //! What a cloud is like as a whole: what queries look at before they believe it.
 
 use cloudtouch_geom::{Point3, PointCloud, Vector3};
-use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing};
+use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing_at};
 
 use crate::filter::StageReport;
 
@@ -57,11 +57,11 @@ impl Makeup {
         sensor_doubts: Vec<SensorDoubt>,
     ) -> Self {
         let points = kept.points();
-        let step = points.len().div_ceil(SAMPLE).max(1);
-        let std = median((0..points.len()).step_by(step).map(|i| noise[i].max_std()));
+        let sample = spread(points, SAMPLE);
+        let std = median(sample.iter().map(|&i| noise[i].max_std()));
         Self {
             corners,
-            spacing: typical_spacing(kept, SAMPLE),
+            spacing: typical_spacing_at(kept, sample.into_iter()),
             std,
             distinct: kept.distinct(),
             is_line: !has_area(points, (corners[1] - corners[0]).norm()) && is_line(points),
@@ -80,6 +80,35 @@ impl Makeup {
 pub(super) fn missing(scan: &PointCloud, stages: &[StageReport]) -> f64 {
     let stage = stages.iter().find(|s| s.stage == "missing" && !scan.is_image());
     stage.map_or(0.0, |s| s.removed as f64 / s.before.max(1) as f64)
+}
+
+/// Some of the points, evenly spread by how far they are from the middle of all: probabilities depend on
+/// what is told from them, and keep in whatever order and frame the points come.
+fn spread(points: &[Point3], count: usize) -> Vec<usize> {
+    if points.len() <= count {
+        return (0..points.len()).collect();
+    }
+    let sum: Vector3 = points.iter().map(|p| p.coords).sum();
+    let middle = Point3::from(sum / points.len() as f64);
+    let mut by_distance: Vec<(f64, u32)> =
+        points.iter().map(|p| (p - middle).norm_squared()).zip(0..).collect();
+    // The product fits: an index holds at most 2³² points.
+    let rank = |k: usize| ((2 * k + 1) as u64 * points.len() as u64 / (2 * count) as u64) as usize;
+    let ranks: Vec<usize> = (0..count).map(rank).collect();
+    let mut chosen = Vec::with_capacity(count);
+    select(&mut by_distance, &ranks, 0, &mut chosen);
+    chosen
+}
+
+/// The points of these ranks among those of rank `from` on, without sorting what is between.
+fn select(slice: &mut [(f64, u32)], ranks: &[usize], from: usize, chosen: &mut Vec<usize>) {
+    let middle = ranks.len() / 2;
+    let Some(&rank) = ranks.get(middle) else { return };
+    let order = |p: &(f64, u32), q: &(f64, u32)| p.0.total_cmp(&q.0);
+    let (below, &mut (_, index), above) = slice.select_nth_unstable_by(rank - from, order);
+    select(below, &ranks[..middle], from, chosen);
+    chosen.push(index as usize);
+    select(above, &ranks[middle + 1..], rank + 1, chosen);
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {

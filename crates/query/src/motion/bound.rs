@@ -5,8 +5,8 @@ use cloudtouch_geom::{Drift, Pose};
 use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
-use crate::judge::probability;
-use crate::query::{Query, QuerySettings};
+use crate::judge::{JudgeOfPair, probability};
+use crate::query::{Query, noise_over_spacing};
 use crate::report::Stats;
 use crate::search::{greatest_depth, reach_of};
 
@@ -39,8 +39,12 @@ impl Drifting<'_> {
         if let (BodyRef::Mesh(_), BodyRef::Mesh(_)) = (a, b) {
             return self.exact(query, &local, stats);
         }
+        // It keeps along the motion.
+        let judge = settings.judge.for_noise(noise_over_spacing((a, b)));
+        let at_most =
+            |deviations, clearness| at_most(&judge, settings.prior, deviations, clearness);
         let is_above = |deviations: f64, clearness: f64| {
-            at_most(settings, deviations, clearness) > cut || clock.is_over()
+            at_most(deviations, clearness) > cut || clock.is_over()
         };
         let is_deep = |depth: f64| depth > 0.0 && is_above(-depth, 0.0);
         let depth = greatest_depth((a, b), &local, &self.drift, is_deep, stats);
@@ -51,7 +55,7 @@ impl Drifting<'_> {
         let given = |between: f64| if depth > 0.0 { -depth } else { between };
         let is_enough = |between: f64, clearness: f64| is_above(given(between), clearness);
         let reach = reach_of((a, b), &local, &self.drift, is_enough, stats)?;
-        let upper = at_most(settings, given(reach.deviations), reach.clearness);
+        let upper = at_most(given(reach.deviations), reach.clearness);
         Ok(if reach.is_complete { upper } else { 1.0 })
     }
 
@@ -68,9 +72,8 @@ impl Drifting<'_> {
 
 /// The probability where there are no fewer deviations and crossings are no clearer, whatever a
 /// classifier says.
-fn at_most(settings: &QuerySettings, deviations: f64, clearness: f64) -> f64 {
-    let judge = &settings.judge;
+fn at_most(judge: &JudgeOfPair, prior: f64, deviations: f64, clearness: f64) -> f64 {
     let by_geometry = judge.log_odds_by_geometry(deviations, clearness.ln_1p());
     let revised = judge.revise(by_geometry, f64::INFINITY).max(by_geometry);
-    probability(revised + ROUNDING, settings.prior)
+    probability(revised + ROUNDING, prior)
 }

@@ -8,7 +8,7 @@ use crate::classifier::{
     ClassifierSettings, PairAnswer, PairPoint, PairPoints, by_kernel, centroid,
 };
 use crate::error::QueryError;
-use crate::judge::{DOUBT_KNOTS, Judge};
+use crate::judge::{DOUBT_KNOTS, JudgeOfPair};
 use crate::report::Stats;
 use crate::search::{Found, Wrench, force_at};
 
@@ -99,7 +99,7 @@ impl Misclassified {
     }
 
     /// The log odds with what is known; where a patch was left to geometry, at least those of it.
-    pub(super) fn log_odds(&self, judge: &Judge, by_geometry: f64) -> f64 {
+    pub(super) fn log_odds(&self, judge: &JudgeOfPair, by_geometry: f64) -> f64 {
         match self.value {
             None => by_geometry,
             Some(count) if self.is_indistinct => judge.revise(by_geometry, count).max(by_geometry),
@@ -108,7 +108,7 @@ impl Misclassified {
     }
 
     /// What these log odds change by with those by geometry and with the misclassified points.
-    pub(super) fn slopes(&self, judge: &Judge, by_geometry: f64) -> [f64; 2] {
+    pub(super) fn slopes(&self, judge: &JudgeOfPair, by_geometry: f64) -> [f64; 2] {
         match self.value {
             Some(count)
                 if self.log_odds(judge, by_geometry) == judge.revise(by_geometry, count) =>
@@ -217,6 +217,7 @@ pub(super) fn misclassified_by_pose(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::judge::Judge;
 
     #[test]
     fn an_indistinct_patch_beside_a_clear_one_was_skipped() {
@@ -224,7 +225,7 @@ mod tests {
         let all = clear.or_more(Misclassified::indistinct(40));
         assert_eq!((all.value, all.bounds), (Some(0.001), [0.001, 40.0]));
         // The clear patch alone would speak for free: what it does not speak of is left to geometry.
-        let judge = Judge::default();
+        let judge = Judge::default().for_noise(0.0);
         assert!(clear.log_odds(&judge, 0.0) < -0.5);
         assert_eq!(all.log_odds(&judge, 0.0), 0.0);
         assert!(judge.revise(0.0, all.bounds[1]) > 0.1);
@@ -233,7 +234,7 @@ mod tests {
     /// A sheet within a slab is easily separated from its faces, which took its odds down.
     #[test]
     fn a_point_inside_is_misclassified_by_any_surface_between_the_samples() {
-        let judge = Judge::default();
+        let judge = Judge::default().for_noise(0.0);
         let clear = Misclassified::known(0.001, 0);
         let inside = clear.or_inside(0.9);
         assert_eq!((inside.value, inside.bounds), (Some(0.9), [0.9; 2]));
@@ -245,7 +246,7 @@ mod tests {
 
     #[test]
     fn without_an_answer_geometry_has_to_do() {
-        let judge = Judge::default();
+        let judge = Judge::default().for_noise(0.0);
         assert_eq!(Misclassified::indistinct(12).log_odds(&judge, 0.7), 0.7);
         assert_eq!(Misclassified::NOT_ASKED.log_odds(&judge, -1.0), -1.0);
     }

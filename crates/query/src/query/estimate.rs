@@ -61,7 +61,8 @@ impl Weighed<'_> {
         // change nothing, both bounds are the probability but for the rounding of the judge.
         let high = if self.is_complete { high.max(probability) } else { 1.0 };
         let bounds = [low.min(probability), high];
-        let at_least = Some(found.at_least).filter(|least| least.is_finite());
+        // Boxes that overlap say nothing of how deep surfaces do: less than nothing bounds nothing.
+        let at_least = Some(found.at_least).filter(|least| least.is_finite() && *least > 0.0);
         let places = match spots {
             None => Places { at_least, ..Places::default() },
             Some(spots) => {

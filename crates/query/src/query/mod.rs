@@ -2,6 +2,7 @@
 
 mod any;
 mod batch;
+mod blur;
 mod classify;
 mod contacts;
 mod directions;
@@ -16,12 +17,12 @@ mod run;
 mod settings;
 mod spots;
 mod task;
-mod trust;
 mod uncertain;
 mod weigh;
 mod within;
 
 pub use any::NotFree;
+pub(crate) use blur::noise_over_spacing;
 pub use gradient::PoseGradient;
 pub use penetration::Penetration;
 pub use run::Query;

@@ -11,10 +11,10 @@ use crate::mode::Mode;
 use crate::record::{Closeness, Terms};
 use crate::report::Report;
 
+use super::blur::noise_over_spacing;
 use super::estimate::estimate;
 use super::settings::{Detail, QuerySettings};
 use super::task::Task;
-use super::trust::judge_of;
 
 /// A checked set of settings that answers queries; cheap to copy, shared by threads.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,8 +73,9 @@ impl Query {
 
     pub(super) fn task(&self, start: Instant, bodies: (BodyRef<'_>, BodyRef<'_>)) -> Task<'_> {
         let (settings, classifier) = (&self.settings, self.settings.classifier());
-        let judge = judge_of(&settings.judge, bodies);
-        Task { settings, judge, classifier, clock: self.clock(start) }
+        let noise_over_spacing = noise_over_spacing(bodies);
+        let judge = settings.judge.for_noise(noise_over_spacing);
+        Task { settings, judge, noise_over_spacing, classifier, clock: self.clock(start) }
     }
 
     /// How likely it is that the surfaces behind two bodies collide.

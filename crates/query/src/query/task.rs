@@ -2,7 +2,7 @@
 
 use crate::classifier::{ClassifierSettings, Clock};
 
-use crate::judge::Judge;
+use crate::judge::JudgeOfPair;
 
 use super::settings::QuerySettings;
 
@@ -11,8 +11,10 @@ use super::settings::QuerySettings;
 pub(super) struct Task<'a> {
     /// Checked.
     pub settings: &'a QuerySettings,
-    /// That of the settings, as far as it believes the classifier of these bodies.
-    pub judge: Judge,
+    /// That of the settings for these bodies.
+    pub judge: JudgeOfPair,
+    /// What it is for.
+    pub noise_over_spacing: f64,
     pub classifier: ClassifierSettings,
     pub clock: Clock,
 }

@@ -58,7 +58,12 @@ pub(super) fn weigh<'a>(
     let found = search((a, b), a_from_b, is_enough, stats)?;
     let deviations = looked.deviations_given(found.deviations);
     let crossing = found.crossings.clearness().ln_1p();
-    let of_geometry = ContactEvidence { deviations, crossing, misclassified: None };
+    let of_geometry = ContactEvidence {
+        deviations,
+        crossing,
+        misclassified: None,
+        noise_over_spacing: task.noise_over_spacing,
+    };
     let by_geometry = judge.log_odds_by_geometry(deviations, crossing);
     let is_complete = found.is_complete && !looked.is_cut_short;
 

@@ -88,21 +88,23 @@ impl Query {
             let bounds = [low.max(least), high.max(least)];
             Within { margin_m: margin, probability: known.max(least), bounds, deviations }
         };
-        let Some(ContactEvidence { deviations, crossing, .. }) = report.evidence else {
+        let Some(evidence) = report.evidence else {
             // Two meshes are exact.
             let is_within = report.clearance_m.is_none_or(|gap| gap.mean < margin);
             let (least, deviations) =
                 if is_within { (1.0, -MOST_DEVIATIONS) } else { (0.0, MOST_DEVIATIONS) };
             return Ok(at_least(least, high, deviations));
         };
+        let ContactEvidence { deviations, crossing, noise_over_spacing, .. } = evidence;
         if margin == 0.0 {
             return Ok(at_least(0.0, high, deviations));
         }
         let settings = self.settings();
+        let judge = settings.judge.for_noise(noise_over_spacing);
         let spacing = a.shape().spacing().max(b.shape().spacing());
         let of = |beyond: f64| {
             let beyond = beyond.min(deviations);
-            let collision = settings.judge.log_odds_by_geometry(beyond, crossing);
+            let collision = judge.log_odds_by_geometry(beyond, crossing);
             let log_odds = log_odds_within(beyond, margin, spacing, collision);
             probability(log_odds, settings.prior)
         };

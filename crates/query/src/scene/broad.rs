@@ -10,7 +10,7 @@ use cloudtouch_bvh::{Sought, urgency_of_roots};
 use cloudtouch_geom::{Pose, Vector3};
 
 use crate::body::BodyRef;
-use crate::judge::{MOST_DEVIATIONS, probability};
+use crate::judge::{MOST_DEVIATIONS, NOISE_KNOTS, probability};
 use crate::query::Query;
 use crate::range::{LARGEST_COORDINATE, bad_entry};
 use crate::record::Terms;
@@ -32,9 +32,13 @@ pub(super) struct BroadPhase {
 impl BroadPhase {
     pub(super) fn new(query: &Query) -> Self {
         let settings = query.settings();
-        let by_geometry = settings.judge.log_odds_by_geometry(MOST_DEVIATIONS, 0.0);
-        // Of a pair that is open the classifier could say the most.
-        let log_odds = settings.judge.revise(by_geometry, f64::INFINITY);
+        // Whatever the noise of a pair: between the knots log odds are between theirs.
+        let of_nothing =
+            |noise| settings.judge.for_noise(noise).log_odds_by_geometry(MOST_DEVIATIONS, 0.0);
+        let by_geometry = NOISE_KNOTS.into_iter().map(of_nothing).fold(f64::NEG_INFINITY, f64::max);
+        // Of a pair that is open the classifier could say the most, where it is believed in full.
+        let revised = settings.judge.for_noise(0.0).revise(by_geometry, f64::INFINITY);
+        let log_odds = by_geometry.max(revised);
         let nothing_is_free = probability(log_odds, settings.prior) < settings.reject;
         Self { terms: query.terms_in_scene(), nothing_is_free }
     }
