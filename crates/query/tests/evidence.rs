@@ -19,7 +19,8 @@ fn log_odds_are_made_of_the_evidence_again() {
     let mut asked = 0;
     for (std, blur) in [(0.0, 0.0..1e-9), (0.004, 0.4..0.7), (0.012, 1.2..2.0)] {
         let (a, b) = (ball(std, 1), ball(std, 2));
-        for distance in [0.25, 0.215, 0.205, 0.2, 0.195, 0.19, 0.18] {
+        for step in 0..20 {
+            let distance = 0.215 - 0.002 * f64::from(step);
             let pose = Pose::from_translation(Vector3::new(distance, 0.0, 0.0));
             let report = query.run(&a, &b, &pose).expect("an answer");
             let evidence = report.evidence.expect("of clouds");

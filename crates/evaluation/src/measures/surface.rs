@@ -174,7 +174,7 @@ fn round<const D: usize>(table: &mut [f64], axes: &[Axis<'_>; D]) {
         let mut stride = table.len();
         for Axis { knots, usual } in axes {
             stride /= knots.len();
-            if usual.is_some() && index / stride % knots.len() > 0 {
+            if usual.is_some() && !(index / stride).is_multiple_of(knots.len()) {
                 least = least.max(table[index - stride]);
             }
         }
