@@ -52,7 +52,7 @@ impl Fitted {
     pub fn as_source(&self) -> String {
         let mut text = format!("//! Made by `{} --update`.\n\n", self.command);
         text += "#![allow(clippy::approx_constant, reason = \"what is fitted may look like π\")]\n";
-        text += "\nuse super::{NOISE_KNOTS, OverDoubt, OverGeometry};\n";
+        text += "\nuse super::knots::{NOISE_KNOTS, OverDoubt, OverGeometry};\n";
         let Judge { by_geometry, revised } = &self.all;
         text += "\npub(super) const BY_GEOMETRY: [OverGeometry; NOISE_KNOTS.len()] = [\n";
         for surface in by_geometry {

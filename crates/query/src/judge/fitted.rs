@@ -2,7 +2,7 @@
 
 #![allow(clippy::approx_constant, reason = "what is fitted may look like π")]
 
-use super::{NOISE_KNOTS, OverDoubt, OverGeometry};
+use super::knots::{NOISE_KNOTS, OverDoubt, OverGeometry};
 
 pub(super) const BY_GEOMETRY: [OverGeometry; NOISE_KNOTS.len()] = [
     [

@@ -6,6 +6,7 @@
 
 mod fitted;
 mod grid;
+mod knots;
 mod of_pair;
 mod within;
 
@@ -14,27 +15,14 @@ use serde::{Deserialize, Serialize};
 use crate::error::SettingsError;
 
 pub use grid::between_knots;
+pub(crate) use knots::MOST_DEVIATIONS;
+pub use knots::{
+    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, MISCLASSIFIED_KNOTS, NOISE_KNOTS, OverDoubt,
+    OverGeometry,
+};
 pub(crate) use of_pair::{JudgeOfPair, probability};
 pub use within::WITHIN_KNOTS;
 pub(crate) use within::log_odds_within;
-
-/// Deviations beyond this say no more than these, and no fewer below: what is looked for.
-pub(crate) const MOST_DEVIATIONS: f64 = 6.0;
-/// Keeps the logarithm of no misclassified point finite.
-const MISCLASSIFIED_FLOOR: f64 = 0.02;
-
-/// For which noise over spacing of two bodies there is a surface over geometry.
-pub const NOISE_KNOTS: [f64; 3] = [0.0, 0.5, 2.0];
-/// Where each of these has its values: deviations by rows, crossing by columns.
-pub const DEVIATION_KNOTS: [f64; 13] =
-    [-6.0, -4.0, -2.5, -1.2, 0.0, 0.4, 0.8, 1.2, 1.7, 2.3, 3.0, 4.0, MOST_DEVIATIONS];
-/// See [`DEVIATION_KNOTS`].
-pub const CROSSING_KNOTS: [f64; 9] = [0.0, 0.5, 1.2, 1.8, 2.4, 3.0, 3.6, 4.2, 5.0];
-/// Where the revision has its values: log odds by geometry by rows, ln(misclassified + 0.02) by
-/// columns. At the first and the last row nothing is revised.
-pub const DOUBT_KNOTS: [f64; 7] = [-2.2, -1.5, -0.8, 0.0, 0.8, 1.5, 2.2];
-/// See [`DOUBT_KNOTS`].
-pub const MISCLASSIFIED_KNOTS: [f64; 9] = [-3.92, -3.2, -2.4, -1.6, -0.8, 0.0, 1.0, 2.2, 3.6];
 
 /// What a probability rests on. Each number is comparable between scenes: none has a unit, and none
 /// grows with the area of contact.
@@ -78,11 +66,6 @@ pub struct Judge {
     /// log odds of their knots.
     pub revised: OverDoubt,
 }
-
-/// Log odds at [`DEVIATION_KNOTS`] by rows and [`CROSSING_KNOTS`] by columns.
-pub type OverGeometry = [[f64; CROSSING_KNOTS.len()]; DEVIATION_KNOTS.len()];
-/// Log odds at [`DOUBT_KNOTS`] by rows and [`MISCLASSIFIED_KNOTS`] by columns.
-pub type OverDoubt = [[f64; MISCLASSIFIED_KNOTS.len()]; DOUBT_KNOTS.len()];
 
 impl Default for Judge {
     fn default() -> Self {
@@ -148,7 +131,7 @@ impl Judge {
 
     /// The judge for bodies of such a noise over spacing.
     pub(crate) fn for_noise(&self, noise_over_spacing: f64) -> JudgeOfPair {
-        JudgeOfPair::new(self, noise_over_spacing)
+        JudgeOfPair::new(&self.by_geometry, &self.revised, noise_over_spacing)
     }
 }
 

@@ -1,9 +1,9 @@
 //! The judge for the noise of one pair of bodies.
 
-use super::grid::Grid;
-use super::{
-    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_FLOOR, MISCLASSIFIED_KNOTS,
-    NOISE_KNOTS, OverDoubt, OverGeometry, between_knots,
+use super::grid::{Grid, between_knots};
+use super::knots::{
+    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, MISCLASSIFIED_FLOOR, MISCLASSIFIED_KNOTS,
+    NOISE_KNOTS, OverDoubt, OverGeometry,
 };
 
 /// Noise over spacing, of both bodies together, up to which the classifier is believed in full.
@@ -11,7 +11,7 @@ const CLEAR: f64 = 0.5;
 /// ... and from which on it is not asked.
 const BLURRED: f64 = 1.0;
 
-/// What a [`Judge`] makes of the evidence of two bodies: noise over spacing keeps along a motion.
+/// What a [`Judge`](super::Judge) makes of the evidence of two bodies: noise over spacing keeps along a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct JudgeOfPair {
     by_geometry: OverGeometry,
@@ -21,15 +21,19 @@ pub(crate) struct JudgeOfPair {
 
 impl JudgeOfPair {
     /// Linear between the knots, as at the border beyond them.
-    pub(super) fn new(judge: &Judge, noise_over_spacing: f64) -> Self {
+    pub(super) fn new(
+        over_geometry: &[OverGeometry; NOISE_KNOTS.len()],
+        over_doubt: &OverDoubt,
+        noise_over_spacing: f64,
+    ) -> Self {
         let (knot, part) = between_knots(&NOISE_KNOTS, noise_over_spacing);
-        let mut by_geometry = judge.by_geometry[knot];
-        let above = judge.by_geometry[knot + 1].as_flattened();
+        let mut by_geometry = over_geometry[knot];
+        let above = over_geometry[knot + 1].as_flattened();
         for (value, above) in by_geometry.as_flattened_mut().iter_mut().zip(above) {
             *value = (1.0 - part) * *value + part * above;
         }
         let believed = believed(noise_over_spacing);
-        let mut revised = judge.revised;
+        let mut revised = *over_doubt;
         for (row, knot) in revised.iter_mut().zip(DOUBT_KNOTS) {
             for value in row {
                 *value = believed * *value + (1.0 - believed) * knot;
@@ -107,7 +111,8 @@ pub(crate) fn probability(log_likelihood_ratio: f64, prior: f64) -> f64 {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::MOST_DEVIATIONS;
+    use super::super::Judge;
+    use super::super::knots::MOST_DEVIATIONS;
     use super::*;
 
     fn judge(noise_over_spacing: f64) -> JudgeOfPair {
