@@ -21,22 +21,22 @@ const STD: f64 = 0.005;
 ///
 /// The run is deterministic; the bounds leave room for changes that move single answers: .01 each as a rule, less where they were loosened.
 const RECORDED: [(Family, [[f64; 2]; 2]); 16] = [
-    (Family::PianoRoom, [[0.977, 0.069], [0.977, 0.073]]),
-    (Family::Tabletop, [[0.985, 0.045], [0.989, 0.027]]),
-    (Family::SphereAndPlane, [[0.949, 0.082], [0.957, 0.080]]),
-    (Family::WedgeAndPlane, [[0.987, 0.044], [0.990, 0.028]]),
-    (Family::CrossingSheets, [[0.990, 0.048], [0.990, 0.046]]),
+    (Family::PianoRoom, [[0.977, 0.069], [0.977, 0.071]]),
+    (Family::Tabletop, [[0.985, 0.045], [0.990, 0.024]]),
+    (Family::SphereAndPlane, [[0.950, 0.082], [0.961, 0.080]]),
+    (Family::WedgeAndPlane, [[0.987, 0.039], [0.990, 0.028]]),
+    (Family::CrossingSheets, [[0.990, 0.039], [0.990, 0.039]]),
     (Family::PegInHole, [[0.990, 0.082], [0.990, 0.076]]),
     (Family::InterlockedTori, [[0.989, 0.046], [0.987, 0.044]]),
-    (Family::ThinSlab, [[0.961, 0.087], [0.976, 0.060]]),
-    (Family::Furniture, [[0.913, 0.123], [0.950, 0.088]]),
-    (Family::LivingRoom, [[0.962, 0.090], [0.964, 0.079]]),
-    (Family::Desk, [[0.977, 0.091], [0.977, 0.077]]),
-    (Family::Kitchen, [[0.977, 0.062], [0.976, 0.050]]),
-    (Family::Workbench, [[0.958, 0.085], [0.970, 0.079]]),
-    (Family::BoxesInBin, [[0.990, 0.025], [0.990, 0.022]]),
-    (Family::Doorway, [[0.980, 0.058], [0.977, 0.059]]),
-    (Family::Staircase, [[0.947, 0.102], [0.943, 0.104]]),
+    (Family::ThinSlab, [[0.966, 0.077], [0.979, 0.055]]),
+    (Family::Furniture, [[0.933, 0.107], [0.958, 0.082]]),
+    (Family::LivingRoom, [[0.962, 0.088], [0.964, 0.079]]),
+    (Family::Desk, [[0.977, 0.092], [0.977, 0.072]]),
+    (Family::Kitchen, [[0.977, 0.062], [0.977, 0.049]]),
+    (Family::Workbench, [[0.962, 0.085], [0.970, 0.078]]),
+    (Family::BoxesInBin, [[0.990, 0.025], [0.990, 0.021]]),
+    (Family::Doorway, [[0.982, 0.058], [0.977, 0.059]]),
+    (Family::Staircase, [[0.947, 0.102], [0.950, 0.104]]),
 ];
 
 /// Runs it and compares.
