@@ -188,7 +188,7 @@ fn blocks_find_what_single_searches_find() {
 fn tied_or_uneven(is_lattice: bool, seed: u64) -> Vec<Point3> {
     let place = |i: u64| {
         let draw = |k| seed::unit(seed::derive(seed, i, k));
-        let size = if i % 3 == 0 { 10.0 } else { 0.5 };
+        let size = if i.is_multiple_of(3) { 10.0 } else { 0.5 };
         match is_lattice {
             true => Point3::new((i % 23) as f64, (i / 23 % 19) as f64, 0.0),
             false => Point3::new(size * draw(0), size * draw(1), 0.01 * draw(2)),
