@@ -167,6 +167,6 @@ mod tests {
         assert!((1.5..3.5).contains(&(odds(0.0) - odds(2.0))), "{} {}", odds(0.0), odds(2.0));
         // Where geometry leaves it open, the classifier decides.
         let counted = |count| judge.log_odds(&evidence(2.4, 3.6, count, 0.5));
-        assert!(counted(8.0) > 0.5 && counted(0.1) < -0.5, "{} {}", counted(8.0), counted(0.1));
+        assert!(counted(8.0) > 0.8 && counted(0.1) < -0.5, "{} {}", counted(8.0), counted(0.1));
     }
 }

@@ -19,9 +19,6 @@ const MOST_SQUARES: usize = 4;
 const POINTS_PER_SQUARE: f64 = 8.0;
 /// With this share of the squares filled there is no way out.
 const CLOSED: f64 = 0.97;
-/// From so many points on a side of [`has_open_side`] is four whole squares of [`MOST_SQUARES`] a side:
-/// more than may be empty.
-const MANY_POINTS: usize = 1024;
 
 /// A way that keeps so many spacings from every point passes no surface.
 const SURFACE_SPACINGS: f64 = 1.0;
@@ -50,16 +47,17 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
         return false;
     }
     let points = cloud.points();
-    if points.len() >= MANY_POINTS
+    let step = points.len().div_ceil(MOST_POINTS).max(1);
+    let count = points.len().div_ceil(step);
+    let squares = (count as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt().floor() as usize;
+    let squares = squares.clamp(1, MOST_SQUARES);
+    // An open side is four of the smallest squares: more than may be empty.
+    if squares == MOST_SQUARES
         && cloud.is_searched_at_every_point()
         && has_open_side(cloud.tree(), points, place)
     {
         return false;
     }
-    let step = points.len().div_ceil(MOST_POINTS).max(1);
-    let count = points.len().div_ceil(step);
-    let squares = (count as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt().floor() as usize;
-    let squares = squares.clamp(1, MOST_SQUARES);
     let all = 6 * squares * squares;
     let enough = (CLOSED * all as f64).ceil() as u32;
     let squares = Squares::new(squares);
@@ -147,8 +145,6 @@ mod tests {
 
     #[test]
     fn an_open_side_leaves_too_few_squares_filled() {
-        let squares_a_side = (MANY_POINTS as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt() as usize;
-        assert!(squares_a_side >= MOST_SQUARES);
         let all = 6 * MOST_SQUARES * MOST_SQUARES;
         assert!(((all - 4) as f64) < CLOSED * all as f64);
     }

@@ -12,8 +12,7 @@ const ROUNDING: f64 = 1e-9;
 /// Whether one of the six pyramids with their tops at a place holds no point; `points` by their indices
 /// in the tree.
 pub(super) fn has_open_side(tree: &Tree, points: &[Point3], place: &Point3) -> bool {
-    let mut sides = (0..3).flat_map(|axis| [1.0, -1.0].map(|sign| Side { axis, sign }));
-    sides.any(|side| {
+    Side::all().any(|side| {
         let mut is_open = true;
         tree.visit_nodes(|node| {
             if !is_open || !side.may_hold(node.obb(), place) {
@@ -37,6 +36,10 @@ struct Side {
 }
 
 impl Side {
+    fn all() -> impl Iterator<Item = Self> {
+        (0..3).flat_map(|axis| [1.0, -1.0].map(|sign| Self { axis, sign }))
+    }
+
     /// How far a place is within each of its four faces, in no unit.
     fn within_faces(self, offset: &Vector3) -> [f64; 4] {
         let half = SLOPE * (1.0 + ROUNDING) * self.sign * offset[self.axis];
@@ -96,9 +99,8 @@ mod tests {
             let primitive = |&mean: &Point3| Primitive::point(UncertainPoint { mean, covariance });
             let tree = Tree::build(points.iter().map(primitive).collect(), &TreeSettings::default());
             let place = Point3::from(Vector3::from(place));
-            let sides = (0..3).flat_map(|axis| [1.0, -1.0].map(|sign| Side { axis, sign }));
-            let expected =
-                sides.into_iter().any(|side| !points.iter().any(|p| side.holds(&(p - place))));
+            let is_empty = |side: Side| !points.iter().any(|p| side.holds(&(p - place)));
+            let expected = Side::all().any(is_empty);
             prop_assert_eq!(has_open_side(&tree.unwrap(), &points, &place), expected);
         }
     }

@@ -11,37 +11,30 @@ use super::leaf::{ExactLeaf, NoisyLeaf};
 use super::through_mesh::Outline;
 
 /// Pieces of a leaf by their places in it, those from the last bit on together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Places(u64);
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Reaching(u64);
 
-impl Places {
-    const NONE: Self = Self(0);
-
-    fn one(place: usize) -> Self {
-        Self(1 << place.min(u64::BITS as usize - 1))
-    }
-
-    fn with(self, other: Self) -> Self {
-        Self(self.0 | other.0)
+impl Reaching {
+    fn bit(place: usize) -> u64 {
+        1 << place.min(u64::BITS as usize - 1)
     }
 
     /// Whether one of the pieces that an edge joins is among them.
-    fn joined_by(self, edge: &Edge) -> bool {
-        let ends = edge.own.iter().flatten();
-        ends.fold(0, |all, &place| all | Self::one(place).0) & self.0 != 0
+    fn is_joined_by(self, edge: &Edge) -> bool {
+        edge.own.iter().flatten().any(|&place| self.0 & Self::bit(place) != 0)
     }
 
     pub(super) fn is_none(self) -> bool {
-        self == Self::NONE
+        self.0 == 0
     }
 }
 
 /// The pieces of a leaf near which an edge from there may cross a disc of another leaf: that can be
 /// told before the edges are known, for half of one is not longer than a disc reaches, and runs along
 /// the surface.
-pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Places {
+pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Reaching {
     let NoisyLeaf { ball, slab, .. } = of_discs;
-    let mut reaching = Places::NONE;
+    let mut reaching = Reaching::default();
     for (place, surfel) in of_edges.surfels.iter().enumerate() {
         let Some(normal) = surfel.normal else { continue };
         let half = DISC_SPACINGS * surfel.spacing;
@@ -50,7 +43,7 @@ pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Pl
             && slab
                 .is_within(middle, half * SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)))
         {
-            reaching = reaching.with(Places::one(place));
+            reaching.0 |= Reaching::bit(place);
         }
     }
     reaching
@@ -69,7 +62,7 @@ pub(super) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> 
 /// memory to use again.
 pub(super) fn add_edges_through_discs(
     is_a: bool,
-    (of_edges, near): (&mut NoisyLeaf<'_>, Places),
+    (of_edges, near): (&mut NoisyLeaf<'_>, Reaching),
     of_discs: &mut NoisyLeaf<'_>,
     places: &mut Vec<usize>,
     found: &mut Crossings,
@@ -89,7 +82,7 @@ pub(super) fn add_edges_through_discs(
     // Taken out, for the edges are borrowed while probabilities are raised.
     let mut of_ends = std::mem::take(&mut of_edges.crossing);
     for edge in of_edges.edges() {
-        if !near.joined_by(edge) || !slab.may_hold(&edge.ends, 0.0) {
+        if !near.is_joined_by(edge) || !slab.may_hold(&edge.ends, 0.0) {
             continue;
         }
         let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);

@@ -47,7 +47,7 @@ pub(crate) struct Found<'a> {
     pub deviations: f64,
     pub crossings: Crossings,
     around: Around,
-    /// Of pieces of a leaf; empty but for a moment.
+    /// Memory for places of pieces in a leaf, to use again.
     places: Vec<usize>,
     /// Whether what was left out can change neither of these.
     pub is_complete: bool,
