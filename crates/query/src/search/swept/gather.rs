@@ -7,6 +7,7 @@ use crate::cloud::{DISC_SPACINGS, SLOPE};
 use super::super::crossings::Witness;
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, NoisyLeaf};
+use super::drifts::Drifts;
 use super::leaf::{SweptCloud, SweptEdges};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
 use super::pool::Passages;
@@ -49,7 +50,7 @@ pub(super) fn may_meet(
     thin.iter().all(|n| still.meets_along(drifting, n))
 }
 
-/// Adds the passages of edges of one leaf through discs of another.
+/// Adds the passages of edges of one leaf, which drift so, through discs of another.
 pub(super) fn add_edges_through_discs(
     is_a: bool,
     of_edges: &SweptCloud<'_>,
@@ -86,12 +87,13 @@ pub(super) fn add_edges_through_facets(
     is_a: bool,
     of_edges: &SweptCloud<'_>,
     facets: &ExactLeaf,
-    drift: &Drift,
+    drifts: &Drifts,
     found: &mut Passages,
 ) {
     let Some(SweptEdges { tracks, hull: Some(hull) }) = of_edges.edges() else { return };
     let thin = &of_edges.leaf.slab.direction;
-    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, drift));
+    let of_facets = drifts.of(!is_a);
+    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, of_facets));
     let met: Vec<&Facet> = met.collect();
     if met.is_empty() {
         return;
@@ -102,7 +104,7 @@ pub(super) fn add_edges_through_facets(
         }
         let adrift = Adrift::new(is_a, edge, track);
         for facet in &met {
-            if let Some(passage) = adrift.through_facet(facet, drift) {
+            if let Some(passage) = adrift.through_facet(facet, &drifts.of_b) {
                 found.add(Witness::edge(is_a, edge), &passage);
             }
         }
@@ -116,12 +118,13 @@ pub(super) fn add_mesh_through_discs(
     discs: &SweptCloud<'_>,
     facets: &ExactLeaf,
     mut around: impl FnMut(&Point3, f64) -> Vec<Facet>,
-    drift: &Drift,
+    drifts: &Drifts,
     found: &mut Passages,
 ) {
     let Some(hull) = discs.discs else { return };
     let thin = &discs.leaf.slab.direction;
-    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, drift));
+    let of_facets = drifts.of(!is_a);
+    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, of_facets));
     let met: Vec<Facet> = met.copied().collect();
     if met.is_empty() {
         return;
@@ -131,9 +134,10 @@ pub(super) fn add_mesh_through_discs(
         if !track.gets_to(&facets.ball, DISC_SPACINGS * disc.spacing) {
             continue;
         }
-        let off = may_pierce(is_a, disc, &normal, &met, drift);
+        let off = may_pierce(is_a, disc, &normal, &met, drifts);
         if let Some(off) = off.filter(|_| disc.spacing > 0.0) {
-            let passage = mesh_through_disc(is_a, disc, (normal, off), &mut around, drift);
+            let passage =
+                mesh_through_disc(is_a, disc, (normal, off), &mut around, drifts.of(is_a));
             found.add(Witness::disc(is_a, disc), &passage);
         }
     }

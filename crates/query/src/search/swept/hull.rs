@@ -52,8 +52,8 @@ impl Hull {
         from - room <= high && to + room >= low
     }
 
-    /// Whether a triangle may meet it while one of them drifts, as far as the plane of the triangle and one
-    /// direction tell.
+    /// Whether a triangle of the other body, which drifts so, may meet it, as far as the plane of the triangle
+    /// and one direction tell.
     pub(super) fn meets_facet(&self, facet: &Facet, direction: &Vector3, drift: &Drift) -> bool {
         let gets_to_plane = |n: Vector3| {
             let room = self.drift.along(&n);
