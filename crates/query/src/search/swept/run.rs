@@ -187,13 +187,17 @@ fn cross<'a>(
             let of_edges = (b, pair.b, Some(a_from_b));
             cross_discs(false, on_b, of_edges, on_a, &drifts.of_b, passages);
         }
-        (Swept::Noisy(noisy), Swept::Exact(exact)) if may_reach_facets(noisy, exact) => {
+        (Swept::Noisy(noisy), Swept::Exact(exact))
+            if may_reach_facets(noisy, exact, &drifts.of_a) =>
+        {
             noisy.load_edges(a, pair.a, None, &drifts.of_a);
             add_edges_through_facets(true, noisy, exact, drifts, passages);
             let around = |place: &Point3, radius| known.facets(b, Some(a_from_b), place, radius);
             add_mesh_through_discs(true, noisy, exact, around, drifts, passages);
         }
-        (Swept::Exact(exact), Swept::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
+        (Swept::Exact(exact), Swept::Noisy(noisy))
+            if may_reach_facets(noisy, exact, &drifts.of_b) =>
+        {
             noisy.load_edges(b, pair.b, Some(a_from_b), &drifts.of_b);
             add_edges_through_facets(false, noisy, exact, drifts, passages);
             let around = |place: &Point3, radius| known.facets(a, None, place, radius);
