@@ -6,8 +6,8 @@ use crate::vectors::{Matrix3, Point3, Vector3};
 /// c, a shift l and a turn ω, the pose at the middle being s = 0.
 ///
 /// To first order a point moves by s·u, u = l + ω × (x − c); bounds are |n·u| along a direction n and
-/// what the arc adds, so that a motion along a surface keeps its distance to it. They hold as well for
-/// what stays at its place, seen from the body that moves: the inverse motion.
+/// what the arc adds, so that a motion along a surface keeps its distance to it. What stays at its
+/// place, seen from the body that moves, drifts too: [`Self::inverse`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drift {
     pivot: Point3,
@@ -19,7 +19,8 @@ pub struct Drift {
     chord: f64,
     /// Length of R(ω)w − w − ω × w for a unit vector w across the axis.
     bend: f64,
-    /// |l × axis|·chord: what the turn does to the shift in the inverse motion, m.
+    /// |l × axis|·chord: what the turn does to the shift in the inverse motion, m; nothing in the motion
+    /// itself.
     skew: f64,
 }
 
@@ -40,7 +41,14 @@ impl Drift {
         let axis = angular.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let chord = 2.0 * (0.5 * angle.min(std::f64::consts::PI)).sin();
         let bend = (angle - angle.sin()).hypot(1.0 - angle.cos());
-        Self { pivot, linear, angular, axis, chord, bend, skew: linear.cross(&axis).norm() * chord }
+        Self { pivot, linear, angular, axis, chord, bend, skew: 0.0 }
+    }
+
+    /// How what keeps still drifts as the body that moves sees it, in the frame of the middle: at s, to
+    /// first order, by −s·u with the u of the motion itself, and farther off that where a turn meets a
+    /// shift.
+    pub fn inverse(&self) -> Self {
+        Self { skew: self.linear.cross(&self.axis).norm() * self.chord, ..*self }
     }
 
     /// u: where a point at a place is headed, m.
@@ -170,25 +178,23 @@ mod tests {
             let direction = direction.normalize();
             let (pivot, middle) = (Point3::from(pivot), Point3::from(middle));
             let drift = Drift::new(pivot, linear, angular);
+            let inverse = drift.inverse();
             let axes = *UnitQuaternion::new(linear).to_rotation_matrix().matrix();
             let half_axes = axes * Matrix3::from_diagonal(&Vector3::from(half));
             let place = middle + half_axes * Vector3::from(inside);
             let turn = UnitQuaternion::new(angular * s);
             let there = pivot + linear * s + turn * (place - pivot);
             let back = pivot + turn.inverse() * (place - pivot - linear * s);
-            let in_box = drift.of_box(&middle, &half_axes, 0.0).along(&direction);
-            prop_assert!(drift.along(&direction, &place) <= in_box + 1e-12);
-            let first_order = drift.first_order(&place) * s;
-            let rests = [there - place - first_order, back - place + first_order];
-            let beyond = drift.beyond_first_order(&place, 0.0);
-            for rest in rests {
+            for (drift, s, moved) in [(drift, s, there), (inverse, -s, back)] {
+                let in_box = drift.of_box(&middle, &half_axes, 0.0).along(&direction);
+                prop_assert!(drift.along(&direction, &place) <= in_box + 1e-12);
+                let by = moved - place;
+                let rest = by - drift.first_order(&place) * s;
+                let beyond = drift.beyond_first_order(&place, 0.0);
                 prop_assert!(rest.norm() <= beyond + 1e-12);
                 prop_assert!(
                     rest.dot(&direction).abs() <= drift.across_axis(&direction) * beyond + 1e-12
                 );
-            }
-            for moved in [there, back] {
-                let by = moved - place;
                 prop_assert!(by.dot(&direction).abs() <= drift.along(&direction, &place) + 1e-12);
                 prop_assert!(by.norm() <= drift.in_any_direction(&place) + 1e-12);
             }

@@ -60,6 +60,8 @@ fn a_blade_moved_through_a_sheet_in_one_step_is_found() {
         // Its lower edge is at the sheet after 25 of 60 cm, all of it after 35 and a half.
         assert!((0.40..0.47).contains(&first.at.share), "{kinds:?} {}", first.at.share);
         assert!(first.not_before < first.at.share && first.not_before > 0.38, "{kinds:?}");
+        // What is open before it is bounded as one: no less is known of where it begins.
+        assert!(first.at.share - first.not_before < 0.01, "{kinds:?} {first:?}");
         assert!((0.35..0.42).contains(&swept.certified_free_until), "{kinds:?}");
         assert!(!first.at.report.contacts.is_empty() || kinds == [true, true]);
     }

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, normal, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, PoseDistribution, Query, QueryError, QuerySettings,
+    Body, Cloud, CloudSettings, Mesh, PoseDistribution, Query, QueryError, QuerySettings, Report,
 };
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::{scene, surface};
@@ -95,6 +95,23 @@ fn a_pose_that_is_known_is_the_plain_answer_to_the_bit() {
     let (report, under) = query().run_uncertain(&a, &b, &known).unwrap();
     assert_eq!(under.probability.to_bits(), plain.collision_probability.to_bits());
     assert_eq!((under.bounds, under.poses), (report.bounds, 1));
+}
+
+#[test]
+fn the_report_is_that_of_the_most_probable_pose_to_the_bit() {
+    for (is_mesh, z) in [(true, 0.19), (true, 0.21), (false, 0.19), (false, 0.21), (false, 0.3)] {
+        let (a, b) = bodies(is_mesh, 3);
+        let mean = Pose::from_translation_rpy(Vector3::new(0.01, 0.0, z), [0.1, 0.0, 0.3]);
+        let plain = query().run(&a, &b, &mean).unwrap();
+        let known_roughly = PoseDistribution::from_std(mean, [0.005; 6]);
+        let (report, _) = query().run_uncertain(&a, &b, &known_roughly).unwrap();
+        let of = |report: &Report| {
+            let Report { collision_probability, bounds, contacts, clearance_m, verdict, .. } =
+                report;
+            format!("{collision_probability:e} {bounds:?} {contacts:?} {clearance_m:?} {verdict:?}")
+        };
+        assert_eq!(of(&report), of(&plain));
+    }
 }
 
 #[test]

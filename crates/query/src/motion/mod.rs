@@ -8,6 +8,7 @@ mod misgivings;
 mod path;
 mod sweep;
 mod swept;
+mod tested;
 
 pub use path::Path;
 pub use swept::{AlongPath, Reached, SweepStats, Swept};

@@ -6,18 +6,15 @@ use std::time::{Duration, Instant};
 use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
-use crate::query::{Query, QuerySettings};
-use crate::report::{Report, Stats, Verdict};
+use crate::query::Query;
+use crate::report::{Stats, Verdict};
 use crate::undecided::Undecided;
 
 use super::bound::Drifting;
 use super::interval::Interval;
-use super::misgivings::Misgivings;
 use super::path::Path;
 use super::swept::{AlongPath, Reached, SweepStats, Swept};
-
-/// The largest probability is known well enough to within this.
-const PROBABILITY_TOLERANCE: f64 = 0.05;
+use super::tested::Tested;
 
 impl Query {
     /// How likely the surfaces behind two bodies collide anywhere along a path of `b`, and where that
@@ -76,9 +73,8 @@ impl Query {
             query: self,
             bodies,
             path,
-            tolerance: tolerance * segments,
             clock: self.clock(start),
-            tested: Tested::of(&begin, self.settings()),
+            tested: Tested::of(&begin, self.settings(), tolerance * segments),
             stats: Stats::default(),
             poses: 0,
             stretches: 0,
@@ -101,67 +97,10 @@ fn ask(
     Ok(AlongPath { segment, t, share, pose, report })
 }
 
-/// What the poses that were asked about say.
-#[derive(Debug)]
-struct Tested {
-    /// The most probable.
-    most_probable: AlongPath,
-    /// The earliest above the accept threshold.
-    first: Option<AlongPath>,
-    /// The largest lower and upper bound of any.
-    bounds: [f64; 2],
-    /// The first that is not free, in segments: probable, or something speaks against believing it.
-    not_free_from: f64,
-    misgivings: Misgivings,
-}
-
-impl Tested {
-    fn of(begin: &AlongPath, settings: &QuerySettings) -> Self {
-        let mut tested = Self {
-            most_probable: begin.clone(),
-            first: None,
-            bounds: [0.0; 2],
-            not_free_from: f64::INFINITY,
-            misgivings: Misgivings::default(),
-        };
-        tested.add(begin.clone(), settings);
-        tested
-    }
-
-    fn add(&mut self, asked: AlongPath, settings: &QuerySettings) {
-        let Report { collision_probability: probability, bounds: [low, high], .. } = asked.report;
-        self.bounds = [self.bounds[0].max(low), self.bounds[1].max(high)];
-        let at = position(&asked);
-        if asked.report.verdict != Verdict::Free {
-            self.not_free_from = self.not_free_from.min(at);
-        }
-        self.misgivings.add(at, asked.report.undecided_by, &asked.report.warnings);
-        let is_first = self.first.as_ref().is_none_or(|first| at < position(first));
-        if probability > settings.accept && is_first {
-            self.first = Some(asked.clone());
-        }
-        if probability > self.most_probable.report.collision_probability {
-            self.most_probable = asked;
-        }
-    }
-
-    /// Nothing matters from here on, in segments: the threshold was reached.
-    fn end(&self) -> f64 {
-        self.first.as_ref().map_or(f64::INFINITY, position)
-    }
-}
-
-/// In segments from the beginning.
-fn position(at: &AlongPath) -> f64 {
-    at.segment as f64 + at.t
-}
-
 struct Sweep<'a> {
     query: &'a Query,
     bodies: (BodyRef<'a>, BodyRef<'a>),
     path: &'a Path,
-    /// In segments.
-    tolerance: f64,
     clock: Clock,
     tested: Tested,
     stats: Stats,
@@ -176,83 +115,107 @@ impl Sweep<'_> {
         for segment in 0..self.path.segments() {
             waiting.push(self.bounded(segment, [0.0, 1.0])?);
         }
-        if waiting.iter().any(|interval| self.is_wanted(interval)) {
+        if waiting.iter().any(|interval| self.tested.is_wanted(interval)) {
             self.test(self.path.segments() - 1, 1.0)?;
         }
         let mut looked_at = Vec::new();
+        while !waiting.is_empty() {
+            self.halve(&mut waiting, &mut looked_at)?;
+            waiting.extend(self.close(&mut looked_at)?);
+        }
+        Ok(looked_at)
+    }
+
+    /// Halves stretches until none that wait is wanted.
+    fn halve(
+        &mut self,
+        waiting: &mut BinaryHeap<Interval>,
+        looked_at: &mut Vec<Interval>,
+    ) -> Result<(), QueryError> {
         while let Some(interval) = waiting.pop() {
-            if self.clock.is_over() || !self.is_wanted(&interval) {
+            if self.clock.is_over()
+                || !self.tested.is_wanted(&interval)
+                || self.tested.is_left(&interval)
+            {
                 looked_at.push(interval);
                 continue;
             }
-            if interval.upper == 1.0 && interval.cut < self.cut(&interval) {
+            if interval.upper == 1.0 && interval.cut < self.tested.cut(&interval) {
                 // More than it was looked for may be little enough now.
                 waiting.push(self.bounded(interval.segment, interval.times)?);
                 continue;
             }
             let Interval { segment, times: [from, to], .. } = interval;
             let middle = interval.middle();
+            let is_open = self.tested.is_known_open(&interval);
             // Where all of the first half is free, so is the pose at its end.
-            let may_be_free = self.may_be_free(&interval);
+            let may_be_free = self.tested.may_be_free(&interval);
             if !may_be_free {
                 self.test(segment, middle)?;
             }
-            let first = self.bounded(segment, [from, middle])?;
-            if may_be_free && !self.is_free(&first) {
+            let first = self.half(&interval, [from, middle], is_open)?;
+            if may_be_free && !self.tested.is_free(&first) {
                 self.test(segment, middle)?;
             }
             waiting.push(first);
-            let second = Interval { times: [middle, to], ..interval };
-            // What cannot matter any more keeps the bound of the whole.
-            waiting.push(match second.start() < self.tested.end() {
-                true => self.bounded(segment, second.times)?,
-                false => second,
-            });
+            waiting.push(self.half(&interval, [middle, to], is_open)?);
         }
-        Ok(looked_at)
+        Ok(())
     }
 
-    /// Whether a closer look could change the answer by more than the tolerances.
-    fn is_wanted(&self, interval: &Interval) -> bool {
-        let may_become_free = !self.is_free(interval) && self.may_be_free(interval);
-        interval.length() > self.tolerance
-            && interval.start() < self.tested.end()
-            && (interval.upper > self.cut(interval) || may_become_free)
+    /// A half of a stretch. What cannot matter any more keeps the bound of the whole; what waits for
+    /// [`Self::close`] has none.
+    fn half(
+        &mut self,
+        whole: &Interval,
+        times: [f64; 2],
+        is_open: bool,
+    ) -> Result<Interval, QueryError> {
+        let half = Interval { times, ..*whole };
+        if half.start() >= self.tested.end() {
+            return Ok(half);
+        }
+        let unbounded = Interval { upper: 1.0, cut: 0.0, is_doubtful: false, ..half };
+        match !is_open && self.tested.is_left(&unbounded) {
+            true => Ok(unbounded),
+            false => self.bounded(whole.segment, times),
+        }
     }
 
-    fn is_free(&self, interval: &Interval) -> bool {
-        interval.upper < self.query.settings().reject && !interval.is_doubtful
-    }
-
-    /// A pose before the first that is known not to be free may be free.
-    fn may_be_free(&self, interval: &Interval) -> bool {
-        interval.start() < self.tested.not_free_from
-    }
-
-    /// Bounds of a stretch up to this need no closer look.
-    fn cut(&self, interval: &Interval) -> f64 {
-        let settings = self.query.settings();
-        let is_shortest = interval.length() <= self.tolerance;
-        if self.tested.first.is_some() {
-            // Beside the threshold it only matters where the path ceases to be free.
-            let is_open = !is_shortest && self.may_be_free(interval);
-            return if is_open { settings.reject } else { settings.accept };
+    /// Bounds all that is unknown, by the accept threshold: stretches beside one another as one, fewer of
+    /// them where that is too much. Those that have to be halved are given back.
+    fn close(&mut self, looked_at: &mut Vec<Interval>) -> Result<Vec<Interval>, QueryError> {
+        looked_at.sort_by(|p, q| p.start().total_cmp(&q.start()));
+        let all = std::mem::take(looked_at);
+        let mut bounded = Vec::new();
+        let runs = all.chunk_by(|p, q| self.tested.may_join(p, q)).map(<[_]>::to_vec);
+        let mut runs: Vec<Vec<Interval>> = runs.collect();
+        while let Some(mut run) = runs.pop() {
+            let (first, last) = (run[0], run[run.len() - 1]);
+            if !self.tested.is_unknown(&first) {
+                looked_at.extend(run);
+                continue;
+            }
+            let accept = self.query.settings().accept;
+            let times = [first.times[0], last.times[1]];
+            let joined = self.bounded_by(accept, first.segment, times)?;
+            if joined.upper <= accept || run.len() == 1 {
+                bounded.push(joined);
+                continue;
+            }
+            runs.push(run.split_off(run.len().div_ceil(2)));
+            runs.push(run);
         }
-        if is_shortest {
-            // These are not halved: of them all that can be told counts.
-            return 1.0;
-        }
-        if self.may_be_free(interval) {
-            return settings.reject;
-        }
-        let known = self.tested.most_probable.report.collision_probability;
-        (known + PROBABILITY_TOLERANCE).max(settings.reject).min(settings.accept)
+        let (again, done): (Vec<_>, Vec<_>) =
+            bounded.into_iter().partition(|interval| self.tested.is_to_halve(interval));
+        looked_at.extend(done);
+        Ok(again)
     }
 
     fn test(&mut self, segment: usize, t: f64) -> Result<(), QueryError> {
         let asked = ask(self.query, self.bodies, self.path, (segment, t))?;
         self.count(&asked);
-        self.tested.add(asked, self.query.settings());
+        self.tested.add(asked);
         Ok(())
     }
 
@@ -264,6 +227,17 @@ impl Sweep<'_> {
     }
 
     fn bounded(&mut self, segment: usize, times: [f64; 2]) -> Result<Interval, QueryError> {
+        let cut =
+            self.tested.cut(&Interval { segment, times, upper: 1.0, cut: 1.0, is_doubtful: false });
+        self.bounded_by(cut, segment, times)
+    }
+
+    fn bounded_by(
+        &mut self,
+        cut: f64,
+        segment: usize,
+        times: [f64; 2],
+    ) -> Result<Interval, QueryError> {
         let (a, b) = self.bodies;
         let leg = self.path.leg(segment);
         let mut interval = Interval { segment, times, upper: 1.0, cut: 1.0, is_doubtful: false };
@@ -275,7 +249,7 @@ impl Sweep<'_> {
         let a_from_b = leg.at(interval.middle());
         let drift = leg.drift(times, &a.shape().origin());
         let drifting = Drifting { bodies: (a, b), a_from_b, drift };
-        interval.cut = self.cut(&interval);
+        interval.cut = cut;
         interval.upper =
             drifting.upper_bound(self.query, interval.cut, &self.clock, &mut self.stats)?;
         if interval.upper < self.query.settings().reject {

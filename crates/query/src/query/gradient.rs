@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::exact::nearest_places;
+use crate::mesh::Mesh;
 use crate::report::{Report, Stats};
 use crate::search::{Wrench, force_at, in_object_frame};
 
@@ -78,11 +79,7 @@ impl Query {
                 let motion = Motion::from(local);
                 let of = |wrench: Wrench| in_object_frame(&wrench, &motion, &b.shape().origin());
                 if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
-                    let places = nearest_places((a, b), local)?;
-                    gradient.clearance = places.map(|[on_a, on_b]| {
-                        let away = (on_b - on_a).try_normalize(0.0).unwrap_or_default();
-                        of(force_at(&on_b, &away))
-                    });
+                    gradient.clearance = clearance_of_meshes((a, b), local)?.map(of);
                     return exact((a, b), local, evidence);
                 }
                 let task = query.task(start, (a, b));
@@ -101,6 +98,18 @@ impl Query {
             })?;
         Ok((report, gradient))
     }
+}
+
+/// What the distance of two meshes changes by, where they are apart. Local frames.
+pub(super) fn clearance_of_meshes(
+    meshes: (&Mesh, &Mesh),
+    a_from_b: &Pose,
+) -> Result<Option<Wrench>, QueryError> {
+    let places = nearest_places(meshes, a_from_b)?;
+    Ok(places.map(|[on_a, on_b]| {
+        let away = (on_b - on_a).try_normalize(0.0).unwrap_or_default();
+        force_at(&on_b, &away)
+    }))
 }
 
 impl Weighed<'_> {
@@ -138,7 +147,8 @@ impl Weighed<'_> {
         Ok(all)
     }
 
-    fn gap_by_pose(
+    /// What the gap of a spot changes by.
+    pub(super) fn gap_by_pose(
         &self,
         (a, b): (BodyRef<'_>, BodyRef<'_>),
         a_from_b: &Motion,

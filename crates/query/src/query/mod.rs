@@ -10,6 +10,7 @@ mod estimate;
 mod gap_by_pose;
 mod gradient;
 mod interval;
+mod nearing;
 mod patches;
 mod penetration;
 mod points;

@@ -150,7 +150,7 @@ impl Query {
         };
         let [nearer, even, farther] = LIKELY.map(until);
         // The way that is shortest until then may be another.
-        let mut depth = even.way_out(direction, distance_m)?;
+        let mut depth = even.way_out(&report, direction, distance_m)?;
         if depth.free > FINEST {
             for direction in known {
                 depth = even.shortened(depth, direction, &[SHORTER])?;
@@ -158,7 +158,7 @@ impl Query {
             depth = even.between(even.turned_aside(depth)?, PRECISION)?;
         }
         let [near, far] = [nearer, farther]
-            .map(|until| until.way_out(depth.direction, depth.free).map(|way| way.free));
+            .map(|until| until.way_out(&report, depth.direction, depth.free).map(|way| way.free));
         let (depth_m, std_m) = (depth.free, 0.5 * (far? - near?));
         Ok((report, Some(Penetration { direction, distance_m, depth_m, std_m })))
     }
@@ -192,8 +192,11 @@ impl Overlap<'_> {
     fn is_free(&self, offset: Vector3) -> Result<bool, QueryError> {
         let (a, b) = self.bodies;
         let pose = Pose::from_translation(offset).after(self.a_from_b);
-        let report = self.query.run(a, b, &pose)?;
-        Ok((self.told)(&report) < self.query.settings().reject)
+        Ok(self.reads_free(&self.query.run(a, b, &pose)?))
+    }
+
+    fn reads_free(&self, report: &Report) -> bool {
+        (self.told)(report) < self.query.settings().reject
     }
 
     /// Takes a way along `direction` that is free at one of these shares of the best, if there is one.
@@ -235,10 +238,10 @@ impl Overlap<'_> {
     }
 
     /// The way along a direction to where it is free, near to where it is for another probability; none
-    /// where it is free already.
-    fn way_out(&self, direction: Vector3, near: f64) -> Result<Way, QueryError> {
+    /// where it is free `here` already.
+    fn way_out(&self, here: &Report, direction: Vector3, near: f64) -> Result<Way, QueryError> {
         let far = self.apart(&direction);
-        if self.is_free(Vector3::zeros())? {
+        if self.reads_free(here) {
             return Ok(Way { direction, stuck: 0.0, free: 0.0 });
         }
         let mut way = Way { direction, stuck: 0.0, free: near.max(FINEST) };

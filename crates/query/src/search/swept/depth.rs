@@ -22,7 +22,7 @@ pub(crate) fn greatest_depth(
     let here = Pose::identity();
     match (a, b) {
         (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
-            deepest((cloud, &here), (mesh, a_from_b), drift, is_enough, stats)
+            deepest((cloud, &here), (mesh, a_from_b), &drift.inverse(), is_enough, stats)
         }
         (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
             deepest((cloud, a_from_b), (mesh, &here), drift, is_enough, stats)
@@ -31,6 +31,7 @@ pub(crate) fn greatest_depth(
     }
 }
 
+/// Of a cloud that drifts so, as the mesh sees it.
 fn deepest(
     (cloud, a_from_cloud): (&Cloud, &Pose),
     (mesh, a_from_mesh): (&Mesh, &Pose),

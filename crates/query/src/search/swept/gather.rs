@@ -1,16 +1,25 @@
 //! Gathers the passages that two leaves may have while one of them drifts.
 
-use cloudtouch_geom::{Drift, Point3};
+use cloudtouch_geom::{Drift, Point3, Vector3};
 
-use crate::cloud::{DISC_SPACINGS, SLOPE};
+use crate::cloud::{DISC_SPACINGS, SLOPE, Surfel};
 
 use super::super::crossings::Witness;
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, NoisyLeaf};
+use super::drifts::Drifts;
 use super::leaf::{SweptCloud, SweptEdges};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
 use super::pool::Passages;
 use super::track::Direction;
+
+/// How far a disc with this normal reaches along a unit vector, m.
+fn disc_reach(disc: &Surfel, normal: &Vector3, n: &Vector3) -> f64 {
+    /// A tilt smaller than this is rounding.
+    const ROUNDING: f64 = 1e-6;
+    let cosine = n.dot(normal);
+    DISC_SPACINGS * disc.spacing * ((1.0 - cosine * cosine).max(0.0).sqrt() + ROUNDING)
+}
 
 /// Whether an edge may get to a disc of another leaf, as `search/gather.rs` asks of leaves that keep
 /// still.
@@ -30,10 +39,24 @@ pub(super) fn may_reach(
     })
 }
 
-/// The same of the facets of a mesh.
-pub(super) fn may_reach_facets(of_edges: &SweptCloud<'_>, facets: &ExactLeaf) -> bool {
+/// The same of the facets of a mesh, and of discs, which reach no farther.
+pub(super) fn may_reach_facets(
+    of_edges: &SweptCloud<'_>,
+    facets: &ExactLeaf,
+    drift: &Drift,
+) -> bool {
     of_edges.leaf.surfels.iter().zip(&of_edges.tracks).any(|(surfel, track)| {
-        surfel.normal.is_some() && track.gets_to(&facets.ball, DISC_SPACINGS * surfel.spacing)
+        let Some(normal) = surfel.normal else { return false };
+        let half = DISC_SPACINGS * surfel.spacing;
+        let gets_to_plane = |facet: &Facet| {
+            let Some(n) = facet.normal else { return true };
+            let along = SLOPE * n.dot(&normal).abs() + drift.turn();
+            let room = disc_reach(surfel, &normal, &n)
+                + half * along
+                + track.along(&Direction::new(n, drift));
+            facet.height(&track.place).abs() <= room
+        };
+        track.gets_to(&facets.ball, half) && facets.facets.iter().any(gets_to_plane)
     })
 }
 
@@ -49,7 +72,7 @@ pub(super) fn may_meet(
     thin.iter().all(|n| still.meets_along(drifting, n))
 }
 
-/// Adds the passages of edges of one leaf through discs of another.
+/// Adds the passages of edges of one leaf, which drift so, through discs of another.
 pub(super) fn add_edges_through_discs(
     is_a: bool,
     of_edges: &SweptCloud<'_>,
@@ -57,10 +80,24 @@ pub(super) fn add_edges_through_discs(
     drift: &Drift,
     found: &mut Passages,
 ) {
-    let Some(edges) = of_edges.edges() else { return };
+    let Some(SweptEdges { tracks, hull: Some(hull) }) = of_edges.edges() else { return };
     let (around, slab) = (of_discs.ball, of_discs.slab);
+    // Most discs are beyond all edges of the leaf.
+    let thin = [slab.direction, of_edges.leaf.slab.direction];
+    let layers = thin.map(|n| (n, hull.heights_on_the_way(&n)));
+    let is_met = |disc: &&Surfel| {
+        let Some(normal) = disc.normal else { return false };
+        layers.iter().all(|(n, [low, high])| {
+            let (height, reach) = (n.dot(&disc.point.mean.coords), disc_reach(disc, &normal, n));
+            low - reach <= height && height <= high + reach
+        })
+    };
+    let discs: Vec<&Surfel> = of_discs.surfels.iter().filter(is_met).collect();
+    if discs.is_empty() {
+        return;
+    }
     let direction = Direction::new(slab.direction, drift);
-    for (edge, track) in of_edges.leaf.edges().iter().zip(&edges.tracks) {
+    for (edge, track) in of_edges.leaf.edges().iter().zip(tracks) {
         let room = track.ends[0].along(&direction).max(track.ends[1].along(&direction));
         if !slab.may_hold(&edge.ends, room) {
             continue;
@@ -70,7 +107,7 @@ pub(super) fn add_edges_through_discs(
             continue;
         }
         let adrift = Adrift::new(is_a, edge, track);
-        for disc in of_discs.surfels.iter() {
+        for disc in &discs {
             let near =
                 track.middle.times_near(&disc.point.mean, half + DISC_SPACINGS * disc.spacing);
             let Some(times) = near else { continue };
@@ -86,12 +123,13 @@ pub(super) fn add_edges_through_facets(
     is_a: bool,
     of_edges: &SweptCloud<'_>,
     facets: &ExactLeaf,
-    drift: &Drift,
+    drifts: &Drifts,
     found: &mut Passages,
 ) {
     let Some(SweptEdges { tracks, hull: Some(hull) }) = of_edges.edges() else { return };
     let thin = &of_edges.leaf.slab.direction;
-    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, drift));
+    let of_facets = drifts.of(!is_a);
+    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, of_facets));
     let met: Vec<&Facet> = met.collect();
     if met.is_empty() {
         return;
@@ -102,7 +140,7 @@ pub(super) fn add_edges_through_facets(
         }
         let adrift = Adrift::new(is_a, edge, track);
         for facet in &met {
-            if let Some(passage) = adrift.through_facet(facet, drift) {
+            if let Some(passage) = adrift.through_facet(facet, &drifts.of_b) {
                 found.add(Witness::edge(is_a, edge), &passage);
             }
         }
@@ -116,12 +154,13 @@ pub(super) fn add_mesh_through_discs(
     discs: &SweptCloud<'_>,
     facets: &ExactLeaf,
     mut around: impl FnMut(&Point3, f64) -> Vec<Facet>,
-    drift: &Drift,
+    drifts: &Drifts,
     found: &mut Passages,
 ) {
     let Some(hull) = discs.discs else { return };
     let thin = &discs.leaf.slab.direction;
-    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, drift));
+    let of_facets = drifts.of(!is_a);
+    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, of_facets));
     let met: Vec<Facet> = met.copied().collect();
     if met.is_empty() {
         return;
@@ -131,9 +170,10 @@ pub(super) fn add_mesh_through_discs(
         if !track.gets_to(&facets.ball, DISC_SPACINGS * disc.spacing) {
             continue;
         }
-        let off = may_pierce(is_a, disc, &normal, &met, drift);
+        let off = may_pierce(is_a, disc, &normal, &met, drifts);
         if let Some(off) = off.filter(|_| disc.spacing > 0.0) {
-            let passage = mesh_through_disc(is_a, disc, (normal, off), &mut around, drift);
+            let passage =
+                mesh_through_disc(is_a, disc, (normal, off), &mut around, drifts.of(is_a));
             found.add(Witness::disc(is_a, disc), &passage);
         }
     }

@@ -45,20 +45,24 @@ impl Hull {
         [height - room, height + room]
     }
 
-    /// Whether two boxes may meet while the second drifts, as far as one direction tells.
-    pub(super) fn meets_along(&self, drifting: &Self, n: &Vector3) -> bool {
-        let room = drifting.drift.along(n);
-        let ([low, high], [from, to]) = (self.heights(n), drifting.heights(n));
-        from - room <= high && to + room >= low
+    /// The same wherever it gets.
+    pub(super) fn heights_on_the_way(&self, n: &Vector3) -> [f64; 2] {
+        let ([low, high], room) = (self.heights(n), self.drift.along(n));
+        [low - room, high + room]
     }
 
-    /// Whether a triangle may meet it while one of them drifts, as far as the plane of the triangle and one
-    /// direction tell.
+    /// Whether two boxes may meet while the second drifts, as far as one direction tells.
+    pub(super) fn meets_along(&self, drifting: &Self, n: &Vector3) -> bool {
+        let ([low, high], [from, to]) = (self.heights(n), drifting.heights_on_the_way(n));
+        from <= high && to >= low
+    }
+
+    /// Whether a triangle of the other body, which drifts so, may meet it, as far as the plane of the triangle
+    /// and one direction tell.
     pub(super) fn meets_facet(&self, facet: &Facet, direction: &Vector3, drift: &Drift) -> bool {
         let gets_to_plane = |n: Vector3| {
-            let room = self.drift.along(&n);
-            let ([low, high], at) = (self.heights(&n), n.dot(&facet.corners[0].coords));
-            low - room <= at && at <= high + room
+            let ([low, high], at) = (self.heights_on_the_way(&n), n.dot(&facet.corners[0].coords));
+            low <= at && at <= high
         };
         let [low, high] = self.heights(direction);
         let (mut is_above, mut is_below) = (true, true);

@@ -2,6 +2,7 @@
 //! with all that the motion can add.
 
 mod depth;
+mod drifts;
 mod facets;
 mod gather;
 mod hull;

@@ -8,6 +8,7 @@ use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
 use super::super::crossing::{CLEAREST, known_to, weight_at};
 use super::super::facet::Facet;
 use super::super::through_mesh::Outline;
+use super::drifts::Drifts;
 use super::leaf::EdgeTrack;
 use super::track::{Direction, facet_keeps_off, piece_keeps_off};
 
@@ -66,7 +67,8 @@ impl<'a> Adrift<'a> {
         crossed.shares.map(|share| from + (to - from) * share)
     }
 
-    /// Of the disc about a sample of the other body, which it is within reach of between two times.
+    /// Of the disc about a sample of the other body, which it is within reach of between two times; `drift`
+    /// is that of the edge.
     pub(super) fn through_disc(
         &self,
         disc: &Surfel,
@@ -91,7 +93,7 @@ impl<'a> Adrift<'a> {
         Some(passage)
     }
 
-    /// Of a triangle of the other body.
+    /// Of a triangle of the other body; `drift` is that of B.
     pub(super) fn through_facet(&self, facet: &Facet, drift: &Drift) -> Option<Passage> {
         let normal = facet.normal?;
         let spacing = 2.0 * self.edge.half_length;
@@ -174,23 +176,23 @@ pub(super) fn may_pierce(
     disc: &Surfel,
     normal: &Vector3,
     facets: &[Facet],
-    drift: &Drift,
+    drifts: &Drifts,
 ) -> Option<f64> {
-    let middle = disc.point.mean;
+    let (middle, of_facets) = (disc.point.mean, drifts.of(!is_a));
     let passes = facets.iter().filter(|facet| {
         let heights = facet.corners.map(|corner| {
-            let (at, by) = (normal.dot(&(corner - middle)), drift.along(normal, &corner));
+            let (at, by) = (normal.dot(&(corner - middle)), of_facets.along(normal, &corner));
             (at - by, at + by)
         });
         heights.iter().any(|(low, _)| *low <= 0.0) && heights.iter().any(|(_, high)| *high >= 0.0)
     });
-    let off = passes.map(|facet| facet_keeps_off(&middle, facet, !is_a, drift));
+    let off = passes.map(|facet| facet_keeps_off(&middle, facet, !is_a, &drifts.of_b));
     let off = off.fold(f64::INFINITY, f64::min);
     (off <= DISC_SPACINGS * disc.spacing * (1.0 + ROUNDING)).then_some(off)
 }
 
-/// What a mesh may do to the disc about a sample that it may pass so near to its middle; `around` gives
-/// all its triangles within a distance of a place.
+/// What a mesh may do to the disc about a sample, which drifts so, that it may pass so near to its middle;
+/// `around` gives all its triangles within a distance of a place.
 pub(super) fn mesh_through_disc(
     is_a: bool,
     disc: &Surfel,

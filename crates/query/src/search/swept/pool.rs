@@ -10,6 +10,8 @@ use super::passage::Passage;
 /// What one witness may see at most.
 #[derive(Debug, Clone, Copy)]
 struct MaySee {
+    /// As [`Witness::is_of_a`].
+    is_of_a: bool,
     sum: f64,
     clearest: f64,
     /// Its place is no farther than `radius` from here, whichever of its passages is the best, m.
@@ -22,9 +24,11 @@ struct MaySee {
 /// The passages heard of so far.
 #[derive(Debug, Default)]
 pub(super) struct Passages {
-    witnesses: BTreeMap<Witness, MaySee>,
-    /// The witness heard last, until it was looked what there may be at its place.
-    last: Option<Witness>,
+    heard: Vec<MaySee>,
+    /// Where each of the witnesses is among these.
+    indices: BTreeMap<Witness, usize>,
+    /// Where the witness heard last is, until it was looked what there may be at its place.
+    last: Option<usize>,
     /// What there may be at the place looked at last.
     at_last: f64,
 }
@@ -32,23 +36,34 @@ pub(super) struct Passages {
 impl Passages {
     pub(super) fn add(&mut self, witness: Witness, passage: &Passage) {
         let Passage { clear, weight, middle, radius, spacing } = *passage;
-        let seen = self.witnesses.entry(witness);
-        let seen = seen.or_insert(MaySee { sum: 0.0, clearest: 0.0, middle, radius, reach: 0.0 });
+        let index = *self.indices.entry(witness).or_insert(self.heard.len());
+        if index == self.heard.len() {
+            let is_of_a = witness.is_of_a();
+            self.heard.push(MaySee {
+                is_of_a,
+                sum: 0.0,
+                clearest: 0.0,
+                middle,
+                radius,
+                reach: 0.0,
+            });
+        }
+        let seen = &mut self.heard[index];
         seen.sum += clear * weight;
         seen.clearest = seen.clearest.max(clear);
         seen.radius = seen.radius.max((middle - seen.middle).norm() + radius);
         seen.reach = seen.reach.max(PLACE_SPACINGS * spacing);
-        self.last = Some(witness);
+        self.last = Some(index);
     }
 
     /// No place on the way sees more than this.
     pub(super) fn clearness(&self) -> f64 {
-        self.witnesses.values().map(|at| self.around(at)).fold(0.0, f64::max)
+        self.heard.iter().map(|at| self.around(at)).fold(0.0, f64::max)
     }
 
     /// The same at the place heard of last: most pairs of leaves add nothing, and cost nothing here.
     pub(super) fn last_clearness(&mut self) -> f64 {
-        if let Some(at) = self.last.take().and_then(|last| self.witnesses.get(&last)) {
+        if let Some(at) = self.last.take().map(|last| &self.heard[last]) {
             self.at_last = self.around(at);
         }
         self.at_last
@@ -57,10 +72,10 @@ impl Passages {
     /// What all witnesses say that may at some time be within reach of one.
     fn around(&self, at: &MaySee) -> f64 {
         let mut sums = [ONE_SIDED; 2];
-        for (witness, other) in &self.witnesses {
+        for other in &self.heard {
             let reach = at.reach + at.radius + other.radius;
             if (other.middle - at.middle).norm_squared() <= reach * reach {
-                sums[usize::from(witness.is_of_a())] += other.sum.min(other.clearest);
+                sums[usize::from(other.is_of_a)] += other.sum.min(other.clearest);
             }
         }
         by_both_sides(sums)

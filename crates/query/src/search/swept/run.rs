@@ -12,6 +12,7 @@ use crate::report::Stats;
 
 use super::super::around::Around;
 use super::super::leaf::ExactLeaf;
+use super::drifts::Drifts;
 use super::facets::may_touch;
 use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_meet, may_reach,
@@ -46,7 +47,7 @@ pub(crate) fn reach_of<'a>(
     let mut way = Way {
         bodies: (a, b),
         a_from_b: Motion::from(a_from_b),
-        drift,
+        drifts: Drifts::new(drift),
         leaves: Default::default(),
         deviations: MOST_DEVIATIONS,
         passages: Passages::default(),
@@ -71,36 +72,36 @@ pub(crate) fn reach_of<'a>(
 
 type Leaves<'a> = BTreeMap<NodeId, Swept<'a>>;
 
-struct Way<'a, 'd> {
+struct Way<'a> {
     bodies: (BodyRef<'a>, BodyRef<'a>),
     a_from_b: Motion,
-    drift: &'d Drift,
+    drifts: Drifts,
     leaves: (Leaves<'a>, Leaves<'a>),
     deviations: f64,
     passages: Passages,
     around: Around,
 }
 
-impl<'a> Way<'a, '_> {
+impl<'a> Way<'a> {
     fn look_at(&mut self, pair: &SurfacePair, stats: &mut Stats) {
         let (a, b) = self.bodies;
-        let motion = &self.a_from_b;
+        let (motion, drifts) = (&self.a_from_b, &self.drifts);
         let leaf_a = self.leaves.0.entry(pair.a);
-        let leaf_a = leaf_a.or_insert_with(|| Swept::load(a, pair.a, None, self.drift, stats));
+        let leaf_a = leaf_a.or_insert_with(|| Swept::load(a, pair.a, None, &drifts.of_a, stats));
         let leaf_b = self.leaves.1.entry(pair.b);
         let leaf_b =
-            leaf_b.or_insert_with(|| Swept::load(b, pair.b, Some(motion), self.drift, stats));
+            leaf_b.or_insert_with(|| Swept::load(b, pair.b, Some(motion), &drifts.of_b, stats));
         if pair.deviations < self.deviations {
-            self.deviations = least_of(leaf_a, leaf_b, self.drift, self.deviations);
+            self.deviations = least_of(leaf_a, leaf_b, &drifts.of_b, self.deviations);
         }
         if pair.may_cross {
             let told = (&mut self.passages, &mut self.around);
-            cross((a, b), motion, pair, (leaf_a, leaf_b), self.drift, told);
+            cross((a, b), motion, pair, (leaf_a, leaf_b), drifts, told);
         }
     }
 }
 
-/// The fewest deviations of two pieces of two leaves; `most` where none have fewer.
+/// The fewest deviations of two pieces of two leaves, those of B drifting; `most` where none have fewer.
 fn least_of(a: &mut Swept<'_>, b: &mut Swept<'_>, drift: &Drift, most: f64) -> f64 {
     match (a, b) {
         (Swept::Noisy(a), Swept::Noisy(b)) => between_noisy(a, b, drift, most),
@@ -150,7 +151,8 @@ fn to_exact(
     least
 }
 
-/// Adds the passages of edges of one leaf through discs of another, where there may be any.
+/// Adds the passages of edges of one leaf through discs of another, where there may be any; `drift` is that
+/// of the edges.
 fn cross_discs<'a>(
     is_a: bool,
     of_edges: &mut SweptCloud<'a>,
@@ -176,25 +178,30 @@ fn cross<'a>(
     a_from_b: &Motion,
     pair: &SurfacePair,
     leaves: (&mut Swept<'a>, &mut Swept<'a>),
-    drift: &Drift,
+    drifts: &Drifts,
     (passages, known): (&mut Passages, &mut Around),
 ) {
     match leaves {
         (Swept::Noisy(on_a), Swept::Noisy(on_b)) => {
-            cross_discs(true, on_a, (a, pair.a, None), on_b, drift, passages);
-            cross_discs(false, on_b, (b, pair.b, Some(a_from_b)), on_a, drift, passages);
+            cross_discs(true, on_a, (a, pair.a, None), on_b, &drifts.of_a, passages);
+            let of_edges = (b, pair.b, Some(a_from_b));
+            cross_discs(false, on_b, of_edges, on_a, &drifts.of_b, passages);
         }
-        (Swept::Noisy(noisy), Swept::Exact(exact)) if may_reach_facets(noisy, exact) => {
-            noisy.load_edges(a, pair.a, None, drift);
-            add_edges_through_facets(true, noisy, exact, drift, passages);
+        (Swept::Noisy(noisy), Swept::Exact(exact))
+            if may_reach_facets(noisy, exact, &drifts.of_a) =>
+        {
+            noisy.load_edges(a, pair.a, None, &drifts.of_a);
+            add_edges_through_facets(true, noisy, exact, drifts, passages);
             let around = |place: &Point3, radius| known.facets(b, Some(a_from_b), place, radius);
-            add_mesh_through_discs(true, noisy, exact, around, drift, passages);
+            add_mesh_through_discs(true, noisy, exact, around, drifts, passages);
         }
-        (Swept::Exact(exact), Swept::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
-            noisy.load_edges(b, pair.b, Some(a_from_b), drift);
-            add_edges_through_facets(false, noisy, exact, drift, passages);
+        (Swept::Exact(exact), Swept::Noisy(noisy))
+            if may_reach_facets(noisy, exact, &drifts.of_b) =>
+        {
+            noisy.load_edges(b, pair.b, Some(a_from_b), &drifts.of_b);
+            add_edges_through_facets(false, noisy, exact, drifts, passages);
             let around = |place: &Point3, radius| known.facets(a, None, place, radius);
-            add_mesh_through_discs(false, noisy, exact, around, drift, passages);
+            add_mesh_through_discs(false, noisy, exact, around, drifts, passages);
         }
         _ => {}
     }

@@ -88,7 +88,8 @@ pub(super) fn piece_keeps_off([from, to]: &[Point3; 2], place: &Point3, drift: &
     nearest - 0.5 * (ways[0] - ways[1]).norm() - beside[0].max(beside[1])
 }
 
-/// How far a facet keeps from a place along a unit vector, away from it, m; one of the two drifts.
+/// How far a facet keeps from a place along a unit vector, away from it, m; one of the two is of B, which
+/// drifts.
 pub(super) fn gap_along(
     place: &Point3,
     facet: &Facet,
