@@ -9,7 +9,7 @@ const SMOOTHNESS: f64 = 2.0;
 /// Weighs slopes against the evidence: as good as forbidden.
 const MONOTONE: f64 = 1e4;
 /// Draws slopes to those of the prior where hardly a sample is.
-const WEAK: f64 = 0.01;
+const WEAK: f64 = 0.1;
 /// Keeps values finite that no sample is near.
 const RIDGE: f64 = 1e-3;
 /// Holds the rows that are given.
