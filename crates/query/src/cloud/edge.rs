@@ -1,6 +1,6 @@
 //! Edges between neighbouring samples: they stand for the surface between them.
 
-use cloudtouch_geom::{Motion, Point3};
+use cloudtouch_geom::{Motion, Point3, Vector3};
 
 /// Edges join samples up to this many of the smaller of their spacings apart.
 pub(crate) const EDGE_SPACINGS: f64 = 2.2;
@@ -8,7 +8,20 @@ pub(crate) const EDGE_SPACINGS: f64 = 2.2;
 /// farther from its own end to its middle.
 pub(crate) const DISC_SPACINGS: f64 = 1.1;
 /// Edges run along the surface: the sine of their angle to it is at most this.
-pub(crate) const SLOPE: f64 = 0.5;
+pub(super) const SLOPE: f64 = 0.5;
+
+/// A tilt smaller than this is rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// |sin| of the angle between two unit vectors, never too little by rounding.
+pub(super) fn sine(one: &Vector3, other: &Vector3) -> f64 {
+    (1.0 - one.dot(other).powi(2)).max(0.0).sqrt() + ROUNDING
+}
+
+/// The most that an edge at a piece with this normal reaches along a unit vector, as a share of its length.
+pub(crate) fn edge_along(normal: &Vector3, along: &Vector3) -> f64 {
+    SLOPE.mul_add(normal.dot(along).abs(), sine(normal, along))
+}
 
 /// A straight piece of surface between two neighbours of one cloud.
 #[derive(Debug, Clone, Copy, PartialEq)]

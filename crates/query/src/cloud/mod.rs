@@ -27,7 +27,7 @@ mod view;
 
 pub(crate) use accessors::cloud_accessors;
 pub use change::Change;
-pub(crate) use edge::{DISC_SPACINGS, Edge, SLOPE};
+pub(crate) use edge::{DISC_SPACINGS, Edge, edge_along};
 #[cfg(test)]
 pub(crate) use join::edges_of;
 pub(crate) use makeup::{Makeup, SensorDoubt};

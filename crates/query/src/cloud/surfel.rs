@@ -2,6 +2,8 @@
 
 use cloudtouch_geom::{Motion, UncertainPoint, Vector3};
 
+use super::edge::{DISC_SPACINGS, sine};
+
 /// The piece of surface about a sample, in the cloud's local frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Surfel {
@@ -25,6 +27,13 @@ impl Surfel {
             normal: self.normal.map(|normal| motion.vector(&normal)),
             ..*self
         }
+    }
+
+    /// How far its disc reaches along a unit vector, m; never too little by rounding. `None` where no normal
+    /// was fitted.
+    pub(crate) fn disc_reach(&self, along: &Vector3) -> Option<f64> {
+        let radius = DISC_SPACINGS * self.spacing;
+        self.normal.map(|normal| radius * sine(&normal, along))
     }
 
     /// Variance of the position across the surface, m²; zero where no normal was fitted.

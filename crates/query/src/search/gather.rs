@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Point3;
 
-use crate::cloud::{DISC_SPACINGS, Edge, SLOPE};
+use crate::cloud::{DISC_SPACINGS, Edge, edge_along};
 
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
@@ -40,8 +40,7 @@ pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Re
         let half = DISC_SPACINGS * surfel.spacing;
         let middle = &surfel.point.mean;
         if ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
-            && slab
-                .is_within(middle, half * SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)))
+            && slab.is_within(middle, half * edge_along(&normal, &slab.direction))
         {
             reaching.0 |= Reaching::bit(place);
         }

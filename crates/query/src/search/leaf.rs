@@ -197,9 +197,9 @@ impl Slab {
     fn around(surfels: &[Surfel], direction: Vector3) -> Self {
         let mut slab = Self::empty(direction);
         for surfel in surfels {
-            let Some(normal) = surfel.normal else { continue };
-            let reach = DISC_SPACINGS * surfel.spacing * slab.sine(&normal);
-            slab.include(&surfel.point.mean, reach);
+            if let Some(reach) = surfel.disc_reach(&slab.direction) {
+                slab.include(&surfel.point.mean, reach);
+            }
         }
         slab
     }
@@ -217,22 +217,8 @@ impl Slab {
 
     /// Whether it holds a place of the disc about a surfel.
     pub(super) fn may_hold_disc_of(&self, surfel: &Surfel) -> bool {
-        surfel.normal.is_some_and(|normal| {
-            let reach = DISC_SPACINGS * surfel.spacing * self.sine(&normal);
-            self.is_within(&surfel.point.mean, reach)
-        })
-    }
-
-    /// A tilt smaller than this is rounding.
-    const ROUNDING: f64 = 1e-6;
-
-    /// |cos| and |sin| of the angle between its direction and a unit vector.
-    pub(super) fn cosine(&self, normal: &Vector3) -> f64 {
-        normal.dot(&self.direction).abs()
-    }
-
-    pub(super) fn sine(&self, normal: &Vector3) -> f64 {
-        (1.0 - self.cosine(normal).powi(2)).max(0.0).sqrt() + Self::ROUNDING
+        let reach = surfel.disc_reach(&self.direction);
+        reach.is_some_and(|reach| self.is_within(&surfel.point.mean, reach))
     }
 
     /// Whether a place is at most so far from the height of some disc.

@@ -1,8 +1,8 @@
 //! Gathers the passages that two leaves may have while one of them drifts.
 
-use cloudtouch_geom::{Drift, Point3, Vector3};
+use cloudtouch_geom::{Drift, Point3};
 
-use crate::cloud::{DISC_SPACINGS, SLOPE, Surfel};
+use crate::cloud::{DISC_SPACINGS, Surfel, edge_along};
 
 use super::super::crossings::Witness;
 use super::super::facet::Facet;
@@ -12,14 +12,6 @@ use super::leaf::{SweptCloud, SweptEdges};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
 use super::pool::Passages;
 use super::track::Direction;
-
-/// How far a disc with this normal reaches along a unit vector, m.
-fn disc_reach(disc: &Surfel, normal: &Vector3, n: &Vector3) -> f64 {
-    /// A tilt smaller than this is rounding.
-    const ROUNDING: f64 = 1e-6;
-    let cosine = n.dot(normal);
-    DISC_SPACINGS * disc.spacing * ((1.0 - cosine * cosine).max(0.0).sqrt() + ROUNDING)
-}
 
 /// Whether an edge may get to a disc of another leaf, as `search/gather.rs` asks of leaves that keep
 /// still.
@@ -33,7 +25,7 @@ pub(super) fn may_reach(
     of_edges.leaf.surfels.iter().zip(&of_edges.tracks).any(|(surfel, track)| {
         let Some(normal) = surfel.normal else { return false };
         let half = DISC_SPACINGS * surfel.spacing;
-        let across = SLOPE.mul_add(slab.cosine(&normal), slab.sine(&normal)) + turn;
+        let across = edge_along(&normal, &slab.direction) + turn;
         slab.is_within(&track.place, half * across + track.along(&direction))
             && track.gets_to(ball, half + DISC_SPACINGS * ball.spacing)
     })
@@ -50,10 +42,8 @@ pub(super) fn may_reach_facets(
         let half = DISC_SPACINGS * surfel.spacing;
         let gets_to_plane = |facet: &Facet| {
             let Some(n) = facet.normal else { return true };
-            let along = SLOPE * n.dot(&normal).abs() + drift.turn();
-            let room = disc_reach(surfel, &normal, &n)
-                + half * along
-                + track.along(&Direction::new(n, drift));
+            let across = edge_along(&normal, &n) + drift.turn();
+            let room = half * across + track.along(&Direction::new(n, drift));
             facet.height(&track.place).abs() <= room
         };
         track.gets_to(&facets.ball, half) && facets.facets.iter().any(gets_to_plane)
@@ -86,10 +76,10 @@ pub(super) fn add_edges_through_discs(
     let thin = [slab.direction, of_edges.leaf.slab.direction];
     let layers = thin.map(|n| (n, hull.heights_on_the_way(&n)));
     let is_met = |disc: &&Surfel| {
-        let Some(normal) = disc.normal else { return false };
         layers.iter().all(|(n, [low, high])| {
-            let (height, reach) = (n.dot(&disc.point.mean.coords), disc_reach(disc, &normal, n));
-            low - reach <= height && height <= high + reach
+            let height = n.dot(&disc.point.mean.coords);
+            let holds = |reach: f64| low - reach <= height && height <= high + reach;
+            disc.disc_reach(n).is_some_and(holds)
         })
     };
     let discs: Vec<&Surfel> = of_discs.surfels.iter().filter(is_met).collect();
