@@ -138,7 +138,7 @@ class Query:
     ) -> tuple[Report, UnderPoses]:
         """How likely a collision is where the pose is known only so well, and the report on the likeliest pose.
 
-        Takes five or 19 queries, on all cores, and two where no pose comes near.
+        Takes seven or 23 queries, on all cores, and two where no pose comes near.
 
         Parameters
         ----------

@@ -12,11 +12,11 @@ use super::run::Query;
 use super::settings::Detail;
 
 /// Pairs of opposite poses that stand for all, with the most probable one: at first ...
-const FIRST_PAIRS: usize = 2;
+const FIRST_PAIRS: usize = 3;
 /// ... and where these differ by more than ...
 const ALIKE: f64 = 0.02;
 /// ... so many more.
-const MORE_PAIRS: usize = 7;
+const MORE_PAIRS: usize = 8;
 /// Where even the farthest of them is not within reach with this probability, none is looked at.
 const OUT_OF_REACH: f64 = 0.005;
 /// Relative rounding of a covariance.
@@ -133,7 +133,7 @@ impl Query {
     ///
     /// The error of the pose moves all of a body together; that is why no noise of single points can
     /// stand for it. Without any uncertainty it is the plain answer, to the bit. Takes two queries where no
-    /// pose comes near, five where all are as likely to collide, and nineteen elsewhere: poses spread evenly
+    /// pose comes near, seven where all are as likely to collide, and twenty-three elsewhere: poses spread evenly
     /// along the motion that changes the clearance most. On all threads of the pool.
     ///
     /// # Errors
@@ -258,7 +258,7 @@ mod tests {
         assert!(known.axes().unwrap().is_empty());
         let along = of([0.0, 0.0, 0.02, 0.0, 0.0, 0.0]);
         assert!(along.iter().all(|m| m[0] == 0.0 && m[3] == 0.0));
-        // One of fourteen is in each of as many equally likely parts.
+        // One of sixteen is in each of as many equally likely parts.
         let mut along: Vec<f64> = along.iter().map(|m| m[2] / 0.02).collect();
         along.sort_by(f64::total_cmp);
         for (place, z) in along.iter().enumerate() {
