@@ -99,7 +99,7 @@ fn fit_judge(records: &[Record]) -> Result<Judge> {
     geometry.extend(within());
     let noise = Axis { knots: &NOISE_KNOTS, usual: None };
     let nearness = Axis { knots: &nearness, usual: Some(3.0) };
-    let crossing = Axis { knots: &CROSSING_KNOTS, usual: Some(1.0) };
+    let crossing = Axis { knots: &CROSSING_KNOTS, usual: Some(2.0) };
     let fitted = fit_surface(&geometry, [noise, nearness, crossing], false);
     let mut judge = Judge::default();
     for (surface, values) in judge.by_geometry.iter_mut().zip(fitted.chunks(GEOMETRY_VALUES)) {
