@@ -57,6 +57,9 @@ impl Prepared {
         let basis = |piece: u32| old.basis(before[piece as usize]?);
         let of_leaf = |leaf: NodeId| {
             let pieces = self.tree.leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
+            if pieces.iter().all(|&piece| basis(piece).is_none()) {
+                return pieces.to_vec();
+            }
             let places = || pieces.iter().map(|&piece| points[piece as usize]);
             let middle = Point3::from(
                 places().map(|p| p.coords).sum::<Vector3>() / pieces.len().max(1) as f64,
