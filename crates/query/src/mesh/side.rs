@@ -58,6 +58,11 @@ impl Mesh {
         self.is_closed().then(|| if beyond { Cell::Outside(0) } else { self.cells().at(local) })
     }
 
+    /// Whether a place in the local frame is inside, told at once; no too where it takes a closer look.
+    pub(crate) fn is_surely_inside(&self, local: &Point3) -> bool {
+        self.cell(local) == Some(Cell::Inside)
+    }
+
     /// How far (m) everything around a place within the box is outside, for certain; nothing is known of
     /// an open mesh.
     pub(super) fn clear_around(&self, local: &Point3) -> f64 {

@@ -36,10 +36,16 @@ pub(super) fn weigh<'a>(
     stats: &mut Stats,
 ) -> Result<Weighed<'a>, QueryError> {
     let (settings, judge) = (task.settings, &task.judge);
-    let looked = look_inside((a, b), a_from_b, &task.clock);
+    let of = |log_odds| probability(log_odds, settings.prior);
+    let decides = |deviations: f64, clearness: f64| {
+        let log_odds = judge.log_odds_by_geometry(deviations, clearness.ln_1p());
+        // More evidence only raises the odds; what a classifier could take off them is taken off.
+        let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
+        of(log_odds) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
+    };
+    let looked = look_inside((a, b), a_from_b, &task.clock, |deviations| decides(deviations, 0.0));
     stats.nodes_visited += looked.nodes_visited;
     stats.leaves_prepared += looked.leaves_prepared;
-    let of = |log_odds| probability(log_odds, settings.prior);
     let told = Cell::new(None);
     let is_enough = |deviations: f64, clearness: f64| {
         if task.clock.is_over() {
@@ -49,11 +55,7 @@ pub(super) fn weigh<'a>(
         if told.replace(Some((deviations, clearness))) == Some((deviations, clearness)) {
             return false;
         }
-        let deviations = looked.deviations_given(deviations);
-        let log_odds = judge.log_odds_by_geometry(deviations, clearness.ln_1p());
-        // More evidence only raises the odds; what a classifier could take off them is taken off.
-        let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
-        of(log_odds) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
+        decides(looked.deviations_given(deviations), clearness)
     };
     let found = search((a, b), a_from_b, is_enough, stats)?;
     let deviations = looked.deviations_given(found.deviations);

@@ -1,7 +1,7 @@
 //! How deep a cloud is inside a closed mesh: a search along surfaces does not see what lies wholly
 //! within.
 
-use cloudtouch_bvh::Visit;
+use cloudtouch_bvh::{NodeId, Visit};
 use cloudtouch_geom::{Point3, Pose, Vector3, normal};
 
 use crate::body::BodyRef;
@@ -54,26 +54,27 @@ impl Inside {
 pub(crate) struct Looked {
     /// `None` where no point is expected inside.
     pub deepest: Option<Inside>,
-    /// Whether the clock ended it.
+    /// Whether the clock ended it, or what was enough: others may be more clearly inside.
     pub is_cut_short: bool,
     pub nodes_visited: usize,
     pub leaves_prepared: usize,
 }
 
-/// Looks for points of a cloud inside the mesh it is asked about, until one is clearly so or the time
-/// is over; finds nothing where neither body is a mesh.
+/// Looks for points of a cloud inside the mesh it is asked about, until one is clearly so, the time is
+/// over or `is_enough` of the deviations it is inside; finds nothing where neither body is a mesh.
 pub(crate) fn look_inside(
     (a, b): (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
     clock: &Clock,
+    is_enough: impl Fn(f64) -> bool,
 ) -> Looked {
     let here = Pose::identity();
     match (a, b) {
         (BodyRef::Cloud(cloud), BodyRef::Mesh(mesh)) => {
-            deepest(cloud, mesh, &a_from_b.inverse(), a_from_b, clock)
+            deepest(cloud, mesh, (&a_from_b.inverse(), a_from_b), clock, is_enough)
         }
         (BodyRef::Mesh(mesh), BodyRef::Cloud(cloud)) => {
-            deepest(cloud, mesh, a_from_b, &here, clock)
+            deepest(cloud, mesh, (a_from_b, &here), clock, is_enough)
         }
         _ => Looked::default(),
     }
@@ -82,42 +83,33 @@ pub(crate) fn look_inside(
 fn deepest(
     cloud: &Cloud,
     mesh: &Mesh,
-    mesh_from_cloud: &Pose,
-    a_from_mesh: &Pose,
+    (mesh_from_cloud, a_from_mesh): (&Pose, &Pose),
     clock: &Clock,
+    is_enough: impl Fn(f64) -> bool,
 ) -> Looked {
     let mut looked = Looked::default();
     if !mesh.is_closed() {
         return looked;
     }
     let cloud_from_mesh = mesh_from_cloud.inverse();
-    cloud.tree().visit_nodes(|node| {
-        looked.nodes_visited += 1;
-        looked.is_cut_short |= clock.is_over();
-        if looked.is_cut_short || looked.deviations() >= MOST_DEVIATIONS {
-            return Visit::Prune;
+    // PERF: what is deepest comes first, since a point that is clearly inside spares all others their fits.
+    let mut leaves = looked.leaves_within(cloud, mesh, mesh_from_cloud, clock);
+    leaves.sort_by(|(p, _), (q, _)| q.total_cmp(p));
+    for (_, leaf) in leaves {
+        if looked.deviations() >= MOST_DEVIATIONS {
+            break;
         }
-        let obb = node.obb();
-        let middle = mesh_from_cloud.transform_point(&obb.centre);
-        let reach = obb.radius() + node.shift();
-        // Above the leaves it costs less to go on than to look closer.
-        let is_clear = if node.is_leaf() {
-            mesh.is_clear_of(&middle, reach)
-        } else {
-            mesh.is_surely_clear_of(&middle, reach)
-        };
-        if is_clear {
-            return Visit::Prune;
+        looked.is_cut_short =
+            clock.is_over() || is_enough(looked.deviations_given(MOST_DEVIATIONS));
+        if looked.is_cut_short {
+            break;
         }
-        if node.is_leaf() {
-            let (surfels, computed) = cloud.leaf(node.id());
-            looked.leaves_prepared += usize::from(computed);
-            for surfel in surfels {
-                looked.look_at(surfel, mesh, mesh_from_cloud, &cloud_from_mesh);
-            }
+        let (surfels, computed) = cloud.leaf(leaf);
+        looked.leaves_prepared += usize::from(computed);
+        for surfel in surfels {
+            looked.look_at(surfel, mesh, mesh_from_cloud, &cloud_from_mesh);
         }
-        Visit::Descend
-    });
+    }
     looked.deepest = looked.deepest.map(|inside| Inside {
         place: a_from_mesh.transform_point(&inside.place),
         outward: a_from_mesh.transform_vector(&inside.outward),
@@ -161,6 +153,40 @@ impl Looked {
         let slope = 2.0 * normal::density(self.deviations());
         let of_inside = self.deepest.map(|inside| inside.deviations_by_pose(mesh_is_a) * slope);
         of_inside.unwrap_or_else(Wrench::zeros)
+    }
+
+    /// The leaves that may hold a point inside, and how deep in (m) their middles are, as far as the
+    /// surroundings tell.
+    fn leaves_within(
+        &mut self,
+        cloud: &Cloud,
+        mesh: &Mesh,
+        mesh_from_cloud: &Pose,
+        clock: &Clock,
+    ) -> Vec<(f64, NodeId)> {
+        let mut leaves = Vec::new();
+        cloud.tree().visit_nodes(|node| {
+            self.nodes_visited += 1;
+            self.is_cut_short |= clock.is_over();
+            if self.is_cut_short {
+                return Visit::Prune;
+            }
+            let obb = node.obb();
+            let middle = mesh_from_cloud.transform_point(&obb.centre);
+            let reach = obb.radius() + node.shift();
+            // Above the leaves it costs less to go on than to look closer.
+            if !node.is_leaf() {
+                let is_clear = mesh.is_surely_clear_of(&middle, reach);
+                return if is_clear { Visit::Prune } else { Visit::Descend };
+            }
+            if !mesh.is_clear_of(&middle, reach) {
+                let depth = || (middle - mesh.nearest(&middle).0).norm();
+                let depth = if mesh.is_surely_inside(&middle) { depth() } else { 0.0 };
+                leaves.push((depth, node.id()));
+            }
+            Visit::Prune
+        });
+        leaves
     }
 
     fn deviations(&self) -> f64 {

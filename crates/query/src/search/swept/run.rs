@@ -280,7 +280,7 @@ mod tests {
                 prop_assert!(clearness <= reach.clearness * (1.0 + 1e-9) + 1e-9,
                     "{clearness} above {} at {s}", reach.clearness);
                 let clock = Clock::new(std::time::Instant::now(), None);
-                let inside = look_inside(pair, &there, &clock).deepest;
+                let inside = look_inside(pair, &there, &clock, |_| false).deepest;
                 let is_deeper = |d: f64| d > depth * (1.0 + 1e-9) && depth < MOST_DEVIATIONS;
                 prop_assert!(!inside.is_some_and(|inside| is_deeper(inside.deviations)), "{s}");
             }
