@@ -128,6 +128,24 @@ fn an_early_stop_widens_the_upper_end_only() {
     assert!(early.bounds[1] >= full.bounds[1] - TOLERANCE, "{:?}, {:?}", early.bounds, full.bounds);
 }
 
+/// A point inside of a closed mesh that is enough spares the others their fits, and leaves open how much more
+/// clearly these are inside.
+#[test]
+fn a_look_inside_ends_at_what_is_enough_and_widens_the_upper_end_only() {
+    let ball = mesh(&scene::sphere(0.05, 3));
+    let run = |settings: QuerySettings| {
+        // Fresh each time: it counts the leaves that are computed.
+        let sheet = small_cloud(&scene::plane_patch(0.2), 2000, 0.003, 1);
+        run(settings, (&sheet).into(), (&ball).into(), &at(0.0, 0.0, 0.02))
+    };
+    let full = run(flat());
+    let early = run(QuerySettings { stop_above: 0.9, ..QuerySettings::default() });
+    let prepared = [&early, &full].map(|report| report.stats.leaves_prepared);
+    assert!(4 * prepared[0] < prepared[1], "{prepared:?}");
+    assert!(early.bounds[0] > 0.9 && early.bounds[0] <= full.collision_probability + TOLERANCE);
+    assert!(early.bounds[1] >= full.bounds[1] - TOLERANCE, "{:?}, {:?}", early.bounds, full.bounds);
+}
+
 /// Where nothing is within six deviations the odds are those of the fit there: small, and not zero.
 #[test]
 fn far_apart_the_upper_bound_is_small_and_the_verdict_free() {
