@@ -9,7 +9,7 @@ mod round;
 mod scene;
 
 use anyhow::Result;
-use cloudtouch::{Path, Query, QuerySettings, Report, Swept};
+use cloudtouch::{Path, Query, QuerySettings, Report, Swept, Verdict};
 use cloudtouch_geom::Pose;
 use cloudtouch_testkit::exact::ExactMesh;
 
@@ -71,7 +71,7 @@ fn pull(most_rounds: usize) -> Result<Pulled> {
     let before = sagging();
     let mut after = before.clone();
     let mut rounds = 0;
-    while rounds < most_rounds && worst(&query, &bodies, &after)? > MOST {
+    while rounds < most_rounds && !is_out(&query, &bodies, &after)? {
         round::round(&query, &bodies, &mut after)?;
         rounds += 1;
     }
@@ -79,10 +79,15 @@ fn pull(most_rounds: usize) -> Result<Pulled> {
     Ok(Pulled { before: told(&before)?, after: told(&after)?, rounds })
 }
 
-fn worst(query: &Query, bodies: &Bodies, path: &[Pose]) -> Result<f64> {
-    path.iter().try_fold(0.0_f64, |worst, pose| {
-        Ok(worst.max(query.run(&bodies.scan, &bodies.hand, pose)?.bounds[1]))
-    })
+/// Whether no pose is likely to collide, nor what lies between them.
+fn is_out(query: &Query, Bodies { scan, hand, .. }: &Bodies, path: &[Pose]) -> Result<bool> {
+    for pose in path {
+        if query.run(scan, hand, pose)?.bounds[1] > MOST {
+            return Ok(false);
+        }
+    }
+    let swept = query.sweep(scan, hand, &Path::through(path)?, TOLERANCE)?;
+    Ok(swept.verdict == Verdict::Free)
 }
 
 fn tell(query: &Query, bodies: &Bodies, path: &[Pose]) -> Result<Told> {
@@ -99,8 +104,6 @@ fn tell(query: &Query, bodies: &Bodies, path: &[Pose]) -> Result<Told> {
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch::Verdict;
-
     use super::*;
 
     #[test]

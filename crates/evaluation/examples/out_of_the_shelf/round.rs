@@ -21,7 +21,7 @@ const LOG_ODDS: f64 = -4.6;
 const CLEARANCE: f64 = 0.02;
 /// What counts as much as one in the log odds: of clearance, of the path's bend at a pose, and of moving it in
 /// one round, m.
-const SCALES: [f64; 3] = [0.002, 0.004, 0.008];
+const SCALES: [f64; 3] = [0.002, 0.004, 0.006];
 const ITERATIONS: u64 = 100;
 
 /// A number of a pose, and what it changes by for a shift of it in the frame of the scene, per m.
