@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use cloudtouch_geom::Covariance;
 
-use crate::bounds::SpreadBounds;
 use crate::insert::include;
 use crate::{LeafBounds, Moments, Node, NodeId, Primitive, Tree, TreeError};
 
@@ -127,9 +126,13 @@ impl Tree {
         for (leaf, bounds) in all {
             let indices = self.indices_of(leaf).to_vec();
             self.refined.set(&indices, bounds, count);
-            self.nodes[leaf as usize].bounds = self.bounds_of(leaf);
-            // Every direction is bounded alike, so that all primitives of the leaf bring the same.
-            self.raise_bounds(self.nodes[leaf as usize].parent, bounds);
+            // All primitives of the leaf bring the same, in every direction: so do they above it.
+            let of_leaf = self.bounds_of(leaf);
+            self.nodes[leaf as usize].bounds = of_leaf;
+            for id in self.path_up(leaf) {
+                let node = &mut self.nodes[id as usize];
+                node.bounds = node.bounds.max(&of_leaf);
+            }
         }
         Ok(())
     }
@@ -205,17 +208,6 @@ impl Tree {
             let node = &mut self.nodes[id as usize];
             include(&mut node.obb, &primitive);
             node.bounds = node.bounds.max(&bounds);
-            next = node.parent;
-        }
-    }
-
-    /// Lets the bounds of a node and of all above it hold those of a leaf below.
-    fn raise_bounds(&mut self, from: Option<u32>, bounds: LeafBounds) {
-        let mut next = from;
-        while let Some(id) = next {
-            let node = &mut self.nodes[id as usize];
-            let of_leaf = SpreadBounds::of(None, Some(bounds), None, &node.obb.axes);
-            node.bounds = node.bounds.max(&of_leaf);
             next = node.parent;
         }
     }

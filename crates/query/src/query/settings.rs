@@ -48,7 +48,8 @@ pub struct QuerySettings {
     pub ellipsoid_radius: f64,
     /// Relative gap at which a kernel problem counts as solved.
     pub relative_gap: f64,
-    /// The search ends when a collision is this certain; 1 never ends it early.
+    /// The search, and the look inside closed meshes, end when a collision is this certain; 1 never ends
+    /// them early.
     pub stop_above: f64,
     /// How much of the answer is wanted.
     pub detail: Detail,

@@ -100,7 +100,7 @@ fn deepest(
         if looked.deviations() >= MOST_DEVIATIONS {
             break;
         }
-        looked.is_cut_short =
+        looked.is_cut_short |=
             clock.is_over() || is_enough(looked.deviations_given(MOST_DEVIATIONS));
         if looked.is_cut_short {
             break;
