@@ -5,6 +5,7 @@ mod layers;
 mod manifest;
 mod map;
 mod modules;
+mod suite;
 mod text;
 
 use std::collections::BTreeSet;
@@ -36,9 +37,11 @@ fn violations(root: &Path) -> Result<Vec<String>> {
     found.extend(manifests.iter().flat_map(manifest::check));
     found.extend(circles::check(root, manifests.iter().map(|m| m.folder.as_str()))?);
     let mut names = BTreeSet::new();
-    for path in files(root, root)? {
-        found.extend(check_file(root, &path, &mut names)?);
+    let paths = files(root, root)?;
+    for path in &paths {
+        found.extend(check_file(root, path, &mut names)?);
     }
+    found.extend(suite::check(root, &paths)?);
     let map = fs::read_to_string(root.join(map::PAGE)).context(map::PAGE)?;
     let has_path = |path: &str| {
         let below = |folder: &str| root.join(folder).join(path.trim_end_matches('/')).exists();

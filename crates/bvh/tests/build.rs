@@ -1,14 +1,13 @@
 //! Every cloud gives a well-formed tree whose leaves keep the promises of the settings.
 
-mod common;
-
+use crate::common;
 use std::sync::Arc;
 
+use crate::common::{bumpy_sheet, degenerate_clouds, noisy};
 use cloudtouch_bvh::{
     LeafBounds, Node, NodeId, Primitive, Primitives, Tree, TreeError, TreeSettings, Visit,
 };
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3};
-use common::{bumpy_sheet, degenerate_clouds, noisy};
 use proptest::prelude::*;
 
 #[test]

@@ -1,13 +1,12 @@
 //! `Certified`: the interval of the outcome holds the answer of brute force over all points.
 
-mod common;
-
+use crate::common;
+use crate::common::{bumpy_sheet, degenerate_clouds, flat_answer, held, noisy, small_leaves};
 use cloudtouch_bvh::{
     Flow, LeafBounds, Outcome, Traversal, TraversalSettings, Tree, TreeError, TreeSettings,
     traverse,
 };
 use cloudtouch_geom::{Covariance, Point3, Pose, Vector3};
-use common::{bumpy_sheet, degenerate_clouds, flat_answer, held, noisy, small_leaves};
 use proptest::prelude::*;
 
 /// The largest pair probability in the leaf pairs visited, and the outcome.

@@ -1,15 +1,14 @@
 //! Insertion and removal: well formed after every step, and the answers of brute force.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test helper fails")]
 
-mod common;
-
+use crate::common;
 use std::collections::BTreeMap;
 
+use crate::common::{bumpy_sheet, flat_answer, held, noisy, small_leaves};
 use cloudtouch_bvh::{
     Flow, Primitive, TraversalSettings, Tree, TreeError, TreeSettings, Visit, traverse,
 };
 use cloudtouch_geom::{Point3, Pose, Vector3, seed};
-use common::{bumpy_sheet, flat_answer, held, noisy, small_leaves};
 use proptest::prelude::*;
 
 #[derive(Debug, Clone)]

@@ -1,11 +1,9 @@
 //! What must not change what a certified search finds: swapping, permuting, scaling, duplicates, far
 //! points; and that more noise brings it towards one half.
 
-mod common;
-
+use crate::common::{bumpy_sheet, flat_answer, held, moved, small_leaves};
 use cloudtouch_bvh::{Flow, Outcome, Primitive, TraversalSettings, Tree, traverse};
 use cloudtouch_geom::{Pose, UncertainPoint, Vector3, normal, seed};
-use common::{bumpy_sheet, flat_answer, held, moved, small_leaves};
 use proptest::prelude::*;
 
 /// The largest pair probability in the leaf pairs visited, and the outcome.

@@ -1,11 +1,9 @@
 //! Patches: well formed whatever comes and goes, and every primitive where it belongs.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test helper fails")]
 
-mod common;
-
+use crate::common::{bumpy_sheet, noisy, small_leaves};
 use cloudtouch_bvh::{LeafBounds, NodeId, Primitive, Tree, TreeError};
 use cloudtouch_geom::{Covariance, Point3, Vector3};
-use common::{bumpy_sheet, noisy, small_leaves};
 use proptest::prelude::*;
 
 /// What becomes of a list: these are removed, and these added where the list ends or begins.

@@ -1,11 +1,10 @@
 //! Refit: the same partition with new positions answers as a rebuilt tree does.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test helper fails")]
 
-mod common;
-
+use crate::common;
+use crate::common::{bumpy_sheet, flat_answer, held, noisy, small_leaves};
 use cloudtouch_bvh::{Flow, LeafBounds, Primitive, TraversalSettings, Tree, TreeError, traverse};
 use cloudtouch_geom::{Point3, Pose, Vector3, seed};
-use common::{bumpy_sheet, flat_answer, held, noisy, small_leaves};
 use proptest::prelude::*;
 
 /// Every point moved by up to `distance` along each axis.

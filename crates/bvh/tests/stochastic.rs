@@ -1,12 +1,10 @@
 //! `Paper` and `GapAware`: reproducible, and as frequent as their formulas say.
 
-mod common;
-
 use std::collections::BTreeSet;
 
+use crate::common::{bumpy_sheet, noisy, small_leaves};
 use cloudtouch_bvh::{Flow, Traversal, TraversalSettings, Tree, TreeSettings, traverse};
 use cloudtouch_geom::{Point3, Pose, Vector3, normal};
-use common::{bumpy_sheet, noisy, small_leaves};
 
 fn settings(kind: Traversal) -> TraversalSettings {
     TraversalSettings { kind, ..Default::default() }

@@ -1,10 +1,9 @@
 //! What the search among surfaces leaves out is as far apart as it says.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test helper fails")]
 
-mod common;
-
 use std::collections::BTreeSet;
 
+use crate::common::{bumpy_sheet, noisy};
 use cloudtouch_bvh::{
     LeafBounds, NodeId, Primitive, Sought, SurfaceFlow, SurfaceOutcome, Tree, TreeError,
     TreeSettings, visit_surfaces,
@@ -12,7 +11,6 @@ use cloudtouch_bvh::{
 use cloudtouch_geom::{
     Covariance, Drift, Motion, Point3, Pose, UncertainPoint, UnitVector3, Vector3, seed,
 };
-use common::{bumpy_sheet, noisy};
 use proptest::prelude::*;
 
 fn small_leaves(primitives: Vec<Primitive>) -> Tree {

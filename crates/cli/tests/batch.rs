@@ -1,8 +1,7 @@
 //! `cloudtouch batch`: tables, JSON lines, bad cases among good ones.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-use support::{HEIGHTS, Inputs, case_at, case_file};
+use crate::support::{HEIGHTS, Inputs, case_at, case_file};
 
 fn good_cases() -> String {
     case_file(&HEIGHTS.map(|(verdict, _, height)| case_at(verdict, height)))

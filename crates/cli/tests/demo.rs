@@ -1,8 +1,7 @@
 //! `cloudtouch demo`: runs without any file, in a hundred columns, and is honest about errors.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-use support::Inputs;
+use crate::support::Inputs;
 
 #[test]
 fn shows_twelve_poses_and_one_in_full() {

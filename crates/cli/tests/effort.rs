@@ -1,8 +1,7 @@
 //! What an answer costs: shown when asked for, limited, paid ahead; and the same answer for it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-use support::{Inputs, case_at, case_file};
+use crate::support::{Inputs, case_at, case_file};
 
 #[test]
 fn what_an_answer_cost_is_shown_when_asked_for() {

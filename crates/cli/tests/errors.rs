@@ -1,8 +1,8 @@
 //! Error messages: on standard error, with the file, what was found and what to do.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-use support::Inputs;
+use crate::support;
+use crate::support::Inputs;
 
 /// Runs the tool, which has to fail with one line that has all `parts`, and prints nothing.
 fn check(inputs: &Inputs, arguments: &[&str], parts: &[&str]) {

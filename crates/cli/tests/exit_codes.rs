@@ -1,9 +1,8 @@
 //! 0 done, 1 error, 2 wrong usage; the verdict with `--exit-code`.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
+use crate::support::{HEIGHTS, Inputs, case_at, case_file};
 use cloudtouch::geom::{Point3, PointCloud};
-use support::{HEIGHTS, Inputs, case_at, case_file};
 
 #[test]
 fn the_verdict_is_the_exit_code_when_asked_for() {

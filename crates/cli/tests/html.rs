@@ -1,14 +1,12 @@
 //! `--html`: a page that needs nothing else, says what the answer says, and draws the points that were asked about.
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-mod support;
-
 use std::collections::BTreeSet;
 
+use crate::support::{HEIGHTS, Inputs, case_at, case_file, cube, floor};
 use base64::Engine as _;
 use cloudtouch::geom::{Point3, PointCloud};
 use serde_json::Value;
-use support::{HEIGHTS, Inputs, case_at, case_file, cube, floor};
 
 /// What the script of a page is given.
 fn data(page: &str) -> Value {

@@ -2,15 +2,13 @@
 //! is found.
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-mod support;
-
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 use std::process::Command;
 
-use support::browser::{chromium, flags};
-use support::{Inputs, case_at, case_file};
+use crate::support::browser::{chromium, flags};
+use crate::support::{Inputs, case_at, case_file};
 
 /// What a page gave: its elements when its script was through, and what the console said.
 struct Seen {

@@ -2,11 +2,9 @@
 //! reason, where no Chromium is found.
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-mod support;
-
+use crate::support::browser::{Tab, chromium};
+use crate::support::{Inputs, case_at, case_file};
 use serde_json::{Value, json};
-use support::browser::{Tab, chromium};
-use support::{Inputs, case_at, case_file};
 
 /// Which way the axes point, and how long the scale bar and what it stands for are: what the page shows of its camera.
 fn view(tab: &mut Tab) -> (Value, f64) {

@@ -1,9 +1,9 @@
 //! `cloudtouch info`: clouds and meshes.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
+use crate::support;
+use crate::support::Inputs;
 use cloudtouch::geom::{Point3, PointCloud};
-use support::Inputs;
 
 #[test]
 fn counts_what_a_cloud_holds() {

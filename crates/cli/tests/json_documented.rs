@@ -1,12 +1,10 @@
 //! The README tells exactly the keys that the commands print.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
 use std::collections::BTreeSet;
 
+use crate::support::Inputs;
 use serde_json::{Value, json};
-use support::Inputs;
 
 const README: &str = include_str!("../README.md");
 

@@ -1,9 +1,8 @@
 //! The JSON report has exactly the documented keys, in the documented order.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
+use crate::support::{HEIGHTS, Inputs, case_at, case_file};
 use serde_json::Value;
-use support::{HEIGHTS, Inputs, case_at, case_file};
 
 /// As documented in the README.
 const REPORT: [&str; 19] = [

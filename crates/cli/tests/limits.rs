@@ -1,8 +1,7 @@
 //! Limits on what is read: the error names the file, what was found and the limit.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-use support::Inputs;
+use crate::support::Inputs;
 
 fn check(inputs: &Inputs, arguments: &[&str], parts: &[&str]) {
     let run = inputs.run(arguments);

@@ -1,8 +1,7 @@
 //! `--margin` and `--pose-std`: how near two bodies are, and what an uncertain pose makes of it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-use support::{Inputs, case_at, case_file};
+use crate::support::{Inputs, case_at, case_file};
 
 #[test]
 fn a_margin_is_answered_in_json_and_in_words() {

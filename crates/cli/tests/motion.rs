@@ -1,9 +1,8 @@
 //! `--gradient` and `--penetration`: where to move an object, and how far.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
+use crate::support::Inputs;
 use serde_json::Value;
-use support::Inputs;
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()

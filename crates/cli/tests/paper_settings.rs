@@ -1,9 +1,8 @@
 //! The paper's mode from the command line: all its settings in a file, and what it says of each point.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
+use crate::support::{Inputs, Run};
 use serde_json::Value;
-use support::{Inputs, Run};
 
 const PAPER: [&str; 3] = ["--json", "--mode", "paper"];
 

@@ -1,8 +1,7 @@
 //! `cloudtouch path`: a box moved over the floor and through it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-use support::{Inputs, Run};
+use crate::support::{Inputs, Run};
 
 /// Heights of the box along a path, at a place away from the rows of the floor.
 fn csv(heights: &[f64]) -> String {

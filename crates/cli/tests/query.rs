@@ -1,8 +1,8 @@
 //! `cloudtouch query`: answers, poses, pictures.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-use support::{HEIGHTS, Inputs};
+use crate::support;
+use crate::support::{HEIGHTS, Inputs};
 
 #[test]
 fn says_free_uncertain_and_in_collision() {

@@ -1,10 +1,9 @@
 //! A gripper at a mug in a real stereo scan, where the scan is there.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
 use std::path::Path;
 
-use support::Inputs;
+use crate::support::Inputs;
 
 /// Poses of the gripper (object to scene): 5.7 cm from the nearest point of the scan, 6 % of it outside
 /// of what was measured, and with 6,474 of its points inside, up to 2.3 cm deep.

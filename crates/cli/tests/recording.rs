@@ -1,8 +1,6 @@
 //! Recordings on the command line: what a build with the feature `mcap` reads, and one without says.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
 #[cfg(not(feature = "mcap"))]
 #[test]
 fn a_build_without_the_feature_says_how_to_build_with_it() {
@@ -29,7 +27,7 @@ mod with_feature {
     use mcap::Writer;
     use mcap::records::MessageHeader;
 
-    use super::support::{self, Inputs, case_file, floor};
+    use crate::support::{self, Inputs, case_file, floor};
 
     /// The floor as a message of ROS 1, at a height.
     fn message(height: f32) -> Vec<u8> {

@@ -1,10 +1,8 @@
 //! `cloudtouch robot`: a post with an arm that turns, over the floor.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::{Inputs, Run};
 use serde_json::{Value, json};
-use support::{Inputs, Run};
 
 /// An arm of a metre, 10 cm thick, on a shoulder 0.5 m over the floor that bends it down.
 const URDF: &str = "<robot name='arm'>

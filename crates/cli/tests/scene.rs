@@ -1,9 +1,8 @@
 //! `cloudtouch scene`: boxes over a floor, one on another's back.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
+use crate::support::{HEIGHTS, Inputs, Run};
 use serde_json::{Value, json};
-use support::{HEIGHTS, Inputs, Run};
 
 /// A body at a height, away from the rows of the floor.
 fn body(name: &str, file: &str, height: f64) -> Value {

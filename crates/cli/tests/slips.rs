@@ -2,11 +2,9 @@
 //! message names the place, the value and what to do.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::{Inputs, case_at, case_file, cube, floor};
 use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
 use serde_json::Value;
-use support::{Inputs, case_at, case_file, cube, floor};
 
 /// Arguments, and what the answer or the error has to say.
 type Slip = (&'static str, &'static [&'static str]);

@@ -2,13 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-mod ros;
-
+use crate::ros;
+use crate::ros::{ENCODINGS, Message, Wire, field};
 use cloudtouch_geom::{Covariance, Point3};
 use cloudtouch_io::pointcloud2::{Encoding, parse, parse_within};
 use cloudtouch_io::{Fault, Place, ReadLimits};
 use proptest::prelude::*;
-use ros::{ENCODINGS, Message, Wire, field};
 
 fn triple() -> Message {
     Message::of_points(&[[0.5, -1.25, 2.0], [f32::NAN; 3], [3.0, 4.0, 5.0], [6.0, 7.0, 8.0]])

@@ -2,12 +2,11 @@
 #![cfg(feature = "mcap")]
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-mod ros;
-
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::PathBuf;
 
+use crate::ros::{Message, Wire};
 use cloudtouch_io::recording::Recording;
 use cloudtouch_io::{
     Geometry, LengthUnit, ReadError, ReadLimits, read_cloud, read_colors_within, read_geometry,
@@ -15,7 +14,6 @@ use cloudtouch_io::{
 };
 use mcap::{Compression, MessageStream, WriteOptions, records::MessageHeader};
 use proptest::prelude::*;
-use ros::{Message, Wire};
 use tempfile::TempDir;
 
 const CLOUD: &str = "sensor_msgs/msg/PointCloud2";

@@ -1,6 +1,7 @@
 //! Prints how honest the stated standard deviations are, as a page of Markdown:
 //! `cargo run --release -p cloudtouch-noise --example sigma > docs/lab/sigma.md`.
 
+#[allow(dead_code, reason = "tests use more of it")]
 #[path = "../tests/common/mod.rs"]
 mod common;
 

@@ -1,12 +1,10 @@
 //! What must hold of every refined point, whatever the cloud: bounds, order, purity.
 
-mod common;
-
 use cloudtouch_geom::{Covariance, Matrix3, Point3};
 use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 use proptest::prelude::*;
 
-use common::model;
+use crate::common::model;
 
 const ALL: [Combination; 3] =
     [Combination::Precision, Combination::Convolution, Combination::SurfacePosterior];

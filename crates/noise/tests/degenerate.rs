@@ -1,14 +1,13 @@
 //! Clouds without a surface to fit: refinement stays finite and says what it knows.
 
-mod common;
-
+use crate::common;
 use cloudtouch_geom::{Covariance, Matrix3, Point3, Vector3};
 use cloudtouch_noise::{
     Combination, Discretization, Neighborhoods, NoiseError, NoiseModel, NoiseSettings,
     PosteriorSettings, Scratch, SensorNoise,
 };
 
-use common::{isotropic, model, plane, refine_all};
+use crate::common::{isotropic, model, plane, refine_all};
 
 const NOISE: f64 = 0.01;
 

@@ -3,12 +3,10 @@
 //! All clouds are seeded, so that a test passes always or never; the bounds leave about a tenth
 //! to a change of the random streams.
 
-mod common;
-
 use cloudtouch_geom::{Covariance, Point3, PointCloud, Pose, UnitVector3, Vector3};
 use cloudtouch_noise::{Combination, Neighborhoods, Refined, Scratch, SensorModel};
 
-use common::{
+use crate::common::{
     Surface, cuboid, distance_to_cuboid, gaussian, isotropic, model, noisy, plane, refine_all,
     root_mean_square, sphere,
 };

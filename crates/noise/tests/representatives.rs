@@ -1,12 +1,10 @@
 //! A few points stand for all where samples are far denser than their noise, and only there.
 
-mod common;
-
+use crate::common::{noisy, sphere};
 use cloudtouch_geom::{Covariance, Matrix3, Point3, Vector3};
 use cloudtouch_noise::{
     Neighborhoods, NoiseModel, NoiseSettings, Representatives, Scratch, SensorNoise,
 };
-use common::{noisy, sphere};
 use proptest::prelude::*;
 
 /// A ball of 5 cm with a sample every 2.8 mm.

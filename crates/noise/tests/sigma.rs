@@ -1,8 +1,6 @@
 //! Stated standard deviations are those of the errors, on faces and near edges.
 
-mod common;
-
-use common::sigma::{HONEST, Row, Spread, rows};
+use crate::common::sigma::{HONEST, Row, Spread, rows};
 
 /// Where they are not yet, with what was found: faces of boards whose two sides the noise hides from
 /// one another, and a ball of five standard deviations, at which the residuals hardly show what is

@@ -3,15 +3,13 @@
 //! That such a search finds what every piece against every piece gives is tested beside it
 //! (`search::run::tests`).
 
-mod common;
-
+use crate::common::{assert_sound, at, mesh};
 use cloudtouch::bvh::TreeSettings;
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{BodyRef, Cloud, CloudSettings, Mesh, Query, QuerySettings, Report, Verdict};
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::{scene, surface};
-use common::{assert_sound, at, mesh};
 use proptest::prelude::*;
 
 /// The same pair of leaves is solved from the same numbers both times, so only the bound of what

@@ -1,13 +1,11 @@
 //! A cloud that is changed answers as one prepared from the same points.
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-mod common;
-
+use crate::common::{measured, timeless, uniform};
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{ChangeError, Cloud, CloudSettings, Judge, Mesh, Query, QuerySettings, Report};
 use cloudtouch_testkit::scene;
-use common::{measured, timeless, uniform};
 use proptest::prelude::*;
 
 /// Corners of a box that nothing leaves: its middle stays.
@@ -316,8 +314,8 @@ fn what_cannot_be_meant_is_refused_and_leaves_the_cloud_as_it_was() {
     assert_eq!(answers(&query, &changed, 1), answers(&query, &cloud(&points, &by), 1));
 }
 
-/// Prints the work that changes take beside preparing anew: `cargo test --release -p cloudtouch --test change --
-/// --ignored --nocapture cost`. Of a room of 171,000 points one in a hundred moves, those nearest to a place
+/// Prints the work that changes take beside preparing anew: `cargo test --release -p cloudtouch --test suite
+/// change::cost -- --ignored --nocapture`. Of a room of 171,000 points one in a hundred moves, those nearest to a place
 /// that is another each time; the index and the tree are built anew now and then.
 #[test]
 #[ignore = "measures time"]

@@ -1,14 +1,12 @@
 //! Contacts in any pose: unit normals between the bodies, the same seen from the other side.
 
-mod common;
-
 use std::sync::LazyLock;
 
+use crate::common::{AnyQuery, Scan, assert_sound, scan};
 use cloudtouch::bvh::Traversal;
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{Contact, Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{AnyQuery, Scan, assert_sound, scan};
 use proptest::prelude::*;
 
 const SPACING: f64 = 0.015;

@@ -1,14 +1,12 @@
 //! Exact and thin things: what meets between samples, and what is at one place.
 
-mod common;
-
+use crate::common::{assert_sound, at, measured, mesh};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, Mesh, Mode, Query, QuerySettings, Report, Undecided, Verdict,
 };
 use cloudtouch_testkit::scene;
-use common::{assert_sound, at, measured, mesh};
 
 fn ask<'a>(
     a: impl Into<cloudtouch::BodyRef<'a>>,

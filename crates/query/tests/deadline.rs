@@ -1,12 +1,10 @@
 //! A query that runs out of time tells the bounds it has reached, and nothing reads as free.
 
-mod common;
-
 use std::time::Duration;
 
+use crate::common::{AnyQuery, Asked, MODES, assert_sound, at, mesh, scan};
 use cloudtouch::{Mode, Verdict};
 use cloudtouch_testkit::scene;
-use common::{AnyQuery, Asked, MODES, assert_sound, at, mesh, scan};
 
 #[test]
 fn without_time_nothing_is_free_and_the_bounds_hold_the_answer() {

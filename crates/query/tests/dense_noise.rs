@@ -1,10 +1,8 @@
 //! Samples far denser than their noise: the work is bounded, and the answer that of all of them.
 
-mod common;
-
+use crate::common::{Scan, ask, at, scan};
 use cloudtouch::{Mode, Verdict};
 use cloudtouch_testkit::scene;
-use common::{Scan, ask, at, scan};
 
 /// Two balls of 5 cm with a sample for every 1.2 mm and 5 mm of noise, their surfaces so far apart.
 fn balls() -> [Scan; 2] {

@@ -1,11 +1,9 @@
 //! The same question gives the same bits: again, on more threads, after other questions.
 
-mod common;
-
+use crate::common::{AnyQuery, MODES, Scan, mesh, query, scan, timeless};
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{AnyQuery, MODES, Scan, mesh, query, scan, timeless};
 
 fn bodies(mode: Mode) -> (Scan, Scan) {
     let floor = scan(&scene::plane_patch(0.4), 0.015, 0.003, 1, mode);

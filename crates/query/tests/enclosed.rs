@@ -1,12 +1,10 @@
 //! A closed cloud within a closed cloud: in a hollow space or within a solid, no surface tells which.
 
-mod common;
-
+use crate::common::{assert_sound, at, measured};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report, Undecided, Verdict};
 use cloudtouch_testkit::scene;
-use common::{assert_sound, at, measured};
 
 /// Seen from a place, or from who knows where.
 fn cloud(shape: &TriangleMesh, sensor: Option<Vector3>, seed: u64) -> Cloud {

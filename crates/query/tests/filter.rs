@@ -1,9 +1,8 @@
 //! The cleaning pipeline, stage by stage, by the counts it reports.
 
-mod common;
-
 use std::sync::Arc;
 
+use crate::common::{at, measured, mesh};
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
@@ -13,7 +12,6 @@ use cloudtouch::{
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::{ExactMesh, brute};
 use cloudtouch_testkit::scene;
-use common::{at, measured, mesh};
 
 /// What one stage removed; fails when it did not run.
 fn removed(stages: &[StageReport], stage: &str) -> usize {

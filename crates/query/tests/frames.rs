@@ -1,10 +1,9 @@
 //! A cloud that a camera keeps up to date: it forgets what it sees through, and does not grow for ever.
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-mod common;
-
 use std::collections::BTreeMap;
 
+use crate::common::{at, mesh, uniform};
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
@@ -13,7 +12,6 @@ use cloudtouch::{
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
-use common::{at, mesh, uniform};
 
 fn camera() -> DepthCamera {
     DepthCamera { width: 48, height: 36, focal_px: 42.0, ..DepthCamera::default() }
@@ -244,7 +242,7 @@ fn a_camera_that_walks_about_a_room_has_seen_it_after_some_rounds() {
     answers_as_a_fresh_cloud(walk);
 }
 
-/// `cargo test --release -p cloudtouch --test frames -- --ignored --nocapture`.
+/// `cargo test --release -p cloudtouch --test suite frames:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn ten_minutes_of_frames_take_no_more_memory_than_one() {

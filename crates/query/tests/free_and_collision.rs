@@ -1,11 +1,9 @@
 //! Clear cases are decided, and contacts and clearances are where geometry says.
 
-mod common;
-
+use crate::common::{MODES, ask, at, mesh, prepare, scan};
 use cloudtouch::geom::{Point3, Pose, TriangleMesh, Vector3};
 use cloudtouch::{Mode, Query, QuerySettings, Report, Verdict};
 use cloudtouch_testkit::scene;
-use common::{MODES, ask, at, mesh, prepare, scan};
 
 const BALL_RADIUS: f64 = 0.1;
 const BOX_SIDE: f64 = 0.2;

@@ -1,12 +1,11 @@
 //! Every pair of the catalogue of hard cases, in both modes: no panic, no NaN, no false certainty.
 
-mod common;
-
+use crate::common;
+use crate::common::{MODES, Scan, ask};
 use cloudtouch::geom::{Covariance, CovarianceError, Matrix3, Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Mesh, Mode, PrepareError, Verdict};
 use cloudtouch_testkit::hard_cases::{HardCase, hard_cases, hard_meshes};
-use common::{MODES, Scan, ask};
 
 /// Why a side could not be prepared; every way is typed.
 #[derive(Debug, thiserror::Error)]

@@ -1,14 +1,12 @@
 //! A single depth image leaves space unseen: an object there does not read as free.
 
-mod common;
-
+use crate::common::{MODES, Scan, ask, at, mesh, scan};
 use cloudtouch::geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Mode, Report, Verdict};
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
-use common::{MODES, Scan, ask, at, mesh, scan};
 
 /// A block of half a metre, its front 1.25 m ahead of the camera, before a wall at 3 m.
 fn view() -> PointCloud {

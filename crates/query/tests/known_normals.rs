@@ -1,11 +1,9 @@
 //! A cloud that brings its normals is not fitted: they are believed.
 
-mod common;
-
+use crate::common::{ask, at};
 use cloudtouch::geom::{Point3, PointCloud, UnitVector3, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, FilterError, Mode, PrepareError};
-use common::{ask, at};
 
 /// A square of 40 cm, a point every 2 cm, with these normals.
 fn sheet(normal: UnitVector3) -> PointCloud {

@@ -1,7 +1,6 @@
 //! Several scans of one frame, each with its sensor and where that stood, in one map.
 
-mod common;
-
+use crate::common::{Asked, MODES, Scan, ask, at, mesh};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
@@ -10,7 +9,6 @@ use cloudtouch::{
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
-use common::{Asked, MODES, Scan, ask, at, mesh};
 use std::f64::consts::PI;
 
 /// A block of half a metre between two cameras that look at each other, walls behind both.

@@ -1,11 +1,9 @@
 //! What meshes as files have them may hold: vertices that no face uses, and faces of any size.
 
-mod common;
-
+use crate::common::{AnyQuery, ask, at, measured, mesh, prepare};
 use cloudtouch::geom::{Point3, TriangleMesh};
 use cloudtouch::{Mode, Safeguards, Verdict};
 use cloudtouch_testkit::scene;
-use common::{AnyQuery, ask, at, measured, mesh, prepare};
 
 /// The mesh with one more vertex, which no face uses.
 fn with_unused(mesh: &TriangleMesh, vertex: Point3) -> TriangleMesh {

@@ -1,12 +1,10 @@
 //! Meshes with an inside: watertight ones have one, open ones do not, two meshes are exact.
 
-mod common;
-
+use crate::common::{MODES, Scan, ask, at, measured, mesh, prepare, uniform};
 use cloudtouch::geom::{Point3, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::{Mode, Report, Verdict};
 use cloudtouch_testkit::exact::{ExactMesh, brute};
 use cloudtouch_testkit::{scene, surface};
-use common::{MODES, Scan, ask, at, measured, mesh, prepare, uniform};
 
 /// A ball of 3 cm as a cloud: fits into every solid below.
 fn small_ball(mode: Mode) -> Scan {

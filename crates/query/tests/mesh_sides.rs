@@ -1,12 +1,11 @@
 //! Which side of a mesh a place is on, where the nearest triangle would say it wrong: sheets with a
 //! back, shells that overlap, cavities, parts turned inside out.
 
-mod common;
-
+use crate::common;
+use crate::common::{ask, at, measured, mesh, prepare};
 use cloudtouch::geom::{Point3, Pose, TriangleMesh};
 use cloudtouch::{Mode, Verdict};
 use cloudtouch_testkit::scene;
-use common::{ask, at, measured, mesh, prepare};
 
 /// A square of one metre in the plane z = 0 with its own back face, cut along the other diagonal:
 /// every edge joins two triangles.

@@ -3,13 +3,11 @@
 //! Single draws wobble, because the points of a noisy cloud are what they are; means over draws
 //! do not. Seeds are fixed, so that a test passes always or never.
 
-mod common;
-
+use crate::common::{MODES, Scan, ask, at, measured, prepare};
 use cloudtouch::geom::{Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Mode, Verdict};
 use cloudtouch_testkit::scene;
-use common::{MODES, Scan, ask, at, measured, prepare};
 
 const RADIUS: f64 = 0.08;
 const DRAWS: u64 = 6;

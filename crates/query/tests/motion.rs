@@ -1,16 +1,14 @@
 //! Continuous collision: nothing between the poses of a path is missed, and bounds hold.
 
-mod common;
-
 use std::time::Instant;
 
+use crate::common::{at, measured};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Body, Cloud, CloudSettings, Mesh, Path, Query, QueryError, QuerySettings, Swept, Verdict,
 };
 use cloudtouch_testkit::scene;
-use common::{at, measured};
 
 fn query() -> Query {
     Query::new(QuerySettings::default()).expect("good settings")
@@ -216,7 +214,7 @@ fn check_random_motion(index: u64, samples: u32) -> usize {
 }
 
 /// 200 of them here; 10,000 with
-/// `cargo test -p cloudtouch --test motion -- --ignored ten_thousand`.
+/// `cargo test -p cloudtouch --test suite motion::ten_thousand -- --ignored`.
 #[test]
 fn no_sample_of_a_random_motion_exceeds_the_bounds() {
     for index in 0..200 {
@@ -271,7 +269,7 @@ fn answers_are_the_same_bits_on_any_number_of_threads() {
     assert_eq!(of(1), of(4));
 }
 
-/// Run it for the figures: `cargo test -p cloudtouch --test motion -- --ignored cost --nocapture`.
+/// Run it for the figures: `cargo test -p cloudtouch --test suite what_a_sweep -- --ignored --nocapture`.
 #[test]
 #[ignore = "it only measures"]
 fn what_a_sweep_costs_beside_a_query() {

@@ -1,13 +1,11 @@
 //! What a query by the paper tells of its classifiers: f, ξ, α, v, b (eq. 10 to 15) and P (eq. 16).
 
-mod common;
-
+use crate::common::{at, measured};
 use cloudtouch::geom::{Point3, PointCloud, Vector3, normal};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::paper::LeafClassifier;
 use cloudtouch::{PaperCloud, PaperCloudSettings, PaperNoise, PaperQuery, PaperSettings};
 use cloudtouch_testkit::scene;
-use common::{at, measured};
 
 const STD: f64 = 0.004;
 /// Far from the origin, as maps are.

@@ -1,7 +1,6 @@
 //! What the classifier is given in the paper's mode are the leaves of the tree, as its settings say.
 
-mod common;
-
+use crate::common::{at, measured};
 use cloudtouch::bvh::TreeSettings;
 use cloudtouch::geom::PointCloud;
 use cloudtouch::noise::SensorModel;
@@ -9,7 +8,6 @@ use cloudtouch::{
     PaperCloud, PaperCloudSettings, PaperModel, PaperQuery, PaperSettings, bvh::Traversal,
 };
 use cloudtouch_testkit::scene;
-use common::{at, measured};
 
 /// How many leaf pairs a floor and a ball in overlap take, with trees split like this.
 fn leaf_pairs(tree: TreeSettings) -> usize {

@@ -1,8 +1,7 @@
 //! Each setting of the paper's path acts in a query, one at a time, and by default each has its printed
 //! value.
 
-mod common;
-
+use crate::common::{assert_sound, at, measured, mesh};
 use cloudtouch::bvh::Traversal;
 use cloudtouch::geom::{Point3, PointCloud, Pose};
 use cloudtouch::noise::{Discretization, MotionNoise, SensorModel, Summed};
@@ -12,7 +11,6 @@ use cloudtouch::{
     Pooling, PrepareError, Query, QuerySettings, Report, Verdict,
 };
 use cloudtouch_testkit::scene;
-use common::{assert_sound, at, measured, mesh};
 
 const STD: f64 = 0.002;
 const SENSOR: SensorModel = SensorModel::Isotropic { std: STD };

@@ -1,11 +1,9 @@
 //! The order of the points in the file does not matter.
 
-mod common;
-
+use crate::common::{ask, at, measured, prepare, uniform};
 use cloudtouch::Mode;
 use cloudtouch::geom::Point3;
 use cloudtouch_testkit::scene;
-use common::{ask, at, measured, prepare, uniform};
 
 /// Indices in an order that depends on the seed.
 fn shuffled(count: usize, seed: u64) -> Vec<usize> {

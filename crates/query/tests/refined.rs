@@ -1,12 +1,10 @@
 //! A refined cloud answers as the same cloud does that computes its surface where it is asked.
 
-mod common;
-
+use crate::common::{measured, mesh};
 use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Verdict};
 use cloudtouch_testkit::scene;
-use common::{measured, mesh};
 use proptest::prelude::*;
 
 /// Above this a search ends, with as much as it has found by then.

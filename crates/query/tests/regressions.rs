@@ -1,7 +1,7 @@
 //! Four slips of an earlier implementation of the paper, each by what a user would have seen.
 
-mod common;
-
+use crate::common;
+use crate::common::{MODES, ask, at, measured, mesh, prepare_each, query};
 use cloudtouch::geom::{
     Covariance, Matrix3, Point3, PointCloud, Pose, PoseError, UnitVector3, Vector3,
 };
@@ -11,7 +11,6 @@ use cloudtouch::{
     QueryError, Verdict,
 };
 use cloudtouch_testkit::scene;
-use common::{MODES, ask, at, measured, mesh, prepare_each, query};
 use nalgebra::{Isometry3, Matrix4, Translation3, UnitQuaternion};
 
 /// The upper half of a sphere about the origin, `count` points spread evenly (a Fibonacci lattice):

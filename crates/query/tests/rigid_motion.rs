@@ -1,11 +1,9 @@
 //! Moving everything moves the contacts and changes nothing else.
 
-mod common;
-
+use crate::common::{Scan, ask, at, measured, prepare_each, uniform};
 use cloudtouch::geom::{Covariance, Point3, Pose, Vector3};
 use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{Scan, ask, at, measured, prepare_each, uniform};
 use proptest::prelude::*;
 
 /// What the library promises: boxes turn along with the points, rounding may choose another of two

@@ -1,12 +1,10 @@
 //! Units do not matter: coordinates, covariances and pose in millimetres or kilometres give the
 //! same probability.
 
-mod common;
-
+use crate::common::{MODES, Scan, ask, measured, mesh, prepare_each};
 use cloudtouch::geom::{Covariance, Point3, Pose, Vector3};
 use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{MODES, Scan, ask, measured, mesh, prepare_each};
 
 const STD: f64 = 0.003;
 

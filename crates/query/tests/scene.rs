@@ -2,11 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-mod common;
-
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::common::{at, measured, timeless, uniform};
 use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
@@ -16,7 +15,6 @@ use cloudtouch::{
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
-use common::{at, measured, timeless, uniform};
 use proptest::prelude::*;
 
 fn mesh(mesh: &TriangleMesh) -> Body {

@@ -1,7 +1,6 @@
 //! Slips of someone in a hurry: what cannot be meant does not read as free, and the report says why.
 
-mod common;
-
+use crate::common::{AnyQuery, MODES, Scan, ask, at, measured, mesh};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
@@ -10,7 +9,6 @@ use cloudtouch::{
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
-use common::{AnyQuery, MODES, Scan, ask, at, measured, mesh};
 
 const NOISE: SensorModel = SensorModel::Isotropic { std: 0.002 };
 

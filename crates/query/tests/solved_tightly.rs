@@ -1,12 +1,10 @@
 //! What is left of changes that mean nothing when problems are solved to 1e-8 is rounding.
 
-mod common;
-
+use crate::common::{at, measured};
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings};
 use cloudtouch_testkit::scene;
-use common::{at, measured};
 
 /// A scene that is scaled, then moved and turned, with its points in this order.
 fn prepared(points: &[Point3], scale: f64, pose: &Pose, backwards: bool) -> Cloud {

@@ -1,12 +1,10 @@
 //! The frame in which sparse clouds are stored does not decide their probability: where a few points
 //! fit several surfaces, which one is taken must not hang on rounding.
 
-mod common;
-
+use crate::common::{ask, prepare, uniform};
 use cloudtouch::Mode;
 use cloudtouch::geom::{Point3, Pose, Vector3, seed};
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
-use common::{ask, prepare, uniform};
 
 /// What the library promises.
 const TOLERANCE: f64 = 1e-3;

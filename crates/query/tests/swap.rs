@@ -1,11 +1,9 @@
 //! Naming the bodies the other way round gives the same answer seen from the other side.
 
-mod common;
-
+use crate::common::{Asked, Scan, ask, mesh, scan};
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{Asked, Scan, ask, mesh, scan};
 
 /// What the library promises of the calibrated mode.
 const TOLERANCE: f64 = 1e-3;

@@ -1,12 +1,10 @@
 //! Large triangles: a small cloud that pierces one in its interior is found (a mesh is more than
 //! its vertices and centroids), and one that stays clear of it is not.
 
-mod common;
-
+use crate::common::{MODES, ask, at, measured, mesh, prepare};
 use cloudtouch::geom::{Point3, Pose, TriangleMesh, Vector3};
 use cloudtouch::{Mode, Verdict};
 use cloudtouch_testkit::scene;
-use common::{MODES, ask, at, measured, mesh, prepare};
 
 /// One triangle with sides of some ten metres in the plane z = 0.
 fn large_triangle() -> TriangleMesh {

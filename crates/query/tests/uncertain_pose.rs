@@ -73,7 +73,7 @@ fn an_uncertain_pose_is_the_mean_over_what_it_may_be() {
 }
 
 /// Run it for the figures:
-/// `cargo test --release -p cloudtouch --test uncertain_pose -- --ignored --nocapture`.
+/// `cargo test --release -p cloudtouch --test suite uncertain_pose:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "minutes"]
 fn two_hundred_cases_against_a_thousand_poses_each() {

@@ -1,11 +1,9 @@
 //! Clouds in map coordinates (metres east and north, in the millions) keep their millimetres.
 
-mod common;
-
+use crate::common::{MODES, ask, measured, mesh, prepare};
 use cloudtouch::geom::{Point3, Pose, Vector3};
 use cloudtouch::{Contact, Mode, Report};
 use cloudtouch_testkit::scene;
-use common::{MODES, ask, measured, mesh, prepare};
 
 fn offset() -> Vector3 {
     Vector3::new(500_000.0, 5_400_000.0, 300.0)

@@ -1,17 +1,15 @@
 //! A six-axis arm written by the test: kinematics and contacts against what is known exactly.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
+use crate::support::{Arm, STD, joints, query, wall};
 use cloudtouch::geom::{Point3, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, CloudSettings, Verdict};
 use cloudtouch_robot::{JointKind, Robot, RobotChecker, Touching};
 use proptest::prelude::*;
-use support::{Arm, STD, joints, query, wall};
 
 fn checker(robot: Robot, body: impl Into<Body>, touching: Touching) -> RobotChecker {
     RobotChecker::new(robot, body.into(), Pose::identity(), touching).unwrap()

@@ -1,15 +1,13 @@
 //! Descriptions that are wrong, and what is read of those that are right.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
 use std::collections::BTreeMap;
 
+use crate::support::{Arm, joints};
 use cloudtouch::geom::Vector3;
 use cloudtouch_io::write_mesh_obj;
 use cloudtouch_robot::{JointsError, Robot};
 use cloudtouch_testkit::scene::cuboid;
-use support::{Arm, joints};
 
 /// One link of this geometry, and one that hangs on it by this joint.
 fn two_links(geometry: &str, joint: &str) -> String {

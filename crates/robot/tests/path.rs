@@ -1,16 +1,14 @@
 //! Between the positions of a path nothing is missed.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
+use crate::support::{Arm, STD, joints, query, wall};
 use cloudtouch::geom::{PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, CloudSettings, Verdict};
 use cloudtouch_robot::{PathError, RobotChecker, Touching};
-use support::{Arm, STD, joints, query, wall};
 
 const TOLERANCE: f64 = 0.002;
 

@@ -2,18 +2,16 @@
 //! target/robots, where unpacked packages may lie. Skipped where there is none.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::path::{Path, PathBuf};
 
+use crate::support::{query, wall};
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, CloudSettings, Undecided};
 use cloudtouch_robot::{Joint, Robot, RobotChecker, RobotFault, Touching};
 use nalgebra::{Matrix4, matrix};
-use support::{query, wall};
 
 fn urdfs(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {

@@ -1,10 +1,9 @@
 //! A depth camera sees an arm over a table: the arm goes from its scan, the table stays.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
 use std::collections::BTreeMap;
 
+use crate::support::{Arm, joints};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, CloudSettings, Query, QuerySettings, Safeguards, Verdict};
@@ -12,7 +11,6 @@ use cloudtouch_robot::{Robot, RobotChecker, Touching};
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use nalgebra::UnitQuaternion;
-use support::{Arm, joints};
 
 /// Three standard deviations at the distance of the arm, m.
 const PADDING: f64 = 0.02;

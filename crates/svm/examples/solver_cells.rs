@@ -9,6 +9,7 @@ use cloudtouch_svm::{
     Class, DEFAULT_KAPPA_MAX, Kernel, Problem, Rung, Sample, Settings, Status, separate,
 };
 
+#[allow(dead_code, reason = "tests use more of it")]
 #[path = "../tests/support/mod.rs"]
 mod support;
 use support::{Difficulty, cell, settings};

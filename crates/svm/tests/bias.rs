@@ -1,13 +1,11 @@
 //! A bias that the problem leaves open.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
+use crate::support::{objectives, settings};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint};
 use cloudtouch_svm::{
     Class, Classifier, ClassifierError, Kernel, Problem, Sample, Settings, Status, Undetermined,
 };
-use support::{objectives, settings};
 
 fn along_x(xs: &[(f64, Class)], penalty: f64, std: f64) -> Vec<Sample> {
     let covariance = Covariance::isotropic(std * std);

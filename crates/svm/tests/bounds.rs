@@ -1,11 +1,9 @@
 //! What a solution says of its distance from the optimum holds.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
+use crate::support::{Difficulty, cell, settings};
 use cloudtouch_svm::{Classifier, Kernel, Problem, Sample, UnitBox};
 use proptest::prelude::*;
-use support::{Difficulty, cell, settings};
 
 /// Loose and tight classifiers of one problem, where both are to be had; the tight one stands for the
 /// optimum, and what is left of its own gap is counted.

@@ -1,13 +1,11 @@
 //! Hard inputs: no panic, no NaN, bounded work, and an honest ending.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
+use crate::support::{Stream, settings};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint};
 use cloudtouch_svm::{
     Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status,
 };
-use support::{Stream, settings};
 
 fn sample(at: [f64; 3], class: Class, std: f64, penalty: f64) -> Sample {
     let covariance = Covariance::isotropic(std * std);

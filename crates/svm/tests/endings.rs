@@ -1,14 +1,12 @@
 //! How a solve ended, and what a caller sees of it meanwhile.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
 use std::ops::ControlFlow;
 
+use crate::support::{Difficulty, cell, settings, solver};
 use cloudtouch_svm::{
     Class, Kernel, Problem, Progress, Rung, Sample, Settings, SettingsError, Solver, Status,
 };
-use support::{Difficulty, cell, settings, solver};
 
 fn problem(difficulty: Difficulty, per_side: usize, seed: u64) -> Problem {
     let (samples, gamma) = cell(difficulty, per_side, seed);

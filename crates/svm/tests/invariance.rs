@@ -1,12 +1,10 @@
 //! What must not change an answer: swapping, permuting, moving, turning, scaling, a warm start.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
+use crate::support::{Difficulty, Stream, cell, settings, solver};
 use cloudtouch_geom::{Point3, Pose, UncertainPoint, Vector3};
 use cloudtouch_svm::{Classifier, Kernel, Problem, Sample, Solution, Status};
 use proptest::prelude::*;
-use support::{Difficulty, Stream, cell, settings, solver};
 
 fn leaf(seed: u64) -> (Vec<Sample>, f64) {
     let difficulty = if seed.is_multiple_of(2) { Difficulty::Easy } else { Difficulty::Contact };

@@ -1,10 +1,8 @@
 //! A converged solution satisfies the optimality conditions, and its function is what it claims.
 
-mod support;
-
+use crate::support::{Difficulty, cell, middle, settings};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal};
 use cloudtouch_svm::{Class, Classifier, Kernel, Problem, Sample, Settings, Status};
-use support::{Difficulty, cell, middle, settings};
 
 fn kernels(gamma: f64) -> [Kernel; 2] {
     [Kernel::Linear, Kernel::Gaussian { gamma }]

@@ -2,14 +2,12 @@
 //! points or uncertainty are added.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
+use crate::support::{Difficulty, Stream, cell, settings, solver};
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 use cloudtouch_svm::{
     Class, Classifier, Kernel, Problem, Sample, Settings, Solution, Status, UnitBox, separate,
 };
 use proptest::prelude::*;
-use support::{Difficulty, Stream, cell, settings, solver};
 
 fn solve(samples: &[Sample], kernel: Kernel) -> (Problem, Solution) {
     let problem = Problem::try_new(samples, kernel).unwrap();

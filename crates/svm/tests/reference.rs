@@ -1,13 +1,11 @@
 //! The ladder against Clarabel on seeded random problems, with the share each rung solved.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
 use std::collections::BTreeMap;
 
+use crate::support::{Scene, Shape, Stream, middle, objectives, settings, solver};
 use cloudtouch_geom::Point3;
 use cloudtouch_svm::{Classifier, Kernel, Problem, Rung, Sample, Settings, Status};
-use support::{Scene, Shape, Stream, middle, objectives, settings, solver};
 
 struct Case {
     samples: Vec<Sample>,
@@ -201,7 +199,7 @@ fn compare(cases: impl Iterator<Item = Case>) {
     );
 }
 
-/// `cargo test -p cloudtouch-svm --features clarabel --test reference -- --nocapture` prints the shares by cell.
+/// `cargo test -p cloudtouch-svm --features clarabel --test suite reference:: -- --nocapture` prints the shares by cell.
 #[test]
 fn ladder_and_clarabel_agree_on_random_problems() {
     let small = (0..470).map(|seed| random_case(seed, 2, 24));
@@ -211,7 +209,7 @@ fn ladder_and_clarabel_agree_on_random_problems() {
     compare(small.chain(larger).chain(large).chain(largest));
 }
 
-/// `cargo test --release -p cloudtouch-svm --features clarabel --test reference -- --ignored --nocapture`: minutes.
+/// `cargo test --release -p cloudtouch-svm --features clarabel --test suite reference:: -- --ignored --nocapture`: minutes.
 #[test]
 #[ignore = "Clarabel takes minutes on the large ones"]
 fn ladder_and_clarabel_agree_on_many_and_large_problems() {

@@ -1,14 +1,12 @@
 //! The slips of the first released implementation of the method, one test each.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
+use crate::support::{Difficulty, Scene, Shape, Stream, cell, settings};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal};
 use cloudtouch_svm::{
     Class, Classifier, ClassifierError, Kernel, Problem, Rung, Sample, Settings, Status,
     Undetermined, UnitBox,
 };
-use support::{Difficulty, Scene, Shape, Stream, cell, settings};
 
 fn sample(x: f64, y: f64, class: Class, covariance: Covariance, radius: f64) -> Sample {
     let point = UncertainPoint { mean: Point3::new(x, y, 0.0), covariance };

@@ -1,10 +1,8 @@
 //! The linear certificate: its κ always holds, and is near the best there is.
 
-mod support;
-
+use crate::support::Stream;
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, normal};
 use cloudtouch_svm::{Class, DEFAULT_KAPPA_MAX, NoSeparation, separate};
-use support::Stream;
 
 fn clouds(stream: &mut Stream, apart: f64) -> [Vec<UncertainPoint>; 2] {
     let mut cloud = |offset: f64, count: usize| {

@@ -1,10 +1,8 @@
 //! Solutions and classifiers to text and back.
 
-mod support;
-
+use crate::support::{Difficulty, cell, settings};
 use cloudtouch_svm::Class;
 use cloudtouch_svm::{Classifier, Kernel, Problem, Settings, Solution, separate};
-use support::{Difficulty, cell, settings};
 
 #[test]
 fn what_was_trained_comes_back_bit_for_bit() {

@@ -1,11 +1,9 @@
 //! Flat ellipsoids: the certificate, training and the classifier see the same thickness.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
+use crate::support::settings;
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, normal};
 use cloudtouch_svm::{Class, Classifier, Kernel, Problem, Sample, Status, UnitBox, separate};
-use support::settings;
 
 /// Discs a metre wide, a nanometre thick and three nanometres apart.
 fn discs() -> ([UncertainPoint; 2], UnitVector3) {

@@ -1,11 +1,9 @@
 //! Units of length and tiny kernel widths change nothing.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-mod support;
-
+use crate::support::{Difficulty, cell, settings};
 use cloudtouch_geom::{Point3, UncertainPoint};
 use cloudtouch_svm::{Classifier, Kernel, Problem, Sample, Status};
-use support::{Difficulty, cell, settings};
 
 fn in_units(samples: &[Sample], scale: f64) -> Vec<Sample> {
     samples

@@ -1,5 +1,4 @@
 //! Clouds and references shared by the tests.
-#![allow(dead_code, reason = "every test file uses a part of this module")]
 
 use cloudtouch_bvh::{Primitive, Tree, TreeSettings};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3, normal, seed};

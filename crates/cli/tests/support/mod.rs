@@ -1,5 +1,4 @@
 //! Small inputs in a temporary folder, and runs of the tool on them.
-#![allow(dead_code, reason = "every test file uses its own part of this")]
 #![allow(clippy::unwrap_used, reason = "a failing helper fails the test")]
 
 pub(crate) mod browser;

@@ -1,5 +1,4 @@
 //! Seeded clouds sampled from known surfaces.
-#![allow(dead_code, reason = "each test file uses a part of it")]
 
 pub(crate) mod sigma;
 use cloudtouch_geom::{Covariance, Point3, Vector3, seed};

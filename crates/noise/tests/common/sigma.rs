@@ -53,6 +53,7 @@ pub(crate) struct Spread {
     /// Root mean square of error over stated standard deviation.
     pub(crate) standardised: f64,
     /// Root mean square error, m.
+    #[allow(dead_code, reason = "for the page of the example")]
     pub(crate) error: f64,
 }
 

@@ -1,5 +1,4 @@
 //! Clouds of known surfaces, prepared, and what every report has to satisfy.
-#![allow(dead_code, unused_imports, reason = "each test file uses a part of it")]
 
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;

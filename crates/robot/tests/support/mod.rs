@@ -1,5 +1,4 @@
 //! A six-axis arm of boxes and cylinders as a URDF in a temporary folder.
-#![allow(dead_code, reason = "every test file uses its own part of this")]
 #![allow(clippy::unwrap_used, reason = "a failing helper fails the test")]
 
 use std::collections::BTreeMap;

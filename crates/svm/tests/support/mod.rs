@@ -1,6 +1,5 @@
 //! Seeded leaf problems shared by the tests and the measuring example.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
-#![allow(dead_code, reason = "every test binary uses another part of this module")]
 
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, seed};
 use cloudtouch_svm::{Class, Sample, Settings, Solver};

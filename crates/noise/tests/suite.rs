@@ -1,0 +1,11 @@
+//! All tests of this crate's interface, one module a behaviour: one program to link.
+
+mod bounds;
+mod common;
+mod degenerate;
+mod neighborhoods;
+mod posterior;
+mod reach;
+mod representatives;
+mod sensors;
+mod sigma;

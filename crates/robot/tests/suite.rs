@@ -1,0 +1,8 @@
+//! All tests of this crate's interface, one module a behaviour: one program to link.
+
+mod arm;
+mod description;
+mod path;
+mod real;
+mod seen;
+mod support;
