@@ -131,13 +131,14 @@ pub struct Contact {
     /// surface; where that passes far from the most probable samples, the middle of these.
     #[serde(serialize_with = "as_array")]
     pub point: Point3,
-    /// Unit normal of the surfaces there, pointing from A to B: out of a closed mesh, else along the
-    /// gap.
+    /// Unit vector along which B leaves A there, as far as the samples of both around the contact tell:
+    /// across the plane that separates these best. Where they lie in one another, as a peg in its hole, it
+    /// may be any; so it may in deep overlaps, of which less is seen from a contact.
     #[serde(serialize_with = "vector_as_array")]
     pub normal_a_to_b: Vector3,
     /// Probability that the surfaces meet there; never above that of the collision.
     pub probability: f64,
-    /// Gap along the normal, m; negative in overlap.
+    /// Gap across the pieces of surface there, m; negative in overlap.
     pub clearance_m: f64,
     /// How much surface belongs to the contact, m², roughly: the places within a spacing of it.
     /// `None` on the paper's path.

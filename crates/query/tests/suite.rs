@@ -29,6 +29,7 @@ mod motion;
 mod paper_explain;
 mod paper_leaves;
 mod paper_switches;
+mod parting;
 mod penetration;
 mod permutation;
 mod refined;

@@ -2,6 +2,7 @@
 //! model is computed for a leaf when a query first visits it.
 
 mod accessors;
+mod around;
 mod carry;
 mod change;
 mod edge;

@@ -8,6 +8,7 @@ mod prepare;
 mod project;
 mod side;
 mod subdivide;
+mod surface;
 mod winding;
 
 pub use prepare::Mesh;

@@ -26,24 +26,26 @@ const MAX_LEAF: usize = 8;
 #[derive(Debug)]
 pub(super) struct Winding {
     /// Every group before its halves, the first half right after it.
-    groups: Vec<Group>,
+    pub(super) groups: Vec<Group>,
     /// Corners in the order of the groups.
     triangles: Vec<[Point3; 3]>,
 }
 
 #[derive(Debug)]
-struct Group {
+pub(super) struct Group {
     /// Mean of the centroids, weighted by area: no term of first order is left but the dipole's.
-    center: Point3,
+    pub(super) center: Point3,
     /// Sum of area times unit normal, m².
     area: Vector3,
+    /// Sum of areas, m².
+    pub(super) size: f64,
     /// How far the farthest corner is from the centre, squared, m².
-    squared_radius: f64,
+    pub(super) squared_radius: f64,
     /// Which triangles: from, to.
-    range: [usize; 2],
+    pub(super) range: [usize; 2],
     /// The next group that shares no triangle with this one.
-    next: usize,
-    is_leaf: bool,
+    pub(super) next: usize,
+    pub(super) is_leaf: bool,
 }
 
 impl Winding {
@@ -118,6 +120,7 @@ impl Group {
         Self {
             center,
             area,
+            size: weight,
             squared_radius,
             range: [from, from + triangles.len()],
             next: 0,

@@ -3,13 +3,15 @@
 use crate::CONTACT_FLOOR;
 use crate::report::{Clearance, Contact};
 
-use super::spots::Spot;
+use super::parting::Partings;
+use super::spots::{Spot, Spots};
 
 /// Contact patches, likeliest first: spots within a spacing of a likelier one belong to its patch.
 /// None is more probable than the collision is.
-pub(super) fn contacts(sorted: &[Spot], collision: f64, most: usize) -> Vec<Contact> {
+pub(super) fn contacts(spots: &Spots<'_>, collision: f64, most: usize) -> Vec<Contact> {
     let mut patches: Vec<(Spot, usize)> = Vec::new();
-    for spot in sorted.iter().filter(|spot| spot.probability.min(collision) >= CONTACT_FLOOR) {
+    for spot in spots.sorted.iter().filter(|spot| spot.probability.min(collision) >= CONTACT_FLOOR)
+    {
         let is_near = |(of, _): &&mut (Spot, usize)| {
             (of.place - spot.place).norm() <= of.spacing.max(spot.spacing)
         };
@@ -20,9 +22,10 @@ pub(super) fn contacts(sorted: &[Spot], collision: f64, most: usize) -> Vec<Cont
             None => patches.push((*spot, 1)),
         }
     }
+    let mut partings = Partings::default();
     let contact = |(spot, count): &(Spot, usize)| Contact {
         point: spot.place,
-        normal_a_to_b: spot.normal,
+        normal_a_to_b: partings.at(spot, spots),
         probability: spot.probability.min(collision),
         clearance_m: spot.gap,
         // A patch is a spacing wide on either side, however many pieces met there.
@@ -34,7 +37,8 @@ pub(super) fn contacts(sorted: &[Spot], collision: f64, most: usize) -> Vec<Cont
 /// The place that tells the distance of the two surfaces. Where a collision is likelier than not, that of the likeliest
 /// spot, or of the deepest that is about as likely: as much of an overlap as was seen. Else that of the
 /// two pieces likeliest to meet: what seems to cross there most probably does not.
-pub(super) fn nearest(sorted: &[Spot], collision: f64) -> Option<&Spot> {
+pub(super) fn nearest<'s>(spots: &'s Spots<'_>, collision: f64) -> Option<&'s Spot> {
+    let sorted = &spots.sorted;
     let is_likely = collision >= 0.5;
     let likeliest = sorted.iter().find(|spot| is_likely || !spot.is_bound)?;
     let deepest = sorted

@@ -12,7 +12,7 @@ use crate::record::{Estimate, Evidence, Places};
 use super::contacts::{clearance, contacts, nearest};
 use super::points::add_points;
 use super::settings::Detail;
-use super::spots::{Spot, spots};
+use super::spots::{Spot, Spots, spots};
 use super::task::Task;
 use super::weigh::{Weighed, weigh};
 
@@ -28,14 +28,18 @@ pub(super) fn estimate(
         return exact((a, b), a_from_b, evidence);
     }
     let weighed = weigh((a, b), a_from_b, task, &mut evidence.stats)?;
-    let of_full = (task.settings.detail == Detail::Full).then(|| weighed.spots((a, b)));
-    Ok(weighed.estimate(of_full.as_deref(), task, evidence))
+    let of_full = (task.settings.detail == Detail::Full).then(|| weighed.spots((a, b), a_from_b));
+    Ok(weighed.estimate(of_full.as_ref(), task, evidence))
 }
 
 impl Weighed<'_> {
     /// The places where the bodies are nearest to touching, likeliest first.
-    pub(super) fn spots(&self, bodies: (BodyRef<'_>, BodyRef<'_>)) -> Vec<Spot> {
-        spots(bodies, &self.found, self.looked.deepest.as_ref())
+    pub(super) fn spots<'b>(
+        &self,
+        bodies: (BodyRef<'b>, BodyRef<'b>),
+        a_from_b: &Pose,
+    ) -> Spots<'b> {
+        spots(bodies, a_from_b, &self.found, self.looked.deepest.as_ref())
     }
 
     /// The log odds of a collision.
@@ -46,7 +50,7 @@ impl Weighed<'_> {
     /// The estimate; with places, and points to `evidence`, where spots are given.
     pub(super) fn estimate(
         &self,
-        spots: Option<&[Spot]>,
+        spots: Option<&Spots<'_>>,
         task: &Task<'_>,
         evidence: &mut Evidence,
     ) -> Estimate {
@@ -85,7 +89,11 @@ impl Weighed<'_> {
     }
 
     /// The place that tells the clearance, where nothing nearer was left out.
-    pub(super) fn nearest_spot<'s>(&self, spots: &'s [Spot], probability: f64) -> Option<&'s Spot> {
+    pub(super) fn nearest_spot<'s>(
+        &self,
+        spots: &'s Spots<'_>,
+        probability: f64,
+    ) -> Option<&'s Spot> {
         nearest(spots, probability).filter(|_| self.found.is_complete || probability > 0.5)
     }
 }

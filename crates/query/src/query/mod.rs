@@ -11,6 +11,7 @@ mod gap_by_pose;
 mod gradient;
 mod interval;
 mod nearing;
+mod parting;
 mod patches;
 mod penetration;
 mod points;

@@ -1,7 +1,7 @@
 //! The places where two bodies are nearest to touching, as geometry sees them: normals of surfaces,
 //! and gaps along them.
 
-use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::search::{Crossing, Finding, Found, Inside, Wrench, probability_at};
@@ -48,13 +48,24 @@ pub(super) enum ToldBy {
 /// More spots than this say nothing new of where bodies touch.
 const MOST_SPOTS: usize = 400;
 
-/// The spots of a search in the order of what they say, likeliest first; the deeper of two that are
-/// equally likely. The order does not depend on that of the search.
-pub(super) fn spots(
-    (a, b): (BodyRef<'_>, BodyRef<'_>),
+/// Where two bodies touch, overlap or come near.
+#[derive(Debug)]
+pub(super) struct Spots<'a> {
+    pub bodies: (BodyRef<'a>, BodyRef<'a>),
+    /// Of their local frames.
+    pub a_from_b: Motion,
+    /// In the order of what they say, likeliest first; the deeper of two that are equally likely. The
+    /// order does not depend on that of the search.
+    pub sorted: Vec<Spot>,
+}
+
+/// The spots of a search.
+pub(super) fn spots<'a>(
+    (a, b): (BodyRef<'a>, BodyRef<'a>),
+    a_from_b: &Pose,
     found: &Found<'_>,
     inside: Option<&Inside>,
-) -> Vec<Spot> {
+) -> Spots<'a> {
     let near = |(index, finding)| near((a, b), index, finding);
     let mut pairs: Vec<Spot> = found.findings.iter().enumerate().map(near).collect();
     let likely = found.crossings.iter().filter(|crossing| crossing.probability > LIKELY);
@@ -67,7 +78,7 @@ pub(super) fn spots(
     pairs.extend(crossed);
     pairs.extend(inside.map(|inside| within(a, inside)));
     sort(&mut pairs);
-    pairs
+    Spots { bodies: (a, b), a_from_b: Motion::from(a_from_b), sorted: pairs }
 }
 
 fn sort(spots: &mut Vec<Spot>) {

@@ -1,0 +1,116 @@
+//! The surface of a mesh about a place, in parts small enough to count by their middles.
+
+use cloudtouch_geom::Point3;
+
+use super::prepare::Mesh;
+
+/// How often a triangle is halved at most: from 1e10 m, the largest, to nanometres.
+const MOST_HALVINGS: usize = 128;
+
+impl Mesh {
+    /// Calls `visit` with middle and area (m²) of parts that make up all the surface within `reach` (m) of
+    /// a place, and may go on beyond: groups of triangles, triangles or pieces of one, none of which reaches
+    /// farther than `fine` (m) from its middle. Local frame.
+    pub(crate) fn visit_surface_within(
+        &self,
+        place: &Point3,
+        reach: f64,
+        fine: f64,
+        mut visit: impl FnMut(&Point3, f64),
+    ) {
+        let groups = &self.winding.groups;
+        let mut at = 0;
+        while let Some(group) = groups.get(at) {
+            let beyond = reach + group.squared_radius.sqrt();
+            at = if (group.center - place).norm_squared() > beyond * beyond {
+                group.next
+            } else if group.squared_radius <= fine * fine {
+                visit(&group.center, group.size);
+                group.next
+            } else if group.is_leaf {
+                let [from, to] = group.range;
+                for triangle in &self.winding.triangles()[from..to] {
+                    visit_parts(*triangle, (place, reach), fine, MOST_HALVINGS, &mut visit);
+                }
+                group.next
+            } else {
+                at + 1
+            };
+        }
+    }
+}
+
+/// The parts of a triangle, halved across its longest side.
+fn visit_parts(
+    corners: [Point3; 3],
+    (place, reach): (&Point3, f64),
+    fine: f64,
+    halvings: usize,
+    visit: &mut impl FnMut(&Point3, f64),
+) {
+    let [a, b, c] = corners;
+    let middle = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+    let radius = corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
+    if (middle - place).norm() > reach + radius {
+        return;
+    }
+    if radius <= fine || halvings == 0 {
+        visit(&middle, 0.5 * (b - a).cross(&(c - a)).norm());
+        return;
+    }
+    let lengths = [0, 1, 2].map(|k| (corners[(k + 1) % 3] - corners[k]).norm());
+    let long = (0..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
+    let [from, to, other] = [0, 1, 2].map(|k| corners[(long + k) % 3]);
+    let half = nalgebra::center(&from, &to);
+    for part in [[from, half, other], [half, to, other]] {
+        visit_parts(part, (place, reach), fine, halvings - 1, visit);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::TriangleMesh;
+    use cloudtouch_testkit::scene;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn parts(mesh: &TriangleMesh, reach: f64, fine: f64) -> Vec<(Point3, f64)> {
+        let mut parts = Vec::new();
+        let prepared = Mesh::prepare(mesh).unwrap();
+        let place = Point3::new(0.1, 0.05, 0.0);
+        prepared.visit_surface_within(&place, reach, fine, |middle, area| {
+            parts.push((*middle, area));
+        });
+        parts
+    }
+
+    #[test]
+    fn parts_of_a_sheet_have_its_area_and_their_middles_its_middle() {
+        for edge in [0.8, 0.1, 0.02] {
+            let sheet = scene::subdivide_to_max_edge(&scene::plane_patch(0.8), edge);
+            let parts = parts(&sheet, 10.0, 0.05);
+            let area: f64 = parts.iter().map(|part| part.1).sum();
+            let middle =
+                parts.iter().map(|part| part.0.coords * part.1).sum::<cloudtouch_geom::Vector3>();
+            assert!((area - 0.64).abs() < 1e-9 && middle.norm() < 1e-9, "{edge}: {area} {middle}");
+            // As many as the sheet needs, however fine its triangles are.
+            assert!((80..=2048).contains(&parts.len()), "{edge}: {}", parts.len());
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Beside the area of the disc that is cut out of the sheet.
+        #[test]
+        fn what_is_within_reach_is_visited_and_hardly_more(reach in 0.05..0.25_f64, edge in 0.02..0.8_f64) {
+            let sheet = scene::subdivide_to_max_edge(&scene::plane_patch(0.8), edge);
+            let fine = 0.05 * reach;
+            let area: f64 = parts(&sheet, reach, fine).iter().map(|part| part.1).sum();
+            let disc = |radius: f64| std::f64::consts::PI * radius * radius;
+            prop_assert!(area >= disc(reach) - 1e-12, "{area} of {}", disc(reach));
+            prop_assert!(area <= disc(reach + 2.0 * fine) + 1e-12, "{area} of {}", disc(reach));
+        }
+    }
+}
