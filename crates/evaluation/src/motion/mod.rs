@@ -3,6 +3,7 @@
 mod gradient;
 mod margins;
 mod near_contact;
+mod normals;
 mod penetration;
 
 use std::path::Path;
@@ -33,8 +34,8 @@ pub struct Arguments {
     update_docs: bool,
 }
 
-const INTRODUCTION: &str = "What a query says of margins, of ways out of a collision and of gradients, \
-judged against the exact surfaces of generated scenes and against queries at poses a little aside.";
+const INTRODUCTION: &str = "What a query says of margins, of contacts, of ways out of a collision and of \
+gradients, judged against the exact surfaces of generated scenes and against queries at poses a little aside.";
 
 /// Fits where asked to, measures, and writes the page.
 ///
@@ -46,9 +47,10 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         margins::fit(draws, poses)?;
     }
     let command = format!("--draws {draws} --poses {poses} --update-docs");
-    let title = "Margins, penetration, gradients";
+    let title = "Margins, contacts, penetration, gradients";
     let page = Page::new(("motion", title), ("motion", &command), INTRODUCTION, root, SEED);
     let margins = || margins::measure(draws, poses);
+    let normals = || normals::measure(draws, poses);
     let penetration = || penetration::measure(draws, poses);
     let gradient = || gradient::measure(draws, poses);
     let folder = page::folder(root, update_docs);
@@ -56,7 +58,12 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
         page,
         &folder,
         "",
-        &[("margins", &margins), ("penetration", &penetration), ("gradients", &gradient)],
+        &[
+            ("margins", &margins),
+            ("normals", &normals),
+            ("penetration", &penetration),
+            ("gradients", &gradient),
+        ],
     )?;
     Ok(())
 }

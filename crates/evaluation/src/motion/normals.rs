@@ -1,0 +1,153 @@
+//! Normals of contacts, against the shortest way apart of the exact surfaces.
+
+use anyhow::Result;
+use cloudtouch::{Query, QuerySettings};
+use cloudtouch_geom::{Pose, Vector3, seed};
+use cloudtouch_testkit::exact::WayOut;
+use cloudtouch_testkit::family::{FamilyScene, Kind, Side};
+use cloudtouch_testkit::noise::NoiseKind;
+use cloudtouch_testkit::poses::LabelledPose;
+use rayon::prelude::*;
+
+use super::near_contact::{Bodies, STDS};
+use crate::answers::Pair;
+use crate::methods::Draw;
+use crate::page::Section;
+use crate::statistics::median;
+use crate::sweep::{SEED, Scenes};
+use crate::table::Table;
+use crate::targets::{Findings, Target};
+
+/// Classes of poses by their signed distance, from and to, m.
+const CLASSES: [(&str, f64, f64); 3] = [
+    ("free by up to 2 cm", 0.0, 0.02),
+    ("overlap to 2 cm", -0.02, 0.0),
+    ("2 to 10 cm", -0.1, -0.02),
+];
+/// An object that moves along the normal by the exact depth, a fourth of it and this, m, is to be free.
+const SPARE: f64 = 0.005;
+/// In so many overlaps of either class.
+const FREED: [f64; 2] = [0.9, 0.7];
+const POINTS: usize = 10_000;
+
+const TEXT: &str = "The normal of the likeliest contact beside the way the exact surfaces are apart, or the \
+shortest translation found to free them; ordinary families, 10,000 points, poses with a contact. *Angle*: \
+median between the two. *Freed*: the object is out of the exact overlap after moving along the normal by \
+the length of that translation, a fourth more and 5 mm; *backward*: after moving as far against it.";
+
+/// What is told of a contact.
+struct Told {
+    pair: Pair,
+    std: f64,
+    signed_distance: f64,
+    angle: f64,
+    /// Whether the object is free after moving along the normal, and against it.
+    freed: [bool; 2],
+}
+
+/// How often normals lead apart.
+pub(super) fn measure(draws: u32, poses: usize) -> Findings {
+    let ordinary = Scenes::generated().into_iter().filter(|family| family.kind == Kind::Ordinary);
+    let draws: Vec<(Scenes, u64)> =
+        ordinary.flat_map(|family| (0..draws).map(move |k| (family.clone(), k.into()))).collect();
+    let told = draws.par_iter().map(|(family, draw)| of_draw(family, *draw, poses));
+    let told: Vec<Told> = told.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+    let mut table =
+        Table::new(["pair", "noise", "poses", "contacts", "angle", "freed", "backward"]);
+    let mut targets = Vec::new();
+    for pair in Pair::ALL {
+        for std in STDS {
+            for (class, from, to) in CLASSES {
+                let of = |t: &&Told| t.std == std && t.pair == pair && t.is_within(from, to);
+                let of: Vec<&Told> = told.iter().filter(of).collect();
+                let angles: Vec<f64> = of.iter().map(|told| told.angle).collect();
+                let [freed, backward] = [0, 1]
+                    .map(|k| if to > 0.0 { "-".into() } else { format!("{:.2}", share(&of, k)) });
+                let (noise, count) = (format!("{:.0} mm", 1e3 * std), of.len().to_string());
+                let angle = format!("{:.0}°", median(&angles));
+                table.row([pair.name(), &noise, class, &count, &angle, &freed, &backward]);
+            }
+        }
+        for ((class, from, to), least) in CLASSES.into_iter().skip(1).zip(FREED) {
+            let of: Vec<&Told> =
+                told.iter().filter(|t| t.pair == pair && t.is_within(from, to)).collect();
+            let (share, percent) = (share(&of, 0), 100.0 * least);
+            let what =
+                format!("{}, {class}: freed along the normal in ≥ {percent:.0} %", pair.name());
+            targets.push(Target::new(what, format!("{:.0} %", 100.0 * share), share >= least));
+        }
+    }
+    Ok((Section::new("Normals of contacts").text(TEXT).text(table), targets))
+}
+
+impl Told {
+    fn is_within(&self, from: f64, to: f64) -> bool {
+        (from..to).contains(&self.signed_distance)
+    }
+}
+
+fn share(of: &[&Told], way: usize) -> f64 {
+    of.iter().filter(|told| told.freed[way]).count() as f64 / of.len() as f64
+}
+
+fn of_draw(family: &Scenes, draw: u64, poses: usize) -> Result<Vec<Told>> {
+    let from = seed::derive(SEED, family.number(), draw);
+    let scene = family.scene(from);
+    let poses = scene.poses(poses, seed::derive(from, 1, 0));
+    let ways = poses.iter().map(|pose| way_apart(&scene, pose));
+    let ways: Vec<Option<Vector3>> = ways.collect();
+    let query = Query::new(QuerySettings::default())?;
+    let mut told = Vec::new();
+    for std in STDS {
+        let drawn = seed::derive(from, 2, 0);
+        let [a, b] = [Side::A, Side::B]
+            .map(|side| scene.observe(side, POINTS, NoiseKind::Gaussian, std, drawn));
+        let mesh = scene.b.mesh();
+        let bodies = Bodies::prepare(&Draw { family: family.name, a: &a, b: &b, mesh })?;
+        for (LabelledPose { scene_from_object, signed_distance, .. }, way) in
+            poses.iter().zip(&ways)
+        {
+            let Some(way) = way else { continue };
+            for pair in Pair::ALL {
+                let (a, b) = bodies.pair(pair);
+                let report = query.run(a, b, scene_from_object)?;
+                let Some(contact) = report.contacts.first() else { continue };
+                let normal = contact.normal_a_to_b;
+                let angle = normal.dot(way).clamp(-1.0, 1.0).acos().to_degrees();
+                let length = -1.25 * signed_distance.min(0.0) + SPARE;
+                let freed = [length, -length].map(|length| {
+                    let moved = Pose::from_translation(normal * length).after(scene_from_object);
+                    !scene.a.touches(&scene.b, &moved, scene.touch)
+                });
+                told.push(Told { pair, std, signed_distance: *signed_distance, angle, freed });
+            }
+        }
+    }
+    Ok(told)
+}
+
+/// The direction from A to B where they are apart, and else that of the shortest way out; `None` beyond the
+/// classes, and where the way is not known.
+fn way_apart(scene: &FamilyScene, labelled: &LabelledPose) -> Option<Vector3> {
+    /// Of the differences, m.
+    const STEP: f64 = 1e-5;
+    let (pose, distance) = (&labelled.scene_from_object, labelled.signed_distance);
+    let (_, _, nearest) = CLASSES[0];
+    let (_, deepest, _) = CLASSES[2];
+    if !(deepest..nearest).contains(&distance) {
+        return None;
+    }
+    if labelled.in_collision {
+        // As long as is known, and a little longer: its direction is not.
+        let known = WayOut { direction: Vector3::zeros(), length: -1.05 * distance + STEP };
+        let way = scene.a.shortest_way_out(&scene.b, pose, scene.touch, known);
+        return way.direction.try_normalize(0.0);
+    }
+    let at = |axis, step| {
+        let moved = Pose::from_translation(Vector3::ith(axis, step)).after(pose);
+        scene.a.distance(&scene.b, &moved)
+    };
+    let slope = |axis, _| (at(axis, STEP) - at(axis, -STEP)) / (2.0 * STEP);
+    // In a corner, where two ways are as short, it has none.
+    Vector3::from_fn(slope).try_normalize(0.5)
+}
