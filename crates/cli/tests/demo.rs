@@ -22,6 +22,24 @@ fn shows_twelve_poses_and_one_in_full() {
     assert_eq!(inputs.names(), before);
 }
 
+/// What is printed of a fit that changed is old.
+#[test]
+fn the_readme_shows_what_it_prints() {
+    // Times are of the machine.
+    let timeless = |text: &str| -> Vec<String> {
+        let line = |line: &str| match line.strip_suffix(" ms").and_then(|l| l.rsplit_once(' ')) {
+            Some((answer, _)) => answer.trim_end().to_owned(),
+            None => line.to_owned(),
+        };
+        text.trim_end().lines().map(line).collect()
+    };
+    let readme = include_str!("../README.md");
+    let (_, shown) = readme.split_once("$ cloudtouch demo\n").unwrap();
+    let (shown, _) = shown.split_once("```").unwrap();
+    let printed = Inputs::new().run(&["demo"]).quiet(0).stdout();
+    assert_eq!(timeless(shown), timeless(&printed));
+}
+
 #[test]
 fn paints_the_pose_it_shows() {
     let inputs = Inputs::new();

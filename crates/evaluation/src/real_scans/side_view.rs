@@ -89,7 +89,7 @@ pub(super) fn figure(
             painted(gripper, GRIPPER).named_at(3.5, 28.5),
             painted(Series::points(POINTS, other), GREY).named_at(-8.5, 1.9),
             painted(Series::points("in contact", likely), RED).named_at(-9.8, 10.4),
-            painted(Series::polygons("normal", arrow(&view, report)), BLACK).named_at(-5.4, 8.7),
+            painted(Series::polygons("normal", arrow(&view, report)), BLACK).named_at(1.2, 8.6),
         ];
         let p = report.collision_probability;
         Panel { title: format!("P = {p:.2}: {}", report.verdict), x, y, series }
