@@ -14,7 +14,7 @@ use super::spots::{Spot, Spots};
 
 /// The surroundings reach so many units, each the spacing of the samples or their noise. The first count in
 /// which the bodies stand apart: in a deep overlap that is seen from farther off.
-const REACHES: [f64; 3] = [3.0, 5.0, 8.0];
+const REACHES: [f64; 3] = [3.0, 6.0, 12.0];
 /// They do where the squared distance of their means is so many times their squared spread along it.
 const APART: f64 = 1.0;
 /// Surfaces are not flatter than this part of a unit.
