@@ -11,7 +11,7 @@ const GRADING: f64 = 0.5;
 /// Deepest subdivision of one triangle: from 1e10 m, the largest, to nanometres. Only parts that
 /// come near the leaf are split again, so that depth is cheap; a triangle of 1e9 m ended in parts of
 /// metres at a quarter of that depth, with no corner near the cloud on it.
-const MAX_DEPTH: usize = 128;
+pub(super) const MAX_DEPTH: usize = 128;
 
 /// Where and how densely a mesh is sampled, in the mesh's local frame.
 #[derive(Debug, Clone, Copy)]
@@ -58,6 +58,18 @@ pub(crate) fn four_per_triangle(triangles: impl IntoIterator<Item = [Point3; 3]>
     points
 }
 
+/// The length of the longest edge of a triangle, m, and its halves across that, so that a thin one falls into
+/// no more parts than it is long; `None` where rounding keeps the edge from becoming shorter.
+pub(super) fn halved(corners: &[Point3; 3]) -> (f64, Option<[[Point3; 3]; 2]>) {
+    let corner = |k: usize| corners[k % 3];
+    let lengths = [0, 1, 2].map(|k| (corner(k + 1) - corner(k)).norm());
+    let long = (0..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
+    let (from, to, other) = (corner(long), corner(long + 1), corner(long + 2));
+    let middle = nalgebra::center(&from, &to);
+    let is_split = middle != from && middle != to;
+    (lengths[long], is_split.then_some([[from, middle, other], [middle, to, other]]))
+}
+
 /// Samples in the making.
 struct Samples<'a> {
     region: &'a SampleRegion,
@@ -82,21 +94,14 @@ impl Samples<'_> {
             return;
         }
         let limit = region.spacing.max(GRADING * (away - region.core));
-        // Across its longest edge, so that a thin triangle falls into no more parts than it is long.
-        let corner = |k: usize| corners[k % 3];
-        let lengths = [0, 1, 2].map(|k| (corner(k + 1) - corner(k)).norm());
-        let long = (0..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
-        let (from, to, other) = (corner(long), corner(long + 1), corner(long + 2));
-        let middle = nalgebra::center(&from, &to);
-        // Rounding keeps an edge from becoming smaller than the last place of its coordinates.
-        let is_split = middle != from && middle != to;
-        if lengths[long] <= limit || !is_split || depth == 0 {
-            let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
-            points.extend([a, b, c, centroid].into_iter().filter(inside));
-            return;
+        let (longest, halves) = halved(&corners);
+        match halves.filter(|_| longest > limit && depth > 0) {
+            Some(halves) => halves.into_iter().for_each(|half| self.split(half, depth - 1)),
+            None => {
+                let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
+                points.extend([a, b, c, centroid].into_iter().filter(inside));
+            }
         }
-        self.split([from, middle, other], depth - 1);
-        self.split([middle, to, other], depth - 1);
     }
 }
 

@@ -3,9 +3,8 @@
 use cloudtouch_geom::Point3;
 
 use super::prepare::Mesh;
-
-/// How often a triangle is halved at most: from 1e10 m, the largest, to nanometres.
-const MOST_HALVINGS: usize = 128;
+use super::subdivide::{MAX_DEPTH, halved};
+use super::winding::centroid;
 
 impl Mesh {
     /// Calls `visit` with middle and area (m²) of parts that make up all the surface within `reach` (m) of
@@ -30,7 +29,7 @@ impl Mesh {
             } else if group.is_leaf {
                 let [from, to] = group.range;
                 for triangle in &self.winding.triangles()[from..to] {
-                    visit_parts(*triangle, (place, reach), fine, MOST_HALVINGS, &mut visit);
+                    visit_parts(*triangle, (place, reach), fine, MAX_DEPTH, &mut visit);
                 }
                 group.next
             } else {
@@ -49,21 +48,18 @@ fn visit_parts(
     visit: &mut impl FnMut(&Point3, f64),
 ) {
     let [a, b, c] = corners;
-    let middle = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+    let middle = centroid(&corners);
     let radius = corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
     if (middle - place).norm() > reach + radius {
         return;
     }
-    if radius <= fine || halvings == 0 {
-        visit(&middle, 0.5 * (b - a).cross(&(c - a)).norm());
-        return;
-    }
-    let lengths = [0, 1, 2].map(|k| (corners[(k + 1) % 3] - corners[k]).norm());
-    let long = (0..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
-    let [from, to, other] = [0, 1, 2].map(|k| corners[(long + k) % 3]);
-    let half = nalgebra::center(&from, &to);
-    for part in [[from, half, other], [half, to, other]] {
-        visit_parts(part, (place, reach), fine, halvings - 1, visit);
+    match halved(&corners).1.filter(|_| radius > fine && halvings > 0) {
+        Some(halves) => {
+            for half in halves {
+                visit_parts(half, (place, reach), fine, halvings - 1, visit);
+            }
+        }
+        None => visit(&middle, 0.5 * (b - a).cross(&(c - a)).norm()),
     }
 }
 

@@ -129,7 +129,8 @@ impl Group {
     }
 }
 
-fn centroid([a, b, c]: &[Point3; 3]) -> Point3 {
+/// The middle of a triangle.
+pub(super) fn centroid([a, b, c]: &[Point3; 3]) -> Point3 {
     a + ((b - a) + (c - a)) / 3.0
 }
 

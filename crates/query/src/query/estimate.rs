@@ -1,6 +1,6 @@
 //! One query on the default path: the evidence, and what the judge makes of it.
 
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Motion, Pose};
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
@@ -28,7 +28,8 @@ pub(super) fn estimate(
         return exact((a, b), a_from_b, evidence);
     }
     let weighed = weigh((a, b), a_from_b, task, &mut evidence.stats)?;
-    let of_full = (task.settings.detail == Detail::Full).then(|| weighed.spots((a, b), a_from_b));
+    let of_full = (task.settings.detail == Detail::Full)
+        .then(|| weighed.spots((a, b), Motion::from(a_from_b)));
     Ok(weighed.estimate(of_full.as_ref(), task, evidence))
 }
 
@@ -37,7 +38,7 @@ impl Weighed<'_> {
     pub(super) fn spots<'b>(
         &self,
         bodies: (BodyRef<'b>, BodyRef<'b>),
-        a_from_b: &Pose,
+        a_from_b: Motion,
     ) -> Spots<'b> {
         spots(bodies, a_from_b, &self.found, self.looked.deepest.as_ref())
     }

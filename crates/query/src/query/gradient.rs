@@ -84,7 +84,7 @@ impl Query {
                 }
                 let task = query.task(start, (a, b));
                 let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;
-                let spots = weighed.spots((a, b), local);
+                let spots = weighed.spots((a, b), motion);
                 let estimate = weighed.estimate(Some(&spots), &task, evidence);
                 let p = estimate.probability;
                 let log_odds =

@@ -42,15 +42,12 @@ impl Partings {
     /// The unit vector along which B leaves A at a spot; its own normal where one of them has no sample
     /// around.
     pub(super) fn at(&mut self, spot: &Spot, spots: &Spots<'_>) -> Vector3 {
-        let is_near = |known: &&Parting| (known.place - spot.place).norm() <= known.within;
-        let known = self.0.iter().find(is_near).map(|known| known.direction);
-        let direction = known.unwrap_or_else(|| {
-            let found = spots.parting(spot);
-            let direction = found.direction;
-            self.0.push(found);
-            direction
+        let is_near = |known: &Parting| (known.place - spot.place).norm() <= known.within;
+        let at = self.0.iter().position(is_near).unwrap_or_else(|| {
+            self.0.push(spots.parting(spot));
+            self.0.len() - 1
         });
-        direction.unwrap_or(spot.normal)
+        self.0[at].direction.unwrap_or(spot.normal)
     }
 }
 
@@ -64,11 +61,11 @@ impl Spots<'_> {
         let own =
             (ROUGHNESS * unit).powi(2) + grains.iter().map(|grain| grain.std.powi(2)).sum::<f64>();
         let mut direction = None;
+        let rotation = self.a_from_b.rotation();
         for reach in REACHES.map(|units| units * unit) {
             let of_a = Surroundings::of(a, spot.place, reach);
             let of_b = Surroundings::of(b, in_b, reach);
             let (Some(of_a), Some(of_b)) = (of_a.moments(), of_b.moments()) else { continue };
-            let rotation = self.a_from_b.rotation();
             let apart = self.a_from_b.vector(&of_b.mean) - of_a.mean;
             let spread = of_a.spread
                 + rotation * of_b.spread * rotation.transpose()

@@ -1,7 +1,7 @@
 //! The places where two bodies are nearest to touching, as geometry sees them: normals of surfaces,
 //! and gaps along them.
 
-use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
+use cloudtouch_geom::{Motion, Point3, Vector3};
 
 use crate::body::BodyRef;
 use crate::search::{Crossing, Finding, Found, Inside, Wrench, probability_at};
@@ -62,7 +62,7 @@ pub(super) struct Spots<'a> {
 /// The spots of a search.
 pub(super) fn spots<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
-    a_from_b: &Pose,
+    a_from_b: Motion,
     found: &Found<'_>,
     inside: Option<&Inside>,
 ) -> Spots<'a> {
@@ -78,7 +78,7 @@ pub(super) fn spots<'a>(
     pairs.extend(crossed);
     pairs.extend(inside.map(|inside| within(a, inside)));
     sort(&mut pairs);
-    Spots { bodies: (a, b), a_from_b: Motion::from(a_from_b), sorted: pairs }
+    Spots { bodies: (a, b), a_from_b, sorted: pairs }
 }
 
 fn sort(spots: &mut Vec<Spot>) {
