@@ -41,7 +41,9 @@ fn violations(root: &Path) -> Result<Vec<String>> {
     for path in &paths {
         found.extend(check_file(root, path, &mut names)?);
     }
-    found.extend(suite::check(root, &paths)?);
+    for manifest in &manifests {
+        found.extend(suite::check(root, manifest, &paths)?);
+    }
     let map = fs::read_to_string(root.join(map::PAGE)).context(map::PAGE)?;
     let has_path = |path: &str| {
         let below = |folder: &str| root.join(folder).join(path.trim_end_matches('/')).exists();

@@ -4,41 +4,48 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use toml::Value;
 
-/// The program that has all but those with a program of their own.
-const SUITE: &str = "/tests/suite.rs";
+use super::manifest::Manifest;
 
-/// The files beside a suite that neither it nor the manifest names.
-pub(super) fn check(root: &Path, paths: &[String]) -> Result<Vec<String>> {
-    let read =
-        |path: &str| fs::read_to_string(root.join(path)).with_context(|| format!("read {path}"));
-    let mut found = Vec::new();
-    for suite in paths.iter().filter(|path| path.ends_with(SUITE)) {
-        let folder = suite.trim_end_matches(SUITE);
-        let known = read(suite)? + &read(&format!("{folder}/Cargo.toml"))?;
-        let tests = format!("{folder}/tests/");
-        let names = paths.iter().filter_map(|path| path.strip_prefix(&tests)?.strip_suffix(".rs"));
-        let is_lost = |name: &&str| {
-            !name.contains('/')
-                && !known.contains(&format!("mod {name};"))
-                && !known.contains(&format!("name = \"{name}\""))
-        };
-        found.extend(names.filter(is_lost).map(|name| format!("{tests}{name}.rs: not in {suite}")));
+/// The files beside the suite of a crate that neither it nor the manifest names.
+pub(super) fn check(root: &Path, manifest: &Manifest, paths: &[String]) -> Result<Vec<String>> {
+    let folder = format!("{}/tests/", manifest.folder);
+    let suite = format!("{folder}suite.rs");
+    if !paths.contains(&suite) {
+        return Ok(Vec::new());
     }
-    Ok(found)
+    let text = fs::read_to_string(root.join(&suite)).with_context(|| format!("read {suite}"))?;
+    let files = paths.iter().filter_map(|path| path.strip_prefix(&folder)?.strip_suffix(".rs"));
+    let lost = lost(manifest, &text, files).into_iter();
+    Ok(lost.map(|name| format!("{folder}{name}.rs: not in {suite}")).collect())
+}
+
+fn lost<'a>(
+    manifest: &Manifest,
+    suite: &str,
+    files: impl Iterator<Item = &'a str>,
+) -> Vec<&'a str> {
+    let programs = manifest.table.get("test").and_then(Value::as_array);
+    let is_program = |file: &str| {
+        let name = |program: &Value| program.get("name").and_then(Value::as_str) == Some(file);
+        programs.is_some_and(|programs| programs.iter().any(name))
+    };
+    let is_lost = |file: &&str| {
+        !file.contains('/') && !is_program(file) && !suite.contains(&format!("mod {file};"))
+    };
+    files.filter(is_lost).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn a_file_that_no_program_has_is_named() {
-        let root = std::env::temp_dir().join(format!("xtask-suite-{}", std::process::id()));
-        std::fs::create_dir_all(root.join("a/tests")).unwrap();
-        std::fs::write(root.join("a/Cargo.toml"), "[[test]]\nname = \"suite\"\n").unwrap();
-        std::fs::write(root.join("a/tests/suite.rs"), "mod b;\n").unwrap();
-        let paths = ["suite", "b", "c", "d/mod"].map(|name| format!("a/tests/{name}.rs"));
-        let found = super::check(&root, &paths).unwrap();
-        std::fs::remove_dir_all(&root).unwrap();
-        assert_eq!(found, ["a/tests/c.rs: not in a/tests/suite.rs"]);
+        let table = "[[test]]\nname = 'suite'\n[[test]]\nname = 'e'\n".parse().unwrap();
+        let manifest = Manifest { folder: "a".into(), table };
+        let files = ["suite", "b", "c", "d/mod", "e"];
+        assert_eq!(lost(&manifest, "mod b;\n", files.into_iter()), ["c"]);
     }
 }
