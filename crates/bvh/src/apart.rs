@@ -1,9 +1,10 @@
 //! How far apart the points of two nodes are, in standard deviations, and their surfaces, in metres.
 //!
-//! This is the innermost loop of every search: plain arrays and loops, which compile to vectors.
+//! This is the innermost loop of every search. A node that is split has two halves, and both are tested
+//! at once: each number of a test stands for one of them in either lane.
 
 use cloudtouch_geom::{BoxDrift, Drift, Matrix3, Motion, Point3, Vector3};
-use wide::f64x4;
+use wide::f64x2;
 
 use crate::Obb;
 use crate::bounds::SpreadBounds;
@@ -23,45 +24,54 @@ pub(crate) struct Apart {
 
 type Array = [f64; 3];
 
-/// One number for each of three axes, and a spare one.
-type Lanes = f64x4;
+/// One number for each of two tests, and three of these.
+type Two = f64x2;
+type Each = [Two; 3];
 
-#[inline]
-fn lanes(v: &Vector3) -> Lanes {
-    f64x4::new([v.x, v.y, v.z, 0.0])
+#[inline(always)]
+fn dot(p: &Each, q: &Each) -> Two {
+    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }
 
-/// Σₖ scales\[k\] · of\[k\].
-#[inline]
-fn combined(scales: &Array, of: &[Lanes; 3]) -> Lanes {
-    let scaled = |k: usize| f64x4::splat(scales[k]) * of[k];
-    scaled(0) + scaled(1) + scaled(2)
+#[inline(always)]
+fn side_by_side(of: [&Array; 2]) -> Each {
+    let lanes = |k: usize| Two::new([of[0][k], of[1][k]]);
+    [lanes(0), lanes(1), lanes(2)]
+}
+
+/// A node, and where its box is in the frame of A.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Placed<'a> {
+    node: &'a NodeData,
+    centre: &'a Array,
+    axes: &'a [Array; 3],
+}
+
+impl<'a> Placed<'a> {
+    /// Where it was built.
+    #[inline]
+    pub(crate) fn at_home(node: &'a NodeData) -> Self {
+        Self { node, centre: node.obb.centre.coords.as_ref(), axes: node.obb.axes.as_ref() }
+    }
+
+    #[inline]
+    pub(crate) fn moved(node: &'a NodeData, moved: &'a MovedBox) -> Self {
+        Self { node, centre: &moved.centre, axes: &moved.axes }
+    }
 }
 
 /// Middle and axes of a box in another frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MovedBox {
     centre: Array,
-    /// The axes by coordinates.
-    axes: [Lanes; 3],
+    axes: [Array; 3],
 }
 
 impl MovedBox {
     pub(crate) fn new(obb: &Obb, motion: &Motion) -> Self {
         let axes = motion.rotation() * obb.axes;
-        Self { centre: motion.point(&obb.centre).into(), axes: by_coordinates(&axes) }
+        Self { centre: motion.point(&obb.centre).into(), axes: axes.into() }
     }
-
-    fn axis(&self, k: usize) -> Array {
-        self.axes.map(|coordinate| coordinate.as_array()[k])
-    }
-}
-
-/// The rows of a matrix whose columns are axes.
-#[inline]
-fn by_coordinates(axes: &Matrix3) -> [Lanes; 3] {
-    let row = |k: usize| f64x4::new([axes[(k, 0)], axes[(k, 1)], axes[(k, 2)], 0.0]);
-    [row(0), row(1), row(2)]
 }
 
 /// What a drift does to a box, known once for all that it is tested against.
@@ -78,21 +88,20 @@ pub(crate) struct Carried {
 impl Carried {
     /// Of a box of B in the frame of A.
     pub(crate) fn new(b: &NodeData, moved: &MovedBox, drift: &Drift) -> Self {
-        let own = [0, 1, 2].map(|k| moved.axis(k));
-        let half_axes = Matrix3::from(own) * Matrix3::from_diagonal(&b.obb.half_extents);
+        let half_axes = Matrix3::from(moved.axes) * Matrix3::from_diagonal(&b.obb.half_extents);
         let SpreadBounds { max_std, max_reach, .. } = b.bounds;
         let around = b.bounds.shift + max_reach;
         let of_box = drift.of_box(&Point3::from(moved.centre), &half_axes, around);
-        let none = Loss { room: Lanes::ZERO, std: Lanes::ZERO, reach: Lanes::ZERO };
+        let none = Loss { room: [0.0; 3], std: [0.0; 3], reach: [0.0; 3] };
         let mut carried = Self { drift: *drift, of_box, max_std, max_reach, along_own: none };
-        carried.along_own = carried.along(&own);
+        carried.along_own = carried.along(&moved.axes);
         carried
     }
 
     /// Along unit vectors in the frame of A.
     #[inline]
     fn along(&self, axes: &[Array; 3]) -> Loss {
-        let [mut room, mut std, mut reach] = [[0.0; 4]; 3];
+        let [mut room, mut std, mut reach] = [[0.0; 3]; 3];
         for (k, axis) in axes.iter().enumerate() {
             let axis = Vector3::from(*axis);
             let turn = self.drift.turn_of(&axis);
@@ -100,7 +109,7 @@ impl Carried {
             std[k] = turn * self.max_std;
             reach[k] = turn * self.max_reach;
         }
-        Loss { room: f64x4::new(room), std: f64x4::new(std), reach: f64x4::new(reach) }
+        Loss { room, std, reach }
     }
 }
 
@@ -108,165 +117,222 @@ impl Carried {
 #[derive(Debug, Clone, Copy)]
 struct Loss {
     /// How far the box gets along each axis, m.
-    room: Lanes,
+    room: Array,
     /// What its turn adds to its deviations there, and to its reach, m.
-    std: Lanes,
-    reach: Lanes,
+    std: Array,
+    reach: Array,
 }
 
-/// What two boxes are tested by: the second in the frame of the first.
-pub(crate) struct Between<'a> {
-    a: &'a NodeData,
-    b: &'a NodeData,
-    moved: &'a MovedBox,
-    /// Middle to middle, in the frame of A, and along the axes of A.
-    way: Array,
-    offset: Lanes,
-    /// aᵢ·bⱼ by j.
-    cosines: [Lanes; 3],
-    /// What is to be taken off every gap, m.
-    slack: f64,
+/// The same of two tests.
+struct Losses {
+    room: Each,
+    std: Each,
+    reach: Each,
 }
 
-impl<'a> Between<'a> {
-    /// `rounding` is what the pose may misplace a box by, m.
-    #[inline(always)]
-    pub(crate) fn new(
-        a: &'a NodeData,
-        (b, moved): (&'a NodeData, &'a MovedBox),
-        rounding: f64,
-    ) -> Self {
-        let of_a = by_coordinates(&a.obb.axes);
-        let centre = &a.obb.centre;
-        let way =
-            [moved.centre[0] - centre.x, moved.centre[1] - centre.y, moved.centre[2] - centre.z];
-        let cosine = |k| combined(&moved.axis(k), &of_a);
-        let cosines = [cosine(0), cosine(1), cosine(2)];
-        let offset = combined(&way, &of_a);
-        let [x, y, z, _] = offset.to_array();
-        let size =
-            a.obb.half_extents.sum() + b.obb.half_extents.sum() + x.abs() + y.abs() + z.abs();
-        let slack = a.bounds.shift + b.bounds.shift + rounding + 8.0 * f64::EPSILON * size;
-        Self { a, b, moved, way, offset, cosines, slack }
+impl Losses {
+    fn of([one, other]: [&Loss; 2]) -> Self {
+        Self {
+            room: side_by_side([&one.room, &other.room]),
+            std: side_by_side([&one.std, &other.std]),
+            reach: side_by_side([&one.reach, &other.reach]),
+        }
     }
+}
 
-    /// Bounds by the six normals of faces; B may drift from where it is. Those of A alone are looked at
-    /// where these say `enough` by themselves: of deviations, and of the gap of surfaces.
+/// What two tests are by: the boxes of the first tree, or those of the second.
+struct Boxes {
+    centre: Each,
+    axes: [Each; 3],
+    half: Each,
+    std: Each,
+    reach: Each,
+    max_std: Two,
+    shift: Two,
+}
+
+impl Boxes {
     #[inline(always)]
-    pub(crate) fn by_faces(
-        &self,
+    fn of([one, other]: [Placed<'_>; 2]) -> Self {
+        let vectors = |of: fn(&NodeData) -> &Vector3| {
+            side_by_side([of(one.node).as_ref(), of(other.node).as_ref()])
+        };
+        let numbers = |of: fn(&NodeData) -> f64| Two::new([of(one.node), of(other.node)]);
+        let axis = |k: usize| side_by_side([&one.axes[k], &other.axes[k]]);
+        Self {
+            centre: side_by_side([one.centre, other.centre]),
+            axes: [axis(0), axis(1), axis(2)],
+            half: vectors(|node| &node.obb.half_extents),
+            std: vectors(|node| &node.bounds.axis_std),
+            reach: vectors(|node| &node.bounds.axis_reach),
+            max_std: numbers(|node| node.bounds.max_std),
+            shift: numbers(|node| node.bounds.shift),
+        }
+    }
+}
+
+/// What is asked of a test.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Asked {
+    /// How far apart points may be and still count as at one place, m.
+    pub(crate) margin: f64,
+    /// What the pose may misplace a box by, m.
+    pub(crate) rounding: f64,
+    /// Deviations, and a gap of surfaces, that are enough: where the faces of A say so much of both tests,
+    /// those of B are not asked.
+    pub(crate) enough: (f64, f64),
+}
+
+/// Bounds by the six normals of the faces of two boxes, in two tests at once; B may drift from where it is.
+#[inline(always)]
+pub(crate) fn by_faces(
+    a: [Placed<'_>; 2],
+    b: [Placed<'_>; 2],
+    carried: Option<[&Carried; 2]>,
+    asked: Asked,
+) -> [Apart; 2] {
+    match carried {
+        None => by_faces_less(Boxes::of(a), Boxes::of(b), None, asked),
+        Some(carried) => by_faces_of_drifting(a, b, carried, asked),
+    }
+}
+
+/// Apart from the loop of a search at rest, which stays short.
+#[inline(never)]
+fn by_faces_of_drifting(
+    a: [Placed<'_>; 2],
+    b: [Placed<'_>; 2],
+    [one, other]: [&Carried; 2],
+    asked: Asked,
+) -> [Apart; 2] {
+    let along_a = Losses::of([&one.along(a[0].axes), &other.along(a[1].axes)]);
+    let along_b = Losses::of([&one.along_own, &other.along_own]);
+    by_faces_less(Boxes::of(a), Boxes::of(b), Some([along_a, along_b]), asked)
+}
+
+#[inline(always)]
+fn by_faces_less(a: Boxes, b: Boxes, losses: Option<[Losses; 2]>, asked: Asked) -> [Apart; 2] {
+    let Asked { margin, rounding, enough: (deviations, surfaces) } = asked;
+    let way = [b.centre[0] - a.centre[0], b.centre[1] - a.centre[1], b.centre[2] - a.centre[2]];
+    let along = |axes: &[Each; 3]| [dot(&way, &axes[0]), dot(&way, &axes[1]), dot(&way, &axes[2])];
+    // |aᵢ·bⱼ|, for the faces of A by j and for those of B by i.
+    let size = |i: usize, j: usize| dot(&b.axes[j], &a.axes[i]).abs();
+    let by_b = |i: usize| [size(i, 0), size(i, 1), size(i, 2)];
+    let sizes = [by_b(0), by_b(1), by_b(2)];
+    let offset = along(&a.axes);
+    let slack = {
+        let sum = |v: &Each| v[0] + v[1] + v[2];
+        let of_way = offset[0].abs() + offset[1].abs() + offset[2].abs();
+        let size = sum(&a.half) + sum(&b.half) + of_way;
+        a.shift + b.shift + Two::splat(rounding) + Two::splat(8.0 * f64::EPSILON) * size
+    };
+    let [of_a, of_b] = losses.as_ref().map_or([None; 2], |[of_a, of_b]| [Some(of_a), Some(of_b)]);
+    let mut found = Found {
+        squared: Two::ZERO,
+        points: Two::splat(f64::NEG_INFINITY),
+        surfaces: Two::splat(f64::NEG_INFINITY),
+    };
+    // Only B drifts.
+    found.raise_along((&a, &b), (&offset, &sizes, slack), (None, of_a), margin);
+    let squared = deviations * deviations * (1.0 + 4.0 * f64::EPSILON);
+    if !found.is_enough(squared, surfaces) {
+        let by_a = |j: usize| [sizes[0][j], sizes[1][j], sizes[2][j]];
+        let sizes = [by_a(0), by_a(1), by_a(2)];
+        found.raise_along((&b, &a), (&along(&b.axes), &sizes, slack), (of_b, None), margin);
+    }
+    found.of_each()
+}
+
+/// What two tests found so far.
+struct Found {
+    /// The square of the deviations.
+    squared: Two,
+    points: Two,
+    surfaces: Two,
+}
+
+impl Found {
+    /// Raises bounds by the three axes of a box, given the way to the middle of the other along each, how much of
+    /// its axes lies along those of the other, and what is to be taken off every gap.
+    #[inline(always)]
+    fn raise_along(
+        &mut self,
+        (own, other): (&Boxes, &Boxes),
+        (offset, sizes, slack): (&Each, &[Each; 3], Two),
+        (own_loss, other_loss): (Option<&Losses>, Option<&Losses>),
         margin: f64,
-        carried: Option<&Carried>,
-        enough: (f64, f64),
-    ) -> Apart {
-        match carried {
-            None => self.by_faces_less(None, margin, enough),
-            Some(carried) => self.by_faces_of_drifting(carried, margin, enough),
+    ) {
+        for k in 0..3 {
+            let along = |v: &Each| dot(v, &sizes[k]);
+            let mut room = slack;
+            let mut reach = own.reach[k] + along(&other.reach);
+            let (mut own_std, mut std) = (own.std[k], along(&other.std));
+            if let Some(loss) = own_loss {
+                (room, reach, own_std) =
+                    (room + loss.room[k], reach + loss.reach[k], own_std + loss.std[k]);
+            }
+            if let Some(loss) = other_loss {
+                (room, reach, std) =
+                    (room + loss.room[k], reach + loss.reach[k], std + loss.std[k]);
+            }
+            let std = std.fast_min(other.max_std);
+            let points = offset[k].abs() - own.half[k] - along(&other.half) - room;
+            let beyond = (points - Two::splat(margin)).fast_max(Two::ZERO);
+            let squared = beyond * beyond / (own_std * own_std + std * std);
+            // Nothing over nothing, of exact points that touch, is no bound: NaN raises nothing.
+            self.squared = squared.simd_gt(self.squared).bitselect(squared, self.squared);
+            self.points = points.fast_max(self.points);
+            self.surfaces = (points - reach).fast_max(self.surfaces);
         }
     }
 
-    /// Apart from the loop of a search at rest, which stays short.
-    #[inline(never)]
-    fn by_faces_of_drifting(&self, carried: &Carried, margin: f64, enough: (f64, f64)) -> Apart {
-        let along_a = carried.along(self.a.obb.axes.as_ref());
-        self.by_faces_less(Some([along_a, carried.along_own]), margin, enough)
+    fn is_enough(&self, squared: f64, surfaces: f64) -> bool {
+        let (found, gaps) = (self.squared.to_array(), self.surfaces.to_array());
+        gaps[0] >= surfaces && gaps[1] >= surfaces && found[0] >= squared && found[1] >= squared
     }
 
-    #[inline(always)]
-    fn by_faces_less(
-        &self,
-        losses: Option<[Loss; 2]>,
-        margin: f64,
-        (deviations, surfaces): (f64, f64),
-    ) -> Apart {
-        let (a, b) = (self.a, self.b);
-        let mut apart =
-            Apart { deviations: 0.0, points: f64::NEG_INFINITY, surfaces: f64::NEG_INFINITY };
-        let [loss_along_a, loss_along_b] =
-            losses.as_ref().map_or([None; 2], |[of_a, of_b]| [Some(of_a), Some(of_b)]);
-        // Only B drifts.
-        let gaps = (self.offset, &self.cosines, self.slack);
-        raise_along(a, b, gaps, (None, loss_along_a), margin, &mut apart);
-        let is_enough = apart.surfaces >= surfaces
-            && apart.deviations >= deviations * deviations * (1.0 + 4.0 * f64::EPSILON);
-        if !is_enough {
-            let [x, y, z] = self.cosines.map(f64x4::to_array);
-            let cosine = |k: usize| f64x4::new([x[k], y[k], z[k], 0.0]);
-            let cosines = [cosine(0), cosine(1), cosine(2)];
-            let gaps = (combined(&self.way, &self.moved.axes), &cosines, self.slack);
-            raise_along(b, a, gaps, (loss_along_b, None), margin, &mut apart);
-        }
-        apart.deviations = apart.deviations.sqrt();
-        apart
+    fn of_each(&self) -> [Apart; 2] {
+        let (deviations, points, surfaces) =
+            (self.squared.sqrt().to_array(), self.points.to_array(), self.surfaces.to_array());
+        [0, 1].map(|k| Apart {
+            deviations: deviations[k],
+            points: points[k],
+            surfaces: surfaces[k],
+        })
     }
+}
 
-    /// Whether the boxes of the surfaces are apart along one of the nine directions across an edge of
-    /// each.
-    pub(crate) fn edges_part_surfaces(&self) -> bool {
-        let by_b = self.cosines.map(f64x4::to_array);
-        let r = [0, 1, 2].map(|i| [by_b[0][i], by_b[1][i], by_b[2][i]]);
-        let t = self.offset.to_array();
-        let surface = |node: &NodeData| Array::from(node.obb.half_extents + node.bounds.axis_reach);
-        let (half_a, half_b) = (surface(self.a), surface(self.b));
-        for i in 0..3 {
-            let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
-            for j in 0..3 {
-                let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
-                // eᵢ × rⱼ has the components −r[i2] at i1 and r[i1] at i2.
-                let squared_sine = r[i1][j] * r[i1][j] + r[i2][j] * r[i2][j];
-                let distance = (t[i2] * r[i1][j] - t[i1] * r[i2][j]).abs();
-                let reach = half_a[i1] * r[i2][j].abs()
-                    + half_a[i2] * r[i1][j].abs()
-                    + half_b[j1] * r[i][j2].abs()
-                    + half_b[j2] * r[i][j1].abs();
-                // The direction is as long as the sine, at most one: the slack counts for more.
-                if squared_sine >= PARALLEL && distance - reach >= self.slack {
-                    return true;
-                }
+/// Whether the boxes of the surfaces are apart along one of the nine directions across an edge of
+/// each; see [`Asked::rounding`].
+pub(crate) fn edges_part_surfaces(a: Placed<'_>, b: Placed<'_>, rounding: f64) -> bool {
+    let dot = |p: &Array, q: &Array| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let r = a.axes.map(|of_a| b.axes.map(|of_b| dot(&of_b, &of_a)));
+    let way = [0, 1, 2].map(|k| b.centre[k] - a.centre[k]);
+    let t = a.axes.map(|axis| dot(&way, &axis));
+    let size = a.node.obb.half_extents.sum()
+        + b.node.obb.half_extents.sum()
+        + (t[0].abs() + t[1].abs() + t[2].abs());
+    let slack = a.node.bounds.shift + b.node.bounds.shift + rounding + 8.0 * f64::EPSILON * size;
+    let surface = |node: &NodeData| Array::from(node.obb.half_extents + node.bounds.axis_reach);
+    let (half_a, half_b) = (surface(a.node), surface(b.node));
+    for i in 0..3 {
+        let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
+        for j in 0..3 {
+            let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
+            // eᵢ × rⱼ has the components −r[i2] at i1 and r[i1] at i2.
+            let squared_sine = r[i1][j] * r[i1][j] + r[i2][j] * r[i2][j];
+            let distance = (t[i2] * r[i1][j] - t[i1] * r[i2][j]).abs();
+            let reach = half_a[i1] * r[i2][j].abs()
+                + half_a[i2] * r[i1][j].abs()
+                + half_b[j1] * r[i][j2].abs()
+                + half_b[j2] * r[i][j1].abs();
+            // The direction is as long as the sine, at most one: the slack counts for more.
+            if squared_sine >= PARALLEL && distance - reach >= slack {
+                return true;
             }
         }
-        false
     }
-}
-
-/// Raises bounds by the three axes of a node, given the way to the middle of the other along each, the
-/// cosines of its axes by the axes of the other, and what is to be taken off every gap; the deviations are
-/// squared.
-#[inline(always)]
-fn raise_along(
-    own: &NodeData,
-    other: &NodeData,
-    (offset, cosines, slack): (Lanes, &[Lanes; 3], f64),
-    (own_loss, other_loss): (Option<&Loss>, Option<&Loss>),
-    margin: f64,
-    apart: &mut Apart,
-) {
-    let sizes = cosines.map(f64x4::abs);
-    let along = |v: &Vector3| combined(v.as_ref(), &sizes);
-    let (bounds, of_other) = (&own.bounds, &other.bounds);
-    let mut room = f64x4::splat(slack);
-    let mut reach = lanes(&bounds.axis_reach) + along(&of_other.axis_reach);
-    let mut own_std = lanes(&bounds.axis_std);
-    let mut std = along(&of_other.axis_std);
-    if let Some(loss) = own_loss {
-        (room, reach, own_std) = (room + loss.room, reach + loss.reach, own_std + loss.std);
-    }
-    if let Some(loss) = other_loss {
-        (room, reach, std) = (room + loss.room, reach + loss.reach, std + loss.std);
-    }
-    let std = std.fast_min(f64x4::splat(of_other.max_std));
-    let points =
-        offset.abs() - lanes(&own.obb.half_extents) - along(&other.obb.half_extents) - room;
-    let surfaces = points - reach;
-    let beyond = (points - f64x4::splat(margin)).fast_max(f64x4::ZERO);
-    let squared = beyond * beyond / (own_std * own_std + std * std);
-    let (squared, points, surfaces) = (squared.as_array(), points.as_array(), surfaces.as_array());
-    for k in 0..3 {
-        // Nothing over nothing, of exact points that touch, is no bound: `max` passes over NaN.
-        apart.deviations = apart.deviations.max(squared[k]);
-        apart.points = apart.points.max(points[k]);
-        apart.surfaces = apart.surfaces.max(surfaces[k]);
-    }
+    false
 }
 
 /// Below this sine² two edges count as parallel: their cross product is mostly rounding. Leaving a
@@ -288,7 +354,40 @@ mod tests {
             let covariance = Covariance::diagonal([std * std, 4.0 * std * std, 0.1 * std * std]);
             Primitive::point(UncertainPoint { mean, covariance })
         };
-        Tree::build((0..40).map(point).collect(), &TreeSettings::default()).unwrap()
+        let settings = TreeSettings { max_leaf_points: 12, ..TreeSettings::default() };
+        Tree::build((0..80).map(point).collect(), &settings).unwrap()
+    }
+
+    /// The root and its two halves.
+    fn nodes(tree: &Tree) -> [&NodeData; 3] {
+        let root = tree.root.unwrap();
+        let [left, right] = tree.nodes[root as usize].children.unwrap();
+        [root, left, right].map(|node| &tree.nodes[node as usize])
+    }
+
+    const ALL: (f64, f64) = (f64::INFINITY, f64::INFINITY);
+
+    /// Normal by normal, as it is said.
+    fn one_by_one(a: &NodeData, b: &NodeData, a_from_b: &Pose, margin: f64) -> Apart {
+        let moved = b.obb.transformed(a_from_b);
+        let size = (moved.centre - a.obb.centre).norm() + a.obb.radius() + b.obb.radius();
+        let mut apart =
+            Apart { deviations: 0.0, points: f64::NEG_INFINITY, surfaces: f64::NEG_INFINITY };
+        for normal in a.obb.axes.column_iter().chain(moved.axes.column_iter()) {
+            let n: Vector3 = normal.into();
+            let points = n.dot(&(moved.centre - a.obb.centre)).abs()
+                - a.obb.half_width_along(&n)
+                - moved.half_width_along(&n)
+                - 1e-14 * size;
+            let spreads = [(&a.bounds, &a.obb.axes), (&b.bounds, &moved.axes)];
+            let [of_a, of_b] = spreads.map(|(bounds, axes)| bounds.std_along(axes, &n));
+            let reach = spreads.map(|(bounds, axes)| axes.tr_mul(&n).abs().dot(&bounds.axis_reach));
+            let deviations = (points - margin).max(0.0) / of_a.hypot(of_b);
+            apart.deviations = apart.deviations.max(deviations);
+            apart.points = apart.points.max(points);
+            apart.surfaces = apart.surfaces.max(points - reach[0] - reach[1]);
+        }
+        apart
     }
 
     proptest! {
@@ -304,16 +403,46 @@ mod tests {
         ) {
             let (a, b) = (tree(1, std), tree(2, std));
             let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
-            let [a, b] = [&a, &b].map(|tree| &tree.nodes[tree.root.unwrap() as usize]);
+            let ([a, ..], [_, one, other]) = (nodes(&a), nodes(&b));
+            let moved = [one, other].map(|b| MovedBox::new(&b.obb, &Motion::from(&pose)));
+            let placed = [Placed::moved(one, &moved[0]), Placed::moved(other, &moved[1])];
+            let ask = |enough| {
+                by_faces([Placed::at_home(a); 2], placed, None, Asked { margin, rounding: 0.0, enough })
+            };
+            for (early, full) in ask(enough).into_iter().zip(ask(ALL)) {
+                prop_assert!(early.deviations <= full.deviations && early.surfaces <= full.surfaces);
+                let is_all = early.deviations == full.deviations
+                    && early.points == full.points
+                    && early.surfaces == full.surfaces;
+                prop_assert!(
+                    is_all || early.deviations >= enough.0 && early.surfaces >= enough.1
+                );
+            }
+        }
+
+        #[test]
+        fn two_tests_at_once_are_those_of_each_by_all_normals(
+            std in 0.001..0.05_f64,
+            offset in prop::array::uniform3(-1.0..1.0_f64),
+            angles in prop::array::uniform3(-3.1..3.1_f64),
+            margin in 0.0..0.05_f64,
+        ) {
+            let (a, b) = (tree(1, std), tree(2, 0.3 * std));
+            let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
+            let ([root, one, other], [b, ..]) = (nodes(&a), nodes(&b));
             let moved = MovedBox::new(&b.obb, &Motion::from(&pose));
-            let between = Between::new(a, (b, &moved), 0.0);
-            let early = between.by_faces(margin, None, enough);
-            let full = between.by_faces(margin, None, (f64::INFINITY, f64::INFINITY));
-            prop_assert!(early.deviations <= full.deviations && early.surfaces <= full.surfaces);
-            let is_all = early.deviations == full.deviations
-                && early.points == full.points
-                && early.surfaces == full.surfaces;
-            prop_assert!(is_all || early.deviations >= enough.0 && early.surfaces >= enough.1);
+            let asked = Asked { margin, rounding: 0.0, enough: ALL };
+            for halves in [[one, other], [other, root]] {
+                let placed = halves.map(Placed::at_home);
+                let found = by_faces(placed, [Placed::moved(b, &moved); 2], None, asked);
+                for (half, found) in halves.into_iter().zip(found) {
+                    let known = one_by_one(half, b, &pose, margin);
+                    prop_assert!((found.points - known.points).abs() < 1e-12);
+                    prop_assert!((found.surfaces - known.surfaces).abs() < 1e-12);
+                    let off = (found.deviations - known.deviations).abs();
+                    prop_assert!(off < 1e-8 * (1.0 + known.deviations), "{off}");
+                }
+            }
         }
     }
 }

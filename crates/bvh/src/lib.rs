@@ -16,6 +16,7 @@ mod leakage;
 mod moments;
 mod node;
 mod obb;
+mod pairs;
 mod parts;
 mod patch;
 mod primitive;
@@ -24,6 +25,7 @@ mod queue;
 mod refit;
 mod remove;
 mod settings;
+mod sought;
 mod surfaces;
 mod traverse;
 mod tree;
@@ -41,9 +43,8 @@ pub use patch::Patched;
 pub use primitive::Primitive;
 pub use primitives::Primitives;
 pub use settings::{Traversal, TraversalSettings, TreeSettings};
-pub use surfaces::{
-    Sought, SurfaceFlow, SurfaceOutcome, SurfacePair, urgency_of_roots, visit_surfaces,
-};
+pub use sought::{Sought, SurfaceOutcome};
+pub use surfaces::{SurfaceFlow, SurfacePair, urgency_of_roots, visit_surfaces};
 pub use traverse::{Flow, LeafPair, Outcome, traverse};
 pub use tree::Tree;
 pub use view::Node;

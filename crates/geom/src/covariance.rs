@@ -188,6 +188,7 @@ impl Covariance {
     }
 
     /// Variance (m²) of the component along `direction`, which need not have unit length.
+    #[inline]
     pub fn variance_along(&self, direction: &Vector3) -> f64 {
         match &self.0 {
             Form::Isotropic(variance) => variance * direction.norm_squared(),
@@ -252,6 +253,7 @@ impl Covariance {
     }
 
     /// The same with R as a matrix.
+    #[inline]
     pub(crate) fn turned(&self, rotation: &Matrix3) -> Self {
         match &self.0 {
             Form::Isotropic(_) => *self,
@@ -271,6 +273,7 @@ impl Covariance {
     }
 
     /// Σ + Ψ: the covariance of a sum of independent errors.
+    #[inline]
     pub fn sum(&self, other: &Self) -> Self {
         match (&self.0, &other.0) {
             (Form::Isotropic(a), Form::Isotropic(b)) => Self(Form::Isotropic(a + b)),

@@ -35,16 +35,19 @@ impl Motion {
     }
 
     /// R p + t.
+    #[inline]
     pub fn point(&self, point: &Point3) -> Point3 {
         Point3::from(self.rotation * point.coords + self.translation)
     }
 
     /// R⁻¹ (p − t).
+    #[inline]
     pub fn point_back(&self, point: &Point3) -> Point3 {
         Point3::from(self.rotation.tr_mul(&(point.coords - self.translation)))
     }
 
     /// R v.
+    #[inline]
     pub fn vector(&self, vector: &Vector3) -> Vector3 {
         self.rotation * vector
     }
@@ -57,16 +60,19 @@ impl Motion {
     }
 
     /// R⁻¹ v.
+    #[inline]
     pub fn vector_back(&self, vector: &Vector3) -> Vector3 {
         self.rotation.tr_mul(vector)
     }
 
     /// R Σ Rᵀ.
+    #[inline]
     pub fn covariance(&self, covariance: &Covariance) -> Covariance {
         covariance.turned(&self.rotation)
     }
 
     /// Both of a point.
+    #[inline]
     pub fn uncertain_point(&self, point: &UncertainPoint) -> UncertainPoint {
         UncertainPoint {
             mean: self.point(&point.mean),

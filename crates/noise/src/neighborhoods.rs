@@ -143,15 +143,12 @@ impl Neighborhoods {
         found
     }
 
-    /// The positions at most so far from a place, m, in order of their indices; none about a place that is
-    /// not finite.
-    pub fn within(&self, place: &Point3, distance: f64) -> Vec<Neighbor> {
-        if !is_finite(place) {
-            return Vec::new();
+    /// Calls `visit` with the positions at most so far from a place, m, in an order that follows from the
+    /// cloud and the place; with none about a place that is not finite.
+    pub fn visit_within(&self, place: &Point3, distance: f64, visit: impl FnMut(Neighbor)) {
+        if is_finite(place) {
+            self.positions.visit_within(place, distance * distance, visit);
         }
-        let mut found = self.positions.hits_within(place, distance * distance);
-        found.sort_unstable_by_key(|near| near.index);
-        found
     }
 
     /// Whether any position is at most so far from a place, m, which is soon known where none is; not

@@ -116,27 +116,39 @@ impl Positions {
 
     /// The positions within a distance of a place, in no order.
     pub(crate) fn hits_within(&self, place: &Point3, squared_distance: f64) -> Vec<Neighbor> {
-        let within = |tree: &ImmutableKdTree<f64, 3>, found: &mut Vec<Neighbor>, now: &[u32]| {
+        let mut found = Vec::new();
+        self.visit_within(place, squared_distance, |near| found.push(near));
+        found
+    }
+
+    /// The same one by one.
+    pub(crate) fn visit_within(
+        &self,
+        place: &Point3,
+        squared_distance: f64,
+        mut visit: impl FnMut(Neighbor),
+    ) {
+        let mut within = |tree: &ImmutableKdTree<f64, 3>, now: &[u32]| {
             let query: [f64; 3] = place.coords.into();
             // The slack keeps the tree's box tests, which round, from losing one.
             tree.query(&query)
                 .within::<SquaredEuclidean<f64>>(squared_distance * (1.0 + 1e-9))
                 .unsorted()
                 .visit(|hit| {
-                    if hit.distance <= squared_distance {
-                        found.extend(neighbor(hit.item, hit.distance, now));
+                    if hit.distance <= squared_distance
+                        && let Some(near) = neighbor(hit.item, hit.distance, now)
+                    {
+                        visit(near);
                     }
                 });
         };
-        let mut found = Vec::new();
         match &self.overlay {
-            None => within(&self.tree, &mut found, &[]),
+            None => within(&self.tree, &[]),
             Some(overlay) => {
-                within(&self.tree, &mut found, &overlay.now);
-                within(&overlay.added, &mut found, &[]);
+                within(&self.tree, &overlay.now);
+                within(&overlay.added, &[]);
             }
         }
-        found
     }
 
     /// The distance of the position that is `k`-th nearest to a place, or of the last, m.

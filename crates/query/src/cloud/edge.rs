@@ -13,10 +13,16 @@ pub(super) const SLOPE: f64 = 0.5;
 /// A tilt smaller than this is rounding.
 const ROUNDING: f64 = 1e-6;
 
+/// What [`sine`] is at most.
+pub(super) const MOST_SINE: f64 = 1.0 + 2.0 * ROUNDING;
+
 /// |sin| of the angle between two unit vectors, never too little by rounding.
 pub(super) fn sine(one: &Vector3, other: &Vector3) -> f64 {
     (1.0 - one.dot(other).powi(2)).max(0.0).sqrt() + ROUNDING
 }
+
+/// What [`edge_along`] is at most: the root of 1 + [`SLOPE`]², rounded up.
+pub(crate) const MOST_ALONG: f64 = 1.12;
 
 /// The most that an edge at a piece with this normal reaches along a unit vector, as a share of its length.
 pub(crate) fn edge_along(normal: &Vector3, along: &Vector3) -> f64 {
@@ -39,10 +45,28 @@ pub(crate) struct Edge {
 }
 
 impl Edge {
+    /// Halfway between its ends.
+    pub(crate) fn middle(&self) -> Point3 {
+        nalgebra::center(&self.ends[0], &self.ends[1])
+    }
+
     /// The same edge in another frame.
     pub(crate) fn moved(&self, motion: &Motion) -> Self {
         // PERF: written out, for `map` over arrays is not inlined where thousands are moved.
         let [from, to] = &self.ends;
         Self { ends: [motion.point(from), motion.point(to)], ..*self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_edge_reaches_farther_along_any_direction_than_stated() {
+        let at = |k: i32| 1e-4 * f64::from(k) * std::f64::consts::TAU;
+        let along = |k| edge_along(&Vector3::z(), &Vector3::new(at(k).sin(), 0.0, at(k).cos()));
+        let most = (0..10_000).map(along).fold(0.0, f64::max);
+        assert!(most <= MOST_ALONG && most > MOST_ALONG - 0.01, "{most}");
     }
 }

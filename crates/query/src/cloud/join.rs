@@ -6,21 +6,25 @@ use cloudtouch_bvh::NodeId;
 use cloudtouch_noise::Scratch;
 
 use super::edge::{EDGE_SPACINGS, Edge, SLOPE};
+use super::leaf::LeafEdges;
 use super::prepared::Prepared;
 use super::slots::NEIGHBORS;
 use super::surfel::Surfel;
 
 impl Prepared {
     /// The edges that start or end at a point of a leaf.
-    pub(crate) fn leaf_edges(&self, id: NodeId) -> &[Edge] {
-        self.leaf_edges_with(id, &mut Scratch::default())
+    pub(crate) fn leaf_edges(&self, id: NodeId) -> &LeafEdges {
+        match self.surface.edges[id.index()].get() {
+            Some(edges) => edges,
+            None => self.leaf_edges_with(id, &mut Scratch::default()),
+        }
     }
 
     /// [`Self::leaf_edges`] with buffers that leaves nearby were joined with.
-    pub(super) fn leaf_edges_with(&self, id: NodeId, scratch: &mut Scratch) -> &[Edge] {
+    pub(super) fn leaf_edges_with(&self, id: NodeId, scratch: &mut Scratch) -> &LeafEdges {
         self.surface.edges[id.index()].get_or_init(|| {
-            let Some(leaf) = self.tree.leaf(id) else { return Vec::new() };
-            edges_of(self, leaf.primitive_indices(), scratch)
+            let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
+            Box::new(LeafEdges::new(edges_of(self, pieces, scratch), self.thin_side(id)))
         })
     }
 }

@@ -4,6 +4,7 @@ use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Point3, UnitVector3};
 use cloudtouch_noise::Scratch;
 
+use super::leaf::LeafSurface;
 use super::prepared::Prepared;
 use super::slots::{Basis, Fitted, NEIGHBORS};
 use super::surfel::Surfel;
@@ -14,22 +15,35 @@ const ROUNDING: f64 = 1e-9;
 impl Prepared {
     /// The surface at the points of a node, and whether this call computed it.
     pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
-        self.leaf_with(id, &mut Scratch::default())
+        let (leaf, computed) = self.leaf_surface(id);
+        (&leaf.surfels, computed)
     }
 
-    /// [`Self::leaf`] with buffers that leaves nearby were computed with.
-    pub(super) fn leaf_with(&self, id: NodeId, scratch: &mut Scratch) -> (&[Surfel], bool) {
+    /// [`Self::leaf`] with what encloses it.
+    pub(crate) fn leaf_surface(&self, id: NodeId) -> (&LeafSurface, bool) {
+        match self.surface.leaves[id.index()].get() {
+            // PERF: buffers that are not used cost as much as the rest.
+            Some(leaf) => (leaf, false),
+            None => self.leaf_surface_with(id, &mut Scratch::default()),
+        }
+    }
+
+    /// [`Self::leaf_surface`] by buffers that leaves nearby were computed with.
+    pub(super) fn leaf_surface_with(
+        &self,
+        id: NodeId,
+        scratch: &mut Scratch,
+    ) -> (&LeafSurface, bool) {
         let mut computed = false;
-        let surfels = self.surface.leaves[id.index()].get_or_init(|| {
+        let leaf = self.surface.leaves[id.index()].get_or_init(|| {
             computed = true;
-            let Some(leaf) = self.tree.node(id) else { return Vec::new() };
-            let pieces = leaf.primitive_indices();
+            let pieces = self.tree.node(id).map_or(&[][..], |leaf| leaf.primitive_indices());
             let known = pieces.iter().find_map(|&piece| self.known_reach(piece));
             self.gather(pieces, known, scratch);
-            let surfel = |&piece: &u32| *self.surfel(piece, scratch);
-            leaf.primitive_indices().iter().map(surfel).collect()
+            let surfels = pieces.iter().map(|&piece| *self.surfel(piece, scratch)).collect();
+            Box::new(LeafSurface::new(surfels, self.thin_side(id)))
         });
-        (surfels, computed)
+        (leaf, computed)
     }
 
     /// The surface at the points measured nearest to a place in the local frame.

@@ -3,12 +3,14 @@
 
 mod accessors;
 mod around;
+mod ball;
 mod carry;
 mod change;
 mod edge;
 mod frame;
 mod join;
 mod lazy;
+mod leaf;
 mod lost;
 mod makeup;
 mod overlap;
@@ -22,19 +24,23 @@ mod refine;
 mod regrow;
 mod scans;
 mod settings;
+mod slab;
 mod slots;
 mod surfel;
 mod view;
 
 pub(crate) use accessors::cloud_accessors;
+pub(crate) use ball::Ball;
 pub use change::Change;
-pub(crate) use edge::{DISC_SPACINGS, Edge, edge_along};
+pub(crate) use edge::{DISC_SPACINGS, Edge, MOST_ALONG, edge_along};
 #[cfg(test)]
 pub(crate) use join::edges_of;
+pub(crate) use leaf::{LeafEdges, LeafSurface};
 pub(crate) use makeup::{Makeup, SensorDoubt};
 pub(crate) use preparation::Preparation;
 pub use prepare::Cloud;
 pub(crate) use prepared::Prepared;
 pub(crate) use raster::Sight;
 pub use settings::CloudSettings;
+pub(crate) use slab::Slab;
 pub(crate) use surfel::Surfel;

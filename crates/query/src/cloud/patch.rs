@@ -116,8 +116,9 @@ impl Prepared {
         let mut moved_house = BTreeMap::new();
         for leaf in &patched.stale {
             old.edges[leaf.index()].take();
-            let surfels = old.leaves[leaf.index()].take().unwrap_or_default();
-            moved_house.extend(surfels.into_iter().map(|surfel| (surfel.index, surfel)));
+            let known = old.leaves[leaf.index()].take();
+            let surfels = known.into_iter().flat_map(|leaf| leaf.surfels);
+            moved_house.extend(surfels.map(|surfel| (surfel.index, surfel)));
         }
         surface.leaves = mem::take(&mut old.leaves);
         surface.edges = mem::take(&mut old.edges);
@@ -126,11 +127,11 @@ impl Prepared {
         surface.shared = slots(tree.node_slots());
         let after = after(before, old.spacing_caps.len());
         if (0..).zip(before).any(|(index, before)| before.is_some_and(|before| before != index)) {
-            surface.leaves.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|surfels| {
-                surfels.iter_mut().for_each(|s| s.index = after[s.index as usize]);
+            surface.leaves.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|leaf| {
+                leaf.surfels.iter_mut().for_each(|s| s.index = after[s.index as usize]);
             });
-            surface.edges.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|edges| {
-                edges.iter_mut().for_each(|e| e.points = e.points.map(|p| after[p as usize]));
+            surface.edges.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|leaf| {
+                leaf.edges.iter_mut().for_each(|e| e.points = e.points.map(|p| after[p as usize]));
             });
         }
         Before { surface: old, moved_house, after }
@@ -210,7 +211,7 @@ mod tests {
                 let ids: Vec<_> = cloud.tree.leaves().map(|leaf| leaf.id()).collect();
                 let mut all: Vec<[u32; 2]> = ids
                     .iter()
-                    .flat_map(|&id| cloud.leaf_edges(id))
+                    .flat_map(|&id| &cloud.leaf_edges(id).edges)
                     .map(|edge| {
                         let [p, q] = edge.points;
                         [p.min(q), p.max(q)]

@@ -6,7 +6,7 @@ use cloudtouch_geom::{Point3, PointCloud};
 use crate::error::PrepareError;
 
 use super::accessors::cloud_accessors;
-use super::edge::Edge;
+use super::leaf::{LeafEdges, LeafSurface};
 use super::prepared::Prepared;
 use super::settings::CloudSettings;
 use super::surfel::Surfel;
@@ -67,7 +67,11 @@ impl Cloud {
         self.prepared.leaf(id)
     }
 
-    pub(crate) fn leaf_edges(&self, id: NodeId) -> &[Edge] {
+    pub(crate) fn leaf_surface(&self, id: NodeId) -> (&LeafSurface, bool) {
+        self.prepared.leaf_surface(id)
+    }
+
+    pub(crate) fn leaf_edges(&self, id: NodeId) -> &LeafEdges {
         self.prepared.leaf_edges(id)
     }
 

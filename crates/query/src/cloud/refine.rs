@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::error::PrepareError;
 
 use super::edge::{DISC_SPACINGS, Edge};
+use super::leaf::{LeafEdges, LeafSurface};
 use super::prepared::Prepared;
 use super::slots::{Basis, Fitted};
 use super::surfel::Surfel;
@@ -24,7 +25,7 @@ impl Prepared {
         let start = std::time::Instant::now();
         let leaves: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
         leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
-            self.leaf_with(leaf, scratch);
+            self.leaf_surface_with(leaf, scratch);
         });
         leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
             self.leaf_edges_with(leaf, scratch);
@@ -45,8 +46,23 @@ impl Prepared {
         }
         self.tree.refit(&primitives)?;
         self.tree.set_extents(extents)?;
+        self.enclose_again();
         self.prepare_time += start.elapsed();
         Ok(())
+    }
+
+    /// Encloses what the leaves hold along the sides that these have now.
+    fn enclose_again(&mut self) {
+        let ids: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
+        for id in ids {
+            let thin = self.thin_side(id);
+            if let Some(leaf) = self.surface.leaves[id.index()].get_mut() {
+                **leaf = LeafSurface::new(std::mem::take(&mut leaf.surfels), thin);
+            }
+            if let Some(leaf) = self.surface.edges[id.index()].get_mut() {
+                **leaf = LeafEdges::new(std::mem::take(&mut leaf.edges), thin);
+            }
+        }
     }
 
     /// What the tree is to hold of the pieces of a leaf, once their surface is known, and how far that reaches.
@@ -64,7 +80,7 @@ impl Prepared {
     fn near_halves(&self, leaf: NodeId) -> Vec<[f64; 2]> {
         let surfels = self.leaf(leaf).0;
         let mut reach = vec![[0.0_f64; 2]; surfels.len()];
-        for Edge { ends, own, .. } in self.leaf_edges(leaf) {
+        for Edge { ends, own, .. } in &self.leaf_edges(leaf).edges {
             let half = 0.5 * (ends[1] - ends[0]);
             for place in own.iter().flatten() {
                 let across = surfels[*place].normal.map_or(0.0, |n| n.dot(&half).abs());

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use crate::error::PrepareError;
 
+use super::leaf::LeafSurface;
 use super::lost::Before;
 use super::prepared::{Prepared, leaf_bounds};
 use super::slots::{Basis, Fitted};
@@ -85,7 +86,8 @@ impl Prepared {
         let fitted: BTreeMap<u32, Fitted> = fitted.into_iter().collect();
         for leaf in leaves {
             let Some(node) = self.tree.leaf(leaf) else { continue };
-            let known = self.surface.leaves[leaf.index()].take().unwrap_or_default();
+            let known = self.surface.leaves[leaf.index()].take();
+            let known = known.map(|leaf| leaf.surfels).unwrap_or_default();
             let surfel = |(place, piece): (usize, &u32)| match fitted.get(piece) {
                 Some(fitted) => Some(fitted.surfel),
                 None => known.get(place).copied().or_else(|| {
@@ -94,7 +96,8 @@ impl Prepared {
                 }),
             };
             let surfels = node.primitive_indices().iter().enumerate().filter_map(surfel).collect();
-            self.surface.leaves[leaf.index()] = Vec::into(surfels);
+            let surface = LeafSurface::new(surfels, self.thin_side(leaf));
+            self.surface.leaves[leaf.index()] = Box::new(surface).into();
         }
         fitted.iter().for_each(|(&piece, fitted)| {
             self.surface.bases[piece as usize] = fitted.basis;

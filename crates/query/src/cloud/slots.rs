@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use cloudtouch_bvh::{Node, Tree};
 
-use super::edge::Edge;
+use super::leaf::{LeafEdges, LeafSurface};
 use super::surfel::Surfel;
 
 /// Neighbours of a point that may be joined to it.
@@ -36,10 +36,10 @@ pub(super) struct LazySurface {
     pub surfels: Vec<OnceLock<Box<Fitted>>>,
     /// Of each what it rests on, once all leaves hold theirs.
     pub bases: Vec<Basis>,
-    pub leaves: Vec<OnceLock<Vec<Surfel>>>,
+    pub leaves: Vec<OnceLock<Box<LeafSurface>>>,
     /// Of leaves with what they share.
     pub shared: Vec<OnceLock<Vec<Surfel>>>,
-    pub edges: Vec<OnceLock<Vec<Edge>>>,
+    pub edges: Vec<OnceLock<Box<LeafEdges>>>,
     /// What the spacing of each of them is limited to, m.
     pub spacing_caps: Vec<f64>,
 }

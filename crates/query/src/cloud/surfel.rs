@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Motion, UncertainPoint, Vector3};
 
-use super::edge::{DISC_SPACINGS, sine};
+use super::edge::{DISC_SPACINGS, MOST_SINE, sine};
 
 /// The piece of surface about a sample, in the cloud's local frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +27,11 @@ impl Surfel {
             normal: self.normal.map(|normal| motion.vector(&normal)),
             ..*self
         }
+    }
+
+    /// How far its disc reaches along any unit vector at most, m.
+    pub(crate) fn most_disc_reach(&self) -> f64 {
+        DISC_SPACINGS * self.spacing * MOST_SINE
     }
 
     /// How far its disc reaches along a unit vector, m; never too little by rounding. `None` where no normal

@@ -12,4 +12,4 @@ mod surface;
 mod winding;
 
 pub use prepare::Mesh;
-pub(crate) use subdivide::{SampleRegion, four_per_triangle, sample_region};
+pub(crate) use subdivide::{SampleRegion, four_per_triangle, nearest_in_region, sample_region};

@@ -1,6 +1,8 @@
 //! Points on a mesh where it faces a cloud, as dense as that cloud is there (section 6 of the
 //! paper takes vertices and centroids, which miss a large triangle pierced in its interior).
 
+use std::cmp::Ordering;
+
 use cloudtouch_geom::Point3;
 
 use crate::error::SubdivisionError;
@@ -38,6 +40,55 @@ pub(crate) fn sample_region(
     region: &SampleRegion,
     max_parts: usize,
 ) -> Result<Vec<Point3>, SubdivisionError> {
+    let mut points = with_repeated(triangles, region, max_parts)?;
+    merge_repeated(&mut points);
+    Ok(points)
+}
+
+/// As many as wanted of these, nearest to the middle of the region, in order of distance, then place.
+///
+/// # Errors
+/// As [`sample_region`].
+pub(crate) fn nearest_in_region(
+    triangles: impl IntoIterator<Item = [Point3; 3]>,
+    region: &SampleRegion,
+    wanted: usize,
+    max_parts: usize,
+) -> Result<Vec<Point3>, SubdivisionError> {
+    let points = with_repeated(triangles, region, max_parts)?;
+    let distance = |p: Point3| ((p - region.center).norm(), p);
+    let mut near: Vec<(f64, Point3)> = points.into_iter().map(distance).collect();
+    let order = |p: &(f64, Point3), q: &(f64, Point3)| {
+        p.0.total_cmp(&q.0).then_with(|| by_coordinates(&p.1, &q.1))
+    };
+    let all = near.len();
+    let mut first = |count: usize| -> Vec<Point3> {
+        if count < all {
+            near.select_nth_unstable_by(count, order);
+        }
+        near[..count].sort_unstable_by(order);
+        let mut points: Vec<Point3> = near[..count].iter().map(|(_, p)| *p).collect();
+        points.dedup();
+        points
+    };
+    // PERF: there are hundreds, each a few times.
+    let mut nearest = first(all.min(USUALLY_REPEATED * wanted));
+    if nearest.len() < wanted {
+        nearest = first(all);
+    }
+    nearest.truncate(wanted);
+    Ok(nearest)
+}
+
+/// Corners that parts have in common are sampled at most so often, as a rule.
+const USUALLY_REPEATED: usize = 8;
+
+/// The samples of [`sample_region`], those in common once for each part that has them.
+fn with_repeated(
+    triangles: impl IntoIterator<Item = [Point3; 3]>,
+    region: &SampleRegion,
+    max_parts: usize,
+) -> Result<Vec<Point3>, SubdivisionError> {
     let mut samples = Samples { region, points: Vec::new(), parts: 0, max_parts };
     for corners in triangles {
         samples.split(corners, MAX_DEPTH);
@@ -45,7 +96,6 @@ pub(crate) fn sample_region(
     if samples.parts > max_parts {
         return Err(SubdivisionError { spacing: region.spacing, max_parts });
     }
-    merge_repeated(&mut samples.points);
     Ok(samples.points)
 }
 
@@ -107,11 +157,12 @@ impl Samples<'_> {
 
 /// Neighbouring parts share their corners; each is wanted once.
 fn merge_repeated(points: &mut Vec<Point3>) {
-    let order = |p: &Point3, q: &Point3| {
-        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(p.z.total_cmp(&q.z))
-    };
-    points.sort_unstable_by(order);
+    points.sort_unstable_by(by_coordinates);
     points.dedup();
+}
+
+fn by_coordinates(p: &Point3, q: &Point3) -> Ordering {
+    p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(p.z.total_cmp(&q.z))
 }
 
 #[cfg(test)]

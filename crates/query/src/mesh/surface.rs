@@ -49,11 +49,15 @@ fn visit_parts(
 ) {
     let [a, b, c] = corners;
     let middle = centroid(&corners);
-    let radius = corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
-    if (middle - place).norm() > reach + radius {
+    let squared = |corner: &Point3| (corner - middle).norm_squared();
+    let radius = corners.iter().map(squared).fold(0.0, f64::max).sqrt();
+    let beyond = reach + radius;
+    if (middle - place).norm_squared() > beyond * beyond {
         return;
     }
-    match halved(&corners).1.filter(|_| radius > fine && halvings > 0) {
+    // PERF: most are small enough, and need not be halved to be told so.
+    let is_small = radius <= fine || halvings == 0;
+    match (!is_small).then(|| halved(&corners).1).flatten() {
         Some(halves) => {
             for half in halves {
                 visit_parts(half, (place, reach), fine, halvings - 1, visit);

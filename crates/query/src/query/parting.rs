@@ -117,9 +117,8 @@ impl Surroundings {
         let mut around = Self { place, reach, weight: 0.0, sum, squares };
         match body {
             BodyRef::Cloud(cloud) => {
-                for sample in cloud.prepared().places_within(&place, reach) {
-                    around.add(&sample, 1.0);
-                }
+                let add = |sample: &Point3| around.add(sample, 1.0);
+                cloud.prepared().visit_places_within(&place, reach, add);
             }
             BodyRef::Mesh(mesh) => {
                 mesh.visit_surface_within(&place, reach, FINE * reach, |middle, area| {

@@ -7,7 +7,7 @@ use crate::body::BodyRef;
 use crate::classifier::{PairPoint, PairPoints};
 use crate::cloud::{Cloud, Surfel};
 use crate::error::SubdivisionError;
-use crate::mesh::{Mesh, SampleRegion, sample_region};
+use crate::mesh::{Mesh, SampleRegion, nearest_in_region};
 
 use crate::search::{Finding, Found};
 
@@ -132,14 +132,5 @@ fn of_mesh(
     let mut triangles = Vec::new();
     mesh.visit_triangles_near(place, radius, |_, corners| triangles.push(corners));
     let region = SampleRegion { center: *place, core: radius, radius, spacing: seed.spacing };
-    let points = sample_region(triangles, &region, max_parts)?;
-    // There are hundreds: of equally near ones the first count.
-    let mut near: Vec<(f64, usize)> = points.iter().map(|p| (p - place).norm()).zip(0..).collect();
-    let order = |p: &(f64, usize), q: &(f64, usize)| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1));
-    if near.len() > MOST_POINTS {
-        near.select_nth_unstable_by(MOST_POINTS, order);
-        near.truncate(MOST_POINTS);
-    }
-    near.sort_unstable_by(order);
-    Ok(near.into_iter().map(|(_, index)| points[index]).collect())
+    nearest_in_region(triangles, &region, MOST_POINTS, max_parts)
 }

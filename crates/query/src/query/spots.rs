@@ -81,15 +81,19 @@ pub(super) fn spots<'a>(
     Spots { bodies: (a, b), a_from_b, sorted: pairs }
 }
 
+/// Sorts spots, and keeps no more than [`MOST_SPOTS`].
 fn sort(spots: &mut Vec<Spot>) {
     let place = |s: &Spot| (s.place.x, s.place.y, s.place.z);
-    spots.sort_by(|p, q| {
+    // PERF: a spot is large, and is moved once.
+    let mut order: Vec<usize> = (0..spots.len()).collect();
+    order.sort_by(|&p, &q| {
+        let (p, q) = (&spots[p], &spots[q]);
         let ((px, py, pz), (qx, qy, qz)) = (place(p), place(q));
         (q.probability.total_cmp(&p.probability))
             .then(p.gap.total_cmp(&q.gap))
             .then(px.total_cmp(&qx).then(py.total_cmp(&qy)).then(pz.total_cmp(&qz)))
     });
-    spots.truncate(MOST_SPOTS);
+    *spots = order.into_iter().take(MOST_SPOTS).map(|at| spots[at]).collect();
 }
 
 /// Of the two pieces that are least apart.

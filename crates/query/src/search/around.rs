@@ -17,22 +17,26 @@ pub(super) struct Around {
     leaves: BTreeMap<NodeId, Vec<Facet>>,
 }
 
-impl Around {
+/// These and where they come from.
+pub(super) struct OfMesh<'a> {
+    pub known: &'a mut Around,
+    pub body: BodyRef<'a>,
+    /// `None` where the mesh is A.
+    pub a_from_mesh: Option<&'a Motion>,
+}
+
+impl OfMesh<'_> {
     /// Those of the leaves within a distance (m) of a place in the frame of A; none of a cloud.
-    pub(super) fn facets(
-        &mut self,
-        body: BodyRef<'_>,
-        a_from_mesh: Option<&Motion>,
-        place: &Point3,
-        radius: f64,
-    ) -> Vec<Facet> {
-        let BodyRef::Mesh(mesh) = body else { return Vec::new() };
-        let local = a_from_mesh.map_or(*place, |motion| motion.point_back(place));
-        let mut facets = Vec::new();
-        mesh.visit_leaves_near(&local, radius, |leaf| {
-            let moved = || facets_of(mesh, leaf.id(), a_from_mesh);
-            facets.extend_from_slice(self.leaves.entry(leaf.id()).or_insert_with(moved));
-        });
-        facets
+    pub(super) fn near(&mut self, place: &Point3, radius: f64) -> impl Iterator<Item = &Facet> {
+        let Self { known: Around { leaves }, body, a_from_mesh } = self;
+        let mut near = Vec::new();
+        if let BodyRef::Mesh(mesh) = body {
+            let local = a_from_mesh.map_or(*place, |motion| motion.point_back(place));
+            mesh.visit_leaves_near(&local, radius, |leaf| {
+                leaves.entry(leaf.id()).or_insert_with(|| facets_of(mesh, leaf.id(), *a_from_mesh));
+                near.push(leaf.id());
+            });
+        }
+        near.into_iter().filter_map(|id| leaves.get(&id)).flatten()
     }
 }

@@ -1,12 +1,12 @@
 //! Gathers the crossings of two leaves.
 
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::Motion;
 
-use crate::cloud::{DISC_SPACINGS, Edge, edge_along};
+use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, MOST_ALONG, edge_along};
 
+use super::around::OfMesh;
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
-use super::facet::Facet;
 use super::leaf::{ExactLeaf, NoisyLeaf};
 use super::through_mesh::Outline;
 
@@ -35,12 +35,22 @@ impl Reaching {
 pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Reaching {
     let NoisyLeaf { ball, slab, .. } = of_discs;
     let mut reaching = Reaching::default();
+    let reach = DISC_SPACINGS * of_edges.ball.spacing;
+    let farthest = of_edges.ball.radius + reach;
+    if !ball.is_within(&of_edges.ball.middle, farthest + DISC_SPACINGS * ball.spacing)
+        || !slab.is_within(&of_edges.ball.middle, farthest * MOST_ALONG)
+    {
+        return reaching;
+    }
     for (place, surfel) in of_edges.surfels.iter().enumerate() {
         let Some(normal) = surfel.normal else { continue };
         let half = DISC_SPACINGS * surfel.spacing;
         let middle = &surfel.point.mean;
-        if ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
-            && slab.is_within(middle, half * edge_along(&normal, &slab.direction))
+        let off = slab.distance(middle);
+        // PERF: most are told by their height alone.
+        if off <= half * MOST_ALONG
+            && ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
+            && (off == 0.0 || off <= half * edge_along(&normal, &slab.direction))
         {
             reaching.0 |= Reaching::bit(place);
         }
@@ -57,37 +67,40 @@ pub(super) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> 
 }
 
 /// Adds the crossings of edges of one leaf with discs of another near its pieces that [`reaching`] gave;
-/// the points they join, and those of the discs, are as probable as their clearest crossing. `places` is
-/// memory to use again.
+/// the points they join, and those of the discs, are as probable as their clearest crossing. `motion` leads
+/// from where the edges were measured to the frame of A, none those of A; `places` is memory to use again.
 pub(super) fn add_edges_through_discs(
-    is_a: bool,
+    motion: Option<&Motion>,
     (of_edges, near): (&mut NoisyLeaf<'_>, Reaching),
     of_discs: &mut NoisyLeaf<'_>,
     places: &mut Vec<usize>,
     found: &mut Crossings,
 ) {
-    let (around, slab) = (of_discs.ball, of_discs.slab);
+    let Some(LeafEdges { edges, slab: edge_slab }) = of_edges.edges else { return };
+    let edge_slab = motion.map_or(*edge_slab, |motion| edge_slab.moved(motion));
     // Half of an edge is no longer than a disc of the pieces it is near to.
     let reach = DISC_SPACINGS * of_edges.ball.spacing;
     places.clear();
     places.extend((0..of_discs.surfels.len()).filter(|&at| {
         let disc = &of_discs.surfels[at];
-        of_edges.ball.is_within(&disc.point.mean, reach + DISC_SPACINGS * disc.spacing)
-            && of_edges.edge_slab.may_hold_disc_of(disc)
+        edge_slab.may_hold_disc_of(disc)
+            && of_edges.ball.is_within(&disc.point.mean, reach + DISC_SPACINGS * disc.spacing)
     }));
     if places.is_empty() {
         return;
     }
-    // Taken out, for the edges are borrowed while probabilities are raised.
-    let mut of_ends = std::mem::take(&mut of_edges.crossing);
-    for edge in of_edges.edges() {
+    let (around, slab) = (of_discs.ball, of_discs.slab);
+    let (around, slab) = motion
+        .map_or((around, slab), |motion| (around.moved_back(motion), slab.moved_back(motion)));
+    for edge in edges {
         if !near.is_joined_by(edge) || !slab.may_hold(&edge.ends, 0.0) {
             continue;
         }
-        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
-        if !around.is_within(&middle, edge.half_length + DISC_SPACINGS * around.spacing) {
+        if !around.is_within(&edge.middle(), edge.half_length + DISC_SPACINGS * around.spacing) {
             continue;
         }
+        let edge = &motion.map_or(*edge, |motion| edge.moved(motion));
+        let middle = edge.middle();
         for &at in places.iter() {
             let disc = &of_discs.surfels[at];
             let reach = edge.half_length + DISC_SPACINGS * disc.spacing;
@@ -96,37 +109,31 @@ pub(super) fn add_edges_through_discs(
             }
             let Some(crossing) = through_disc(edge, disc) else { continue };
             of_discs.crossing[at] = of_discs.crossing[at].max(crossing.probability);
-            for place in edge.own.into_iter().flatten() {
-                of_ends[place] = of_ends[place].max(crossing.probability);
-            }
-            found.add(Witness::edge(is_a, edge), &crossing);
+            of_edges.raise_ends(edge, crossing.probability);
+            found.add(Witness::edge(motion.is_none(), edge), &crossing);
         }
     }
-    of_edges.crossing = of_ends;
 }
 
-/// Adds the crossings of edges of a leaf with the triangles of another.
+/// Adds the crossings of edges of a leaf with the triangles of another; `motion` as for discs.
 pub(super) fn add_edges_through_facets(
-    is_a: bool,
+    motion: Option<&Motion>,
     of_edges: &mut NoisyLeaf<'_>,
     facets: &ExactLeaf,
     found: &mut Crossings,
 ) {
-    let mut of_ends = std::mem::take(&mut of_edges.crossing);
-    for edge in of_edges.edges() {
-        let middle = nalgebra::center(&edge.ends[0], &edge.ends[1]);
-        if !facets.ball.is_within(&middle, edge.half_length) {
+    let around = motion.map_or(facets.ball, |motion| facets.ball.moved_back(motion));
+    for edge in of_edges.edges.into_iter().flat_map(|of_leaf| &of_leaf.edges) {
+        if !around.is_within(&edge.middle(), edge.half_length) {
             continue;
         }
+        let edge = &motion.map_or(*edge, |motion| edge.moved(motion));
         for facet in &facets.facets {
             let Some(crossing) = through_facet(edge, facet) else { continue };
-            for place in edge.own.into_iter().flatten() {
-                of_ends[place] = of_ends[place].max(crossing.probability);
-            }
-            found.add(Witness::edge(is_a, edge), &crossing);
+            of_edges.raise_ends(edge, crossing.probability);
+            found.add(Witness::edge(motion.is_none(), edge), &crossing);
         }
     }
-    of_edges.crossing = of_ends;
 }
 
 /// Adds what a mesh does to the discs of a leaf that one of these triangles passes; `around` gives
@@ -135,7 +142,7 @@ pub(super) fn add_mesh_through_discs(
     is_a: bool,
     discs: &mut NoisyLeaf<'_>,
     facets: &ExactLeaf,
-    mut around: impl FnMut(&Point3, f64) -> Vec<Facet>,
+    around: &mut OfMesh<'_>,
     found: &mut Crossings,
 ) {
     for (k, disc) in discs.surfels.iter().enumerate() {
@@ -150,8 +157,7 @@ pub(super) fn add_mesh_through_discs(
         }
         // Once, and by all of the mesh there: however its triangles are shared out to leaves.
         discs.is_pierced[k] = true;
-        let near = around(&middle, std::f64::consts::SQRT_2 * radius);
-        let through = outline.through(near.iter());
+        let through = outline.through(around.near(&middle, std::f64::consts::SQRT_2 * radius));
         let crossing = of_mesh(disc, normal, &through);
         discs.crossing[k] = discs.crossing[k].max(crossing.probability);
         found.add(Witness::disc(is_a, disc), &crossing);

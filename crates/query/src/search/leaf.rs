@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::{Motion, Point3, Vector3};
+use cloudtouch_geom::{Motion, Point3};
 
 use crate::body::BodyRef;
-use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
+use crate::cloud::{Ball, Cloud, DISC_SPACINGS, Edge, LeafEdges, LeafSurface, Slab, Surfel};
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 use crate::report::Stats;
@@ -32,10 +32,9 @@ pub(crate) struct ExactLeaf {
 #[derive(Debug)]
 pub(crate) struct NoisyLeaf<'a> {
     pub surfels: Cow<'a, [Surfel]>,
+    /// Where they were measured, for most are told to be far from another leaf before they are moved;
     /// `None` until they are needed.
-    edges: Option<Cow<'a, [Edge]>>,
-    /// Between which heights these are.
-    pub(super) edge_slab: Slab,
+    pub(super) edges: Option<&'a LeafEdges>,
     /// For each surfel lengths in its standard deviations; empty until they are needed.
     whitenings: Vec<Whitening>,
     /// For each surfel the squared deviations to the nearest piece of the other body, at most those
@@ -46,27 +45,8 @@ pub(crate) struct NoisyLeaf<'a> {
     /// For each surfel whether a mesh was looked at that passes through its disc.
     pub(super) is_pierced: Vec<bool>,
     pub(super) ball: Ball,
+    /// Around its discs.
     pub(super) slab: Slab,
-}
-
-/// Between which heights along a direction all discs of a leaf lie, m.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Slab {
-    pub direction: Vector3,
-    low: f64,
-    high: f64,
-}
-
-/// What all pieces of a leaf are in.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ball {
-    pub middle: Point3,
-    /// How far the mean of a piece is from there at most, m.
-    pub radius: f64,
-    /// The largest variance of a piece in any direction, m².
-    pub variance: f64,
-    /// The largest spacing, m.
-    pub spacing: f64,
 }
 
 impl<'a> Leaf<'a> {
@@ -123,28 +103,25 @@ pub(super) fn facets_of(mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> Vec
 impl<'a> NoisyLeaf<'a> {
     /// A leaf of a cloud, moved to the frame of A by `motion`, or of A itself.
     fn load(cloud: &'a Cloud, id: NodeId, motion: Option<&Motion>, stats: &mut Stats) -> Self {
-        let (surfels, computed) = cloud.leaf(id);
+        let (leaf, computed) = cloud.leaf_surface(id);
         stats.leaves_prepared += usize::from(computed);
-        let surfels = match motion {
-            None => Cow::Borrowed(surfels),
-            Some(motion) => surfels.iter().map(|s| s.moved(motion)).collect(),
+        let LeafSurface { surfels, ball, slab } = leaf;
+        let count = surfels.len();
+        let (surfels, ball, slab) = match motion {
+            None => (Cow::Borrowed(&surfels[..]), *ball, *slab),
+            Some(motion) => (
+                surfels.iter().map(|s| s.moved(motion)).collect(),
+                ball.moved(motion),
+                slab.moved(motion),
+            ),
         };
-        let squared = vec![MOST_DEVIATIONS.powi(2); surfels.len()];
-        let crossing = vec![0.0; surfels.len()];
-        let is_pierced = vec![false; surfels.len()];
-        let ball = Ball::around(&surfels);
-        // Along the thinnest side of its box a leaf is all but flat.
-        let thin =
-            cloud.tree().node(id).map_or_else(Vector3::z, |leaf| leaf.obb().axes.column(2).into());
-        let slab = Slab::around(&surfels, motion.map_or(thin, |motion| motion.vector(&thin)));
         Self {
             surfels,
             edges: None,
-            edge_slab: Slab::empty(slab.direction),
             whitenings: Vec::new(),
-            squared,
-            crossing,
-            is_pierced,
+            squared: vec![MOST_DEVIATIONS.powi(2); count],
+            crossing: vec![0.0; count],
+            is_pierced: vec![false; count],
             ball,
             slab,
         }
@@ -159,24 +136,15 @@ impl<'a> NoisyLeaf<'a> {
     }
 
     /// Gets its edges, once.
-    pub(super) fn load_edges(&mut self, cloud: &'a Cloud, id: NodeId, motion: Option<&Motion>) {
-        if self.edges.is_some() {
-            return;
-        }
-        let edges = cloud.leaf_edges(id);
-        let edges: Cow<'_, [Edge]> = match motion {
-            None => Cow::Borrowed(edges),
-            Some(motion) => edges.iter().map(|e| e.moved(motion)).collect(),
-        };
-        for end in edges.iter().flat_map(|edge| &edge.ends) {
-            self.edge_slab.include(end, 0.0);
-        }
-        self.edges = Some(edges);
+    pub(super) fn load_edges(&mut self, cloud: &'a Cloud, id: NodeId) {
+        self.edges.get_or_insert_with(|| cloud.leaf_edges(id));
     }
 
-    /// None before they were loaded.
-    pub(super) fn edges(&self) -> &[Edge] {
-        self.edges.as_deref().unwrap_or_default()
+    /// Notes a crossing of an edge for the points that it joins.
+    pub(super) fn raise_ends(&mut self, edge: &Edge, probability: f64) {
+        for place in edge.own.into_iter().flatten() {
+            self.crossing[place] = self.crossing[place].max(probability);
+        }
     }
 
     /// How likely each piece is to collide, by geometry: halfway between two equally well known
@@ -190,77 +158,5 @@ impl<'a> NoisyLeaf<'a> {
             by_gap.max(crossing)
         };
         self.surfels.iter().zip(self.squared.iter().zip(&self.crossing).map(of))
-    }
-}
-
-impl Slab {
-    fn around(surfels: &[Surfel], direction: Vector3) -> Self {
-        let mut slab = Self::empty(direction);
-        for surfel in surfels {
-            if let Some(reach) = surfel.disc_reach(&slab.direction) {
-                slab.include(&surfel.point.mean, reach);
-            }
-        }
-        slab
-    }
-
-    fn empty(direction: Vector3) -> Self {
-        Self { direction, low: f64::INFINITY, high: f64::NEG_INFINITY }
-    }
-
-    /// Grows to what reaches so far (m) from the height of a place.
-    fn include(&mut self, place: &Point3, reach: f64) {
-        let height = place.coords.dot(&self.direction);
-        self.low = self.low.min(height - reach);
-        self.high = self.high.max(height + reach);
-    }
-
-    /// Whether it holds a place of the disc about a surfel.
-    pub(super) fn may_hold_disc_of(&self, surfel: &Surfel) -> bool {
-        let reach = surfel.disc_reach(&self.direction);
-        reach.is_some_and(|reach| self.is_within(&surfel.point.mean, reach))
-    }
-
-    /// Whether a place is at most so far from the height of some disc.
-    pub(super) fn is_within(&self, place: &Point3, distance: f64) -> bool {
-        let height = place.coords.dot(&self.direction);
-        self.low - distance <= height && height <= self.high + distance
-    }
-
-    /// Whether some place between two ends may be so near to the height of a disc, m.
-    pub(super) fn may_hold(&self, ends: &[Point3; 2], distance: f64) -> bool {
-        let [from, to] = ends;
-        let (from, to) = (from.coords.dot(&self.direction), to.coords.dot(&self.direction));
-        from.max(to) + distance >= self.low && from.min(to) - distance <= self.high
-    }
-}
-
-impl Ball {
-    fn around_points<'p>(points: impl Iterator<Item = &'p Point3> + Clone) -> Self {
-        let count = points.clone().count().max(1);
-        let sum: Vector3 = points.clone().map(|p| p.coords).sum();
-        let middle = Point3::from(sum / count as f64);
-        let radius = points.map(|p| (p - middle).norm()).fold(0.0, f64::max);
-        Self { middle, radius, variance: 0.0, spacing: 0.0 }
-    }
-
-    fn around(surfels: &[Surfel]) -> Self {
-        let sum: Vector3 = surfels.iter().map(|s| s.point.mean.coords).sum();
-        let middle = Point3::from(sum / surfels.len() as f64);
-        let mut ball = Self { middle, radius: 0.0, variance: 0.0, spacing: 0.0 };
-        for surfel in surfels {
-            ball.radius = ball.radius.max((surfel.point.mean - middle).norm_squared());
-            ball.variance = ball.variance.max(surfel.most_variance);
-            ball.spacing = ball.spacing.max(surfel.spacing);
-        }
-        ball.radius = ball.radius.sqrt();
-        ball
-    }
-
-    /// Whether a place is at most so far from some place in the ball; never no by rounding.
-    pub(super) fn is_within(&self, place: &Point3, distance: f64) -> bool {
-        const ROUNDING: f64 = 1e-9;
-        let reach = (self.radius + distance) * (1.0 + ROUNDING);
-        (place - self.middle).norm_squared() <= reach * reach
     }
 }

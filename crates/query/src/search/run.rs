@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, SurfacePair, visit_surfaces};
-use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
+use cloudtouch_geom::{Motion, Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
-use super::around::Around;
+use super::around::{Around, OfMesh};
 use super::crossings::Crossings;
 use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach_facets,
@@ -136,39 +136,34 @@ fn cross<'a>(
         (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
             let near = reaching(on_a, on_b);
             if !near.is_none() {
-                load_edges(on_a, a, pair.a, None);
-                add_edges_through_discs(true, (on_a, near), on_b, places, crossings);
+                load_edges(on_a, a, pair.a);
+                add_edges_through_discs(None, (on_a, near), on_b, places, crossings);
             }
             let near = reaching(on_b, on_a);
             if !near.is_none() {
-                load_edges(on_b, b, pair.b, Some(a_from_b));
-                add_edges_through_discs(false, (on_b, near), on_a, places, crossings);
+                load_edges(on_b, b, pair.b);
+                add_edges_through_discs(Some(a_from_b), (on_b, near), on_a, places, crossings);
             }
         }
         (Leaf::Noisy(noisy), Leaf::Exact(exact)) if may_reach_facets(noisy, exact) => {
-            load_edges(noisy, a, pair.a, None);
-            add_edges_through_facets(true, noisy, exact, crossings);
-            let around = |place: &Point3, radius| known.facets(b, Some(a_from_b), place, radius);
-            add_mesh_through_discs(true, noisy, exact, around, crossings);
+            load_edges(noisy, a, pair.a);
+            add_edges_through_facets(None, noisy, exact, crossings);
+            let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
+            add_mesh_through_discs(true, noisy, exact, &mut around, crossings);
         }
         (Leaf::Exact(exact), Leaf::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
-            load_edges(noisy, b, pair.b, Some(a_from_b));
-            add_edges_through_facets(false, noisy, exact, crossings);
-            let around = |place: &Point3, radius| known.facets(a, None, place, radius);
-            add_mesh_through_discs(false, noisy, exact, around, crossings);
+            load_edges(noisy, b, pair.b);
+            add_edges_through_facets(Some(a_from_b), noisy, exact, crossings);
+            let mut around = OfMesh { known, body: a, a_from_mesh: None };
+            add_mesh_through_discs(false, noisy, exact, &mut around, crossings);
         }
         _ => {}
     }
 }
 
-pub(super) fn load_edges<'a>(
-    leaf: &mut NoisyLeaf<'a>,
-    body: BodyRef<'a>,
-    id: NodeId,
-    motion: Option<&Motion>,
-) {
+pub(super) fn load_edges<'a>(leaf: &mut NoisyLeaf<'a>, body: BodyRef<'a>, id: NodeId) {
     if let BodyRef::Cloud(cloud) = body {
-        leaf.load_edges(cloud, id, motion);
+        leaf.load_edges(cloud, id);
     }
 }
 

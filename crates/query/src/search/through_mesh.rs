@@ -76,10 +76,7 @@ impl Outline {
         let level = Reached { at: Vector3::zeros(), pulled_by: Pull::Known(Vector3::zeros()) };
         let (mut above, mut below, mut nearest) = (level, level, None);
         for facet in facets {
-            let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
-            if self.is_aside(&corners) {
-                continue;
-            }
+            let Some(corners) = self.corners_not_aside(facet) else { continue };
             self.visit_heights(facet, &corners, |reached| {
                 if reached.at.z > above.at.z {
                     above = reached;
@@ -144,10 +141,7 @@ impl Outline {
     pub(super) fn heights<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Option<[f64; 2]> {
         let mut between = None;
         for facet in facets {
-            let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
-            if self.is_aside(&corners) {
-                continue;
-            }
+            let Some(corners) = self.corners_not_aside(facet) else { continue };
             self.visit_heights(facet, &corners, |Reached { at, .. }| {
                 let z = at.z;
                 let [low, high] = between.unwrap_or([z; 2]);
@@ -163,6 +157,16 @@ impl Outline {
             corners.iter().all(|c| c[k] > self.radius)
                 || corners.iter().all(|c| c[k] < -self.radius)
         })
+    }
+
+    /// The corners of a facet in the coordinates of the disc; `None` where they are all aside.
+    fn corners_not_aside(&self, facet: &Facet) -> Option<[Vector3; 3]> {
+        let ways = facet.corners.map(|corner| corner - self.middle);
+        // PERF: most are told to be by the first direction alone.
+        let x = ways.map(|way| self.across[0].dot(&way));
+        let is_aside = x.iter().all(|x| *x > self.radius) || x.iter().all(|x| *x < -self.radius);
+        let corners = (!is_aside).then(|| ways.map(|way| self.local(&way)))?;
+        (!self.is_aside(&corners)).then_some(corners)
     }
 
     /// The heights that bound a facet within the cylinder.

@@ -1,9 +1,10 @@
 //! Gathers the passages that two leaves may have while one of them drifts.
 
-use cloudtouch_geom::{Drift, Point3};
+use cloudtouch_geom::Drift;
 
 use crate::cloud::{DISC_SPACINGS, Surfel, edge_along};
 
+use super::super::around::OfMesh;
 use super::super::crossings::Witness;
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, NoisyLeaf};
@@ -70,7 +71,7 @@ pub(super) fn add_edges_through_discs(
     drift: &Drift,
     found: &mut Passages,
 ) {
-    let Some(SweptEdges { tracks, hull: Some(hull) }) = of_edges.edges() else { return };
+    let Some(SweptEdges { all, tracks, hull: Some(hull) }) = of_edges.edges() else { return };
     let (around, slab) = (of_discs.ball, of_discs.slab);
     // Most discs are beyond all edges of the leaf.
     let thin = [slab.direction, of_edges.leaf.slab.direction];
@@ -87,7 +88,7 @@ pub(super) fn add_edges_through_discs(
         return;
     }
     let direction = Direction::new(slab.direction, drift);
-    for (edge, track) in of_edges.leaf.edges().iter().zip(tracks) {
+    for (edge, track) in all.iter().zip(tracks) {
         let room = track.ends[0].along(&direction).max(track.ends[1].along(&direction));
         if !slab.may_hold(&edge.ends, room) {
             continue;
@@ -116,7 +117,7 @@ pub(super) fn add_edges_through_facets(
     drifts: &Drifts,
     found: &mut Passages,
 ) {
-    let Some(SweptEdges { tracks, hull: Some(hull) }) = of_edges.edges() else { return };
+    let Some(SweptEdges { all, tracks, hull: Some(hull) }) = of_edges.edges() else { return };
     let thin = &of_edges.leaf.slab.direction;
     let of_facets = drifts.of(!is_a);
     let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, of_facets));
@@ -124,7 +125,7 @@ pub(super) fn add_edges_through_facets(
     if met.is_empty() {
         return;
     }
-    for (edge, track) in of_edges.leaf.edges().iter().zip(tracks) {
+    for (edge, track) in all.iter().zip(tracks) {
         if !track.middle.gets_to(&facets.ball, edge.half_length) {
             continue;
         }
@@ -143,7 +144,7 @@ pub(super) fn add_mesh_through_discs(
     is_a: bool,
     discs: &SweptCloud<'_>,
     facets: &ExactLeaf,
-    mut around: impl FnMut(&Point3, f64) -> Vec<Facet>,
+    around: &mut OfMesh<'_>,
     drifts: &Drifts,
     found: &mut Passages,
 ) {
@@ -162,8 +163,7 @@ pub(super) fn add_mesh_through_discs(
         }
         let off = may_pierce(is_a, disc, &normal, &met, drifts);
         if let Some(off) = off.filter(|_| disc.spacing > 0.0) {
-            let passage =
-                mesh_through_disc(is_a, disc, (normal, off), &mut around, drifts.of(is_a));
+            let passage = mesh_through_disc(is_a, disc, (normal, off), around, drifts.of(is_a));
             found.add(Witness::disc(is_a, disc), &passage);
         }
     }

@@ -36,6 +36,8 @@ pub(super) struct SweptCloud<'a> {
 /// The edges of a leaf.
 #[derive(Debug)]
 pub(super) struct SweptEdges {
+    /// In the frame of A.
+    pub all: Vec<Edge>,
     pub tracks: Vec<EdgeTrack>,
     /// About all of them; `None` where there are none.
     pub hull: Option<Hull>,
@@ -111,8 +113,10 @@ impl<'a> SweptCloud<'a> {
         drift: &Drift,
     ) {
         if self.edges.is_none() {
-            load_edges(&mut self.leaf, body, id, motion);
-            self.edges = Some(SweptEdges::new(self.leaf.edges(), &self.axes, drift));
+            load_edges(&mut self.leaf, body, id);
+            let edges = self.leaf.edges.iter().flat_map(|of_leaf| &of_leaf.edges);
+            let moved = edges.map(|edge| motion.map_or(*edge, |motion| edge.moved(motion)));
+            self.edges = Some(SweptEdges::new(moved.collect(), &self.axes, drift));
         }
     }
 
@@ -123,10 +127,11 @@ impl<'a> SweptCloud<'a> {
 }
 
 impl SweptEdges {
-    fn new(edges: &[Edge], axes: &Matrix3, drift: &Drift) -> Self {
-        let ends = edges.iter().flat_map(|edge| edge.ends);
+    fn new(all: Vec<Edge>, axes: &Matrix3, drift: &Drift) -> Self {
+        let ends = all.iter().flat_map(|edge| edge.ends);
         let hull = Hull::around(axes, ends.map(|end| (end, Vector3::zeros())), drift);
-        Self { tracks: edges.iter().map(|edge| EdgeTrack::of(edge, drift)).collect(), hull }
+        let tracks = all.iter().map(|edge| EdgeTrack::of(edge, drift)).collect();
+        Self { all, tracks, hull }
     }
 }
 
@@ -135,7 +140,7 @@ impl EdgeTrack {
         let [from, to] = &edge.ends;
         let ends = [Track::of(from, drift), Track::of(to, drift)];
         let by = ends[0].in_any_direction().max(ends[1].in_any_direction());
-        Self { middle: Track::of(&nalgebra::center(from, to), drift), ends, by }
+        Self { middle: Track::of(&edge.middle(), drift), ends, by }
     }
 }
 

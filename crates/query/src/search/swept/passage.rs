@@ -5,6 +5,7 @@ use cloudtouch_geom::{Drift, Point3, Vector3};
 
 use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
 
+use super::super::around::OfMesh;
 use super::super::crossing::{CLEAREST, known_to, weight_at};
 use super::super::facet::Facet;
 use super::super::through_mesh::Outline;
@@ -197,7 +198,7 @@ pub(super) fn mesh_through_disc(
     is_a: bool,
     disc: &Surfel,
     (normal, off): (Vector3, f64),
-    around: impl FnOnce(&Point3, f64) -> Vec<Facet>,
+    around: &mut OfMesh<'_>,
     drift: &Drift,
 ) -> Passage {
     let (middle, radius) = (disc.point.mean, DISC_SPACINGS * disc.spacing);
@@ -214,11 +215,11 @@ pub(super) fn mesh_through_disc(
         // As clear as a disc is wide: with so much room there is no telling.
         return passage(radius);
     }
-    let near = around(&middle, std::f64::consts::SQRT_2 * radius + by);
+    let near: Vec<&Facet> = around.near(&middle, std::f64::consts::SQRT_2 * radius + by).collect();
     let corners = near.iter().flat_map(|facet| &facet.corners);
     let farthest = corners.map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
     let room = by + drift.turn() * farthest;
-    let heights = Outline::new(middle, normal, radius + room).heights(near.iter());
+    let heights = Outline::new(middle, normal, radius + room).heights(near.into_iter());
     let [low, high] = heights.unwrap_or([0.0; 2]);
     passage((high + room).min(room - low).clamp(0.0, radius))
 }

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, SurfacePair, visit_surfaces};
-use cloudtouch_geom::{Drift, Motion, Point3, Pose};
+use cloudtouch_geom::{Drift, Motion, Pose};
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
-use super::super::around::Around;
+use super::super::around::{Around, OfMesh};
 use super::super::leaf::ExactLeaf;
 use super::drifts::Drifts;
 use super::facets::may_touch;
@@ -192,16 +192,16 @@ fn cross<'a>(
         {
             noisy.load_edges(a, pair.a, None, &drifts.of_a);
             add_edges_through_facets(true, noisy, exact, drifts, passages);
-            let around = |place: &Point3, radius| known.facets(b, Some(a_from_b), place, radius);
-            add_mesh_through_discs(true, noisy, exact, around, drifts, passages);
+            let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
+            add_mesh_through_discs(true, noisy, exact, &mut around, drifts, passages);
         }
         (Swept::Exact(exact), Swept::Noisy(noisy))
             if may_reach_facets(noisy, exact, &drifts.of_b) =>
         {
             noisy.load_edges(b, pair.b, Some(a_from_b), &drifts.of_b);
             add_edges_through_facets(false, noisy, exact, drifts, passages);
-            let around = |place: &Point3, radius| known.facets(a, None, place, radius);
-            add_mesh_through_discs(false, noisy, exact, around, drifts, passages);
+            let mut around = OfMesh { known, body: a, a_from_mesh: None };
+            add_mesh_through_discs(false, noisy, exact, &mut around, drifts, passages);
         }
         _ => {}
     }
@@ -209,7 +209,7 @@ fn cross<'a>(
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{PointCloud, TriangleMesh, Vector3};
+    use cloudtouch_geom::{Point3, PointCloud, TriangleMesh, Vector3};
     use cloudtouch_noise::SensorModel;
     use cloudtouch_testkit::noise::{NoiseKind, add_noise};
     use cloudtouch_testkit::{scene, surface};

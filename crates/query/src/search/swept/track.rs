@@ -2,8 +2,9 @@
 
 use cloudtouch_geom::{Drift, Point3, Vector3};
 
+use crate::cloud::Ball;
+
 use super::super::facet::{Facet, nearest_to_origin};
-use super::super::leaf::Ball;
 
 /// How often the nearest place of a facet and the time of it are looked for in turn.
 const TURNS: usize = 3;

@@ -1,0 +1,51 @@
+//! The surface at the points of a leaf, and what encloses it: told once for all poses.
+
+use cloudtouch_bvh::NodeId;
+use cloudtouch_geom::Vector3;
+
+use super::ball::Ball;
+use super::edge::Edge;
+use super::prepared::Prepared;
+use super::slab::Slab;
+use super::surfel::Surfel;
+
+/// The pieces of surface of a leaf, in the order of its points.
+#[derive(Debug)]
+pub(crate) struct LeafSurface {
+    pub surfels: Vec<Surfel>,
+    /// Around them.
+    pub ball: Ball,
+    /// Around their discs.
+    pub slab: Slab,
+}
+
+/// The edges of a leaf.
+#[derive(Debug)]
+pub(crate) struct LeafEdges {
+    pub edges: Vec<Edge>,
+    /// Around them.
+    pub slab: Slab,
+}
+
+impl LeafSurface {
+    /// Of a leaf that is thin along a unit vector.
+    pub(super) fn new(surfels: Vec<Surfel>, thin: Vector3) -> Self {
+        let (ball, slab) = (Ball::around(&surfels), Slab::around_discs(&surfels, thin));
+        Self { surfels, ball, slab }
+    }
+}
+
+impl LeafEdges {
+    /// Of a leaf that is thin along a unit vector.
+    pub(super) fn new(edges: Vec<Edge>, thin: Vector3) -> Self {
+        let slab = Slab::around_edges(&edges, thin);
+        Self { edges, slab }
+    }
+}
+
+impl Prepared {
+    /// The direction in which a leaf is all but flat: along the shortest side of its box.
+    pub(super) fn thin_side(&self, leaf: NodeId) -> Vector3 {
+        self.tree.node(leaf).map_or_else(Vector3::z, |leaf| leaf.obb().axes.column(2).into())
+    }
+}
