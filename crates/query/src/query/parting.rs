@@ -19,8 +19,8 @@ const REACHES: [f64; 3] = [3.0, 6.0, 12.0];
 const APART: f64 = 1.0;
 /// Surfaces are not flatter than this part of a unit.
 const ROUGHNESS: f64 = 0.2;
-/// Parts of a mesh reach no farther than this part of its surroundings, and count by their middles.
-const FINE: f64 = 0.25;
+/// Parts of a mesh reach no farther than this part of its surroundings, and count by three places each.
+const FINE: f64 = 0.5;
 
 /// Contacts so many units from one whose direction is known have it too: they have most of their
 /// surroundings in common.

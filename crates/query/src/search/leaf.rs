@@ -21,6 +21,17 @@ pub(crate) enum Leaf<'a> {
     Exact(ExactLeaf),
 }
 
+/// How far the pieces of two leaves are from one another, by the balls around them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Between {
+    /// The means are at least so far apart, m.
+    pub of_means: f64,
+    /// The surfaces that these stand for too, m.
+    pub of_surfaces: f64,
+    /// Two of them have no larger standard deviation together in any direction, m.
+    pub most_std: f64,
+}
+
 /// A leaf of a mesh.
 #[derive(Debug)]
 pub(crate) struct ExactLeaf {
@@ -63,11 +74,18 @@ impl<'a> Leaf<'a> {
         }
     }
 
-    /// No piece of one leaf is nearer than this to a piece of the other, m.
-    pub(super) fn distance(&self, other: &Self) -> f64 {
+    /// How far the pieces of one leaf are from those of the other.
+    pub(super) fn between(&self, other: &Self) -> Between {
+        /// Of the distance of the balls and their radii, generously.
+        const ROUNDING: f64 = 1e-9;
         let (ball, around) = (self.ball(), other.ball());
-        let reach = |ball: &Ball| ball.radius + DISC_SPACINGS * ball.spacing;
-        (ball.middle - around.middle).norm() - reach(ball) - reach(around)
+        let (way, radii) = ((ball.middle - around.middle).norm(), ball.radius + around.radius);
+        let of_means = way - radii - ROUNDING * (way + radii);
+        Between {
+            of_means,
+            of_surfaces: of_means - DISC_SPACINGS * (ball.spacing + around.spacing),
+            most_std: (ball.variance + around.variance).sqrt(),
+        }
     }
 
     fn ball(&self) -> &Ball {

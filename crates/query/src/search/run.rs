@@ -16,7 +16,7 @@ use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach_facets,
     reaching,
 };
-use super::leaf::{Leaf, NoisyLeaf};
+use super::leaf::{Between, Leaf, NoisyLeaf};
 use super::meeting::{Meeting, deviations_by_pose};
 use super::nearest::{Nearest, nearest_pieces};
 use super::wrench::Wrench;
@@ -110,9 +110,12 @@ impl<'a> Found<'a> {
         let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, stats));
         let leaf_b = self.leaves_b.entry(pair.b);
         let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(a_from_b), stats));
-        self.at_least = self.at_least.min(leaf_a.distance(leaf_b));
-        let nearest = (pair.deviations < most).then(|| nearest_pieces(leaf_a, leaf_b, most));
-        if pair.may_cross {
+        let Between { of_means, of_surfaces, most_std } = leaf_a.between(leaf_b);
+        self.at_least = self.at_least.min(of_surfaces);
+        // PERF: what the tree knows of leaves whose surface it has not seen is loose.
+        let is_near = pair.deviations < most && of_means <= most * most_std;
+        let nearest = is_near.then(|| nearest_pieces(leaf_a, leaf_b, most));
+        if pair.may_cross && of_surfaces <= 0.0 {
             let found = (&mut self.crossings, &mut self.around, &mut self.places);
             cross((a, b), a_from_b, pair, (leaf_a, leaf_b), found);
         }
