@@ -35,13 +35,6 @@ impl Reaching {
 pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Reaching {
     let NoisyLeaf { ball, slab, .. } = of_discs;
     let mut reaching = Reaching::default();
-    let reach = DISC_SPACINGS * of_edges.ball.spacing;
-    let farthest = of_edges.ball.radius + reach;
-    if !ball.is_within(&of_edges.ball.middle, farthest + DISC_SPACINGS * ball.spacing)
-        || !slab.is_within(&of_edges.ball.middle, farthest * MOST_ALONG)
-    {
-        return reaching;
-    }
     for (place, surfel) in of_edges.surfels.iter().enumerate() {
         let Some(normal) = surfel.normal else { continue };
         let half = DISC_SPACINGS * surfel.spacing;
