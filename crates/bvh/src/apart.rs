@@ -3,12 +3,12 @@
 //! This is the innermost loop of every search. A node that is split has two halves, and both are tested
 //! at once: each number of a test stands for one of them in either lane.
 
-use cloudtouch_geom::{BoxDrift, Drift, Matrix3, Motion, Point3, Vector3};
+use cloudtouch_geom::Vector3;
 use wide::f64x2;
 
-use crate::Obb;
-use crate::bounds::SpreadBounds;
+use crate::carried::{Carried, Loss};
 use crate::node::NodeData;
+use crate::placed::{Array, Placed};
 
 /// What the normals of the faces of two boxes say of what is in them.
 #[derive(Debug, Clone, Copy)]
@@ -21,8 +21,6 @@ pub(crate) struct Apart {
     /// The same for the surfaces that these stand for.
     pub(crate) surfaces: f64,
 }
-
-type Array = [f64; 3];
 
 /// One number for each of two tests, and three of these.
 type Two = f64x2;
@@ -39,91 +37,7 @@ fn side_by_side(of: [&Array; 2]) -> Each {
     [lanes(0), lanes(1), lanes(2)]
 }
 
-/// A node, and where its box is in the frame of A.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Placed<'a> {
-    node: &'a NodeData,
-    centre: &'a Array,
-    axes: &'a [Array; 3],
-}
-
-impl<'a> Placed<'a> {
-    /// Where it was built.
-    #[inline]
-    pub(crate) fn at_home(node: &'a NodeData) -> Self {
-        Self { node, centre: node.obb.centre.coords.as_ref(), axes: node.obb.axes.as_ref() }
-    }
-
-    #[inline]
-    pub(crate) fn moved(node: &'a NodeData, moved: &'a MovedBox) -> Self {
-        Self { node, centre: &moved.centre, axes: &moved.axes }
-    }
-}
-
-/// Middle and axes of a box in another frame.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct MovedBox {
-    centre: Array,
-    axes: [Array; 3],
-}
-
-impl MovedBox {
-    pub(crate) fn new(obb: &Obb, motion: &Motion) -> Self {
-        let axes = motion.rotation() * obb.axes;
-        Self { centre: motion.point(&obb.centre).into(), axes: axes.into() }
-    }
-}
-
-/// What a drift does to a box, known once for all that it is tested against.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Carried {
-    drift: Drift,
-    of_box: BoxDrift,
-    /// The largest standard deviation and reach of what is in it, m.
-    max_std: f64,
-    max_reach: f64,
-    along_own: Loss,
-}
-
-impl Carried {
-    /// Of a box of B in the frame of A.
-    pub(crate) fn new(b: &NodeData, moved: &MovedBox, drift: &Drift) -> Self {
-        let half_axes = Matrix3::from(moved.axes) * Matrix3::from_diagonal(&b.obb.half_extents);
-        let SpreadBounds { max_std, max_reach, .. } = b.bounds;
-        let around = b.bounds.shift + max_reach;
-        let of_box = drift.of_box(&Point3::from(moved.centre), &half_axes, around);
-        let none = Loss { room: [0.0; 3], std: [0.0; 3], reach: [0.0; 3] };
-        let mut carried = Self { drift: *drift, of_box, max_std, max_reach, along_own: none };
-        carried.along_own = carried.along(&moved.axes);
-        carried
-    }
-
-    /// Along unit vectors in the frame of A.
-    #[inline]
-    fn along(&self, axes: &[Array; 3]) -> Loss {
-        let [mut room, mut std, mut reach] = [[0.0; 3]; 3];
-        for (k, axis) in axes.iter().enumerate() {
-            let axis = Vector3::from(*axis);
-            let turn = self.drift.turn_of(&axis);
-            room[k] = self.of_box.along(&axis);
-            std[k] = turn * self.max_std;
-            reach[k] = turn * self.max_reach;
-        }
-        Loss { room, std, reach }
-    }
-}
-
-/// What a drift of the second box takes off gaps and adds to spreads along three axes.
-#[derive(Debug, Clone, Copy)]
-struct Loss {
-    /// How far the box gets along each axis, m.
-    room: Array,
-    /// What its turn adds to its deviations there, and to its reach, m.
-    std: Array,
-    reach: Array,
-}
-
-/// The same of two tests.
+/// What a drift takes off gaps and adds to spreads in two tests.
 struct Losses {
     room: Each,
     std: Each,
@@ -302,49 +216,13 @@ impl Found {
     }
 }
 
-/// Whether the boxes of the surfaces are apart along one of the nine directions across an edge of
-/// each; see [`Asked::rounding`].
-pub(crate) fn edges_part_surfaces(a: Placed<'_>, b: Placed<'_>, rounding: f64) -> bool {
-    let dot = |p: &Array, q: &Array| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-    let r = a.axes.map(|of_a| b.axes.map(|of_b| dot(&of_b, &of_a)));
-    let way = [0, 1, 2].map(|k| b.centre[k] - a.centre[k]);
-    let t = a.axes.map(|axis| dot(&way, &axis));
-    let size = a.node.obb.half_extents.sum()
-        + b.node.obb.half_extents.sum()
-        + (t[0].abs() + t[1].abs() + t[2].abs());
-    let slack = a.node.bounds.shift + b.node.bounds.shift + rounding + 8.0 * f64::EPSILON * size;
-    let surface = |node: &NodeData| Array::from(node.obb.half_extents + node.bounds.axis_reach);
-    let (half_a, half_b) = (surface(a.node), surface(b.node));
-    for i in 0..3 {
-        let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
-        for j in 0..3 {
-            let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
-            // eᵢ × rⱼ has the components −r[i2] at i1 and r[i1] at i2.
-            let squared_sine = r[i1][j] * r[i1][j] + r[i2][j] * r[i2][j];
-            let distance = (t[i2] * r[i1][j] - t[i1] * r[i2][j]).abs();
-            let reach = half_a[i1] * r[i2][j].abs()
-                + half_a[i2] * r[i1][j].abs()
-                + half_b[j1] * r[i][j2].abs()
-                + half_b[j2] * r[i][j1].abs();
-            // The direction is as long as the sine, at most one: the slack counts for more.
-            if squared_sine >= PARALLEL && distance - reach >= slack {
-                return true;
-            }
-        }
-    }
-    false
-}
-
-/// Below this sine² two edges count as parallel: their cross product is mostly rounding. Leaving a
-/// direction out can only make boxes overlap, which is the safe side.
-const PARALLEL: f64 = 1e-12;
-
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{Covariance, Pose, UncertainPoint, seed};
+    use cloudtouch_geom::{Covariance, Motion, Point3, Pose, UncertainPoint, seed};
     use proptest::prelude::*;
 
     use super::*;
+    use crate::placed::MovedBox;
     use crate::{Primitive, Tree, TreeSettings};
 
     fn tree(stream: u64, std: f64) -> Tree {

@@ -1,11 +1,13 @@
 #![doc = include_str!("../README.md")]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+mod across_edges;
 mod apart;
 mod bounding;
 mod bounds;
 mod bounds_list;
 mod build;
+mod carried;
 mod coverage;
 mod error;
 mod examine;
@@ -19,6 +21,7 @@ mod obb;
 mod pairs;
 mod parts;
 mod patch;
+mod placed;
 mod primitive;
 mod primitives;
 mod queue;

@@ -5,8 +5,11 @@ use std::collections::BinaryHeap;
 use cloudtouch_geom::{Motion, Pose};
 
 use crate::Tree;
-use crate::apart::{Apart, Asked, Carried, MovedBox, Placed, by_faces, edges_part_surfaces};
+use crate::across_edges::edges_part_surfaces;
+use crate::apart::{Apart, Asked, by_faces};
+use crate::carried::Carried;
 use crate::node::{NodeData, pose_rounding};
+use crate::placed::{MovedBox, Placed};
 use crate::queue::Queued;
 use crate::sought::{Sought, SurfaceOutcome};
 
@@ -110,7 +113,7 @@ impl<'a> Pairs<'a> {
         }
     }
 
-    /// PERF: half of a pair is about as urgent, and stays near the top of the heap.
+    // PERF: half of a pair is about as urgent, and stays near the top of the heap.
     fn replace_most_urgent(&mut self, pair: Queued<Waiting>) {
         if let Some(mut top) = self.queue.peek_mut() {
             *top = pair;

@@ -1,11 +1,9 @@
 //! The surface at the points of a leaf, and what encloses it: told once for all poses.
 
-use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::Vector3;
 
 use super::ball::Ball;
 use super::edge::Edge;
-use super::prepared::Prepared;
 use super::slab::Slab;
 use super::surfel::Surfel;
 
@@ -40,12 +38,5 @@ impl LeafEdges {
     pub(super) fn new(edges: Vec<Edge>, thin: Vector3) -> Self {
         let slab = Slab::around_edges(&edges, thin);
         Self { edges, slab }
-    }
-}
-
-impl Prepared {
-    /// The direction in which a leaf is all but flat: along the shortest side of its box.
-    pub(super) fn thin_side(&self, leaf: NodeId) -> Vector3 {
-        self.tree.node(leaf).map_or_else(Vector3::z, |leaf| leaf.obb().axes.column(2).into())
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{LeafBounds, Node, Primitive, Primitives, Tree, TreeSettings};
+use cloudtouch_bvh::{LeafBounds, Node, NodeId, Primitive, Primitives, Tree, TreeSettings};
 use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, Vector3, bounding_box};
 use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 
@@ -186,6 +186,11 @@ impl Prepared {
 
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
+    }
+
+    /// The direction in which a leaf is all but flat: along the shortest side of its box.
+    pub(super) fn thin_side(&self, leaf: NodeId) -> Vector3 {
+        self.tree.node(leaf).map_or_else(Vector3::z, |leaf| leaf.obb().axes.column(2).into())
     }
 
     pub(crate) fn sensor_origins(&self) -> &[Point3] {

@@ -258,4 +258,25 @@ mod tests {
             SampleRegion { center: Point3::origin(), core: 2.0, radius: 2.0, spacing: 1e-3 };
         assert_eq!(sample_region([[p, p, p]], &region, 1), Ok(vec![p]));
     }
+
+    /// A fan has one corner in all of its triangles: then many more have to be put in order than are wanted.
+    #[test]
+    fn the_nearest_samples_are_the_first_of_all_by_distance() {
+        let rim = |k: i32| {
+            let turn = std::f64::consts::TAU * f64::from(k) / 60.0;
+            Point3::new(turn.cos(), turn.sin(), 0.1 * (3.0 * turn).sin())
+        };
+        let fan: Vec<[Point3; 3]> =
+            (0..60).map(|k| [Point3::origin(), rim(k), rim(k + 1)]).collect();
+        for (x, wanted) in [(0.0, 3), (0.0, 20), (0.0, 70), (0.4, 1), (0.4, 20), (0.4, 5000)] {
+            let center = Point3::new(x, 0.01, 0.02);
+            let region = SampleRegion { center, core: 0.3, radius: 0.5, spacing: 0.1 };
+            let mut all = sample_region(fan.clone(), &region, 100_000).unwrap();
+            let distance = |p: &Point3| (p - center).norm();
+            all.sort_by(|p, q| distance(p).total_cmp(&distance(q)));
+            all.truncate(wanted);
+            let nearest = nearest_in_region(fan.clone(), &region, wanted, 100_000).unwrap();
+            assert_eq!(nearest, all, "{x} {wanted}");
+        }
+    }
 }
