@@ -71,8 +71,7 @@ impl Slab {
 
     /// Whether a place is at most so far from the height of some disc.
     pub(crate) fn is_within(&self, place: &Point3, distance: f64) -> bool {
-        let height = place.coords.dot(&self.direction);
-        self.low - distance <= height && height <= self.high + distance
+        self.distance(place) <= distance
     }
 
     /// Whether some place between two ends may be so near to the height of a disc, m.

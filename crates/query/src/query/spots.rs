@@ -84,16 +84,13 @@ pub(super) fn spots<'a>(
 /// Sorts spots, and keeps no more than [`MOST_SPOTS`].
 fn sort(spots: &mut Vec<Spot>) {
     let place = |s: &Spot| (s.place.x, s.place.y, s.place.z);
-    // PERF: a spot is large, and is moved once.
-    let mut order: Vec<usize> = (0..spots.len()).collect();
-    order.sort_by(|&p, &q| {
-        let (p, q) = (&spots[p], &spots[q]);
+    spots.sort_by(|p, q| {
         let ((px, py, pz), (qx, qy, qz)) = (place(p), place(q));
         (q.probability.total_cmp(&p.probability))
             .then(p.gap.total_cmp(&q.gap))
             .then(px.total_cmp(&qx).then(py.total_cmp(&qy)).then(pz.total_cmp(&qz)))
     });
-    *spots = order.into_iter().take(MOST_SPOTS).map(|at| spots[at]).collect();
+    spots.truncate(MOST_SPOTS);
 }
 
 /// Of the two pieces that are least apart.

@@ -161,11 +161,7 @@ impl Outline {
 
     /// The corners of a facet in the coordinates of the disc; `None` where they are all aside.
     fn corners_not_aside(&self, facet: &Facet) -> Option<[Vector3; 3]> {
-        let ways = facet.corners.map(|corner| corner - self.middle);
-        // PERF: most are told to be by the first direction alone.
-        let x = ways.map(|way| self.across[0].dot(&way));
-        let is_aside = x.iter().all(|x| *x > self.radius) || x.iter().all(|x| *x < -self.radius);
-        let corners = (!is_aside).then(|| ways.map(|way| self.local(&way)))?;
+        let corners = facet.corners.map(|corner| self.local(&(corner - self.middle)));
         (!self.is_aside(&corners)).then_some(corners)
     }
 
