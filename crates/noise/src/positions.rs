@@ -50,7 +50,8 @@ impl Positions {
         if let Some(index) = points.iter().position(too_far) {
             return Err(NoiseError::CoordinateRange { index, point: points[index] });
         }
-        let entries = distinct_entries(&points);
+        let entries: Vec<Entry> =
+            distinct_indices(&points).map(|index| entry(index, &points[index as usize])).collect();
         let tree = Arc::new(tree_of(&entries)?);
         let (points, distinct) = (Arc::new(points), entries.len());
         Ok(Self { points, distinct, tree, overlay: None, id: Arc::default() })
@@ -94,6 +95,14 @@ impl Positions {
     /// How many different finite positions there are.
     pub(crate) fn distinct(&self) -> usize {
         self.distinct
+    }
+
+    /// The lowest indices of these, in order.
+    pub(crate) fn distinct_indices(&self) -> Vec<u32> {
+        if self.distinct == self.points.len() {
+            return (0..self.points.len() as u32).collect();
+        }
+        distinct_indices(&self.points).collect()
     }
 
     /// The same for no other index that is still in use.
@@ -240,12 +249,11 @@ fn neighbor(item: u32, squared_distance: f64, now: &[u32]) -> Option<Neighbor> {
     (index != GONE).then_some(Neighbor { index: index as usize, squared_distance })
 }
 
-/// Every finite position once, with the lowest index that has it, in the order of these indices.
-fn distinct_entries(points: &[Point3]) -> Vec<Entry> {
+/// The lowest index of every finite position, in order.
+fn distinct_indices(points: &[Point3]) -> impl Iterator<Item = u32> {
     let mut places = Places::of(points);
     (0_u32..)
         .zip(points)
-        .filter(|&(index, point)| is_finite(point) && places.is_first(index as usize))
-        .map(|(index, point)| entry(index, point))
-        .collect()
+        .filter(move |&(index, point)| is_finite(point) && places.is_first(index as usize))
+        .map(|(index, _)| index)
 }

@@ -99,10 +99,10 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
         if is_noisy(noise, spacing) {
             let std = noise.max_std();
             let reach = std.min((REACH_SPACINGS * spacing).max(REACH_STD * std));
-            for near in cloud.positions().hits_within(&cloud.points()[at], reach * reach) {
+            cloud.positions().visit_within(&cloud.points()[at], reach * reach, |near| {
                 let noise = sensor[near.index].max_std();
                 is_represented[near.index] |= near.squared_distance <= noise * noise;
-            }
+            });
         }
     }
     chosen.sort_unstable();

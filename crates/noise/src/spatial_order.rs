@@ -4,6 +4,7 @@ use cloudtouch_geom::{Point3, bounding_box};
 use rayon::prelude::*;
 
 use crate::finite::is_finite;
+use crate::morton::interleaved;
 
 /// Bits of each coordinate that count.
 const BITS: u32 = 10;
@@ -28,7 +29,7 @@ pub(crate) fn in_spatial_order<B: Default, T: Send + Copy>(
 
 /// The indices of points, along a curve of Morton through the box around them; those that are not
 /// finite come first.
-pub(crate) fn spatial_order(points: &[Point3]) -> Vec<u32> {
+fn spatial_order(points: &[Point3]) -> Vec<u32> {
     let finite = points.iter().filter(|point| is_finite(point));
     let (low, high) = bounding_box(finite).unwrap_or_default();
     let longest = (high - low).max();
@@ -36,22 +37,12 @@ pub(crate) fn spatial_order(points: &[Point3]) -> Vec<u32> {
     let scale = if scale.is_finite() { scale } else { 0.0 };
     let key = |point: &Point3| {
         // What is not a number becomes zero.
-        let [x, y, z] = [0, 1, 2].map(|axis| spread(((point[axis] - low[axis]) * scale) as u32));
-        x << 2 | y << 1 | z
+        interleaved([0, 1, 2].map(|axis| ((point[axis] - low[axis]) * scale) as u64))
     };
     let mut keyed: Vec<u64> =
-        (0..).zip(points).map(|(index, point)| u64::from(key(point)) << 32 | index).collect();
+        (0..).zip(points).map(|(index, point)| key(point) << 32 | index).collect();
     keyed.sort_unstable();
     keyed.into_iter().map(|keyed| keyed as u32).collect()
-}
-
-/// The lowest bits of a number with two zeros before each.
-fn spread(value: u32) -> u32 {
-    let mut value = value & ((1 << BITS) - 1);
-    value = (value | value << 16) & 0x0300_00FF;
-    value = (value | value << 8) & 0x0300_F00F;
-    value = (value | value << 4) & 0x030C_30C3;
-    (value | value << 2) & 0x0924_9249
 }
 
 #[cfg(test)]

@@ -20,7 +20,8 @@ const LINE_RATIO: f64 = 9.0;
 pub(super) fn drop_veil(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
     match cloud.image_size {
         Some((width, height)) if width > 1 && height > 1 => {
-            kept.retain(|&i| !is_veil_in_image(cloud, i, (width, height), settings));
+            let least_cosine = settings.max_angle.cos();
+            kept.retain(|&i| !is_veil_in_image(cloud, i, (width, height), least_cosine));
         }
         _ => drop_veil_lines(cloud, kept, settings),
     }
@@ -30,7 +31,7 @@ fn is_veil_in_image(
     cloud: &PointCloud,
     index: usize,
     (width, height): (usize, usize),
-    settings: &VeilSettings,
+    least_cosine: f64,
 ) -> bool {
     let (row, column) = (index / width, index % width);
     let at = |row: usize, column: usize| cloud.points.get(row * width + column);
@@ -45,18 +46,18 @@ fn is_veil_in_image(
         if is_missing(before) || is_missing(after) {
             return false;
         }
-        let forward = along_ray(&ray, point, after, settings.max_angle);
-        let backward = along_ray(&ray, point, before, settings.max_angle);
+        let forward = along_ray(&ray, point, after, least_cosine);
+        let backward = along_ray(&ray, point, before, least_cosine);
         forward * backward < 0.0
     })
 }
 
 /// +1 when the step from `point` to `other` runs along the ray away from the sensor, −1 towards it,
 /// 0 when it does not run along the ray.
-fn along_ray(ray: &Vector3, point: &Point3, other: &Point3, max_angle: f64) -> f64 {
+fn along_ray(ray: &Vector3, point: &Point3, other: &Point3, least_cosine: f64) -> f64 {
     let step = other - point;
     let cosine = step.dot(ray) / (step.norm() * ray.norm());
-    if cosine.abs() > max_angle.cos() { cosine.signum() } else { 0.0 }
+    if cosine.abs() > least_cosine { cosine.signum() } else { 0.0 }
 }
 
 fn drop_veil_lines(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
