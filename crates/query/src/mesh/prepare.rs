@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{Primitive, Tree, TreeSettings};
+use cloudtouch_bvh::{Primitive, Tree, TreeError, TreeSettings};
 use cloudtouch_geom::{MeshError, Point3, TriangleMesh, Vector3};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
@@ -16,8 +16,10 @@ use super::parts::{Part, parts};
 use super::subdivide::{SampleRegion, sample_region};
 use super::winding::Winding;
 
-/// Triangles in a leaf of a mesh's tree: few, since each may be subdivided many times.
-const MAX_LEAF_TRIANGLES: usize = 8;
+/// Triangles in a leaf of the tree that is searched.
+const LEAF_TRIANGLES: usize = 16;
+/// The same for the paper's path: fewer, since each is subdivided many times.
+const PAPER_LEAF_TRIANGLES: usize = 8;
 
 /// Places that stand for the surface where only its whole extent matters.
 const SAMPLES: usize = 500;
@@ -33,6 +35,8 @@ pub struct Mesh {
     origin: Vector3,
     surface: TriMesh,
     tree: Tree,
+    /// The tree of the paper's path, once that is needed.
+    paper_tree: OnceLock<Tree>,
     pub(super) winding: Winding,
     watertight: bool,
     closed: bool,
@@ -76,19 +80,14 @@ impl Mesh {
         )
         .map_err(|error| PrepareError::Surface { reason: error.to_string() })?;
         let triangles: Vec<_> = (0..merged.triangles().len()).map(|t| merged.corners(t)).collect();
-        let primitives = triangles.iter().copied().map(Primitive::Triangle).collect();
-        let settings = TreeSettings {
-            max_leaf_points: MAX_LEAF_TRIANGLES,
-            min_leaf_points: 1,
-            ..TreeSettings::default()
-        };
-        let tree = Tree::build(primitives, &settings)?;
+        let tree = tree_of(triangles.iter().copied(), LEAF_TRIANGLES)?;
         let winding = Winding::new(triangles);
         let prepare_time = start.elapsed();
         Ok(Self {
             origin,
             surface,
             tree,
+            paper_tree: OnceLock::new(),
             winding,
             watertight,
             closed,
@@ -178,6 +177,13 @@ impl Mesh {
         &self.tree
     }
 
+    pub(crate) fn paper_tree(&self) -> &Tree {
+        self.paper_tree.get_or_init(|| {
+            let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
+            tree_of(triangles, PAPER_LEAF_TRIANGLES).expect("another tree holds these triangles")
+        })
+    }
+
     pub(crate) fn surface(&self) -> &TriMesh {
         &self.surface
     }
@@ -190,6 +196,15 @@ impl Mesh {
             Point3::new(v.x, v.y, v.z)
         })
     }
+}
+
+/// A tree over triangles, so many in a leaf at most.
+fn tree_of(
+    triangles: impl Iterator<Item = [Point3; 3]>,
+    max_leaf_points: usize,
+) -> Result<Tree, TreeError> {
+    let settings = TreeSettings { max_leaf_points, min_leaf_points: 1, ..TreeSettings::default() };
+    Tree::build(triangles.map(Primitive::Triangle).collect(), &settings)
 }
 
 pub(super) fn vector(point: &Point3) -> Vector {

@@ -1,5 +1,6 @@
 //! Anything that can collide on the paper's path.
 
+use cloudtouch_bvh::Tree;
 use cloudtouch_geom::Pose;
 
 use crate::mesh::Mesh;
@@ -41,5 +42,13 @@ impl<'a> PaperBodyRef<'a> {
             Self::Cloud(cloud) => Shape::Cloud(cloud.prepared()),
             Self::Mesh(mesh) => Shape::Mesh(mesh),
         }
+    }
+}
+
+/// The tree that a body is searched by on this path.
+pub(super) fn tree(shape: Shape<'_>) -> &Tree {
+    match shape {
+        Shape::Cloud(cloud) => cloud.tree(),
+        Shape::Mesh(mesh) => mesh.paper_tree(),
     }
 }

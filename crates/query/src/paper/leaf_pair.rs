@@ -86,7 +86,7 @@ fn mesh_points(
     settings: &PaperSettings,
 ) -> Result<Vec<PairPoint>, SubdivisionError> {
     let Some(region) = region_around(near, &a_from_mesh.inverse()) else { return Ok(Vec::new()) };
-    let indices = mesh.tree().leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
+    let indices = mesh.paper_tree().leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
     let triangles = indices.iter().map(|&t| mesh.corners(t as usize));
     let points = match settings.mesh_points {
         MeshPoints::FourPerTriangle => four_per_triangle(triangles),

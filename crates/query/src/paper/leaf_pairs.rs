@@ -11,6 +11,7 @@ use crate::record::Evidence;
 use crate::shape::Shape;
 
 use super::add::add_pair;
+use super::body::tree;
 use super::classify::classify;
 use super::leaf_pair::{bound_left_out, gather};
 use super::task::Task;
@@ -30,7 +31,7 @@ pub(super) fn traverse_leaf_pairs(
     let (traversal, seed) = (&task.traversal, settings.seed);
     let mut looked_at = BTreeSet::new();
     let mut failed = None;
-    let outcome = traverse(a.tree(), b.tree(), a_from_b, traversal, seed, |pair| {
+    let outcome = traverse(tree(a), tree(b), a_from_b, traversal, seed, |pair| {
         looked_at.insert((pair.a, pair.b));
         let stats = &mut evidence.stats;
         let points = match gather((a, pair.a), (b, pair.b), a_from_b, settings, stats) {
@@ -75,7 +76,7 @@ fn bound_what_chance_culled(
 ) -> Result<(), QueryError> {
     let certified = TraversalSettings { kind: Traversal::Certified, ..*by_chance };
     let mut left_out = 0.0_f64;
-    let outcome = traverse(a.tree(), b.tree(), a_from_b, &certified, 0, |pair| {
+    let outcome = traverse(tree(a), tree(b), a_from_b, &certified, 0, |pair| {
         if !looked_at.contains(&(pair.a, pair.b)) {
             left_out = left_out.max(pair.bound);
         }

@@ -15,7 +15,7 @@ use crate::record::{Estimate, Evidence, Side, Terms};
 use crate::report::Report;
 use crate::shape::Shape;
 
-use super::body::PaperBodyRef;
+use super::body::{PaperBodyRef, tree};
 use super::explain::LeafClassifier;
 use super::inside::add_points_inside;
 use super::leaf_pairs::traverse_leaf_pairs;
@@ -130,7 +130,7 @@ impl PaperQuery {
     /// Box lengths per metre of the scene, which is as large as the larger body; `None` where each
     /// leaf pair has a scale of its own, or no body a size.
     fn scale(&self, a: Shape<'_>, b: Shape<'_>) -> Option<f64> {
-        let radius = |body: Shape<'_>| body.tree().root().map_or(0.0, |root| root.obb().radius());
+        let radius = |body: Shape<'_>| tree(body).root().map_or(0.0, |root| root.obb().radius());
         // As a leaf pair is scaled: the ball around a unit square.
         let scale = (SQRT_2 * radius(a).max(radius(b))).recip();
         (self.settings.scaling == Scaling::Scene && scale.is_finite()).then_some(scale)
