@@ -200,7 +200,7 @@ fn spread(free: &mut [u8], start: usize, step: usize, count: usize) {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 mod tests {
-    use cloudtouch_geom::{Pose, TriangleMesh};
+    use cloudtouch_geom::{Pose, TriangleMesh, seed};
     use cloudtouch_testkit::scene;
     use proptest::prelude::*;
 
@@ -259,6 +259,31 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// What is told at once of a way, a closer look bears out; and of most that is clear it is told.
+    #[test]
+    fn a_way_that_is_surely_clear_is_clear() {
+        let (mut sure, mut clear) = (0, 0);
+        for shape in shapes() {
+            let mesh = Mesh::prepare(&shape).unwrap();
+            let [low, high] = mesh.corners_of_box();
+            let place = |i: u64| {
+                let unit = Vector3::from([0, 1, 2].map(|k| seed::unit(seed::derive(9, i, k))));
+                low + (unit * 3.0 - Vector3::repeat(1.0)).component_mul(&(high - low))
+            };
+            for i in 0..100 {
+                let (from, to) = (place(2 * i), place(2 * i + 1));
+                let to = from + 0.3 * (to - from);
+                let distance = 0.1 * mesh.size() * seed::unit(seed::derive(10, i, 0));
+                let is_clear = mesh.is_clear_of_way([&from, &to], distance);
+                let is_sure = mesh.is_surely_clear_of_way([&from, &to], distance, 4);
+                assert!(is_clear || !is_sure, "{from} to {to}, {distance}");
+                sure += usize::from(is_sure);
+                clear += usize::from(is_clear);
+            }
+        }
+        assert!(10 * sure > 7 * clear && clear > 400, "{sure} of {clear}");
     }
 
     #[test]

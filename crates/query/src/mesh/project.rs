@@ -72,6 +72,21 @@ impl Mesh {
             || to_box.hypot(self.clear_around(&local.sup(&low).inf(&high))) >= distance
     }
 
+    /// Whether every place within a distance (m) of a straight way, in the local frame, is outside, as far
+    /// as so many halvings of the way tell at once; no too where it takes a closer look.
+    pub(crate) fn is_surely_clear_of_way(
+        &self,
+        [from, to]: [&Point3; 2],
+        distance: f64,
+        halvings: u32,
+    ) -> bool {
+        let middle = nalgebra::center(from, to);
+        self.is_surely_clear_of(&middle, distance + 0.5 * (to - from).norm())
+            || (halvings > 0
+                && self.is_surely_clear_of_way([from, &middle], distance, halvings - 1)
+                && self.is_surely_clear_of_way([&middle, to], distance, halvings - 1))
+    }
+
     /// Whether every place within a distance (m) of a straight way, in the local frame, is outside.
     pub(crate) fn is_clear_of_way(&self, [from, to]: [&Point3; 2], distance: f64) -> bool {
         /// Distances end within a few times 1e-7 of the size.

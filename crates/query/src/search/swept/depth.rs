@@ -9,6 +9,9 @@ use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 use crate::report::Stats;
 
+/// A way is looked at in so many halvings before it is looked at closer.
+const HALVINGS: u32 = 4;
+
 /// Deviations, at most, up to where `is_enough` of them; 0 where no point gets inside, or neither body is
 /// a closed mesh. No place gets deeper by more than it drifts. [`MOST_DEVIATIONS`] outweigh everything
 /// else. Local frames.
@@ -46,13 +49,19 @@ fn deepest(
     let mesh_from_a = a_from_mesh.inverse();
     let to_mesh = |in_a: &Point3| mesh_from_a.transform_point(in_a);
     // What is outside all along its way, and all about it, does not get inside.
+    let way_of = |in_a: &Point3, radius: f64| {
+        let way = drift.first_order(in_a);
+        let beside = radius * (1.0 + drift.turn()) + drift.beyond_first_order(in_a, 0.0);
+        ([to_mesh(&(in_a - way)), to_mesh(&(in_a + way))], beside)
+    };
+    let surely_stays_clear = |in_a: &Point3, radius: f64| {
+        let ([from, to], beside) = way_of(in_a, radius);
+        mesh.is_surely_clear_of_way([&from, &to], beside, HALVINGS)
+    };
     let stays_clear = |in_a: &Point3, radius: f64| {
-        let distance = radius * (1.0 + drift.turn());
-        mesh.is_clear_of(&to_mesh(in_a), distance + drift.in_any_direction(in_a)) || {
-            let way = drift.first_order(in_a);
-            let ends = [to_mesh(&(in_a - way)), to_mesh(&(in_a + way))];
-            let beside = drift.beyond_first_order(in_a, 0.0);
-            mesh.is_clear_of_way([&ends[0], &ends[1]], distance + beside)
+        surely_stays_clear(in_a, radius) || {
+            let ([from, to], beside) = way_of(in_a, radius);
+            mesh.is_clear_of_way([&from, &to], beside)
         }
     };
     cloud.tree().visit_nodes(|node| {
@@ -63,10 +72,12 @@ fn deepest(
         let obb = node.obb();
         let in_a = a_from_cloud.transform_point(&obb.centre);
         let radius = obb.radius() + node.shift();
-        if stays_clear(&in_a, radius) {
-            return Visit::Prune;
+        // Above the leaves it costs less to go on than to look closer.
+        if !node.is_leaf() {
+            let is_clear = surely_stays_clear(&in_a, radius);
+            return if is_clear { Visit::Prune } else { Visit::Descend };
         }
-        if node.is_leaf() {
+        if !stays_clear(&in_a, radius) {
             let (surfels, computed) = cloud.leaf(node.id());
             stats.leaves_prepared += usize::from(computed);
             for surfel in surfels {

@@ -11,7 +11,7 @@ use super::super::facet::Facet;
 use super::super::through_mesh::Outline;
 use super::drifts::Drifts;
 use super::leaf::EdgeTrack;
-use super::track::{Direction, facet_keeps_off, piece_keeps_off};
+use super::track::{Direction, Pair, Track, piece_keeps_off};
 
 /// A passage that may be.
 #[derive(Debug, Clone, Copy)]
@@ -102,7 +102,7 @@ impl<'a> Adrift<'a> {
         let crossed = self.crossed((normal, &facet.corners[0]), [-1.0, 1.0], stds, drift)?;
         let [from, to] = self.part(&crossed);
         let (middle, half) = (nalgebra::center(&from, &to), 0.5 * (to - from).norm());
-        let off = facet_keeps_off(&middle, facet, !self.is_a, drift);
+        let off = Pair::new(&middle, facet, !self.is_a, drift).keep_off();
         (off <= half * (1.0 + ROUNDING) + ROUNDING * spacing)
             .then(|| self.passage(crossed.clear, 1.0, [from, to], spacing))
     }
@@ -180,14 +180,16 @@ pub(super) fn may_pierce(
     drifts: &Drifts,
 ) -> Option<f64> {
     let (middle, of_facets) = (disc.point.mean, drifts.of(!is_a));
+    let direction = Direction::new(*normal, of_facets);
     let passes = facets.iter().filter(|facet| {
         let heights = facet.corners.map(|corner| {
-            let (at, by) = (normal.dot(&(corner - middle)), of_facets.along(normal, &corner));
+            let by = Track::of(&corner, of_facets).along(&direction);
+            let at = normal.dot(&(corner - middle));
             (at - by, at + by)
         });
         heights.iter().any(|(low, _)| *low <= 0.0) && heights.iter().any(|(_, high)| *high >= 0.0)
     });
-    let off = passes.map(|facet| facet_keeps_off(&middle, facet, !is_a, &drifts.of_b));
+    let off = passes.map(|facet| Pair::new(&middle, facet, !is_a, &drifts.of_b).keep_off());
     let off = off.fold(f64::INFINITY, f64::min);
     (off <= DISC_SPACINGS * disc.spacing * (1.0 + ROUNDING)).then_some(off)
 }

@@ -11,7 +11,7 @@ use crate::cloud::Surfel;
 
 use super::super::facet::{Facet, Whitening, nearest_to_origin};
 use super::super::meeting::{LEAST_STD, solve};
-use super::track::{Direction, Track, directions, gap_along, least_at, nearest_time};
+use super::track::{Direction, Pair, Track, directions, least_at, nearest_time};
 
 /// The pieces of two clouds, that of B drifting along its track; `None` where they have `limit` or more.
 pub(super) fn between_discs(
@@ -47,11 +47,13 @@ pub(super) fn to_facet(
     limit: f64,
 ) -> Option<f64> {
     let mean = surfel.point.mean;
+    let pair = Pair::new(&mean, facet, is_facet_still, drift);
     let along = |n: &Vector3| {
-        let gap = gap_along(&mean, facet, is_facet_still, drift, n);
+        let n = Direction::new(*n, drift);
+        let gap = pair.gap_along(&n);
         let variance = match is_facet_still {
-            true => turned_variance(surfel, &Direction::new(*n, drift), drift),
-            false => surfel.point.covariance.variance_along(n),
+            true => turned_variance(surfel, &n, drift),
+            false => surfel.point.covariance.variance_along(&n.n),
         };
         (gap, gap / variance.max(LEAST_STD.powi(2)).sqrt())
     };
@@ -71,9 +73,7 @@ pub(super) fn to_facet(
         }
         most = most.max(deviations);
     }
-    // The place of the facet as seen from the piece moves by the way, or against it.
-    let way = drift.first_order(&mean) * if is_facet_still { -1.0 } else { 1.0 };
-    let way = whitening.apply(&way);
+    let way = whitening.apply(&pair.way());
     let corners = offsets.map(|offset| whitening.apply(&offset));
     for n in directions(&corners, &way) {
         // Across what parts them in standard deviations.

@@ -89,33 +89,58 @@ pub(super) fn piece_keeps_off([from, to]: &[Point3; 2], place: &Point3, drift: &
     nearest - 0.5 * (ways[0] - ways[1]).norm() - beside[0].max(beside[1])
 }
 
-/// How far a facet keeps from a place along a unit vector, away from it, m; one of the two is of B, which
-/// drifts.
-pub(super) fn gap_along(
-    place: &Point3,
-    facet: &Facet,
-    is_facet_still: bool,
-    drift: &Drift,
-    n: &Vector3,
-) -> f64 {
-    let of_corner = |corner: &Point3| {
-        let drifting = if is_facet_still { place } else { corner };
-        n.dot(&(corner - place)) - drift.along(n, drifting)
-    };
-    facet.corners.iter().map(of_corner).fold(f64::INFINITY, f64::min)
+/// A place and a facet, of which one drifts.
+pub(super) struct Pair<'a> {
+    place: &'a Point3,
+    facet: &'a Facet,
+    drift: &'a Drift,
+    drifting: Either,
 }
 
-/// A place and a facet stay at least so far apart, m; less than zero says nothing.
-pub(super) fn facet_keeps_off(
-    place: &Point3,
-    facet: &Facet,
-    is_facet_still: bool,
-    drift: &Drift,
-) -> f64 {
-    let offsets = facet.corners.map(|corner| corner - place);
-    let way = drift.first_order(place) * if is_facet_still { -1.0 } else { 1.0 };
-    let along = |n: &Vector3| gap_along(place, facet, is_facet_still, drift, n);
-    directions(&offsets, &way).map(|n| along(&n)).fold(0.0, f64::max)
+/// Which of the two drifts, and where it gets to.
+enum Either {
+    Place(Track),
+    Facet([Track; 3]),
+}
+
+impl<'a> Pair<'a> {
+    pub(super) fn new(
+        place: &'a Point3,
+        facet: &'a Facet,
+        is_facet_still: bool,
+        drift: &'a Drift,
+    ) -> Self {
+        let drifting = match is_facet_still {
+            true => Either::Place(Track::of(place, drift)),
+            false => Either::Facet(facet.corners.map(|corner| Track::of(&corner, drift))),
+        };
+        Self { place, facet, drift, drifting }
+    }
+
+    /// How far the facet keeps from the place along a unit vector, away from it, m.
+    pub(super) fn gap_along(&self, n: &Direction) -> f64 {
+        let heights = self.facet.corners.map(|corner| n.n.dot(&(corner - self.place)));
+        let least = |gaps: [f64; 3]| gaps.into_iter().fold(f64::INFINITY, f64::min);
+        match &self.drifting {
+            Either::Place(track) => least(heights) - track.along(n),
+            Either::Facet(tracks) => least([0, 1, 2].map(|k| heights[k] - tracks[k].along(n))),
+        }
+    }
+
+    /// Where the facet is headed as seen from the place, m, as if it did not turn about that.
+    pub(super) fn way(&self) -> Vector3 {
+        match &self.drifting {
+            Either::Place(track) => -track.way,
+            Either::Facet(_) => self.drift.first_order(self.place),
+        }
+    }
+
+    /// They stay at least so far apart, m; less than zero says nothing.
+    pub(super) fn keep_off(&self) -> f64 {
+        let offsets = self.facet.corners.map(|corner| corner - self.place);
+        let along = |n| self.gap_along(&Direction::new(n, self.drift));
+        directions(&offsets, &self.way()).map(along).fold(0.0, f64::max)
+    }
 }
 
 /// Unit vectors that part the origin from a triangle carried along a way and back: each step points
