@@ -1,13 +1,10 @@
 //! An order in which points that follow one another are near one another.
 
-use cloudtouch_geom::{Point3, bounding_box};
+use cloudtouch_geom::Point3;
 use rayon::prelude::*;
 
 use crate::finite::is_finite;
-use crate::morton::interleaved;
-
-/// Bits of each coordinate that count.
-const BITS: u32 = 10;
+use crate::octree::Octree;
 
 /// What a function makes of every point, by its index, on all threads of the pool. It is called for
 /// points near one another in turn, with buffers that may keep what they have in common.
@@ -27,22 +24,13 @@ pub(crate) fn in_spatial_order<B: Default, T: Send + Copy>(
     places.into_iter().map(|place| made[place]).collect()
 }
 
-/// The indices of points, along a curve of Morton through the box around them; those that are not
-/// finite come first.
+/// The indices of points in the order of the cells of an octree; those that are not finite come first.
 fn spatial_order(points: &[Point3]) -> Vec<u32> {
-    let finite = points.iter().filter(|point| is_finite(point));
-    let (low, high) = bounding_box(finite).unwrap_or_default();
-    let longest = (high - low).max();
-    let scale = f64::from((1 << BITS) - 1) / longest;
-    let scale = if scale.is_finite() { scale } else { 0.0 };
-    let key = |point: &Point3| {
-        // What is not a number becomes zero.
-        interleaved([0, 1, 2].map(|axis| ((point[axis] - low[axis]) * scale) as u64))
-    };
-    let mut keyed: Vec<u64> =
-        (0..).zip(points).map(|(index, point)| key(point) << 32 | index).collect();
-    keyed.sort_unstable();
-    keyed.into_iter().map(|keyed| keyed as u32).collect()
+    let all = 0..points.len() as u32;
+    let (finite, mut order): (Vec<u32>, Vec<u32>) =
+        all.partition(|&index| is_finite(&points[index as usize]));
+    order.extend(Octree::of(points, &finite).indices());
+    order
 }
 
 #[cfg(test)]

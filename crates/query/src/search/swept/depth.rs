@@ -54,15 +54,12 @@ fn deepest(
         let beside = radius * (1.0 + drift.turn()) + drift.beyond_first_order(in_a, 0.0);
         ([to_mesh(&(in_a - way)), to_mesh(&(in_a + way))], beside)
     };
-    let surely_stays_clear = |in_a: &Point3, radius: f64| {
-        let ([from, to], beside) = way_of(in_a, radius);
-        mesh.is_surely_clear_of_way([&from, &to], beside, HALVINGS)
+    let surely_stays_clear = |([from, to], beside): &([Point3; 2], f64)| {
+        mesh.is_surely_clear_of_way([from, to], *beside, HALVINGS)
     };
-    let stays_clear = |in_a: &Point3, radius: f64| {
-        surely_stays_clear(in_a, radius) || {
-            let ([from, to], beside) = way_of(in_a, radius);
-            mesh.is_clear_of_way([&from, &to], beside)
-        }
+    let stays_clear = |way: &([Point3; 2], f64)| {
+        let ([from, to], beside) = way;
+        surely_stays_clear(way) || mesh.is_clear_of_way([from, to], *beside)
     };
     cloud.tree().visit_nodes(|node| {
         stats.nodes_visited += 1;
@@ -71,18 +68,17 @@ fn deepest(
         }
         let obb = node.obb();
         let in_a = a_from_cloud.transform_point(&obb.centre);
-        let radius = obb.radius() + node.shift();
+        let way = way_of(&in_a, obb.radius() + node.shift());
         // Above the leaves it costs less to go on than to look closer.
         if !node.is_leaf() {
-            let is_clear = surely_stays_clear(&in_a, radius);
-            return if is_clear { Visit::Prune } else { Visit::Descend };
+            return if surely_stays_clear(&way) { Visit::Prune } else { Visit::Descend };
         }
-        if !stays_clear(&in_a, radius) {
+        if !stays_clear(&way) {
             let (surfels, computed) = cloud.leaf(node.id());
             stats.leaves_prepared += usize::from(computed);
             for surfel in surfels {
                 let in_a = a_from_cloud.transform_point(&surfel.point.mean);
-                if stays_clear(&in_a, 0.0) {
+                if stays_clear(&way_of(&in_a, 0.0)) {
                     continue;
                 }
                 let distance = mesh.project(&to_mesh(&in_a)).signed_distance;
