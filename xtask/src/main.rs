@@ -9,7 +9,7 @@ mod tidy;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use cloudtouch_evaluation::{calibrate, motion, paper, performance, real_scans, stability, sweep};
+use cloudtouch_evaluation::{calibrate, motion, paper, performance, real_scans, sweep};
 
 /// Project tasks.
 #[derive(Parser)]
@@ -26,8 +26,6 @@ enum Task {
     Sweep(sweep::Arguments),
     /// Fits the constants that turn evidence into a probability.
     Calibrate(calibrate::Arguments),
-    /// Hard cases through solver and queries.
-    Stability(stability::Arguments),
     /// Times of ours and of its peers on the same scenes, against the targets, with figures.
     BenchReport(performance::Arguments),
     /// The figures of the paper with our data, by its method as printed and by ours.
@@ -51,7 +49,6 @@ fn main() -> anyhow::Result<()> {
         Task::Evaluate(arguments) => real_scans::run(&root, &arguments),
         Task::Sweep(arguments) => sweep::run(&root, &arguments),
         Task::Calibrate(arguments) => calibrate::run(&root, &arguments),
-        Task::Stability(arguments) => stability::run(&root, &arguments),
         Task::BenchReport(arguments) => performance::run(&root, &arguments),
         Task::Paper(arguments) => paper::run(&root, &arguments),
         Task::Motion(arguments) => motion::run(&root, &arguments),

@@ -1,13 +1,12 @@
-//! The lab beside the product: what its accuracy, speed and stability are measured with.
+//! The lab beside the product: what its accuracy and speed are measured with.
 //!
 //! A command measures, fills [`report::Table`]s and [`report::Figure`]s, and hands them to a
 //! [`report::Page`], which writes `docs/lab/NAME.md` whole. Commands have no drawing code and no date
-//! or commit of their own. Each fails where something cannot be read, asked or written; `evaluate`,
-//! `stability` and the short sweep also where what they hold is missed.
+//! or commit of their own. Each fails where something cannot be read, asked or written; `evaluate` and
+//! the short sweep also where what they hold is missed.
 
 pub mod answers;
 pub mod calibrate;
-pub mod leaf;
 pub mod measures;
 pub mod methods;
 pub mod motion;
@@ -15,8 +14,5 @@ pub mod paper;
 pub mod performance;
 pub mod real_scans;
 pub mod report;
-pub mod stability;
 pub mod statistics;
 pub mod sweep;
-
-pub use report::{figure, page, table, targets};

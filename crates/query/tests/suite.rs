@@ -16,6 +16,7 @@ mod frames;
 mod free_and_collision;
 mod gradient;
 mod hard_cases;
+mod hard_leaf_problems;
 mod hidden;
 mod known_normals;
 mod limits;

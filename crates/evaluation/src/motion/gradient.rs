@@ -8,13 +8,9 @@ use cloudtouch_geom::{Pose, Vector3};
 use nalgebra::{UnitQuaternion, Vector6};
 
 use super::near_contact::{Bodies, answers};
-use crate::{
-    answers::{Answers, Pair, Said},
-    methods::{Draw, Method, Prepared},
-    page::Section,
-    table::Table,
-    targets::{Findings, Target},
-};
+use crate::answers::{Answers, Pair, Said};
+use crate::methods::{Draw, Method, Prepared};
+use crate::report::{Findings, Section, Table, Target};
 
 /// Steps of the differences, m; rotations by as much at this arm, m.
 const STEPS: [f64; 2] = [4e-6, 1e-6];
@@ -139,8 +135,7 @@ pub(super) fn measure(draws: u32, poses: usize) -> Findings {
             let (poses, smooth, right) = count(&answers, pair);
             let share = right as f64 / smooth as f64;
             let (name, pair) = (of.name(), pair.name());
-            let counts = [poses, smooth].map(|count| count.to_string());
-            let [poses, smooth] = counts;
+            let [poses, smooth] = [poses, smooth].map(|count| count.to_string());
             table.row([name, pair, &poses, &smooth, &format!("{share:.3}")]);
             let what = format!("{pair}: gradient of {name} within 1 % at ≥ 95 % of smooth poses");
             targets.push(Target::new(what, format!("{:.1} %", 100.0 * share), share >= RIGHT));

@@ -4,17 +4,12 @@ use anyhow::{Context, Result, anyhow};
 use cloudtouch::WITHIN_KNOTS;
 use cloudtouch_testkit::family::Kind;
 
-use crate::{
-    answers::{Answers, Pair, Question},
-    measures::{
-        Axis, Clusters, Sample, SurfaceSample, calibration_error, chance_error, fit_surface,
-    },
-    methods::Ours,
-    page::Section,
-    sweep::{Asked, Plan, SEED, ask},
-    table::Table,
-    targets::{Findings, Target},
-};
+use crate::answers::{Answers, Pair, Question};
+use crate::measures::{Axis, Clusters, Sample, SurfaceSample};
+use crate::measures::{calibration_error, chance_error, fit_surface};
+use crate::methods::Ours;
+use crate::report::{Findings, Section, Table, Target};
+use crate::sweep::{Asked, Plan, SEED, ask};
 
 /// Margins asked about, m.
 const MARGINS: [f64; 3] = [0.01, 0.03, 0.1];

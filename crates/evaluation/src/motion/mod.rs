@@ -11,11 +11,8 @@ use std::path::Path;
 use anyhow::Result;
 use clap::Args;
 
-use crate::{
-    page::{self, Page},
-    sweep::SEED,
-    targets,
-};
+use crate::report::{Page, page, targets};
+use crate::sweep::SEED;
 
 /// What `cargo xtask motion` is given.
 #[derive(Debug, Args)]

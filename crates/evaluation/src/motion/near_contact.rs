@@ -4,11 +4,9 @@ use anyhow::Result;
 use cloudtouch::{BodyRef, Cloud, CloudSettings, Mesh};
 use cloudtouch_testkit::family::{Kind, Observation};
 
-use crate::{
-    answers::{Answers, Pair},
-    methods::{Draw, Method, sensor_of},
-    sweep::{Asked, Plan, ask},
-};
+use crate::answers::{Answers, Pair};
+use crate::methods::{Draw, Method, sensor_of};
+use crate::sweep::{Asked, Plan, ask};
 
 /// Standard deviations of the noise in these scenes, m.
 pub(super) const STDS: [f64; 2] = [0.002, 0.01];

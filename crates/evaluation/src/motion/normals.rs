@@ -12,11 +12,9 @@ use rayon::prelude::*;
 use super::near_contact::{Bodies, STDS};
 use crate::answers::Pair;
 use crate::methods::Draw;
-use crate::page::Section;
+use crate::report::{Findings, Section, Table, Target};
 use crate::statistics::median;
 use crate::sweep::{SEED, Scenes};
-use crate::table::Table;
-use crate::targets::{Findings, Target};
 
 /// Classes of poses by their signed distance, from and to, m.
 const CLASSES: [(&str, f64, f64); 3] = [

@@ -6,14 +6,10 @@ use anyhow::Result;
 use cloudtouch::{Clearance, Query, QuerySettings};
 
 use super::near_contact::{Bodies, STDS, answers};
-use crate::{
-    answers::{Answers, Pair, Question, Said},
-    methods::{Draw, Method, Prepared},
-    page::Section,
-    statistics::median,
-    table::Table,
-    targets::{Findings, Target},
-};
+use crate::answers::{Answers, Pair, Question, Said};
+use crate::methods::{Draw, Method, Prepared};
+use crate::report::{Findings, Section, Table, Target};
+use crate::statistics::median;
 
 /// After the translation a collision is less likely than this.
 const PROBABILITY: f64 = 0.1;
@@ -107,18 +103,9 @@ fn overlaps(answers: &Answers, pair: Pair, has_noise: impl Fn(f64) -> bool) -> V
 }
 
 fn judge(answers: &Answers) -> (Section, Vec<Target>) {
-    let mut table = Table::new([
-        "pair",
-        "noise",
-        "overlaps",
-        "depth good",
-        "off",
-        "distance good",
-        "off",
-        "enough",
-        "none",
-        "time",
-    ]);
+    const HEADER: &str =
+        "pair, noise, overlaps, depth good, off, distance good, off, enough, none, time";
+    let mut table = Table::new(HEADER.split(", "));
     let mut targets = Vec::new();
     for pair in Pair::ALL {
         for std in STDS {

@@ -4,6 +4,7 @@
 mod batch;
 mod fresh;
 mod growth;
+mod leaf;
 mod room;
 mod scene;
 mod solvers;

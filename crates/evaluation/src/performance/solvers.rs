@@ -5,8 +5,8 @@ use cloudtouch_geom::Vector3;
 use cloudtouch_geom::seed::{derive, unit};
 use cloudtouch_svm::{Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
 
+use super::leaf::{self, Leaf, SHAPES};
 use super::timing::{least_of, ratio, three_digits, times};
-use crate::leaf::{self, Leaf, SHAPES};
 use crate::report::{Findings, Section, Table, Target};
 use crate::statistics::median;
 
@@ -120,8 +120,7 @@ impl Cell {
         let root = if draw(4) < 0.5 { Vector3::repeat(1.0) } else { Vector3::new(0.2, 0.5, 1.0) };
         let shape = (SHAPES.len() as f64 * draw(3)) as usize;
         let leaf = Leaf { shape, gap: between([-0.1, 0.3], 0), std: root * between(self.noise, 1) };
-        let [a, b] = leaf.clouds(per_side, from);
-        leaf::samples([&a, &b], between(self.radius, 2), [self.penalty; 2])
+        leaf::samples(leaf.clouds(per_side, from), between(self.radius, 2), self.penalty)
     }
 }
 

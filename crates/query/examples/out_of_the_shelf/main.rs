@@ -1,7 +1,7 @@
 //! A gripper that scrapes along the board of a shelf, pulled out of it by the gradient of a collision's log
 //! odds: twenty poses, all at once, with `argmin`.
 //!
-//! Run with `cargo run --release -p cloudtouch-evaluation --example out_of_the_shelf [PICTURE.svg]`; the
+//! Run with `cargo run --release -p cloudtouch --example out_of_the_shelf [PICTURE.svg]`; the
 //! picture is that of docs/motion.md.
 
 mod picture;
@@ -9,8 +9,8 @@ mod round;
 mod scene;
 
 use anyhow::Result;
+use cloudtouch::geom::Pose;
 use cloudtouch::{Path, Query, QuerySettings, Report, Swept, Verdict};
-use cloudtouch_geom::Pose;
 use cloudtouch_testkit::exact::ExactMesh;
 
 use scene::{Bodies, sagging};
@@ -59,7 +59,7 @@ fn main() -> Result<()> {
     }
     println!("{rounds} rounds");
     if let Some(file) = std::env::args_os().nth(1) {
-        std::fs::write(file, picture::figure([&before.poses, &after.poses]).svg()?)?;
+        std::fs::write(file, picture::svg([&before.poses, &after.poses])?)?;
     }
     Ok(())
 }

@@ -1,27 +1,26 @@
-//! Leaf problems: two small clouds with a known gap, and how a query poses them to the solver.
+//! Leaf problems: two small clouds with a known gap.
 
-use cloudtouch::QuerySettings;
 use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, Vector3, seed};
-use cloudtouch_svm::{Class, Sample, UnitBox, balanced_penalties};
+use cloudtouch_svm::{Class, Sample};
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 
 /// What stands over the plane.
-pub const SHAPES: [&str; 3] = ["cap", "wedge", "sheet"];
+pub(super) const SHAPES: [&str; 3] = ["cap", "wedge", "sheet"];
 
 /// A shape of [`SHAPES`] over a square plane of side 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Leaf {
+pub(super) struct Leaf {
     /// Its number.
-    pub shape: usize,
+    pub(super) shape: usize,
     /// How far its lowest place is above the plane; negative in overlap.
-    pub gap: f64,
+    pub(super) gap: f64,
     /// Standard deviation of the noise along each axis.
-    pub std: Vector3,
+    pub(super) std: Vector3,
 }
 
 impl Leaf {
     /// So many measured points of the shape, and as many of the plane.
-    pub fn clouds(&self, per_side: usize, from: u64) -> [Vec<UncertainPoint>; 2] {
+    pub(super) fn clouds(&self, per_side: usize, from: u64) -> [Vec<UncertainPoint>; 2] {
         let variances = self.std.component_mul(&self.std);
         let covariance = Covariance::from_symmetric(&Matrix3::from_diagonal(&variances));
         [0, 1].map(|side| {
@@ -45,23 +44,9 @@ impl Leaf {
 }
 
 /// The points of both sides as samples of a radius (r) and a penalty (C).
-pub fn samples(
-    [a, b]: [&[UncertainPoint]; 2],
-    radius: f64,
-    [penalty_a, penalty_b]: [f64; 2],
-) -> Vec<Sample> {
-    let of = |points: &[UncertainPoint], class, penalty| {
-        let sample = |&point: &UncertainPoint| Sample { point, class, radius, penalty };
-        points.iter().map(sample).collect::<Vec<_>>()
+pub(super) fn samples(sides: [Vec<UncertainPoint>; 2], radius: f64, penalty: f64) -> Vec<Sample> {
+    let of = |(points, class): (Vec<UncertainPoint>, Class)| {
+        points.into_iter().map(move |point| Sample { point, class, radius, penalty })
     };
-    [of(a, Class::A, penalty_a), of(b, Class::B, penalty_b)].concat()
-}
-
-/// The same as a default query poses them: in their unit box, with penalties balanced. None of nothing.
-pub fn posed(sides: [&[UncertainPoint]; 2], radius: f64) -> Option<Vec<Sample>> {
-    let [a, b] = sides;
-    let penalty = QuerySettings::default().penalty;
-    let unit_box = UnitBox::around(a.iter().chain(b))?;
-    let all = samples(sides, radius, balanced_penalties(penalty, a.len(), b.len()).into());
-    Some(all.iter().map(|sample| unit_box.sample_inside(sample)).collect())
+    sides.into_iter().zip([Class::A, Class::B]).flat_map(of).collect()
 }

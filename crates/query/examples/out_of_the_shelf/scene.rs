@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use anyhow::Result;
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Mesh};
-use cloudtouch_geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
-use cloudtouch_noise::SensorModel;
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::scene::{assemble, cuboid, moved, union_of_boxes};
 use cloudtouch_testkit::surface;

@@ -9,8 +9,8 @@ use anyhow::{Context, Result};
 use argmin::core::{CostFunction, Error, Executor, Gradient, State};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
+use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{PoseGradient, Query};
-use cloudtouch_geom::{Pose, Vector3};
 
 use crate::scene::Bodies;
 
