@@ -9,7 +9,7 @@ use super::super::crossings::Witness;
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, NoisyLeaf};
 use super::drifts::Drifts;
-use super::leaf::{SweptCloud, SweptEdges};
+use super::leaf::{SweptCloud, SweptEdges, SweptFacet, SweptMesh};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
 use super::pool::Passages;
 use super::track::Direction;
@@ -113,25 +113,24 @@ pub(super) fn add_edges_through_discs(
 pub(super) fn add_edges_through_facets(
     is_a: bool,
     of_edges: &SweptCloud<'_>,
-    facets: &ExactLeaf,
+    facets: &SweptMesh,
     drifts: &Drifts,
     found: &mut Passages,
 ) {
     let Some(SweptEdges { all, tracks, hull: Some(hull) }) = of_edges.edges() else { return };
-    let thin = &of_edges.leaf.slab.direction;
-    let of_facets = drifts.of(!is_a);
-    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, of_facets));
-    let met: Vec<&Facet> = met.collect();
+    let thin = Direction::new(of_edges.leaf.slab.direction, drifts.of(!is_a));
+    let met = facets.facets().filter(|facet| hull.meets_facet(facet, &thin));
+    let met: Vec<SweptFacet<'_>> = met.collect();
     if met.is_empty() {
         return;
     }
     for (edge, track) in all.iter().zip(tracks) {
-        if !track.middle.gets_to(&facets.ball, edge.half_length) {
+        if !track.middle.gets_to(&facets.leaf.ball, edge.half_length) {
             continue;
         }
         let adrift = Adrift::new(is_a, edge, track);
         for facet in &met {
-            if let Some(passage) = adrift.through_facet(facet, &drifts.of_b) {
+            if let Some(passage) = adrift.through_facet(*facet, &drifts.of_b) {
                 found.add(Witness::edge(is_a, edge), &passage);
             }
         }
@@ -143,25 +142,24 @@ pub(super) fn add_edges_through_facets(
 pub(super) fn add_mesh_through_discs(
     is_a: bool,
     discs: &SweptCloud<'_>,
-    facets: &ExactLeaf,
+    facets: &SweptMesh,
     around: &mut OfMesh<'_>,
     drifts: &Drifts,
     found: &mut Passages,
 ) {
     let Some(hull) = discs.discs else { return };
-    let thin = &discs.leaf.slab.direction;
-    let of_facets = drifts.of(!is_a);
-    let met = facets.facets.iter().filter(|facet| hull.meets_facet(facet, thin, of_facets));
-    let met: Vec<Facet> = met.copied().collect();
+    let thin = Direction::new(discs.leaf.slab.direction, drifts.of(!is_a));
+    let met = facets.facets().filter(|facet| hull.meets_facet(facet, &thin));
+    let met: Vec<SweptFacet<'_>> = met.collect();
     if met.is_empty() {
         return;
     }
     for (disc, track) in discs.leaf.surfels.iter().zip(&discs.tracks) {
         let Some(normal) = disc.normal else { continue };
-        if !track.gets_to(&facets.ball, DISC_SPACINGS * disc.spacing) {
+        if !track.gets_to(&facets.leaf.ball, DISC_SPACINGS * disc.spacing) {
             continue;
         }
-        let off = may_pierce(is_a, disc, &normal, &met, drifts);
+        let off = may_pierce(is_a, (disc, track), &normal, &met, drifts);
         if let Some(off) = off.filter(|_| disc.spacing > 0.0) {
             let passage = mesh_through_disc(is_a, disc, (normal, off), around, drifts.of(is_a));
             found.add(Witness::disc(is_a, disc), &passage);

@@ -2,7 +2,8 @@
 
 use cloudtouch_geom::{BoxDrift, Drift, Matrix3, Point3, Vector3};
 
-use super::super::facet::Facet;
+use super::leaf::SweptFacet;
+use super::track::Direction;
 
 /// A box, in the frame of A.
 #[derive(Debug, Clone, Copy)]
@@ -57,17 +58,18 @@ impl Hull {
         from <= high && to >= low
     }
 
-    /// Whether a triangle of the other body, which drifts so, may meet it, as far as the plane of the triangle
-    /// and one direction tell.
-    pub(super) fn meets_facet(&self, facet: &Facet, direction: &Vector3, drift: &Drift) -> bool {
+    /// Whether a triangle of the other body may meet it, as far as the plane of the triangle and one
+    /// direction tell.
+    pub(super) fn meets_facet(&self, swept: &SweptFacet<'_>, direction: &Direction) -> bool {
+        let SweptFacet { facet, corners } = swept;
         let gets_to_plane = |n: Vector3| {
             let ([low, high], at) = (self.heights_on_the_way(&n), n.dot(&facet.corners[0].coords));
             low <= at && at <= high
         };
-        let [low, high] = self.heights(direction);
+        let [low, high] = self.heights(&direction.n);
         let (mut is_above, mut is_below) = (true, true);
-        for corner in &facet.corners {
-            let (at, room) = (direction.dot(&corner.coords), drift.along(direction, corner));
+        for corner in *corners {
+            let (at, room) = (direction.n.dot(&corner.place.coords), corner.along(direction));
             is_above &= at - room > high;
             is_below &= at + room < low;
         }

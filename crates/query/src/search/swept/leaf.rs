@@ -8,6 +8,7 @@ use crate::body::BodyRef;
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
 use crate::report::Stats;
 
+use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use super::super::run::load_edges;
 use super::hull::Hull;
@@ -17,7 +18,22 @@ use super::track::{Direction, Track};
 #[derive(Debug)]
 pub(super) enum Swept<'a> {
     Noisy(Box<SweptCloud<'a>>),
-    Exact(ExactLeaf),
+    Exact(SweptMesh),
+}
+
+/// A leaf of a mesh.
+#[derive(Debug)]
+pub(super) struct SweptMesh {
+    pub leaf: ExactLeaf,
+    /// Of the corners of its facets.
+    tracks: Vec<[Track; 3]>,
+}
+
+/// A facet, and where its corners get to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SweptFacet<'a> {
+    pub facet: &'a Facet,
+    pub corners: &'a [Track; 3],
 }
 
 /// A leaf of a cloud.
@@ -79,7 +95,7 @@ impl<'a> Swept<'a> {
             (_, Leaf::Noisy(leaf)) => {
                 Self::Noisy(Box::new(SweptCloud::new(leaf, Matrix3::identity(), drift)))
             }
-            (_, Leaf::Exact(leaf)) => Self::Exact(leaf),
+            (_, Leaf::Exact(leaf)) => Self::Exact(SweptMesh::new(leaf, drift)),
         }
     }
 }
@@ -88,6 +104,19 @@ impl<'a> Swept<'a> {
 fn axes_of(cloud: &Cloud, id: NodeId, motion: Option<&Motion>) -> Matrix3 {
     let axes = cloud.tree().node(id).map_or_else(Matrix3::identity, |leaf| leaf.obb().axes);
     motion.map_or(axes, |motion| motion.rotation() * axes)
+}
+
+impl SweptMesh {
+    fn new(leaf: ExactLeaf, drift: &Drift) -> Self {
+        let track = |facet: &Facet| facet.corners.map(|corner| Track::of(&corner, drift));
+        let tracks = leaf.facets.iter().map(track).collect();
+        Self { leaf, tracks }
+    }
+
+    pub(super) fn facets(&self) -> impl Iterator<Item = SweptFacet<'_>> {
+        let all = self.leaf.facets.iter().zip(&self.tracks);
+        all.map(|(facet, corners)| SweptFacet { facet, corners })
+    }
 }
 
 impl<'a> SweptCloud<'a> {

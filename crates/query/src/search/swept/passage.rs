@@ -10,8 +10,8 @@ use super::super::crossing::{CLEAREST, known_to, weight_at};
 use super::super::facet::Facet;
 use super::super::through_mesh::Outline;
 use super::drifts::Drifts;
-use super::leaf::EdgeTrack;
-use super::track::{Direction, Pair, Track, piece_keeps_off};
+use super::leaf::{EdgeTrack, SweptFacet};
+use super::track::{Approach, Direction, Drifting, Track, piece_keeps_off};
 
 /// A passage that may be.
 #[derive(Debug, Clone, Copy)]
@@ -95,14 +95,20 @@ impl<'a> Adrift<'a> {
     }
 
     /// Of a triangle of the other body; `drift` is that of B.
-    pub(super) fn through_facet(&self, facet: &Facet, drift: &Drift) -> Option<Passage> {
+    pub(super) fn through_facet(
+        &self,
+        SweptFacet { facet, corners }: SweptFacet<'_>,
+        drift: &Drift,
+    ) -> Option<Passage> {
         let normal = facet.normal?;
         let spacing = 2.0 * self.edge.half_length;
         let stds = self.edge.across.map(|own| known_to(own.sqrt(), spacing));
         let crossed = self.crossed((normal, &facet.corners[0]), [-1.0, 1.0], stds, drift)?;
         let [from, to] = self.part(&crossed);
         let (middle, half) = (nalgebra::center(&from, &to), 0.5 * (to - from).norm());
-        let off = Pair::new(&middle, facet, !self.is_a, drift).keep_off();
+        let track = Track::of(&middle, drift);
+        let drifting = if self.is_a { Drifting::Corners(corners) } else { Drifting::Place(&track) };
+        let off = Approach { place: &middle, facet, drifting, drift }.keep_off();
         (off <= half * (1.0 + ROUNDING) + ROUNDING * spacing)
             .then(|| self.passage(crossed.clear, 1.0, [from, to], spacing))
     }
@@ -174,22 +180,24 @@ impl Crossed {
 /// How near to the middle of a disc some facets may pass it, m; `None` where none can.
 pub(super) fn may_pierce(
     is_a: bool,
-    disc: &Surfel,
+    (disc, track): (&Surfel, &Track),
     normal: &Vector3,
-    facets: &[Facet],
+    facets: &[SweptFacet<'_>],
     drifts: &Drifts,
 ) -> Option<f64> {
-    let (middle, of_facets) = (disc.point.mean, drifts.of(!is_a));
-    let direction = Direction::new(*normal, of_facets);
-    let passes = facets.iter().filter(|facet| {
-        let heights = facet.corners.map(|corner| {
-            let by = Track::of(&corner, of_facets).along(&direction);
-            let at = normal.dot(&(corner - middle));
+    let middle = disc.point.mean;
+    let direction = Direction::new(*normal, drifts.of(!is_a));
+    let passes = facets.iter().filter(|swept| {
+        let heights = swept.corners.map(|corner| {
+            let (at, by) = (normal.dot(&(corner.place - middle)), corner.along(&direction));
             (at - by, at + by)
         });
         heights.iter().any(|(low, _)| *low <= 0.0) && heights.iter().any(|(_, high)| *high >= 0.0)
     });
-    let off = passes.map(|facet| Pair::new(&middle, facet, !is_a, &drifts.of_b).keep_off());
+    let off = passes.map(|SweptFacet { facet, corners }| {
+        let drifting = if is_a { Drifting::Corners(corners) } else { Drifting::Place(track) };
+        Approach { place: &middle, facet, drifting, drift: &drifts.of_b }.keep_off()
+    });
     let off = off.fold(f64::INFINITY, f64::min);
     (off <= DISC_SPACINGS * disc.spacing * (1.0 + ROUNDING)).then_some(off)
 }

@@ -9,9 +9,10 @@ use cloudtouch_geom::{Drift, Vector3};
 
 use crate::cloud::Surfel;
 
-use super::super::facet::{Facet, Whitening, nearest_to_origin};
+use super::super::facet::{Whitening, nearest_to_origin};
 use super::super::meeting::{LEAST_STD, solve};
-use super::track::{Direction, Pair, Track, directions, least_at, nearest_time};
+use super::leaf::SweptFacet;
+use super::track::{Approach, Direction, Drifting, Track, directions, least_at, nearest_time};
 
 /// The pieces of two clouds, that of B drifting along its track; `None` where they have `limit` or more.
 pub(super) fn between_discs(
@@ -40,17 +41,18 @@ pub(super) fn between_discs(
 
 /// A piece of a cloud and an exact one. `is_facet_still`: whether the piece of the cloud drifts.
 pub(super) fn to_facet(
-    (surfel, whitening): (&Surfel, &Whitening),
-    facet: &Facet,
+    (surfel, whitening, track): (&Surfel, &Whitening, &Track),
+    SweptFacet { facet, corners }: SweptFacet<'_>,
     is_facet_still: bool,
     drift: &Drift,
     limit: f64,
 ) -> Option<f64> {
     let mean = surfel.point.mean;
-    let pair = Pair::new(&mean, facet, is_facet_still, drift);
+    let drifting = if is_facet_still { Drifting::Place(track) } else { Drifting::Corners(corners) };
+    let approach = Approach { place: &mean, facet, drifting, drift };
     let along = |n: &Vector3| {
         let n = Direction::new(*n, drift);
-        let gap = pair.gap_along(&n);
+        let gap = approach.gap_along(&n);
         let variance = match is_facet_still {
             true => turned_variance(surfel, &n, drift),
             false => surfel.point.covariance.variance_along(&n.n),
@@ -73,7 +75,7 @@ pub(super) fn to_facet(
         }
         most = most.max(deviations);
     }
-    let way = whitening.apply(&pair.way());
+    let way = whitening.apply(&approach.way());
     let corners = offsets.map(|offset| whitening.apply(&offset));
     for n in directions(&corners, &way) {
         // Across what parts them in standard deviations.

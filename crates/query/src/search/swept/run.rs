@@ -11,14 +11,13 @@ use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
 use super::super::around::{Around, OfMesh};
-use super::super::leaf::ExactLeaf;
 use super::drifts::Drifts;
 use super::facets::may_touch;
 use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_meet, may_reach,
     may_reach_facets,
 };
-use super::leaf::{Swept, SweptCloud};
+use super::leaf::{Swept, SweptCloud, SweptMesh};
 use super::pieces::{between_discs, to_facet, turned_variance};
 use super::pool::Passages;
 use super::track::Direction;
@@ -108,8 +107,8 @@ fn least_of(a: &mut Swept<'_>, b: &mut Swept<'_>, drift: &Drift, most: f64) -> f
         (Swept::Noisy(a), Swept::Exact(b)) => to_exact(a, b, false, drift, most),
         (Swept::Exact(a), Swept::Noisy(b)) => to_exact(b, a, true, drift, most),
         (Swept::Exact(a), Swept::Exact(b)) => {
-            let touches = |p| b.facets.iter().any(|q| may_touch(p, q, drift));
-            if a.facets.iter().any(touches) { 0.0 } else { most }
+            let touches = |p| b.leaf.facets.iter().any(|q| may_touch(p, q, drift));
+            if a.leaf.facets.iter().any(touches) { 0.0 } else { most }
         }
     }
 }
@@ -132,7 +131,7 @@ fn between_noisy(a: &SweptCloud<'_>, b: &SweptCloud<'_>, drift: &Drift, most: f6
 
 fn to_exact(
     noisy: &mut SweptCloud<'_>,
-    exact: &ExactLeaf,
+    exact: &SweptMesh,
     is_facet_still: bool,
     drift: &Drift,
     most: f64,
@@ -140,11 +139,12 @@ fn to_exact(
     let mut least = most;
     let (surfels, whitenings, _) = noisy.leaf.whitened();
     for ((surfel, whitening), track) in surfels.iter().zip(whitenings).zip(&noisy.tracks) {
-        if !track.gets_to(&exact.ball, least * surfel.most_variance.sqrt()) {
+        if !track.gets_to(&exact.leaf.ball, least * surfel.most_variance.sqrt()) {
             continue;
         }
-        for facet in &exact.facets {
-            let of_facet = to_facet((surfel, whitening), facet, is_facet_still, drift, least);
+        for facet in exact.facets() {
+            let of_facet =
+                to_facet((surfel, whitening, track), facet, is_facet_still, drift, least);
             least = of_facet.unwrap_or(least);
         }
     }
@@ -188,7 +188,7 @@ fn cross<'a>(
             cross_discs(false, on_b, of_edges, on_a, &drifts.of_b, passages);
         }
         (Swept::Noisy(noisy), Swept::Exact(exact))
-            if may_reach_facets(noisy, exact, &drifts.of_a) =>
+            if may_reach_facets(noisy, &exact.leaf, &drifts.of_a) =>
         {
             noisy.load_edges(a, pair.a, None, &drifts.of_a);
             add_edges_through_facets(true, noisy, exact, drifts, passages);
@@ -196,7 +196,7 @@ fn cross<'a>(
             add_mesh_through_discs(true, noisy, exact, &mut around, drifts, passages);
         }
         (Swept::Exact(exact), Swept::Noisy(noisy))
-            if may_reach_facets(noisy, exact, &drifts.of_b) =>
+            if may_reach_facets(noisy, &exact.leaf, &drifts.of_b) =>
         {
             noisy.load_edges(b, pair.b, Some(a_from_b), &drifts.of_b);
             add_edges_through_facets(false, noisy, exact, drifts, passages);

@@ -89,49 +89,37 @@ pub(super) fn piece_keeps_off([from, to]: &[Point3; 2], place: &Point3, drift: &
     nearest - 0.5 * (ways[0] - ways[1]).norm() - beside[0].max(beside[1])
 }
 
-/// A place and a facet, of which one drifts.
-pub(super) struct Pair<'a> {
-    place: &'a Point3,
-    facet: &'a Facet,
-    drift: &'a Drift,
-    drifting: Either,
+/// A place and a facet that come nearer to one another or part.
+pub(super) struct Approach<'a> {
+    pub place: &'a Point3,
+    pub facet: &'a Facet,
+    pub drifting: Drifting<'a>,
+    pub drift: &'a Drift,
 }
 
 /// Which of the two drifts, and where it gets to.
-enum Either {
-    Place(Track),
-    Facet([Track; 3]),
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Drifting<'a> {
+    Place(&'a Track),
+    Corners(&'a [Track; 3]),
 }
 
-impl<'a> Pair<'a> {
-    pub(super) fn new(
-        place: &'a Point3,
-        facet: &'a Facet,
-        is_facet_still: bool,
-        drift: &'a Drift,
-    ) -> Self {
-        let drifting = match is_facet_still {
-            true => Either::Place(Track::of(place, drift)),
-            false => Either::Facet(facet.corners.map(|corner| Track::of(&corner, drift))),
-        };
-        Self { place, facet, drift, drifting }
-    }
-
+impl Approach<'_> {
     /// How far the facet keeps from the place along a unit vector, away from it, m.
     pub(super) fn gap_along(&self, n: &Direction) -> f64 {
         let heights = self.facet.corners.map(|corner| n.n.dot(&(corner - self.place)));
         let least = |gaps: [f64; 3]| gaps.into_iter().fold(f64::INFINITY, f64::min);
-        match &self.drifting {
-            Either::Place(track) => least(heights) - track.along(n),
-            Either::Facet(tracks) => least([0, 1, 2].map(|k| heights[k] - tracks[k].along(n))),
+        match self.drifting {
+            Drifting::Place(track) => least(heights) - track.along(n),
+            Drifting::Corners(tracks) => least([0, 1, 2].map(|k| heights[k] - tracks[k].along(n))),
         }
     }
 
     /// Where the facet is headed as seen from the place, m, as if it did not turn about that.
     pub(super) fn way(&self) -> Vector3 {
-        match &self.drifting {
-            Either::Place(track) => -track.way,
-            Either::Facet(_) => self.drift.first_order(self.place),
+        match self.drifting {
+            Drifting::Place(track) => -track.way,
+            Drifting::Corners(_) => self.drift.first_order(self.place),
         }
     }
 
