@@ -65,16 +65,16 @@ impl Default for PosteriorSettings {
 impl Default for SurfaceError {
     fn default() -> Self {
         Self {
-            leverage: 0.75,
-            hidden: 1.35,
-            bend: 1.23,
-            misfit: 1.5,
-            suspected: 11.0,
-            disagreement: 0.08,
-            tilt: 0.2,
-            doubt: 1.3,
-            own_noise: 0.22,
-            turn: 25.0,
+            leverage: 0.26,
+            hidden: 0.7,
+            bend: 0.7,
+            misfit: 1.77,
+            suspected: 5.2,
+            disagreement: 0.021,
+            tilt: 0.49,
+            doubt: 2.21,
+            own_noise: 0.82,
+            turn: 60.0,
         }
     }
 }
