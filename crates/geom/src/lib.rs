@@ -17,6 +17,8 @@ mod pose;
 #[cfg(feature = "seed")]
 pub mod seed;
 mod symmetric;
+#[cfg(feature = "mesh")]
+mod turn;
 mod uncertain;
 mod unit;
 mod vectors;

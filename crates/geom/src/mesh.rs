@@ -137,6 +137,11 @@ impl TriangleMesh {
         Self { vertices, triangles }
     }
 
+    /// The same vertices in other triangles.
+    pub(crate) fn with_triangles(&self, triangles: Vec<[u32; 3]>) -> Self {
+        Self { vertices: self.vertices.clone(), triangles }
+    }
+
     /// How many edges do not join exactly two triangles that run along it in opposite directions.
     ///
     /// Zero means watertight and consistently oriented: inside and outside are defined. An edge that

@@ -10,7 +10,7 @@ pub enum Undecided {
     /// More of a body's surface than [`Safeguards::max_unseen`](crate::Safeguards::max_unseen) lies
     /// where the single depth image of the other saw nothing: see [`Unseen`](crate::Unseen).
     Unseen,
-    /// The surface of one cloud is all around the other: it is in a hollow space, or within a solid.
+    /// The surface of a cloud is all around the other body: it is in a hollow space, or within a solid.
     /// A cloud that knows where its sensor stood tells which.
     Enclosed,
     /// Sizes or distance of the bodies cannot be meant: one of them is in another unit.

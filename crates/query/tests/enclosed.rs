@@ -1,9 +1,9 @@
-//! A closed cloud within a closed cloud: in a hollow space or within a solid, no surface tells which.
+//! A closed cloud or mesh within a closed cloud: in a hollow space or within a solid, no surface tells which.
 
 use crate::common::{assert_sound, at, measured};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report, Undecided, Verdict};
+use cloudtouch::{Cloud, CloudSettings, Mesh, Query, QuerySettings, Report, Undecided, Verdict};
 use cloudtouch_testkit::scene;
 
 /// Seen from a place, or from who knows where.
@@ -34,6 +34,26 @@ fn a_ball_within_a_ball_read_free() {
     }
     let beside = ask(&outer, &inner, &at(0.0, 0.0, 0.4));
     assert_eq!((beside.verdict, beside.undecided_by), (Verdict::Free, None));
+}
+
+/// Nothing said so: a cloud in its place was undecided.
+#[test]
+fn a_closed_mesh_within_a_closed_cloud_read_free() {
+    let outer = cloud(&scene::sphere(0.2, 3), None, 1);
+    let inner = Mesh::prepare(&scene::cuboid([0.05; 3])).expect("a good mesh");
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    for report in [
+        query.run(&outer, &inner, &at(0.0, 0.02, 0.0)).expect("a good pose"),
+        query.run(&inner, &outer, &at(0.0, 0.02, 0.0)).expect("a good pose"),
+    ] {
+        assert_eq!(report.undecided_by, Some(Undecided::Enclosed), "{report:?}");
+        assert_eq!((report.verdict, report.bounds[1]), (Verdict::Undecided, 1.0));
+    }
+    let beside = query.run(&outer, &inner, &at(0.0, 0.0, 0.4)).expect("a good pose");
+    assert_eq!((beside.verdict, beside.undecided_by), (Verdict::Free, None));
+    let hollow = cloud(&scene::sphere(0.2, 3), Some(Vector3::new(0.12, 0.0, 0.0)), 1);
+    let free = query.run(&hollow, &inner, &at(0.0, 0.02, 0.0)).expect("a good pose");
+    assert_eq!(free.verdict, Verdict::Free, "{free:?}");
 }
 
 #[test]

@@ -33,6 +33,22 @@ fn overlapping_boxes() -> TriangleMesh {
     scene::assemble([solid([0.0; 3], [1.0; 3]), solid([0.5, 0.2, 0.2], [1.5, 0.8, 0.8])])
 }
 
+/// One triangle of a closed box was turned round: its inside was none, and a cloud there read free.
+#[test]
+fn a_cloud_within_a_box_with_a_turned_triangle_read_free() {
+    let good = solid([0.0; 3], [1.0; 3]);
+    let turn = |(k, &[a, b, c]): (usize, &[u32; 3])| if k == 4 { [a, c, b] } else { [a, b, c] };
+    let turned = good.triangles().iter().enumerate().map(turn).collect();
+    let solid = mesh(&TriangleMesh::try_new(good.vertices().to_vec(), turned).expect("a mesh"));
+    assert!(solid.is_watertight());
+    let ball = measured(&scene::sphere(0.1, 3), 0.01, 0.001, 4);
+    for mode in [Mode::Calibrated, Mode::Paper] {
+        let ball = prepare(ball.clone(), 0.001, mode);
+        let report = ask(mode, &ball, &solid, &at(-0.5, -0.5, -0.5));
+        assert_eq!(report.verdict, Verdict::InCollision, "{mode:?}: {report:?}");
+    }
+}
+
 #[test]
 fn a_cloud_below_a_sheet_with_a_back_face_collided() {
     let sheet = mesh(&two_sided_sheet());

@@ -123,6 +123,28 @@ fn where_no_pose_comes_near_none_is_asked_about() {
     assert!(under.poses == 1 && under.bounds[1] < 0.01, "{under:?}");
 }
 
+/// A box two deviations above a plate: seven poses all said free, and so did the answer, beyond doubt.
+#[test]
+fn what_only_the_farthest_poses_do_was_never() {
+    let plate = cloud(&scene::plane_patch(1.0), 0.002, 5);
+    let block = Body::Mesh(Mesh::prepare(&scene::cuboid([0.2; 3])).unwrap());
+    let mean = Pose::from_translation(Vector3::new(0.0, 0.0, 0.2));
+    let below = |deviations: f64| normal::cdf(-deviations);
+    for (std, most_off) in [(0.05, 0.012), (0.04, 0.005), (0.1, 0.03), (0.03, 0.003)] {
+        let known = PoseDistribution::from_std(mean, [0.0, 0.0, std, 0.0, 0.0, 0.0]);
+        let (_, under) = query().run_uncertain(&plate, &block, &known).unwrap();
+        // From where the lower face is at the plate to where the upper one is.
+        let truth = below(0.1 / std) - below(0.3 / std);
+        assert!((under.probability - truth).abs() < most_off, "{std}: {truth} but {under:?}");
+        assert!((under.probability - truth).abs() < 2.0 * under.std_error, "{truth}: {under:?}");
+    }
+    // So far about that none of the poses asked about hits it.
+    let known = PoseDistribution::from_std(mean, [0.0, 0.0, 5.0, 0.0, 0.0, 0.0]);
+    let (_, under) = query().run_uncertain(&plate, &block, &known).unwrap();
+    let truth = below(0.1 / 5.0) - below(0.3 / 5.0);
+    assert!((under.probability - truth).abs() < 2.0 * under.std_error, "{truth}: {under:?}");
+}
+
 #[test]
 fn no_pose_has_such_a_covariance() {
     let (a, b) = bodies(true, 3);

@@ -23,21 +23,24 @@ const CLOSED: f64 = 0.97;
 /// A way that keeps so many spacings from every point passes no surface.
 const SURFACE_SPACINGS: f64 = 1.0;
 
-/// Whether the surface of one cloud is all around the other, so that neither knows whether the space
+/// Whether the surface of a cloud is all around the other body, so that neither knows whether the space
 /// between them is empty. Where a sensor's place is known and it looks at the inner one past no
-/// surface, that space was seen to be.
+/// surface, that space was seen to be. On which side of a mesh something is, the mesh tells.
 pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
-    let (Shape::Cloud(a), Shape::Cloud(b)) = (a, b) else { return false };
-    let of = |cloud: &Prepared| {
-        let obb = cloud.tree().root().map(|root| *root.obb());
+    let of = |body: Shape<'_>| {
+        let obb = body.tree().root().map(|root| *root.obb());
         obb.map_or((Point3::origin(), 0.0), |obb| (obb.centre, obb.radius()))
     };
     let ((middle_of_a, radius_of_a), (middle_of_b, radius_of_b)) = (of(a), of(b));
     // The larger one cannot be within the smaller.
-    if radius_of_a >= radius_of_b {
-        surrounds(a, &a_from_b.transform_point(&middle_of_b))
+    let (outer, place) = if radius_of_a >= radius_of_b {
+        (a, a_from_b.transform_point(&middle_of_b))
     } else {
-        surrounds(b, &a_from_b.inverse().transform_point(&middle_of_a))
+        (b, a_from_b.inverse().transform_point(&middle_of_a))
+    };
+    match outer {
+        Shape::Cloud(cloud) => surrounds(cloud, &place),
+        Shape::Mesh(_) => false,
     }
 }
 

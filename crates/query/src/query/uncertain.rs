@@ -15,10 +15,19 @@ use super::settings::Detail;
 const FIRST_PAIRS: usize = 3;
 /// ... and where these differ by more than ...
 const ALIKE: f64 = 0.02;
-/// ... so many more.
+/// ... or where none collides, so many more, each of which stands for as large a share of all.
 const MORE_PAIRS: usize = 8;
-/// Where even the farthest of them is not within reach with this probability, none is looked at.
+/// The outermost of these stand for all that is beyond 1.5 deviations. Where it is not sure that poses
+/// farther out collide, some of them stand for themselves: how many deviations out, and the share of all
+/// between 1.86, 2.4 and 3 deviations and beyond.
+const TAIL: [(f64, f64); 3] = [(2.1, 0.0233), (2.65, 0.00685), (3.3, 0.00135)];
+/// Farther out than this a collision is taken for sure.
+const SURE: f64 = 0.98;
+/// Where even what is twice as far out as the outermost of them is not within reach with this
+/// probability, none is looked at.
 const OUT_OF_REACH: f64 = 0.005;
+/// See [`OUT_OF_REACH`].
+const FARTHER: f64 = 2.0;
 /// Relative rounding of a covariance.
 const ROUNDING: f64 = 1e-9;
 
@@ -39,8 +48,9 @@ pub struct UnderPoses {
     pub probability: f64,
     /// Means of the lower and the upper bounds; `probability` lies within.
     pub bounds: [f64; 2],
-    /// The standard error that as many poses drawn at random would leave; what is left is less as a
-    /// rule, since they are spread evenly.
+    /// The standard error that as many poses drawn at random would leave, and where none of so many
+    /// collides, or all do, that of half a one that does not; what is left is less as a rule, since they
+    /// are spread evenly. 0 where poses that come near enough are out of the question.
     pub std_error: f64,
     /// How many poses were asked about.
     pub poses: usize,
@@ -133,8 +143,8 @@ impl Query {
     ///
     /// The error of the pose moves all of a body together; that is why no noise of single points can
     /// stand for it. Without any uncertainty it is the plain answer, to the bit. Takes two queries where no
-    /// pose comes near, seven where all are as likely to collide, and twenty-three elsewhere: poses spread evenly
-    /// along the motion that changes the clearance most. On all threads of the pool.
+    /// pose comes near, seven where all collide, and up to twenty-nine elsewhere: poses spread evenly along the
+    /// motion that changes the clearance most, and some far out on it. On all threads of the pool.
     ///
     /// # Errors
     /// When the covariance is not finite, not symmetric or has a negative eigenvalue, and those of
@@ -165,30 +175,56 @@ impl Query {
                 shift.norm() + turn.norm() * radius
             };
             let farthest = first.iter().chain(&more).map(moves).fold(0.0, f64::max);
-            let near = self.beyond_collision((a, b), mean, farthest, &report)?;
+            let near = self.beyond_collision((a, b), mean, FARTHER * farthest, &report)?;
             if near.bounds[1] < OUT_OF_REACH {
                 let [low, high] = plain.bounds;
                 let bounds = [low, high.max(near.bounds[1])];
                 return Ok((report, UnderPoses { bounds, ..plain }));
             }
         }
-        let mut asked = vec![(plain.probability, plain.bounds)];
         let query = self.with_detail(Detail::Probability);
-        for motions in [first, more] {
+        let ask = |motions: &[Vector6<f64>]| -> Result<Vec<Said>, QueryError> {
             let poses: Vec<Pose> = motions.iter().map(|motion| moved(mean, motion)).collect();
-            for answer in query.run_batch(a, b, &poses) {
-                let Report { collision_probability, bounds, .. } = answer?;
-                asked.push((collision_probability, bounds));
-            }
-            let (least, most) = asked
-                .iter()
-                .fold((1.0_f64, 0.0_f64), |(least, most), (p, _)| (least.min(*p), most.max(*p)));
-            if most - least <= ALIKE {
-                break;
+            let answers = query.run_batch(a, b, &poses).into_iter();
+            answers.map(|answer| answer.map(|report| said(&report))).collect()
+        };
+        let mut asked = vec![said(&report)];
+        asked.extend(ask(&first)?);
+        let (least, most) = asked
+            .iter()
+            .fold((1.0_f64, 0.0_f64), |(least, most), [p, ..]| (least.min(*p), most.max(*p)));
+        if most - least <= ALIKE && most > 0.5 {
+            return Ok((report, UnderPoses::mean(&asked, &[])));
+        }
+        let even = ask(&more)?;
+        let mut tails = Vec::new();
+        for (outermost, sign) in even.iter().zip([-1.0, 1.0]) {
+            if outermost[0] < SURE {
+                let said = ask(&farther_out(&axes, &nearing, sign))?;
+                tails.push((*outermost, said));
             }
         }
-        Ok((report, UnderPoses::mean(&asked)))
+        asked.extend(even);
+        Ok((report, UnderPoses::mean(&asked, &tails)))
     }
+}
+
+/// Motions of [`TAIL`] along the motion that matters, to one side.
+fn farther_out(axes: &Matrix6xX<f64>, along: &Vector6<f64>, sign: f64) -> Vec<Vector6<f64>> {
+    let across: DVector<f64> = axes.tr_mul(along);
+    // Where none matters, the first of the axes.
+    let first = DVector::from_fn(axes.ncols(), |k, _| f64::from(u8::from(k == 0)));
+    let unit = across.try_normalize(0.0).unwrap_or(first);
+    TAIL.iter().map(|(deviations, _)| axes * &unit * (sign * deviations)).collect()
+}
+
+/// A probability and its bounds.
+type Said = [f64; 3];
+
+/// What a report says.
+fn said(report: &Report) -> Said {
+    let [low, high] = report.bounds;
+    [report.collision_probability, low, high]
 }
 
 impl UnderPoses {
@@ -198,18 +234,28 @@ impl UnderPoses {
         Self { probability, bounds, std_error: 0.0, poses: 1 }
     }
 
-    /// The mean of probabilities with their bounds.
-    fn mean(asked: &[(f64, [f64; 2])]) -> Self {
+    /// The mean of probabilities with their bounds; in the tails others take the place of the outermost.
+    fn mean(asked: &[Said], tails: &[(Said, Vec<Said>)]) -> Self {
         let count = asked.len() as f64;
-        let mut means = [0.0; 4];
-        for &(p, [low, high]) in asked {
-            for (mean, value) in means.iter_mut().zip([p, low, high, p * p]) {
-                *mean += value / count;
+        let mut means = [0.0; 3];
+        for said in asked {
+            means.iter_mut().zip(said).for_each(|(mean, value)| *mean += value / count);
+        }
+        let square: f64 = asked.iter().map(|[p, ..]| p * p / count).sum();
+        let mut poses = asked.len();
+        for (outermost, said) in tails {
+            poses += said.len();
+            for (said, (_, share)) in said.iter().zip(TAIL) {
+                let change =
+                    |((mean, is), was): ((&mut f64, &f64), &f64)| *mean += share * (is - was);
+                means.iter_mut().zip(said).zip(outermost).for_each(change);
             }
         }
-        let [probability, low, high, square] = means;
-        let std_error = ((square - probability * probability).max(0.0) / count).sqrt();
-        Self { probability, bounds: [low, high], std_error, poses: asked.len() }
+        let [probability, low, high] = means.map(|mean| mean.clamp(0.0, 1.0));
+        // Half a pose more that does otherwise: none of so many does not mean never.
+        let half = 0.5 / (count + 1.0);
+        let variance = (square - probability * probability).max(half * (1.0 - half));
+        Self { probability, bounds: [low, high], std_error: (variance / count).sqrt(), poses }
     }
 }
 
