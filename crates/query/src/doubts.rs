@@ -102,6 +102,7 @@ fn sensors(body: Which, cloud: &Makeup) -> impl Iterator<Item = Warning> + '_ {
             Some(Warning::SensorRange { body, range_m: median, limit_m: limit })
         }
         SensorDoubt::Layout => Some(Warning::SensorLayout { body }),
+        SensorDoubt::Misplaced => Some(Warning::ImagePlace { body }),
         // Of an object it is taken for granted that it may have a back.
         SensorDoubt::NoImage => (body == Which::A).then_some(Warning::NoImage { body }),
     })

@@ -106,6 +106,11 @@ pub enum Warning {
         /// Whose.
         body: Which,
     },
+    /// An image whose rows and columns no camera at the place stated for it has.
+    ImagePlace {
+        /// Whose.
+        body: Which,
+    },
     /// The object is outside of the scene's box.
     OutsideScene {
         /// Between the two boxes, m.
@@ -137,6 +142,7 @@ impl Warning {
             | Self::SensorRange { body, .. }
             | Self::SensorLayout { body }
             | Self::NoImage { body }
+            | Self::ImagePlace { body }
             | Self::Unseen { body, .. } => Some(body),
             Self::FarAway { .. } | Self::OutsideScene { .. } => None,
         }
@@ -150,7 +156,9 @@ impl Warning {
             Self::Units { .. } | Self::FarAway { .. } => Some(Undecided::Units),
             Self::Sparse { .. } => Some(Undecided::Sparse),
             Self::Noise { .. } => Some(Undecided::Noise),
-            Self::SensorPose { .. } | Self::SensorRange { .. } => Some(Undecided::Sensor),
+            Self::SensorPose { .. } | Self::SensorRange { .. } | Self::ImagePlace { .. } => {
+                Some(Undecided::Sensor)
+            }
             Self::Unseen { .. } => Some(Undecided::Unseen),
             Self::SensorLayout { .. } | Self::NoImage { .. } | Self::OutsideScene { .. } => None,
         }
@@ -222,6 +230,12 @@ impl fmt::Display for Warning {
                 f,
                 "the {body} is of a camera and has no image layout: what the camera did not see \
                  counts as empty; give the organised cloud"
+            ),
+            Self::ImagePlace { body } => write!(
+                f,
+                "the {body} has rows and columns as an image, which no camera at the place stated for it \
+                 has: say where it stood (VIEWPOINT, --sensor-pose) if the points are in another \
+                 frame, or give them without the layout"
             ),
             Self::OutsideScene { gap_m, size_m } => write!(
                 f,

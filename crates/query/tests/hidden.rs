@@ -1,9 +1,9 @@
 //! A single depth image leaves space unseen: an object there does not read as free.
 
 use crate::common::{MODES, Scan, ask, at, mesh, scan};
-use cloudtouch::geom::{PointCloud, Pose, TriangleMesh};
+use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Mode, Report, Verdict};
+use cloudtouch::{Mode, Report, Verdict, Warning};
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
@@ -45,6 +45,31 @@ fn check(report: &Report, seen: bool, about: impl std::fmt::Debug) {
     assert!(report.collision_probability < 0.1, "{about:?}: {report:?}");
     if report.mode == Mode::Calibrated {
         assert_eq!(report.verdict, Verdict::Free, "{about:?}: {report:?}");
+    }
+}
+
+/// In the frame of a map, without a word of where the camera was: what it did not see was taken for seen.
+#[test]
+fn an_image_in_another_frame_read_free_where_nobody_had_looked() {
+    let to_map = Pose::from_translation_rpy(Vector3::new(2.0, -1.0, 1.5), [-1.6, 0.1, 0.4]);
+    let image = view();
+    let points = image.points.iter().map(|p| to_map.transform_point(p)).collect();
+    let unsaid = PointCloud { points, ..image };
+    let said = PointCloud { sensor_pose: to_map, ..unsaid.clone() };
+    let ball = mesh(&object());
+    for sensor in [SensorModel::Kinect, SensorModel::Isotropic { std: 0.005 }] {
+        for mode in MODES {
+            let of = |image| Scan::of(image, sensor.clone(), mode).expect("a good image");
+            let (said, unsaid) = (of(&said), of(&unsaid));
+            for (place, pose, seen) in places() {
+                let pose = to_map.after(&pose);
+                check(&ask(mode, &said, &ball, &pose), seen, (place, mode));
+                let report = ask(mode, &unsaid, &ball, &pose);
+                assert_ne!(report.verdict, Verdict::Free, "{place} {mode:?}: {report:?}");
+                let names_it = |warning: &Warning| warning.to_string().contains("--sensor-pose");
+                assert!(report.warnings.iter().any(names_it), "{:?}", report.warnings);
+            }
+        }
     }
 }
 

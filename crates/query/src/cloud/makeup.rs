@@ -5,6 +5,8 @@ use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing_
 
 use crate::filter::StageReport;
 
+use super::pinhole::is_misplaced;
+
 /// Points that spacing, noise and distance are told from, at most.
 const SAMPLE: usize = 200;
 /// Shells of equal steps of the squared distance from the middle.
@@ -30,6 +32,8 @@ pub(crate) enum SensorDoubt {
     Layout,
     /// A camera, and no image.
     NoImage,
+    /// No camera at the place stated has such rows and columns.
+    Misplaced,
 }
 
 /// A cloud as a whole.
@@ -201,6 +205,10 @@ pub(super) fn sensor_doubts(
             }
         }
         _ => {}
+    }
+    let is_laser = matches!(sensor, SensorModel::Lidar { .. });
+    if doubts.is_empty() && !is_laser && cloud.is_image() && is_misplaced(cloud, &place) {
+        doubts.push(SensorDoubt::Misplaced);
     }
     if *sensor == SensorModel::Kinect {
         let step = points.len().div_ceil(SAMPLE).max(1);

@@ -16,6 +16,7 @@ mod makeup;
 mod overlap;
 mod patch;
 mod pieces;
+mod pinhole;
 mod preparation;
 mod prepare;
 mod prepared;
