@@ -235,7 +235,7 @@ impl CloudArguments<'_> {
         let sensor: SensorModel = self.sensor.parse().map_err(refused)?;
         let mut settings = CloudSettings::new(sensor);
         let filter = &mut settings.filter;
-        filter.min_range = self.min_range.unwrap_or(filter.min_range);
+        filter.min_range = self.min_range.or(filter.min_range);
         filter.max_range = self.max_range.unwrap_or(filter.max_range);
         let outliers = |(neighbors, deviations)| OutlierSettings { neighbors, deviations };
         filter.outliers = self.outliers.map(outliers).or(filter.outliers);

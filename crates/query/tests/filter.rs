@@ -51,10 +51,36 @@ fn the_range_is_measured_from_the_sensor_and_includes_its_ends() {
         sensor_pose: Pose::from_translation(Vector3::new(5.0, 0.0, 0.0)),
         ..PointCloud::from_points(points)
     };
-    let settings = FilterSettings { min_range: 2.0, max_range: 7.0, ..off() };
+    let settings = FilterSettings { min_range: Some(2.0), max_range: 7.0, ..off() };
     let filtered = filter(&cloud, &settings).unwrap();
     assert_eq!(filtered.rows, [2, 3, 4, 5, 6, 7]);
     assert_eq!(removed(&filtered.stages, "range"), 4);
+}
+
+/// A post at the origin of a map was dropped for being too near a scanner that had never been there.
+#[test]
+fn what_is_near_the_origin_of_a_map_was_taken_for_no_return() {
+    let mut points: Vec<Point3> =
+        (0..20).map(|i| Point3::new(0.01 * f64::from(i), 0.0, 0.0)).collect();
+    points.extend(grid(50));
+    let count = points.len();
+    let map = PointCloud::from_points(points);
+    for sensor in ["lidar:0.02,0.003", "kinect", "stereo:0.09,570,0.2"] {
+        let settings = FilterSettings::for_sensor(&sensor.parse().unwrap());
+        let dropped = |cloud: &PointCloud, settings: &FilterSettings| {
+            removed(&filter(cloud, settings).unwrap().stages, "range")
+        };
+        // Missing returns are written so.
+        assert_eq!(dropped(&map, &settings), 1, "{sensor}");
+        // Where it is said where the sensor was, what is at it is no surface.
+        let sensor_pose = Pose::from_translation(Vector3::new(0.155, 0.0, 0.0));
+        let said = PointCloud { sensor_pose, ..map.clone() };
+        assert_eq!(dropped(&said, &settings), 14, "{sensor}");
+        let image = PointCloud { image_size: Some((count / 2, 2)), ..map.clone() };
+        assert_eq!(dropped(&image, &settings), 10, "{sensor}");
+        let asked_for = FilterSettings { min_range: Some(0.055), ..settings };
+        assert_eq!(dropped(&map, &asked_for), 6, "{sensor}");
+    }
 }
 
 #[test]
@@ -231,7 +257,7 @@ fn stages_run_in_order_and_their_counts_add_up() {
         padding: 0.01,
     };
     let settings = FilterSettings {
-        min_range: 0.1,
+        min_range: Some(0.1),
         max_range: 4.0,
         drop_duplicates: true,
         robot: vec![link],
@@ -261,7 +287,7 @@ fn nothing_left_is_an_error_that_says_where_the_points_went() {
     let mut points = vec![Point3::from(Vector3::repeat(f64::NAN)); 4];
     points.extend(grid(6));
     let mut settings = CloudSettings::new(SensorModel::Exact);
-    settings.filter.min_range = 50.0;
+    settings.filter.min_range = Some(50.0);
     let error = Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap_err();
     assert!(matches!(error, PrepareError::NothingLeft { before: 10, .. }), "{error:?}");
     let text = error.to_string();
@@ -277,7 +303,7 @@ fn bad_settings_are_refused_before_any_point_is_looked_at() {
     let refuse = |settings: FilterSettings| {
         filter(&PointCloud::from_points(grid(10)), &settings).expect_err("a bad setting")
     };
-    let range = |min_range, max_range| FilterSettings { min_range, max_range, ..off() };
+    let range = |min, max_range| FilterSettings { min_range: Some(min), max_range, ..off() };
     for settings in [range(-1.0, 2.0), range(2.0, 2.0), range(f64::NAN, 2.0), range(0.0, f64::NAN)]
     {
         assert!(matches!(refuse(settings), FilterError::Range { .. }));

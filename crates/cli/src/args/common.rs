@@ -60,7 +60,7 @@ pub(crate) struct CommonArguments {
     /// Paper: seed of the stochastic traversal [0]
     #[arg(long, value_name = "N", help_heading = "Estimate")]
     pub seed: Option<u64>,
-    /// Drop points nearer to the sensor [cameras and lidar: 0.1]
+    /// Drop points nearer to the sensor [cameras and lidar: 0.1, where it is known where the sensor stood]
     #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
     pub min_range: Option<f64>,
     /// Drop points farther from the sensor
@@ -153,7 +153,7 @@ impl CommonArguments {
 
     /// Changes the cleaning that suits a sensor; the robot and the collision map concern scenes only.
     pub(crate) fn change(&self, filter: &mut FilterSettings) {
-        filter.min_range = self.min_range.unwrap_or(filter.min_range);
+        filter.min_range = self.min_range.or(filter.min_range);
         filter.max_range = self.max_range.unwrap_or(filter.max_range);
         filter.outliers = self.outliers;
         if self.keep_veil {

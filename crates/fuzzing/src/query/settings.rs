@@ -102,7 +102,7 @@ pub(super) fn paper_cloud_settings(u: &mut Unstructured<'_>) -> Result<PaperClou
 }
 
 fn change_filter(u: &mut Unstructured<'_>, filter: &mut FilterSettings) -> Result<()> {
-    filter.min_range = setting(u, filter.min_range, 0.0, 1.0)?;
+    filter.min_range = Some(setting(u, filter.min_range.unwrap_or(0.1), 0.0, 1.0)?);
     filter.max_range = setting(u, filter.max_range, 0.0, 10.0)?;
     filter.drop_duplicates = u.arbitrary()?;
     if u.arbitrary()? {

@@ -58,7 +58,7 @@ pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered,
     check_lengths(cloud)?;
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
     run.stage("missing", |cloud, kept| kept.retain(|&i| !is_missing(&cloud.points[i])));
-    if settings.min_range > 0.0 || settings.max_range.is_finite() {
+    if settings.min_range != Some(0.0) || settings.max_range.is_finite() {
         run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
     }
     if settings.drop_duplicates {

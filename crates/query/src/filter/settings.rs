@@ -9,8 +9,11 @@ use super::SelfMesh;
 /// Which stages run, and how. The default drops missing returns and exact duplicates only.
 #[derive(Debug, Clone)]
 pub struct FilterSettings {
-    /// Points nearer to the sensor than this are dropped, m; 0 keeps all.
-    pub min_range: f64,
+    /// Points nearer to the sensor than this are dropped, m; 0 keeps all. `None` drops what no camera or
+    /// laser scanner sees, where it is known that they are so near: within 10 cm of the sensor of a depth
+    /// image, or of a cloud that says where its sensor stood; else only what is at the very place (some
+    /// drivers write missing returns so), for in the frame of a map the origin is a place like others.
+    pub min_range: Option<f64>,
     /// Points farther from the sensor than this are dropped, m; infinity keeps all.
     pub max_range: f64,
     /// Whether a point with exactly the coordinates of an earlier one is dropped.
@@ -28,7 +31,7 @@ pub struct FilterSettings {
 impl Default for FilterSettings {
     fn default() -> Self {
         Self {
-            min_range: 0.0,
+            min_range: Some(0.0),
             max_range: f64::INFINITY,
             drop_duplicates: true,
             robot: Vec::new(),
@@ -40,13 +43,13 @@ impl Default for FilterSettings {
 }
 
 impl FilterSettings {
-    /// The stages that suit a kind of sensor: cameras and laser scanners see nothing nearer than
-    /// 10 cm (such returns are placeholders), and cameras draw veils at depth edges.
+    /// The stages that suit a kind of sensor: of cameras and laser scanners what they cannot have seen so
+    /// near is dropped (see [`Self::min_range`]), and cameras draw veils at depth edges.
     pub fn for_sensor(sensor: &SensorModel) -> Self {
         let camera = matches!(sensor, SensorModel::Stereo { .. } | SensorModel::Kinect);
         let ranging = camera || matches!(sensor, SensorModel::Lidar { .. });
         Self {
-            min_range: if ranging { 0.1 } else { 0.0 },
+            min_range: if ranging { None } else { Some(0.0) },
             veil: camera.then(VeilSettings::default),
             ..Self::default()
         }
@@ -57,8 +60,9 @@ impl FilterSettings {
     /// # Errors
     /// Names the setting that is out of range, and its value.
     pub fn validate(&self) -> Result<(), FilterError> {
-        if !(self.min_range >= 0.0 && self.max_range > self.min_range) {
-            return Err(FilterError::Range { min: self.min_range, max: self.max_range });
+        let min = self.min_range.unwrap_or(0.0);
+        if !(min >= 0.0 && self.max_range > min) {
+            return Err(FilterError::Range { min, max: self.max_range });
         }
         for link in &self.robot {
             if !(link.padding >= 0.0 && link.padding.is_finite()) {
