@@ -42,6 +42,9 @@ pub(crate) trait PreparedCloud: Sized + Send + Sync {
     /// For every kept point its row in the file; empty for the cells of a collision map.
     fn file_rows(&self) -> &[usize];
 
+    /// The points measured inside of a closed mesh, each with the probability that it is.
+    fn inside(&self, mesh: &Mesh, mesh_from_cloud: &Pose) -> Vec<(usize, f64)>;
+
     /// How many points were kept.
     fn count(&self) -> usize;
 
@@ -156,6 +159,10 @@ macro_rules! prepared_cloud {
 
             fn file_rows(&self) -> &[usize] {
                 self.rows()
+            }
+
+            fn inside(&self, mesh: &Mesh, mesh_from_cloud: &Pose) -> Vec<(usize, f64)> {
+                self.points_inside(mesh, mesh_from_cloud)
             }
 
             fn count(&self) -> usize {

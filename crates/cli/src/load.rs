@@ -185,7 +185,8 @@ fn of_clouds<C: PreparedCloud>(
              --sensor per-point to use them"
         );
     }
-    let prepared = C::prepare(&scans, sensor, common.settings.as_ref(), |filter, sensor| {
+    let settings = common.settings.as_ref().map(|file| &file.settings);
+    let prepared = C::prepare(&scans, sensor, settings, |filter, sensor| {
         common.change(filter);
         if role == Role::Scene {
             filter.robot = robot;

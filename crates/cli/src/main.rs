@@ -7,6 +7,7 @@ mod batch_table;
 mod body;
 mod commands;
 mod gradient;
+mod inside;
 mod load;
 mod margin;
 mod ordered;

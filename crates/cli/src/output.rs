@@ -5,18 +5,37 @@ use std::path::Path;
 use anyhow::{Result, bail};
 use cloudtouch_io::recording::file_of;
 
-/// Whether a file may be written: it is none of the inputs, and not there unless `force` is given. A
-/// pipe or a device may be.
+/// Whether files may be written: each is none of the inputs and none of the others, and not there unless
+/// `force` is given. A pipe or a device may be.
 pub(crate) fn check<'a>(
+    outputs: &[&Path],
+    inputs: impl Iterator<Item = &'a Path> + Clone,
+    force: bool,
+) -> Result<()> {
+    for (number, output) in outputs.iter().enumerate() {
+        let is_same =
+            |other: &&Path| std::path::absolute(other).ok() == std::path::absolute(output).ok();
+        if outputs[..number].iter().any(is_same) {
+            bail!(
+                "{}: is to be written twice: give each output a file of its own",
+                output.display()
+            );
+        }
+        check_one(output, inputs.clone(), force)?;
+    }
+    Ok(())
+}
+
+fn check_one<'a>(
     output: &Path,
-    inputs: impl IntoIterator<Item = &'a Path>,
+    mut inputs: impl Iterator<Item = &'a Path>,
     force: bool,
 ) -> Result<()> {
     let Ok(existing) = std::fs::canonicalize(output) else { return Ok(()) };
     // The input of a scan's name is the recording it is in.
     let is_input =
         |path: &Path| std::fs::canonicalize(file_of(path)).is_ok_and(|path| path == existing);
-    if inputs.into_iter().any(is_input) {
+    if inputs.any(is_input) {
         bail!("{}: is an input of this very command: write to another file", output.display());
     }
     if existing.is_file() && !force {

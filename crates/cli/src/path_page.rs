@@ -31,13 +31,14 @@ fn insert(shown: &mut Vec<Shown>, at: &AlongPath, what: &str) {
 }
 
 /// Writes a page of the given poses of a path, which `ask` answers, and of the two places between
-/// them that the sweep found.
+/// them that the sweep found; `colored` tells which points of a report are to be seen.
 pub(crate) fn write(
     output: &Path,
     [scene, object]: [Body; 2],
     swept: &Swept,
     path: &cloudtouch::Path,
     ask: impl Fn(&Pose) -> Result<Report, QueryError>,
+    colored: impl Fn(Report, &Pose) -> Report,
 ) -> Result<()> {
     let given = path.segments() + 1;
     // Evenly many are left out where there are too many.
@@ -58,6 +59,9 @@ pub(crate) fn write(
     let first = swept.first.as_ref().map(|first| &first.at);
     if let Some(first) = first {
         insert(&mut shown, first, "in collision from here");
+    }
+    for pose in &mut shown {
+        pose.report = colored(pose.report.clone(), &pose.pose);
     }
     let opening = first.unwrap_or(likeliest).share;
     let start = shown.partition_point(|pose| pose.share < opening);

@@ -8,7 +8,7 @@ use nalgebra::Matrix4;
 const EXCERPT: usize = 40;
 
 /// Poses, object to scene, in metres: JSON where the text begins with a bracket, a list of 4×4
-/// row-major matrices; else a table with a pose in each line, `x,y,z,qw,qx,qy,qz`, with or without
+/// row-major matrices; else a table with a pose in each line, `x,y,z,qw,qx,qy,qz`, or in the order of
 /// these names in its first line.
 ///
 /// # Errors
@@ -28,33 +28,62 @@ fn matrices(text: &str) -> Result<Vec<Pose>> {
     all.into_iter().enumerate().map(pose).collect()
 }
 
+/// The columns of a table.
+const COLUMNS: [&str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+
 fn table(text: &str) -> Result<Vec<Pose>> {
     let mut poses = Vec::new();
+    // Where in a line each of the columns is.
+    let mut order = [0, 1, 2, 3, 4, 5, 6];
     for (line, content) in text.lines().enumerate() {
         let content = content.trim();
         let is_header = line == 0 && content.starts_with(|c: char| c.is_alphabetic() || c == '"');
-        if content.is_empty() || content.starts_with('#') || is_header {
+        if content.is_empty() || content.starts_with('#') {
             continue;
         }
-        poses.push(row(content).with_context(|| format!("line {} of the path", line + 1))?);
+        let place = || format!("line {} of the path", line + 1);
+        if is_header {
+            order = header(content).with_context(place)?;
+        } else {
+            poses.push(row(content, order).with_context(place)?);
+        }
     }
     Ok(poses)
 }
 
-fn row(content: &str) -> Result<Pose> {
+/// Where each column is: many write the real part of a quaternion last.
+fn header(content: &str) -> Result<[usize; 7]> {
+    let names: Vec<String> =
+        content.split(',').map(|name| name.trim().trim_matches('"').to_lowercase()).collect();
+    let mut order = [0; 7];
+    for (place, column) in order.iter_mut().zip(COLUMNS) {
+        match names.iter().position(|name| name == column) {
+            Some(found) if names.len() == COLUMNS.len() => *place = found,
+            _ => {
+                let given: String = content.chars().take(EXCERPT).collect();
+                bail!("`{given}`: name the columns {}, in any order", COLUMNS.join(","));
+            }
+        }
+    }
+    Ok(order)
+}
+
+fn row(content: &str, order: [usize; 7]) -> Result<Pose> {
     let number = |word: &str| -> Result<f64> {
         let word = word.trim();
         match word.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
             _ => {
-                bail!("`{}` is not a finite number", word.chars().take(EXCERPT).collect::<String>())
+                let word: String = word.chars().take(EXCERPT).collect();
+                bail!("`{word}` is not a finite number; numbers are separated by commas")
             }
         }
     };
     let numbers = content.split(',').map(number).collect::<Result<Vec<f64>>>()?;
-    let Ok([x, y, z, w, i, j, k]) = <[f64; 7]>::try_from(numbers) else {
-        bail!("write seven numbers, x,y,z,qw,qx,qy,qz: metres and a quaternion");
+    let Ok(numbers) = <[f64; 7]>::try_from(numbers) else {
+        bail!("write seven numbers, {}: metres and a quaternion, with commas", COLUMNS.join(","));
     };
+    let [x, y, z, w, i, j, k] = order.map(|place| numbers[place]);
     Ok(Pose::try_from_quaternion(Vector3::new(x, y, z), [w, i, j, k])?)
 }
 
@@ -69,8 +98,10 @@ mod tests {
                      [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]";
         let plain = "0.5,0,0.25,0,1,0,0\n0, 0, 0, 1, 0, 0, 0\n";
         let headed = format!("x,y,z,qw,qx,qy,qz\n# a half turn first\n{plain}");
+        // Once read as if the real part came first.
+        let real_last = "\"X\", y, z, qx, qy, qz, qw\n0.5,0,0.25,1,0,0,0\n0,0,0,0,0,0,1\n";
         let expected = parse(json).unwrap();
-        for text in [plain, &headed] {
+        for text in [plain, &headed, real_last] {
             let found = parse(text).unwrap();
             assert_eq!(found.len(), 2);
             for (p, q) in found.iter().zip(&expected) {
@@ -89,6 +120,12 @@ mod tests {
             ("0,0,0,1,0,0,0\n0,0,0,1,0,0", "line 2 of the path: write seven numbers"),
             ("0,0,nan,1,0,0,0", "line 1 of the path: `nan` is not a finite number"),
             ("0,0,0,2,0,0,0", "line 1 of the path: the quaternion"),
+            (
+                "x,y,z,roll,pitch,yaw\n",
+                "line 1 of the path: `x,y,z,roll,pitch,yaw`: name the columns",
+            ),
+            ("x,y,z,qx,qy,qz,w\n", "name the columns x,y,z,qw,qx,qy,qz"),
+            ("0 0 0 1 0 0 0", "separated by commas"),
         ] {
             let error = format!("{:#}", parse(text).unwrap_err());
             assert!(error.contains(part), "{error}");

@@ -1,6 +1,6 @@
 //! All settings of the paper's mode in one file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use cloudtouch::{PaperModel, PaperSettings};
 use serde::Deserialize;
@@ -16,12 +16,19 @@ pub(crate) struct Settings {
     pub cloud: PaperModel,
 }
 
+/// A file, and what it says.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SettingsFile {
+    pub path: PathBuf,
+    pub settings: Settings,
+}
+
 /// Reads the file, and checks it as far as it goes without bodies.
-pub(crate) fn read(path: &str) -> Result<Settings, String> {
+pub(crate) fn read(path: &str) -> Result<SettingsFile, String> {
     let text = std::fs::read_to_string(Path::new(path)).map_err(|error| error.to_string())?;
     let settings: Settings = toml::from_str(&text).map_err(|error| error.to_string())?;
     settings.query.validate().map_err(|error| error.to_string())?;
-    Ok(settings)
+    Ok(SettingsFile { path: path.into(), settings })
 }
 
 #[cfg(test)]

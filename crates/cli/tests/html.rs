@@ -227,6 +227,19 @@ fn no_input_is_replaced_and_another_file_only_with_force() {
     assert_eq!(page(&inputs, "o.html"), "mine");
     inputs.query_at(0.5, &["--html", "o.html", "--force"]).quiet(0);
     assert!(page(&inputs, "o.html").starts_with("<!DOCTYPE"));
+    // Files of options are inputs too, and no output is another's.
+    inputs.write("pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0.5\n0 0 0 1\n");
+    inputs.write("set.toml", "");
+    let query = ["query", "floor.pcd", "box.obj", "--force"];
+    for (more, part) in [
+        (["--pose=pose.txt", "--html=pose.txt", "--max-unseen=1"], "is an input"),
+        (["--mode=paper", "--settings=set.toml", "--csv=set.toml"], "is an input"),
+        (["--ply=both", "--html=./both", "--max-unseen=1"], "is to be written twice"),
+    ] {
+        let refused = inputs.run(&[&query[..], &more].concat());
+        assert!(refused.stderr().contains(part), "{more:?}: {}", refused.stderr());
+    }
+    assert!(!inputs.path("both").exists() && page(&inputs, "set.toml").is_empty());
     inputs.write("path.csv", "0,0,0.5,1,0,0,0\n0,0,0.3,1,0,0,0\n");
     let path = ["path", "floor.pcd", "box.obj", "--poses=path.csv", "--html=path.csv", "--force"];
     assert!(inputs.run(&path).stderr().contains("is an input"));

@@ -4,7 +4,7 @@
 #[cfg(not(feature = "mcap"))]
 #[test]
 fn a_build_without_the_feature_says_how_to_build_with_it() {
-    let inputs = support::Inputs::new();
+    let inputs = crate::support::Inputs::new();
     inputs.write("run.mcap", "never looked at");
     for arguments in [
         &["info", "run.mcap"][..],

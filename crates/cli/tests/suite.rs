@@ -9,6 +9,7 @@ mod html;
 mod html_browser;
 mod html_touch;
 mod info;
+mod inside;
 mod json_documented;
 mod json_schema;
 mod limits;

@@ -229,6 +229,17 @@ pub enum Fault {
     /// There are no triangles in what should be a mesh.
     #[error("there are no faces: read it as a point cloud, or export it as a mesh")]
     NoTriangles,
+    /// Points and faces in one file, and more points than corners of faces.
+    #[error(
+        "{loose} of {vertices} vertices belong to no face: a file is a cloud or a mesh, so leave out the \
+         faces, or the points beside them"
+    )]
+    LoosePoints {
+        /// Vertices without a face.
+        loose: usize,
+        /// All of them.
+        vertices: usize,
+    },
     /// There are more vertices than 32-bit indices can name.
     #[error("there are {found} vertices, at most 2^32 - 1 can be indexed: split the mesh")]
     TooManyVertices {

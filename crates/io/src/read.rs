@@ -97,7 +97,8 @@ pub fn read_mesh_within(
 /// the sensor origin are converted.
 ///
 /// # Errors
-/// As [`read_cloud`] and [`read_mesh`].
+/// As [`read_cloud`] and [`read_mesh`]; and when most vertices of a PLY belong to no face, for it may be
+/// a cloud as well as a mesh.
 pub fn read_geometry(path: impl AsRef<Path>, unit: LengthUnit) -> Result<Geometry, ReadError> {
     read_geometry_within(path, unit, &ReadLimits::default())
 }
@@ -120,7 +121,7 @@ pub fn read_geometry_within(
         }
         "stl" => |bytes, limits| stl::parse_within(bytes, limits).map(Geometry::Mesh),
         "obj" => |bytes, limits| obj::parse_within(bytes, limits).map(Geometry::Mesh),
-        "ply" => ply::parse_within,
+        "ply" => |bytes, limits| ply::parse_within(bytes, limits).and_then(one_of_both),
         "mcap" => {
             let cloud = read_scan_within(path, limits)?.scan.cloud;
             return Ok(Geometry::Cloud(scaled_cloud(cloud, factor)));
@@ -131,6 +132,18 @@ pub fn read_geometry_within(
         Geometry::Cloud(cloud) => Geometry::Cloud(scaled_cloud(cloud, factor)),
         Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(factor)),
     })
+}
+
+/// Refuses a mesh most of whose vertices belong to no face: points would be lost without a word.
+fn one_of_both(geometry: Geometry) -> Result<Geometry, FormatError> {
+    if let Geometry::Mesh(mesh) = &geometry {
+        let (vertices, used) = (mesh.vertices().len(), mesh.used_vertices().count());
+        if 2 * used < vertices {
+            let fault = Fault::LoosePoints { loose: vertices - used, vertices };
+            return Err(Place::Line(1).error(fault));
+        }
+    }
+    Ok(geometry)
 }
 
 /// Reads a scan of a recording, `run.mcap#/topic@SECONDS`, as [`ScanName`] explains it.

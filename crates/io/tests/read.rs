@@ -18,6 +18,22 @@ const MESH_PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\
     property int z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
     0 0 0\n1000 0 0\n0 1000 0\n3 0 1 2\n";
 
+/// A scan with one face was read as that face, and what stood in it was free.
+#[test]
+fn points_beside_a_few_faces_are_not_lost_without_a_word() {
+    let folder = TempDir::new().unwrap();
+    let header = MESH_PLY.replace("vertex 3", "vertex 7");
+    let mixed = header.replace("3 0 1 2\n", "0 0 1\n0 0 2\n0 0 3\n0 0 4\n3 0 1 2\n");
+    let path = file(&folder, "mixed.ply", &mixed);
+    let message = read_geometry(&path, LengthUnit::Metres).unwrap_err().to_string();
+    for part in ["mixed.ply", "4 of 7 vertices belong to no face", "a cloud or a mesh"] {
+        assert!(message.contains(part), "{message}");
+    }
+    // Who says what it is gets it.
+    assert_eq!(read_cloud(&path).unwrap().points.len(), 7);
+    assert_eq!(read_mesh(&path, LengthUnit::Metres).unwrap().triangles().len(), 1);
+}
+
 #[test]
 fn content_decides_and_units_count() {
     let folder = TempDir::new().unwrap();

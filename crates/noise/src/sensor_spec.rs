@@ -28,8 +28,11 @@ impl FromStr for SensorModel {
             }
             "axes" => Self::Axes { stds: numbers(spec, values, "axes:SX,SY,SZ")? },
             "stereo" => {
-                let [baseline, focal_px, disparity_std] =
-                    numbers(spec, values, "stereo:BASELINE,FOCAL_PX,DISPARITY_STD")?;
+                let [baseline, focal_px, disparity_std] = numbers(spec, values, STEREO)?;
+                if let Some(problem) = slip(baseline, focal_px) {
+                    let spec = spec.to_owned();
+                    return Err(NoiseError::SensorSyntax { spec, form: STEREO, problem });
+                }
                 Self::Stereo { baseline, focal_px, disparity_std }
             }
             "kinect" => {
@@ -72,6 +75,23 @@ impl fmt::Display for SensorModel {
     }
 }
 
+const STEREO: &str = "stereo:BASELINE,FOCAL_PX,DISPARITY_STD";
+
+/// What cannot be meant of a stereo camera: it would be a thousand times as sharp, or as blurred, as it is.
+fn slip(baseline: f64, focal_px: f64) -> Option<String> {
+    const WIDEST: f64 = 5.0;
+    const SHORTEST_PX: f64 = 20.0;
+    if baseline > WIDEST {
+        Some(format!("a baseline of {baseline} m is wider than {WIDEST} m: is it in millimetres?"))
+    } else if focal_px > 0.0 && focal_px < SHORTEST_PX {
+        Some(format!(
+            "a focal length of {focal_px} pixels: is it in millimetres? Divide by the size of a pixel"
+        ))
+    } else {
+        None
+    }
+}
+
 /// The `N` comma-separated numbers after the colon; no colon at all when `N` is zero.
 fn numbers<const N: usize>(
     spec: &str,
@@ -105,9 +125,11 @@ mod tests {
             Just(SensorModel::PerPoint),
             small().prop_map(|std| SensorModel::Isotropic { std }),
             [small(), small(), small()].prop_map(|stds| SensorModel::Axes { stds }),
-            (positive(), positive(), small()).prop_map(|(baseline, focal_px, disparity_std)| {
-                SensorModel::Stereo { baseline, focal_px, disparity_std }
-            }),
+            (1e-6..5.0_f64, 20.0..1e4_f64, small()).prop_map(
+                |(baseline, focal_px, disparity_std)| {
+                    SensorModel::Stereo { baseline, focal_px, disparity_std }
+                }
+            ),
             (small(), small())
                 .prop_map(|(range_std, beam_rad)| SensorModel::Lidar { range_std, beam_rad }),
             positive().prop_map(|resolution| SensorModel::Grid { resolution }),
@@ -154,6 +176,9 @@ mod tests {
             ("iso:-0.1", &["standard deviation", "-0.1", "not negative"]),
             ("axes:0,0,inf", &["along z", "inf", "finite"]),
             ("stereo:0,500,0.1", &["baseline", "is 0", "positive"]),
+            // Read as 90 m, a cloud was a thousand times too sharp.
+            ("stereo:90,570,0.2", &["90 m", "in millimetres?"]),
+            ("stereo:0.09,0.57,0.2", &["0.57 pixels", "in millimetres?"]),
             ("grid:NaN", &["resolution", "NaN", "positive"]),
         ] {
             let text = message(spec);

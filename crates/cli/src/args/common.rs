@@ -8,7 +8,7 @@ use cloudtouch_cli::numbers::{self, Rigid};
 use cloudtouch_io::LengthUnit;
 
 use crate::sensor::SensorChoice;
-use crate::settings_file::{self, Settings};
+use crate::settings_file::{self, SettingsFile};
 
 use super::caution::{CautionArguments, EffortArguments, Refine};
 use super::limits::LimitArguments;
@@ -47,7 +47,7 @@ pub(crate) struct CommonArguments {
     /// Paper: its settings, as `cloudtouch settings` prints them
     #[arg(long, value_name = "FILE", value_parser = settings_file::read,
           help_heading = "Estimate")]
-    pub settings: Option<Settings>,
+    pub settings: Option<SettingsFile>,
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
     #[arg(long, value_name = "P", value_parser = parse_fraction, help_heading = "Estimate")]
     pub prior: Option<f64>,
@@ -60,7 +60,7 @@ pub(crate) struct CommonArguments {
     /// Paper: seed of the stochastic traversal [0]
     #[arg(long, value_name = "N", help_heading = "Estimate")]
     pub seed: Option<u64>,
-    /// Drop points nearer to the sensor [cameras and lidar: 0.1, where it is known where the sensor stood]
+    /// Drop points nearer to the sensor [camera, lidar with a place: 0.1]
     #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
     pub min_range: Option<f64>,
     /// Drop points farther from the sensor
@@ -104,7 +104,8 @@ impl CommonArguments {
     }
 
     pub(crate) fn paper_settings(&self) -> PaperSettings {
-        let usual = self.settings.map_or_else(PaperSettings::default, |file| file.query);
+        let given = self.settings.as_ref();
+        let usual = given.map_or_else(PaperSettings::default, |file| file.settings.query);
         PaperSettings {
             accept: self.accept.unwrap_or(usual.accept),
             reject: self.reject.unwrap_or(usual.reject),

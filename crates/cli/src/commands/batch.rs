@@ -40,12 +40,12 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
 fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCode> {
     let file = case_file::read(&arguments.cases, arguments.common.limits.read_limits().bytes)?;
     let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
-    for path in arguments.jsonl.iter().chain(&arguments.html) {
-        let files = good().flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
-        let others = arguments.common.robot.iter().chain([&arguments.cases]);
-        let inputs = files.chain(others.map(PathBuf::as_path));
-        output::check(path, inputs, arguments.force)?;
-    }
+    let files = good().flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
+    let settings = arguments.common.settings.as_ref().map(|file| &file.path);
+    let others = arguments.common.robot.iter().chain([&arguments.cases]).chain(settings);
+    let inputs = files.chain(others.map(PathBuf::as_path));
+    let outputs = arguments.jsonl.iter().chain(&arguments.html).map(PathBuf::as_path);
+    output::check(&outputs.collect::<Vec<_>>(), inputs, arguments.force)?;
     let bodies = prepare_all::<P::Cloud>(arguments, good())?;
     let progress = progress_bar(file.cases.len(), "queries");
     let mut table = Table::new(&file.cases);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
@@ -27,9 +27,8 @@ const NOISE: f64 = 0.002;
 const BAR: usize = 10;
 
 pub(crate) fn run(arguments: &DemoArguments, shows_work: bool) -> Result<ExitCode> {
-    for path in arguments.ply.iter().chain(&arguments.html) {
-        output::check(path, [], arguments.force)?;
-    }
+    let outputs = arguments.ply.iter().chain(&arguments.html).map(PathBuf::as_path);
+    output::check(&outputs.collect::<Vec<_>>(), std::iter::empty(), arguments.force)?;
     match arguments.mode {
         ModeName::Calibrated => {
             run_by(&Query::new(QuerySettings::default())?, arguments, shows_work)

@@ -1,13 +1,15 @@
 //! `cloudtouch path`: one object along a path in one scene.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
+use cloudtouch::geom::Pose;
 use cloudtouch::{Cloud, Query};
 
 use crate::args::PathArguments;
 use crate::body::Body;
+use crate::inside::with_points_inside;
 use crate::load::{self, Role};
 use crate::{output, page, path_answer, path_file, path_page, print, unused};
 
@@ -16,11 +18,10 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let query = Query::new(common.query_settings())?;
     let inputs = [&arguments.scene, &arguments.object].into_iter().chain(&common.robot);
     inputs.into_iter().try_for_each(|path| load::check(path))?;
-    if let Some(output) = &arguments.html {
-        let files = [&arguments.scene, &arguments.object, &arguments.poses];
-        let inputs = files.into_iter().chain(&common.robot).map(PathBuf::as_path);
-        output::check(output, inputs, arguments.force)?;
-    }
+    let files = [&arguments.scene, &arguments.object, &arguments.poses];
+    let inputs = files.into_iter().chain(&common.robot).map(PathBuf::as_path);
+    let output: Vec<&Path> = arguments.html.iter().map(PathBuf::as_path).collect();
+    output::check(&output, inputs, arguments.force)?;
     let path = path_file::read(&arguments.poses, arguments.screw)?;
     let object_sensor = common.object_sensor.unwrap_or(common.sensor);
     let scene =
@@ -37,9 +38,10 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
             page::body(&scene, Some(&arguments.scene), &limits)?,
             page::body(&object, Some(&arguments.object), &limits)?,
         ];
-        path_page::write(output, bodies, &swept, &path, |pose| {
-            query.run(&scene.body, &object.body, pose)
-        })?;
+        let (scene, object) = (&scene.body, &object.body);
+        let ask = |pose: &Pose| query.run(scene, object, pose);
+        let colored = |report, pose: &Pose| with_points_inside(report, (scene, object), pose);
+        path_page::write(output, bodies, &swept, &path, ask, colored)?;
     }
     let text = if arguments.answer.json {
         path_answer::json_line(&swept, [&scene.input, &object.input])?

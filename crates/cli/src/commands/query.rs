@@ -14,6 +14,7 @@ use nalgebra::UnitQuaternion;
 use crate::answer::Answer;
 use crate::args::{ModeName, PoseArguments, QueryArguments};
 use crate::body::{self, Body, PreparedCloud};
+use crate::inside::with_points_inside;
 use crate::load::{self, Loaded, Role};
 use crate::per_point::{self, Details};
 use crate::{gradient, output, page, penetration, picture, pose_file, print, report_text, unused};
@@ -43,9 +44,11 @@ fn run_by<P: body::Path>(
         .chain(&arguments.kappas)
         .chain(&common.robot);
     inputs.clone().try_for_each(|path| load::check(path))?;
-    for path in arguments.ply.iter().chain(&arguments.csv).chain(&arguments.html) {
-        output::check(path, inputs.clone().map(|input| input.as_path()), arguments.force)?;
-    }
+    let outputs = [&arguments.ply, &arguments.csv, &arguments.html];
+    let outputs: Vec<&Path> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let settings = common.settings.as_ref().map(|file| &file.path);
+    let inputs = inputs.chain(&arguments.pose.pose).chain(settings).map(PathBuf::as_path);
+    output::check(&outputs, inputs, arguments.force)?;
     let pose = pose(&arguments.pose)?;
     let object_sensor = common.object_sensor.unwrap_or(common.sensor);
     let scans: Vec<&Path> =
@@ -79,8 +82,9 @@ fn run_by<P: body::Path>(
     };
     let way_out = |probability| query.way_out(&scene.body, &object.body, &pose, probability);
     let out = arguments.penetration.map(way_out).transpose()?;
+    let shown = with_points_inside(report.clone(), (&scene.body, &object.body), &pose);
     if let Some(path) = &arguments.csv {
-        per_point::write_csv(path, &scene.body, &object.body, &pose, &report)?;
+        per_point::write_csv(path, &scene.body, &object.body, &pose, &shown)?;
     }
     if let Some(path) = &arguments.ply {
         let limits = common.limits.read_limits();
@@ -89,7 +93,7 @@ fn run_by<P: body::Path>(
         let (of_scene, of_object) = (of_scene?, of_object?);
         let scene = (&scene.body, of_scene.as_deref());
         let object = (&object.body, of_object.as_deref());
-        picture::write(path, scene, object, &pose, &report)?;
+        picture::write(path, scene, object, &pose, &shown)?;
     }
     let more: Vec<Fact> = nearness
         .as_ref()
@@ -98,7 +102,7 @@ fn run_by<P: body::Path>(
         .chain(pose_uncertainty.as_ref().map(report_text::over_poses))
         .collect();
     if arguments.html.is_some() {
-        let answer = (&report, &placement, &more[..]);
+        let answer = (&shown, &placement, &more[..]);
         write_page(arguments, (&scene, &object), &pose, answer)?;
     }
     let text = if arguments.json {

@@ -28,6 +28,18 @@ macro_rules! cloud_accessors {
                 self.prepared.rows()
             }
 
+            /// The points that were likely measured inside of a mesh without a border, as (index, probability)
+            /// in index order: of a point d metres inside, known with the standard deviation σ, Φ(d/σ).
+            /// For pictures: a report's
+            /// [`point_probabilities`](crate::Report::point_probabilities) are of points that may touch.
+            pub fn points_inside(
+                &self,
+                mesh: &$crate::Mesh,
+                mesh_from_cloud: &$crate::geom::Pose,
+            ) -> Vec<(usize, f64)> {
+                $crate::cloud::points_inside(&self.prepared, mesh, mesh_from_cloud)
+            }
+
             /// What the filter removed, stage by stage.
             pub fn filter_stages(&self) -> &[$crate::StageReport] {
                 self.prepared.filter_stages()

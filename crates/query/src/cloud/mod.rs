@@ -8,6 +8,7 @@ mod carry;
 mod change;
 mod edge;
 mod frame;
+mod inside;
 mod join;
 mod lazy;
 mod leaf;
@@ -34,6 +35,7 @@ pub(crate) use accessors::cloud_accessors;
 pub(crate) use ball::Ball;
 pub use change::Change;
 pub(crate) use edge::{DISC_SPACINGS, Edge, MOST_ALONG, edge_along};
+pub(crate) use inside::points_inside;
 #[cfg(test)]
 pub(crate) use join::edges_of;
 pub(crate) use leaf::{LeafEdges, LeafSurface};

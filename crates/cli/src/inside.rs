@@ -1,0 +1,37 @@
+//! Points inside of a closed mesh, told beside those that may touch: in a picture of a deep overlap they are
+//! what one looks for.
+
+use std::collections::BTreeMap;
+
+use cloudtouch::Report;
+use cloudtouch::geom::Pose;
+
+use crate::body::{Body, PreparedCloud};
+
+/// The report with the larger of both probabilities for every point.
+pub(crate) fn with_points_inside<C: PreparedCloud>(
+    mut report: Report,
+    (scene, object): (&Body<C>, &Body<C>),
+    scene_from_object: &Pose,
+) -> Report {
+    let likely = &mut report.point_probabilities;
+    match (scene, object) {
+        (Body::Cloud(cloud), Body::Mesh(mesh)) => {
+            add(&mut likely.a, cloud.inside(mesh, &scene_from_object.inverse()));
+        }
+        (Body::Mesh(mesh), Body::Cloud(cloud)) => {
+            add(&mut likely.b, cloud.inside(mesh, scene_from_object));
+        }
+        _ => {}
+    }
+    report
+}
+
+fn add(likely: &mut Vec<(usize, f64)>, inside: Vec<(usize, f64)>) {
+    let mut all: BTreeMap<usize, f64> = likely.iter().copied().collect();
+    for (index, probability) in inside {
+        let known = all.entry(index).or_insert(probability);
+        *known = known.max(probability);
+    }
+    *likely = all.into_iter().collect();
+}
