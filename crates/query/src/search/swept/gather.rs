@@ -9,10 +9,10 @@ use super::super::crossings::Witness;
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, NoisyLeaf};
 use super::drifts::Drifts;
-use super::leaf::{SweptCloud, SweptEdges, SweptFacet, SweptMesh};
+use super::leaf::{SweptCloud, SweptEdges, SweptMesh};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
 use super::pool::Passages;
-use super::track::Direction;
+use super::track::{Direction, SweptFacet};
 
 /// Whether an edge may get to a disc of another leaf, as `search/gather.rs` asks of leaves that keep
 /// still.

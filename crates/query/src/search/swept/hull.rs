@@ -2,8 +2,7 @@
 
 use cloudtouch_geom::{BoxDrift, Drift, Matrix3, Point3, Vector3};
 
-use super::leaf::SweptFacet;
-use super::track::Direction;
+use super::track::{Direction, SweptFacet};
 
 /// A box, in the frame of A.
 #[derive(Debug, Clone, Copy)]

@@ -12,7 +12,7 @@ use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use super::super::run::load_edges;
 use super::hull::Hull;
-use super::track::{Direction, Track};
+use super::track::{Direction, SweptFacet, Track};
 
 /// A leaf in the frame of A, and where its pieces get to.
 #[derive(Debug)]
@@ -27,13 +27,6 @@ pub(super) struct SweptMesh {
     pub leaf: ExactLeaf,
     /// Of the corners of its facets.
     tracks: Vec<[Track; 3]>,
-}
-
-/// A facet, and where its corners get to.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SweptFacet<'a> {
-    pub facet: &'a Facet,
-    pub corners: &'a [Track; 3],
 }
 
 /// A leaf of a cloud.

@@ -10,8 +10,8 @@ use super::super::crossing::{CLEAREST, known_to, weight_at};
 use super::super::facet::Facet;
 use super::super::through_mesh::Outline;
 use super::drifts::Drifts;
-use super::leaf::{EdgeTrack, SweptFacet};
-use super::track::{Approach, Direction, Drifting, Track, piece_keeps_off};
+use super::leaf::EdgeTrack;
+use super::track::{Approach, Direction, Drifting, SweptFacet, Track, piece_keeps_off};
 
 /// A passage that may be.
 #[derive(Debug, Clone, Copy)]

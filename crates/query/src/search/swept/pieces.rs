@@ -11,8 +11,9 @@ use crate::cloud::Surfel;
 
 use super::super::facet::{Whitening, nearest_to_origin};
 use super::super::meeting::{LEAST_STD, solve};
-use super::leaf::SweptFacet;
-use super::track::{Approach, Direction, Drifting, Track, directions, least_at, nearest_time};
+use super::track::{
+    Approach, Direction, Drifting, SweptFacet, Track, directions, least_at, nearest_time,
+};
 
 /// The pieces of two clouds, that of B drifting along its track; `None` where they have `limit` or more.
 pub(super) fn between_discs(

@@ -89,6 +89,13 @@ pub(super) fn piece_keeps_off([from, to]: &[Point3; 2], place: &Point3, drift: &
     nearest - 0.5 * (ways[0] - ways[1]).norm() - beside[0].max(beside[1])
 }
 
+/// A facet, and where its corners get to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SweptFacet<'a> {
+    pub facet: &'a Facet,
+    pub corners: &'a [Track; 3],
+}
+
 /// A place and a facet that come nearer to one another or part.
 pub(super) struct Approach<'a> {
     pub place: &'a Point3,
