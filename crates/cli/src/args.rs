@@ -52,7 +52,7 @@ Exit codes: 0 done, 1 error, 2 wrong usage; query --exit-code tells the verdict.
 
 /// How likely is it that the surfaces behind two noisy point clouds touch?
 #[derive(Debug, Parser)]
-#[command(version, after_help = EXAMPLES)]
+#[command(name = "cloudtouch", version, after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -189,7 +189,8 @@ pub(crate) struct PathArguments {
     #[arg(long)]
     pub screw: bool,
     /// How finely the path is looked at, as a share of it
-    #[arg(long, value_name = "SHARE", value_parser = numbers::finite, default_value_t = 0.01)]
+    #[arg(long, value_name = "SHARE", value_parser = numbers::finite, default_value_t = 0.01,
+          allow_negative_numbers = true)]
     pub tolerance: f64,
     #[command(flatten)]
     pub answer: AnswerArguments,

@@ -67,14 +67,16 @@ impl Table {
         });
         let reason =
             report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
+        let warnings = report.warnings.iter().map(|warning| format!("  warning: {warning}\n"));
         format!(
-            "{start}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {}{reason}\n",
+            "{start}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {}{reason}\n{}",
             print::probability(report.collision_probability),
             format!("{low} .. {high}"),
             report.verdict,
             print::gap_mm(report.clearance_m),
             report.stats.query_us as f64 / 1e3,
             print::one_line(&files),
+            warnings.collect::<String>(),
         )
     }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use cloudtouch::geom::PointCloud;
-use cloudtouch::noise::SensorModel;
+use cloudtouch::noise::{NoiseError, SensorModel};
 
 /// A sensor as an option states it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,10 +31,28 @@ impl SensorChoice {
 }
 
 impl FromStr for SensorChoice {
-    type Err = <SensorModel as FromStr>::Err;
+    type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        if text.trim() == "auto" { Ok(Self::Auto) } else { text.parse().map(Self::Stated) }
+        if text.trim() == "auto" {
+            return Ok(Self::Auto);
+        }
+        let sensor = text.parse::<SensorModel>();
+        sensor.map(Self::Stated).map_err(|error| match error {
+            NoiseError::UnknownSensor { .. } => {
+                let small = text.trim().to_lowercase();
+                let is_known = small == "auto" || small.parse::<SensorModel>().is_ok();
+                let hint = if is_known {
+                    format!("; write `{small}`")
+                } else {
+                    ", or auto for what the cloud suggests; a stereo camera such as a RealSense is \
+                     stereo with the numbers of its data sheet"
+                        .to_owned()
+                };
+                format!("{error}{hint}")
+            }
+            _ => error.to_string(),
+        })
     }
 }
 

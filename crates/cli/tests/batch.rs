@@ -139,6 +139,19 @@ fn what_a_case_does_not_need_does_not_fail_it() {
     assert!(table.contains(r"\u{1b}[31m") && !table.contains('\u{1b}'), "{table}");
 }
 
+/// Only the JSON had them.
+#[test]
+fn warnings_and_guessed_sensors_are_told_in_the_table() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &good_cases());
+    let text = inputs.run(&["batch", "cases.json", "--sensor=kinect"]).quiet(0).stdout();
+    let warning = "  warning: the scene is of a camera and has no image layout";
+    assert!(text.contains(warning), "{text}");
+    let text = inputs.run(&["batch", "cases.json", "--sensor=auto"]).quiet(0).stdout();
+    let first = text.lines().next().unwrap();
+    assert!(first.contains("floor.pcd: sensor ") && first.contains('('), "{text}");
+}
+
 #[test]
 fn an_input_is_never_replaced_and_another_file_only_when_asked() {
     let inputs = Inputs::new();

@@ -82,6 +82,11 @@ fn case_files() {
         (r#"{"format":2,"length_unit":"m","cases":[]}"#, &["format 2", "format 1"]),
         (r#"{"format":1,"length_unit":"mm","cases":[]}"#, &["`mm`", "metres"]),
         (r#"{"format":1,"length_unit":"m","cases":[{"pose":}]}"#, &["line 1 column"]),
+        (r#"{"format":1,"length_unit":"m","cases":[]}"#, &["there are no cases"]),
+        (
+            r#"{"format":1,"length_unit":"m","cases":[{"id":"a"},{"id":"b"},{"id":"a"}]}"#,
+            &["cases 1 and 3 are both called `a`"],
+        ),
     ] {
         inputs.write("cases.json", text);
         check(&inputs, &["batch", "cases.json"], parts);
@@ -89,6 +94,28 @@ fn case_files() {
     check(&inputs, &["batch", "floor.pcd"], &["floor.pcd: not a case file"]);
     check(&inputs, &["batch", "gone.json"], &["gone.json: cannot be read"]);
     check(&inputs, &["batch", "."], &[".: cannot be read"]);
+}
+
+/// A number below zero was taken for an option, and a wrong name of a sensor got no hint.
+#[test]
+fn options_that_cannot_be_meant() {
+    let inputs = Inputs::new();
+    for (more, parts) in [
+        (["--reject", "-1"], &["-1", "--reject <B>"][..]),
+        (["--margin", "-0.1"], &["-0.1", "--margin <METRES>"]),
+        (["--pose-std", "-1,0,0,0,0,0"], &["-1 is negative"]),
+        (["--sensor", "Kinect"], &["unknown sensor `Kinect`", "write `kinect`"]),
+        (["--sensor", "realsense"], &["unknown sensor `realsense`", "or auto", "stereo:BASELINE"]),
+        (["--sensor", "stereo:90,570,0.2"], &["90 m", "in millimetres?"]),
+    ] {
+        let run = inputs.run(&[&["query", "floor.pcd", "box.obj"], &more[..]].concat());
+        assert_eq!(run.code(), 2, "{}", run.stderr());
+        for part in parts {
+            assert!(run.stderr().contains(part), "`{part}` is not in {}", run.stderr());
+        }
+        assert!(!run.stderr().contains("unexpected argument"), "{}", run.stderr());
+        assert!(!run.stderr().contains("cloudtouch-cli"), "{}", run.stderr());
+    }
 }
 
 #[test]

@@ -68,6 +68,8 @@ def test_a_pose_known_roughly_is_in_doubt(floor, plate):
     assert under.lower <= under.probability <= under.upper and under.poses in (7, 23, 26, 29)
     with pytest.raises(ct.CloudtouchError, match="covariance"):
         ct.Query().run_uncertain(floor, plate, lifted(0.02), -np.eye(6))
+    with pytest.raises(ValueError, match="-1.0 is negative"):
+        ct.Query().run_uncertain(floor, plate, lifted(0.02), [0.01, 0, -1, 0, 0, 0])
     with pytest.raises(ValueError, match="covariance has the shape"):
         ct.Query().run_uncertain(floor, plate, lifted(0.02), [0.01])
 

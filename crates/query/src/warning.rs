@@ -181,8 +181,8 @@ impl fmt::Display for Warning {
             ),
             Self::Units { body, size_m, other_size_m } => write!(
                 f,
-                "the {body} is {} across and the other body {}: is a file in millimetres? (--unit mm \
-                 for meshes, --cloud-unit mm for clouds)",
+                "the {body} is {} across and the other body {}: is a file in another unit? (--unit mm \
+                 for meshes, --cloud-unit mm for clouds; neither where it is in metres)",
                 length(size_m),
                 length(other_size_m)
             ),
@@ -258,6 +258,7 @@ impl fmt::Display for Warning {
 /// A length with as many digits as help.
 fn length(metres: f64) -> String {
     match metres {
+        m if m > 0.0 && m < 0.01 => format!("{:.2e} m", m),
         m if m < 1.0 => format!("{:.3} m", m),
         m if m < 100.0 => format!("{:.1} m", m),
         m if m < 1e6 => format!("{:.0} m", m),

@@ -11,10 +11,10 @@ use cloudtouch_cli::numbers;
 #[command(next_help_heading = "Caution")]
 pub(crate) struct CautionArguments {
     /// Undecided when more of an object is unseen, 0 to 1 [default: 0.05]
-    #[arg(long, value_name = "SHARE", value_parser = numbers::share)]
+    #[arg(long, value_name = "SHARE", value_parser = numbers::share, allow_negative_numbers = true)]
     max_unseen: Option<f64>,
     /// Undecided when more rows are missing, 0 to 1 [default: 0.25]
-    #[arg(long, value_name = "SHARE", value_parser = numbers::share)]
+    #[arg(long, value_name = "SHARE", value_parser = numbers::share, allow_negative_numbers = true)]
     max_missing: Option<f64>,
     /// Sizes and distances are meant: warn of them, and decide all the same
     #[arg(long)]

@@ -39,20 +39,20 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated, help_heading = "Estimate")]
     pub mode: ModeName,
     /// In collision above this probability, 0.5 to 1 [0.9]
-    #[arg(long, value_name = "A", value_parser = parse_accept, help_heading = "Estimate")]
+    #[arg(long, value_name = "A", value_parser = parse_accept, allow_negative_numbers = true, help_heading = "Estimate")]
     pub accept: Option<f64>,
     /// Free below this probability, 0 to 0.5 [0.1]
-    #[arg(long, value_name = "B", value_parser = parse_reject, help_heading = "Estimate")]
+    #[arg(long, value_name = "B", value_parser = parse_reject, allow_negative_numbers = true, help_heading = "Estimate")]
     pub reject: Option<f64>,
     /// Paper: its settings, as `cloudtouch settings` prints them
     #[arg(long, value_name = "FILE", value_parser = settings_file::read,
           help_heading = "Estimate")]
     pub settings: Option<SettingsFile>,
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
-    #[arg(long, value_name = "P", value_parser = parse_fraction, help_heading = "Estimate")]
+    #[arg(long, value_name = "P", value_parser = parse_fraction, allow_negative_numbers = true, help_heading = "Estimate")]
     pub prior: Option<f64>,
     /// Calibrated: also how likely the bodies are nearer than this
-    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Estimate")]
+    #[arg(long, value_name = "METRES", value_parser = parse_length, allow_negative_numbers = true, help_heading = "Estimate")]
     pub margin: Option<f64>,
     /// Paper: how point probabilities make one: max, or noisy-or [max]
     #[arg(long, value_enum, hide_possible_values = true, help_heading = "Estimate")]
@@ -61,25 +61,25 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_name = "N", help_heading = "Estimate")]
     pub seed: Option<u64>,
     /// Drop points nearer to the sensor [camera, lidar with a place: 0.1]
-    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
+    #[arg(long, value_name = "METRES", value_parser = parse_length, allow_negative_numbers = true, help_heading = "Cleaning")]
     pub min_range: Option<f64>,
     /// Drop points farther from the sensor
-    #[arg(long, value_name = "METRES", value_parser = parse_length, help_heading = "Cleaning")]
+    #[arg(long, value_name = "METRES", value_parser = parse_length, allow_negative_numbers = true, help_heading = "Cleaning")]
     pub max_range: Option<f64>,
     /// Drop outliers: neighbours and standard deviations, such as 8,3
-    #[arg(long, value_name = "K,M", value_parser = parse_outliers, help_heading = "Cleaning")]
+    #[arg(long, value_name = "K,M", value_parser = parse_outliers, allow_hyphen_values = true, help_heading = "Cleaning")]
     pub outliers: Option<OutlierSettings>,
     /// Keep veil points at depth edges, which are dropped for cameras
     #[arg(long, help_heading = "Cleaning")]
     pub keep_veil: bool,
     /// Replace scene points by the occupied cells of a grid
-    #[arg(long, value_name = "METRES", value_parser = parse_positive, help_heading = "Cleaning")]
+    #[arg(long, value_name = "METRES", value_parser = parse_positive, allow_negative_numbers = true, help_heading = "Cleaning")]
     pub collision_map: Option<f64>,
     /// Robot link in the scene's frame: points inside go; repeatable
     #[arg(long, value_name = "MESH", help_heading = "Cleaning")]
     pub robot: Vec<PathBuf>,
     /// Points this near to a robot link go too
-    #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length,
+    #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length, allow_negative_numbers = true,
           requires = "robot", help_heading = "Cleaning")]
     pub robot_padding: f64,
     #[command(flatten)]

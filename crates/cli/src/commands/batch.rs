@@ -17,7 +17,7 @@ use crate::batch_page::{Answered, Shown};
 use crate::batch_table::Table;
 use crate::body::{self, Body};
 use crate::case_file::{self, Case};
-use crate::load::{self, Loaded, Role};
+use crate::load::{self, Input, Loaded, Role};
 use crate::per_point::Details;
 use crate::sensor::SensorChoice;
 use crate::{ordered, output, print, unused};
@@ -53,6 +53,7 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     let mut shown = Shown::new();
     let mut write = |jsonl: &mut dyn Write| -> io::Result<()> {
         if !arguments.json {
+            to_stdout(&guessed(&bodies))?;
             to_stdout(&table.head())?;
         }
         let threads = rayon::current_num_threads();
@@ -96,6 +97,15 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
         shown.write(path, &cases, &arguments.common.limits.read_limits())?;
     }
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// What was taken for the sensor of each file where nothing was said.
+fn guessed<C: body::PreparedCloud>(bodies: &Bodies<C>) -> String {
+    let input = |loaded: &Loaded<C>| {
+        let Input { file, sensor, sensor_because, .. } = &loaded.input;
+        Some(format!("{file}: sensor {} ({})\n", sensor.as_ref()?, (*sensor_because)?))
+    };
+    bodies.values().flatten().filter_map(input).collect()
 }
 
 fn to_stdout(text: &str) -> io::Result<()> {

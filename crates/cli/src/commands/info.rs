@@ -67,7 +67,7 @@ fn describe_cloud(cloud: &PointCloud) -> Result<String> {
         lines.push(format!("spacing     {:.1} mm (median)", 1e3 * spacing));
         if near > 0 {
             lines.push(format!(
-                "too near    {near} points within 0.1 m of the sensor: placeholders? (--min-range 0.1)"
+                "too near    {near} points within 0.1 m of where the sensor stood, as far as the file\n            says: no returns? (--min-range 0.1)"
             ));
         }
         let Chosen { sensor, because } = suggestion(cloud);

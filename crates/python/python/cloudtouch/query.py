@@ -138,7 +138,7 @@ class Query:
     ) -> tuple[Report, UnderPoses]:
         """How likely a collision is where the pose is known only so well, and the report on the likeliest pose.
 
-        Takes seven or 23 queries, on all cores, and two where no pose comes near.
+        Takes up to 29 queries, on all cores, seven where all poses collide, and two where none comes near.
 
         Parameters
         ----------
@@ -152,10 +152,15 @@ class Query:
         ------
         CloudtouchError
             ``covariance`` is not finite, not symmetric or has a negative eigenvalue, and what :meth:`run` raises.
+        ValueError
+            One of (6,) standard deviations is negative.
         """
         matrix = _arrays.numbers(pose, "pose", (4, 4))
         if np.ndim(covariance) == 1:
-            covariance = np.diag(_arrays.numbers(covariance, "covariance", (6,)) ** 2)
+            stds = _arrays.numbers(covariance, "covariance", (6,))
+            if (stds < 0).any():
+                raise ValueError(f"covariance: {stds.min()} is negative: a standard deviation is 0 or more")
+            covariance = np.diag(stds**2)
         spread = _arrays.numbers(covariance, "covariance", (6, 6))
         report, under = self._query.run_uncertain(a._body, b._body, matrix, spread)
         return Report._of(report), UnderPoses(**under)
