@@ -59,7 +59,7 @@ fn an_image_in_another_frame_read_free_where_nobody_had_looked() {
     let ball = mesh(&object());
     for sensor in [SensorModel::Kinect, SensorModel::Isotropic { std: 0.005 }] {
         for mode in MODES {
-            let of = |image| Scan::of(image, sensor.clone(), mode).expect("a good image");
+            let of = |image| Scan::of(image, sensor, mode).expect("a good image");
             let (said, unsaid) = (of(&said), of(&unsaid));
             for (place, pose, seen) in places() {
                 let pose = to_map.after(&pose);
