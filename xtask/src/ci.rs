@@ -22,8 +22,6 @@ pub(crate) fn run(root: &Path) -> Result<()> {
         "clippy",
         &format!("clippy --locked --workspace --all-targets {RECORDINGS} -- -D warnings"),
     )?;
-    // As who follows the README builds it: without recordings.
-    run("plain", "check --locked --workspace --all-targets")?;
     // The tool is left out: its binary and the library it wraps would share one page.
     let doc = "doc --locked --workspace --exclude cloudtouch-cli --no-deps";
     step("doc", &format!("RUSTDOCFLAGS='-D warnings' cargo {doc}"), || {

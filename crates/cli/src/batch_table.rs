@@ -1,9 +1,10 @@
 //! The table of a batch, a row at a time.
 
+use std::mem::discriminant;
 use std::path::Path;
 
 use anyhow::Result;
-use cloudtouch::Report;
+use cloudtouch::{Report, Warning};
 
 use crate::case_file::Case;
 use crate::print;
@@ -16,6 +17,7 @@ pub(crate) struct Table {
     errors: usize,
     query_us: Vec<u64>,
     prepare_us: Vec<u64>,
+    warned: Vec<Warned>,
 }
 
 impl Table {
@@ -31,6 +33,7 @@ impl Table {
             errors: 0,
             query_us: Vec::new(),
             prepare_us: Vec::new(),
+            warned: Vec::new(),
         }
     }
 
@@ -67,16 +70,21 @@ impl Table {
         });
         let reason =
             report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
-        let warnings = report.warnings.iter().map(|warning| format!("  warning: {warning}\n"));
+        for warning in &report.warnings {
+            let is_same = |known: &&mut Warned| discriminant(&known.first) == discriminant(warning);
+            match self.warned.iter_mut().find(is_same) {
+                Some(known) => known.count += 1,
+                None => self.warned.push(Warned { id: id.to_owned(), first: *warning, count: 1 }),
+            }
+        }
         format!(
-            "{start}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {}{reason}\n{}",
+            "{start}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {}{reason}\n",
             print::probability(report.collision_probability),
             format!("{low} .. {high}"),
             report.verdict,
             print::gap_mm(report.clearance_m),
             report.stats.query_us as f64 / 1e3,
             print::one_line(&files),
-            warnings.collect::<String>(),
         )
     }
 
@@ -89,8 +97,21 @@ impl Table {
                 median(&self.prepare_us) / 1e3,
             );
         }
-        text + "\n"
+        text += "\n";
+        for Warned { id, first, count } in &self.warned {
+            let cases = if *count == 1 { "case" } else { "cases" };
+            text +=
+                &format!("warning in {count} {cases}, first {}: {first}\n", print::one_line(id));
+        }
+        text
     }
+}
+
+/// Warnings of one kind: thousands of cases have the same.
+struct Warned {
+    id: String,
+    first: Warning,
+    count: usize,
 }
 
 fn label(case: &Result<Case>) -> String {

@@ -1,6 +1,5 @@
 //! The case file of a batch.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -100,6 +99,9 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
     if raw.length_unit != "m" {
         bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
     }
+    if raw.cases.is_empty() {
+        bail!("there are no cases: `cases` is an empty list");
+    }
     let cases = raw
         .cases
         .into_iter()
@@ -111,22 +113,7 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
             (id(text.get()).unwrap_or(number), case)
         })
         .collect();
-    let cases = named_apart(cases)?;
     Ok(CaseFile { cases })
-}
-
-/// Refuses cases that their answers could not be told apart by, and none at all.
-fn named_apart(cases: Vec<(String, Result<Case>)>) -> Result<Vec<(String, Result<Case>)>> {
-    let mut places = BTreeMap::new();
-    for (number, (id, _)) in (1..).zip(&cases) {
-        if let Some(first) = places.insert(id, number) {
-            bail!("cases {first} and {number} are both called `{id}`: give each a name of its own");
-        }
-    }
-    if cases.is_empty() {
-        bail!("there are no cases: `cases` is an empty list");
-    }
-    Ok(cases)
 }
 
 /// The name a case has, if any, whatever is wrong with the rest of it.

@@ -23,7 +23,9 @@ fn the_table_has_a_row_a_case() {
     let inputs = Inputs::new();
     inputs.write("cases.json", &good_cases());
     let text = inputs.run(&["batch", "cases.json"]).quiet(0).stdout();
-    assert_eq!(text.lines().count(), HEIGHTS.len() + 2, "{text}");
+    // A head and a sum, and what is to be doubted: the free one is beside the floor.
+    assert_eq!(text.lines().count(), HEIGHTS.len() + 3, "{text}");
+    assert!(text.contains("warning in 1 case, first free: the object is outside"), "{text}");
     assert!(text.contains("in collision") && text.contains("floor.pcd / box.obj"), "{text}");
     assert!(text.contains("3 answers, 0 errors"), "{text}");
 }
@@ -135,17 +137,18 @@ fn what_a_case_does_not_need_does_not_fail_it() {
     assert_eq!(lines[4]["id"], "case-5");
     assert_eq!(lines[5]["id"], "tab\tbell\u{7}\n\u{1b}[31m");
     let table = inputs.run(&["batch", "cases.json"]).quiet(0).stdout();
-    assert_eq!(table.lines().count(), cases.len() + 2, "{table}");
+    assert_eq!(table.lines().count(), cases.len() + 3, "{table}");
     assert!(table.contains(r"\u{1b}[31m") && !table.contains('\u{1b}'), "{table}");
 }
 
 /// Only the JSON had them.
 #[test]
-fn warnings_and_guessed_sensors_are_told_in_the_table() {
+fn warnings_and_guessed_sensors_are_told_beside_the_table() {
     let inputs = Inputs::new();
-    inputs.write("cases.json", &good_cases());
+    let cases = case_file(&[case_at("a", 0.3), case_at("b", 0.05)]);
+    inputs.write("cases.json", &cases.replace("\"scene_sensor\":\"iso:0.002\",", ""));
     let text = inputs.run(&["batch", "cases.json", "--sensor=kinect"]).quiet(0).stdout();
-    let warning = "  warning: the scene is of a camera and has no image layout";
+    let warning = "warning in 2 cases, first a: the scene is of a camera and has no image layout";
     assert!(text.contains(warning), "{text}");
     let text = inputs.run(&["batch", "cases.json", "--sensor=auto"]).quiet(0).stdout();
     let first = text.lines().next().unwrap();

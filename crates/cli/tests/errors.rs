@@ -83,10 +83,6 @@ fn case_files() {
         (r#"{"format":1,"length_unit":"mm","cases":[]}"#, &["`mm`", "metres"]),
         (r#"{"format":1,"length_unit":"m","cases":[{"pose":}]}"#, &["line 1 column"]),
         (r#"{"format":1,"length_unit":"m","cases":[]}"#, &["there are no cases"]),
-        (
-            r#"{"format":1,"length_unit":"m","cases":[{"id":"a"},{"id":"b"},{"id":"a"}]}"#,
-            &["cases 1 and 3 are both called `a`"],
-        ),
     ] {
         inputs.write("cases.json", text);
         check(&inputs, &["batch", "cases.json"], parts);
