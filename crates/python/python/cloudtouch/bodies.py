@@ -61,7 +61,7 @@ class Cloud:
     sensor
         What measured it, and how noisy that is: ``"kinect"``, ``"stereo:BASELINE_M,FOCAL_PX,DISPARITY_STD_PX"``,
         ``"lidar:RANGE_STD_M,BEAM_RAD"``, ``"iso:STD_M"``, ``"axes:SX,SY,SZ"``, ``"grid:RESOLUTION_M"``, ``"exact"`` or
-        ``"per-point"``. Too small a noise is the dangerous way round: it makes touching surfaces free.
+        ``"per-point"``. State it as it is: twice the noise reads more touching surfaces as free, half of it stops more.
     sensor_pose
         (4, 4): from the frame of the sensor (of a camera x right, y down, z forward) into that of the points. The
         identity where it is not given.
