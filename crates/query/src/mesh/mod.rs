@@ -3,6 +3,7 @@
 mod cells;
 mod coverage;
 mod near;
+mod nearest_samples;
 mod parts;
 mod prepare;
 mod project;
@@ -11,5 +12,6 @@ mod subdivide;
 mod surface;
 mod winding;
 
+pub(crate) use nearest_samples::nearest_in_region;
 pub use prepare::Mesh;
-pub(crate) use subdivide::{SampleRegion, four_per_triangle, nearest_in_region, sample_region};
+pub(crate) use subdivide::{SampleRegion, four_per_triangle, sample_region};

@@ -29,6 +29,32 @@ pub(crate) struct SampleRegion {
     pub spacing: f64,
 }
 
+impl SampleRegion {
+    /// No place of a triangle is nearer to the middle than this, m; negative where one may be anywhere.
+    pub(super) fn away(&self, corners: &[Point3; 3]) -> f64 {
+        let centroid = centroid(corners);
+        let reach = corners.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
+        (centroid - self.center).norm() - reach
+    }
+
+    /// The halves of a triangle too large to be sampled as it is, which may be split so often.
+    pub(super) fn split(&self, corners: &[Point3; 3], depth: usize) -> Option<[[Point3; 3]; 2]> {
+        let limit = self.spacing.max(GRADING * (self.away(corners) - self.core));
+        let (longest, halves) = halved(corners);
+        halves.filter(|_| longest > limit && depth > 0)
+    }
+}
+
+fn centroid([a, b, c]: &[Point3; 3]) -> Point3 {
+    Point3::from((a.coords + b.coords + c.coords) / 3.0)
+}
+
+/// Where a triangle that is small enough is sampled: its corners and its centroid.
+pub(super) fn samples_of(corners: [Point3; 3]) -> [Point3; 4] {
+    let [a, b, c] = corners;
+    [a, b, c, centroid(&corners)]
+}
+
 /// Vertices and centroid of every part of `triangles` inside the region, after splitting them until
 /// no edge is longer than the spacing.
 ///
@@ -40,55 +66,6 @@ pub(crate) fn sample_region(
     region: &SampleRegion,
     max_parts: usize,
 ) -> Result<Vec<Point3>, SubdivisionError> {
-    let mut points = with_repeated(triangles, region, max_parts)?;
-    merge_repeated(&mut points);
-    Ok(points)
-}
-
-/// As many as wanted of these, nearest to the middle of the region, in order of distance, then place.
-///
-/// # Errors
-/// As [`sample_region`].
-pub(crate) fn nearest_in_region(
-    triangles: impl IntoIterator<Item = [Point3; 3]>,
-    region: &SampleRegion,
-    wanted: usize,
-    max_parts: usize,
-) -> Result<Vec<Point3>, SubdivisionError> {
-    let points = with_repeated(triangles, region, max_parts)?;
-    let distance = |p: Point3| ((p - region.center).norm(), p);
-    let mut near: Vec<(f64, Point3)> = points.into_iter().map(distance).collect();
-    let order = |p: &(f64, Point3), q: &(f64, Point3)| {
-        p.0.total_cmp(&q.0).then_with(|| by_coordinates(&p.1, &q.1))
-    };
-    let all = near.len();
-    let mut first = |count: usize| -> Vec<Point3> {
-        if count < all {
-            near.select_nth_unstable_by(count, order);
-        }
-        near[..count].sort_unstable_by(order);
-        let mut points: Vec<Point3> = near[..count].iter().map(|(_, p)| *p).collect();
-        points.dedup();
-        points
-    };
-    // PERF: there are hundreds, each a few times.
-    let mut nearest = first(all.min(USUALLY_REPEATED * wanted));
-    if nearest.len() < wanted {
-        nearest = first(all);
-    }
-    nearest.truncate(wanted);
-    Ok(nearest)
-}
-
-/// Corners that parts have in common are sampled at most so often, as a rule.
-const USUALLY_REPEATED: usize = 8;
-
-/// The samples of [`sample_region`], those in common once for each part that has them.
-fn with_repeated(
-    triangles: impl IntoIterator<Item = [Point3; 3]>,
-    region: &SampleRegion,
-    max_parts: usize,
-) -> Result<Vec<Point3>, SubdivisionError> {
     let mut samples = Samples { region, points: Vec::new(), parts: 0, max_parts };
     for corners in triangles {
         samples.split(corners, MAX_DEPTH);
@@ -96,14 +73,13 @@ fn with_repeated(
     if samples.parts > max_parts {
         return Err(SubdivisionError { spacing: region.spacing, max_parts });
     }
+    merge_repeated(&mut samples.points);
     Ok(samples.points)
 }
 
 /// Corners and centroid of every triangle, those that are shared once (section 4.5 as printed).
 pub(crate) fn four_per_triangle(triangles: impl IntoIterator<Item = [Point3; 3]>) -> Vec<Point3> {
-    let four =
-        |[a, b, c]: [Point3; 3]| [a, b, c, Point3::from((a.coords + b.coords + c.coords) / 3.0)];
-    let mut points: Vec<Point3> = triangles.into_iter().flat_map(four).collect();
+    let mut points: Vec<Point3> = triangles.into_iter().flat_map(samples_of).collect();
     merge_repeated(&mut points);
     points
 }
@@ -135,21 +111,15 @@ impl Samples<'_> {
         if self.parts > self.max_parts {
             return;
         }
-        let (region, points) = (self.region, &mut self.points);
-        let [a, b, c] = corners;
-        let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-        let reach = corners.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
-        let away = (centroid - region.center).norm() - reach;
-        if away > region.radius {
+        let region = self.region;
+        if region.away(&corners) > region.radius {
             return;
         }
-        let limit = region.spacing.max(GRADING * (away - region.core));
-        let (longest, halves) = halved(&corners);
-        match halves.filter(|_| longest > limit && depth > 0) {
+        match region.split(&corners, depth) {
             Some(halves) => halves.into_iter().for_each(|half| self.split(half, depth - 1)),
             None => {
                 let inside = |p: &Point3| (p - region.center).norm() <= region.radius;
-                points.extend([a, b, c, centroid].into_iter().filter(inside));
+                self.points.extend(samples_of(corners).into_iter().filter(inside));
             }
         }
     }
@@ -161,7 +131,7 @@ fn merge_repeated(points: &mut Vec<Point3>) {
     points.dedup();
 }
 
-fn by_coordinates(p: &Point3, q: &Point3) -> Ordering {
+pub(super) fn by_coordinates(p: &Point3, q: &Point3) -> Ordering {
     p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(p.z.total_cmp(&q.z))
 }
 
@@ -257,26 +227,5 @@ mod tests {
         let region =
             SampleRegion { center: Point3::origin(), core: 2.0, radius: 2.0, spacing: 1e-3 };
         assert_eq!(sample_region([[p, p, p]], &region, 1), Ok(vec![p]));
-    }
-
-    /// A fan has one corner in all of its triangles: then many more have to be put in order than are wanted.
-    #[test]
-    fn the_nearest_samples_are_the_first_of_all_by_distance() {
-        let rim = |k: i32| {
-            let turn = std::f64::consts::TAU * f64::from(k) / 60.0;
-            Point3::new(turn.cos(), turn.sin(), 0.1 * (3.0 * turn).sin())
-        };
-        let fan: Vec<[Point3; 3]> =
-            (0..60).map(|k| [Point3::origin(), rim(k), rim(k + 1)]).collect();
-        for (x, wanted) in [(0.0, 3), (0.0, 20), (0.0, 70), (0.4, 1), (0.4, 20), (0.4, 5000)] {
-            let center = Point3::new(x, 0.01, 0.02);
-            let region = SampleRegion { center, core: 0.3, radius: 0.5, spacing: 0.1 };
-            let mut all = sample_region(fan.clone(), &region, 100_000).unwrap();
-            let distance = |p: &Point3| (p - center).norm();
-            all.sort_by(|p, q| distance(p).total_cmp(&distance(q)));
-            all.truncate(wanted);
-            let nearest = nearest_in_region(fan.clone(), &region, wanted, 100_000).unwrap();
-            assert_eq!(nearest, all, "{x} {wanted}");
-        }
     }
 }

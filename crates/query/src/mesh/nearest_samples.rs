@@ -1,0 +1,205 @@
+//! The samples of a mesh that are nearest to a place, without those farther away.
+
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
+use cloudtouch_geom::Point3;
+
+use crate::error::SubdivisionError;
+
+use super::subdivide::{MAX_DEPTH, SampleRegion, by_coordinates, samples_of};
+
+/// How far a computed distance may be off, as a share of the coordinates; generously.
+const ROUNDING: f64 = 1e-12;
+
+/// As many as wanted of the samples of [`sample_region`](super::sample_region), nearest to the middle of the
+/// region, in order of distance, then place.
+///
+/// # Errors
+/// When that takes more than `max_parts` parts, those that were split included and those farther away than
+/// what is wanted not.
+pub(crate) fn nearest_in_region(
+    triangles: impl IntoIterator<Item = [Point3; 3]>,
+    region: &SampleRegion,
+    wanted: usize,
+    max_parts: usize,
+) -> Result<Vec<Point3>, SubdivisionError> {
+    let mut nearest = Nearest { region, wanted, samples: BTreeSet::new(), parts: 0, max_parts };
+    let away = |corners: [Point3; 3]| (region.away(&corners), corners);
+    let mut triangles: Vec<(f64, [Point3; 3])> = triangles.into_iter().map(away).collect();
+    triangles.sort_by(|(p, _), (q, _)| p.total_cmp(q));
+    for (away, corners) in triangles {
+        nearest.look(away, corners, MAX_DEPTH);
+    }
+    if nearest.parts > max_parts {
+        return Err(SubdivisionError { spacing: region.spacing, max_parts });
+    }
+    Ok(nearest.samples.into_iter().map(|sample| sample.place).collect())
+}
+
+/// The nearest samples so far.
+struct Nearest<'a> {
+    region: &'a SampleRegion,
+    wanted: usize,
+    samples: BTreeSet<Sample>,
+    /// Triangles looked at so far, before and after splitting.
+    parts: usize,
+    max_parts: usize,
+}
+
+impl Nearest<'_> {
+    /// Adds what a triangle has, no place of which is nearer than `away`.
+    fn look(&mut self, away: f64, corners: [Point3; 3], depth: usize) {
+        if !self.may_have_one(away, &corners) {
+            return;
+        }
+        self.parts = self.parts.saturating_add(1);
+        if self.parts > self.max_parts {
+            return;
+        }
+        let region = self.region;
+        let Some(halves) = region.split(&corners, depth) else {
+            samples_of(corners).into_iter().for_each(|place| self.add(place));
+            return;
+        };
+        // What is near first: it leaves out most of what is not.
+        let [p, q] = halves.map(|half| (region.away(&half), half));
+        let in_order = if p.0 <= q.0 { [p, q] } else { [q, p] };
+        for (away, half) in in_order {
+            self.look(away, half, depth - 1);
+        }
+    }
+
+    fn may_have_one(&self, away: f64, corners: &[Point3; 3]) -> bool {
+        let farthest = match self.samples.last() {
+            Some(last) if self.samples.len() == self.wanted => last.distance,
+            _ => self.region.radius,
+        };
+        let size = corners.iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
+        // What is no number is looked at, until there are too many parts.
+        !(away > self.region.radius || away > farthest + ROUNDING * size)
+    }
+
+    fn add(&mut self, place: Point3) {
+        let distance = (place - self.region.center).norm();
+        if distance <= self.region.radius {
+            self.samples.insert(Sample { distance, place });
+            if self.samples.len() > self.wanted {
+                self.samples.pop_last();
+            }
+        }
+    }
+}
+
+/// A place and how far it is from the middle, in this order.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    distance: f64,
+    place: Point3,
+}
+
+impl Ord for Sample {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_distance = self.distance.total_cmp(&other.distance);
+        by_distance.then_with(|| by_coordinates(&self.place, &other.place))
+    }
+}
+
+impl PartialOrd for Sample {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Sample {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Sample {}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::Vector3;
+    use proptest::prelude::*;
+
+    use super::super::subdivide::sample_region;
+    use super::*;
+
+    fn rim(k: i32, count: i32, radius: f64) -> Point3 {
+        let turn = std::f64::consts::TAU * f64::from(k) / f64::from(count);
+        Point3::new(radius * turn.cos(), radius * turn.sin(), 0.0)
+    }
+
+    /// The first of all samples by distance.
+    fn by_all(triangles: &[[Point3; 3]], region: &SampleRegion, wanted: usize) -> Vec<Point3> {
+        let mut all = sample_region(triangles.to_vec(), region, 10_000_000).unwrap();
+        let distance = |p: &Point3| (p - region.center).norm();
+        all.sort_by(|p, q| distance(p).total_cmp(&distance(q)).then(by_coordinates(p, q)));
+        all.truncate(wanted);
+        all
+    }
+
+    /// A fan has one corner in all of its triangles.
+    #[test]
+    fn the_nearest_samples_of_a_fan_are_the_first_of_all_by_distance() {
+        let bent = |k| rim(k, 60, 1.0) + Vector3::z() * 0.1 * (3.0 * f64::from(k)).sin();
+        let fan: Vec<[Point3; 3]> =
+            (0..60).map(|k| [Point3::origin(), bent(k), bent(k + 1)]).collect();
+        for (x, wanted) in [(0.0, 3), (0.0, 20), (0.0, 70), (0.4, 1), (0.4, 20), (0.4, 5000)] {
+            let center = Point3::new(x, 0.01, 0.02);
+            let region = SampleRegion { center, core: 0.3, radius: 0.5, spacing: 0.1 };
+            let nearest = nearest_in_region(fan.clone(), &region, wanted, 100_000).unwrap();
+            assert_eq!(nearest, by_all(&fan, &region, wanted), "{x} {wanted}");
+        }
+    }
+
+    /// Every facet of a slender handle is a sliver along all of it, and all of them were split for the
+    /// nearest twenty samples.
+    #[test]
+    fn a_slender_handle_took_more_parts_than_were_allowed() {
+        let along = Vector3::z() * 0.28;
+        let facet = |k| {
+            let [p, q] = [k, k + 1].map(|k| rim(k, 48, 0.013));
+            [[p, q, q + along], [p, q + along, p + along]]
+        };
+        let handle: Vec<[Point3; 3]> = (0..48).flat_map(facet).collect();
+        let center = Point3::new(0.013, 0.0, 0.14);
+        let region = SampleRegion { center, core: 0.08, radius: 0.08, spacing: 0.0075 };
+        assert!(sample_region(handle.clone(), &region, 3_000).is_err());
+        let nearest = nearest_in_region(handle.clone(), &region, 20, 3_000).unwrap();
+        assert_eq!(nearest, by_all(&handle, &region, 20));
+    }
+
+    #[test]
+    fn a_spacing_of_nanometres_is_little_work_and_none_at_all_is_refused() {
+        let [x, y] = [Vector3::x(), Vector3::y()];
+        let corners = [Point3::origin(), Point3::origin() + x, Point3::origin() + y];
+        let center = Point3::new(0.3, 0.3, 0.0);
+        let nearest = |spacing| {
+            let region = SampleRegion { center, core: 0.1, radius: 0.1, spacing };
+            nearest_in_region([corners], &region, 5, 20_000)
+        };
+        assert_eq!(nearest(1e-9).map(|places| places.len()), Ok(5));
+        assert!([0.0, -1.0, f64::NAN].into_iter().all(|spacing| nearest(spacing).is_err()));
+    }
+
+    proptest! {
+        #[test]
+        fn the_nearest_samples_are_the_first_of_all(
+            corners in prop::collection::vec(prop::array::uniform9(-1.0_f64..1.0), 1..12),
+            flat in 0.0_f64..1.0,
+            center in prop::array::uniform3(-0.5_f64..0.5),
+            radius in 0.1_f64..1.0,
+            wanted in 1_usize..60,
+        ) {
+            let point = |[x, y, z]: [f64; 3]| Point3::new(x, flat * y, flat * flat * z);
+            let triangle = |c: &[f64; 9]| [0, 3, 6].map(|k| point([c[k], c[k + 1], c[k + 2]]));
+            let triangles: Vec<[Point3; 3]> = corners.iter().map(triangle).collect();
+            let region = SampleRegion { center: point(center), core: 0.5 * radius, radius, spacing: 0.08 };
+            let nearest = nearest_in_region(triangles.clone(), &region, wanted, 10_000_000).unwrap();
+            prop_assert_eq!(nearest, by_all(&triangles, &region, wanted));
+        }
+    }
+}
