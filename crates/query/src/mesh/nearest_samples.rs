@@ -58,7 +58,7 @@ impl Nearest<'_> {
             return;
         }
         let region = self.region;
-        let Some(halves) = region.split(&corners, depth) else {
+        let Some(halves) = region.split(&corners, away, depth) else {
             samples_of(corners).into_iter().for_each(|place| self.add(place));
             return;
         };

@@ -37,9 +37,15 @@ impl SampleRegion {
         (centroid - self.center).norm() - reach
     }
 
-    /// The halves of a triangle too large to be sampled as it is, which may be split so often.
-    pub(super) fn split(&self, corners: &[Point3; 3], depth: usize) -> Option<[[Point3; 3]; 2]> {
-        let limit = self.spacing.max(GRADING * (self.away(corners) - self.core));
+    /// The halves of a triangle so far [away](Self::away) that is too large to be sampled as it is, and may
+    /// be split so often.
+    pub(super) fn split(
+        &self,
+        corners: &[Point3; 3],
+        away: f64,
+        depth: usize,
+    ) -> Option<[[Point3; 3]; 2]> {
+        let limit = self.spacing.max(GRADING * (away - self.core));
         let (longest, halves) = halved(corners);
         halves.filter(|_| longest > limit && depth > 0)
     }
@@ -112,10 +118,11 @@ impl Samples<'_> {
             return;
         }
         let region = self.region;
-        if region.away(&corners) > region.radius {
+        let away = region.away(&corners);
+        if away > region.radius {
             return;
         }
-        match region.split(&corners, depth) {
+        match region.split(&corners, away, depth) {
             Some(halves) => halves.into_iter().for_each(|half| self.split(half, depth - 1)),
             None => {
                 let inside = |p: &Point3| (p - region.center).norm() <= region.radius;

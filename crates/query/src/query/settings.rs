@@ -64,8 +64,8 @@ pub struct QuerySettings {
     pub safeguards: Safeguards,
     /// How many contacts are reported at most.
     pub max_contacts: usize,
-    /// How many triangles, before and after splitting, the part of a mesh that faces a leaf of a
-    /// cloud is sampled by at most; a usual part takes some thousands.
+    /// How many triangles, before and after splitting, may be looked at for the samples of a mesh that
+    /// the classifier is given at a place: those nearest to it, so that few are.
     pub max_mesh_parts: usize,
 }
 
