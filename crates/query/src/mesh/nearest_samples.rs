@@ -1,7 +1,6 @@
 //! The samples of a mesh that are nearest to a place, without those farther away.
 
 use std::cmp::Ordering;
-use std::collections::BTreeSet;
 
 use cloudtouch_geom::Point3;
 
@@ -24,7 +23,7 @@ pub(crate) fn nearest_in_region(
     wanted: usize,
     max_parts: usize,
 ) -> Result<Vec<Point3>, SubdivisionError> {
-    let mut nearest = Nearest { region, wanted, samples: BTreeSet::new(), parts: 0, max_parts };
+    let mut nearest = Nearest { region, wanted, samples: Vec::new(), parts: 0, max_parts };
     let away = |corners: [Point3; 3]| (region.away(&corners), corners);
     let mut triangles: Vec<(f64, [Point3; 3])> = triangles.into_iter().map(away).collect();
     triangles.sort_by(|(p, _), (q, _)| p.total_cmp(q));
@@ -34,14 +33,15 @@ pub(crate) fn nearest_in_region(
     if nearest.parts > max_parts {
         return Err(SubdivisionError { spacing: region.spacing, max_parts });
     }
-    Ok(nearest.samples.into_iter().map(|sample| sample.place).collect())
+    Ok(nearest.samples.into_iter().map(|(_, place)| place).collect())
 }
 
 /// The nearest samples so far.
 struct Nearest<'a> {
     region: &'a SampleRegion,
     wanted: usize,
-    samples: BTreeSet<Sample>,
+    /// Each with its distance from the middle, in [order](by_distance), no more than wanted.
+    samples: Vec<(f64, Point3)>,
     /// Triangles looked at so far, before and after splitting.
     parts: usize,
     max_parts: usize,
@@ -71,53 +71,29 @@ impl Nearest<'_> {
     }
 
     fn may_have_one(&self, away: f64, corners: &[Point3; 3]) -> bool {
-        let farthest = match self.samples.last() {
-            Some(last) if self.samples.len() == self.wanted => last.distance,
-            _ => self.region.radius,
-        };
+        let is_full = self.samples.len() == self.wanted;
+        let last = self.samples.last().filter(|_| is_full);
+        let farthest = last.map_or(f64::INFINITY, |&(distance, _)| distance);
         let size = corners.iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
         // What is no number is looked at, until there are too many parts.
         !(away > self.region.radius || away > farthest + ROUNDING * size)
     }
 
     fn add(&mut self, place: Point3) {
-        let distance = (place - self.region.center).norm();
-        if distance <= self.region.radius {
-            self.samples.insert(Sample { distance, place });
-            if self.samples.len() > self.wanted {
-                self.samples.pop_last();
-            }
+        let sample = ((place - self.region.center).norm(), place);
+        if sample.0 <= self.region.radius
+            // What is there already comes from a part that has this corner too.
+            && let Err(at) = self.samples.binary_search_by(|other| by_distance(other, &sample))
+        {
+            self.samples.insert(at, sample);
+            self.samples.truncate(self.wanted);
         }
     }
 }
 
-/// A place and how far it is from the middle, in this order.
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    distance: f64,
-    place: Point3,
+fn by_distance(p: &(f64, Point3), q: &(f64, Point3)) -> Ordering {
+    p.0.total_cmp(&q.0).then_with(|| by_coordinates(&p.1, &q.1))
 }
-
-impl Ord for Sample {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_distance = self.distance.total_cmp(&other.distance);
-        by_distance.then_with(|| by_coordinates(&self.place, &other.place))
-    }
-}
-
-impl PartialOrd for Sample {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Sample {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Sample {}
 
 #[cfg(test)]
 mod tests {
@@ -183,6 +159,18 @@ mod tests {
         };
         assert_eq!(nearest(1e-9).map(|places| places.len()), Ok(5));
         assert!([0.0, -1.0, f64::NAN].into_iter().all(|spacing| nearest(spacing).is_err()));
+    }
+
+    /// STL files have corners that differ in the sign of a zero; these were two samples.
+    #[test]
+    fn corners_that_differ_in_the_sign_of_a_zero_are_one_sample() {
+        let corners = |zero: f64| [[zero, 0.0, 0.0], [0.1, 0.0, zero], [zero, 0.1, 0.0]];
+        let triangles = [0.0, -0.0].map(|zero| corners(zero).map(Point3::from));
+        let center = Point3::new(0.03, 0.02, 0.0);
+        let region = SampleRegion { center, core: 1.0, radius: 1.0, spacing: 1.0 };
+        let nearest = nearest_in_region(triangles, &region, 20, 100).unwrap();
+        assert_eq!(nearest.len(), 4);
+        assert_eq!(nearest, by_all(&triangles, &region, 20));
     }
 
     proptest! {

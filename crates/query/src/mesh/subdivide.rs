@@ -138,8 +138,10 @@ fn merge_repeated(points: &mut Vec<Point3>) {
     points.dedup();
 }
 
+/// Zeros of either sign are one.
 pub(super) fn by_coordinates(p: &Point3, q: &Point3) -> Ordering {
-    p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(p.z.total_cmp(&q.z))
+    let compare = |p: f64, q: f64| (p + 0.0).total_cmp(&(q + 0.0));
+    compare(p.x, q.x).then_with(|| compare(p.y, q.y)).then_with(|| compare(p.z, q.z))
 }
 
 #[cfg(test)]
