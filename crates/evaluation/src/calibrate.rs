@@ -6,8 +6,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use clap::Args;
 use cloudtouch::{
-    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS,
-    NOISE_KNOTS,
+    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, Judge,
+    MISCLASSIFIED_KNOTS, NOISE_KNOTS, ODDS_KNOTS,
 };
 use cloudtouch_testkit::family::Kind;
 
@@ -22,6 +22,8 @@ const ADVERSARIAL: f64 = 0.25;
 
 /// Values of a surface over geometry.
 const GEOMETRY_VALUES: usize = DEVIATION_KNOTS.len() * CROSSING_KNOTS.len();
+/// Knots of the noise and of the extent.
+const BESIDE_ODDS: usize = NOISE_KNOTS.len() * EXTENT_KNOTS.len();
 
 /// What `cargo xtask calibrate` is given.
 #[derive(Args)]
@@ -86,7 +88,8 @@ fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> 
     fit_judge(&records)
 }
 
-/// The surface over geometry first; then, where that leaves doubt, how the classifier revises it.
+/// The surface over geometry first; then what the extent makes of it, and where that leaves doubt, how the
+/// classifier revises it.
 fn fit_judge(records: &[Record]) -> Result<Judge> {
     // Fewer deviations make a collision more probable: the axis is turned round, and back again.
     let mut nearness = DEVIATION_KNOTS.map(|z| -z);
@@ -101,26 +104,44 @@ fn fit_judge(records: &[Record]) -> Result<Judge> {
     let nearness = Axis { knots: &nearness, usual: Some(3.0) };
     let crossing = Axis { knots: &CROSSING_KNOTS, usual: Some(2.0) };
     let fitted = fit_surface(&geometry, [noise, nearness, crossing], false);
-    let mut judge = Judge::default();
+    let mut judge = Judge::default().without_extent();
     for (surface, values) in judge.by_geometry.iter_mut().zip(fitted.chunks(GEOMETRY_VALUES)) {
         surface.as_flattened_mut().copy_from_slice(values);
         surface.reverse();
     }
+    let changeable = |record: &Record| -> Option<SurfaceSample<3>> {
+        let e = &record.evidence;
+        let by_place = judge.log_odds_by_place(e);
+        let at = [by_place, e.noise_over_spacing, -e.extent?.ln_1p()];
+        is_within(&ODDS_KNOTS, by_place).then_some(record.at(at))
+    };
+    let open: Vec<_> = records.iter().filter_map(changeable).collect();
+    let odds = Axis { knots: &ODDS_KNOTS, usual: Some(1.0) };
+    let extent = Axis { knots: &EXTENT_KNOTS, usual: Some(0.0) };
+    let over_extent = fit_surface(&open, [odds, noise, extent], true);
+    for (row, values) in over_extent.chunks(BESIDE_ODDS).enumerate() {
+        for (of_noise, values) in values.chunks(EXTENT_KNOTS.len()).enumerate() {
+            judge.over_extent[of_noise][row].copy_from_slice(values);
+        }
+    }
     let doubtful = |record: &Record| -> Option<SurfaceSample<2>> {
         let e = &record.evidence;
         let by_geometry = judge.log_odds_by_geometry(e);
-        let [least, .., most] = DOUBT_KNOTS;
-        let is_doubtful = least < by_geometry && by_geometry < most;
         // Where the noise is as large as the patches the classifier says nothing.
-        is_doubtful.then_some(record.at([by_geometry, e.ln_misclassified()?]))
+        let at = [by_geometry, e.ln_misclassified()?];
+        is_within(&DOUBT_KNOTS, by_geometry).then_some(record.at(at))
     };
-    let in_doubt: Vec<SurfaceSample<2>> = records.iter().filter_map(doubtful).collect();
+    let in_doubt: Vec<_> = records.iter().filter_map(doubtful).collect();
     let doubt = Axis { knots: &DOUBT_KNOTS, usual: Some(1.0) };
     let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, usual: Some(0.2) };
     let revised = fit_surface(&in_doubt, [doubt, misclassified], true);
     judge.revised.as_flattened_mut().copy_from_slice(&revised);
     judge.validate()?;
     Ok(judge)
+}
+
+fn is_within(knots: &[f64], value: f64) -> bool {
+    knots[0] < value && value < knots[knots.len() - 1]
 }
 
 /// Clouds wholly within solids, which hardly a pose that comes from outside is: a point clearly inside
@@ -144,7 +165,13 @@ mod tests {
 
     fn evidence(deviations: f64, crossing: f64, count: f64, noise: f64) -> ContactEvidence {
         let misclassified = Some(count);
-        ContactEvidence { deviations, crossing, misclassified, noise_over_spacing: noise }
+        ContactEvidence {
+            deviations,
+            crossing,
+            misclassified,
+            extent: None,
+            noise_over_spacing: noise,
+        }
     }
 
     #[test]

@@ -19,6 +19,7 @@ mod hard_cases;
 mod hard_leaf_problems;
 mod hidden;
 mod known_normals;
+mod large_faces;
 mod limits;
 mod margin;
 mod merge;

@@ -142,6 +142,7 @@ fn ten_thousand_points_are_as_far_apart_as_promised() {
                 Family::LivingRoom | Family::Doorway | Family::Staircase => {
                     [0.02..0.035, 0.002..0.015]
                 }
+                Family::SettingDown => [0.012..0.025, 0.003..0.015],
                 Family::Desk | Family::Kitchen | Family::Workbench | Family::BoxesInBin => {
                     [0.012..0.03, 0.001..0.007]
                 }

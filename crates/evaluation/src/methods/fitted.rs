@@ -1,7 +1,7 @@
 //! The surfaces that turn evidence into a probability, as they are kept.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::fmt::Debug;
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -48,30 +48,22 @@ impl Fitted {
         Ok(())
     }
 
-    /// The default of the library as a Rust file.
+    /// The default of the library as a Rust file, a row a line.
     pub fn as_source(&self) -> String {
-        let mut text = format!("//! Made by `{} --update`.\n\n", self.command);
-        text += "#![allow(clippy::approx_constant, reason = \"what is fitted may look like π\")]\n";
-        text += "\nuse super::knots::{NOISE_KNOTS, OverDoubt, OverGeometry};\n";
-        let Judge { by_geometry, revised } = &self.all;
-        text += "\npub(super) const BY_GEOMETRY: [OverGeometry; NOISE_KNOTS.len()] = [\n";
-        for surface in by_geometry {
-            text += "    [\n";
-            add(&mut text, "        ", surface);
-            text += "    ],\n";
-        }
-        text += "];\n\npub(super) const REVISED: OverDoubt = [\n";
-        add(&mut text, "    ", revised);
-        text += "];\n";
-        text
-    }
-}
-
-fn add<const M: usize>(text: &mut String, indent: &str, rows: &[[f64; M]]) {
-    for row in rows {
-        let numbers: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{indent}[{}],", numbers.join(", "));
+        let Judge { by_geometry, over_extent, revised } = &self.all;
+        let rows = |table: &dyn Debug| format!("{table:?}").replace("], [", "],\n    [");
+        format!(
+            "//! Made by `{} --update`.\n\n\
+             #![allow(clippy::approx_constant, reason = \"what is fitted may look like π\")]\n\n\
+             use super::knots::{{NOISE_KNOTS, OverDoubt, OverExtent, OverGeometry}};\n\n\
+             pub(super) const BY_GEOMETRY: [OverGeometry; NOISE_KNOTS.len()] = {};\n\n\
+             pub(super) const OVER_EXTENT: [OverExtent; NOISE_KNOTS.len()] = {};\n\n\
+             pub(super) const REVISED: OverDoubt = {};\n",
+            self.command,
+            rows(by_geometry),
+            rows(over_extent),
+            rows(revised),
+        )
     }
 }
 

@@ -97,7 +97,7 @@ fn true_points(observation: &Observation) -> PointCloud {
 
 /// A judge that geometry leaves in doubt of everything, so that the classifier is asked everywhere.
 fn doubting() -> Judge {
-    let mut judge = Judge::default().without_classifier();
+    let mut judge = Judge::default().without_extent().without_classifier();
     judge.by_geometry.as_flattened_mut().as_flattened_mut().fill(0.0);
     let middle = DOUBT_KNOTS.len() / 2;
     for (value, knot) in judge.revised[middle].iter_mut().zip(MISCLASSIFIED_KNOTS) {

@@ -40,7 +40,7 @@ pub enum SettingsError {
         /// Of which evidence.
         name: &'static str,
     },
-    /// A judge lets the classifier revise where geometry leaves no doubt.
+    /// A judge lets the extent or the classifier change odds that are beyond doubt.
     #[error(
         "judge: the row of revisions at log odds of {} must repeat that number, or probabilities jump",
         number(*at)

@@ -12,6 +12,11 @@ pub const DEVIATION_KNOTS: [f64; 13] =
     [-6.0, -4.0, -2.5, -1.2, 0.0, 0.4, 0.8, 1.2, 1.7, 2.3, 3.0, 4.0, MOST_DEVIATIONS];
 /// See [`DEVIATION_KNOTS`].
 pub const CROSSING_KNOTS: [f64; 9] = [0.0, 0.5, 1.2, 1.8, 2.4, 3.0, 3.6, 4.2, 5.0];
+/// Where what the extent makes of log odds has its values: log odds by the place of contact by rows,
+/// −ln(1 + pieces about as near) by columns. At the first and the last row nothing is changed.
+pub const ODDS_KNOTS: [f64; 9] = [-5.0, -3.0, -1.8, -0.8, 0.2, 1.2, 2.2, 3.3, 4.6];
+/// See [`ODDS_KNOTS`].
+pub const EXTENT_KNOTS: [f64; 7] = [-6.0, -5.0, -4.0, -3.0, -2.2, -1.4, -0.7];
 /// Where the revision has its values: log odds by geometry by rows, ln(misclassified + 0.02) by
 /// columns. At the first and the last row nothing is revised.
 pub const DOUBT_KNOTS: [f64; 7] = [-2.2, -1.5, -0.8, 0.0, 0.8, 1.5, 2.2];
@@ -20,5 +25,7 @@ pub const MISCLASSIFIED_KNOTS: [f64; 9] = [-3.92, -3.2, -2.4, -1.6, -0.8, 0.0, 1
 
 /// Log odds at [`DEVIATION_KNOTS`] by rows and [`CROSSING_KNOTS`] by columns.
 pub type OverGeometry = [[f64; CROSSING_KNOTS.len()]; DEVIATION_KNOTS.len()];
+/// Log odds at [`ODDS_KNOTS`] by rows and [`EXTENT_KNOTS`] by columns.
+pub type OverExtent = [[f64; EXTENT_KNOTS.len()]; ODDS_KNOTS.len()];
 /// Log odds at [`DOUBT_KNOTS`] by rows and [`MISCLASSIFIED_KNOTS`] by columns.
 pub type OverDoubt = [[f64; MISCLASSIFIED_KNOTS.len()]; DOUBT_KNOTS.len()];

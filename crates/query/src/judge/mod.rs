@@ -1,9 +1,11 @@
 //! From evidence to a probability: every constant of the fit, and nothing else.
 //!
 //! Surfaces of log odds, fitted on generated scenes whose truth is known (`cargo xtask calibrate`): one
-//! over what geometry says, for every noise, and one by which the classifier revises that where it leaves
-//! doubt. All are continuous, and monotone in what is evidence.
+//! over what geometry says of the place of contact, for every noise, one by which its extent changes that,
+//! and one by which the classifier revises it where doubt is left. All are continuous, and monotone in what is evidence.
 
+// Made by a command, a row a line.
+#[rustfmt::skip]
 mod fitted;
 mod grid;
 mod knots;
@@ -17,15 +19,14 @@ use crate::error::SettingsError;
 pub use grid::between_knots;
 pub(crate) use knots::MOST_DEVIATIONS;
 pub use knots::{
-    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, MISCLASSIFIED_KNOTS, NOISE_KNOTS, OverDoubt,
-    OverGeometry,
+    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, MISCLASSIFIED_KNOTS, NOISE_KNOTS,
+    ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
 };
 pub(crate) use of_pair::{JudgeOfPair, probability};
 pub use within::WITHIN_KNOTS;
 pub(crate) use within::log_odds_within;
 
-/// What a probability rests on. Each number is comparable between scenes: none has a unit, and none
-/// grows with the area of contact.
+/// What a probability rests on. Each number is comparable between scenes: none has a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ContactEvidence {
     /// z: the least Mahalanobis distance between two pieces of surface, one of each body, from 6 down
@@ -34,6 +35,13 @@ pub struct ContactEvidence {
     /// ln(1 + s): how clearly one surface passes through the other at the place where it does so
     /// most, s being the sum of standard deviations of the crossings there, up to 6 each.
     pub crossing: f64,
+    /// n: over how many pieces of surface the bodies are about as near as where they are nearest, and yet
+    /// apart; of two clouds the fewer. A piece with up to 1.5 deviations more than the nearest counts, one with
+    /// 2.5 more not at all, each as surely as it is on one side of the other surface, 2Φ(z) − 1, and one inside
+    /// of a closed mesh against the others. It is large where faces lie along one another: the least of many distances is less, by chance,
+    /// than the distance of the surfaces. `None` where that changes nothing: surfaces that clearly cross, and
+    /// a search that was cut short.
+    pub extent: Option<f64>,
     /// ΣP (eq. 16): how many points of a contact patch are expected on the wrong side of the
     /// surface that separates it best, largest over the patches, and no fewer than a point is surely
     /// inside a closed mesh (2Φ(depth in deviations) − 1); `None` where geometry leaves no doubt, or the
@@ -62,6 +70,9 @@ pub struct Judge {
     /// At [`NOISE_KNOTS`], [`DEVIATION_KNOTS`] and [`CROSSING_KNOTS`]: rising with crossing, falling with
     /// deviations.
     pub by_geometry: [OverGeometry; NOISE_KNOTS.len()],
+    /// At [`NOISE_KNOTS`], [`ODDS_KNOTS`] and [`EXTENT_KNOTS`]: rising with the log odds by the place of
+    /// contact, and where fewer pieces are as near. The outermost rows have the log odds of their knots.
+    pub over_extent: [OverExtent; NOISE_KNOTS.len()],
     /// At [`DOUBT_KNOTS`] and [`MISCLASSIFIED_KNOTS`]: rising with both. The outermost rows have the
     /// log odds of their knots.
     pub revised: OverDoubt,
@@ -69,7 +80,11 @@ pub struct Judge {
 
 impl Default for Judge {
     fn default() -> Self {
-        Self { by_geometry: fitted::BY_GEOMETRY, revised: fitted::REVISED }
+        Self {
+            by_geometry: fitted::BY_GEOMETRY,
+            over_extent: fitted::OVER_EXTENT,
+            revised: fitted::REVISED,
+        }
     }
 }
 
@@ -81,26 +96,42 @@ impl Judge {
     /// more misclassified points must not make a collision less probable. Bounds rest on that.
     pub fn validate(&self) -> Result<(), SettingsError> {
         let geometry = self.by_geometry.as_flattened().as_flattened();
-        let mut all = geometry.iter().chain(self.revised.as_flattened());
+        let extent = self.over_extent.as_flattened().as_flattened();
+        let mut all = geometry.iter().chain(extent).chain(self.revised.as_flattened());
         if let Some(&value) = all.find(|value| !value.is_finite()) {
             return Err(SettingsError::NotFinite { name: "judge", value });
         }
         let rises = |row: &[f64]| row.is_sorted();
         let below = |(low, high): (&[f64], &[f64])| low.iter().zip(high).all(|(a, b)| a <= b);
+        let climbs = |rows: &[f64], width: usize| {
+            let rows: Vec<&[f64]> = rows.chunks(width).collect();
+            rows.windows(2).all(|pair| below((pair[0], pair[1])))
+        };
         let falls = |rows: &OverGeometry| rows.windows(2).all(|pair| below((&pair[1], &pair[0])));
         for (name, holds) in [
             ("crossing", self.by_geometry.as_flattened().iter().all(|row| rises(row))),
             ("deviations", self.by_geometry.iter().all(falls)),
+            ("extent", self.over_extent.as_flattened().iter().all(|row| rises(row))),
+            (
+                "contact",
+                self.over_extent.iter().all(|of| climbs(of.as_flattened(), EXTENT_KNOTS.len())),
+            ),
             ("misclassified", self.revised.iter().all(|row| rises(row))),
-            ("geometry", self.revised.windows(2).all(|pair| below((&pair[0], &pair[1])))),
+            ("geometry", climbs(self.revised.as_flattened(), MISCLASSIFIED_KNOTS.len())),
         ] {
             if !holds {
                 return Err(SettingsError::Slope { name });
             }
         }
-        for k in [0, DOUBT_KNOTS.len() - 1] {
-            if self.revised[k].iter().any(|&value| value != DOUBT_KNOTS[k]) {
-                return Err(SettingsError::Revision { at: DOUBT_KNOTS[k] });
+        let ends = |knots: usize| [0, knots - 1];
+        let revised = ends(DOUBT_KNOTS.len()).map(|k| (DOUBT_KNOTS[k], &self.revised[k][..]));
+        let of_extent = self
+            .over_extent
+            .iter()
+            .flat_map(|of| ends(ODDS_KNOTS.len()).map(|k| (ODDS_KNOTS[k], &of[k][..])));
+        for (at, row) in of_extent.chain(revised) {
+            if row.iter().any(|&value| value != at) {
+                return Err(SettingsError::Revision { at });
             }
         }
         Ok(())
@@ -110,6 +141,16 @@ impl Judge {
     pub fn without_classifier(mut self) -> Self {
         for (row, knot) in self.revised.iter_mut().zip(DOUBT_KNOTS) {
             row.fill(knot);
+        }
+        self
+    }
+
+    /// The same without the extent: how many pieces of surface are as near says nothing.
+    pub fn without_extent(mut self) -> Self {
+        for of_noise in &mut self.over_extent {
+            for (row, knot) in of_noise.iter_mut().zip(ODDS_KNOTS) {
+                row.fill(knot);
+            }
         }
         self
     }
@@ -125,13 +166,21 @@ impl Judge {
 
     /// Log odds given the geometry alone.
     pub fn log_odds_by_geometry(&self, evidence: &ContactEvidence) -> f64 {
+        let ContactEvidence { extent, noise_over_spacing, .. } = *evidence;
+        let of_pair = self.for_noise(noise_over_spacing);
+        of_pair.with_extent(self.log_odds_by_place(evidence), extent)
+    }
+
+    /// Log odds given what geometry says of the place of contact.
+    pub fn log_odds_by_place(&self, evidence: &ContactEvidence) -> f64 {
         let ContactEvidence { deviations, crossing, noise_over_spacing, .. } = *evidence;
-        self.for_noise(noise_over_spacing).log_odds_by_geometry(deviations, crossing)
+        self.for_noise(noise_over_spacing).log_odds_by_place(deviations, crossing)
     }
 
     /// The judge for bodies of such a noise over spacing.
     pub(crate) fn for_noise(&self, noise_over_spacing: f64) -> JudgeOfPair {
-        JudgeOfPair::new(&self.by_geometry, &self.revised, noise_over_spacing)
+        let Self { by_geometry, over_extent, revised } = self;
+        JudgeOfPair::new(by_geometry, over_extent, revised, noise_over_spacing)
     }
 }
 
@@ -158,6 +207,15 @@ mod tests {
         let mut jumps = good;
         jumps.revised[0][8] = -2.0;
         assert_eq!(jumps.validate(), Err(SettingsError::Revision { at: -2.2 }));
+        let mut climbs = good;
+        climbs.over_extent[1][3][5] = climbs.over_extent[1][3][6] + 1.0;
+        assert_eq!(climbs.validate(), Err(SettingsError::Slope { name: "extent" }));
+        let mut falls = good;
+        falls.over_extent[1][4].fill(-5.0);
+        assert_eq!(falls.validate(), Err(SettingsError::Slope { name: "contact" }));
+        let mut ends = good;
+        ends.over_extent[2][0][0] = -6.0;
+        assert_eq!(ends.validate(), Err(SettingsError::Revision { at: -5.0 }));
         let mut unknown = good;
         unknown.revised[2][2] = f64::NAN;
         assert!(unknown.validate().is_err());

@@ -2,8 +2,8 @@
 
 use super::grid::{Grid, between_knots};
 use super::knots::{
-    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, MISCLASSIFIED_FLOOR, MISCLASSIFIED_KNOTS,
-    NOISE_KNOTS, OverDoubt, OverGeometry,
+    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, MISCLASSIFIED_FLOOR,
+    MISCLASSIFIED_KNOTS, NOISE_KNOTS, ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
 };
 
 /// Noise over spacing, of both bodies together, up to which the classifier is believed in full.
@@ -15,6 +15,7 @@ const BLURRED: f64 = 1.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct JudgeOfPair {
     by_geometry: OverGeometry,
+    over_extent: OverExtent,
     /// As far as the classifier is believed of these bodies.
     revised: OverDoubt,
 }
@@ -23,15 +24,13 @@ impl JudgeOfPair {
     /// Linear between the knots, as at the border beyond them.
     pub(super) fn new(
         over_geometry: &[OverGeometry; NOISE_KNOTS.len()],
+        over_extent: &[OverExtent; NOISE_KNOTS.len()],
         over_doubt: &OverDoubt,
         noise_over_spacing: f64,
     ) -> Self {
         let (knot, part) = between_knots(&NOISE_KNOTS, noise_over_spacing);
-        let mut by_geometry = over_geometry[knot];
-        let above = over_geometry[knot + 1].as_flattened();
-        for (value, above) in by_geometry.as_flattened_mut().iter_mut().zip(above) {
-            *value = (1.0 - part) * *value + part * above;
-        }
+        let by_geometry = between([&over_geometry[knot], &over_geometry[knot + 1]], part);
+        let over_extent = between([&over_extent[knot], &over_extent[knot + 1]], part);
         let believed = believed(noise_over_spacing);
         let mut revised = *over_doubt;
         for (row, knot) in revised.iter_mut().zip(DOUBT_KNOTS) {
@@ -39,7 +38,7 @@ impl JudgeOfPair {
                 *value = believed * *value + (1.0 - believed) * knot;
             }
         }
-        Self { by_geometry, revised }
+        Self { by_geometry, over_extent, revised }
     }
 
     /// Whether a classifier can change log odds by geometry.
@@ -47,14 +46,57 @@ impl JudgeOfPair {
         self.revise(by_geometry, 0.0) < self.revise(by_geometry, f64::INFINITY)
     }
 
-    /// Log odds given the geometry alone.
-    pub(crate) fn log_odds_by_geometry(&self, deviations: f64, crossing: f64) -> f64 {
+    /// Log odds given what geometry says of the place of contact.
+    pub(crate) fn log_odds_by_place(&self, deviations: f64, crossing: f64) -> f64 {
         self.geometry().at(deviations, crossing)
     }
 
-    /// What log odds by geometry change by with the deviations and with the crossing.
-    pub(crate) fn slopes_by_geometry(&self, deviations: f64, crossing: f64) -> [f64; 2] {
+    /// What these change by with the deviations and with the crossing.
+    pub(crate) fn slopes_by_place(&self, deviations: f64, crossing: f64) -> [f64; 2] {
         self.geometry().slopes(deviations, crossing)
+    }
+
+    /// Log odds given the geometry alone: by the place of contact, and over how many pieces of surface
+    /// the bodies are about as near.
+    pub(crate) fn with_extent(&self, by_place: f64, extent: Option<f64>) -> f64 {
+        match extent {
+            Some(extent) if Self::is_open_to_extent(by_place) => {
+                self.extent().at(by_place, -extent.ln_1p())
+            }
+            _ => by_place,
+        }
+    }
+
+    /// Between what these are, whatever the extent.
+    pub(crate) fn with_any_extent(&self, by_place: f64) -> [f64; 2] {
+        [f64::INFINITY, 0.0].map(|extent| self.with_extent(by_place, Some(extent)))
+    }
+
+    /// What log odds by geometry change by with those by the place of contact and with the extent.
+    pub(crate) fn slopes_with_extent(&self, by_place: f64, extent: Option<f64>) -> [f64; 2] {
+        match extent {
+            Some(extent) if Self::is_open_to_extent(by_place) => {
+                let [by_place, by_column] = self.extent().slopes(by_place, -extent.ln_1p());
+                [by_place, -by_column / (1.0 + extent)]
+            }
+            _ => [1.0, 0.0],
+        }
+    }
+
+    /// Whether the extent has a say at such log odds by the place of contact, or at lower ones.
+    pub(crate) fn may_change_with_extent(&self, by_place: f64) -> bool {
+        let [.., most] = ODDS_KNOTS;
+        by_place < most
+    }
+
+    /// Whether the extent may change log odds by the place of contact.
+    fn is_open_to_extent(by_place: f64) -> bool {
+        let [least, .., most] = ODDS_KNOTS;
+        least < by_place && by_place < most
+    }
+
+    fn extent(&self) -> Grid<'_, { ODDS_KNOTS.len() }, { EXTENT_KNOTS.len() }> {
+        Grid { rows: &ODDS_KNOTS, columns: &EXTENT_KNOTS, values: &self.over_extent }
     }
 
     fn geometry(&self) -> Grid<'_, { DEVIATION_KNOTS.len() }, { CROSSING_KNOTS.len() }> {
@@ -86,6 +128,18 @@ impl JudgeOfPair {
     fn revision(&self) -> Grid<'_, { DOUBT_KNOTS.len() }, { MISCLASSIFIED_KNOTS.len() }> {
         Grid { rows: &DOUBT_KNOTS, columns: &MISCLASSIFIED_KNOTS, values: &self.revised }
     }
+}
+
+/// Two tables, weighed by how far from the first to the second.
+fn between<const N: usize, const M: usize>(
+    [low, high]: [&[[f64; M]; N]; 2],
+    part: f64,
+) -> [[f64; M]; N] {
+    let mut table = *low;
+    for (value, above) in table.as_flattened_mut().iter_mut().zip(high.as_flattened()) {
+        *value = (1.0 - part) * *value + part * above;
+    }
+    table
 }
 
 /// How far the classifier is believed: where the noise is small beside the spacing.
@@ -141,9 +195,9 @@ mod tests {
     #[test]
     fn nothing_found_is_improbable_and_everything_is_not() {
         for judge in NOISE_KNOTS.map(judge) {
-            assert!(probability(judge.log_odds_by_geometry(MOST_DEVIATIONS, 0.0), 0.5) < 0.005);
-            assert!(probability(judge.log_odds_by_geometry(0.0, 6.0), 0.5) > 0.99);
-            assert!(probability(judge.log_odds_by_geometry(-MOST_DEVIATIONS, 0.0), 0.5) > 0.99);
+            assert!(probability(judge.log_odds_by_place(MOST_DEVIATIONS, 0.0), 0.5) < 0.005);
+            assert!(probability(judge.log_odds_by_place(0.0, 6.0), 0.5) > 0.99);
+            assert!(probability(judge.log_odds_by_place(-MOST_DEVIATIONS, 0.0), 0.5) > 0.99);
         }
     }
 
@@ -160,11 +214,19 @@ mod tests {
         #[test]
         fn more_evidence_never_makes_a_collision_less_probable(
             noise in 0.0..3.0_f64, z in -7.0..7.0_f64, c in 0.0..6.0_f64, m in 0.0..40.0_f64,
-            step in (0.0..1.0_f64, 0.0..1.0_f64, 0.0..5.0_f64),
+            n in 0.0..500.0_f64,
+            step in (0.0..1.0_f64, 0.0..1.0_f64, 0.0..5.0_f64, 0.0..1.0_f64),
         ) {
             let judge = judge(noise);
-            let of = |z, c, m| judge.revise(judge.log_odds_by_geometry(z, c), m);
-            prop_assert!(of(z - step.0, c + step.1, m + step.2) >= of(z, c, m) - 1e-12);
+            let of = |z, c, n, m| {
+                let by_place = judge.log_odds_by_place(z, c);
+                let by_geometry = judge.with_extent(by_place, Some(n));
+                let [least, most] = judge.with_any_extent(by_place);
+                assert!(least <= by_geometry && by_geometry <= most);
+                judge.revise(by_geometry, m)
+            };
+            let more = of(z - step.0, c + step.1, n * step.3, m + step.2);
+            prop_assert!(more >= of(z, c, n, m) - 1e-12);
         }
 
         #[test]
@@ -173,9 +235,9 @@ mod tests {
         ) {
             const STEP: f64 = 1e-7;
             let judge = judge(noise);
-            let geometry = |z, c| judge.log_odds_by_geometry(z, c);
+            let geometry = |z, c| judge.log_odds_by_place(z, c);
             let by_geometry = geometry(z, c);
-            let [by_z, by_c] = judge.slopes_by_geometry(z, c);
+            let [by_z, by_c] = judge.slopes_by_place(z, c);
             let [by_odds, by_m] = judge.slopes_of_revision(by_geometry, m);
             // A step over a knot has two slopes, of which either is right.
             let is_of = |slope: f64, above: f64, below: f64, here: f64| {
@@ -183,6 +245,13 @@ mod tests {
                 (slope - above).abs().min((slope - below).abs()) < 1e-4 * (1.0 + slope.abs())
             };
             let revised = |odds, m| judge.revise(odds, m);
+            let with_extent = |odds, n| judge.with_extent(odds, Some(n));
+            let [by_place, by_n] = judge.slopes_with_extent(by_geometry, Some(m));
+            let here = with_extent(by_geometry, m);
+            let odds = [by_geometry + STEP, by_geometry - STEP].map(|odds| with_extent(odds, m));
+            prop_assert!(is_of(by_place, odds[0], odds[1], here));
+            let extents = [m + STEP, m - STEP].map(|n| with_extent(by_geometry, n));
+            prop_assert!(is_of(by_n, extents[0], extents[1], here));
             prop_assert!(is_of(by_z, geometry(z + STEP, c), geometry(z - STEP, c), by_geometry));
             prop_assert!(is_of(by_c, geometry(z, c + STEP), geometry(z, c - STEP), by_geometry));
             let here = revised(by_geometry, m);
@@ -197,12 +266,12 @@ mod tests {
             noise in 0.0..3.0_f64, z in -7.0..7.0_f64, c in 0.0..6.0_f64, m in 0.0..40.0_f64,
         ) {
             let judge = judge(noise);
-            let of = |z, c, m| judge.revise(judge.log_odds_by_geometry(z, c), m);
+            let of = |z, c, m| judge.revise(judge.log_odds_by_place(z, c), m);
             for near in [of(z + 1e-6, c, m), of(z, c + 1e-6, m), of(z, c, m + 1e-6)] {
                 prop_assert!((near - of(z, c, m)).abs() < 1e-3);
             }
             let noisier = self::judge(noise + 1e-6);
-            let near = noisier.revise(noisier.log_odds_by_geometry(z, c), m);
+            let near = noisier.revise(noisier.log_odds_by_place(z, c), m);
             prop_assert!((near - of(z, c, m)).abs() < 1e-3);
         }
     }

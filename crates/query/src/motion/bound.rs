@@ -70,10 +70,11 @@ impl Drifting<'_> {
     }
 }
 
-/// The probability where there are no fewer deviations and crossings are no clearer, whatever a
-/// classifier says.
+/// The probability where there are no fewer deviations and crossings are no clearer, whatever the
+/// extent is and a classifier says.
 fn at_most(judge: &JudgeOfPair, prior: f64, deviations: f64, clearness: f64) -> f64 {
-    let by_geometry = judge.log_odds_by_geometry(deviations, clearness.ln_1p());
+    let by_place = judge.log_odds_by_place(deviations, clearness.ln_1p());
+    let [_, by_geometry] = judge.with_any_extent(by_place);
     let revised = judge.revise(by_geometry, f64::INFINITY).max(by_geometry);
     probability(revised + ROUNDING, prior)
 }

@@ -60,6 +60,14 @@ impl Weighed<'_> {
         let of = |log_odds| probability(log_odds, settings.prior);
         let revised = |count| of(task.judge.revise(*by_geometry, count));
         let [low, high] = misclassified.bounds.map(revised);
+        // What was not looked at may be about as near as what was.
+        let low = match self.is_complete {
+            true => low,
+            false => {
+                let [least, _] = task.judge.with_any_extent(self.by_place);
+                low.min(of(task.judge.revise(least, misclassified.bounds[0])))
+            }
+        };
         let log_odds = self.log_odds(task);
         let probability = of(log_odds);
         // More evidence only raises the odds; what was not looked at may be any. Where the classifier can

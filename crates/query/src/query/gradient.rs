@@ -130,8 +130,14 @@ impl Weighed<'_> {
         );
         // The crossing is ln(1 + s).
         let of_crossing = self.found.crossings.clearness_by_pose() * (-crossing).exp();
-        let [by_deviations, by_crossing] = judge.slopes_by_geometry(deviations, crossing);
-        let of_geometry = of_deviations * by_deviations + of_crossing * by_crossing;
+        let [by_deviations, by_crossing] = judge.slopes_by_place(deviations, crossing);
+        let of_place = of_deviations * by_deviations + of_crossing * by_crossing;
+        let [by_place, by_extent] =
+            judge.slopes_with_extent(self.by_place, self.of_geometry.extent);
+        let mut of_geometry = of_place * by_place;
+        if by_extent != 0.0 {
+            of_geometry += self.found.extent_by_pose((a, b), a_from_b) * by_extent;
+        }
         let [by_geometry, by_count] = self.misclassified.slopes(judge, self.by_geometry);
         let mut all = of_geometry * by_geometry;
         if by_count != 0.0 {

@@ -13,6 +13,10 @@ use crate::search::{Finding, Found};
 
 /// More patches than this add little: the first is the least apart.
 const MOST_PATCHES: usize = 3;
+/// No patch is about a place with so many deviations more than the least ...
+const FURTHER_DEVIATIONS: f64 = 1.5;
+/// ... nor, but for the least, about one with so many.
+const CLEARLY_FREE: f64 = 3.5;
 /// Points of one cloud in a patch, at most.
 const MOST_POINTS: usize = 20;
 /// What these are chosen from: the points nearest as measured.
@@ -62,7 +66,7 @@ fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), found: &Found<'_>) -> Vec<Seed> {
         BodyRef::Cloud(cloud) => cloud.sensor_std(piece),
         BodyRef::Mesh(_) => 0.0,
     };
-    let most = found.deviations_of_interest();
+    let most = found.deviations.max((found.deviations + FURTHER_DEVIATIONS).min(CLEARLY_FREE));
     let mut findings: Vec<&Finding> =
         found.findings.iter().filter(|f| f.meeting.deviations <= most).collect();
     let key = |f: &Finding| f.meeting.deviations;

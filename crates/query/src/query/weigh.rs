@@ -21,7 +21,8 @@ pub(super) struct Weighed<'a> {
     pub looked: Looked,
     /// Without what the classifier says.
     pub of_geometry: ContactEvidence,
-    /// Log odds by that alone.
+    /// Log odds by the place of contact, and by all of that.
+    pub by_place: f64,
     pub by_geometry: f64,
     pub misclassified: Misclassified,
     /// Whether what was left out can change nothing.
@@ -38,10 +39,12 @@ pub(super) fn weigh<'a>(
     let (settings, judge) = (task.settings, &task.judge);
     let of = |log_odds| probability(log_odds, settings.prior);
     let decides = |deviations: f64, clearness: f64| {
-        let log_odds = judge.log_odds_by_geometry(deviations, clearness.ln_1p());
-        // More evidence only raises the odds; what a classifier could take off them is taken off.
-        let is_decided = || of(judge.revise(log_odds, 0.0)) > settings.accept;
-        of(log_odds) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
+        let log_odds = judge.log_odds_by_place(deviations, clearness.ln_1p());
+        // More evidence only raises the odds; what the extent and a classifier could take off them is taken
+        // off.
+        let [least, _] = judge.with_any_extent(log_odds);
+        let is_decided = || of(judge.revise(least, 0.0)) > settings.accept;
+        of(least) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
     };
     let looked = look_inside((a, b), a_from_b, &task.clock, |deviations| decides(deviations, 0.0));
     stats.nodes_visited += looked.nodes_visited;
@@ -60,14 +63,19 @@ pub(super) fn weigh<'a>(
     let found = search((a, b), a_from_b, is_enough, stats)?;
     let deviations = looked.deviations_given(found.deviations);
     let crossing = found.crossings.clearness().ln_1p();
-    let of_geometry = ContactEvidence {
+    let mut of_geometry = ContactEvidence {
         deviations,
         crossing,
+        extent: None,
         misclassified: None,
         noise_over_spacing: task.noise_over_spacing,
     };
-    let by_geometry = judge.log_odds_by_geometry(deviations, crossing);
+    let by_place = judge.log_odds_by_place(deviations, crossing);
     let is_complete = found.is_complete && !looked.is_cut_short;
+    if is_complete && judge.may_change_with_extent(by_place) {
+        of_geometry.extent = Some(found.extent((a, b), a_from_b));
+    }
+    let by_geometry = judge.with_extent(by_place, of_geometry.extent);
 
     // Whatever a classifier says, the verdict is the same.
     let is_settled = || {
@@ -82,5 +90,5 @@ pub(super) fn weigh<'a>(
     } else {
         Misclassified::NOT_ASKED
     };
-    Ok(Weighed { found, looked, of_geometry, by_geometry, misclassified, is_complete })
+    Ok(Weighed { found, looked, of_geometry, by_place, by_geometry, misclassified, is_complete })
 }

@@ -95,7 +95,7 @@ impl Query {
                 if is_within { (1.0, -MOST_DEVIATIONS) } else { (0.0, MOST_DEVIATIONS) };
             return Ok(at_least(least, high, deviations));
         };
-        let ContactEvidence { deviations, crossing, noise_over_spacing, .. } = evidence;
+        let ContactEvidence { deviations, crossing, extent, noise_over_spacing, .. } = evidence;
         if margin == 0.0 {
             return Ok(at_least(0.0, high, deviations));
         }
@@ -104,7 +104,7 @@ impl Query {
         let spacing = a.shape().spacing().max(b.shape().spacing());
         let of = |beyond: f64| {
             let beyond = beyond.min(deviations);
-            let collision = judge.log_odds_by_geometry(beyond, crossing);
+            let collision = judge.with_extent(judge.log_odds_by_place(beyond, crossing), extent);
             let log_odds = log_odds_within(beyond, margin, spacing, collision);
             probability(log_odds, settings.prior)
         };

@@ -30,8 +30,8 @@ use crate::range::bad_entry;
 /// let mut scene = Scene::default();
 /// scene.add("table", Arc::clone(&plate), at(0.0))?;
 /// scene.add("tray", Arc::clone(&plate), at(0.3))?;
-/// scene.add("plate", plate, at(0.301))?;
-/// scene.attach("plate", "tray", at(0.001))?;
+/// scene.add("plate", plate, at(0.3))?;
+/// scene.attach("plate", "tray", at(0.0))?;
 /// scene.allow("plate", "tray")?;
 ///
 /// let query = Query::new(QuerySettings::default())?;

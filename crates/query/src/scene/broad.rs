@@ -33,8 +33,11 @@ impl BroadPhase {
     pub(super) fn new(query: &Query) -> Self {
         let settings = query.settings();
         // Whatever the noise of a pair: between the knots log odds are between theirs.
-        let of_nothing =
-            |noise| settings.judge.for_noise(noise).log_odds_by_geometry(MOST_DEVIATIONS, 0.0);
+        let of_nothing = |noise| {
+            let judge = settings.judge.for_noise(noise);
+            let [_, most] = judge.with_any_extent(judge.log_odds_by_place(MOST_DEVIATIONS, 0.0));
+            most
+        };
         let by_geometry = NOISE_KNOTS.into_iter().map(of_nothing).fold(f64::NEG_INFINITY, f64::max);
         // Of a pair that is open the classifier could say the most, where it is believed in full.
         let revised = settings.judge.for_noise(0.0).revise(by_geometry, f64::INFINITY);

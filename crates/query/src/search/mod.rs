@@ -8,6 +8,7 @@ mod around;
 mod beyond;
 mod crossing;
 mod crossings;
+mod extent;
 mod facet;
 mod gather;
 mod inside;

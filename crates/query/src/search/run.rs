@@ -22,9 +22,9 @@ use super::nearest::{Nearest, nearest_pieces};
 use super::wrench::Wrench;
 
 /// Places that are more than this many deviations above the least are not looked at ...
-const FURTHER_DEVIATIONS: f64 = 1.5;
+pub(super) const FURTHER_DEVIATIONS: f64 = 2.5;
 /// ... nor those beyond this, which have no contact that is reported.
-const CLEARLY_FREE: f64 = 3.5;
+const CLEARLY_FREE: f64 = 4.5;
 
 /// Where the pieces of two leaves are least apart.
 #[derive(Debug, Clone, Copy)]
@@ -87,6 +87,11 @@ impl<'a> Found<'a> {
     /// least counts.
     pub(crate) fn deviations_of_interest(&self) -> f64 {
         self.deviations.max((self.deviations + FURTHER_DEVIATIONS).min(CLEARLY_FREE))
+    }
+
+    /// How far beyond the least deviations is looked.
+    pub(super) fn window(&self) -> f64 {
+        self.deviations_of_interest() - self.deviations
     }
 
     /// What the least deviations change by as the pose does: those of the two pieces that have them.

@@ -1,4 +1,4 @@
-//! Paths of bodies that do not turn at random: hands ahead, upright robots.
+//! Paths of bodies that do not turn at random: hands ahead, upright robots, things set down flat.
 
 use cloudtouch_geom::Vector3;
 use nalgebra::UnitQuaternion;
@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use super::{ends::Ends, pair::Pair};
 use crate::{
     poses::Approach,
-    random::{between, direction, direction_near, small_rotation},
+    random::{between, direction, direction_near, small_rotation, within},
 };
 
 /// A body whose z axis goes ahead, as a gripper's does.
@@ -78,6 +78,29 @@ impl Upright {
             path.z = 0.0;
         }
         let direction = path.try_normalize(0.05)?;
+        pair.straight(Approach { rotation, start, direction, contact: 0.0 })
+    }
+}
+
+/// Upright but for a little, straight down or straight to a side.
+pub(super) struct Flat {
+    pub(super) ends: Ends,
+}
+
+impl Flat {
+    /// Half of them lean by up to a degree, others by up to six; `None` when it would start in contact.
+    pub(super) fn approach(&self, pair: Pair, rng: &mut ChaCha8Rng) -> Option<Approach> {
+        let lean = if rng.random() { 0.02 } else { 0.1 };
+        let quarter = std::f64::consts::FRAC_PI_2 * f64::from(rng.random_range(0..4_u8));
+        let about = Vector3::z() * (quarter + within(0.3 * f64::from(rng.random::<bool>()), rng));
+        let rotation = small_rotation(lean, rng) * UnitQuaternion::from_scaled_axis(about);
+        let direction = match rng.random_range(0..4) {
+            0 => Vector3::y(),
+            1 => Vector3::x() * if rng.random() { 1.0 } else { -1.0 },
+            _ => -Vector3::z(),
+        };
+        let [target, grip] = self.ends.draw(rng);
+        let start = target - rotation * grip - direction * between(0.2, 0.6, rng);
         pair.straight(Approach { rotation, start, direction, contact: 0.0 })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     bin, desk, doorway, furniture, interlocked, kitchen, living_room, piano_room, primitives,
-    scene::FamilyScene, staircase, tabletop, workbench,
+    scene::FamilyScene, setting_down, staircase, tabletop, workbench,
 };
 
 /// A kind of contact between two bodies.
@@ -44,6 +44,9 @@ pub enum Family {
     Doorway,
     /// A staircase with rail and wall at 60 to 80 % of full size; a carried box or a wheelchair.
     Staircase,
+    /// Cartons, boards, trays and round things set down flat on a table, a shelf or the floor, or put
+    /// against a wall: faces along one another.
+    SettingDown,
 }
 
 /// What a family is for.
@@ -76,6 +79,7 @@ impl Family {
         Self::BoxesInBin,
         Self::Doorway,
         Self::Staircase,
+        Self::SettingDown,
     ];
 
     /// Its name in tables: lower case, words joined by hyphens.
@@ -97,6 +101,7 @@ impl Family {
             Self::BoxesInBin => "boxes-in-bin",
             Self::Doorway => "doorway",
             Self::Staircase => "staircase",
+            Self::SettingDown => "setting-down",
         }
     }
 
@@ -118,7 +123,8 @@ impl Family {
             | Self::Workbench
             | Self::BoxesInBin
             | Self::Doorway
-            | Self::Staircase => Kind::Ordinary,
+            | Self::Staircase
+            | Self::SettingDown => Kind::Ordinary,
         }
     }
 
@@ -141,6 +147,7 @@ impl Family {
             Self::BoxesInBin => bin::scene(seed),
             Self::Doorway => doorway::scene(seed),
             Self::Staircase => staircase::scene(seed),
+            Self::SettingDown => setting_down::scene(seed),
         }
     }
 }

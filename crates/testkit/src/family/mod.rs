@@ -30,6 +30,7 @@ mod real;
 mod scene;
 mod seeing;
 mod seen;
+mod setting_down;
 mod staircase;
 mod tabletop;
 mod tools;

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use super::{
     ends::Ends,
     grasp::Grasp,
-    guided::{Reach, Upright},
+    guided::{Flat, Reach, Upright},
     pair::Pair,
     seeing::Seen,
     wanted::Wanted,
@@ -35,6 +35,8 @@ pub(super) enum Motion {
     Reach { reach: Reach, deepest: f64 },
     /// Upright, as a robot drives or a box is carried.
     Upright(Upright),
+    /// Set down, or put against something.
+    Flat(Flat),
 }
 
 impl Motion {
@@ -46,6 +48,7 @@ impl Motion {
             | Self::InHole { .. }
             | Self::Linked { .. }
             | Self::Upright { .. } => 0.2,
+            Self::Flat(_) => 0.1,
             Self::Grasp(_) => 0.06,
         }
     }
@@ -81,6 +84,7 @@ impl Motion {
             Self::Grasp(grasp) => grasp.approach(pair, seen, rng),
             Self::Reach { reach, .. } => reach.approach(pair, rng),
             Self::Upright(upright) => upright.approach(pair, rng),
+            Self::Flat(flat) => flat.approach(pair, rng),
         }
     }
 }
