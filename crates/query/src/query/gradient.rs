@@ -39,7 +39,8 @@ impl Query {
     /// follows.
     ///
     /// The evidence is that of single places (the two pieces with the least deviations, the crossings at one
-    /// place, the deepest point), and where another takes over the gradient is that of either. Crossings that
+    /// place, the deepest point), and where another takes over the gradient is that of either; of the extent it
+    /// is that of all pieces that count in part. Crossings that
     /// come into reach of a place or leave it change the evidence in a step, which no gradient tells; so do
     /// the points of a classifier's patch. It is analytic but for the classifier, which is asked only in
     /// doubt: its patch is separated twelve times more, a little aside. The search does not stop early, so that
