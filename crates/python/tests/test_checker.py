@@ -112,6 +112,6 @@ def test_a_batch_keeps_going_where_that_is_asked(floor, plate):
     with pytest.raises(ct.CloudtouchError, match=r"poses\[1\]"):
         ct.Query().run_batch(floor, plate, poses)
     batch = ct.Query().run_batch(floor, plate, poses, errors="keep")
-    assert batch.verdict.tolist() == ["free", "error", "in_collision"] and batch.error[1].startswith("poses[1]: ")
+    assert batch.verdict.tolist() == ["free", "error", "uncertain"] and batch.error[1].startswith("poses[1]: ")
     with pytest.raises(ValueError, match="errors is 'ignore'"):
         ct.Query().run_batch(floor, plate, poses, errors="ignore")
