@@ -29,15 +29,15 @@ fn mean(judge: Judge, gap: f64) -> [f64; 2] {
         for (sum, body) in sums.iter_mut().zip(bodies) {
             let report: Report = query.run(&table, body, &pose).expect("a good pose");
             assert_sound(&report);
-            // What is pressed in by twice the noise is never free.
-            assert!(gap > -0.01 || report.verdict != Verdict::Free, "{gap}: {report:?}");
+            // What is pressed in by the noise is never free.
+            assert!(gap > -STD || report.verdict != Verdict::Free, "{gap}: {report:?}");
             *sum += report.collision_probability / DRAWS as f64;
         }
     }
     sums
 }
 
-/// .60 and .39 at 8 mm of gap, .79 and .66 at 5 mm, told by the place alone.
+/// By the place alone .60 and .39.
 #[test]
 fn a_box_flat_over_a_table_read_as_touching() {
     let [by_scan, by_mesh] = mean(Judge::default(), 0.008);

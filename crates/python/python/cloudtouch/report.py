@@ -33,8 +33,9 @@ class Evidence(NamedTuple):
     """Least Mahalanobis distance between two pieces of surface, from 6 down to -6, deep inside of a mesh."""
     crossing: float
     """How clearly one surface passes through the other: ln(1 + s), s a sum of standard deviations."""
-    extent: float
-    """Over how many pieces of surface the bodies are about as near as where they are nearest."""
+    extent: Optional[float]
+    """Over how many pieces of surface the bodies are about as near as where they are nearest; ``None`` where that
+    changes nothing."""
     misclassified: Optional[float]
     """Points expected on the wrong side of the best separating surface; ``None`` where there was no doubt."""
     noise_over_spacing: float

@@ -2,7 +2,8 @@
 //!
 //! Surfaces of log odds, fitted on generated scenes whose truth is known (`cargo xtask calibrate`): one
 //! over what geometry says of the place of contact, for every noise, one by which its extent changes that,
-//! and one by which the classifier revises it where doubt is left. All are continuous, and monotone in what is evidence.
+//! and one by which the classifier revises it where doubt is left. All are continuous, and monotone in what
+//! is evidence.
 
 // Made by a command, a row a line.
 #[rustfmt::skip]

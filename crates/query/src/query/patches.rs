@@ -66,7 +66,7 @@ fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), found: &Found<'_>) -> Vec<Seed> {
         BodyRef::Cloud(cloud) => cloud.sensor_std(piece),
         BodyRef::Mesh(_) => 0.0,
     };
-    let most = found.deviations.max((found.deviations + FURTHER_DEVIATIONS).min(CLEARLY_FREE));
+    let most = found.deviations_up_to(FURTHER_DEVIATIONS, CLEARLY_FREE);
     let mut findings: Vec<&Finding> =
         found.findings.iter().filter(|f| f.meeting.deviations <= most).collect();
     let key = |f: &Finding| f.meeting.deviations;

@@ -86,7 +86,12 @@ impl<'a> Found<'a> {
     /// Places with more deviations than this change nothing: where all are as good as free, only the
     /// least counts.
     pub(crate) fn deviations_of_interest(&self) -> f64 {
-        self.deviations.max((self.deviations + FURTHER_DEVIATIONS).min(CLEARLY_FREE))
+        self.deviations_up_to(FURTHER_DEVIATIONS, CLEARLY_FREE)
+    }
+
+    /// So many more than the least, but no more than `most` where the least are not.
+    pub(crate) fn deviations_up_to(&self, further: f64, most: f64) -> f64 {
+        self.deviations.max((self.deviations + further).min(most))
     }
 
     /// How far beyond the least deviations is looked.
