@@ -9,6 +9,9 @@ use anyhow::{Context, Result, ensure};
 /// others are built once more.
 pub(crate) const RECORDINGS: &str =
     "--features cloudtouch-io/mcap,cloudtouch-cli/mcap,cloudtouch-fuzzing/mcap";
+/// An example that is named beside what is wanted, for then crates get the features that tests build them
+/// with, and are those that the tests use.
+pub(crate) const AS_TESTED: &str = "--example instructions";
 
 /// The cargo that runs this task, in the project's folder.
 pub(crate) fn cargo(root: &Path, arguments: &str) -> Command {

@@ -6,11 +6,16 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use cloudtouch_evaluation::sweep;
 
-use crate::cargo::{RECORDINGS, cargo, example, succeed};
+use crate::cargo::{AS_TESTED, RECORDINGS, cargo, example, succeed};
 use crate::{fixtures, python, tidy};
 
 /// Runs every step; tests come last, those in Python after those in Rust, whose build they use.
 pub(crate) fn run(root: &Path) -> Result<()> {
+    let with = |name: &str, arguments: &str, (variable, value): (&str, &str)| {
+        step(name, &format!("{variable}='{value}' cargo {arguments}"), || {
+            succeed(cargo(root, arguments).env(variable, value))
+        })
+    };
     let run = |name: &str, arguments: &str| {
         step(name, &format!("cargo {arguments}"), || succeed(&mut cargo(root, arguments)))
     };
@@ -23,18 +28,15 @@ pub(crate) fn run(root: &Path) -> Result<()> {
         &format!("clippy --locked --workspace --all-targets {RECORDINGS} -- -D warnings"),
     )?;
     // The tool is left out: its binary and the library it wraps would share one page.
-    let doc = "doc --locked --workspace --exclude cloudtouch-cli --no-deps";
-    step("doc", &format!("RUSTDOCFLAGS='-D warnings' cargo {doc}"), || {
-        succeed(cargo(root, doc).env("RUSTDOCFLAGS", "-D warnings"))
-    })?;
+    let doc = "doc --locked --workspace --exclude cloudtouch-cli --no-deps --lib";
+    let doc = format!("{doc} {AS_TESTED} {RECORDINGS}");
+    with("doc", &doc, ("RUSTDOCFLAGS", "-D warnings"))?;
     let unpublished = tidy::unpublished(root)?;
     let exclude: String = unpublished.iter().map(|name| format!(" --exclude {name}")).collect();
     run("package", &format!("package --locked --workspace{exclude} --allow-dirty --no-verify"))?;
     step("sweep", "cargo xtask sweep --short", sweep::check)?;
     let test = format!("test --locked --workspace {RECORDINGS} --no-fail-fast");
-    step("test", &format!("PROPTEST_RNG_SEED={PROPERTY_SEED} cargo {test}"), || {
-        succeed(cargo(root, &test).env("PROPTEST_RNG_SEED", PROPERTY_SEED))
-    })?;
+    with("test", &test, ("PROPTEST_RNG_SEED", PROPERTY_SEED))?;
     // Tests build the examples too, and run none of them.
     let instructions = "run --locked --package cloudtouch-benches --example instructions";
     step("instructions", &format!("cargo {instructions}"), || {

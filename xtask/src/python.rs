@@ -6,7 +6,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result};
 
-use crate::cargo::{RECORDINGS, cargo, succeed};
+use crate::cargo::{AS_TESTED, RECORDINGS, cargo, succeed};
 
 /// Says why this Python is of no use, and nothing where it is.
 const LOOK: &str = "\
@@ -52,7 +52,8 @@ pub(crate) fn run(root: &Path) -> Result<()> {
     install("--no-build-isolation .[test]")?;
     succeed(python().args(["-m", "mypy"]))?;
     // The tool is what answers are compared with, in the build that the tests of all crates left.
-    let tool = format!("build --quiet --locked --workspace --bin cloudtouch {RECORDINGS}");
+    let tool =
+        format!("build --quiet --locked --workspace --bin cloudtouch {AS_TESTED} {RECORDINGS}");
     succeed(&mut cargo(root, &tool))?;
     let tool = target.join("debug").join(format!("cloudtouch{EXE_SUFFIX}"));
     succeed(python().args(["-m", "pytest", "--quiet"]).env("CLOUDTOUCH_TOOL", tool))

@@ -31,7 +31,7 @@ const POINTS: usize = 10_000;
 const TEXT: &str = "The normal of the likeliest contact beside the way the exact surfaces are apart, or the \
 shortest translation found to free them; ordinary families, 10,000 points, poses with a contact. *Angle*: \
 median between the two. *Freed*: the object is out of the exact overlap after moving along the normal by \
-the length of that translation, a fourth more and 5 mm; *backward*: after moving as far against it.";
+the length of that translation, a fourth more and 5 mm.";
 
 /// What is told of a contact.
 struct Told {
@@ -39,8 +39,8 @@ struct Told {
     std: f64,
     signed_distance: f64,
     angle: f64,
-    /// Whether the object is free after moving along the normal, and against it.
-    freed: [bool; 2],
+    /// Whether the object is free after moving along the normal.
+    is_freed: bool,
 }
 
 /// How often normals lead apart.
@@ -50,26 +50,25 @@ pub(super) fn measure(draws: u32, poses: usize) -> Findings {
         ordinary.flat_map(|family| (0..draws).map(move |k| (family.clone(), k.into()))).collect();
     let told = draws.par_iter().map(|(family, draw)| of_draw(family, *draw, poses));
     let told: Vec<Told> = told.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
-    let mut table =
-        Table::new(["pair", "noise", "poses", "contacts", "angle", "freed", "backward"]);
+    let mut table = Table::new(["pair", "noise", "poses", "contacts", "angle", "freed"]);
     let mut targets = Vec::new();
     for pair in Pair::ALL {
+        let of_class = |from: f64, to: f64| {
+            let keep = move |t: &&Told| t.pair == pair && (from..to).contains(&t.signed_distance);
+            told.iter().filter(keep)
+        };
         for std in STDS {
             for (class, from, to) in CLASSES {
-                let of = |t: &&Told| t.std == std && t.pair == pair && t.is_within(from, to);
-                let of: Vec<&Told> = told.iter().filter(of).collect();
+                let of: Vec<&Told> = of_class(from, to).filter(|t| t.std == std).collect();
                 let angles: Vec<f64> = of.iter().map(|told| told.angle).collect();
-                let [freed, backward] = [0, 1]
-                    .map(|k| if to > 0.0 { "-".into() } else { format!("{:.2}", share(&of, k)) });
+                let freed = if to > 0.0 { "-".into() } else { format!("{:.2}", share(&of)) };
                 let (noise, count) = (format!("{:.0} mm", 1e3 * std), of.len().to_string());
                 let angle = format!("{:.0}°", median(&angles));
-                table.row([pair.name(), &noise, class, &count, &angle, &freed, &backward]);
+                table.row([pair.name(), &noise, class, &count, &angle, &freed]);
             }
         }
         for ((class, from, to), least) in CLASSES.into_iter().skip(1).zip(FREED) {
-            let of: Vec<&Told> =
-                told.iter().filter(|t| t.pair == pair && t.is_within(from, to)).collect();
-            let (share, percent) = (share(&of, 0), 100.0 * least);
+            let (share, percent) = (share(&of_class(from, to).collect::<Vec<_>>()), 100.0 * least);
             let what =
                 format!("{}, {class}: freed along the normal in ≥ {percent:.0} %", pair.name());
             targets.push(Target::new(what, format!("{:.0} %", 100.0 * share), share >= least));
@@ -78,14 +77,8 @@ pub(super) fn measure(draws: u32, poses: usize) -> Findings {
     Ok((Section::new("Normals of contacts").text(TEXT).text(table), targets))
 }
 
-impl Told {
-    fn is_within(&self, from: f64, to: f64) -> bool {
-        (from..to).contains(&self.signed_distance)
-    }
-}
-
-fn share(of: &[&Told], way: usize) -> f64 {
-    of.iter().filter(|told| told.freed[way]).count() as f64 / of.len() as f64
+fn share(of: &[&Told]) -> f64 {
+    of.iter().filter(|told| told.is_freed).count() as f64 / of.len() as f64
 }
 
 fn of_draw(family: &Scenes, draw: u64, poses: usize) -> Result<Vec<Told>> {
@@ -113,11 +106,9 @@ fn of_draw(family: &Scenes, draw: u64, poses: usize) -> Result<Vec<Told>> {
                 let normal = contact.normal_a_to_b;
                 let angle = normal.dot(way).clamp(-1.0, 1.0).acos().to_degrees();
                 let length = -1.25 * signed_distance.min(0.0) + SPARE;
-                let freed = [length, -length].map(|length| {
-                    let moved = Pose::from_translation(normal * length).after(scene_from_object);
-                    !scene.a.touches(&scene.b, &moved, scene.touch)
-                });
-                told.push(Told { pair, std, signed_distance: *signed_distance, angle, freed });
+                let moved = Pose::from_translation(normal * length).after(scene_from_object);
+                let is_freed = !scene.a.touches(&scene.b, &moved, scene.touch);
+                told.push(Told { pair, std, signed_distance: *signed_distance, angle, is_freed });
             }
         }
     }

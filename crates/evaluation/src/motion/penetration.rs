@@ -72,9 +72,9 @@ struct Told {
 }
 
 impl Overlap {
-    fn is_good(&self, told: impl Fn(&Told) -> f64) -> bool {
+    fn is_good(&self) -> bool {
         let allowed = MOST_OFF.max(MOST_SHARE * self.exact);
-        self.told.as_ref().is_some_and(|out| (told(out) - self.exact).abs() <= allowed)
+        self.told.as_ref().is_some_and(|out| (out.depth - self.exact).abs() <= allowed)
     }
 
     fn is_enough(&self) -> bool {
@@ -103,9 +103,9 @@ fn overlaps(answers: &Answers, pair: Pair, has_noise: impl Fn(f64) -> bool) -> V
 }
 
 fn judge(answers: &Answers) -> (Section, Vec<Target>) {
-    const HEADER: &str =
-        "pair, noise, overlaps, depth good, off, distance good, off, enough, none, time";
-    let mut table = Table::new(HEADER.split(", "));
+    const HEADER: [&str; 8] =
+        ["pair", "noise", "overlaps", "depth good", "off", "enough", "none", "time"];
+    let mut table = Table::new(HEADER);
     let mut targets = Vec::new();
     for pair in Pair::ALL {
         for std in STDS {
@@ -113,14 +113,8 @@ fn judge(answers: &Answers) -> (Section, Vec<Target>) {
             table.row(row(pair, std, &overlaps));
         }
         let overlaps = overlaps(answers, pair, |_| true);
-        for (what, least, is_met) in [
-            (
-                "depth within 25 % or 1 cm",
-                GOOD,
-                (|o: &Overlap| o.is_good(|t| t.depth)) as fn(&_) -> _,
-            ),
-            ("distance enough", ENOUGH, Overlap::is_enough),
-        ] {
+        let good = ("depth within 25 % or 1 cm", GOOD, Overlap::is_good as fn(&_) -> _);
+        for (what, least, is_met) in [good, ("distance enough", ENOUGH, Overlap::is_enough)] {
             let share = share(&overlaps, is_met);
             let (pair, least_percent) = (pair.name(), 100.0 * least);
             let what = format!("{pair}: {what} in ≥ {least_percent:.0} % of overlaps up to 10 cm");
@@ -130,22 +124,17 @@ fn judge(answers: &Answers) -> (Section, Vec<Target>) {
     (Section::new("Penetration").text(TEXT).text(table), targets)
 }
 
-fn row(pair: Pair, std: f64, overlaps: &[Overlap]) -> [String; 10] {
+fn row(pair: Pair, std: f64, overlaps: &[Overlap]) -> [String; 8] {
     let told = || overlaps.iter().filter_map(|o| Some((o.exact, o.told.as_ref()?)));
-    let off = |of: fn(&Told) -> f64| {
-        let off: Vec<f64> = told().map(|(exact, told)| of(told) - exact).collect();
-        format!("{:+.1} mm", 1e3 * median(&off))
-    };
+    let off: Vec<f64> = told().map(|(exact, told)| told.depth - exact).collect();
     let seconds: Vec<f64> = told().map(|(_, told)| 1e-6 * told.micros).collect();
     let part = |is_met: fn(&Overlap) -> bool| format!("{:.2}", share(overlaps, is_met));
     [
         pair.name().to_owned(),
         format!("{:.0} mm", 1e3 * std),
         overlaps.len().to_string(),
-        part(|o| o.is_good(|told| told.depth)),
-        off(|told| told.depth),
-        part(|o| o.is_good(|told| told.distance)),
-        off(|told| told.distance),
+        part(Overlap::is_good),
+        format!("{:+.1} mm", 1e3 * median(&off)),
         part(Overlap::is_enough),
         (overlaps.len() - told().count()).to_string(),
         format!("{:.2} s", median(&seconds)),

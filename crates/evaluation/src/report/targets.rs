@@ -23,12 +23,6 @@ impl Target {
     pub fn new(what: impl Into<String>, measured: impl Into<String>, met: bool) -> Self {
         Self { what: what.into(), measured: measured.into(), met }
     }
-
-    /// Nothing of this kind may have gone wrong.
-    pub fn none_of(what: impl Into<String>, faults: &[String]) -> Self {
-        let found = if faults.is_empty() { "none".to_owned() } else { faults.join("; ") };
-        Self::new(what, found, faults.is_empty())
-    }
 }
 
 /// All targets in a table, and how many are met.

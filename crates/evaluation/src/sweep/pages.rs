@@ -87,7 +87,7 @@ pub(super) fn in_full(root: &Path, arguments: &str, answers: &Answers) -> Page {
         let mut section = Section::new(&format!("{}: methods", capitalised(pair)));
         for (name, kind) in [("Ordinary", Kind::Ordinary), ("Adversarial", Kind::Adversarial)] {
             let keep = is_of(pair, kind);
-            let (count, _) = Judged::pick(answers, &[OURS], keep).counts();
+            let count = Judged::pick(answers, &[OURS], keep).questions().len();
             section = section
                 .text(format_args!(
                     "{name} scenes, {count} answers; bold: the interval excludes zero."

@@ -41,7 +41,7 @@ impl Answers {
             row.push(judged.compared(name, OURS, Measure::Auc));
             let dense = |q: &Question| keep(q) && q.condition.points == 10_000;
             let judged = Judged::pick(self, &[name], dense);
-            row.push(format!("{:.2}", judged.query_ms(name, 0.5)));
+            row.push(format!("{:.2}", judged.query_ms(name)));
             table.row(row);
         }
         table
@@ -53,7 +53,7 @@ impl Answers {
         for kind in [Kind::Ordinary, Kind::Adversarial, Kind::Real] {
             for family in self.families() {
                 let keep = move |q: &Question| q.family == family && is_of(pair, kind)(q);
-                if Judged::pick(self, &[OURS], keep).counts().0 == 0 {
+                if Judged::pick(self, &[OURS], keep).questions().is_empty() {
                     continue;
                 }
                 let is_hard = kind == Kind::Adversarial;
