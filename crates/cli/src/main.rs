@@ -31,14 +31,14 @@ mod unused;
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
+use clap::CommandFactory as _;
 use clap::error::ErrorKind;
-use clap::{CommandFactory as _, Parser};
 use cloudtouch_cli::case_file;
 
 use args::{Arguments, Command};
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::read();
     if let Err(message) = arguments.check() {
         // As for any other wrong use: to standard error, with code 2.
         Arguments::command().error(ErrorKind::ArgumentConflict, message).exit();

@@ -5,6 +5,7 @@ mod demo;
 mod effort;
 mod errors;
 mod exit_codes;
+mod help;
 mod html;
 mod html_browser;
 mod html_touch;

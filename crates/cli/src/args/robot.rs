@@ -22,14 +22,14 @@ pub(crate) struct RobotOptions {
     /// Where the joints were when the scan was taken: points on the robot go
     #[arg(long, value_name = "FILE")]
     pub scan_joints: Option<PathBuf>,
-    /// Points this near to a link go too
+    /// With --scan-joints: points this near to a link go too
     #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = numbers::finite,
           requires = "scan_joints")]
     pub padding: f64,
     /// Also ask whether links touch one another, but neighbours
     #[arg(long)]
     pub self_collision: bool,
-    /// SRDF whose disabled pairs may touch
+    /// With --self-collision: SRDF whose disabled pairs may touch
     #[arg(long, value_name = "FILE", requires = "self_collision")]
     pub srdf: Option<PathBuf>,
 }
