@@ -8,6 +8,7 @@ mod body;
 mod commands;
 mod gradient;
 mod inside;
+mod interrupt;
 mod load;
 mod margin;
 mod ordered;
@@ -50,6 +51,9 @@ fn main() -> ExitCode {
         .with_target(false)
         .without_time()
         .init();
+    if let Err(error) = interrupt::leave_nothing_behind() {
+        tracing::warn!("an interruption may leave a hidden file behind: {error}");
+    }
     let shows_work = arguments.shows_work();
     let outcome = match &arguments.command {
         Command::Query(arguments) => commands::query::run(arguments, shows_work),

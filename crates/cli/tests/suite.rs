@@ -11,6 +11,7 @@ mod html_browser;
 mod html_touch;
 mod info;
 mod inside;
+mod interrupted;
 mod json_documented;
 mod json_schema;
 mod limits;
