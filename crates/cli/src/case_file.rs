@@ -1,5 +1,6 @@
 //! The case file of a batch.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -10,6 +11,7 @@ use serde_json::Value;
 use serde_json::value::RawValue;
 
 use crate::json_text::{matrix, shortened, without_bare_words};
+use crate::near_name;
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.
 #[derive(Debug)]
@@ -61,6 +63,25 @@ struct RawCase {
     label: Option<Value>,
     in_collision: Option<Value>,
     signed_distance_m: Option<Value>,
+}
+
+/// Fields that an answer depends on: what nearly has one of these names is an error, all else is passed over.
+const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];
+
+impl CaseFile {
+    /// Names that two cases have, with the places from 1 of the first two.
+    pub fn same_names(&self) -> Vec<(&str, [usize; 2])> {
+        let mut first = BTreeMap::new();
+        let mut same = BTreeMap::new();
+        for (index, (id, _)) in self.cases.iter().enumerate() {
+            let place = index + 1;
+            let known = *first.entry(id.as_str()).or_insert(place);
+            if known != place {
+                same.entry(id.as_str()).or_insert([known, place]);
+            }
+        }
+        same.into_iter().collect()
+    }
 }
 
 /// Reads a case file of at most `max_bytes`; paths in it are relative to its folder.
@@ -130,8 +151,14 @@ fn id(case: &str) -> Option<String> {
 }
 
 fn parse_case(value: Value, folder: &Path) -> Result<Case> {
-    if !value.is_object() {
+    let Value::Object(fields) = &value else {
         bail!("the case is not a JSON object but {}", kind(&value));
+    };
+    let is_given = |name: &str| fields.contains_key(name);
+    for name in fields.keys().filter(|name| !USED.contains(&name.as_str())) {
+        if let Some(known) = near_name::meant(name, &USED, is_given) {
+            bail!("there is no field `{name}`: is `{known}` meant? Then rename it");
+        }
     }
     let raw = RawCase::deserialize(&value)?;
     let scene_from_object = matrix(raw.pose)?;
