@@ -9,7 +9,7 @@ pub(crate) fn leave_nothing_behind() -> std::io::Result<()> {
     // Not SIGHUP: who runs the tool by `nohup` has it ignored, and a handler would end that.
     let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
     std::thread::Builder::new().spawn(move || {
-        for signal in signals.forever() {
+        if let Some(signal) = signals.forever().next() {
             cloudtouch_io::abandon_unfinished();
             // The shell sees the signal. It fails for no signal of these, and must not go on if it did.
             let _ = emulate_default_handler(signal);
