@@ -179,7 +179,7 @@ pub(crate) struct QueryArguments {
     /// Paper, without --also: text file with one kappa for each row of the scene
     #[arg(long, value_name = "FILE", conflicts_with = "also", help_heading = "Files")]
     pub kappas: Option<PathBuf>,
-    /// Calibrated: also how P and the clearance change along and about the object's axes
+    /// Calibrated: also how P and clearance change along the object's axes
     #[arg(long, help_heading = "Estimate")]
     pub gradient: bool,
     /// Calibrated: also the least translation to a probability below P [0.1]

@@ -151,9 +151,9 @@ impl CommonArguments {
             ("--settings", self.settings.is_some()),
         ];
         match of_the_paper.iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) => Err(format!(
-                "{command} is of the calibrated mode alone: {option} is not, leave it out"
-            )),
+            Some((option, _)) => {
+                Err(format!("{command} is of the calibrated mode: leave {option} out"))
+            }
             None => Ok(()),
         }
     }
