@@ -7,6 +7,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::Value;
 use serde_json::value::RawValue;
 
@@ -50,6 +51,10 @@ struct RawFile<'a> {
     length_unit: String,
     #[serde(borrow)]
     cases: Vec<&'a RawValue>,
+    // Of each case: here they would be passed over.
+    scene_sensor: Option<IgnoredAny>,
+    object_sensor: Option<IgnoredAny>,
+    sensor: Option<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -119,6 +124,17 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
     }
     if raw.length_unit != "m" {
         bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
+    }
+    let of_cases = [
+        ("scene_sensor", raw.scene_sensor),
+        ("object_sensor", raw.object_sensor),
+        ("sensor", raw.sensor),
+    ];
+    if let Some((name, _)) = of_cases.iter().find(|(_, given)| given.is_some()) {
+        bail!(
+            "`{name}` is beside the cases: write \"scene_sensor\" or \"object_sensor\" in each case, or \
+             give --sensor or --object-sensor for all"
+        );
     }
     if raw.cases.is_empty() {
         bail!("there are no cases: `cases` is an empty list");

@@ -190,6 +190,8 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
         ("pose", "poze"),
         ("object", "Object"),
         ("id", "ID"),
+        // As the bodies of a scene file have it.
+        ("scene_sensor", "sensor"),
     ];
     let mut cases: Vec<String> = misspelt
         .iter()
@@ -200,7 +202,8 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
         })
         .collect();
     // Names of other things, and of a second one beside the first.
-    let other = r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"sensor":"x","ids":3,"id""#;
+    let other =
+        r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"id""#;
     cases.push(case("good", "\"id\"", other));
     inputs.write("cases.json", &case_file(&cases));
     let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines();
@@ -211,6 +214,21 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
         }
     }
     assert_eq!(lines[misspelt.len()]["verdict"], "free");
+}
+
+#[test]
+fn a_sensor_beside_the_cases_was_passed_over() {
+    let inputs = Inputs::new();
+    for name in ["scene_sensor", "object_sensor", "sensor"] {
+        let cases = case_file(&[case_at("a", 0.5)]);
+        inputs.write("cases.json", &cases.replacen('{', &format!("{{\"{name}\":\"kinect\","), 1));
+        let run = inputs.run(&["batch", "cases.json"]);
+        let error = run.stderr();
+        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{error}");
+        for part in [&format!("`{name}`"), "cases.json", "each case", "--sensor"] {
+            assert!(error.contains(part), "`{part}` is not in {error}");
+        }
+    }
 }
 
 /// Whoever looks an answer up by its name found another one.
