@@ -49,7 +49,8 @@ fn check_one<'a>(
 
 /// Told before the work is done that is to be written.
 fn check_folder(output: &Path) -> Result<()> {
-    match output.parent() {
+    let is_folder = output.as_os_str().as_encoded_bytes().ends_with(b"/");
+    match if is_folder { Some(output) } else { output.parent() } {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => bail!(
             "{}: cannot be written: there is no folder `{}`: make it first",
             output.display(),

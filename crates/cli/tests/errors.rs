@@ -157,6 +157,7 @@ fn a_folder_that_is_not_there_was_told_after_hours_of_work() {
             &to("gone/o.html"),
             &["gone/o.html: cannot be written", "no folder `gone`", "make it"],
         );
+        check(&inputs, &to("new/"), &["new/: cannot be written", "no folder `new/`"]);
         check(&inputs, &to("folder"), &["folder: cannot be written", "is a folder", "file in it"]);
         check(
             &inputs,
