@@ -6,6 +6,7 @@ mod common;
 mod limits;
 mod parse;
 mod pose;
+mod refused;
 mod robot;
 
 use std::path::PathBuf;
@@ -61,47 +62,10 @@ pub(crate) struct Arguments {
     verbose: u8,
 }
 
-/// Options of other commands that these refuse: the help leaves them out.
-const REFUSED: [(&str, &[&str]); 3] = [
-    ("path", &["mode", "settings", "pooling", "seed", "margin"]),
-    (
-        "scene",
-        &[
-            "mode",
-            "settings",
-            "pooling",
-            "seed",
-            "margin",
-            "object_sensor",
-            "sensor_pose",
-            "collision_map",
-            "robot",
-            "robot_padding",
-        ],
-    ),
-    (
-        "robot",
-        &[
-            "mode",
-            "settings",
-            "pooling",
-            "seed",
-            "margin",
-            "object_sensor",
-            "robot",
-            "robot_padding",
-        ],
-    ),
-];
-
 impl Arguments {
     /// Reads the command line, or ends with what is wrong with it.
     pub(crate) fn read() -> Self {
-        let command = REFUSED.iter().fold(Self::command(), |command, (name, options)| {
-            command.mut_subcommand(name, |of| {
-                options.iter().fold(of, |of, option| of.mut_arg(option, |arg| arg.hide(true)))
-            })
-        });
+        let command = refused::hidden(Self::command());
         Self::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit())
     }
 
