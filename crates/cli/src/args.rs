@@ -6,11 +6,12 @@ mod common;
 mod limits;
 mod parse;
 mod pose;
+mod refused;
 mod robot;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use cloudtouch_cli::numbers;
 use cloudtouch_io::LengthUnit;
 
@@ -62,6 +63,12 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
+    /// Reads the command line, or ends with what is wrong with it.
+    pub(crate) fn read() -> Self {
+        let command = refused::hidden(Self::command());
+        Self::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit())
+    }
+
     /// Refuses options that contradict one another; the message names them.
     pub(crate) fn check(&self) -> Result<(), String> {
         match &self.command {
@@ -121,10 +128,10 @@ pub(crate) struct QueryArguments {
     /// Print the report as one JSON object
     #[arg(long, help_heading = "Output")]
     pub json: bool,
-    /// Add to the JSON the probability of each point, and both ways of pooling them
+    /// With --json: the probability of each point too, and both ways of pooling them
     #[arg(long, requires = "json", help_heading = "Output")]
     pub points: bool,
-    /// Paper: add to the JSON each classifier trained, with f, xi, alpha, v and b
+    /// Paper, with --json: each classifier trained too, with f, xi, alpha, v and b
     #[arg(long, requires = "json", help_heading = "Output")]
     pub explain: bool,
     /// Write the points of both clouds with their probabilities as a table
@@ -133,13 +140,13 @@ pub(crate) struct QueryArguments {
     /// Another scan of the same scene, in the same frame; repeatable
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub also: Vec<PathBuf>,
-    /// Paper: text file with one kappa for each row of the scene
+    /// Paper, without --also: text file with one kappa for each row of the scene
     #[arg(long, value_name = "FILE", conflicts_with = "also", help_heading = "Files")]
     pub kappas: Option<PathBuf>,
-    /// Also how P and the clearance change along and about the object's axes
+    /// Calibrated: also how P and clearance change along the object's axes
     #[arg(long, help_heading = "Estimate")]
     pub gradient: bool,
-    /// Also the least translation to a probability below P [0.1]
+    /// Calibrated: also the least translation to a probability below P [0.1]
     #[arg(long, value_name = "P", num_args = 0..=1, require_equals = true,
           default_missing_value = "0.1", value_parser = parse_fraction, help_heading = "Estimate")]
     pub penetration: Option<f64>,
@@ -197,7 +204,7 @@ pub(crate) struct PathArguments {
     /// Write a page that shows all of it in any browser
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub html: Option<PathBuf>,
-    /// Replace an output file that is there already
+    /// With --html: replace a file that is there already
     #[arg(long, requires = "html", help_heading = "Output")]
     pub force: bool,
     #[command(flatten)]
@@ -260,8 +267,12 @@ impl RobotArguments {
     fn check(&self) -> Result<(), String> {
         let common = &self.common;
         common.check_calibrated("robot")?;
-        if common.object_sensor.is_some() || common.margin.is_some() {
-            return Err("--object-sensor and --margin are of one object: leave them out".to_owned());
+        let of_objects = [
+            ("--object-sensor", common.object_sensor.is_some()),
+            ("--margin", common.margin.is_some()),
+        ];
+        if let Some((option, _)) = of_objects.iter().find(|(_, is_given)| *is_given) {
+            return Err(format!("{option} is of one object: leave it out"));
         }
         if !common.robot.is_empty() {
             return Err("--robot is of a scan without a URDF: give --scan-joints".to_owned());

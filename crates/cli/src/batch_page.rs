@@ -9,6 +9,7 @@ use cloudtouch_io::ReadLimits;
 use cloudtouch_page::{Fact, Page, Shortlist, View};
 
 use crate::body::PreparedCloud;
+use crate::inside::with_points_inside;
 use crate::load::Loaded;
 use crate::margin::Nearness;
 use crate::{page, report_text};
@@ -21,6 +22,14 @@ pub(crate) struct Answered<'a, C> {
     /// Scene and object, each with its file.
     pub bodies: [(&'a Path, &'a Loaded<C>); 2],
     pub nearness: Option<Nearness>,
+}
+
+impl<C: PreparedCloud> Answered<'_, C> {
+    /// The report with what a picture shows beside points that may touch.
+    fn colored(&self) -> Report {
+        let [scene, object] = self.bodies.map(|(_, loaded)| &loaded.body);
+        with_points_inside(self.report.clone(), (scene, object), self.pose)
+    }
 }
 
 /// What a page shows of a batch, gathered case by case.
@@ -52,7 +61,8 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
         let mut known: Vec<&Loaded<C>> = Vec::new();
         let mut bodies = Vec::new();
         let mut views = Vec::new();
-        for (id, answered) in &answers {
+        let colored: Vec<Report> = answers.iter().map(|(_, answered)| answered.colored()).collect();
+        for ((id, answered), colored) in answers.iter().zip(&colored) {
             let mut places = [0; 2];
             for (place, (file, loaded)) in places.iter_mut().zip(answered.bodies) {
                 let found = known.iter().position(|body| std::ptr::eq(*body, loaded));
@@ -67,7 +77,7 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
                 scene: places[0],
                 object: places[1],
                 scene_from_object: *answered.pose,
-                report: &answered.report,
+                report: colored,
                 placement: Some(&answered.placement),
                 more: answered.nearness.as_ref().map(report_text::nearness).into_iter().collect(),
             });

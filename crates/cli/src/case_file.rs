@@ -1,15 +1,18 @@
 //! The case file of a batch.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::Value;
 use serde_json::value::RawValue;
 
 use crate::json_text::{matrix, shortened, without_bare_words};
+use crate::near_name;
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.
 #[derive(Debug)]
@@ -48,6 +51,10 @@ struct RawFile<'a> {
     length_unit: String,
     #[serde(borrow)]
     cases: Vec<&'a RawValue>,
+    // Of each case: here they would be passed over.
+    scene_sensor: Option<IgnoredAny>,
+    object_sensor: Option<IgnoredAny>,
+    sensor: Option<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -61,6 +68,25 @@ struct RawCase {
     label: Option<Value>,
     in_collision: Option<Value>,
     signed_distance_m: Option<Value>,
+}
+
+/// Fields that an answer depends on: what nearly has one of these names is an error, all else is passed over.
+const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];
+
+impl CaseFile {
+    /// Names that two cases have, with the places from 1 of the first two.
+    pub fn same_names(&self) -> Vec<(&str, [usize; 2])> {
+        let mut first = BTreeMap::new();
+        let mut same = BTreeMap::new();
+        for (index, (id, _)) in self.cases.iter().enumerate() {
+            let place = index + 1;
+            let known = *first.entry(id.as_str()).or_insert(place);
+            if known != place {
+                same.entry(id.as_str()).or_insert([known, place]);
+            }
+        }
+        same.into_iter().collect()
+    }
 }
 
 /// Reads a case file of at most `max_bytes`; paths in it are relative to its folder.
@@ -99,6 +125,17 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
     if raw.length_unit != "m" {
         bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
     }
+    let of_cases = [
+        ("scene_sensor", raw.scene_sensor),
+        ("object_sensor", raw.object_sensor),
+        ("sensor", raw.sensor),
+    ];
+    if let Some((name, _)) = of_cases.iter().find(|(_, given)| given.is_some()) {
+        bail!(
+            "`{name}` is beside the cases: write \"scene_sensor\" or \"object_sensor\" in each case, or \
+             give --sensor or --object-sensor for all"
+        );
+    }
     if raw.cases.is_empty() {
         bail!("there are no cases: `cases` is an empty list");
     }
@@ -130,8 +167,14 @@ fn id(case: &str) -> Option<String> {
 }
 
 fn parse_case(value: Value, folder: &Path) -> Result<Case> {
-    if !value.is_object() {
+    let Value::Object(fields) = &value else {
         bail!("the case is not a JSON object but {}", kind(&value));
+    };
+    let is_given = |name: &str| fields.contains_key(name);
+    for name in fields.keys().filter(|name| !USED.contains(&name.as_str())) {
+        if let Some(known) = near_name::meant(name, &USED, is_given) {
+            bail!("there is no field `{name}`: is `{known}` meant? Then rename it");
+        }
     }
     let raw = RawCase::deserialize(&value)?;
     let scene_from_object = matrix(raw.pose)?;

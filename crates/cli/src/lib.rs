@@ -3,6 +3,7 @@
 pub mod case_file;
 pub mod joints_file;
 mod json_text;
+mod near_name;
 pub mod numbers;
 pub mod path_text;
 pub mod pose_text;

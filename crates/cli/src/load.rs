@@ -227,6 +227,11 @@ pub(crate) fn check(path: &Path) -> Result<()> {
     let found = std::fs::metadata(file_of(path))
         .with_context(|| format!("{}: cannot be read", path.display()))?;
     ensure!(!found.is_dir(), "{}: is a folder: give a cloud or mesh file", path.display());
+    ensure!(
+        found.is_file() || path.extension().is_some(),
+        "{}: is no file, and its name does not tell the format: save it to one, such as scan.pcd",
+        path.display()
+    );
     Ok(check_extension(path)?)
 }
 

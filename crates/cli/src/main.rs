@@ -8,6 +8,7 @@ mod body;
 mod commands;
 mod gradient;
 mod inside;
+mod interrupt;
 mod load;
 mod margin;
 mod ordered;
@@ -31,14 +32,14 @@ mod unused;
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
+use clap::CommandFactory as _;
 use clap::error::ErrorKind;
-use clap::{CommandFactory as _, Parser};
 use cloudtouch_cli::case_file;
 
 use args::{Arguments, Command};
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::read();
     if let Err(message) = arguments.check() {
         // As for any other wrong use: to standard error, with code 2.
         Arguments::command().error(ErrorKind::ArgumentConflict, message).exit();
@@ -50,6 +51,9 @@ fn main() -> ExitCode {
         .with_target(false)
         .without_time()
         .init();
+    if let Err(error) = interrupt::leave_nothing_behind() {
+        tracing::warn!("an interruption may leave a hidden file behind: {error}");
+    }
     let shows_work = arguments.shows_work();
     let outcome = match &arguments.command {
         Command::Query(arguments) => commands::query::run(arguments, shows_work),

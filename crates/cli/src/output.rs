@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::{Result, bail};
 use cloudtouch_io::recording::file_of;
 
-/// Whether files may be written: each is none of the inputs and none of the others, and not there unless
-/// `force` is given. A pipe or a device may be.
+/// Whether files may be written: each is in a folder that is there, is none of the inputs and none of the
+/// others, and not there unless `force` is given. A pipe or a device may be.
 pub(crate) fn check<'a>(
     outputs: &[&Path],
     inputs: impl Iterator<Item = &'a Path> + Clone,
@@ -31,7 +31,10 @@ fn check_one<'a>(
     mut inputs: impl Iterator<Item = &'a Path>,
     force: bool,
 ) -> Result<()> {
-    let Ok(existing) = std::fs::canonicalize(output) else { return Ok(()) };
+    let Ok(existing) = std::fs::canonicalize(output) else { return check_folder(output) };
+    if existing.is_dir() {
+        bail!("{}: cannot be written: is a folder: name a file in it", output.display());
+    }
     // The input of a scan's name is the recording it is in.
     let is_input =
         |path: &Path| std::fs::canonicalize(file_of(path)).is_ok_and(|path| path == existing);
@@ -42,4 +45,17 @@ fn check_one<'a>(
         bail!("{}: is there already: give --force to replace it", output.display());
     }
     Ok(())
+}
+
+/// Told before the work is done that is to be written.
+fn check_folder(output: &Path) -> Result<()> {
+    let is_folder = output.as_os_str().as_encoded_bytes().ends_with(b"/");
+    match if is_folder { Some(output) } else { output.parent() } {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => bail!(
+            "{}: cannot be written: there is no folder `{}`: make it first",
+            output.display(),
+            folder.display()
+        ),
+        _ => Ok(()),
+    }
 }

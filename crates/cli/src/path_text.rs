@@ -15,6 +15,9 @@ const EXCERPT: usize = 40;
 /// Names the pose, from 0, or the line, from 1, that is none.
 pub fn parse(text: &str) -> Result<Vec<Pose>> {
     let text = text.trim_start_matches('\u{feff}').trim_start();
+    if text.starts_with('{') {
+        bail!("the path is an object: write the list of its poses alone, [[[...],...],...]");
+    }
     if text.starts_with('[') { matrices(text) } else { table(text) }
 }
 
@@ -126,6 +129,7 @@ mod tests {
             ),
             ("x,y,z,qx,qy,qz,w\n", "name the columns x,y,z,qw,qx,qy,qz"),
             ("0 0 0 1 0 0 0", "separated by commas"),
+            ("{\"poses\": []}", "is an object: write the list of its poses alone"),
         ] {
             let error = format!("{:#}", parse(text).unwrap_err());
             assert!(error.contains(part), "{error}");

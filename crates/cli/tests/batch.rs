@@ -63,7 +63,9 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
         ("number out of range", with("[[1,", "[[1e400,")),
         ("hex escape", with("iso:0.002", "\\ud800")),
     ];
-    let mut entries: Vec<String> = cases.iter().map(|(_, case)| case.clone()).collect();
+    let named =
+        |(i, (_, case)): (usize, &(&str, String))| case.replace("\"bad\"", &format!("\"bad-{i}\""));
+    let mut entries: Vec<String> = cases.iter().enumerate().map(named).collect();
     entries.push(case_at("good", 0.5));
     inputs.write("cases.json", &case_file(&entries));
     let run = inputs.run(&["batch", "cases.json", "--json"]).quiet(1);
@@ -75,7 +77,9 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
         assert!(line.get("verdict").is_none() && line.as_object().unwrap().len() == 2, "{line}");
     }
     assert_eq!((&lines[0]["id"], &lines[1]["id"]), (&"case-1".into(), &"case-2".into()));
-    assert!(lines[2..cases.len()].iter().all(|line| line["id"] == "bad"), "{lines:?}");
+    for (i, line) in lines.iter().enumerate().take(cases.len()).skip(2) {
+        assert_eq!(line["id"], format!("bad-{i}"), "{line}");
+    }
     assert_eq!(lines.last().unwrap()["verdict"], "free");
     let table = inputs.run(&["batch", "cases.json"]).quiet(1).stdout();
     assert!(table.contains("1 answers, 14 errors"), "{table}");
@@ -121,12 +125,12 @@ fn threads_do_not_change_the_answers() {
 #[test]
 fn what_a_case_does_not_need_does_not_fail_it() {
     let inputs = Inputs::new();
-    let add = |field: &str| case_at("a", 0.5).replacen('{', &format!("{{{field},"), 1);
+    let add = |id: &str, field: &str| case_at(id, 0.5).replacen('{', &format!("{{{field},"), 1);
     let cases = [
-        add(r#""label":3"#),
-        add(r#""in_collision":"no""#),
-        add(r#""signed_distance_m":NaN"#),
-        add(r#""note":[Infinity,-Infinity,NaN,"NaN, \" and NaN"]"#),
+        add("a", r#""label":3"#),
+        add("b", r#""in_collision":"no""#),
+        add("c", r#""signed_distance_m":NaN"#),
+        add("d", r#""note":[Infinity,-Infinity,NaN,"NaN, \" and NaN"]"#),
         case_at("a", 0.5).replace(r#""id":"a""#, r#""id":null"#),
         case_at("tab\\tbell\\u0007\\n\\u001b[31m", 0.5),
     ];
@@ -170,4 +174,73 @@ fn an_input_is_never_replaced_and_another_file_only_when_asked() {
     assert_eq!(std::fs::read_to_string(inputs.path("old.jsonl")).unwrap(), "old");
     inputs.run(&["batch", "cases.json", "--jsonl", "old.jsonl", "--force"]).quiet(0);
     assert_ne!(std::fs::read_to_string(inputs.path("old.jsonl")).unwrap(), "old");
+}
+
+/// A sensor that was never read made the answer that of another one.
+#[test]
+fn a_misspelt_field_of_a_case_was_passed_over() {
+    let inputs = Inputs::new();
+    let case = |id: &str, from: &str, to: &str| case_at(id, 0.5).replacen(from, to, 1);
+    let misspelt = [
+        ("scene_sensor", "scene_senser"),
+        ("scene_sensor", "sceneSensor"),
+        ("scene_sensor", "scene_sensors"),
+        ("object_sensor", "obj_sensor"),
+        ("object_sensor", "object-sensor"),
+        ("pose", "poze"),
+        ("object", "Object"),
+        ("id", "ID"),
+        // As the bodies of a scene file have it.
+        ("scene_sensor", "sensor"),
+    ];
+    let mut cases: Vec<String> = misspelt
+        .iter()
+        .enumerate()
+        .map(|(i, (known, given))| {
+            let from = if *known == "object_sensor" { "scene_sensor" } else { known };
+            case(&format!("c{i}"), &format!("\"{from}\""), &format!("\"{given}\""))
+        })
+        .collect();
+    // Names of other things, and of a second one beside the first.
+    let other =
+        r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"id""#;
+    cases.push(case("good", "\"id\"", other));
+    inputs.write("cases.json", &case_file(&cases));
+    let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines();
+    for ((known, given), line) in misspelt.iter().zip(&lines) {
+        let error = line["error"].as_str().unwrap_or_else(|| panic!("{given}: {line}"));
+        for part in [format!("`{given}`"), format!("`{known}`")] {
+            assert!(error.contains(&part), "{error}");
+        }
+    }
+    assert_eq!(lines[misspelt.len()]["verdict"], "free");
+}
+
+#[test]
+fn a_sensor_beside_the_cases_was_passed_over() {
+    let inputs = Inputs::new();
+    for name in ["scene_sensor", "object_sensor", "sensor"] {
+        let cases = case_file(&[case_at("a", 0.5)]);
+        inputs.write("cases.json", &cases.replacen('{', &format!("{{\"{name}\":\"kinect\","), 1));
+        let run = inputs.run(&["batch", "cases.json"]);
+        let error = run.stderr();
+        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{error}");
+        for part in [&format!("`{name}`"), "cases.json", "each case", "--sensor"] {
+            assert!(error.contains(part), "`{part}` is not in {error}");
+        }
+    }
+}
+
+/// Whoever looks an answer up by its name found another one.
+#[test]
+fn two_cases_of_one_name_were_not_told() {
+    let inputs = Inputs::new();
+    let unnamed = case_at("x", 0.05).replace(r#""id":"x","#, "");
+    let ids = ["a", "b", "a", "case-5"].map(|id| case_at(id, 0.5));
+    inputs.write("cases.json", &case_file(&[&ids[..], &[unnamed]].concat()));
+    let run = inputs.run(&["batch", "cases.json", "--json"]);
+    assert_eq!((run.code(), run.json_lines().len()), (0, 5), "{}", run.stderr());
+    for part in ["cases.json", "cases 1 and 3", "`a`", "cases 4 and 5", "`case-5`", "order"] {
+        assert!(run.stderr().contains(part), "`{part}` is not in {}", run.stderr());
+    }
 }

@@ -20,7 +20,7 @@ fn what_an_answer_cost_is_shown_when_asked_for() {
 #[test]
 fn surfaces_ahead_do_not_change_an_answer() {
     let inputs = Inputs::new();
-    inputs.write("cases.json", &case_file(&[0.5, 0.1, 0.05].map(|z| case_at("a", z))));
+    inputs.write("cases.json", &case_file(&[0.5, 0.1, 0.05].map(|z| case_at(&z.to_string(), z))));
     let probabilities = |refine: &str| {
         let lines = inputs.run(&["batch", "cases.json", "--json", "--refine", refine]).quiet(0);
         let of = |line: &serde_json::Value| line["collision_probability"].as_f64().unwrap();

@@ -114,6 +114,18 @@ fn options_that_cannot_be_meant() {
     }
 }
 
+/// A negative one was taken for an option, or made links thinner than they are.
+#[test]
+fn a_padding_below_zero_was_taken() {
+    let inputs = Inputs::new();
+    let robot = ["robot", "floor.pcd", "r.urdf", "--joints=j.json", "--scan-joints=j.json"];
+    for padding in [&["--padding", "-1"][..], &["--padding=-0.02"]] {
+        let run = inputs.run(&[&robot, padding].concat());
+        assert_eq!(run.code(), 2, "{}", run.stderr());
+        assert!(run.stderr().contains("0 or more"), "{}", run.stderr());
+    }
+}
+
 #[test]
 fn outputs_that_cannot_be_written() {
     let inputs = Inputs::new();
@@ -124,6 +136,46 @@ fn outputs_that_cannot_be_written() {
     inputs.write("cases.json", &support::case_file(&[case]));
     let jsonl = ["batch", "cases.json", "--jsonl", "gone/out.jsonl"];
     check(&inputs, &jsonl, &["gone/out.jsonl: cannot be written"]);
+}
+
+/// It was told when all the work was done.
+#[test]
+fn a_folder_that_is_not_there_was_told_after_hours_of_work() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &support::case_file(&[support::case_at("a", 0.5)]));
+    inputs.write("path.csv", "0,0,0.5,1,0,0,0\n0,0,0.3,1,0,0,0\n");
+    std::fs::create_dir(inputs.path("folder")).unwrap();
+    for command in [
+        &["query", "floor.pcd", "box.obj"][..],
+        &["batch", "cases.json"],
+        &["path", "floor.pcd", "box.obj", "--poses=path.csv"],
+        &["demo"],
+    ] {
+        let to = |output| [command, &["--force", "--html", output]].concat();
+        check(
+            &inputs,
+            &to("gone/o.html"),
+            &["gone/o.html: cannot be written", "no folder `gone`", "make it"],
+        );
+        check(&inputs, &to("new/"), &["new/: cannot be written", "no folder `new/`"]);
+        check(&inputs, &to("folder"), &["folder: cannot be written", "is a folder", "file in it"]);
+        check(
+            &inputs,
+            &to("box.obj/o.html"),
+            &["box.obj/o.html: cannot be written", "no folder `box.obj`"],
+        );
+    }
+}
+
+/// Its extension was said to be "" and the file to be renamed.
+#[cfg(unix)]
+#[test]
+fn a_pipe_was_asked_for_its_extension() {
+    let inputs = Inputs::new();
+    for pipe in ["/dev/stdin", "/dev/null"] {
+        check(&inputs, &["query", pipe, "box.obj"], &[pipe, "is no file", "such as scan.pcd"]);
+        check(&inputs, &["info", pipe], &[pipe, "is no file", "such as scan.pcd"]);
+    }
 }
 
 #[test]

@@ -84,6 +84,8 @@ fn help_and_version_are_0_and_fit_a_terminal() {
         &["query", "--help"],
         &["batch", "--help"],
         &["path", "--help"],
+        &["scene", "--help"],
+        &["robot", "--help"],
         &["info", "--help"],
         &["demo", "--help"],
     ] {

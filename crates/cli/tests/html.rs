@@ -291,3 +291,16 @@ fn a_large_scan_is_thinned_below_twelve_megabytes_and_says_so() {
     assert!(told > 0);
     assert_eq!(bytes(&data["views"][0]["likely"][0]["points"]).len(), 4 * told);
 }
+
+/// In the page of a batch, points that are deep in a box were as grey as any.
+#[test]
+fn a_batch_drew_no_points_inside_of_a_box() {
+    let inputs = Inputs::new();
+    inputs.query_at(0.02, &["--html=q.html"]).quiet(0);
+    inputs.write("cases.json", &case_file(&[case_at("deep", 0.02)]));
+    inputs.run(&["batch", "cases.json", "--html=b.html"]).quiet(0);
+    let [one, many] = ["q.html", "b.html"].map(|name| data(&page(&inputs, name)));
+    let likely = &one["views"][0]["likely"];
+    assert!(bytes(&likely[0]["points"]).len() > 5 * 4, "{likely}");
+    assert_eq!(&many["views"][0]["likely"], likely);
+}

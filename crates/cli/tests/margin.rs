@@ -29,7 +29,7 @@ fn a_margin_is_answered_in_json_and_in_words() {
 #[test]
 fn a_margin_of_nothing_is_the_collision_and_a_batch_answers_too() {
     let inputs = Inputs::new();
-    inputs.write("cases.json", &case_file(&[0.5, 0.1].map(|z| case_at("a", z))));
+    inputs.write("cases.json", &case_file(&[0.5, 0.1].map(|z| case_at(&z.to_string(), z))));
     let lines =
         inputs.run(&["batch", "cases.json", "--json", "--margin", "0"]).quiet(0).json_lines();
     assert_eq!(lines.len(), 2);

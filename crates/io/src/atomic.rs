@@ -5,7 +5,10 @@ use std::{
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
     process,
-    sync::atomic::{AtomicU64, Ordering},
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 
 use crate::error::WriteError;
@@ -45,6 +48,24 @@ fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) ->
     fs::rename(&temporary.0, &target)
 }
 
+/// Temporary files that have not taken their names yet.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes every temporary file of [`write_atomically`], for a program that is told to end and does so
+/// at once: no other thread comes to begin a file afterwards, it waits for ever.
+pub fn abandon_unfinished() {
+    let all = unfinished();
+    for path in all.iter() {
+        // There is nobody left to hear of it.
+        let _ = fs::remove_file(path);
+    }
+    std::mem::forget(all);
+}
+
 /// Removes the file it names, if it is still there.
 struct Temporary(PathBuf);
 
@@ -52,6 +73,7 @@ impl Drop for Temporary {
     fn drop(&mut self) {
         // The error that led here is the one to report.
         let _ = fs::remove_file(&self.0);
+        unfinished().retain(|path| *path != self.0);
     }
 }
 
@@ -66,8 +88,13 @@ fn create_beside(target: &Path) -> io::Result<(File, Temporary)> {
         let number = COUNTER.fetch_add(1, Ordering::Relaxed);
         hidden.push(format!(".{}-{number}.partial", process::id()));
         let path = target.with_file_name(hidden);
+        // Held over both, so that no file is there that is not listed.
+        let mut listed = unfinished();
         match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(file) => return Ok((file, Temporary(path))),
+            Ok(file) => {
+                listed.push(path.clone());
+                return Ok((file, Temporary(path)));
+            }
             // Left behind by a killed process with the same number: take the next name.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),

@@ -19,7 +19,7 @@ mod text;
 mod unit;
 pub mod xyz;
 
-pub use atomic::write_atomically;
+pub use atomic::{abandon_unfinished, write_atomically};
 pub use error::{ReadError, WriteError};
 pub use fault::{Fault, FormatError, Place};
 pub use geometry::Geometry;

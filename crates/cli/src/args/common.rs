@@ -78,7 +78,7 @@ pub(crate) struct CommonArguments {
     /// Robot link in the scene's frame: points inside go; repeatable
     #[arg(long, value_name = "MESH", help_heading = "Cleaning")]
     pub robot: Vec<PathBuf>,
-    /// Points this near to a robot link go too
+    /// With --robot: points this near to a link go too
     #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length, allow_negative_numbers = true,
           requires = "robot", help_heading = "Cleaning")]
     pub robot_padding: f64,
@@ -142,13 +142,19 @@ impl CommonArguments {
         }
     }
 
-    /// Refuses the paper's mode for a command that has none.
+    /// Refuses what is of the paper's mode for a command that has none.
     pub(super) fn check_calibrated(&self, command: &str) -> Result<(), String> {
-        match self.mode {
-            ModeName::Calibrated => Ok(()),
-            ModeName::Paper => {
-                Err(format!("{command} is of the calibrated mode: leave --mode out"))
+        let of_the_paper = [
+            ("--mode", self.mode == ModeName::Paper),
+            ("--pooling", self.pooling.is_some()),
+            ("--seed", self.seed.is_some()),
+            ("--settings", self.settings.is_some()),
+        ];
+        match of_the_paper.iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => {
+                Err(format!("{command} is of the calibrated mode: leave {option} out"))
             }
+            None => Ok(()),
         }
     }
 

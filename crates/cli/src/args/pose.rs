@@ -28,7 +28,7 @@ pub(crate) struct PoseArguments {
     #[arg(long, value_name = "X,Y,Z,W", value_parser = numbers::quaternion,
           allow_hyphen_values = true)]
     pub quaternion: Option<Turn>,
-    /// Standard deviations along and about the object's axes, m and rad
+    /// Calibrated: deviations along and about the object's axes, m and rad
     #[arg(long, value_name = "X,Y,Z,R,P,Y", value_parser = numbers::pose_std,
           allow_hyphen_values = true)]
     pub pose_std: Option<PoseStd>,

@@ -3,14 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use cloudtouch_cli::numbers;
+
+use super::parse::parse_length;
 
 /// A robot and where it is.
 #[derive(Debug, Args)]
 pub(crate) struct RobotOptions {
     /// The robot; its meshes are .stl, .obj or .ply
     pub urdf: PathBuf,
-    /// JSON object of joint names and positions (rad, m), or a list of them: a path
+    /// JSON object of joint names and positions (rad, m), or a list: a path
     #[arg(long, value_name = "FILE")]
     pub joints: PathBuf,
     /// Folder of a package that the URDF names; repeatable
@@ -22,14 +23,14 @@ pub(crate) struct RobotOptions {
     /// Where the joints were when the scan was taken: points on the robot go
     #[arg(long, value_name = "FILE")]
     pub scan_joints: Option<PathBuf>,
-    /// Points this near to a link go too
-    #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = numbers::finite,
+    /// With --scan-joints: points this near to a link go too
+    #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length, allow_negative_numbers = true,
           requires = "scan_joints")]
     pub padding: f64,
     /// Also ask whether links touch one another, but neighbours
     #[arg(long)]
     pub self_collision: bool,
-    /// SRDF whose disabled pairs may touch
+    /// With --self-collision: SRDF whose disabled pairs may touch
     #[arg(long, value_name = "FILE", requires = "self_collision")]
     pub srdf: Option<PathBuf>,
 }

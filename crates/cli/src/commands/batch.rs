@@ -16,7 +16,7 @@ use crate::args::{BatchArguments, ModeName};
 use crate::batch_page::{Answered, Shown};
 use crate::batch_table::Table;
 use crate::body::{self, Body};
-use crate::case_file::{self, Case};
+use crate::case_file::{self, Case, CaseFile};
 use crate::load::{self, Input, Loaded, Role};
 use crate::per_point::Details;
 use crate::sensor::SensorChoice;
@@ -46,6 +46,7 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     let inputs = files.chain(others.map(PathBuf::as_path));
     let outputs = arguments.jsonl.iter().chain(&arguments.html).map(PathBuf::as_path);
     output::check(&outputs.collect::<Vec<_>>(), inputs, arguments.force)?;
+    warn_of_same_names(arguments, &file);
     let bodies = prepare_all::<P::Cloud>(arguments, good())?;
     let progress = progress_bar(file.cases.len(), "queries");
     let mut table = Table::new(&file.cases);
@@ -97,6 +98,23 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
         shown.write(path, &cases, &arguments.common.limits.read_limits())?;
     }
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// Names that more than one case has; of many such names no more are told.
+const SAME_NAMES_TOLD: usize = 3;
+
+fn warn_of_same_names(arguments: &BatchArguments, file: &CaseFile) {
+    let same = file.same_names();
+    for (name, [first, second]) in same.iter().take(SAME_NAMES_TOLD) {
+        tracing::warn!(
+            "{}: cases {first} and {second} are both `{}`: only the order tells their answers apart",
+            arguments.cases.display(),
+            print::one_line(name)
+        );
+    }
+    if let Some(more) = same.len().checked_sub(SAME_NAMES_TOLD).filter(|more| *more > 0) {
+        tracing::warn!("{}: {more} more names are of several cases", arguments.cases.display());
+    }
 }
 
 /// What was taken for the sensor of each file where nothing was said.

@@ -1,0 +1,39 @@
+//! Fields that are nearly known ones: where others are passed over, a slip of the pen would be too.
+
+use strsim::osa_distance;
+
+/// The known name that is meant by one that is none. Names that are given as well are not meant: what is
+/// beside them is something else.
+pub(crate) fn meant<'a>(
+    name: &str,
+    known: &[&'a str],
+    is_given: impl Fn(&str) -> bool,
+) -> Option<&'a str> {
+    let is_meant = |candidate: &&&str| !is_given(candidate) && is_near(name, candidate);
+    known.iter().find(is_meant).copied()
+}
+
+/// The same letters, the last of its words alone, or as many words of which each is cut short or misspelt.
+fn is_near(name: &str, known: &str) -> bool {
+    let letters = |text: &str| -> String {
+        text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+    };
+    let words = |text: &str| -> Vec<String> {
+        text.split(|c: char| !c.is_alphanumeric()).map(letters).collect()
+    };
+    let (given, wanted) = (words(name), words(known));
+    let all_near = || given.iter().zip(&wanted).all(|(a, b)| is_near_word(a, b));
+    let is_last = || wanted.len() > 1 && given[..] == wanted[wanted.len() - 1..];
+    letters(name) == letters(known) || is_last() || (given.len() == wanted.len() && all_near())
+}
+
+/// Of short words most are a slip away from another.
+fn is_near_word(word: &str, known: &str) -> bool {
+    let slips = match known.len() {
+        0..4 => 0,
+        4 => 1,
+        _ => 2,
+    };
+    let is_cut = word.len() >= 3 && known.starts_with(word);
+    is_cut || osa_distance(word, known) <= slips
+}

@@ -1,0 +1,78 @@
+//! What `--help` of a command lists is what the command takes.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use crate::support::Inputs;
+
+/// Options that a command refuses whatever else is given.
+const REFUSED: [(&str, &[&str]); 3] = [
+    (
+        "path floor.pcd box.obj --poses=p.csv",
+        &["--mode=paper", "--pooling=max", "--seed=1", "--settings=s.toml", "--margin=0.1"],
+    ),
+    (
+        "scene scene.json",
+        &[
+            "--mode=paper",
+            "--pooling=max",
+            "--seed=1",
+            "--settings=s.toml",
+            "--margin=0.1",
+            "--object-sensor=kinect",
+            "--sensor-pose=0,0,1",
+            "--collision-map=0.1",
+            "--robot=box.obj",
+        ],
+    ),
+    (
+        "robot floor.pcd r.urdf --joints=j.json",
+        &[
+            "--mode=paper",
+            "--pooling=max",
+            "--seed=1",
+            "--settings=s.toml",
+            "--margin=0.1",
+            "--object-sensor=kinect",
+            "--robot=box.obj",
+        ],
+    ),
+];
+
+/// They were listed, and whoever gave one was told to leave it out, or to give another that is refused too.
+#[test]
+fn an_option_that_is_refused_was_listed() {
+    let inputs = Inputs::new();
+    inputs.write("s.toml", "");
+    for (command, options) in REFUSED {
+        let words: Vec<&str> = command.split(' ').collect();
+        let help = inputs.run(&[words[0], "--help"]).quiet(0).stdout();
+        for option in options {
+            let run = inputs.run(&[&words[..], &[option]].concat());
+            let error = run.stderr();
+            let name = option.split('=').next().unwrap();
+            assert!(run.code() == 2 && error.contains(name), "{command} {option}: {error}");
+            let is_told = ["leave it out", &format!("leave {name} out"), "--scan-joints"];
+            assert!(is_told.iter().any(|part| error.contains(part)), "{error}");
+            assert!(!error.contains("give --mode paper"), "{command} {option}: {error}");
+            assert!(!help.contains(&format!(" {name} ")), "{command}: {name} is listed");
+        }
+        assert_eq!(help.contains("--robot-padding"), help.contains("--robot "), "{command}");
+    }
+}
+
+#[test]
+fn options_that_need_another_did_not_say_so() {
+    let inputs = Inputs::new();
+    for (command, option, needed) in [
+        ("query", "--robot-padding", "--robot"),
+        ("query", "--points", "--json"),
+        ("query", "--explain", "--json"),
+        ("path", "--force", "--html"),
+        ("robot", "--padding", "--scan-joints"),
+        ("robot", "--srdf", "--self-collision"),
+    ] {
+        let help = inputs.run(&[command, "--help"]).quiet(0).stdout();
+        let line = help.lines().find(|line| line.contains(&format!(" {option}"))).unwrap();
+        let words = line.split(option).nth(1).unwrap();
+        assert!(words.contains(&format!("ith {needed}")), "{command}: {line}");
+    }
+}
