@@ -54,7 +54,6 @@ struct RawFile<'a> {
     // Of each case: here they would be passed over.
     scene_sensor: Option<IgnoredAny>,
     object_sensor: Option<IgnoredAny>,
-    sensor: Option<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -125,11 +124,7 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
     if raw.length_unit != "m" {
         bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
     }
-    let of_cases = [
-        ("scene_sensor", raw.scene_sensor),
-        ("object_sensor", raw.object_sensor),
-        ("sensor", raw.sensor),
-    ];
+    let of_cases = [("scene_sensor", raw.scene_sensor), ("object_sensor", raw.object_sensor)];
     if let Some((name, _)) = of_cases.iter().find(|(_, given)| given.is_some()) {
         bail!(
             "`{name}` is beside the cases: write \"scene_sensor\" or \"object_sensor\" in each case, or \

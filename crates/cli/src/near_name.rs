@@ -13,7 +13,7 @@ pub(crate) fn meant<'a>(
     known.iter().find(is_meant).copied()
 }
 
-/// The same letters, the last of its words alone, or as many words of which each is cut short or misspelt.
+/// The same letters, or as many words of which each is cut short or misspelt.
 fn is_near(name: &str, known: &str) -> bool {
     let letters = |text: &str| -> String {
         text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
@@ -23,8 +23,7 @@ fn is_near(name: &str, known: &str) -> bool {
     };
     let (given, wanted) = (words(name), words(known));
     let all_near = || given.iter().zip(&wanted).all(|(a, b)| is_near_word(a, b));
-    let is_last = || wanted.len() > 1 && given[..] == wanted[wanted.len() - 1..];
-    letters(name) == letters(known) || is_last() || (given.len() == wanted.len() && all_near())
+    letters(name) == letters(known) || (given.len() == wanted.len() && all_near())
 }
 
 /// Of short words most are a slip away from another.

@@ -190,8 +190,6 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
         ("pose", "poze"),
         ("object", "Object"),
         ("id", "ID"),
-        // As the bodies of a scene file have it.
-        ("scene_sensor", "sensor"),
     ];
     let mut cases: Vec<String> = misspelt
         .iter()
@@ -203,7 +201,7 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
         .collect();
     // Names of other things, and of a second one beside the first.
     let other =
-        r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"id""#;
+        r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"sensor":"a note","id""#;
     cases.push(case("good", "\"id\"", other));
     inputs.write("cases.json", &case_file(&cases));
     let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines();
@@ -219,7 +217,7 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
 #[test]
 fn a_sensor_beside_the_cases_was_passed_over() {
     let inputs = Inputs::new();
-    for name in ["scene_sensor", "object_sensor", "sensor"] {
+    for name in ["scene_sensor", "object_sensor"] {
         let cases = case_file(&[case_at("a", 0.5)]);
         inputs.write("cases.json", &cases.replacen('{', &format!("{{\"{name}\":\"kinect\","), 1));
         let run = inputs.run(&["batch", "cases.json"]);
