@@ -200,8 +200,7 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
         })
         .collect();
     // Names of other things, and of a second one beside the first.
-    let other =
-        r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"sensor":"a note","id""#;
+    let other = r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"sensor":"a note","id""#;
     cases.push(case("good", "\"id\"", other));
     inputs.write("cases.json", &case_file(&cases));
     let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines();
