@@ -3,38 +3,22 @@
 
 use crate::support::Inputs;
 
-/// Options that a command refuses whatever else is given.
+/// Options that these commands refuse whatever else is given.
+const EVERYWHERE: [&str; 5] =
+    ["--mode=paper", "--pooling=max", "--seed=1", "--settings=s.toml", "--margin=0.1"];
+/// ... and what each of them refuses besides.
 const REFUSED: [(&str, &[&str]); 3] = [
-    (
-        "path floor.pcd box.obj --poses=p.csv",
-        &["--mode=paper", "--pooling=max", "--seed=1", "--settings=s.toml", "--margin=0.1"],
-    ),
+    ("path floor.pcd box.obj --poses=p.csv", &[]),
     (
         "scene scene.json",
         &[
-            "--mode=paper",
-            "--pooling=max",
-            "--seed=1",
-            "--settings=s.toml",
-            "--margin=0.1",
             "--object-sensor=kinect",
             "--sensor-pose=0,0,1",
             "--collision-map=0.1",
             "--robot=box.obj",
         ],
     ),
-    (
-        "robot floor.pcd r.urdf --joints=j.json",
-        &[
-            "--mode=paper",
-            "--pooling=max",
-            "--seed=1",
-            "--settings=s.toml",
-            "--margin=0.1",
-            "--object-sensor=kinect",
-            "--robot=box.obj",
-        ],
-    ),
+    ("robot floor.pcd r.urdf --joints=j.json", &["--object-sensor=kinect", "--robot=box.obj"]),
 ];
 
 /// They were listed, and whoever gave one was told to leave it out, or to give another that is refused too.
@@ -45,7 +29,7 @@ fn an_option_that_is_refused_was_listed() {
     for (command, options) in REFUSED {
         let words: Vec<&str> = command.split(' ').collect();
         let help = inputs.run(&[words[0], "--help"]).quiet(0).stdout();
-        for option in options {
+        for option in EVERYWHERE.iter().chain(options) {
             let run = inputs.run(&[&words[..], &[option]].concat());
             let error = run.stderr();
             let name = option.split('=').next().unwrap();

@@ -2,44 +2,24 @@
 
 use clap::Command;
 
-/// Options of other commands that these refuse: the help leaves them out.
+/// What no command of the calibrated mode alone takes; `--margin` is of one pose, too.
+const EVERYWHERE: [&str; 5] = ["mode", "settings", "pooling", "seed", "margin"];
+
+/// These commands, and what each of them refuses besides: the help leaves all of it out.
 const REFUSED: [(&str, &[&str]); 3] = [
-    ("path", &["mode", "settings", "pooling", "seed", "margin"]),
-    (
-        "scene",
-        &[
-            "mode",
-            "settings",
-            "pooling",
-            "seed",
-            "margin",
-            "object_sensor",
-            "sensor_pose",
-            "collision_map",
-            "robot",
-            "robot_padding",
-        ],
-    ),
-    (
-        "robot",
-        &[
-            "mode",
-            "settings",
-            "pooling",
-            "seed",
-            "margin",
-            "object_sensor",
-            "robot",
-            "robot_padding",
-        ],
-    ),
+    ("path", &[]),
+    ("scene", &["object_sensor", "sensor_pose", "collision_map", "robot", "robot_padding"]),
+    ("robot", &["object_sensor", "robot", "robot_padding"]),
 ];
 
 /// The same without these in the help; who gives one is told why not.
 pub(super) fn hidden(command: Command) -> Command {
-    REFUSED.iter().fold(command, |command, (name, options)| {
+    REFUSED.into_iter().fold(command, |command, (name, options)| {
         command.mut_subcommand(name, |of| {
-            options.iter().fold(of, |of, option| of.mut_arg(option, |arg| arg.hide(true)))
+            EVERYWHERE
+                .iter()
+                .chain(options)
+                .fold(of, |of, option| of.mut_arg(option, |arg| arg.hide(true)))
         })
     })
 }
