@@ -17,13 +17,18 @@ use crate::wide::wide_surface;
 /// A neighbour so many standard deviations off the surface is not a sample of it.
 const SAMPLE_OFFSET: f64 = 3.5;
 
+/// Noise of so many spacings is no longer small beside them ([`SurfaceError::sharp`]).
+///
+/// [`SurfaceError::sharp`]: crate::SurfaceError::sharp
+const SHARP: f64 = 0.25;
+
 /// The point given its measurement and the surface of its neighbours, which are in `scratch`; `None`
 /// where there is no surface to be fitted.
 ///
 /// With s² the variance of the noise along the normal, V that of the surface, h its height above the
 /// point and d the doubt, the point moves by w h, w = s²/(s² + d V), and has the variance
-/// w² V + u (o + (1 − o) u³) s² along the normal, u = (1 − w)², o the part of its own noise, never more
-/// than s². Across it the disc of the spacing is
+/// w² V + u (o + (1 − o) u³) s² along the normal, u = (1 − w)², o the part of its own noise, less of
+/// it where the noise is small beside the spacing, never more than s². Across it the disc of the spacing is
 /// widened by the noise where fits to other neighbourhoods face elsewhere: what is along the normal
 /// of the one is across that of the other.
 pub(crate) fn posterior(
@@ -83,7 +88,9 @@ pub(crate) fn posterior(
     let shift = (weight * surface.height).clamp(-most, most);
     let stays = (1.0 - weight).powi(2);
     let own = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
-    let along = (weight * weight * prior + own).min(noise);
+    let blur = (noise.sqrt() / (SHARP * around)).min(1.0);
+    let stated = error.sharp + (1.0 - error.sharp) * blur;
+    let along = (stated * (weight * weight * prior + own)).min(noise);
     let turned = (error.turn * surface.tilt).min(1.0) * sensor[index].max_std();
     let across = (settings.disc_std * spacing).hypot(turned);
     let point = UncertainPoint {

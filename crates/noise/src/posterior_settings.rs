@@ -48,6 +48,10 @@ pub struct SurfaceError {
     pub own_noise: f64,
     /// How soon normals that differ let the noise be in every direction: of their squared sine.
     pub turn: f64,
+    /// Of the variance along the normal that the other factors come to, where the noise is nothing
+    /// beside the spacing; it rises to all of it where the noise is a quarter of the spacing. Misfits
+    /// no larger than the noise, which the others allow for, are rare where the noise is small.
+    pub sharp: f64,
 }
 
 impl Default for PosteriorSettings {
@@ -75,6 +79,7 @@ impl Default for SurfaceError {
             doubt: 2.21,
             own_noise: 0.82,
             turn: 60.0,
+            sharp: 0.57,
         }
     }
 }
@@ -96,6 +101,7 @@ impl PosteriorSettings {
             doubt,
             own_noise,
             turn,
+            sharp,
         } = self.surface_error;
         for (name, value) in [
             ("posterior.disc_std", self.disc_std),
@@ -112,6 +118,7 @@ impl PosteriorSettings {
             ("posterior.surface_error.doubt", doubt),
             ("posterior.surface_error.own_noise", own_noise),
             ("posterior.surface_error.turn", turn),
+            ("posterior.surface_error.sharp", sharp),
         ] {
             check_not_negative(name, value)?;
         }

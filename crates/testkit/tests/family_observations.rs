@@ -143,9 +143,11 @@ fn ten_thousand_points_are_as_far_apart_as_promised() {
                     [0.02..0.035, 0.002..0.015]
                 }
                 Family::SettingDown => [0.012..0.025, 0.003..0.015],
-                Family::Desk | Family::Kitchen | Family::Workbench | Family::BoxesInBin => {
-                    [0.012..0.03, 0.001..0.007]
-                }
+                Family::Desk
+                | Family::Kitchen
+                | Family::Workbench
+                | Family::BoxesInBin
+                | Family::Bookcase => [0.012..0.03, 0.001..0.007],
                 _ => [0.012..0.032, 0.01..0.025],
             };
             assert!(expected_a.contains(&a) && expected_b.contains(&b), "{family:?}: {a}, {b}");

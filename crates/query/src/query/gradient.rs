@@ -56,7 +56,7 @@ impl Query {
     /// let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
     /// let table = Cloud::prepare(&PointCloud::from_points(sheet), &settings)?;
     /// let query = Query::new(QuerySettings::default())?;
-    /// let above = Pose::from_translation(Vector3::new(0.0, 0.0, 0.006));
+    /// let above = Pose::from_translation(Vector3::new(0.0, 0.0, 0.004));
     /// let (_, gradient) = query.gradient(&table, &table, &above)?;
     /// // Up is away from a collision.
     /// assert!(gradient.log_odds[2] < 0.0 && gradient.probability[2] < 0.0);

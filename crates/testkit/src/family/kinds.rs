@@ -1,8 +1,8 @@
 //! The families by name.
 
 use super::{
-    bin, desk, doorway, furniture, interlocked, kitchen, living_room, piano_room, primitives,
-    scene::FamilyScene, setting_down, staircase, tabletop, workbench,
+    bin, bookcase, desk, doorway, furniture, interlocked, kitchen, living_room, piano_room,
+    primitives, scene::FamilyScene, setting_down, staircase, tabletop, workbench,
 };
 
 /// A kind of contact between two bodies.
@@ -47,6 +47,9 @@ pub enum Family {
     /// Cartons, boards, trays and round things set down flat on a table, a shelf or the floor, or put
     /// against a wall: faces along one another.
     SettingDown,
+    /// Books and things on the boards of a bookcase; a book or a carton set down between them, or a
+    /// gripper.
+    Bookcase,
 }
 
 /// What a family is for.
@@ -80,6 +83,7 @@ impl Family {
         Self::Doorway,
         Self::Staircase,
         Self::SettingDown,
+        Self::Bookcase,
     ];
 
     /// Its name in tables: lower case, words joined by hyphens.
@@ -102,6 +106,7 @@ impl Family {
             Self::Doorway => "doorway",
             Self::Staircase => "staircase",
             Self::SettingDown => "setting-down",
+            Self::Bookcase => "bookcase",
         }
     }
 
@@ -124,7 +129,8 @@ impl Family {
             | Self::BoxesInBin
             | Self::Doorway
             | Self::Staircase
-            | Self::SettingDown => Kind::Ordinary,
+            | Self::SettingDown
+            | Self::Bookcase => Kind::Ordinary,
         }
     }
 
@@ -148,6 +154,7 @@ impl Family {
             Self::Doorway => doorway::scene(seed),
             Self::Staircase => staircase::scene(seed),
             Self::SettingDown => setting_down::scene(seed),
+            Self::Bookcase => bookcase::scene(seed),
         }
     }
 }

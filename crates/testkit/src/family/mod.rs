@@ -5,6 +5,7 @@
 //! family and the room of the piano: coarser, the table seen by a camera and hands: finer).
 
 mod bin;
+mod bookcase;
 mod depth_view;
 mod desk;
 mod doorway;
