@@ -87,9 +87,9 @@ fn units_sensors_and_the_threshold_are_those_of_the_file() {
     assert_eq!(answer["bodies"]["floor"]["sensor"], "iso:0.002");
     let mut file = of_bodies(&[floor(), body("box", "box.obj", 5.0)]);
     assert_eq!(answer["threshold"], 0.1);
-    file["threshold"] = json!(0.0001);
+    file["threshold"] = json!(0.00001);
     let answer = scene(&inputs, &file, &["--json"]).quiet(0).json_lines().remove(0);
-    assert_eq!((answer["threshold"].as_f64(), pairs(&answer).len()), (Some(0.0001), 1));
+    assert_eq!((answer["threshold"].as_f64(), pairs(&answer).len()), (Some(0.00001), 1));
     let both = scene(&inputs, &file, &["--reject", "0.2"]);
     assert!(both.code() == 1 && both.stderr().contains("give one of them"), "{}", both.stderr());
 }

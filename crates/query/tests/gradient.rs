@@ -195,6 +195,6 @@ fn two_clouds() {
 
 #[test]
 fn a_cloud_and_a_closed_mesh() {
-    check([false, true], 60, [10, 2, 10]);
-    check([true, false], 60, [10, 2, 10]);
+    check([false, true], 200, [30, 2, 30]);
+    check([true, false], 200, [30, 2, 30]);
 }
