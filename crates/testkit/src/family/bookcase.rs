@@ -56,7 +56,7 @@ pub(super) fn scene(seed: u64) -> FamilyScene {
     })
 }
 
-/// Half as wide as `w`, half as deep as `d`; books stand on the left of the lower board.
+/// `w` and `d` are half its width and depth, m; books stand on the left of the lower board.
 fn bookcase(w: f64, d: f64, rng: &mut ChaCha8Rng) -> TriangleMesh {
     let (t, room) = (between(0.018, 0.03, rng), between(0.28, 0.36, rng));
     let above = room + t;
