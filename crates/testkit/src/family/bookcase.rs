@@ -78,8 +78,10 @@ fn bookcase(w: f64, d: f64, rng: &mut ChaCha8Rng) -> TriangleMesh {
         let book = ranges([x, x + thick], [front, front + deep], [-SUNK, high]);
         parts.push(union_of_boxes(&[book]));
         x += thick + GAP;
-        // One was taken out.
-        x += if parts.len() == missing + 1 { between(0.05, 0.1, rng) } else { 0.0 };
+        if parts.len() == missing + 1 {
+            // One was taken out.
+            x += between(0.05, 0.1, rng);
+        }
     }
     let things = [
         (bottle(rng).mesh, [0.62 * w, 0.0, 0.0]),
