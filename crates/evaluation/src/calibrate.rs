@@ -29,7 +29,7 @@ const BESIDE_ODDS: usize = NOISE_KNOTS.len() * EXTENT_KNOTS.len();
 #[derive(Args)]
 pub struct Arguments {
     /// Draws of each family
-    #[arg(long, default_value_t = 8)]
+    #[arg(long, default_value_t = 16)]
     draws: u32,
     /// Poses of each draw
     #[arg(long, default_value_t = 20)]

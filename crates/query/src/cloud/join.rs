@@ -87,23 +87,16 @@ impl Nearest<'_> {
         self.cloud.gather(&others, reach, scratch);
     }
 
-    /// With fewer neighbours the point itself fills the rest, to which no edge leads.
     fn of(&mut self, index: u32, scratch: &mut Scratch) -> [u32; NEIGHBORS] {
         if let Some(nearest) = self.cloud.known_nearest(index) {
             return nearest;
         }
-        *self.known.entry(index).or_insert_with(|| {
-            let mut nearest = [index; NEIGHBORS];
-            let found = self.cloud.near_pieces().nearest_with(index as usize, NEIGHBORS, scratch);
-            for (slot, neighbor) in nearest.iter_mut().zip(found) {
-                *slot = neighbor.index as u32;
-            }
-            nearest
-        })
+        *self.known.entry(index).or_insert_with(|| self.cloud.sought_nearest(index, scratch))
     }
 }
 
-fn runs_along(p: &Surfel, q: &Surfel) -> bool {
+/// Whether the surface between two neighbours is straight enough to be joined.
+pub(super) fn runs_along(p: &Surfel, q: &Surfel) -> bool {
     let step = q.point.mean - p.point.mean;
     let length = step.norm();
     let along = |s: &Surfel| s.normal.is_some_and(|n| step.dot(&n).abs() <= SLOPE * length);

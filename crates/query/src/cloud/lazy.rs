@@ -95,6 +95,21 @@ impl Prepared {
         }
     }
 
+    /// The pieces nearest to one; with fewer of them the piece itself fills the rest, to which no edge leads.
+    pub(super) fn nearest(&self, piece: u32, scratch: &mut Scratch) -> [u32; NEIGHBORS] {
+        self.known_nearest(piece).unwrap_or_else(|| self.sought_nearest(piece, scratch))
+    }
+
+    /// The same by the index.
+    pub(super) fn sought_nearest(&self, piece: u32, scratch: &mut Scratch) -> [u32; NEIGHBORS] {
+        let mut nearest = [piece; NEIGHBORS];
+        let found = self.near_pieces().nearest_with(piece as usize, NEIGHBORS, scratch);
+        for (slot, neighbor) in nearest.iter_mut().zip(found) {
+            *slot = neighbor.index as u32;
+        }
+        nearest
+    }
+
     /// How far the fit at a piece looked, m, where that is known and not everywhere.
     pub(super) fn known_reach(&self, piece: u32) -> Option<f64> {
         let fitted = self.surface.surfels.get(piece as usize)?.get()?;

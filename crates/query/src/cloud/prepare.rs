@@ -6,7 +6,9 @@ use cloudtouch_geom::{Point3, PointCloud};
 use crate::error::PrepareError;
 
 use super::accessors::cloud_accessors;
+use super::edge::Edge;
 use super::leaf::{LeafEdges, LeafSurface};
+use super::onward::Onward;
 use super::prepared::Prepared;
 use super::settings::CloudSettings;
 use super::surfel::Surfel;
@@ -73,6 +75,10 @@ impl Cloud {
 
     pub(crate) fn leaf_edges(&self, id: NodeId) -> &LeafEdges {
         self.prepared.leaf_edges(id)
+    }
+
+    pub(crate) fn onward(&self, edge: &Edge, end: usize) -> Onward {
+        self.prepared.onward(edge, end)
     }
 
     pub(crate) fn surfels_near(&self, place: &Point3, count: usize) -> Vec<Surfel> {

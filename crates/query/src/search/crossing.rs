@@ -8,7 +8,7 @@
 
 use cloudtouch_geom::{Point3, Vector3, normal};
 
-use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
+use crate::cloud::{DISC_SPACINGS, Edge, Onward, Surfel};
 
 use super::facet::Facet;
 use super::through_mesh::Through;
@@ -25,7 +25,7 @@ pub(super) const CLEAREST: f64 = 6.0;
 /// A place where a piece of one surface passes through a piece of the other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Crossing {
-    /// How clearly, in standard deviations: that of the less clear end.
+    /// How clearly, in standard deviations: that of the less clear side.
     pub clear: f64,
     /// How near the middle of the disc it passes, from 1 to 0.
     pub weight: f64,
@@ -54,28 +54,28 @@ pub(crate) struct CrossingByPose {
 }
 
 impl Crossing {
-    /// Of two ends at these heights, of unequal sign, known so well, with this weight.
-    fn of(heights: [Height; 2], stds: [f64; 2], weight: Height, spacing: f64) -> Self {
+    /// Of two ends at these heights, of unequal sign, known so well, with this weight; `onward` is how clear
+    /// the surface is past either.
+    fn of(
+        (heights, stds): ([Height; 2], [f64; 2]),
+        onward: impl Fn(usize) -> Option<Height>,
+        weight: Height,
+        spacing: f64,
+    ) -> Self {
         let size = heights.map(|height| height.value.abs());
-        let known = stds.map(|std| known_to(std, spacing));
-        let clear_of = [size[0] / known[0], size[1] / known[1]];
-        let less_clear = usize::from(clear_of[1] < clear_of[0]);
-        let clear = clear_of[less_clear];
+        let of_end = |k: usize| clearness(&heights[k], known_to(stds[k], spacing));
+        let clear = less_clear([of_end(0), of_end(1)], onward);
         let nearer = usize::from(size[1] < size[0]);
         // Twice the excess over one half: none on the surface, certain far from it.
         let sure = |k: usize| 1.0 - 2.0 * normal::below_zero(size[k], stds[k]);
         let grows = |k: usize| heights[k].by_pose * heights[k].value.signum();
         let by_pose = CrossingByPose {
-            clear: if clear < CLEAREST {
-                grows(less_clear) / known[less_clear]
-            } else {
-                Wrench::zeros()
-            },
+            clear: if clear.value < CLEAREST { clear.by_pose } else { Wrench::zeros() },
             weight: weight.by_pose,
             depth: grows(nearer),
         };
         Self {
-            clear: clear.min(CLEAREST),
+            clear: clear.value.min(CLEAREST),
             weight: weight.value,
             probability: sure(0) * sure(1) * weight.value,
             place: Point3::origin(),
@@ -99,13 +99,47 @@ pub(super) fn of_mesh(disc: &Surfel, axis: Vector3, through: &Through) -> Crossi
     let std = disc.variance_across().sqrt();
     let weight = weight_by_pose(&through.off, disc.spacing);
     let heights = [through.above, through.below];
-    let of_pair = Crossing::of(heights, [std; 2], weight, disc.spacing);
+    let of_pair = Crossing::of((heights, [std; 2]), |_| None, weight, disc.spacing);
     Crossing { place: through.place, axis, ..of_pair }
 }
 
 /// How well the height of an end is known, m, given its standard deviation and the spacing there.
 pub(super) fn known_to(std: f64, spacing: f64) -> f64 {
     std.hypot(BEND_SPACINGS * spacing).max(f64::MIN_POSITIVE)
+}
+
+/// How clearly something known so well is at a height, in deviations.
+fn clearness(height: &Height, known: f64) -> Height {
+    let Height { value, by_pose } = height;
+    Height { value: value.abs() / known, by_pose: by_pose * (value.signum() / known) }
+}
+
+/// That of the less clear of two sides, each as clear as its end or the surface past that: which is asked
+/// about only where it decides.
+fn less_clear(mut ends: [Height; 2], onward: impl Fn(usize) -> Option<Height>) -> Height {
+    let first = usize::from(ends[1].value < ends[0].value);
+    for k in [first, 1 - first] {
+        if ends[k].value > ends[1 - k].value || ends[k].value >= CLEAREST {
+            break;
+        }
+        if let Some(past) = onward(k).filter(|past| past.value > ends[k].value) {
+            ends[k] = past;
+        }
+    }
+    ends[usize::from(ends[1].value < ends[0].value)]
+}
+
+/// How well the height of a place past an end is known above a disc, m: what stands for the surface about a
+/// sample says little of it farther away. Only where noise hides more than bends do it tells more than an
+/// end; without any it tells nothing, and this is infinite.
+pub(super) fn known_past_to(std: f64, spacing: f64) -> f64 {
+    let known = known_to(std, spacing);
+    known * (known / std).powi(2)
+}
+
+/// How clearly the surface past the end of an edge is on the side of that end.
+fn past(end: f64, height: Height, known: f64) -> Option<Height> {
+    (end * height.value > 0.0).then(|| clearness(&height, known))
 }
 
 pub(super) fn weight_at(spacings_off: f64) -> f64 {
@@ -121,7 +155,12 @@ fn weight_by_pose(off: &Height, spacing: f64) -> Height {
 
 /// Whether an edge of a leaf crosses a disc; `None` too where the end nearer to the disc's plane is
 /// not a point of that leaf: the other leaf has the same edge and counts it.
-pub(super) fn through_disc(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
+/// `onward` tells where the surface goes on past either end.
+pub(super) fn through_disc(
+    edge: &Edge,
+    disc: &Surfel,
+    onward: impl Fn(usize) -> Onward,
+) -> Option<Crossing> {
     let axis = disc.normal?;
     let middle = disc.point.mean;
     let heights = edge.ends.map(|end| (end - middle).dot(&axis));
@@ -144,25 +183,42 @@ pub(super) fn through_disc(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
     let along = edge.ends[1] - edge.ends[0];
     let force = away - axis * (away.dot(&along) / axis.dot(&along));
     let off = Height { value: off, by_pose: force_at(&place, &force) };
-    let heights = heights_of(edge, heights, &axis);
-    let of_pair = Crossing::of(heights, stds, weight_by_pose(&off, disc.spacing), disc.spacing);
+    let past_end = |k: usize| {
+        let Onward { place, across } = onward(k);
+        let known = known_past_to((across + of_disc).sqrt(), disc.spacing);
+        past(heights[k], height_of(&place, &middle, &axis), known)
+    };
+    let ends = [0, 1].map(|k| height_of(&edge.ends[k], &middle, &axis));
+    let weight = weight_by_pose(&off, disc.spacing);
+    let of_pair = Crossing::of((ends, stds), past_end, weight, disc.spacing);
     Some(Crossing { place, axis, ..of_pair })
 }
 
 /// The same for a triangle.
-pub(super) fn through_facet(edge: &Edge, facet: &Facet) -> Option<Crossing> {
+pub(super) fn through_facet(
+    edge: &Edge,
+    facet: &Facet,
+    onward: impl Fn(usize) -> Onward,
+) -> Option<Crossing> {
     let axis = facet.normal?;
     let pierced = facet.pierced_by(&edge.ends)?;
     edge.own[nearer_end(edge, pierced.heights)]?;
     let stds = edge.across.map(f64::sqrt);
-    let heights = heights_of(edge, pierced.heights, &axis);
+    let spacing = 2.0 * edge.half_length;
+    let past_end = |k: usize| {
+        let Onward { place, across } = onward(k);
+        let height = height_of(&place, &pierced.place, &axis);
+        past(pierced.heights[k], height, known_to(across.sqrt(), spacing))
+    };
+    let ends = [0, 1].map(|k| height_of(&edge.ends[k], &pierced.place, &axis));
     let full = Height { value: 1.0, by_pose: Wrench::zeros() };
-    let of_pair = Crossing::of(heights, stds, full, 2.0 * edge.half_length);
+    let of_pair = Crossing::of((ends, stds), past_end, full, spacing);
     Some(Crossing { place: pierced.place, axis, ..of_pair })
 }
 
-fn heights_of(edge: &Edge, heights: [f64; 2], axis: &Vector3) -> [Height; 2] {
-    [0, 1].map(|k| Height { value: heights[k], by_pose: force_at(&edge.ends[k], axis) })
+/// Of a place above a plane.
+fn height_of(place: &Point3, on_plane: &Point3, axis: &Vector3) -> Height {
+    Height { value: (place - on_plane).dot(axis), by_pose: force_at(place, axis) }
 }
 
 /// The end with the smaller height; between equals the one that comes first in space, so that both
@@ -202,29 +258,55 @@ mod tests {
         }
     }
 
+    /// Where the surface goes on by so much past either end.
+    fn through(edge: &Edge, disc: &Surfel, onward: [f64; 2]) -> Option<Crossing> {
+        let past = |k: usize| edge.ends[k] + Vector3::z() * onward[k];
+        through_disc(edge, disc, |k| Onward { place: past(k), across: edge.across[k] })
+    }
+
+    fn at_ends(edge: &Edge, disc: &Surfel) -> Option<Crossing> {
+        through(edge, disc, [0.0; 2])
+    }
+
+    #[test]
+    fn what_lies_past_an_end_tells_where_noise_hides_the_end() {
+        let edge = upright(0.0, -0.2, 0.5);
+        let clear = |std, onward| through(&edge, &disc(std), onward).unwrap().clear;
+        let ends = clear(0.5, [0.0; 2]);
+        // The end below is the less clear; then the one above is.
+        assert!(clear(0.5, [-0.2, 0.0]) > 1.2 * ends && clear(0.5, [0.0, 0.8]) == ends);
+        assert!(clear(0.5, [-2.0, 0.8]) > 1.2 * clear(0.5, [-2.0, 0.0]));
+        // On the other side, or where nothing is hidden, it says nothing.
+        assert_eq!(clear(0.5, [2.0, 0.0]), ends);
+        assert_eq!(clear(0.01, [-0.2, 0.0]), clear(0.01, [0.0; 2]));
+        // How deep it is is told by the ends alone.
+        let depth = |onward| through(&edge, &disc(0.5), onward).unwrap().depth;
+        assert_eq!(depth([-2.0, 0.8]), depth([0.0; 2]));
+    }
+
     #[test]
     fn an_edge_through_the_middle_crosses_as_clearly_as_its_nearer_end() {
-        let found = through_disc(&upright(0.0, -0.2, 0.5), &disc(0.1)).unwrap();
+        let found = at_ends(&upright(0.0, -0.2, 0.5), &disc(0.1)).unwrap();
         // Known to 0.1 and to a quarter of a spacing, together.
         assert!((found.clear - 0.2 / 0.1_f64.hypot(0.25)).abs() < 1e-12, "{found:?}");
         assert!((found.depth - 0.2).abs() < 1e-12 && found.place == Point3::origin());
         // One spacing off the middle: two standard deviations of the weight.
-        let aside = through_disc(&upright(1.0, -0.2, 0.5), &disc(0.1)).unwrap();
+        let aside = at_ends(&upright(1.0, -0.2, 0.5), &disc(0.1)).unwrap();
         assert!((aside.weight - (-2.0_f64).exp()).abs() < 1e-12);
-        assert!(through_disc(&upright(1.6, -0.2, 0.5), &disc(0.1)).is_none());
+        assert!(at_ends(&upright(1.6, -0.2, 0.5), &disc(0.1)).is_none());
     }
 
     #[test]
     fn an_edge_on_one_side_does_not_cross() {
-        assert!(through_disc(&upright(0.0, 0.001, 0.5), &disc(0.1)).is_none());
+        assert!(at_ends(&upright(0.0, 0.001, 0.5), &disc(0.1)).is_none());
         let mut unknown = disc(0.1);
         unknown.normal = None;
-        assert!(through_disc(&upright(0.0, -0.2, 0.5), &unknown).is_none());
+        assert!(at_ends(&upright(0.0, -0.2, 0.5), &unknown).is_none());
     }
 
     #[test]
     fn noise_larger_than_the_crossing_says_little() {
-        let found = through_disc(&upright(0.0, -0.2, 0.5), &disc(30.0)).unwrap();
+        let found = at_ends(&upright(0.0, -0.2, 0.5), &disc(30.0)).unwrap();
         assert!(found.clear < 0.01 && found.probability < 0.001, "{found:?}");
     }
 
@@ -233,7 +315,7 @@ mod tests {
         for (low, high) in [(-0.2, 0.5), (-0.5, 0.2), (-0.3, 0.3)] {
             let here = upright(0.0, low, high);
             let there = Edge { ends: [here.ends[1], here.ends[0]], ..here };
-            let counted = [here, there].iter().filter_map(|e| through_disc(e, &disc(0.1))).count();
+            let counted = [here, there].iter().filter_map(|e| at_ends(e, &disc(0.1))).count();
             assert_eq!(counted, 1, "{low} {high}");
         }
     }

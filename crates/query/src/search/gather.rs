@@ -8,6 +8,7 @@ use super::around::OfMesh;
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
 use super::leaf::{ExactLeaf, NoisyLeaf};
+use super::past::Past;
 use super::through_mesh::Outline;
 
 /// Pieces of a leaf by their places in it, those from the last bit on together.
@@ -94,13 +95,14 @@ pub(super) fn add_edges_through_discs(
         }
         let edge = &motion.map_or(*edge, |motion| edge.moved(motion));
         let middle = edge.middle();
+        let past = Past::new(of_edges.cloud, edge, motion);
         for &at in places.iter() {
             let disc = &of_discs.surfels[at];
             let reach = edge.half_length + DISC_SPACINGS * disc.spacing;
             if (disc.point.mean - middle).norm_squared() > reach * reach {
                 continue;
             }
-            let Some(crossing) = through_disc(edge, disc) else { continue };
+            let Some(crossing) = through_disc(edge, disc, |end| past.of(end)) else { continue };
             of_discs.crossing[at] = of_discs.crossing[at].max(crossing.probability);
             of_edges.raise_ends(edge, crossing.probability);
             found.add(Witness::edge(motion.is_none(), edge), &crossing);
@@ -121,8 +123,9 @@ pub(super) fn add_edges_through_facets(
             continue;
         }
         let edge = &motion.map_or(*edge, |motion| edge.moved(motion));
+        let past = Past::new(of_edges.cloud, edge, motion);
         for facet in &facets.facets {
-            let Some(crossing) = through_facet(edge, facet) else { continue };
+            let Some(crossing) = through_facet(edge, facet, |end| past.of(end)) else { continue };
             of_edges.raise_ends(edge, crossing.probability);
             found.add(Witness::edge(motion.is_none(), edge), &crossing);
         }

@@ -42,6 +42,7 @@ pub(crate) struct ExactLeaf {
 /// A leaf of a cloud.
 #[derive(Debug)]
 pub(crate) struct NoisyLeaf<'a> {
+    pub(super) cloud: &'a Cloud,
     pub surfels: Cow<'a, [Surfel]>,
     /// Where they were measured, for most are told to be far from another leaf before they are moved;
     /// `None` until they are needed.
@@ -134,6 +135,7 @@ impl<'a> NoisyLeaf<'a> {
             ),
         };
         Self {
+            cloud,
             surfels,
             edges: None,
             whitenings: Vec::new(),
@@ -154,8 +156,8 @@ impl<'a> NoisyLeaf<'a> {
     }
 
     /// Gets its edges, once.
-    pub(super) fn load_edges(&mut self, cloud: &'a Cloud, id: NodeId) {
-        self.edges.get_or_insert_with(|| cloud.leaf_edges(id));
+    pub(super) fn load_edges(&mut self, id: NodeId) {
+        self.edges.get_or_insert_with(|| self.cloud.leaf_edges(id));
     }
 
     /// Notes a crossing of an edge for the points that it joins.

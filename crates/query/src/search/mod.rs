@@ -15,6 +15,7 @@ mod inside;
 mod leaf;
 mod meeting;
 mod nearest;
+mod past;
 mod run;
 mod swept;
 mod through_mesh;

@@ -16,7 +16,7 @@ use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach_facets,
     reaching,
 };
-use super::leaf::{Between, Leaf, NoisyLeaf};
+use super::leaf::{Between, Leaf};
 use super::meeting::{Meeting, deviations_by_pose};
 use super::nearest::{Nearest, nearest_pieces};
 use super::wrench::Wrench;
@@ -149,34 +149,28 @@ fn cross<'a>(
         (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
             let near = reaching(on_a, on_b);
             if !near.is_none() {
-                load_edges(on_a, a, pair.a);
+                on_a.load_edges(pair.a);
                 add_edges_through_discs(None, (on_a, near), on_b, places, crossings);
             }
             let near = reaching(on_b, on_a);
             if !near.is_none() {
-                load_edges(on_b, b, pair.b);
+                on_b.load_edges(pair.b);
                 add_edges_through_discs(Some(a_from_b), (on_b, near), on_a, places, crossings);
             }
         }
         (Leaf::Noisy(noisy), Leaf::Exact(exact)) if may_reach_facets(noisy, exact) => {
-            load_edges(noisy, a, pair.a);
+            noisy.load_edges(pair.a);
             add_edges_through_facets(None, noisy, exact, crossings);
             let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
             add_mesh_through_discs(true, noisy, exact, &mut around, crossings);
         }
         (Leaf::Exact(exact), Leaf::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
-            load_edges(noisy, b, pair.b);
+            noisy.load_edges(pair.b);
             add_edges_through_facets(Some(a_from_b), noisy, exact, crossings);
             let mut around = OfMesh { known, body: a, a_from_mesh: None };
             add_mesh_through_discs(false, noisy, exact, &mut around, crossings);
         }
         _ => {}
-    }
-}
-
-pub(super) fn load_edges<'a>(leaf: &mut NoisyLeaf<'a>, body: BodyRef<'a>, id: NodeId) {
-    if let BodyRef::Cloud(cloud) = body {
-        leaf.load_edges(cloud, id);
     }
 }
 
@@ -195,6 +189,7 @@ mod tests {
     use crate::search::crossing::through_disc;
     use crate::search::crossings::Witness;
     use crate::search::meeting::squared_deviations;
+    use crate::search::past::Past;
 
     fn ball(count: usize, std: f64, seed: u64) -> Cloud {
         let samples = surface::sample_surface(&scene::sphere(0.05, 2), count, seed);
@@ -231,9 +226,15 @@ mod tests {
             }
         }
         let mut crossings = Crossings::default();
-        for (is_a, edges, discs) in [(true, edges_a, &surfels_b), (false, edges_b, &surfels_a)] {
+        let motion = Motion::from(a_from_b);
+        let of_a = (a, None, edges_a, &surfels_b);
+        let of_b = (b, Some(&motion), edges_b, &surfels_a);
+        for (cloud, motion, edges, discs) in [of_a, of_b] {
+            let is_a = motion.is_none();
             for edge in &edges {
-                for crossing in discs.iter().filter_map(|disc| through_disc(edge, disc)) {
+                let past = Past::new(cloud, edge, motion);
+                let through = |disc| through_disc(edge, disc, |end| past.of(end));
+                for crossing in discs.iter().filter_map(through) {
                     crossings.add(Witness::edge(is_a, edge), &crossing);
                 }
             }

@@ -8,6 +8,7 @@ use super::super::around::OfMesh;
 use super::super::crossings::Witness;
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, NoisyLeaf};
+use super::super::past::Past;
 use super::drifts::Drifts;
 use super::leaf::{SweptCloud, SweptEdges, SweptMesh};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
@@ -97,7 +98,8 @@ pub(super) fn add_edges_through_discs(
         if !track.middle.gets_to(&around, half + DISC_SPACINGS * around.spacing) {
             continue;
         }
-        let adrift = Adrift::new(is_a, edge, track);
+        let past = Past::new(of_edges.leaf.cloud, edge, of_edges.motion.as_ref());
+        let adrift = Adrift::new(is_a, edge, track, &past);
         for disc in &discs {
             let near =
                 track.middle.times_near(&disc.point.mean, half + DISC_SPACINGS * disc.spacing);
@@ -128,9 +130,10 @@ pub(super) fn add_edges_through_facets(
         if !track.middle.gets_to(&facets.leaf.ball, edge.half_length) {
             continue;
         }
-        let adrift = Adrift::new(is_a, edge, track);
+        let past = Past::new(of_edges.leaf.cloud, edge, of_edges.motion.as_ref());
+        let adrift = Adrift::new(is_a, edge, track, &past);
         for facet in &met {
-            if let Some(passage) = adrift.through_facet(*facet, &drifts.of_b) {
+            if let Some(passage) = adrift.through_facet(*facet, drifts) {
                 found.add(Witness::edge(is_a, edge), &passage);
             }
         }

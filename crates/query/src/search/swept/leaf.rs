@@ -10,7 +10,6 @@ use crate::report::Stats;
 
 use super::super::facet::Facet;
 use super::super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
-use super::super::run::load_edges;
 use super::hull::Hull;
 use super::track::{Direction, SweptFacet, Track};
 
@@ -38,6 +37,8 @@ pub(super) struct SweptCloud<'a> {
     /// About its discs.
     pub discs: Option<Hull>,
     pub layer: Layer,
+    /// From where it was measured to the frame of A; `None` for one of A.
+    pub motion: Option<Motion>,
     axes: Matrix3,
     edges: Option<SweptEdges>,
 }
@@ -81,14 +82,12 @@ impl<'a> Swept<'a> {
         drift: &Drift,
         stats: &mut Stats,
     ) -> Self {
-        match (body, Leaf::load(body, id, motion, stats)) {
-            (BodyRef::Cloud(cloud), Leaf::Noisy(leaf)) => {
-                Self::Noisy(Box::new(SweptCloud::new(leaf, axes_of(cloud, id, motion), drift)))
+        match Leaf::load(body, id, motion, stats) {
+            Leaf::Noisy(leaf) => {
+                let axes = axes_of(leaf.cloud, id, motion);
+                Self::Noisy(Box::new(SweptCloud::new(leaf, motion.copied(), axes, drift)))
             }
-            (_, Leaf::Noisy(leaf)) => {
-                Self::Noisy(Box::new(SweptCloud::new(leaf, Matrix3::identity(), drift)))
-            }
-            (_, Leaf::Exact(leaf)) => Self::Exact(SweptMesh::new(leaf, drift)),
+            Leaf::Exact(leaf) => Self::Exact(SweptMesh::new(leaf, drift)),
         }
     }
 }
@@ -113,7 +112,7 @@ impl SweptMesh {
 }
 
 impl<'a> SweptCloud<'a> {
-    fn new(leaf: NoisyLeaf<'a>, axes: Matrix3, drift: &Drift) -> Self {
+    fn new(leaf: NoisyLeaf<'a>, motion: Option<Motion>, axes: Matrix3, drift: &Drift) -> Self {
         let tracks = leaf.surfels.iter().map(|s| Track::of(&s.point.mean, drift)).collect();
         let of_disc = |s: &Surfel| {
             let normal = s.normal?;
@@ -123,21 +122,15 @@ impl<'a> SweptCloud<'a> {
         };
         let discs = Hull::around(&axes, leaf.surfels.iter().filter_map(of_disc), drift);
         let layer = Layer::around(&leaf.surfels, Direction::new(leaf.slab.direction, drift));
-        Self { leaf, tracks, discs, layer, axes, edges: None }
+        Self { leaf, tracks, discs, layer, motion, axes, edges: None }
     }
 
     /// Gets its edges, once.
-    pub(super) fn load_edges(
-        &mut self,
-        body: BodyRef<'a>,
-        id: NodeId,
-        motion: Option<&Motion>,
-        drift: &Drift,
-    ) {
+    pub(super) fn load_edges(&mut self, id: NodeId, drift: &Drift) {
         if self.edges.is_none() {
-            load_edges(&mut self.leaf, body, id);
+            self.leaf.load_edges(id);
             let edges = self.leaf.edges.iter().flat_map(|of_leaf| &of_leaf.edges);
-            let moved = edges.map(|edge| motion.map_or(*edge, |motion| edge.moved(motion)));
+            let moved = edges.map(|edge| self.motion.map_or(*edge, |motion| edge.moved(&motion)));
             self.edges = Some(SweptEdges::new(moved.collect(), &self.axes, drift));
         }
     }

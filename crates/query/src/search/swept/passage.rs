@@ -3,11 +3,12 @@
 
 use cloudtouch_geom::{Drift, Point3, Vector3};
 
-use crate::cloud::{DISC_SPACINGS, Edge, Surfel};
+use crate::cloud::{DISC_SPACINGS, Edge, Onward, Surfel};
 
 use super::super::around::OfMesh;
-use super::super::crossing::{CLEAREST, known_to, weight_at};
+use super::super::crossing::{CLEAREST, known_past_to, known_to, weight_at};
 use super::super::facet::Facet;
+use super::super::past::Past;
 use super::super::through_mesh::Outline;
 use super::drifts::Drifts;
 use super::leaf::EdgeTrack;
@@ -32,11 +33,18 @@ pub(super) struct Adrift<'a> {
     edge: &'a Edge,
     is_a: bool,
     track: &'a EdgeTrack,
+    past: &'a Past<'a>,
 }
 
 impl<'a> Adrift<'a> {
-    pub(super) fn new(is_a: bool, edge: &'a Edge, track: &'a EdgeTrack) -> Self {
-        Self { edge, is_a, track }
+    /// With where the surface goes on past its ends.
+    pub(super) fn new(
+        is_a: bool,
+        edge: &'a Edge,
+        track: &'a EdgeTrack,
+        past: &'a Past<'a>,
+    ) -> Self {
+        Self { edge, is_a, track, past }
     }
 
     /// Where it passes a plane between two times, given as its unit normal and a place on it.
@@ -85,7 +93,11 @@ impl<'a> Adrift<'a> {
         if off > DISC_SPACINGS {
             return None;
         }
-        let mut passage = self.passage(crossed.clear, weight_at(off), part, disc.spacing);
+        let known_past =
+            |onward: &Onward| known_past_to((onward.across + across).sqrt(), disc.spacing);
+        let sides = Sides { normal, place: &middle, times, stds, drift };
+        let clear = self.clear_past(crossed.clear, &sides, known_past);
+        let mut passage = self.passage(clear, weight_at(off), part, disc.spacing);
         let reach = DISC_SPACINGS * disc.spacing;
         if !self.is_a && reach < passage.radius {
             // The disc keeps still.
@@ -94,13 +106,13 @@ impl<'a> Adrift<'a> {
         Some(passage)
     }
 
-    /// Of a triangle of the other body; `drift` is that of B.
+    /// Of a triangle of the other body.
     pub(super) fn through_facet(
         &self,
         SweptFacet { facet, corners }: SweptFacet<'_>,
-        drift: &Drift,
+        drifts: &Drifts,
     ) -> Option<Passage> {
-        let normal = facet.normal?;
+        let (normal, drift) = (facet.normal?, &drifts.of_b);
         let spacing = 2.0 * self.edge.half_length;
         let stds = self.edge.across.map(|own| known_to(own.sqrt(), spacing));
         let crossed = self.crossed((normal, &facet.corners[0]), [-1.0, 1.0], stds, drift)?;
@@ -109,8 +121,34 @@ impl<'a> Adrift<'a> {
         let track = Track::of(&middle, drift);
         let drifting = if self.is_a { Drifting::Corners(corners) } else { Drifting::Place(&track) };
         let off = Approach { place: &middle, facet, drifting, drift }.keep_off();
-        (off <= half * (1.0 + ROUNDING) + ROUNDING * spacing)
-            .then(|| self.passage(crossed.clear, 1.0, [from, to], spacing))
+        (off <= half * (1.0 + ROUNDING) + ROUNDING * spacing).then(|| {
+            let known_past = |onward: &Onward| known_to(onward.across.sqrt(), spacing);
+            let (place, times) = (&facet.corners[0], [-1.0, 1.0]);
+            let sides = Sides { normal, place, times, stds, drift: drifts.of(self.is_a) };
+            let clear = self.clear_past(crossed.clear, &sides, known_past);
+            self.passage(clear, 1.0, [from, to], spacing)
+        })
+    }
+
+    /// How clear the passage is at most, given that by its ends alone and how well heights past them are
+    /// known, m.
+    fn clear_past(
+        &self,
+        by_ends: f64,
+        sides: &Sides<'_>,
+        known_past: impl Fn(&Onward) -> f64,
+    ) -> f64 {
+        let end = |k: usize| (self.edge.ends[k], self.track.ends[k], sides.stds[k]);
+        let past = |k: usize| {
+            let onward = self.past.of(k);
+            (onward.place, Track::of(&onward.place, sides.drift), known_past(&onward))
+        };
+        if by_ends >= CLEAREST {
+            return by_ends;
+        }
+        let (ends, pasts) = ([0, 1].map(end), [0, 1].map(past));
+        let pairs = [[&pasts[0], &ends[1]], [&ends[0], &pasts[1]], [&pasts[0], &pasts[1]]];
+        pairs.into_iter().map(|pair| sides.clear(pair)).fold(by_ends, f64::max).min(CLEAREST)
     }
 
     fn passage(&self, clear: f64, weight: f64, part: [Point3; 2], spacing: f64) -> Passage {
@@ -121,6 +159,37 @@ impl<'a> Adrift<'a> {
 }
 
 const ROUNDING: f64 = 1e-9;
+
+/// A plane that something passes between two times, with how well the ends of an edge are known across it,
+/// m; `drift` is that of what passes.
+struct Sides<'a> {
+    normal: Vector3,
+    place: &'a Point3,
+    times: [f64; 2],
+    stds: [f64; 2],
+    drift: &'a Drift,
+}
+
+impl Sides<'_> {
+    /// How clearly two places, each with its track and how well it is known, get to different sides at most.
+    fn clear(&self, pair: [&(Point3, Track, f64); 2]) -> f64 {
+        let direction = Direction::new(self.normal, self.drift);
+        let (middle, half) =
+            (0.5 * (self.times[0] + self.times[1]), 0.5 * (self.times[1] - self.times[0]));
+        let home = pair.map(|(place, _, _)| self.normal.dot(&(place - self.place)));
+        let slopes = pair.map(|(_, track, _)| track.way.dot(&self.normal));
+        let heights = [0, 1].map(|k| home[k] + middle * slopes[k]);
+        let changes = [0, 1].map(|k| half * slopes[k].abs() + direction.across * pair[k].1.beside);
+        let turn = self.drift.turn() * direction.across * (pair[0].0 - pair[1].0).norm();
+        let known = pair.map(|(_, _, known)| known);
+        let one_way = |sign: f64| {
+            let most = [sign * heights[0] + changes[0], changes[1] - sign * heights[1]];
+            let apart = sign * (home[0] - home[1]) + turn;
+            (most[0] / known[0]).min(most[1] / known[1]).min(apart / (known[0] + known[1]))
+        };
+        one_way(1.0).max(one_way(-1.0)).max(0.0)
+    }
+}
 
 /// How an edge may pass a plane.
 #[derive(Debug, Clone, Copy)]
