@@ -17,6 +17,7 @@ mod meeting;
 mod nearest;
 mod past;
 mod run;
+mod side;
 mod swept;
 mod through_mesh;
 mod wrench;

@@ -11,6 +11,7 @@ mod passage;
 mod pieces;
 mod pool;
 mod run;
+mod sides;
 mod track;
 
 pub(crate) use depth::greatest_depth;
