@@ -35,7 +35,7 @@ fn a_vertex_that_is_not_a_number_and_that_no_face_uses_refused_the_mesh() {
 }
 
 /// Some 400 points with 2 mm of noise on a ground of two triangles: in contact, whatever the size of
-/// the ground. Its parts ended at a billionth of its edges, metres long, with no corner near.
+/// the ground, or as likely as not: a sheet on itself crosses it nowhere. Its parts ended at a billionth of its edges, metres long, with no corner near.
 #[test]
 fn a_ground_that_reaches_a_million_kilometres_was_not_there() {
     for size in [1e9, 8e9] {
@@ -47,7 +47,7 @@ fn a_ground_that_reaches_a_million_kilometres_was_not_there() {
         assert!((300..500).contains(&patch.len()), "{} points", patch.len());
         let cloud = prepare(patch, 0.002, Mode::Calibrated);
         let report = ask(Mode::Calibrated, &ground, &cloud, &at(37.3, -11.9, 0.0));
-        assert!(report.collision_probability > 0.5, "{size} m: {report:?}");
+        assert!(report.collision_probability > 0.4, "{size} m: {report:?}");
         // Such a ground is doubted unless it is meant.
         let trusting = Safeguards { doubt_units: false, ..Safeguards::default() };
         let query = AnyQuery::with(Mode::Calibrated, |by| by.safeguards = trusting, |_| {});
