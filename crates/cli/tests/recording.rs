@@ -125,7 +125,7 @@ mod with_feature {
     #[test]
     fn batches_and_paths_take_scans_too() {
         let inputs = inputs();
-        let case = |scene: &str| support::case_at(scene, 0.1).replace("floor.pcd", scene);
+        let case = |scene: &str| support::case_at(scene, 0.1005).replace("floor.pcd", scene);
         inputs.write(
             "cases.json",
             &case_file(

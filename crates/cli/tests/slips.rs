@@ -23,7 +23,7 @@ const DOUBTED: &[Slip] = &[
         &["verdict\":\"undecided", "--cloud-unit"],
     ),
     (
-        "floor.pcd box.obj --unit mm --translate 0,0,0.0001",
+        "floor.pcd box.obj --unit mm --translate 0,0,0.005",
         &["verdict\":\"undecided", "points of the scene"],
     ),
     (
