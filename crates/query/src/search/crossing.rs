@@ -3,8 +3,8 @@
 //!
 //! An edge joins two neighbouring samples of one cloud; it stands for the surface between them. A
 //! disc about a sample of the other cloud, across its normal, stands for the surface around it. An
-//! edge whose ends lie clearly on two sides of a disc, and that passes close to its middle, crosses
-//! it; so does one through a triangle, and a mesh through a disc.
+//! edge whose ends, or what lies past them, are clearly on two sides of a disc, and that passes close
+//! to its middle, crosses it; so does one through a triangle, and a mesh through a disc.
 
 use cloudtouch_geom::{Point3, Vector3, normal};
 
