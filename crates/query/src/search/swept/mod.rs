@@ -9,9 +9,9 @@ mod hull;
 mod leaf;
 mod passage;
 mod pieces;
+mod plane;
 mod pool;
 mod run;
-mod sides;
 mod track;
 
 pub(crate) use depth::greatest_depth;

@@ -13,7 +13,7 @@ use super::super::side::{CLEAREST, known_past_to, known_to};
 use super::super::through_mesh::Outline;
 use super::drifts::Drifts;
 use super::leaf::EdgeTrack;
-use super::sides::Sides;
+use super::plane::{Heights, Known, Plane};
 use super::track::{Approach, Direction, Drifting, SweptFacet, Track, piece_keeps_off};
 
 /// A passage that may be.
@@ -49,24 +49,11 @@ impl<'a> Adrift<'a> {
         Self { edge, is_a, track, past }
     }
 
-    /// Where it passes a plane between two times, given as its unit normal and a place on it.
-    fn crossed(
-        &self,
-        (normal, place): (Vector3, &Point3),
-        [from, to]: [f64; 2],
-        stds: [f64; 2],
-        drift: &Drift,
-    ) -> Option<Crossed> {
-        let direction = Direction::new(normal, drift);
-        let home = self.edge.ends.map(|end| normal.dot(&(end - place)));
-        let turn = drift.turn() * direction.across * 2.0 * self.edge.half_length;
-        let apart = [home[0] - home[1] - turn, home[0] - home[1] + turn];
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let slopes = self.track.ends.map(|end| end.way.dot(&normal));
-        let heights = [0, 1].map(|k| home[k] + middle * slopes[k]);
-        let by_arc = self.track.ends.map(|end| direction.across * end.beside);
-        let changes = [0, 1].map(|k| half * slopes[k].abs() + by_arc[k]);
-        let crossed = Crossed::of(heights, changes, apart, stds)?;
+    /// Where it passes a plane, its ends known so well.
+    fn crossed(&self, plane: &Plane<'_>, known: [f64; 2]) -> Option<Crossed> {
+        let [from, to] = &self.track.ends;
+        let heights = plane.heights([from, to], 2.0 * self.edge.half_length);
+        let crossed = Crossed::of(&heights, known)?;
         // The leaf of the end that is nearer to the plane counts it: either, where both may be.
         let counts = |k: usize| crossed.nearer[k] && self.edge.own[k].is_some();
         (counts(0) || counts(1)).then_some(crossed)
@@ -88,8 +75,9 @@ impl<'a> Adrift<'a> {
     ) -> Option<Passage> {
         let (normal, middle) = (disc.normal?, disc.point.mean);
         let across = disc.variance_across();
-        let stds = self.edge.across.map(|own| known_to((own + across).sqrt(), disc.spacing));
-        let crossed = self.crossed((normal, &middle), times, stds, drift)?;
+        let known = self.edge.across.map(|own| known_to((own + across).sqrt(), disc.spacing));
+        let plane = Plane::new(normal, &middle, times, drift);
+        let crossed = self.crossed(&plane, known)?;
         let part = self.part(&crossed);
         let off = (piece_keeps_off(&part, &middle, drift) / disc.spacing).max(0.0);
         if off > DISC_SPACINGS {
@@ -97,8 +85,7 @@ impl<'a> Adrift<'a> {
         }
         let known_past =
             |onward: &Onward| known_past_to((onward.across + across).sqrt(), disc.spacing);
-        let sides = Sides { normal, place: &middle, times, stds, drift };
-        let clear = self.clear_past(crossed.clear, &sides, known_past);
+        let clear = self.clear_past(crossed.clear, (&plane, drift), known, known_past);
         let mut passage = self.passage(clear, weight_at(off), part, disc.spacing);
         let reach = DISC_SPACINGS * disc.spacing;
         if !self.is_a && reach < passage.radius {
@@ -116,8 +103,10 @@ impl<'a> Adrift<'a> {
     ) -> Option<Passage> {
         let (normal, drift) = (facet.normal?, &drifts.of_b);
         let spacing = 2.0 * self.edge.half_length;
-        let stds = self.edge.across.map(|own| known_to(own.sqrt(), spacing));
-        let crossed = self.crossed((normal, &facet.corners[0]), [-1.0, 1.0], stds, drift)?;
+        let known = self.edge.across.map(|own| known_to(own.sqrt(), spacing));
+        let of_edge = drifts.of(self.is_a);
+        let plane = Plane::new(normal, &facet.corners[0], [-1.0, 1.0], of_edge);
+        let crossed = self.crossed(&plane, known)?;
         let [from, to] = self.part(&crossed);
         let (middle, half) = (nalgebra::center(&from, &to), 0.5 * (to - from).norm());
         let track = Track::of(&middle, drift);
@@ -125,32 +114,30 @@ impl<'a> Adrift<'a> {
         let off = Approach { place: &middle, facet, drifting, drift }.keep_off();
         (off <= half * (1.0 + ROUNDING) + ROUNDING * spacing).then(|| {
             let known_past = |onward: &Onward| known_to(onward.across.sqrt(), spacing);
-            let (place, times) = (&facet.corners[0], [-1.0, 1.0]);
-            let sides = Sides { normal, place, times, stds, drift: drifts.of(self.is_a) };
-            let clear = self.clear_past(crossed.clear, &sides, known_past);
+            let clear = self.clear_past(crossed.clear, (&plane, of_edge), known, known_past);
             self.passage(clear, 1.0, [from, to], spacing)
         })
     }
 
-    /// How clear the passage is at most, given that by its ends alone and how well heights past them are
-    /// known, m.
+    /// How clear the passage of a plane is at most, given that by its ends alone, and how well they and what
+    /// lies past them are known; `drift` is that of the edge.
     fn clear_past(
         &self,
         by_ends: f64,
-        sides: &Sides<'_>,
+        (plane, drift): (&Plane<'_>, &Drift),
+        known: [f64; 2],
         known_past: impl Fn(&Onward) -> f64,
     ) -> f64 {
-        let end = |k: usize| (self.edge.ends[k], self.track.ends[k], sides.stds[k]);
-        let past = |k: usize| {
-            let onward = self.past.of(k);
-            (onward.place, Track::of(&onward.place, sides.drift), known_past(&onward))
-        };
         if by_ends >= CLEAREST {
             return by_ends;
         }
-        let (ends, pasts) = ([0, 1].map(end), [0, 1].map(past));
+        let ends = [0, 1].map(|k| Known { track: self.track.ends[k], to: known[k] });
+        let pasts = [0, 1].map(|k| {
+            let onward = self.past.of(k);
+            Known { track: Track::of(&onward.place, drift), to: known_past(&onward) }
+        });
         let pairs = [[&pasts[0], &ends[1]], [&ends[0], &pasts[1]], [&pasts[0], &pasts[1]]];
-        pairs.into_iter().map(|pair| sides.clear(pair)).fold(by_ends, f64::max).min(CLEAREST)
+        pairs.into_iter().map(|pair| plane.clear(pair)).fold(by_ends, f64::max).min(CLEAREST)
     }
 
     fn passage(&self, clear: f64, weight: f64, part: [Point3; 2], spacing: f64) -> Passage {
@@ -174,11 +161,11 @@ struct Crossed {
 }
 
 impl Crossed {
-    /// Of ends at heights that change by so much, the first above the second by no less and no more than
-    /// `apart`. `None` where both keep on one side.
-    fn of(heights: [f64; 2], changes: [f64; 2], apart: [f64; 2], stds: [f64; 2]) -> Option<Self> {
-        let from_above = Self::one_way(heights, changes, apart, stds);
-        let from_below = Self::one_way(heights.map(|h| -h), changes, [-apart[1], -apart[0]], stds);
+    /// Of ends at these heights, known so well. `None` where both keep on one side.
+    fn of(heights: &Heights, known: [f64; 2]) -> Option<Self> {
+        let Heights { at, changes, apart } = *heights;
+        let from_above = Self::one_way(at, changes, apart, known);
+        let from_below = Self::one_way(at.map(|h| -h), changes, [-apart[1], -apart[0]], known);
         match (from_above, from_below) {
             (Some(p), Some(q)) => Some(Self {
                 clear: p.clear.max(q.clear),
@@ -194,7 +181,7 @@ impl Crossed {
         heights: [f64; 2],
         changes: [f64; 2],
         apart: [f64; 2],
-        stds: [f64; 2],
+        known: [f64; 2],
     ) -> Option<Self> {
         let (above, below) = (heights[0], -heights[1]);
         let least = [(above - changes[0]).max(0.0), (below - changes[1]).max(0.0)];
@@ -206,11 +193,11 @@ impl Crossed {
         if most[0] <= 0.0 || most[1] <= 0.0 {
             return None;
         }
-        let clear = (most[0] / stds[0]).min(most[1] / stds[1]).min(CLEAREST);
+        let clear = (most[0] / known[0]).min(most[1] / known[1]).min(CLEAREST);
         let least_apart = apart[0].max(least[0] + least[1]);
         let to = most[0] / least_apart.max(most[0]);
         Some(Self {
-            clear: clear.min(most_apart / (stds[0] + stds[1])),
+            clear: clear.min(most_apart / (known[0] + known[1])),
             shares: [(least[0] / most_apart).min(to), to.min(most[0] / (most[0] + least[1]))],
             nearer: [least[0] <= most[1], least[1] <= most[0]],
         })
