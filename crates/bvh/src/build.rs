@@ -1,5 +1,5 @@
 //! Builds top-down: a node that holds too much, or is not flat enough, is halved along its
-//! direction of largest variance.
+//! direction of largest variance; first of all what is far from the rest is set apart.
 
 use std::sync::OnceLock;
 
@@ -20,7 +20,10 @@ impl Tree {
     /// A node is split while it has too many primitives or too high a variation (see
     /// [`TreeSettings`]), at the median of the positions along the eigenvector of largest
     /// variance. The median always halves, equal positions being told apart by their index, so
-    /// neither duplicates nor a grid can keep the splitting going, and the depth is log₂ n.
+    /// neither duplicates nor a grid can keep the splitting going, and the depth is log₂ n, and a little more:
+    /// what is more than four times as far from the middle of all as half of them is set apart first, and
+    /// of the rest again, so that a few returns from far away leave the tree over the others as it is
+    /// without them.
     /// O(n log n); the result depends on nothing but the input.
     ///
     /// # Errors
@@ -108,15 +111,23 @@ impl Tree {
     fn partition(&mut self, leaf: u32) {
         let start = self.nodes[leaf as usize].start;
         let mut parts = Parts::of(&self.primitives, self.indices_of(leaf));
+        // Only all of them are asked for what is far, and what is left then: of a part its ends would be.
+        let is_root = self.nodes[leaf as usize].parent.is_none();
+        let mut all_but_far = is_root.then_some(leaf);
         let mut stack = vec![leaf];
         while let Some(id) = stack.pop() {
             let node = &self.nodes[id as usize];
             let range = (node.start - start) as usize..(node.start - start + node.count) as usize;
             if self.should_split(id, self.fitted_variation(id)) {
-                let middle = range.start + range.len() / 2;
                 let NodeData { obb, moments, .. } = &self.nodes[id as usize];
-                parts.halve(range.clone(), &obb.axes.column(0).into_owned(), &moments.mean);
-                let children = self.halves(id);
+                let (axis, mean) = (obb.axes.column(0).into_owned(), moments.mean);
+                let is_all = all_but_far == Some(id);
+                let far = is_all.then(|| parts.set_far_apart(range.clone(), &mean)).flatten();
+                let middle = far.unwrap_or_else(|| parts.halve(range.clone(), &axis, &mean));
+                let children = self.split(id, (middle - range.start) as u32);
+                if is_all {
+                    all_but_far = far.map(|_| children[0]);
+                }
                 let ranges = [range.start..middle, middle..range.end];
                 let fitted = ranges.map(|range| parts.fitted(&self.primitives, range));
                 self.set_children(id, children, fitted);
@@ -148,12 +159,12 @@ impl Tree {
         if total > 0.0 { smallest / total } else { 0.0 }
     }
 
-    /// Gives a node (of at least two primitives) two new, unfitted children and returns them.
-    fn halves(&mut self, id: u32) -> [u32; 2] {
+    /// Gives a node (of at least two primitives) two new, unfitted children, the first with so many of its
+    /// primitives, and returns them.
+    fn split(&mut self, id: u32, first: u32) -> [u32; 2] {
         let NodeData { start, count, .. } = self.nodes[id as usize];
-        let half = count / 2;
-        let left = self.new_node(Some(id), start, half);
-        let right = self.new_node(Some(id), start + half, count - half);
+        let left = self.new_node(Some(id), start, first);
+        let right = self.new_node(Some(id), start + first, count - first);
         self.nodes[id as usize].children = Some([left, right]);
         [left, right]
     }

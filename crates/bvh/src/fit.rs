@@ -31,10 +31,15 @@ impl Tree {
         let parent = &self.nodes[parent as usize].obb;
         let axis: Vector3 = parent.axes.column(0).into_owned();
         let wanted = self.settings.sibling_overlap * 2.0 * parent.half_extents[0];
-        if axis.dot(&(right_moments.mean - left_moments.mean)) >= 0.0 {
-            overlap(&mut left_box, &mut right_box, &axis, wanted);
+        let is_in_order = axis.dot(&(right_moments.mean - left_moments.mean)) >= 0.0;
+        let (low, high) = if is_in_order {
+            (&mut left_box, &mut right_box)
         } else {
-            overlap(&mut right_box, &mut left_box, &axis, wanted);
+            (&mut right_box, &mut left_box)
+        };
+        // Without an overlap, boxes are as they fit, and what is between them is in neither.
+        if wanted > 0.0 {
+            overlap(low, high, &axis, wanted);
         }
         self.set_shape(left, left_moments, left_box);
         self.set_shape(right, right_moments, right_box);

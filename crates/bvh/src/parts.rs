@@ -10,6 +10,9 @@ use crate::fit::fitted;
 use crate::primitive::centroid;
 use crate::{Moments, Obb, Primitives};
 
+/// What is farther from the middle than this many times the median distance is set apart.
+const FAR: f64 = 4.0;
+
 /// A primitive that finds its place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Part {
@@ -55,10 +58,35 @@ impl Parts {
         }
     }
 
-    /// Parts a range at its median along an axis: the lower half of it comes first.
-    pub(crate) fn halve(&mut self, range: Range<usize>, axis: &Vector3, mean: &Point3) {
+    /// Puts what is far from a place last, farther than [`FAR`] times the median distance, and says where
+    /// that begins; `None` where nothing is, which leaves the order.
+    pub(crate) fn set_far_apart(&mut self, range: Range<usize>, from: &Point3) -> Option<usize> {
+        let Self { all, along, sorted, .. } = self;
+        let parts = &mut all[range.clone()];
+        let squared = |part: &Part| (part.centroid - from).norm_squared();
+        along.clear();
+        along.extend(parts.iter().map(squared));
+        let limit = along.iter().copied().fold(0.0, f64::max) / FAR.powi(2);
+        let half = parts.len() / 2;
+        // PERF: of most bodies more than half is farther than this, so that nothing is far beside it.
+        if along.iter().filter(|&&squared| squared >= limit).count() > half {
+            return None;
+        }
+        let (_, &mut median, _) = along.select_nth_unstable_by(half, f64::total_cmp);
+        let is_far = |part: &&Part| squared(part) > FAR.powi(2) * median;
+        sorted.clear();
+        sorted.extend(parts.iter().filter(|part| !is_far(part)));
+        let near = sorted.len();
+        sorted.extend(parts.iter().filter(is_far));
+        parts.copy_from_slice(sorted);
+        (0 < near && near < parts.len()).then_some(range.start + near)
+    }
+
+    /// Parts a range at its median along an axis, the lower half of it first, and says where the other
+    /// begins.
+    pub(crate) fn halve(&mut self, range: Range<usize>, axis: &Vector3, mean: &Point3) -> usize {
         let Self { all, along, keys, sorted, .. } = self;
-        let parts = &mut all[range];
+        let parts = &mut all[range.clone()];
         along.clear();
         along.extend(parts.iter().map(|part| axis.dot(&(part.centroid - mean))));
         // The sign of an eigenvector is arbitrary and an odd count halves unevenly; letting the
@@ -75,6 +103,7 @@ impl Parts {
         sorted.clear();
         sorted.extend(keys.iter().map(|&key| parts[key as u32 as usize]));
         parts.copy_from_slice(sorted);
+        range.start + half
     }
 }
 

@@ -22,7 +22,8 @@ pub struct TreeSettings {
     /// 1/3 switches this rule off.
     pub max_variation: f64,
     /// How far the boxes of two siblings reach into one another (ε), as a part of the extent of
-    /// their parent along the split axis; in \[0, 0.5\]. The paper uses 1-5 %.
+    /// their parent along the split axis; in \[0, 0.5\], 0 to leave them as they fit, apart or not. The
+    /// paper uses 1-5 %.
     pub sibling_overlap: f64,
 }
 

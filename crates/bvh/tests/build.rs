@@ -1,6 +1,7 @@
 //! Every cloud gives a well-formed tree whose leaves keep the promises of the settings.
 
 use crate::common;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::common::{bumpy_sheet, degenerate_clouds, noisy};
@@ -64,7 +65,7 @@ fn leaves_are_flat_unless_too_small_to_split() {
 
 #[test]
 fn siblings_overlap_by_a_part_of_their_parent() {
-    for sibling_overlap in [0.0, 0.01, 0.05] {
+    for sibling_overlap in [0.001, 0.01, 0.05] {
         let settings = TreeSettings { sibling_overlap, ..TreeSettings::default() };
         let tree = Tree::build(bumpy_sheet(3, 2000, Vector3::zeros()), &settings).unwrap();
         let mut checked = 0;
@@ -268,4 +269,23 @@ fn a_tree_built_with_bounds_is_one_that_is_given_them() {
     let far = Primitives::Alike { means: Arc::new(far), covariance };
     let refused = Tree::build_bounded(far, &settings, |_, leaf| bounds_of(leaf));
     assert!(matches!(refused, Err(TreeError::Coordinate { index: 1, .. })));
+}
+
+/// A return from far away stretched the box of the root, and turned every cut below.
+#[test]
+fn what_is_far_leaves_the_tree_over_the_rest_as_it_is() {
+    let leaves = |far: &[Point3]| -> BTreeSet<Vec<u32>> {
+        let mut cloud = bumpy_sheet(3, 600, Vector3::zeros());
+        let count = cloud.len() as u32;
+        cloud.extend(far.iter().map(|&place| noisy(place, 0.01)));
+        let tree = common::small_leaves(cloud);
+        tree.validate().unwrap();
+        let of_sheet = |leaf: &Node<'_>| leaf.primitive_indices().iter().all(|&i| i < count);
+        tree.leaves().filter(of_sheet).map(|leaf| leaf.primitive_indices().to_vec()).collect()
+    };
+    let far = [30.0, -40.0, 1e6].map(|x| Point3::new(x, 0.3 * x, 5.0));
+    let plain = leaves(&[]);
+    assert!(plain.len() > 20);
+    assert_eq!(plain, leaves(&far[..1]));
+    assert_eq!(plain, leaves(&far));
 }

@@ -42,8 +42,8 @@ impl Cloud {
     /// thousandth; but for lonely samples. What a sample stands for is limited by how far apart samples
     /// are in the boxes of the tree around it, and a tree that was changed in place has other boxes than one
     /// that is built over the same points. So where surfaces meet at samples that are much farther apart than those
-    /// about them, probabilities may differ, as they do in a fresh cloud that has a few more points far
-    /// off: by a thousandth on average for a camera that walks about a room, seldom by a tenth. After
+    /// about them, probabilities may differ, as they do in a fresh cloud that has a few more points
+    /// elsewhere: by a thousandth on average for a camera that walks about a room, seldom by a tenth. After
     /// [`Self::rebuild`] nothing differs, to the bit as long as the middle of the box around all points stays.
     /// That comes by itself ([`Change::is_rebuilt`]) when as many points came or went as there are, or
     /// leaves are half again as loose; and where samples are far denser than their noise, at each change.

@@ -28,10 +28,12 @@ impl CloudSettings {
             filter: FilterSettings::for_sensor(&sensor),
             sensor,
             posterior: PosteriorSettings::default(),
-            // Contact patches do not end where leaves do: small ones are searched sooner.
+            // Contact patches do not end where leaves do: small ones are searched sooner, and nothing is
+            // gained where siblings overlap.
             tree: TreeSettings {
                 max_leaf_points: 12,
                 min_leaf_points: 6,
+                sibling_overlap: 0.0,
                 ..TreeSettings::default()
             },
         }

@@ -81,7 +81,7 @@ impl Mesh {
         )
         .map_err(|error| PrepareError::Surface { reason: error.to_string() })?;
         let triangles: Vec<_> = (0..merged.triangles().len()).map(|t| merged.corners(t)).collect();
-        let tree = tree_of(triangles.iter().copied(), LEAF_TRIANGLES)?;
+        let tree = tree_of(triangles.iter().copied(), LEAF_TRIANGLES, 0.0)?;
         let winding = Winding::new(triangles);
         let prepare_time = start.elapsed();
         Ok(Self {
@@ -181,7 +181,8 @@ impl Mesh {
     pub(crate) fn paper_tree(&self) -> &Tree {
         self.paper_tree.get_or_init(|| {
             let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
-            tree_of(triangles, PAPER_LEAF_TRIANGLES).expect("another tree holds these triangles")
+            tree_of(triangles, PAPER_LEAF_TRIANGLES, TreeSettings::default().sibling_overlap)
+                .expect("another tree holds these triangles")
         })
     }
 
@@ -199,12 +200,14 @@ impl Mesh {
     }
 }
 
-/// A tree over triangles, so many in a leaf at most.
+/// A tree over triangles, so many in a leaf at most, with siblings that overlap so far (ε).
 fn tree_of(
     triangles: impl Iterator<Item = [Point3; 3]>,
     max_leaf_points: usize,
+    sibling_overlap: f64,
 ) -> Result<Tree, TreeError> {
-    let settings = TreeSettings { max_leaf_points, min_leaf_points: 1, ..TreeSettings::default() };
+    let usual = TreeSettings::default();
+    let settings = TreeSettings { max_leaf_points, min_leaf_points: 1, sibling_overlap, ..usual };
     Tree::build(triangles.map(Primitive::Triangle).collect(), &settings)
 }
 
