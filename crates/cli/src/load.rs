@@ -175,7 +175,7 @@ fn of_clouds<C: PreparedCloud>(
         && let Some(Rigid(pose)) = common.sensor_pose
     {
         ensure!(scans.len() == 1, "{name}: --sensor-pose is for one scan, and these are several");
-        scans.iter_mut().for_each(|scan| scan.sensor_pose = pose);
+        scans.iter_mut().for_each(|scan| scan.sensor_pose = Some(pose));
     }
     let first = scans.first().with_context(|| format!("{name}: no scan"))?;
     let Chosen { sensor, because } = sensor.of(first);

@@ -33,6 +33,28 @@ fn a_pose_file_and_options_say_the_same() {
     assert!(a > 0.0 && (a - b).abs() < 1e-9, "{a} {b}");
 }
 
+/// Who said that the sensor stood at the origin was taken to have said nothing.
+#[test]
+fn an_object_in_a_room_that_was_scanned_from_its_origin_was_undecided() {
+    let inputs = Inputs::new();
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let dome = |i: u32| {
+        let z = (f64::from(i) + 0.5) / 2000.0 - 1.0;
+        let (radius, turn) = ((1.0 - z * z).sqrt(), golden * f64::from(i));
+        format!("{} {} {}\n", radius * turn.cos(), radius * turn.sin(), z)
+    };
+    inputs.write("dome.xyz", &(0..4000).map(dome).collect::<String>());
+    let ask = |more: &[&str]| {
+        let within = ["query", "dome.xyz", "box.obj", "--translate=0.3,0,0"];
+        inputs.run(&[&within[..], more].concat()).quiet(0).stdout()
+    };
+    let unsaid = ask(&[]);
+    assert!(unsaid.contains("undecided") && unsaid.contains("--sensor-pose"), "{unsaid}");
+    assert!(unsaid.lines().all(|line| line.chars().count() <= 100), "{unsaid}");
+    let said = ask(&["--sensor-pose", "0,0,0"]);
+    assert!(said.contains("verdict                free"), "{said}");
+}
+
 #[test]
 fn negative_numbers_need_no_equals_sign() {
     let inputs = Inputs::new();

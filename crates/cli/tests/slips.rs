@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use crate::support::{Inputs, case_at, case_file, cube, floor};
-use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, Vector3};
 use serde_json::Value;
 
 /// Arguments, and what the answer or the error has to say.
@@ -250,7 +250,7 @@ fn image() -> PointCloud {
     };
     let points = (0..width * height).map(pixel).collect();
     let image_size = Some((width as usize, height as usize));
-    PointCloud { image_size, sensor_pose: Pose::identity(), ..PointCloud::from_points(points) }
+    PointCloud { image_size, ..PointCloud::from_points(points) }
 }
 
 /// Runs each slip, with these arguments first; what it said, by exit code, is checked by `check`.

@@ -89,5 +89,5 @@ pub(crate) fn check_cloud(cloud: &PointCloud, most: usize) {
     if let Some((width, height)) = cloud.image_size {
         assert_eq!(width.checked_mul(height), Some(cloud.len()), "one point for each pixel");
     }
-    assert!(cloud.sensor_pose.non_finite_entry().is_none(), "the sensor is somewhere");
+    assert!(cloud.from_sensor().non_finite_entry().is_none(), "the sensor is somewhere");
 }

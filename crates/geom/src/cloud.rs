@@ -19,21 +19,27 @@ pub struct PointCloud {
     /// [`unit`](crate::unit()) makes them of plain vectors.
     pub normals: Option<Vec<UnitVector3>>,
     /// Where the sensor was and which way it looked: from its frame (for a camera x right, y down,
-    /// z forward) into that of the points. The identity where nothing else is known.
-    pub sensor_pose: Pose,
+    /// z forward) into that of the points. `None` where nobody said: then it counts as the identity, and
+    /// nothing is concluded from where it was.
+    pub sensor_pose: Option<Pose>,
     /// Width and height when the cloud is an image, row by row.
     pub image_size: Option<(usize, usize)>,
 }
 
 impl PointCloud {
-    /// A cloud of points in the frame of the sensor.
+    /// A cloud of points, of which nothing else is said.
     pub fn from_points(points: Vec<Point3>) -> Self {
         Self { points, ..Self::default() }
     }
 
-    /// Where the sensor was, in the frame of the points, m.
+    /// From the frame of the sensor into that of the points; the identity where nobody said.
+    pub fn from_sensor(&self) -> Pose {
+        self.sensor_pose.unwrap_or_else(Pose::identity)
+    }
+
+    /// Where the sensor was, in the frame of the points, m; the origin where nobody said.
     pub fn sensor_origin(&self) -> Point3 {
-        Point3::from(self.sensor_pose.translation())
+        Point3::from(self.from_sensor().translation())
     }
 
     /// How many rows there are, NaN ones included.
@@ -61,7 +67,7 @@ impl PointCloud {
     }
 
     /// The same cloud in the frame that `pose` maps its own into: points, covariances, normals and
-    /// where the sensor was.
+    /// where the sensor was: who moves a cloud says so, if its own frame was the sensor's.
     #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
         let turned = |c: &Covariance| c.rotated(pose.rotation());
@@ -70,7 +76,7 @@ impl PointCloud {
             points: self.points.iter().map(|p| pose.transform_point(p)).collect(),
             covariances: self.covariances.as_ref().map(|all| all.iter().map(turned).collect()),
             normals: self.normals.as_ref().map(|all| all.iter().map(unit).collect()),
-            sensor_pose: pose.after(&self.sensor_pose),
+            sensor_pose: Some(pose.after(&self.from_sensor())),
             image_size: self.image_size,
         }
     }

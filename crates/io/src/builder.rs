@@ -100,7 +100,7 @@ pub(crate) fn check_cloud(path: &Path, cloud: &PointCloud) -> Result<(), WriteEr
     {
         return Err(length("image pixels", width.saturating_mul(height)));
     }
-    match cloud.sensor_pose.non_finite_entry() {
+    match cloud.from_sensor().non_finite_entry() {
         Some(value) => Err(WriteError::SensorPose { path: path.to_owned(), value }),
         None => Ok(()),
     }

@@ -254,8 +254,9 @@ fn unsupported(path: &Path, supported: &'static str) -> ReadError {
 /// A cloud in another unit: positions, covariances and the place of the sensor times `factor`.
 pub fn scaled_cloud(mut cloud: PointCloud, factor: f64) -> PointCloud {
     cloud.points.iter_mut().for_each(|p| p.coords *= factor);
-    let origin = cloud.sensor_pose.translation() * factor;
-    cloud.sensor_pose = Pose::from_translation_rotation(origin, *cloud.sensor_pose.rotation());
+    cloud.sensor_pose = cloud
+        .sensor_pose
+        .map(|pose| Pose::from_translation_rotation(pose.translation() * factor, *pose.rotation()));
     for covariance in cloud.covariances.iter_mut().flatten() {
         *covariance = covariance.scaled(factor);
     }

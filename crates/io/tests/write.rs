@@ -39,7 +39,7 @@ fn any_cloud() -> impl Strategy<Value = PointCloud> {
                 points: rows.iter().map(|(p, _)| Point3::from(*p)).collect(),
                 covariances: with_covariances.then(|| rows.iter().map(|(_, c)| *c).collect()),
                 normals: None,
-                sensor_pose: Pose::from_translation_rpy(origin.into(), turn),
+                sensor_pose: Some(Pose::from_translation_rpy(origin.into(), turn)),
                 image_size: (height > 1).then_some((width, height)),
             })
         },
@@ -125,7 +125,7 @@ fn lists_of_different_length_are_refused_and_write_nothing() {
     cloud.image_size = Some((2, 3));
     assert_eq!(length(write_cloud_pcd(&path, &cloud)), ("image pixels", 6));
     cloud.image_size = None;
-    cloud.sensor_pose = Pose::from_translation(Vector3::new(0.0, f64::NAN, 0.0));
+    cloud.sensor_pose = Some(Pose::from_translation(Vector3::new(0.0, f64::NAN, 0.0)));
     assert!(matches!(write_cloud_pcd(&path, &cloud), Err(WriteError::SensorPose { .. })));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }

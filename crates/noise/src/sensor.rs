@@ -89,7 +89,7 @@ pub fn position_noise(sensor: &impl Sensor, cloud: &PointCloud) -> Result<Sensor
 
 /// The pose of the sensor, without a turn that a camera cannot have had.
 fn plausible_pose(sensor: &impl Sensor, cloud: &PointCloud) -> Result<Pose, NoiseError> {
-    let stated = cloud.sensor_pose;
+    let stated = cloud.from_sensor();
     checked_pose(&stated)?;
     let axis = stated.transform_vector(&Vector3::z());
     let origin = cloud.sensor_origin();

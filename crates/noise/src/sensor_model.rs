@@ -90,7 +90,7 @@ impl SensorModel {
     /// not finite.
     pub fn covariances(&self, cloud: &PointCloud) -> Result<SensorNoise, NoiseError> {
         self.validate()?;
-        checked_pose(&cloud.sensor_pose)?;
+        checked_pose(&cloud.from_sensor())?;
         match *self {
             Self::Exact => uniform(Covariance::zero(), cloud),
             Self::Isotropic { std } => uniform(Covariance::isotropic(std * std), cloud),

@@ -73,7 +73,7 @@ fn a_point_at_the_sensor_has_finite_noise() {
 #[test]
 fn rays_start_at_the_sensor_origin() {
     let cloud = PointCloud {
-        sensor_pose: Pose::from_translation(Vector3::new(5.0, 0.0, 0.0)),
+        sensor_pose: Some(Pose::from_translation(Vector3::new(5.0, 0.0, 0.0))),
         ..PointCloud::from_points(vec![Point3::new(5.0, 3.0, 0.0)])
     };
     let sensor = SensorModel::Lidar { range_std: 0.02, beam_rad: 0.0 };
@@ -90,7 +90,7 @@ fn a_camera_looks_where_its_pose_says() {
         let sensor: SensorModel = sensor.parse().unwrap();
         let optical = sensor.covariances(&PointCloud::from_points(ahead.to_vec())).unwrap();
         let moved = PointCloud {
-            sensor_pose: pose,
+            sensor_pose: Some(pose),
             ..PointCloud::from_points(ahead.map(|p| pose.transform_point(&p)).to_vec())
         };
         let found = sensor.covariances(&moved).unwrap();
@@ -107,7 +107,7 @@ fn a_camera_looks_where_its_pose_says() {
 fn a_turn_that_puts_the_points_behind_the_camera_is_not_believed() {
     let points = vec![Point3::new(0.5, 0.1, 1.0), Point3::new(-0.3, 0.2, 1.4)];
     let turned = PointCloud {
-        sensor_pose: Pose::from_translation_rpy(Vector3::zeros(), [0.1 - 3.1, 0.4, 0.0]),
+        sensor_pose: Some(Pose::from_translation_rpy(Vector3::zeros(), [0.1 - 3.1, 0.4, 0.0])),
         ..PointCloud::from_points(points.clone())
     };
     let optical = SensorModel::Kinect.covariances(&PointCloud::from_points(points)).unwrap();
@@ -160,7 +160,7 @@ fn what_cannot_be_represented_is_refused() {
         SensorModel::Kinect.covariances(&cloud),
         Err(NoiseError::CovarianceNotFinite { index: 0, .. })
     ));
-    cloud.sensor_pose = Pose::from_translation(Vector3::new(0.0, f64::NAN, 0.0));
+    cloud.sensor_pose = Some(Pose::from_translation(Vector3::new(0.0, f64::NAN, 0.0)));
     assert!(matches!(SensorModel::Exact.covariances(&cloud), Err(NoiseError::SensorPose { .. })));
     assert!(matches!(
         SensorModel::Isotropic { std: -1.0 }.covariances(&cloud),

@@ -11,7 +11,9 @@ pub fn probability(p: f64) -> String {
 pub fn undecided(by: Undecided) -> &'static str {
     match by {
         Undecided::Unseen => "the camera saw too little of where the object is",
-        Undecided::Enclosed => "one cloud is all around the other: hollow or solid is not known",
+        Undecided::Enclosed => {
+            "one cloud is all around the other: hollow or solid? (--sensor-pose)"
+        }
         Undecided::Units => "sizes or distance cannot be meant",
         Undecided::Sparse => "one body fits between the points of the other",
         Undecided::Noise => "the noise is larger than a body",

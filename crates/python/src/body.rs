@@ -256,7 +256,7 @@ impl CloudArguments<'_> {
         let mut cloud = PointCloud::from_points(points);
         if let Some(array) = &self.sensor_pose {
             let pose = Pose::try_from_matrix(&matrix(array));
-            cloud.sensor_pose = pose.map_err(|e| refused_for("sensor_pose", e))?;
+            cloud.sensor_pose = Some(pose.map_err(|e| refused_for("sensor_pose", e))?);
         }
         cloud.image_size = self.image_size;
         if let Some(array) = &self.covariances {

@@ -16,7 +16,7 @@ type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Rows (N, 3), the width and height of an image, the pose of the sensor and covariances.
 type CloudRead<'py> =
-    (Matrix<'py>, Option<(usize, usize)>, Matrix<'py>, Option<Bound<'py, PyArray3<f64>>>);
+    (Matrix<'py>, Option<(usize, usize)>, Option<Matrix<'py>>, Option<Bound<'py, PyArray3<f64>>>);
 
 /// What a file holds of a cloud, in metres.
 #[pyfunction]
@@ -29,7 +29,7 @@ pub(crate) fn read_cloud<'py>(
     let factor = unit.parse::<LengthUnit>().map_err(refused)?.in_metres();
     let read = py.detach(|| read_cloud_within(path, &ReadLimits::default()));
     let cloud: PointCloud = scaled_cloud(read.map_err(refused)?, factor);
-    let pose = of_pose(py, &cloud.sensor_pose);
+    let pose = cloud.sensor_pose.map(|pose| of_pose(py, &pose));
     let covariances = cloud.covariances.as_deref().map(|all| matrices(all).into_pyarray(py));
     Ok((rows(py, &cloud.points), cloud.image_size, pose, covariances))
 }

@@ -48,7 +48,7 @@ fn rows_that_are_not_finite_always_go() {
 fn the_range_is_measured_from_the_sensor_and_includes_its_ends() {
     let points: Vec<Point3> = (0..10).map(|i| Point3::new(5.0, 0.0, f64::from(i))).collect();
     let cloud = PointCloud {
-        sensor_pose: Pose::from_translation(Vector3::new(5.0, 0.0, 0.0)),
+        sensor_pose: Some(Pose::from_translation(Vector3::new(5.0, 0.0, 0.0))),
         ..PointCloud::from_points(points)
     };
     let settings = FilterSettings { min_range: Some(2.0), max_range: 7.0, ..off() };
@@ -73,9 +73,11 @@ fn what_is_near_the_origin_of_a_map_was_taken_for_no_return() {
         // Missing returns are written so.
         assert_eq!(dropped(&map, &settings), 1, "{sensor}");
         // Where it is said where the sensor was, what is at it is no surface.
-        let sensor_pose = Pose::from_translation(Vector3::new(0.155, 0.0, 0.0));
+        let sensor_pose = Some(Pose::from_translation(Vector3::new(0.155, 0.0, 0.0)));
         let said = PointCloud { sensor_pose, ..map.clone() };
         assert_eq!(dropped(&said, &settings), 14, "{sensor}");
+        let said = PointCloud { sensor_pose: Some(Pose::identity()), ..map.clone() };
+        assert_eq!(dropped(&said, &settings), 10, "{sensor}");
         let image = PointCloud { image_size: Some((count / 2, 2)), ..map.clone() };
         assert_eq!(dropped(&image, &settings), 10, "{sensor}");
         let asked_for = FilterSettings { min_range: Some(0.055), ..settings };

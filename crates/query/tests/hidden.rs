@@ -54,8 +54,8 @@ fn an_image_in_another_frame_read_free_where_nobody_had_looked() {
     let to_map = Pose::from_translation_rpy(Vector3::new(2.0, -1.0, 1.5), [-1.6, 0.1, 0.4]);
     let image = view();
     let points = image.points.iter().map(|p| to_map.transform_point(p)).collect();
-    let unsaid = PointCloud { points, ..image };
-    let said = PointCloud { sensor_pose: to_map, ..unsaid.clone() };
+    let unsaid = PointCloud { points, sensor_pose: None, ..image };
+    let said = PointCloud { sensor_pose: Some(to_map), ..unsaid.clone() };
     let ball = mesh(&object());
     for sensor in [SensorModel::Kinect, SensorModel::Isotropic { std: 0.005 }] {
         for mode in MODES {

@@ -165,7 +165,7 @@ fn nan_ended_as_probability_zero() {
     assert_eq!(prepared.filter_stages()[0].removed, 1);
     // In the sensor's place: an error where the place matters.
     let lost = PointCloud {
-        sensor_pose: Pose::from_translation(Vector3::new(0.0, nan, 0.0)),
+        sensor_pose: Some(Pose::from_translation(Vector3::new(0.0, nan, 0.0))),
         ..PointCloud::from_points(points)
     };
     let kinect = CloudSettings::new(SensorModel::Kinect);

@@ -186,7 +186,7 @@ fn a_turned_image_sees_the_same() {
     let turn = Pose::from_translation_rpy(Vector3::new(1.0, -2.0, 0.5), [0.4, -1.2, 2.5]);
     let image = image();
     let points = image.points.iter().map(|p| turn.transform_point(p)).collect();
-    let turned = PointCloud { points, sensor_pose: turn, ..image };
+    let turned = PointCloud { points, sensor_pose: Some(turn), ..image };
     let cloud = Scan::of(&turned, SensorModel::Kinect, Mode::Calibrated).expect("a good image");
     let ball = mesh(&scene::sphere(0.06, 2));
     for (pose, verdict) in [

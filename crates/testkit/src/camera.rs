@@ -86,7 +86,7 @@ impl DepthCamera {
             points,
             covariances: None,
             normals: None,
-            sensor_pose: Pose::identity(),
+            sensor_pose: Some(Pose::identity()),
             image_size: Some((self.width, self.height)),
         }
     }

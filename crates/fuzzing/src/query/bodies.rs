@@ -49,7 +49,7 @@ fn cloud(u: &mut Unstructured<'_>) -> Result<PointCloud> {
         250..=255 => cloud.covariances = Some(vec![covariance(u)?; count(u, 1)?.min(MOST_POINTS)]),
     }
     if u.arbitrary()? {
-        cloud.sensor_pose = Pose::from_translation(point(u)?.coords);
+        cloud.sensor_pose = Some(Pose::from_translation(point(u)?.coords));
     }
     if u.arbitrary()? {
         let width = count(u, 8)?;

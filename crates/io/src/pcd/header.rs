@@ -20,7 +20,7 @@ pub(super) struct Header {
     /// Where their number is, for errors about it.
     pub(super) points_place: Place,
     pub(super) image_size: Option<(usize, usize)>,
-    pub(super) sensor_pose: Pose,
+    pub(super) sensor_pose: Option<Pose>,
     pub(super) data: Data,
 }
 
@@ -149,7 +149,7 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<Header, FormatError> {
             .or(entries.get("WIDTH"))
             .map_or(entries.end, Entry::place),
         image_size,
-        sensor_pose: entries.get("VIEWPOINT").map_or(Ok(Pose::identity()), sensor_pose)?,
+        sensor_pose: entries.get("VIEWPOINT").map(sensor_pose).transpose()?.filter(is_said),
         data: match data.text {
             b"ascii" => Data::Ascii,
             b"binary" => Data::Binary,
@@ -176,6 +176,11 @@ fn sensor_pose(viewpoint: &Entry<'_>) -> Result<Pose, FormatError> {
             Err(viewpoint.place().error(fault))
         }
     }
+}
+
+/// The identity is what writers put that do not know.
+fn is_said(pose: &Pose) -> bool {
+    *pose != Pose::identity()
 }
 
 fn collect<'a>(lines: &mut Lines<'a>) -> Result<Entries<'a>, FormatError> {

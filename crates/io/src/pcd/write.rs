@@ -34,7 +34,8 @@ fn encode(cloud: &PointCloud, writer: &mut dyn Write) -> io::Result<()> {
     let columns = if cloud.covariances.is_some() { COLUMN_NAMES.len() } else { 3 };
     let per_column = |value: &str| [value].repeat(columns).join(" ");
     let (width, height) = cloud.image_size.unwrap_or((cloud.len(), 1));
-    let (origin, turn) = (cloud.sensor_origin(), cloud.sensor_pose.rotation());
+    let from_sensor = cloud.from_sensor();
+    let (origin, turn) = (from_sensor.translation(), from_sensor.rotation());
     writeln!(writer, "# .PCD v0.7 - Point Cloud Data file format")?;
     writeln!(writer, "VERSION 0.7")?;
     writeln!(writer, "FIELDS {}", COLUMN_NAMES[..columns].join(" "))?;

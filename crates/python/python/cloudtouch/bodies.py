@@ -63,8 +63,8 @@ class Cloud:
         ``"lidar:RANGE_STD_M,BEAM_RAD"``, ``"iso:STD_M"``, ``"axes:SX,SY,SZ"``, ``"grid:RESOLUTION_M"``, ``"exact"`` or
         ``"per-point"``. State it as it is: twice the noise reads more touching surfaces as free, half of it stops more.
     sensor_pose
-        (4, 4): from the frame of the sensor (of a camera x right, y down, z forward) into that of the points. The
-        identity where it is not given.
+        (4, 4): from the frame of the sensor (of a camera x right, y down, z forward) into that of the points. Where
+        it is not given it counts as the identity, but nothing is concluded from where the sensor stood.
     covariances
         (N, 3, 3), m^2: the noise of each point, for ``sensor="per-point"``.
     normals

@@ -188,7 +188,7 @@ pub(super) fn sensor_doubts(
                 rays().filter(is_beside).count() as f64 / points.len().max(1) as f64
             };
             // The turn that a file states may be one that its points are not in.
-            let stated = cloud.sensor_pose.transform_vector(&Vector3::z());
+            let stated = cloud.from_sensor().transform_vector(&Vector3::z());
             let share = share(stated).min(share(Vector3::z()));
             if share > MOST_BESIDE {
                 doubts.push(SensorDoubt::Beside { share });

@@ -79,9 +79,7 @@ impl Scans {
                 let range = all.points.len()..all.points.len() + kept.len();
                 all.images.push((kept.sensor_origin(), range));
             }
-            // The origin is what a file says that does not know.
-            let origin = Some(kept.sensor_origin()).filter(|place| *place != Point3::origin());
-            all.origins.extend(origin);
+            all.origins.extend(kept.sensor_pose.map(|pose| Point3::from(pose.translation())));
             have_rows &= !filtered.rows.is_empty();
             let mut rows = filtered.rows;
             rows.iter_mut().for_each(|row| *row += first_row);

@@ -11,7 +11,7 @@ const AT_IT: f64 = 1e-6;
 
 pub(super) fn keep_in_range(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &FilterSettings) {
     let place = cloud.sensor_origin();
-    let is_known = cloud.is_image() || place.coords.norm() > 0.0;
+    let is_known = cloud.is_image() || cloud.sensor_pose.is_some();
     let min = settings.min_range.unwrap_or(if is_known { NEAREST } else { AT_IT });
     kept.retain(|&i| {
         let range = (cloud.points[i] - place).norm();
