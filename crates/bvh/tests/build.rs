@@ -86,6 +86,19 @@ fn siblings_overlap_by_a_part_of_their_parent() {
     }
 }
 
+/// They were made to touch, whatever lay between them.
+#[test]
+fn without_an_overlap_siblings_keep_to_what_they_hold() {
+    let settings = TreeSettings { sibling_overlap: 0.0, ..TreeSettings::default() };
+    let sheet = |x: f64| bumpy_sheet(3, 300, Vector3::new(x, 0.0, 0.0));
+    let tree = Tree::build([sheet(0.0), sheet(3.0)].concat(), &settings).unwrap();
+    let root = tree.root().unwrap();
+    let [left, right] = root.children().unwrap().map(|id| *tree.node(id).unwrap().obb());
+    let axis = root.obb().axes.column(0).into_owned();
+    let apart = axis.dot(&(right.centre - left.centre)).abs();
+    assert!(apart - left.half_width_along(&axis) - right.half_width_along(&axis) > 0.5);
+}
+
 #[test]
 fn pruning_leaves_out_what_is_below() {
     let tree = common::small_leaves(bumpy_sheet(3, 600, Vector3::zeros()));

@@ -20,8 +20,8 @@ fn cloud(mesh: &TriangleMesh, count: usize, far: &[Point3]) -> Cloud {
     Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud")
 }
 
-/// One return from 50 m away turned the cuts of the tree over the whole room, and with them what the lonely
-/// samples stand for.
+/// A return from far away turned the cuts of the tree over the whole room, and with them what the lonely samples
+/// stand for.
 #[test]
 fn a_far_return_moved_probabilities() {
     let returns: Vec<Point3> = (0..20)
