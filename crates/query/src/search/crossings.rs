@@ -6,6 +6,7 @@ use cloudtouch_geom::Point3;
 
 use crate::cloud::{Edge, Surfel};
 
+use super::cells::Cells;
 use super::crossing::Crossing;
 use super::wrench::Wrench;
 
@@ -66,9 +67,14 @@ impl Seen {
 /// The crossings found so far.
 #[derive(Debug, Default)]
 pub(crate) struct Crossings {
-    witnesses: BTreeMap<Witness, Seen>,
+    /// Where in `seen` each is.
+    witnesses: BTreeMap<Witness, usize>,
+    /// In the order in which they were first heard.
+    seen: Vec<(Witness, Seen)>,
+    /// Where the best crossing of each is.
+    cells: Cells,
     /// The witness heard last, until it was looked what there is at its place.
-    last: Option<Witness>,
+    last: Option<usize>,
     /// What there was at the place looked at last.
     at_last: f64,
 }
@@ -86,27 +92,41 @@ impl Crossings {
         // What passes may be of A: then it is what is passed that moves.
         let crossing = if witness.is_of_a() { crossing.reversed() } else { *crossing };
         let Crossing { clear, weight, probability, by_pose, .. } = crossing;
-        let seen = self.witnesses.entry(witness).or_insert(Seen {
-            sum: 0.0,
-            clearest: 0.0,
-            best: crossing,
-            sum_by_pose: Wrench::zeros(),
-            clearest_by_pose: Wrench::zeros(),
+        let number = *self.witnesses.entry(witness).or_insert_with(|| {
+            self.cells.push(&crossing.place, PLACE_SPACINGS * crossing.spacing);
+            self.seen.push((
+                witness,
+                Seen {
+                    sum: 0.0,
+                    clearest: 0.0,
+                    best: crossing,
+                    sum_by_pose: Wrench::zeros(),
+                    clearest_by_pose: Wrench::zeros(),
+                },
+            ));
+            self.seen.len() - 1
         });
+        let (_, seen) = &mut self.seen[number];
         seen.sum += clear * weight;
         seen.sum_by_pose += by_pose.clear * weight + by_pose.weight * clear;
         if clear > seen.clearest {
             (seen.clearest, seen.clearest_by_pose) = (clear, by_pose.clear);
         }
         if probability > seen.best.probability {
+            self.cells.shift(number, &seen.best.place, &crossing.place);
             seen.best = crossing;
         }
-        self.last = Some(witness);
+        self.last = Some(number);
+    }
+
+    /// The witnesses in order, and what they saw.
+    fn ordered(&self) -> impl Iterator<Item = &(Witness, Seen)> {
+        self.witnesses.values().map(|&number| &self.seen[number])
     }
 
     /// The most probable crossing of every witness.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Crossing> {
-        self.witnesses.values().map(|seen| &seen.best)
+        self.ordered().map(|(_, seen)| &seen.best)
     }
 
     /// Clearness of all crossings together at the place where it is most; never less by one more.
@@ -115,14 +135,10 @@ impl Crossings {
     }
 
     fn clearest_place(&self) -> Option<(f64, Heard)> {
-        let mut all: Vec<Heard> = self.heard().collect();
+        let mut all: Vec<Heard> = self.ordered().map(Heard::of).collect();
+        // Of equals the last along x, in whatever order they were heard.
         all.sort_by(|p, q| p.place.x.total_cmp(&q.place.x));
-        let around = |at: &Heard| {
-            let from = all.partition_point(|other| other.place.x < at.place.x - at.reach);
-            let until = |other: &&Heard| other.place.x <= at.place.x + at.reach;
-            together(all[from..].iter().take_while(until).copied(), at)
-        };
-        let places = all.iter().map(|at| (around(at), *at));
+        let places = all.into_iter().map(|at| (self.together(&at), at));
         places.max_by(|(p, _), (q, _)| p.total_cmp(q))
     }
 
@@ -130,7 +146,7 @@ impl Crossings {
     pub(crate) fn clearness_by_pose(&self) -> Wrench {
         let Some((_, at)) = self.clearest_place() else { return Wrench::zeros() };
         let (mut sums, mut by_pose) = ([ONE_SIDED; 2], [Wrench::zeros(); 2]);
-        for (witness, seen) in &self.witnesses {
+        for (witness, seen) in self.ordered() {
             if at.reaches(&seen.best.place) {
                 let side = usize::from(witness.is_of_a());
                 sums[side] += seen.clearness();
@@ -143,20 +159,33 @@ impl Crossings {
     /// The same at the place heard of last: no more than that. Most pairs of leaves add no crossing, and
     /// cost nothing here.
     pub(super) fn last_clearness(&mut self) -> f64 {
-        let last = self.last.take();
-        if let Some((witness, seen)) = last.and_then(|last| self.witnesses.get_key_value(&last)) {
-            self.at_last = together(self.heard(), &Heard::of(witness, seen));
+        if let Some(last) = self.last.take() {
+            self.at_last = self.together(&Heard::of(&self.seen[last]));
         }
         self.at_last
     }
 
-    fn heard(&self) -> impl Iterator<Item = Heard> {
-        self.witnesses.iter().map(|(witness, seen)| Heard::of(witness, seen))
+    /// What the witnesses within reach of one say together.
+    ///
+    /// Where two surfaces cross, each is on both sides of the other. Where one ends beside the other, as at
+    /// the corner of a table, discs that reach beyond its end are passed by the other, but none of
+    /// its own edges passes the other: so the two sides count by their geometric mean.
+    fn together(&self, at: &Heard) -> f64 {
+        let mut sums = [ONE_SIDED; 2];
+        // PERF: of all, bodies that overlap all over would take the square of how many there are.
+        self.cells.visit_near(&at.place, at.reach, |number| {
+            let other = Heard::of(&self.seen[number]);
+            if at.reaches(&other.place) {
+                sums[0] += other.clearness[0];
+                sums[1] += other.clearness[1];
+            }
+        });
+        by_both_sides(sums)
     }
 }
 
 impl Heard {
-    fn of(witness: &Witness, seen: &Seen) -> Self {
+    fn of((witness, seen): &(Witness, Seen)) -> Self {
         let mut clearness = [0.0; 2];
         clearness[usize::from(witness.is_of_a())] = seen.clearness();
         Self { place: seen.best.place, reach: PLACE_SPACINGS * seen.best.spacing, clearness }
@@ -165,22 +194,6 @@ impl Heard {
     fn reaches(&self, place: &Point3) -> bool {
         (place - self.place).norm_squared() <= self.reach * self.reach
     }
-}
-
-/// What the witnesses within reach of one say together.
-///
-/// Where two surfaces cross, each is on both sides of the other. Where one ends beside the other, as at
-/// the corner of a table, discs that reach beyond its end are passed by the other, but none of
-/// its own edges passes the other: so the two sides count by their geometric mean.
-fn together(others: impl Iterator<Item = Heard>, at: &Heard) -> f64 {
-    let mut sums = [ONE_SIDED; 2];
-    for other in others {
-        if at.reaches(&other.place) {
-            sums[0] += other.clearness[0];
-            sums[1] += other.clearness[1];
-        }
-    }
-    by_both_sides(sums)
 }
 
 /// Clearness given that of either side, each with [`ONE_SIDED`] on top.

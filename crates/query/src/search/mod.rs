@@ -6,6 +6,7 @@
 
 mod around;
 mod beyond;
+mod cells;
 mod crossing;
 mod crossings;
 mod extent;

@@ -1,0 +1,96 @@
+//! Places in cells, so that those within a distance are found without asking all.
+
+use std::collections::BTreeMap;
+
+use cloudtouch_geom::Point3;
+
+/// Fewer places are asked one by one.
+const FEW: usize = 32;
+
+/// Numbers of places, from 0 on, by the cells of a grid that they are in.
+#[derive(Debug, Default)]
+pub(super) struct Cells {
+    /// Length of an edge, m: how far the first place looked.
+    size: f64,
+    cells: BTreeMap<[i64; 3], Vec<usize>>,
+    count: usize,
+}
+
+impl Cells {
+    /// Puts the next number at a place that looks so far, m.
+    pub(super) fn push(&mut self, place: &Point3, reach: f64) {
+        if self.count == 0 {
+            self.size = reach.max(f64::MIN_POSITIVE);
+        }
+        self.cells.entry(self.cell(place, 0.0)).or_default().push(self.count);
+        self.count += 1;
+    }
+
+    /// Puts a number at another place.
+    pub(super) fn shift(&mut self, number: usize, from: &Point3, to: &Point3) {
+        let [from, to] = [from, to].map(|place| self.cell(place, 0.0));
+        if from != to {
+            self.cells.entry(from).or_default().retain(|&other| other != number);
+            self.cells.entry(to).or_default().push(number);
+        }
+    }
+
+    /// Calls `visit` with the numbers of all places within a distance (m) of one, and of some that are not.
+    pub(super) fn visit_near(&self, place: &Point3, reach: f64, mut visit: impl FnMut(usize)) {
+        let (low, high) = (self.cell(place, -reach), self.cell(place, reach));
+        let rows = (high[0].saturating_sub(low[0])).saturating_add(1) as f64
+            * (high[1].saturating_sub(low[1])).saturating_add(1) as f64;
+        if self.count < FEW || rows > self.cells.len() as f64 {
+            return (0..self.count).for_each(visit);
+        }
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                let row = self.cells.range([x, y, low[2]]..=[x, y, high[2]]);
+                row.flat_map(|(_, numbers)| numbers).for_each(|&number| visit(number));
+            }
+        }
+    }
+
+    /// That of a place that is moved so far along all axes.
+    fn cell(&self, place: &Point3, by: f64) -> [i64; 3] {
+        [place.x, place.y, place.z].map(|x| ((x + by) / self.size).floor() as i64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use cloudtouch_geom::Vector3;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Cells far smaller and far larger than what is looked for, and places that move.
+        #[test]
+        fn all_places_within_a_distance_are_found(
+            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 1..200),
+            first_reach in prop_oneof![Just(0.0), 1e-6..3.0_f64],
+            reach in 0.0..2.0_f64,
+            moved in prop::array::uniform3(-1.0..1.0_f64),
+        ) {
+            let mut places: Vec<Point3> = places.into_iter().map(Point3::from).collect();
+            let mut cells = Cells::default();
+            places.iter().for_each(|place| cells.push(place, first_reach));
+            for number in (0..places.len()).step_by(3) {
+                let to = places[number] + Vector3::from(moved);
+                cells.shift(number, &places[number], &to);
+                places[number] = to;
+            }
+            for at in &places {
+                let mut found = BTreeSet::new();
+                cells.visit_near(at, reach, |number| assert!(found.insert(number), "twice"));
+                let is_missing = |&number: &usize| {
+                    (places[number] - at).norm() <= reach && !found.contains(&number)
+                };
+                prop_assert_eq!((0..places.len()).find(is_missing), None);
+            }
+        }
+    }
+}
