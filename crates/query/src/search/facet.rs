@@ -4,7 +4,7 @@ use cloudtouch_geom::{Covariance, Matrix3, Motion, Point3, Vector3};
 
 use crate::cloud::Surfel;
 
-use super::meeting::{LEAST_STD, beyond};
+use super::meeting::{LEAST_STD, beyond_along};
 
 /// A triangle in the local frame of A.
 #[derive(Debug, Clone, Copy)]
@@ -74,9 +74,11 @@ impl Facet {
         let offsets = self.corners.map(|corner| corner - mean);
         let whitened = nearest_to_origin(&offsets.map(|offset| whitening.apply(&offset)));
         let separating = whitening.apply(&whitened);
-        let by_plane = beyond((&covariance, &whitening.undo(&whitened)), &separating, margin);
+        let by_plane = beyond_along((&covariance, &whitening.undo(&whitened)), &separating, margin);
         let shortest = nearest_to_origin(&offsets);
-        by_plane.max(beyond((&covariance, &shortest), &shortest, margin))
+        // Of either place all others of the facet lie beyond the plane across that direction. Along the way to
+        // the first, which may be far off in a large facet, they do not.
+        by_plane.max(beyond_along((&covariance, &shortest), &shortest, margin))
     }
 
     /// Squared Mahalanobis distance from a surfel to the nearest place of the facet and the way
@@ -218,6 +220,32 @@ mod tests {
             prop_assert!(facet.height(&(surfel.point.mean + way)).abs() < 1e-9);
             let back = whitening.apply(&way).norm_squared();
             prop_assert!((back - squared).abs() < 1e-9 * (1.0 + squared));
+        }
+
+        /// A large facet was told to be beyond a margin that its nearest place is within: by the way to
+        /// another place, which is nearer in deviations.
+        #[test]
+        fn what_is_nearer_than_a_margin_is_not_beyond_it(
+            a in vector(), b in vector(), c in vector(), axis in vector(),
+            nearer in 0.0..1.0_f64, stds in prop::array::uniform2(0.001..0.5_f64),
+        ) {
+            prop_assume!((b - a).cross(&(c - a)).norm() > 1e-3 && axis.norm() > 1e-3);
+            let covariance = Covariance::from_axis(&unit(&axis).unwrap(), stds[0], stds[1]);
+            let surfel = Surfel {
+                index: 0,
+                point: UncertainPoint { mean: Point3::origin(), covariance },
+                spacing: 1.0,
+                most_variance: covariance.max_std().powi(2),
+                normal: None,
+            };
+            let distance = nearest_to_origin(&[a, b, c]).norm();
+            let facet = Facet::new(0, [a, b, c].map(Point3::from));
+            let of = |margin| {
+                facet.deviations_beyond(&surfel, &Whitening::of_any(&covariance), margin)
+            };
+            prop_assert!(of(distance * (1.0 + nearer) + 1e-9) < 0.0);
+            // And what is farther is, however little.
+            prop_assert!(distance == 0.0 || of(distance * (1.0 - nearer) * (1.0 - 1e-9)) > 0.0);
         }
     }
 

@@ -60,19 +60,21 @@ pub(super) fn deviations_beyond(a: &Surfel, b: &Surfel, margin: f64, limit: f64)
 
 /// (n·δ − m)/√(nᵀΣn), the larger of two: across what separates the pieces best, Σ⁻¹δ, and along the way
 /// between them.
-pub(super) fn beyond(
+fn beyond((joint, offset): (&Matrix3, &Vector3), weighted: &Vector3, margin: f64) -> f64 {
+    let of = |direction: &Vector3| beyond_along((joint, offset), direction, margin);
+    of(weighted).max(of(offset))
+}
+
+/// (n·δ − m)/√(nᵀΣn) in one direction, of any length. Pieces at one place have none: all that can be said is
+/// that they are within the margin.
+pub(super) fn beyond_along(
     (joint, offset): (&Matrix3, &Vector3),
-    weighted: &Vector3,
+    direction: &Vector3,
     margin: f64,
 ) -> f64 {
-    let along = |direction: &Vector3| {
-        let variance = direction.dot(&(joint * direction)) + LEAST_STD.powi(2);
-        (offset.dot(direction) - margin * direction.norm()) / variance.sqrt()
-    };
-    // Pieces at one place have neither direction: all that can be said is that they are within it.
-    let scale = |v: &Vector3| v.try_normalize(0.0);
-    let known = [scale(weighted), scale(offset)].into_iter().flatten().map(|n| along(&n));
-    known.reduce(f64::max).unwrap_or(f64::NEG_INFINITY)
+    let Some(n) = direction.try_normalize(0.0) else { return f64::NEG_INFINITY };
+    let variance = n.dot(&(joint * n)) + LEAST_STD.powi(2);
+    (offset.dot(&n) - margin * n.norm()) / variance.sqrt()
 }
 
 impl Meeting {
