@@ -14,6 +14,8 @@ pub mod message;
 mod motion;
 pub mod normal;
 mod pose;
+#[cfg(feature = "mesh")]
+mod repeats;
 #[cfg(feature = "seed")]
 pub mod seed;
 mod symmetric;

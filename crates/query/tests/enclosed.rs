@@ -56,6 +56,34 @@ fn a_closed_mesh_within_a_closed_cloud_read_free() {
     assert_eq!(free.verdict, Verdict::Free, "{free:?}");
 }
 
+/// A solid that lacks a triangle has no inside, and what was deep in it read free.
+#[test]
+fn a_body_within_a_mesh_with_a_hole_read_free() {
+    let ball = scene::sphere(0.2, 3);
+    let faces = |count: usize| ball.triangles()[..count].to_vec();
+    let holed =
+        |count| TriangleMesh::try_new(ball.vertices().to_vec(), faces(count)).expect("a mesh");
+    let all = ball.triangles().len();
+    let outer = Mesh::prepare(&holed(all - 1)).expect("a good mesh");
+    let small = cloud(&scene::sphere(0.05, 3), None, 2);
+    let small_mesh = Mesh::prepare(&scene::cuboid([0.05; 3])).expect("a good mesh");
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    let within = at(0.0, 0.02, 0.0);
+    let of_mesh = query.run(&outer, &small_mesh, &within).expect("a good pose");
+    let of_cloud = query.run(&outer, &small, &within).expect("a good pose");
+    let swapped = query.run(&small, &outer, &within.inverse()).expect("a good pose");
+    for report in [of_mesh, of_cloud, swapped] {
+        assert_eq!(report.undecided_by, Some(Undecided::Enclosed), "{report:?}");
+        assert_eq!((report.verdict, report.bounds[1]), (Verdict::Undecided, 1.0));
+    }
+    let beside = query.run(&outer, &small, &at(0.0, 0.0, 0.4)).expect("a good pose");
+    assert_eq!((beside.verdict, beside.undecided_by), (Verdict::Free, None));
+    // A bowl is no hull.
+    let bowl = Mesh::prepare(&holed(all * 9 / 10)).expect("a good mesh");
+    let in_bowl = query.run(&bowl, &small, &within).expect("a good pose");
+    assert_eq!((in_bowl.verdict, in_bowl.undecided_by), (Verdict::Free, None), "{in_bowl:?}");
+}
+
 #[test]
 fn a_sensor_within_the_hollow_tells_that_it_is_one() {
     let inner = cloud(&scene::sphere(0.05, 3), None, 2);

@@ -49,6 +49,28 @@ fn a_cloud_within_a_box_with_a_turned_triangle_read_free() {
     }
 }
 
+/// One triangle more than once, or every one from behind too, and a solid had no inside.
+#[test]
+fn a_cloud_within_a_box_with_repeated_triangles_read_free() {
+    let good = solid([0.0; 3], [1.0; 3]);
+    let back = |&[a, b, c]: &[u32; 3]| [a, c, b];
+    let one: Vec<[u32; 3]> = vec![good.triangles()[4]];
+    let all = good.triangles().to_vec();
+    let backs: Vec<[u32; 3]> = good.triangles().iter().map(back).collect();
+    let ball = measured(&scene::sphere(0.1, 3), 0.01, 0.001, 4);
+    for repeated in [one, all, backs] {
+        let triangles = [good.triangles(), &repeated].concat();
+        let mesh = TriangleMesh::try_new(good.vertices().to_vec(), triangles).expect("a mesh");
+        let solid = common::mesh(&mesh);
+        assert!(solid.is_watertight());
+        for mode in [Mode::Calibrated, Mode::Paper] {
+            let ball = prepare(ball.clone(), 0.001, mode);
+            let report = ask(mode, &ball, &solid, &at(-0.5, -0.5, -0.5));
+            assert_eq!(report.verdict, Verdict::InCollision, "{mode:?}: {report:?}");
+        }
+    }
+}
+
 #[test]
 fn a_cloud_below_a_sheet_with_a_back_face_collided() {
     let sheet = mesh(&two_sided_sheet());

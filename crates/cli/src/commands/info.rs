@@ -84,7 +84,7 @@ fn image(cloud: &PointCloud) -> String {
 }
 
 fn describe_mesh(mesh: &TriangleMesh) -> String {
-    let merged = mesh.merged();
+    let merged = mesh.merged().without_repeats();
     let open = merged.open_edges();
     let prepared = Mesh::prepare(mesh);
     let closed = if prepared.is_err() {

@@ -6,6 +6,7 @@ mod open_side;
 use cloudtouch_geom::{Point3, Pose, Vector3};
 
 use crate::cloud::Prepared;
+use crate::mesh::Mesh;
 use crate::shape::Shape;
 
 use open_side::has_open_side;
@@ -25,7 +26,8 @@ const SURFACE_SPACINGS: f64 = 1.0;
 
 /// Whether the surface of a cloud is all around the other body, so that neither knows whether the space
 /// between them is empty. Where a sensor's place is known and it looks at the inner one past no
-/// surface, that space was seen to be. On which side of a mesh something is, the mesh tells.
+/// surface, that space was seen to be. On which side of a closed mesh something is, the mesh tells; an open
+/// one, as a single triangle that is missing leaves it, surrounds what a cloud would.
 pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
     let of = |body: Shape<'_>| {
         let obb = body.tree().root().map(|root| *root.obb());
@@ -40,8 +42,17 @@ pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
     };
     match outer {
         Shape::Cloud(cloud) => surrounds(cloud, &place),
-        Shape::Mesh(_) => false,
+        Shape::Mesh(mesh) => nearly_surrounds(mesh, &place),
     }
+}
+
+/// Whether all but a few of the directions from a place in its local frame end on an open mesh.
+fn nearly_surrounds(mesh: &Mesh, place: &Point3) -> bool {
+    let is_within = || {
+        let [low, high] = mesh.corners_of_box();
+        (0..3).all(|k| low[k] <= place[k] && place[k] <= high[k])
+    };
+    !mesh.is_closed() && is_within() && mesh.winding_number(place).abs() >= CLOSED
 }
 
 fn surrounds(cloud: &Prepared, place: &Point3) -> bool {

@@ -48,14 +48,14 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Merges vertices, turns triangles alike ([`TriangleMesh::turned_alike`]), looks whether the mesh is
-    /// watertight, and builds its tree.
+    /// Merges vertices, drops triangles that repeat others ([`TriangleMesh::without_repeats`]), turns them
+    /// alike ([`TriangleMesh::turned_alike`]), looks whether the mesh is watertight, and builds its tree.
     ///
     /// # Errors
     /// When every triangle is degenerate, a coordinate is beyond 1e10 m, or the tree cannot be built.
     pub fn prepare(mesh: &TriangleMesh) -> Result<Self, PrepareError> {
         let start = Instant::now();
-        let merged = mesh.merged().turned_alike();
+        let merged = mesh.merged().without_repeats().turned_alike();
         let Some((low, high)) = merged.bounding_box() else {
             return Err(PrepareError::Mesh(MeshError::Empty));
         };
