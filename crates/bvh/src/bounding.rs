@@ -1,6 +1,7 @@
 //! How bounds on the points of a tree are set, and climb it.
 
 use cloudtouch_geom::{Covariance, Matrix3, Vector3};
+use rayon::prelude::*;
 
 use crate::bounds::{SpreadBounds, along};
 use crate::bounds_list::BoundsList;
@@ -12,29 +13,31 @@ impl Tree {
     /// From then on these bounds stand for the covariances of the points wherever a bound is
     /// wanted (not in the coverage, which describes the points as given). They stay with the
     /// primitives through [`Self::refit`], splits and [`Self::rebuild`]; a primitive inserted
-    /// later has its own covariance and no shift until they are set again.
+    /// later has its own covariance and no shift until they are set again. `bounds_of` is called on all
+    /// threads of the pool.
     ///
     /// # Errors
     /// [`TreeError::LeafBounds`] when a bound is negative or NaN, or a shift infinite; the tree is
     /// then unchanged.
     pub fn set_leaf_bounds(
         &mut self,
-        bounds_of: impl FnMut(Node<'_>) -> LeafBounds,
+        bounds_of: impl Fn(Node<'_>) -> LeafBounds + Sync,
     ) -> Result<(), TreeError> {
         self.refined = self.listed(bounds_of)?;
         self.extents.clear();
-        self.update_bounds(self.root);
+        self.update_all_bounds();
         Ok(())
     }
 
     /// What is said of every leaf, by the primitives of the leaves.
     pub(crate) fn listed(
         &self,
-        mut bounds_of: impl FnMut(Node<'_>) -> LeafBounds,
+        bounds_of: impl Fn(Node<'_>) -> LeafBounds + Sync,
     ) -> Result<BoundsList, TreeError> {
+        let leaves: Vec<Node<'_>> = self.leaves().collect();
+        let said: Vec<LeafBounds> = leaves.par_iter().map(|&leaf| bounds_of(leaf)).collect();
         let mut listed = BoundsList::default();
-        for leaf in self.leaves() {
-            let bounds = bounds_of(leaf);
+        for (leaf, bounds) in leaves.into_iter().zip(said) {
             bounds.check(leaf.id().index())?;
             listed.set(leaf.primitive_indices(), bounds, self.primitives.len());
         }
@@ -59,7 +62,7 @@ impl Tree {
         }
         self.extents = extents;
         self.refined = BoundsList::default();
-        self.update_bounds(self.root);
+        self.update_all_bounds();
         Ok(())
     }
 
@@ -73,6 +76,20 @@ impl Tree {
     /// Recomputes the bounds of everything below `from` and of itself, children before parents.
     pub(crate) fn update_bounds(&mut self, from: Option<u32>) {
         for &id in self.preorder(from).iter().rev() {
+            self.nodes[id as usize].bounds = self.bounds_of(id);
+        }
+    }
+
+    /// The same of all nodes, leaves on all threads of the pool.
+    pub(crate) fn update_all_bounds(&mut self) {
+        let (leaves, inner): (Vec<u32>, Vec<u32>) = (self.preorder(self.root).into_iter())
+            .partition(|&id| self.nodes[id as usize].children.is_none());
+        let of_leaves: Vec<SpreadBounds> =
+            leaves.par_iter().map(|&leaf| self.bounds_of(leaf)).collect();
+        for (leaf, bounds) in leaves.into_iter().zip(of_leaves) {
+            self.nodes[leaf as usize].bounds = bounds;
+        }
+        for id in inner.into_iter().rev() {
             self.nodes[id as usize].bounds = self.bounds_of(id);
         }
     }

@@ -17,32 +17,11 @@ impl Tree {
     /// Fits both children of a node.
     pub(crate) fn fit_children(&mut self, parent: u32, children: [u32; 2]) {
         let fitted = children.map(|child| self.fitted(child));
-        self.set_children(parent, children, fitted);
-    }
-
-    /// Gives both children of a node their shapes and lets their boxes overlap.
-    pub(crate) fn set_children(
-        &mut self,
-        parent: u32,
-        [left, right]: [u32; 2],
-        fitted: [(Moments, Obb); 2],
-    ) {
-        let [(left_moments, mut left_box), (right_moments, mut right_box)] = fitted;
-        let parent = &self.nodes[parent as usize].obb;
-        let axis: Vector3 = parent.axes.column(0).into_owned();
-        let wanted = self.settings.sibling_overlap * 2.0 * parent.half_extents[0];
-        let is_in_order = axis.dot(&(right_moments.mean - left_moments.mean)) >= 0.0;
-        let (low, high) = if is_in_order {
-            (&mut left_box, &mut right_box)
-        } else {
-            (&mut right_box, &mut left_box)
-        };
-        // Without an overlap, boxes are as they fit, and what is between them is in neither.
-        if wanted > 0.0 {
-            overlap(low, high, &axis, wanted);
+        let obb = &self.nodes[parent as usize].obb;
+        let overlapping = overlapping(obb, fitted, self.settings.sibling_overlap);
+        for (child, (moments, obb)) in children.into_iter().zip(overlapping) {
+            self.set_shape(child, moments, obb);
         }
-        self.set_shape(left, left_moments, left_box);
-        self.set_shape(right, right_moments, right_box);
     }
 
     pub(crate) fn fitted(&self, id: u32) -> (Moments, Obb) {
@@ -83,6 +62,28 @@ pub(crate) fn fitted<'a>(primitives: impl Iterator<Item = &'a [Point3]> + Clone)
     let moments = Moments::of(primitives.clone());
     let obb = Obb::enclosing(moments.axes(), moments.mean, primitives.flatten());
     (moments, obb)
+}
+
+/// Both halves of a node with this box, their boxes grown until they overlap by this share of it.
+pub(crate) fn overlapping(
+    parent: &Obb,
+    fitted: [(Moments, Obb); 2],
+    share: f64,
+) -> [(Moments, Obb); 2] {
+    let [(first, mut first_box), (second, mut second_box)] = fitted;
+    let axis: Vector3 = parent.axes.column(0).into_owned();
+    let wanted = share * 2.0 * parent.half_extents[0];
+    let is_in_order = axis.dot(&(second.mean - first.mean)) >= 0.0;
+    let (low, high) = if is_in_order {
+        (&mut first_box, &mut second_box)
+    } else {
+        (&mut second_box, &mut first_box)
+    };
+    // Without an overlap, boxes are as they fit, and what is between them is in neither.
+    if wanted > 0.0 {
+        overlap(low, high, &axis, wanted);
+    }
+    [(first, first_box), (second, second_box)]
 }
 
 /// Grows two boxes toward one another along `axis`, `low` upward and `high` downward by the same

@@ -13,6 +13,7 @@ mod error;
 mod examine;
 mod fit;
 mod gap;
+mod grow;
 mod insert;
 mod leakage;
 mod moments;

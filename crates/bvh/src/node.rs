@@ -36,6 +36,32 @@ pub(crate) struct NodeData {
     pub(crate) in_use: bool,
 }
 
+impl NodeData {
+    /// A leaf over a range of the order, without bounds, that nothing is above.
+    pub(crate) fn leaf(start: u32, count: u32, moments: Moments, obb: Obb) -> Self {
+        Self {
+            obb,
+            moments,
+            outside: OnceLock::new(),
+            bounds: SpreadBounds::NONE,
+            parent: None,
+            children: None,
+            start,
+            count,
+            in_use: true,
+        }
+    }
+
+    /// The variation of a node whose box was just fitted: its last axis is that of the smallest
+    /// eigenvalue, which need not be computed again.
+    pub(crate) fn fitted_variation(&self) -> f64 {
+        let covariance = &self.moments.covariance;
+        let total = covariance.std_bound().powi(2);
+        let smallest = covariance.variance_along(&self.obb.axes.column(2).into_owned());
+        if total > 0.0 { smallest / total } else { 0.0 }
+    }
+}
+
 /// How far a pose can misplace a box below one of two roots by rounding, m.
 pub(crate) fn pose_rounding(roots: [&NodeData; 2], a_from_b: &Pose) -> f64 {
     let reach = |root: &NodeData| root.obb.centre.coords.norm() + 3.0 * root.obb.radius();

@@ -1,7 +1,6 @@
 //! What a build sorts: the primitives of a node side by side, so that each level reads memory in
 //! order.
 
-use std::ops::Range;
 use std::slice;
 
 use cloudtouch_geom::{Point3, Vector3};
@@ -20,91 +19,89 @@ pub(crate) struct Part {
     pub(crate) index: u32,
 }
 
-/// Primitives in the order of the nodes that hold them.
-#[derive(Debug)]
-pub(crate) struct Parts {
-    pub(crate) all: Vec<Part>,
-    /// Whether all are points, which their centroids tell all of.
-    are_points: bool,
-    /// The positions along the axis of the range that is halved.
+/// Buffers of those who sort, to use again.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    /// The positions along the axis of what is halved.
     along: Vec<f64>,
-    /// These in order with the index of the primitive and its place in the range.
+    /// These in order with the index of the primitive and its place among the parts.
     keys: Vec<u128>,
     sorted: Vec<Part>,
 }
 
-impl Parts {
-    pub(crate) fn of(primitives: &Primitives, indices: &[u32]) -> Self {
-        let part = |&index: &u32| Part { centroid: centroid(primitives.corners(index)), index };
-        let is_point = |&index: &u32| primitives.is_point(index);
-        Self {
-            all: indices.iter().map(part).collect(),
-            are_points: indices.iter().all(is_point),
-            along: Vec::new(),
-            keys: Vec::new(),
-            sorted: Vec::new(),
-        }
-    }
+pub(crate) fn parts_of(primitives: &Primitives, indices: &[u32]) -> Vec<Part> {
+    let part = |&index: &u32| Part { centroid: centroid(primitives.corners(index)), index };
+    indices.iter().map(part).collect()
+}
 
-    /// Moments and box of a range.
-    pub(crate) fn fitted(&self, primitives: &Primitives, range: Range<usize>) -> (Moments, Obb) {
-        let parts = &self.all[range];
-        if self.are_points {
-            let moments = Moments::of(parts.iter().map(|part| slice::from_ref(&part.centroid)));
-            let places = parts.iter().map(|part| &part.centroid);
-            (moments, Obb::enclosing(moments.axes(), moments.mean, places))
-        } else {
-            fitted(parts.iter().map(|part| primitives.corners(part.index)))
-        }
+/// Moments and box of parts, which may all be points.
+pub(crate) fn fitted_parts(
+    parts: &[Part],
+    primitives: &Primitives,
+    are_points: bool,
+) -> (Moments, Obb) {
+    if are_points {
+        let moments = Moments::of(parts.iter().map(|part| slice::from_ref(&part.centroid)));
+        let places = parts.iter().map(|part| &part.centroid);
+        (moments, Obb::enclosing(moments.axes(), moments.mean, places))
+    } else {
+        fitted(parts.iter().map(|part| primitives.corners(part.index)))
     }
+}
 
-    /// Puts what is far from a place last, farther than [`FAR`] times the median distance, and says where
-    /// that begins; `None` where nothing is, which leaves the order.
-    pub(crate) fn set_far_apart(&mut self, range: Range<usize>, from: &Point3) -> Option<usize> {
-        let Self { all, along, sorted, .. } = self;
-        let parts = &mut all[range.clone()];
-        let squared = |part: &Part| (part.centroid - from).norm_squared();
-        along.clear();
-        along.extend(parts.iter().map(squared));
-        let limit = along.iter().copied().fold(0.0, f64::max) / FAR.powi(2);
-        let half = parts.len() / 2;
-        // PERF: of most bodies more than half is farther than this, so that nothing is far beside it.
-        if along.iter().filter(|&&squared| squared >= limit).count() > half {
-            return None;
-        }
-        let (_, &mut median, _) = along.select_nth_unstable_by(half, f64::total_cmp);
-        let is_far = |part: &&Part| squared(part) > FAR.powi(2) * median;
-        sorted.clear();
-        sorted.extend(parts.iter().filter(|part| !is_far(part)));
-        let near = sorted.len();
-        sorted.extend(parts.iter().filter(is_far));
-        parts.copy_from_slice(sorted);
-        (0 < near && near < parts.len()).then_some(range.start + near)
+/// Puts what is far from a place last, farther than [`FAR`] times the median distance, and says where
+/// that begins; `None` where nothing is, which leaves the order.
+pub(crate) fn set_far_apart(
+    parts: &mut [Part],
+    from: &Point3,
+    memory: &mut Memory,
+) -> Option<usize> {
+    let Memory { along, sorted, .. } = memory;
+    let squared = |part: &Part| (part.centroid - from).norm_squared();
+    along.clear();
+    along.extend(parts.iter().map(squared));
+    let limit = along.iter().copied().fold(0.0, f64::max) / FAR.powi(2);
+    let half = parts.len() / 2;
+    // PERF: of most bodies more than half is farther than this, so that nothing is far beside it.
+    if along.iter().filter(|&&squared| squared >= limit).count() > half {
+        return None;
     }
+    let (_, &mut median, _) = along.select_nth_unstable_by(half, f64::total_cmp);
+    let is_far = |part: &&Part| squared(part) > FAR.powi(2) * median;
+    sorted.clear();
+    sorted.extend(parts.iter().filter(|part| !is_far(part)));
+    let near = sorted.len();
+    sorted.extend(parts.iter().filter(is_far));
+    parts.copy_from_slice(sorted);
+    (0 < near && near < parts.len()).then_some(near)
+}
 
-    /// Parts a range at its median along an axis, the lower half of it first, and says where the other
-    /// begins.
-    pub(crate) fn halve(&mut self, range: Range<usize>, axis: &Vector3, mean: &Point3) -> usize {
-        let Self { all, along, keys, sorted, .. } = self;
-        let parts = &mut all[range.clone()];
-        along.clear();
-        along.extend(parts.iter().map(|part| axis.dot(&(part.centroid - mean))));
-        // The sign of an eigenvector is arbitrary and an odd count halves unevenly; letting the
-        // longer tail point up makes the partition independent of the frame.
-        let is_turned = along.iter().map(|along| along * along * along).sum::<f64>() < 0.0;
-        keys.clear();
-        keys.extend(along.iter().zip(parts.iter()).zip(0_u32..).map(|((&along, part), place)| {
-            let along = if is_turned { -along } else { along };
-            let tie = u64::from(part.index) << 32 | u64::from(place);
-            u128::from(ordered(along)) << 64 | u128::from(tie)
-        }));
-        let half = parts.len() / 2;
-        keys.select_nth_unstable(half);
-        sorted.clear();
-        sorted.extend(keys.iter().map(|&key| parts[key as u32 as usize]));
-        parts.copy_from_slice(sorted);
-        range.start + half
-    }
+/// Parts some at their median along an axis, the lower half of them first, and says where the other
+/// begins.
+pub(crate) fn halve(
+    parts: &mut [Part],
+    axis: &Vector3,
+    mean: &Point3,
+    memory: &mut Memory,
+) -> usize {
+    let Memory { along, keys, sorted } = memory;
+    along.clear();
+    along.extend(parts.iter().map(|part| axis.dot(&(part.centroid - mean))));
+    // The sign of an eigenvector is arbitrary and an odd count halves unevenly; letting the
+    // longer tail point up makes the partition independent of the frame.
+    let is_turned = along.iter().map(|along| along * along * along).sum::<f64>() < 0.0;
+    keys.clear();
+    keys.extend(along.iter().zip(parts.iter()).zip(0_u32..).map(|((&along, part), place)| {
+        let along = if is_turned { -along } else { along };
+        let tie = u64::from(part.index) << 32 | u64::from(place);
+        u128::from(ordered(along)) << 64 | u128::from(tie)
+    }));
+    let half = parts.len() / 2;
+    keys.select_nth_unstable(half);
+    sorted.clear();
+    sorted.extend(keys.iter().map(|&key| parts[key as u32 as usize]));
+    parts.copy_from_slice(sorted);
+    half
 }
 
 /// A whole number that is in the order of [`f64::total_cmp`], by which a machine sorts sooner.

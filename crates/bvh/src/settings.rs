@@ -53,6 +53,14 @@ impl TreeSettings {
     }
 }
 
+impl TreeSettings {
+    /// Whether a node of so many primitives with this variation is to be split.
+    pub(crate) fn asks_to_split(&self, count: usize, variation: f64) -> bool {
+        count > self.max_leaf_points
+            || (count / 2 >= self.min_leaf_points && variation > self.max_variation)
+    }
+}
+
 /// Which node pairs with disjoint boxes are still descended.
 ///
 /// Overlapping boxes always are. In all three the outcome bounds what was culled.

@@ -236,14 +236,16 @@ proptest! {
     }
 }
 
-/// Bounds given while it is built are those given after it, and points listed by their places alone
-/// are those listed one by one.
+/// Bounds given while it is built are those given after it, points listed by their places alone are those
+/// listed one by one, and a tree that one thread builds is one that many build, to the last name.
 #[test]
 fn a_tree_built_with_bounds_is_one_that_is_given_them() {
+    const POINTS: usize = 6000;
     let settings = TreeSettings::default();
     let covariance = Covariance::isotropic(1e-4);
-    let means: Vec<Point3> =
-        bumpy_sheet(5, 1500, Vector3::zeros()).iter().map(|p| p.centroid()).collect();
+    let mut means: Vec<Point3> =
+        bumpy_sheet(5, POINTS - 2, Vector3::zeros()).iter().map(|p| p.centroid()).collect();
+    means.extend([Point3::new(0.0, 50.0, 9.0), Point3::new(-70.0, 0.0, 3.0)]);
     let point = |&mean: &Point3| Primitive::point(UncertainPoint { mean, covariance });
     let listed: Vec<Primitive> = means.iter().map(point).collect();
     let mut after = Tree::build(listed.clone(), &settings).unwrap();
@@ -268,11 +270,15 @@ fn a_tree_built_with_bounds_is_one_that_is_given_them() {
     after.set_leaf_bounds(bounds_of).unwrap();
     assert_ne!(told(&after), unbounded);
     let alike = Primitives::Alike { means: Arc::new(means), covariance };
-    for primitives in [Primitives::Each(listed.clone()), alike] {
-        let built = Tree::build_bounded(primitives, &settings, |_, leaf| bounds_of(leaf)).unwrap();
+    for (primitives, threads) in
+        [(Primitives::Each(listed.clone()), 1), (Primitives::Each(listed.clone()), 4), (alike, 3)]
+    {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let build = || Tree::build_bounded(primitives, &settings, |_, leaf| bounds_of(leaf));
+        let built = pool.install(build).unwrap();
         assert_eq!(told(&built), told(&after));
         assert_eq!(built.validate(), Ok(()));
-        assert!((0..1500).all(|index| built.primitive(index) == Some(listed[index])));
+        assert!((0..POINTS).all(|index| built.primitive(index) == Some(listed[index])));
     }
     let nothing_known =
         |_: &Tree, _: Node<'_>| LeafBounds { std: f64::NAN, shift: 0.0, reach: 0.0 };

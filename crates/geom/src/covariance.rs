@@ -224,6 +224,15 @@ impl Covariance {
         }
     }
 
+    /// The largest standard deviation in any direction, m, or up to a millionth more: a bound that is soon
+    /// told, see [`Self::max_std`].
+    pub fn max_std_at_most(&self) -> f64 {
+        match &self.0 {
+            Form::Isotropic(_) | Form::Axis(_) => self.max_std(),
+            Form::Full(symmetric) => symmetric.largest_at_most().sqrt(),
+        }
+    }
+
     /// Whether no standard deviation is above this one, m: soon told, without eigenvalues. Perhaps not
     /// where the largest is less than 1e-12 below it; never where it is above.
     pub fn is_within(&self, std: f64) -> bool {

@@ -13,7 +13,29 @@ pub(crate) fn entry(index: u32, point: &Point3) -> Entry {
     (index, point.coords.map(|v| v + 0.0).into())
 }
 
-pub(crate) fn tree_of(entries: &[Entry]) -> Result<ImmutableKdTree<f64, 3>, NoiseError> {
-    ImmutableKdTree::new_from_entries(entries)
-        .map_err(|error| NoiseError::Index { points: entries.len(), reason: error.to_string() })
+/// Who builds a tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Threads {
+    /// The caller alone: whoever waits for others may be given work meanwhile that waits for the caller.
+    This,
+    /// All of the pool.
+    All,
+}
+
+/// Trees of fewer are built by who asks for them.
+const LEAST_SHARED: usize = 4096;
+
+/// The same tree, whoever builds it.
+pub(crate) fn tree_of(
+    entries: &[Entry],
+    by: Threads,
+) -> Result<ImmutableKdTree<f64, 3>, NoiseError> {
+    let builder = ImmutableKdTree::builder();
+    let built = match by {
+        Threads::This => builder.with_serial_construction().build_from_entries(entries),
+        Threads::All => {
+            builder.with_parallel_construction_threshold(LEAST_SHARED).build_from_entries(entries)
+        }
+    };
+    built.map_err(|error| NoiseError::Index { points: entries.len(), reason: error.to_string() })
 }

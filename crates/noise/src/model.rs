@@ -218,11 +218,10 @@ impl NoiseModel {
         }
     }
 
-    /// Upper bounds on what [`refine`](Self::refine) does to a point with this position noise,
-    /// whatever its neighbours; infinite for `Convolution` without a cap on Ψ, where only the
-    /// neighbours tell.
-    pub fn bounds(&self, sensor: &Covariance, spacing_cap: f64) -> Bounds {
-        let sigma = sensor.max_std();
+    /// Upper bounds on what [`refine`](Self::refine) does to a point whose position noise has no standard
+    /// deviation above `sigma` (m), whatever its neighbours; infinite for `Convolution` without a cap on
+    /// Ψ, where only the neighbours tell.
+    pub fn bounds(&self, sigma: f64, spacing_cap: f64) -> Bounds {
         let widened = |part: f64| sigma.hypot(part * spacing_cap) * (1.0 + ROUNDING);
         match self.settings.combination {
             Combination::Precision => Bounds { shift: 0.0, std: widened(0.0) },

@@ -3,7 +3,7 @@
 use cloudtouch_geom::Point3;
 use kiddo::ImmutableKdTree;
 
-use crate::entries::{Entry, entry, tree_of};
+use crate::entries::{Entry, Threads, entry, tree_of};
 use crate::error::NoiseError;
 
 /// A position that is not there any more.
@@ -53,6 +53,6 @@ impl Overlay {
         if (gone + added.len()) as f64 > MOST_CHANGED * now.len() as f64 {
             return Ok(None);
         }
-        Ok(Some(Self { now, added: tree_of(&added)?, added_count: added.len() }))
+        Ok(Some(Self { now, added: tree_of(&added, Threads::All)?, added_count: added.len() }))
     }
 }

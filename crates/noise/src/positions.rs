@@ -7,7 +7,7 @@ use std::sync::Arc;
 use cloudtouch_geom::Point3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
-use crate::entries::{Entry, entry, tree_of};
+use crate::entries::{Entry, Threads, entry, tree_of};
 use crate::error::NoiseError;
 use crate::finite::is_finite;
 use crate::overlay::{GONE, Overlay};
@@ -43,6 +43,15 @@ pub(crate) struct Positions {
 
 impl Positions {
     pub(crate) fn try_new(points: Vec<Point3>) -> Result<Self, NoiseError> {
+        Self::built(points, Threads::All)
+    }
+
+    /// The same by the caller alone, who may have what others wait for.
+    pub(crate) fn on_this_thread(points: Vec<Point3>) -> Result<Self, NoiseError> {
+        Self::built(points, Threads::This)
+    }
+
+    fn built(points: Vec<Point3>, by: Threads) -> Result<Self, NoiseError> {
         if u32::try_from(points.len()).is_err() {
             return Err(NoiseError::TooManyPoints { points: points.len() });
         }
@@ -52,7 +61,7 @@ impl Positions {
         }
         let entries: Vec<Entry> =
             distinct_indices(&points).map(|index| entry(index, &points[index as usize])).collect();
-        let tree = Arc::new(tree_of(&entries)?);
+        let tree = Arc::new(tree_of(&entries, by)?);
         let (points, distinct) = (Arc::new(points), entries.len());
         Ok(Self { points, distinct, tree, overlay: None, id: Arc::default() })
     }

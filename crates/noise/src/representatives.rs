@@ -14,9 +14,7 @@ const REACH_SPACINGS: f64 = 2.0;
 /// ... or up to this part of the standard deviation of the noise, which hides steps so short, and for
 /// none beyond the whole of it.
 const REACH_STD: f64 = 0.2;
-/// Points whose noise is compared with their spacing before all are.
-const SAMPLE: usize = 200;
-/// The part of these that has to be noisy.
+/// The part of a sample of the points that has to be noisy.
 const NOISY_SHARE: f64 = 0.05;
 
 /// The points that stand for a surface, and which are near which.
@@ -31,7 +29,8 @@ pub struct Representatives {
 
 impl Representatives {
     /// Chooses among the points of a cloud, whose position noise is `sensor`; `None` where every point
-    /// stands for itself.
+    /// stands for itself, as at all but a few of `sample`, indices of points from all over the cloud: some
+    /// hundred do. What a choice is not to depend on, such as the order of the points, they must not either.
     ///
     /// The densest places come first, which are those near the surface, so that the choice depends on
     /// neither the frame nor the order of the points. A point whose noise is small is never stood for
@@ -41,10 +40,14 @@ impl Representatives {
     /// As for [`Neighborhoods::try_new`], which cannot happen for points out of one.
     ///
     /// # Panics
-    /// When the length of `sensor` does not belong to the cloud.
-    pub fn choose(cloud: &Neighborhoods, sensor: &SensorNoise) -> Result<Option<Self>, NoiseError> {
+    /// When the length of `sensor` does not belong to the cloud, or an index of `sample`.
+    pub fn choose(
+        cloud: &Neighborhoods,
+        sensor: &SensorNoise,
+        sample: &[usize],
+    ) -> Result<Option<Self>, NoiseError> {
         assert_eq!(sensor.len(), cloud.points().len(), "one sensor covariance for each point");
-        if !is_crowded(cloud, sensor) {
+        if !is_crowded(cloud, sensor, sample) {
             return Ok(None);
         }
         let indices = chosen(cloud, sensor);
@@ -73,16 +76,11 @@ impl Representatives {
 }
 
 /// Whether the noise exceeds the spacing at more than a few of some points.
-fn is_crowded(cloud: &Neighborhoods, sensor: &SensorNoise) -> bool {
-    let count = cloud.points().len();
-    let sampled = count.min(SAMPLE);
+fn is_crowded(cloud: &Neighborhoods, sensor: &SensorNoise, sample: &[usize]) -> bool {
     let mut buffers = Default::default();
     let mut spacing = |index| Density::around(cloud.positions(), index, &mut buffers).spacing;
-    let noisy = (0..sampled)
-        .map(|s| s * count / sampled)
-        .filter(|&index| is_noisy(&sensor[index], spacing(index)))
-        .count();
-    noisy as f64 > NOISY_SHARE * sampled as f64
+    let is_noisy = |&&index: &&usize| is_noisy(&sensor[index], spacing(index));
+    sample.iter().filter(is_noisy).count() as f64 > NOISY_SHARE * sample.len() as f64
 }
 
 fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {

@@ -6,6 +6,9 @@ use crate::lanes::{Lanes, Machine};
 use crate::patch::{Patch, Plane};
 use crate::smallest_axis::smallest_axis;
 
+/// A scatter that is no larger beside the moments that it is the difference of is rounding.
+const SCATTER_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// One pass of Tukey weights: the plane through the neighbours weighted by how well they agree
 /// with the last one. `None` when nobody agrees, or those who do lie about one line.
 #[inline(always)]
@@ -56,8 +59,13 @@ pub(crate) fn plane_of_sums(total: f64, first: [f64; 3], second: [f64; 6]) -> Op
     let centre = Vector3::from(first) * per_weight;
     let [xx, xy, xz, yy, yz, zz] = second;
     let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * per_weight;
+    let scatter = second - centre * centre.transpose();
+    // Where one neighbour alone agrees all of it is rounding, whose axes are any.
+    if scatter.trace() <= SCATTER_ROUNDING * second.trace() {
+        return None;
+    }
     // Nobody agreeing makes this NaN, which has no smallest axis.
-    let normal = smallest_axis(&(second - centre * centre.transpose()))?;
+    let normal = smallest_axis(&scatter)?;
     Some(Plane { normal, height: normal.dot(&centre) })
 }
 

@@ -1,6 +1,7 @@
 //! What a sensor model has to say, and how it becomes the noise of a cloud.
 
 use cloudtouch_geom::{Covariance, Point3, PointCloud, Pose, Vector3, unit};
+use rayon::prelude::*;
 
 use crate::error::NoiseError;
 use crate::finite::is_finite;
@@ -56,7 +57,8 @@ pub trait Sensor {
     }
 }
 
-/// The position noise of every point of a cloud as `sensor` saw it, in the frame of the cloud.
+/// The position noise of every point of a cloud as `sensor` saw it, in the frame of the cloud; on all
+/// threads of the pool.
 ///
 /// The sensor stands at the origin of [`PointCloud::sensor_pose`] and is turned as this says. The
 /// turn of a camera is believed only where it puts at least half of the points before the camera:
@@ -67,7 +69,10 @@ pub trait Sensor {
 /// # Errors
 /// When [`Sensor::validate`] objects, the sensor pose is not finite, or a covariance leaves the range
 /// of `f64`.
-pub fn position_noise(sensor: &impl Sensor, cloud: &PointCloud) -> Result<SensorNoise, NoiseError> {
+pub fn position_noise(
+    sensor: &(impl Sensor + Sync),
+    cloud: &PointCloud,
+) -> Result<SensorNoise, NoiseError> {
     sensor.validate()?;
     let pose = plausible_pose(sensor, cloud)?;
     let cloud_to_sensor = pose.inverse();
@@ -82,8 +87,10 @@ pub fn position_noise(sensor: &impl Sensor, cloud: &PointCloud) -> Result<Sensor
             Err(NoiseError::CovarianceNotFinite { index, point: *point })
         }
     };
-    let all: Result<Vec<Covariance>, NoiseError> =
-        cloud.points.iter().enumerate().map(one).collect();
+    let all: Vec<Result<Covariance, NoiseError>> =
+        cloud.points.par_iter().enumerate().map(one).collect();
+    // The first of the errors, whoever found it.
+    let all: Result<Vec<Covariance>, NoiseError> = all.into_iter().collect();
     Ok(all?.into())
 }
 

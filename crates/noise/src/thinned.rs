@@ -28,7 +28,7 @@ impl Thinned {
         indices.sort_unstable();
         let points = indices.iter().map(|&index| cloud.points()[index as usize]).collect();
         // Points that could be indexed before can be again.
-        Some(Self { indices, positions: Positions::try_new(points).ok()? })
+        Some(Self { indices, positions: Positions::on_this_thread(points).ok()? })
     }
 
     pub(crate) fn positions(&self) -> &Positions {

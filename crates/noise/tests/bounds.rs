@@ -54,7 +54,7 @@ proptest! {
             let model = model(combination);
             for i in 0..points.len() {
                 let refined = model.refine(i, &index, &sensor, cap, &mut scratch);
-                let bounds = model.bounds(&sensor[i], cap);
+                let bounds = model.bounds(sensor[i].max_std(), cap);
                 let covariance = refined.point.covariance;
                 let shift = (refined.point.mean - points[i]).norm();
                 // The rounding of adding a shift to a coordinate of size 5.

@@ -12,10 +12,16 @@ fn ball(std: f64, stream: u64) -> Vec<Point3> {
     noisy(&sphere(0.05, 0.0028, stream).points, std, stream + 1)
 }
 
+/// Every tenth.
+fn sample(cloud: &Neighborhoods) -> Vec<usize> {
+    (0..cloud.points().len()).step_by(10).collect()
+}
+
 fn chosen(points: &[Point3], std: f64) -> Option<Vec<Point3>> {
     let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
     let cloud = Neighborhoods::try_new(points.to_vec()).expect("an index");
-    let chosen = Representatives::choose(&cloud, &noise).expect("an index of some")?;
+    let chosen =
+        Representatives::choose(&cloud, &noise, &sample(&cloud)).expect("an index of some")?;
     Some(chosen.indices().iter().map(|&index| points[index as usize]).collect())
 }
 
@@ -46,7 +52,7 @@ fn a_sharp_point_is_not_stood_for_by_a_noisy_one() {
     let noise: SensorNoise = (0..points.len()).map(of).collect::<Vec<_>>().into();
     let count = points.len();
     let cloud = Neighborhoods::try_new(points).unwrap();
-    let chosen = Representatives::choose(&cloud, &noise).unwrap().unwrap();
+    let chosen = Representatives::choose(&cloud, &noise, &sample(&cloud)).unwrap().unwrap();
     for index in (0..count).filter(|&index| sharp(index)) {
         assert!(chosen.indices().contains(&(index as u32)), "{index}");
     }
@@ -58,7 +64,7 @@ fn discs_are_as_wide_as_the_spacing_of_what_was_chosen() {
     let points = ball(std, 4);
     let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
     let cloud = Neighborhoods::try_new(points).unwrap();
-    let chosen = Representatives::choose(&cloud, &noise).unwrap().unwrap();
+    let chosen = Representatives::choose(&cloud, &noise, &sample(&cloud)).unwrap().unwrap();
     let model = NoiseModel::try_new(NoiseSettings::default()).unwrap();
     let mut scratch = Scratch::default();
     let mut wider = 0;

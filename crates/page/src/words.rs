@@ -12,13 +12,13 @@ pub fn undecided(by: Undecided) -> &'static str {
     match by {
         Undecided::Unseen => "the camera saw too little of where the object is",
         Undecided::Enclosed => {
-            "one cloud is all around the other: hollow or solid? (--sensor-pose)"
+            "one surface is all around the other: hollow or solid? (--sensor-pose, or fill the mesh)"
         }
         Undecided::Units => "sizes or distance cannot be meant",
-        Undecided::Sparse => "one body fits between the points of the other",
+        Undecided::Sparse => "a body fits between points of the other, or between clumps of them",
         Undecided::Noise => "the noise is larger than a body",
         Undecided::NoSurface => "a cloud spans no surface",
-        Undecided::Missing => "too many rows have no return",
+        Undecided::Missing => "too many rows have no return, or were taken for the robot",
         Undecided::Sensor => "the sensor cannot have seen this cloud",
         Undecided::Unsolved => "a classifier could not be trained",
         Undecided::Bounds => "what was not looked at, or is too noisy, could still collide",

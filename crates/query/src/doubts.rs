@@ -3,7 +3,7 @@
 
 use cloudtouch_geom::Pose;
 
-use crate::cloud::{Makeup, SensorDoubt};
+use crate::cloud::{Clumps, Makeup, SensorDoubt};
 use crate::placement::box_gap;
 use crate::report::Unseen;
 use crate::safeguards::Safeguards;
@@ -22,8 +22,9 @@ const LARGE_MESH_RATIO: f64 = 100.0;
 const LARGE_OBJECT: f64 = 20.0;
 /// ... in a scene so many times smaller.
 const LARGE_OBJECT_RATIO: f64 = 3.0;
-/// An object is not so many sizes of the larger body away from it.
-pub(crate) const FARTHEST_SIZES: f64 = 100.0;
+/// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
+/// a thirtieth of that size off.
+const FARTHEST_SIZES: f64 = 30.0;
 
 /// The warnings about a pair, gravest first. `a_from_b` maps local frames.
 pub(crate) fn doubts(
@@ -57,6 +58,10 @@ pub(crate) fn doubts(
     }
     warnings.extend(units((a, b)));
     warnings.extend(clouds().filter_map(|(body, cloud, size)| scale(body, cloud, size)));
+    warnings.extend(clouds().filter_map(|(body, cloud, _)| {
+        let Clumps { across, apart } = cloud.clumps?;
+        Some(Warning::Clumps { body, across_m: across, apart_m: apart })
+    }));
     warnings.extend(clouds().flat_map(|(body, cloud, _)| sensors(body, cloud)));
     warnings.extend(apart((a, b), a_from_b));
     let share = unseen.map_or(0.0, Unseen::share);
@@ -103,6 +108,7 @@ fn sensors(body: Which, cloud: &Makeup) -> impl Iterator<Item = Warning> + '_ {
         }
         SensorDoubt::Layout => Some(Warning::SensorLayout { body }),
         SensorDoubt::Misplaced => Some(Warning::ImagePlace { body }),
+        SensorDoubt::Robot { share } => Some(Warning::SelfFilter { body, share }),
         // Of an object it is taken for granted that it may have a back.
         SensorDoubt::NoImage => (body == Which::A).then_some(Warning::NoImage { body }),
     })

@@ -10,18 +10,20 @@ pub enum Undecided {
     /// More of a body's surface than [`Safeguards::max_unseen`](crate::Safeguards::max_unseen) lies
     /// where the single depth image of the other saw nothing: see [`Unseen`](crate::Unseen).
     Unseen,
-    /// The surface of a cloud is all around the other body: it is in a hollow space, or within a solid.
-    /// A cloud that knows where its sensor stood tells which.
+    /// The surface of a cloud, or of a mesh that is closed but for a few triangles, is all around the other
+    /// body: it is in a hollow space, or within a solid. A cloud that knows where its sensor stood tells which,
+    /// and a mesh whose holes are filled.
     Enclosed,
     /// Sizes or distance of the bodies cannot be meant: one of them is in another unit.
     Units,
-    /// One body fits between the points of the other.
+    /// One body fits between the points of the other, or these lie in clumps with nothing known between.
     Sparse,
     /// The noise of a cloud is larger than the other body.
     Noise,
     /// The points of a cloud span no surface: they are on a line, or are one.
     NoSurface,
-    /// Too many rows of a cloud without image layout have no return: where is not known.
+    /// Too many rows of a cloud without image layout have no return, or were taken for the robot itself: what
+    /// is there is not known.
     Missing,
     /// The sensor stated for a cloud cannot have seen it.
     Sensor,

@@ -71,6 +71,15 @@ pub enum Warning {
         /// Diagonal of the other's box, m.
         other_size_m: f64,
     },
+    /// Points lie in clumps, between which no surface is known.
+    Clumps {
+        /// Whose points.
+        body: Which,
+        /// Typical distance of neighbours in a clump, m.
+        across_m: f64,
+        /// Typical distance of those in other clumps, m.
+        apart_m: f64,
+    },
     /// The noise of a cloud is larger than the other body.
     Noise {
         /// Whose noise.
@@ -111,6 +120,13 @@ pub enum Warning {
         /// Whose.
         body: Which,
     },
+    /// So many points of a cloud without image layout were taken for the robot itself.
+    SelfFilter {
+        /// Whose.
+        body: Which,
+        /// Share of the points, 0 to 1.
+        share: f64,
+    },
     /// The object is outside of the scene's box.
     OutsideScene {
         /// Between the two boxes, m.
@@ -137,12 +153,14 @@ impl Warning {
             | Self::Missing { body, .. }
             | Self::Units { body, .. }
             | Self::Sparse { body, .. }
+            | Self::Clumps { body, .. }
             | Self::Noise { body, .. }
             | Self::SensorPose { body, .. }
             | Self::SensorRange { body, .. }
             | Self::SensorLayout { body }
             | Self::NoImage { body }
             | Self::ImagePlace { body }
+            | Self::SelfFilter { body, .. }
             | Self::Unseen { body, .. } => Some(body),
             Self::FarAway { .. } | Self::OutsideScene { .. } => None,
         }
@@ -152,9 +170,9 @@ impl Warning {
     pub(crate) fn undecides(&self) -> Option<Undecided> {
         match self {
             Self::NoSurface { .. } => Some(Undecided::NoSurface),
-            Self::Missing { .. } => Some(Undecided::Missing),
+            Self::Missing { .. } | Self::SelfFilter { .. } => Some(Undecided::Missing),
             Self::Units { .. } | Self::FarAway { .. } => Some(Undecided::Units),
-            Self::Sparse { .. } => Some(Undecided::Sparse),
+            Self::Sparse { .. } | Self::Clumps { .. } => Some(Undecided::Sparse),
             Self::Noise { .. } => Some(Undecided::Noise),
             Self::SensorPose { .. } | Self::SensorRange { .. } | Self::ImagePlace { .. } => {
                 Some(Undecided::Sensor)
@@ -200,6 +218,14 @@ impl fmt::Display for Warning {
                 length(spacing_m),
                 length(other_size_m)
             ),
+            Self::Clumps { body, across_m, apart_m } => write!(
+                f,
+                "points of the {body} lie in clumps some {} across and {} from one another, as many scans \
+                 of the same rays do: nothing is known between them; put fewer scans together, or keep \
+                 one point of each clump",
+                length(across_m),
+                length(apart_m)
+            ),
             Self::Noise { body, std_m, other_size_m } => write!(
                 f,
                 "the noise of the {body} is {} and the other body {} across: give the sensor's noise \
@@ -236,6 +262,12 @@ impl fmt::Display for Warning {
                 "the {body} has rows and columns as an image, which no camera at the place stated for it \
                  has: say where it stood (VIEWPOINT, --sensor-pose) if the points are in another \
                  frame, or give them without the layout"
+            ),
+            Self::SelfFilter { body, share } => write!(
+                f,
+                "{:.0} % of the points of the {body} were taken for the robot and left out: check its \
+                 pose, its joints and the padding (metres), or give the organised cloud",
+                100.0 * share
             ),
             Self::OutsideScene { gap_m, size_m } => write!(
                 f,

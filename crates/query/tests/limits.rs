@@ -7,7 +7,7 @@ use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings,
-    PrepareError, Query, QueryError, QuerySettings, Safeguards, SubdivisionError, Verdict,
+    PrepareError, Query, QueryError, QuerySettings, Safeguards, SubdivisionError, Undecided,
 };
 
 fn cloud(points: Vec<Point3>) -> Result<Cloud, PrepareError> {
@@ -82,9 +82,11 @@ fn a_mesh_that_a_dense_cloud_would_split_millions_of_times_is_an_error() {
     });
     let (points, b) = (bunches.collect::<Vec<_>>(), triangle(1.0).unwrap());
     let a = cloud(points.clone()).unwrap();
-    // The default path takes the triangle as it is.
+    // The default path takes the triangle as it is, a millimetre off; what is between the bunches nobody knows.
     let by_default = Query::new(QuerySettings::default()).unwrap().run(&a, &b, &Pose::identity());
-    assert_eq!(by_default.unwrap().verdict, Verdict::Free);
+    let by_default = by_default.unwrap();
+    assert!(by_default.collision_probability < 0.1, "{by_default:?}");
+    assert_eq!(by_default.undecided_by, Some(Undecided::Sparse));
     let settings = PaperCloudSettings::amended(SensorModel::Exact);
     let a = PaperCloud::prepare(&PointCloud::from_points(points), &settings).unwrap();
     let certified = PaperSettings { traversal: Traversal::Certified, ..PaperSettings::amended() };

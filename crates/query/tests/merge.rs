@@ -1,10 +1,12 @@
 //! Several scans of one frame, each with its sensor and where that stood, in one map.
 
 use crate::common::{Asked, MODES, Scan, ask, at, mesh};
+use cloudtouch::geom::seed::{derive, unit};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, PaperCloud, PaperCloudSettings, PrepareError, Report, Verdict,
+    Cloud, CloudSettings, Mode, PaperCloud, PaperCloudSettings, PrepareError, Report, Verdict,
+    Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -32,6 +34,38 @@ fn scans(clouds: &[PointCloud]) -> [Scan; 2] {
         Scan::Calibrated(Cloud::merge(&scans).expect("good scans")),
         Scan::Paper(PaperCloud::merge(&of_paper).expect("good scans")),
     ]
+}
+
+/// Discs and edges ended at the clumps that scans of the same rays leave, and a cube deep in the floor between
+/// them read free.
+#[test]
+fn many_scans_of_the_same_rays_are_told() {
+    let scan = |seed: u64| {
+        let place = |i: u64| {
+            let off = |k| 2e-4 * (unit(derive(seed, i, k)) - 0.5);
+            let [x, y] = [i % 60, i / 60].map(|k| 0.01 * k as f64 - 0.3);
+            Point3::new(x + off(0), y + off(1), off(2))
+        };
+        PointCloud::from_points((0..3600).map(place).collect())
+    };
+    let by = CloudSettings::new(SensorModel::Isotropic { std: 1e-4 });
+    let cube = mesh(&scene::cuboid([0.2; 3]));
+    for (count, told) in [(1, false), (7, true), (20, true)] {
+        let scans: Vec<PointCloud> = (0..count).map(scan).collect();
+        let scans: Vec<_> = scans.iter().map(|scan| (scan, &by)).collect();
+        let floor = Scan::Calibrated(Cloud::merge(&scans).expect("good scans"));
+        let above = ask(Mode::Calibrated, &floor, &cube, &at(0.0, 0.0, 0.3));
+        let is_told = above.warnings.iter().any(|w| matches!(w, Warning::Clumps { .. }));
+        assert_eq!(is_told, told, "{count}: {above:?}");
+        assert_eq!(above.verdict == Verdict::Undecided, told, "{count}: {above:?}");
+        let open = TriangleMesh::try_new(
+            scene::cuboid([0.2; 3]).vertices().to_vec(),
+            scene::cuboid([0.2; 3]).triangles()[1..].to_vec(),
+        );
+        let open = mesh(&open.expect("a mesh"));
+        let through = ask(Mode::Calibrated, &floor, &open, &at(0.0, 0.0, 0.04));
+        assert_ne!(through.verdict, Verdict::Free, "{count}: {through:?}");
+    }
 }
 
 /// One cloud had one origin: what one camera could not see was unseen, whatever another saw there.

@@ -1,8 +1,8 @@
 //! The order of the points in the file does not matter.
 
-use crate::common::{ask, at, measured, prepare, uniform};
+use crate::common::{ask, at, measured, mesh, prepare, uniform};
 use cloudtouch::Mode;
-use cloudtouch::geom::Point3;
+use cloudtouch::geom::{Point3, Pose, Vector3};
 use cloudtouch_testkit::scene;
 
 /// Indices in an order that depends on the seed.
@@ -10,6 +10,28 @@ fn shuffled(count: usize, seed: u64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&i, &j| uniform(seed, i as u64).total_cmp(&uniform(seed, j as u64)));
     order
+}
+
+/// Whether a few points stand for all was told from every so-manieth point of the file: where the noise is
+/// about as large as the spacing, that changed with their order.
+#[test]
+fn the_order_does_not_decide_which_points_stand_for_all() {
+    let std = 0.005;
+    let cube = mesh(&scene::cuboid([0.1; 3]));
+    for spacing in [0.003, 0.0033, 0.0036] {
+        let points = measured(&scene::cuboid([0.1, 0.2, 0.1]), spacing, std, 5);
+        let probability = |seed| {
+            let shuffled = shuffled(points.len(), seed).iter().map(|&i| points[i]).collect();
+            let cloud = prepare(shuffled, std, Mode::Calibrated);
+            let turned = Pose::from_translation_rpy(Vector3::new(0.1, 0.02, 0.01), [0.4, 0.3, 0.2]);
+            ask(Mode::Calibrated, &cloud, &cube, &turned).collision_probability
+        };
+        let first = probability(1);
+        for seed in 2..12 {
+            let other = probability(seed);
+            assert!((other - first).abs() < 1e-3, "{spacing}, {seed}: {other} and {first}");
+        }
+    }
 }
 
 #[test]

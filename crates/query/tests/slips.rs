@@ -4,11 +4,13 @@ use crate::common::{AnyQuery, MODES, Scan, ask, at, measured, mesh};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Mesh, Mode, PrepareError, Report, Safeguards, Undecided, Unseen, Verdict, Warning,
+    Cloud, CloudSettings, FilterSettings, Mesh, Mode, PaperCloud, PaperCloudSettings, PrepareError,
+    Report, Safeguards, SelfMesh, Undecided, Unseen, Verdict, Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
+use std::sync::Arc;
 
 const NOISE: SensorModel = SensorModel::Isotropic { std: 0.002 };
 
@@ -78,6 +80,9 @@ fn a_pose_in_millimetres_read_free() {
     let told = |w: &Warning| matches!(w, Warning::FarAway { .. });
     let in_mm = at(100.0, 200.0, 300.0);
     check(|mode| scan(&table(), mode), &mesh(&tool()), &in_mm, Undecided::Units, told);
+    // In metres 6 cm above it.
+    let just_above = at(0.0, 0.0, 60.0);
+    check(|mode| scan(&table(), mode), &mesh(&tool()), &just_above, Undecided::Units, told);
     // Two metres beside the table nothing is in the way, and the report says so.
     let beside = ask(
         Mode::Calibrated,
@@ -96,6 +101,34 @@ fn units_that_are_meant_all_the_same_are_believed() {
     let scene = scan(&table(), Mode::Calibrated);
     let far = query.run(&scene, &mesh(&tool()), &at(100.0, 200.0, 300.0)).expect("a good pose");
     assert_eq!((far.verdict, far.warnings.len()), (Verdict::Free, 1));
+}
+
+/// A padding in centimetres took the table away, and nothing was in the way any more.
+#[test]
+fn a_scan_that_the_self_filter_took_away_read_free() {
+    let with_padding = |padding, mode| {
+        let link = Arc::new(mesh(&tool()));
+        let cloud_from_link = at(0.1, 0.1, 0.3);
+        let robot = vec![SelfMesh { mesh: link, cloud_from_link, padding }];
+        let filter = FilterSettings { robot, ..FilterSettings::default() };
+        match mode {
+            Mode::Calibrated => {
+                let settings = CloudSettings { filter, ..CloudSettings::new(NOISE) };
+                Scan::Calibrated(Cloud::prepare(&table(), &settings).expect("points are left"))
+            }
+            Mode::Paper => {
+                let settings = PaperCloudSettings { filter, ..PaperCloudSettings::amended(NOISE) };
+                Scan::Paper(PaperCloud::prepare(&table(), &settings).expect("points are left"))
+            }
+        }
+    };
+    let told = |w: &Warning| matches!(w, Warning::SelfFilter { share, .. } if *share > 0.5);
+    let within = at(0.1, 0.1, 0.0);
+    let padded = |mode| with_padding(0.6, mode);
+    check(padded, &mesh(&tool()), &within, Undecided::Missing, told);
+    let right = with_padding(0.02, Mode::Calibrated);
+    let collides = ask(Mode::Calibrated, &right, &mesh(&tool()), &within);
+    assert_eq!((collides.verdict, collides.warnings.len()), (Verdict::InCollision, 0));
 }
 
 #[test]

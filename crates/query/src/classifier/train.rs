@@ -20,6 +20,8 @@ use super::surface::Surface;
 /// deviations, but f can turn within a kernel width (0.22 at the default γ) and be flat at every
 /// point.
 const TRUSTED_STD: f64 = 0.05;
+/// Where it is this share of that off, a loose tolerance may decide.
+const AT_LIMIT: f64 = 0.05;
 /// How much tighter a problem is solved that leaves open whether there is a surface, or where.
 const TIGHTER: f64 = 1e-2;
 
@@ -35,9 +37,16 @@ impl Trained {
     const UNDECIDED: Self = Self { answer: PairAnswer::Undecided, solution: None };
 }
 
+/// What a solution says.
+struct Reading {
+    answer: PairAnswer,
+    /// Whether another solution within the tolerance may be believed where this is not, or the other way.
+    is_at_limit: bool,
+}
+
 /// Trains a classifier and reads the probabilities off it.
 ///
-/// An answer that the first solution leaves open is solved again, tighter; left open still, or cut
+/// An answer that the first solution leaves open, or nearly, is solved again, tighter; left open still, or cut
 /// short by the clock, the pair is undecided.
 pub(crate) fn by_kernel(
     points: &PairPoints,
@@ -61,14 +70,17 @@ pub(crate) fn by_kernel(
     };
 
     let sides = all.split_at(points.a.len());
+    let reading =
+        |solution: &_| read(&problem, solution, unit_box, sides, settings.distrusts_noise);
     let mut solution = loose.solve_watched(&problem, None, &mut look);
-    if is_open(&solution) {
+    let mut read = reading(&solution);
+    if is_open(&solution) || read.is_at_limit {
         solution = tight.solve_watched(&problem, Some(&solution), &mut look);
+        read = reading(&solution);
     }
     stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
     stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
-    let answer = read(&problem, &solution, unit_box, sides, settings.distrusts_noise);
-    Trained { answer, solution: Some(solution) }
+    Trained { answer: read.answer, solution: Some(solution) }
 }
 
 /// Whether a loose tolerance may be why nothing is determined: it cannot tell a small w from none, nor
@@ -103,21 +115,27 @@ fn read(
     unit_box: UnitBox,
     (a, b): (&[UncertainPoint], &[UncertainPoint]),
     distrusts_noise: bool,
-) -> PairAnswer {
+) -> Reading {
+    let sure = |answer| Reading { answer, is_at_limit: false };
     if solution.status == Status::Collapsed {
-        return PairAnswer::Indistinct;
+        return sure(PairAnswer::Indistinct);
     }
     let Ok(classifier) = Classifier::try_new(problem, solution) else {
-        return PairAnswer::Undecided;
+        return sure(PairAnswer::Undecided);
     };
     let surface = Surface::Kernel(classifier.outside(unit_box));
-    let is_noisy = distrusts_noise
-        && typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale() > TRUSTED_STD;
-    match PairAnswer::of(surface, a, b) {
-        Some(answer) if is_noisy && answer.largest() < 0.5 => PairAnswer::Indistinct,
+    let std = if distrusts_noise {
+        typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale()
+    } else {
+        0.0
+    };
+    let is_at_limit = (std / TRUSTED_STD - 1.0).abs() < AT_LIMIT;
+    let answer = match PairAnswer::of(surface, a, b) {
+        Some(answer) if std > TRUSTED_STD && answer.largest() < 0.5 => PairAnswer::Indistinct,
         Some(answer) => answer,
         None => PairAnswer::Undecided,
-    }
+    };
+    Reading { answer, is_at_limit }
 }
 
 /// Median over the points of the standard deviation along the gradient, m.

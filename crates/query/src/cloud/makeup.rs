@@ -5,6 +5,7 @@ use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing_
 
 use crate::filter::StageReport;
 
+use super::clumps::{Clumps, clumps};
 use super::pinhole::is_misplaced;
 
 /// Points that spacing, noise and distance are told from, at most.
@@ -18,6 +19,8 @@ const LINE_SHARE: f64 = 1e-6;
 const BESIDE: f64 = 0.17;
 /// A camera with this share of its points beside or behind it stood elsewhere.
 const MOST_BESIDE: f64 = 0.01;
+/// No sensor has more of its robot before it than this share of what it measures.
+const MOST_ROBOT: f64 = 0.5;
 /// A structured-light camera sees no farther, m: its fit ends at 3 m, its returns at some 8 m.
 const KINECT_RANGE: f64 = 10.0;
 
@@ -34,6 +37,8 @@ pub(crate) enum SensorDoubt {
     NoImage,
     /// No camera at the place stated has such rows and columns.
     Misplaced,
+    /// So large a share of the points was taken for the robot itself.
+    Robot { share: f64 },
 }
 
 /// A cloud as a whole.
@@ -45,6 +50,8 @@ pub(crate) struct Makeup {
     pub spacing: f64,
     /// Median of the standard deviations, each the largest of its point, m.
     pub std: f64,
+    /// Where points lie in clumps.
+    pub clumps: Option<Clumps>,
     /// Distinct points.
     pub distinct: usize,
     /// Whether the points span no surface.
@@ -55,20 +62,21 @@ pub(crate) struct Makeup {
 }
 
 impl Makeup {
-    /// Of the points kept and the box around them, in the local frame, and what was told of their scans.
+    /// Of the points kept, with their noise and a [sample](sample_of) of them, and the box around them, in the
+    /// local frame; and what was told of their scans.
     pub(super) fn new(
         corners: [Point3; 2],
-        (kept, noise): (&Neighborhoods, &SensorNoise),
+        (kept, noise, sample): (&Neighborhoods, &SensorNoise, &[usize]),
         missing: f64,
         sensor_doubts: Vec<SensorDoubt>,
     ) -> Self {
         let points = kept.points();
-        let sample = spread(points, SAMPLE);
         let std = median(sample.iter().map(|&i| noise[i].max_std()));
         Self {
             corners,
-            spacing: typical_spacing_at(kept, sample.into_iter()),
+            spacing: typical_spacing_at(kept, sample.iter().copied()),
             std,
+            clumps: clumps(kept, sample),
             distinct: kept.distinct(),
             is_line: !has_area(points, (corners[1] - corners[0]).norm()) && is_line(points),
             missing,
@@ -86,6 +94,18 @@ impl Makeup {
 pub(super) fn missing(scan: &PointCloud, stages: &[StageReport]) -> f64 {
     let stage = stages.iter().find(|s| s.stage == "missing" && !scan.is_image());
     stage.map_or(0.0, |s| s.removed as f64 / s.before.max(1) as f64)
+}
+
+/// A scan of which the self filter took most away, where its layout does not tell where that was.
+pub(super) fn mostly_robot(scan: &PointCloud, stages: &[StageReport]) -> Option<SensorDoubt> {
+    let stage = stages.iter().find(|stage| stage.stage == "robot" && !scan.is_image())?;
+    let share = stage.removed as f64 / stage.before.max(1) as f64;
+    (share > MOST_ROBOT).then_some(SensorDoubt::Robot { share })
+}
+
+/// Some hundred of the points, from all over the cloud.
+pub(super) fn sample_of(points: &[Point3]) -> Vec<usize> {
+    spread(points, SAMPLE)
 }
 
 /// Some of the points, evenly spread by how far they are from the middle of all: probabilities depend on

@@ -6,6 +6,7 @@ mod around;
 mod ball;
 mod carry;
 mod change;
+mod clumps;
 mod edge;
 mod frame;
 mod inside;
@@ -35,6 +36,7 @@ mod view;
 pub(crate) use accessors::cloud_accessors;
 pub(crate) use ball::Ball;
 pub use change::Change;
+pub(crate) use clumps::Clumps;
 pub(crate) use edge::{DISC_SPACINGS, Edge, MOST_ALONG, edge_along};
 pub(crate) use inside::points_inside;
 #[cfg(test)]

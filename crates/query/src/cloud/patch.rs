@@ -13,6 +13,7 @@ use crate::error::PrepareError;
 
 use super::lost::{Before, after};
 use super::makeup::Makeup;
+use super::makeup::sample_of;
 use super::pieces::Pieces;
 use super::prepared::{Prepared, makeup_of, measured_point};
 use super::scans::Scans;
@@ -56,11 +57,13 @@ impl Prepared {
             Some(near) => near,
             None => Neighborhoods::try_new(points)?,
         };
-        let is_each = scans.normals.is_some() || Pieces::chosen(&near, &scans.noise)?.is_each();
+        let sample = sample_of(near.points());
+        let chosen = || Pieces::chosen(&near, &scans.noise, &sample);
+        let is_each = scans.normals.is_some() || chosen()?.is_each();
         if !is_each {
             return Ok(None);
         }
-        let makeup = makeup_of(scans, &near, &self.origin)?;
+        let makeup = makeup_of(scans, (&near, &sample), &self.origin)?;
         Ok(Some(Prospect { near, makeup }))
     }
 

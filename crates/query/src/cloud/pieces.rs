@@ -17,9 +17,13 @@ impl Pieces {
         Self { chosen: None }
     }
 
-    /// The points that tell as much as all.
-    pub(super) fn chosen(cloud: &Neighborhoods, noise: &SensorNoise) -> Result<Self, NoiseError> {
-        Ok(Self { chosen: Representatives::choose(cloud, noise)? })
+    /// The points that tell as much as all; which, the noise of a sample of them decides.
+    pub(super) fn chosen(
+        cloud: &Neighborhoods,
+        noise: &SensorNoise,
+        sample: &[usize],
+    ) -> Result<Self, NoiseError> {
+        Ok(Self { chosen: Representatives::choose(cloud, noise, sample)? })
     }
 
     /// Whether every point stands for itself.

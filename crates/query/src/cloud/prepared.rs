@@ -10,7 +10,7 @@ use crate::error::PrepareError;
 use crate::filter::StageReport;
 
 use super::edge::DISC_SPACINGS;
-use super::makeup::Makeup;
+use super::makeup::{Makeup, sample_of};
 use super::pieces::Pieces;
 use super::preparation::Preparation;
 use super::scans::Scans;
@@ -87,22 +87,29 @@ impl Prepared {
         let origin = origin.unwrap_or_else(|| nalgebra::center(&low, &high).coords);
         let points: Vec<Point3> = all.points.iter().map(|p| p - origin).collect();
         let neighborhoods = Neighborhoods::try_new(points)?;
-        let makeup = makeup_of(&all, &neighborhoods, &origin)?;
+        let sample = sample_of(neighborhoods.points());
         // A surface that is known needs no others to be told from, and one point is as good as the next.
         let is_fitted =
             noise.settings().combination == Combination::SurfacePosterior && all.normals.is_none();
         let pieces = match is_fitted {
-            true => Pieces::chosen(&neighborhoods, sensor)?,
+            true => Pieces::chosen(&neighborhoods, sensor, &sample)?,
             false => Pieces::all(),
         };
         let primitives = primitives_of(&neighborhoods, &pieces, sensor, weigh);
-        let (measured, mut scratch) = ((&noise, &neighborhoods, sensor), Scratch::default());
+        let measured = (&noise, &neighborhoods, sensor);
+        let bounds_of = |tree: &Tree, leaf: Node<'_>| {
+            leaf_bounds(leaf, spacing_cap(tree, leaf), |piece| pieces.index(piece), measured)
+        };
+        let (makeup, tree) = rayon::join(
+            || makeup_of(&all, (&neighborhoods, &sample), &origin),
+            || Tree::build_bounded(primitives, by_tree, bounds_of),
+        );
+        let (makeup, tree) = (makeup?, tree?);
         let mut caps = vec![0.0; pieces.neighborhoods(&neighborhoods).points().len()];
-        let tree = Tree::build_bounded(primitives, by_tree, |tree, leaf| {
-            let cap = spacing_cap(tree, leaf);
+        for leaf in tree.leaves() {
+            let cap = spacing_cap(&tree, leaf);
             leaf.primitive_indices().iter().for_each(|&piece| caps[piece as usize] = cap);
-            leaf_bounds(leaf, cap, |piece| pieces.index(piece), measured, &mut scratch)
-        })?;
+        }
         let surface = LazySurface::new(&tree, caps);
         let view = |(sensor, points): (Point3, _)| SingleView::new(sensor - origin, points);
         let images = std::mem::take(&mut all.images);
@@ -227,18 +234,19 @@ fn corners_of(all: &Scans) -> Result<(Point3, Point3), PrepareError> {
     bounding_box(&all.points).ok_or(PrepareError::NothingLeft { before: 0, stages })
 }
 
-/// What a cloud of these scans is like as a whole, in a local frame about an origin.
+/// What a cloud of these scans is like as a whole, told from a sample of it, in a local frame about an origin.
 ///
 /// # Errors
 /// When there is no point, or they have more noise than the cloud has size.
 pub(super) fn makeup_of(
     all: &Scans,
-    points: &Neighborhoods,
+    (points, sample): (&Neighborhoods, &[usize]),
     origin: &Vector3,
 ) -> Result<Makeup, PrepareError> {
     let (low, high) = corners_of(all)?;
     let corners = [low - origin, high - origin];
-    let makeup = Makeup::new(corners, (points, &all.noise), all.missing, all.sensor_doubts.clone());
+    let doubts = all.sensor_doubts.clone();
+    let makeup = Makeup::new(corners, (points, &all.noise, sample), all.missing, doubts);
     if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
         return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
     }
@@ -280,17 +288,16 @@ pub(super) fn leaf_bounds(
     cap: f64,
     index: impl Fn(u32) -> usize,
     (noise, points, sensor): (&NoiseModel, &Neighborhoods, &SensorNoise),
-    scratch: &mut Scratch,
 ) -> LeafBounds {
     let indices = || leaf.primitive_indices().iter().map(|&piece| index(piece));
-    // The noisiest point is bounded by what bounds all.
-    let all = noise.bounds(&noisiest(indices().map(|index| &sensor[index])), cap);
+    let all = noise.bounds(most_std(indices().map(|index| &sensor[index])), cap);
     let std = if all.std.is_finite() {
         all.std
     } else {
         // What only the neighbours tell, they are asked for.
+        let mut scratch = Scratch::default();
         let mut refined_std = |index| {
-            let refined = noise.refine(index, points, sensor, cap, scratch);
+            let refined = noise.refine(index, points, sensor, cap, &mut scratch);
             refined.point.covariance.max_std() * (1.0 + ROUNDING)
         };
         indices().map(&mut refined_std).fold(0.0, f64::max)
@@ -298,17 +305,13 @@ pub(super) fn leaf_bounds(
     LeafBounds { std, shift: all.shift, reach: DISC_SPACINGS * cap }
 }
 
-/// One with the largest standard deviation of them.
-fn noisiest<'a>(all: impl Iterator<Item = &'a Covariance>) -> Covariance {
-    let (mut noisiest, mut most) = (Covariance::zero(), 0.0);
-    for noise in all {
-        // PERF: eigenvalues of few, for those of a leaf are much the same.
-        if !noise.is_within(most) {
-            let std = noise.max_std();
-            if std > most {
-                (noisiest, most) = (*noise, std);
-            }
-        }
-    }
-    noisiest
+/// No standard deviation of these is larger, m, nor this by more than a millionth than the largest.
+fn most_std<'a>(all: impl Iterator<Item = &'a Covariance>) -> f64 {
+    // PERF: those of a leaf are much the same.
+    all.fold(
+        0.0,
+        |most, noise| {
+            if noise.is_within(most) { most } else { most.max(noise.max_std_at_most()) }
+        },
+    )
 }

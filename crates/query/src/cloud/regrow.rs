@@ -59,11 +59,10 @@ impl Prepared {
             }
         }
         let Self { noise, neighborhoods, scans, surface, tree, .. } = self;
-        let (measured, mut scratch) =
-            ((&*noise, &*neighborhoods, &scans.noise), Scratch::default());
+        let measured = (&*noise, &*neighborhoods, &scans.noise);
         tree.set_bounds_of(&patched.leaves, |leaf| {
             let index = |piece: u32| piece as usize;
-            leaf_bounds(leaf, surface.spacing_cap(leaf), index, measured, &mut scratch)
+            leaf_bounds(leaf, surface.spacing_cap(leaf), index, measured)
         })?;
         Ok(kept)
     }

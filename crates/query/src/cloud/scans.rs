@@ -10,7 +10,7 @@ use crate::error::PrepareError;
 use crate::filter::{StageReport, filter};
 use crate::range::check_points;
 
-use super::makeup::{SensorDoubt, missing, sensor_doubts};
+use super::makeup::{SensorDoubt, missing, mostly_robot, sensor_doubts};
 use super::preparation::Preparation;
 
 /// Scans in one frame.
@@ -74,6 +74,7 @@ impl Scans {
             }
             all.missing = all.missing.max(missing(scan, &filtered.stages));
             all.sensor_doubts.extend(sensor_doubts(scan, by.sensor, &kept.points));
+            all.sensor_doubts.extend(mostly_robot(scan, &filtered.stages));
             // An organised cloud is a depth image: one view, with unseen space behind it.
             if scan.is_image() {
                 let range = all.points.len()..all.points.len() + kept.len();

@@ -2,6 +2,7 @@
 
 use cloudtouch_geom::{Point3, PointCloud};
 use cloudtouch_noise::Neighborhoods;
+use rayon::prelude::*;
 
 use super::OutlierSettings;
 
@@ -12,6 +13,7 @@ pub(super) fn drop_outliers(cloud: &PointCloud, kept: &mut Vec<usize>, settings:
     let Ok(neighborhoods) = Neighborhoods::try_new(points) else { return };
     let points = neighborhoods.points();
     let distances: Vec<f64> = (0..points.len())
+        .into_par_iter()
         .map(|i| {
             let neighbors = neighborhoods.nearest(i, settings.neighbors);
             let total: f64 = neighbors.iter().map(|n| n.squared_distance.sqrt()).sum();

@@ -8,6 +8,7 @@
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Vector3};
 use cloudtouch_noise::Neighborhoods;
+use rayon::prelude::*;
 
 use super::VeilSettings;
 use super::missing::is_missing;
@@ -21,7 +22,8 @@ pub(super) fn drop_veil(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &Ve
     match cloud.image_size {
         Some((width, height)) if width > 1 && height > 1 => {
             let least_cosine = settings.max_angle.cos();
-            kept.retain(|&i| !is_veil_in_image(cloud, i, (width, height), least_cosine));
+            let is_kept = |&i: &usize| !is_veil_in_image(cloud, i, (width, height), least_cosine);
+            *kept = std::mem::take(kept).into_par_iter().filter(is_kept).collect();
         }
         _ => drop_veil_lines(cloud, kept, settings),
     }
@@ -65,6 +67,7 @@ fn drop_veil_lines(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSet
     let Ok(neighborhoods) = Neighborhoods::try_new(points) else { return };
     let points = neighborhoods.points();
     let veil: Vec<bool> = (0..points.len())
+        .into_par_iter()
         .map(|i| {
             let neighbors = neighborhoods.nearest(i, LINE_NEIGHBORS);
             if neighbors.len() < LINE_NEIGHBORS {

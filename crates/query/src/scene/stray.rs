@@ -2,7 +2,6 @@
 
 use cloudtouch_geom::{Point3, Pose};
 
-use crate::doubts::FARTHEST_SIZES;
 use crate::placement::moved;
 use crate::shape::Shape;
 
@@ -36,6 +35,10 @@ fn union([low, high]: &Corners, [other_low, other_high]: &Corners) -> Corners {
         Point3::from(high.coords.sup(&other_high.coords)),
     ]
 }
+
+/// No body is so many sizes away from all others: farther than an object from its scene, for a robot may have
+/// driven off.
+const FARTHEST_SIZES: f64 = 100.0;
 
 /// A body alone is not: nothing is infinitely large the wrong way round.
 fn is_astray([low, high]: &Corners, [other_low, other_high]: &Corners) -> bool {
