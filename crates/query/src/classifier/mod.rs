@@ -10,5 +10,5 @@ mod train;
 pub(crate) use clock::Clock;
 pub(crate) use pair::{PairAnswer, PairPoint, PairPoints, centroid};
 pub(crate) use settings::ClassifierSettings;
-pub(crate) use surface::Surface;
+pub(crate) use surface::{SETTLED, Surface};
 pub(crate) use train::{Trained, by_kernel};

@@ -3,6 +3,9 @@
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3, normal};
 use cloudtouch_svm::{Class, Classifier, Separation};
 
+/// A projection ends within this share of its reach of f = 0.
+pub(crate) const SETTLED: f64 = 1e-3;
+
 /// A separating surface in the local frame of A, metres.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Surface {
@@ -52,7 +55,7 @@ impl Surface {
             if !distance.is_finite() {
                 return None;
             }
-            if distance.abs() <= 1e-3 * reach {
+            if distance.abs() <= SETTLED * reach {
                 return Some((foot, -gradient / slope));
             }
             let step = gradient * (distance / slope);

@@ -31,6 +31,7 @@ mod run;
 mod settings;
 mod signed;
 mod task;
+mod tied;
 mod weights;
 
 pub use body::PaperBodyRef;
