@@ -84,6 +84,26 @@ def test_a_poisoned_row_is_an_error_in_its_place(root, whole):
     assert_same(taken({n: c for n, c in answers.items() if n != "pose"}, good), taken({n: c for n, c in whole.items() if n != "pose"}, good))
 
 
+@pytest.mark.parametrize("bad", [None, "none", [1.0] * 15, [[1.0, 0.0], [0.0]], 3.0])
+def test_a_pose_that_is_none_among_lists_costs_no_other_row_its_answer(root, whole, bad):
+    rows: dict = {name: column.tolist() for name, column in table().items()}
+    rows["pose"][4] = bad
+    rows["note"] = [[1], None] + [[1, 2, 3]] * 18
+    answers = ct.PoseChecker(root, sensor="iso:0.001")(rows)
+    assert answers["verdict"][4] == "error" and "pose is not 16 numbers" in answers["error"][4]
+    assert answers["pose"].shape == (20,) and answers["pose"][4] == bad and answers["pose"][3] == rows["pose"][3]
+    assert answers["note"].tolist() == rows["note"]
+    good = np.setdiff1d(np.arange(20), [4])
+    handed_on = {"pose", "note"}
+    answered = {name: column for name, column in answers.items() if name not in handed_on}
+    assert_same(taken(answered, good), taken({n: c for n, c in whole.items() if n not in handed_on}, good))
+
+
+def test_lists_give_the_columns_that_arrays_give(root, whole):
+    rows: dict = {name: column.tolist() for name, column in table().items()}
+    assert_same(ct.PoseChecker(root, sensor="iso:0.001")(rows), whole)
+
+
 def test_it_goes_to_workers(root, whole):
     checker = ct.PoseChecker(root, sensor="iso:0.001", query={"prior": 0.5})
     checker(taken(table(), np.arange(2)))

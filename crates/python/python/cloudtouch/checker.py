@@ -93,7 +93,7 @@ class PoseChecker:
             batch = self._answer(names, [poses[place] for place in places])
             for name, column in batch.columns().items():
                 answers[name][places] = column
-        return {**{name: np.asarray(column) for name, column in rows.items()}, **answers}
+        return {**{name: _array(column) for name, column in rows.items()}, **answers}
 
     def _answer(self, names: tuple[str, str], poses: list[Any]) -> Batch:
         if poses[0] is None:
@@ -176,6 +176,17 @@ def _plain(pose: Any) -> Any:
     if isinstance(pose, np.ndarray) and pose.dtype == object:
         return [_plain(row) for row in pose]
     return pose
+
+
+def _array(column: Any) -> npt.NDArray[Any]:
+    try:
+        return np.asarray(column)
+    except ValueError:
+        # Rows of different shapes, such as a pose that is none among others: each stays as it is.
+        rows = np.empty(len(column), dtype=object)
+        for place, row in enumerate(column):
+            rows[place] = row
+        return rows
 
 
 def _wide(dtype: np.dtype[Any]) -> np.dtype[Any] | type:
