@@ -11,8 +11,8 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 use serde_json::value::RawValue;
 
+use crate::case_fields;
 use crate::json_text::{matrix, shortened, without_bare_words};
-use crate::near_name;
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.
 #[derive(Debug)]
@@ -51,9 +51,6 @@ struct RawFile<'a> {
     length_unit: String,
     #[serde(borrow)]
     cases: Vec<&'a RawValue>,
-    // Of each case: here they would be passed over.
-    scene_sensor: Option<IgnoredAny>,
-    object_sensor: Option<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -68,9 +65,6 @@ struct RawCase {
     in_collision: Option<Value>,
     signed_distance_m: Option<Value>,
 }
-
-/// Fields that an answer depends on: what nearly has one of these names is an error, all else is passed over.
-const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];
 
 impl CaseFile {
     /// Names that two cases have, with the places from 1 of the first two.
@@ -124,13 +118,10 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
     if raw.length_unit != "m" {
         bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
     }
-    let of_cases = [("scene_sensor", raw.scene_sensor), ("object_sensor", raw.object_sensor)];
-    if let Some((name, _)) = of_cases.iter().find(|(_, given)| given.is_some()) {
-        bail!(
-            "`{name}` is beside the cases: write \"scene_sensor\" or \"object_sensor\" in each case, or \
-             give --sensor or --object-sensor for all"
-        );
-    }
+    // What is of each case, or of none, would be passed over here.
+    let beside: BTreeMap<String, Option<IgnoredAny>> = serde_json::from_slice(&text)?;
+    let given = beside.iter().filter(|(_, value)| value.is_some());
+    given.map(|(name, _)| name).try_for_each(|name| case_fields::check_beside(name))?;
     if raw.cases.is_empty() {
         bail!("there are no cases: `cases` is an empty list");
     }
@@ -165,12 +156,7 @@ fn parse_case(value: Value, folder: &Path) -> Result<Case> {
     let Value::Object(fields) = &value else {
         bail!("the case is not a JSON object but {}", kind(&value));
     };
-    let is_given = |name: &str| fields.contains_key(name);
-    for name in fields.keys().filter(|name| !USED.contains(&name.as_str())) {
-        if let Some(known) = near_name::meant(name, &USED, is_given) {
-            bail!("there is no field `{name}`: is `{known}` meant? Then rename it");
-        }
-    }
+    case_fields::check(fields)?;
     let raw = RawCase::deserialize(&value)?;
     let scene_from_object = matrix(raw.pose)?;
     let sensor = |spec: Option<String>| {

@@ -1,5 +1,6 @@
 //! What other programs share with the `cloudtouch` tool: how its case files and options are read.
 
+mod case_fields;
 pub mod case_file;
 pub mod joints_file;
 mod json_text;

@@ -228,6 +228,43 @@ fn a_sensor_beside_the_cases_was_passed_over() {
     }
 }
 
+/// Scene files have the first two and the options the rest: in a case they changed nothing.
+#[test]
+fn a_field_of_a_scene_file_or_of_an_option_was_passed_over_in_a_case() {
+    let inputs = Inputs::new();
+    let of_others = [
+        ("sensor", "\"iso:0.002\"", &["`scene_sensor`", "`object_sensor`"][..]),
+        ("Sensor", "\"iso:0.002\"", &["`scene_sensor`", "`object_sensor`"]),
+        ("unit", "\"mm\"", &["--unit", "--cloud-unit"]),
+        ("object_unit", "\"mm\"", &["--unit", "--cloud-unit"]),
+        ("cloud_unit", "\"mm\"", &["--cloud-unit"]),
+        ("margin", "0.1", &["--margin"]),
+    ];
+    let with = |(i, (name, value, _)): (usize, &(&str, &str, &[&str]))| {
+        let field = format!("\"{name}\":{value}");
+        case_at(&format!("c{i}"), 0.5).replace("\"scene_sensor\":\"iso:0.002\"", &field)
+    };
+    let mut cases: Vec<String> = of_others.iter().enumerate().map(with).collect();
+    cases.push(case_at("good", 0.5));
+    inputs.write("cases.json", &case_file(&cases));
+    let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines();
+    for ((name, _, parts), line) in of_others.iter().zip(&lines) {
+        let error = line["error"].as_str().unwrap_or_else(|| panic!("{name}: {line}"));
+        assert!(error.contains(&format!("`{name}`")), "{error}");
+        assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
+    }
+    assert_eq!(lines[of_others.len()]["verdict"], "free");
+    for (name, value, parts) in of_others {
+        let beside = format!("{{\"{name}\":{value},");
+        inputs.write("cases.json", &case_file(&[case_at("a", 0.5)]).replacen('{', &beside, 1));
+        let run = inputs.run(&["batch", "cases.json"]);
+        let error = run.stderr();
+        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{name}: {error}");
+        assert!(error.contains("cases.json") && error.contains(&format!("`{name}`")), "{error}");
+        assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
+    }
+}
+
 /// Whoever looks an answer up by its name found another one.
 #[test]
 fn two_cases_of_one_name_were_not_told() {

@@ -1,0 +1,54 @@
+//! Names of fields in a case file: what is passed over in silence would change nothing, whatever was meant.
+
+use anyhow::{Result, bail};
+use serde_json::{Map, Value};
+
+use crate::near_name;
+
+/// Fields that an answer depends on: what nearly has one of these names is an error, all else is passed over.
+const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];
+
+/// Fields of scene files, and options spelt as fields, that no case has, and what says the same of a case.
+const OF_OTHERS: [(&str, &str); 7] = [
+    ("sensor", SENSORS),
+    ("unit", UNITS),
+    ("mesh_unit", UNITS),
+    ("cloud_unit", UNITS),
+    ("scene_unit", UNITS),
+    ("object_unit", UNITS),
+    ("margin", "give --margin, for all cases"),
+];
+const SENSORS: &str = "write `scene_sensor` or `object_sensor` in each case, or give --sensor or \
+                       --object-sensor for all";
+const UNITS: &str = "give --unit for all meshes, --cloud-unit for all clouds";
+
+/// Refuses names in a case that nearly are those of fields it lacks, and those that others have.
+pub(crate) fn check(fields: &Map<String, Value>) -> Result<()> {
+    let is_given = |name: &str| fields.contains_key(name);
+    for (name, value) in fields.iter().filter(|(name, _)| !USED.contains(&name.as_str())) {
+        if let Some(known) = near_name::meant(name, &USED, is_given) {
+            bail!("there is no field `{name}`: is `{known}` meant? Then rename it");
+        }
+        // Beside the sensor that counts it is a note.
+        let is_note = is_given("scene_sensor") && name.eq_ignore_ascii_case("sensor");
+        if !is_note && !value.is_null() {
+            check_of_others(name)?;
+        }
+    }
+    Ok(())
+}
+
+/// The same for a name beside the cases.
+pub(crate) fn check_beside(name: &str) -> Result<()> {
+    if name == "scene_sensor" || name == "object_sensor" {
+        bail!("`{name}` is beside the cases: {SENSORS}");
+    }
+    check_of_others(name)
+}
+
+fn check_of_others(name: &str) -> Result<()> {
+    match OF_OTHERS.iter().find(|(other, _)| name.eq_ignore_ascii_case(other)) {
+        Some((_, remedy)) => bail!("there is no field `{name}`: {remedy}"),
+        None => Ok(()),
+    }
+}
