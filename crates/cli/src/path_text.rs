@@ -7,18 +7,31 @@ use nalgebra::Matrix4;
 /// No message quotes more of a word.
 const EXCERPT: usize = 40;
 
+/// The poses of a text, and what is to be doubted of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathText {
+    /// Object to scene, m.
+    pub poses: Vec<Pose>,
+    /// The first row of a table without a header, with its line from 1, where every row is exactly half a
+    /// turn about z: where the real part is written last, as ROS does, that is no turn at all.
+    pub half_turns: Option<(usize, String)>,
+}
+
 /// Poses, object to scene, in metres: JSON where the text begins with a bracket, a list of 4×4
 /// row-major matrices; else a table with a pose in each line, `x,y,z,qw,qx,qy,qz`, or in the order of
 /// these names in its first line.
 ///
 /// # Errors
 /// Names the pose, from 0, or the line, from 1, that is none.
-pub fn parse(text: &str) -> Result<Vec<Pose>> {
+pub fn parse(text: &str) -> Result<PathText> {
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with('{') {
         bail!("the path is an object: write the list of its poses alone, [[[...],...],...]");
     }
-    if text.starts_with('[') { matrices(text) } else { table(text) }
+    if text.starts_with('[') {
+        return Ok(PathText { poses: matrices(text)?, half_turns: None });
+    }
+    table(text)
 }
 
 fn matrices(text: &str) -> Result<Vec<Pose>> {
@@ -34,8 +47,10 @@ fn matrices(text: &str) -> Result<Vec<Pose>> {
 /// The columns of a table.
 const COLUMNS: [&str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
 
-fn table(text: &str) -> Result<Vec<Pose>> {
+fn table(text: &str) -> Result<PathText> {
     let mut poses = Vec::new();
+    let mut first = None;
+    let mut is_doubted = true;
     // Where in a line each of the columns is.
     let mut order = [0, 1, 2, 3, 4, 5, 6];
     for (line, content) in text.lines().enumerate() {
@@ -47,11 +62,23 @@ fn table(text: &str) -> Result<Vec<Pose>> {
         let place = || format!("line {} of the path", line + 1);
         if is_header {
             order = header(content).with_context(place)?;
+            is_doubted = false;
         } else {
-            poses.push(row(content, order).with_context(place)?);
+            let pose = row(content, order).with_context(place)?;
+            is_doubted &= is_half_turn_about_z(&pose);
+            first.get_or_insert((line + 1, content));
+            poses.push(pose);
         }
     }
-    Ok(poses)
+    let first = first.filter(|_| is_doubted);
+    let half_turns = first.map(|(line, row)| (line, row.chars().take(EXCERPT).collect()));
+    Ok(PathText { poses, half_turns })
+}
+
+/// Exactly, as nobody computes it.
+fn is_half_turn_about_z(pose: &Pose) -> bool {
+    let turn = pose.rotation();
+    turn.w == 0.0 && turn.i == 0.0 && turn.j == 0.0
 }
 
 /// Where each column is: many write the real part of a quaternion last.
@@ -103,9 +130,9 @@ mod tests {
         let headed = format!("x,y,z,qw,qx,qy,qz\n# a half turn first\n{plain}");
         // Once read as if the real part came first.
         let real_last = "\"X\", y, z, qx, qy, qz, qw\n0.5,0,0.25,1,0,0,0\n0,0,0,0,0,0,1\n";
-        let expected = parse(json).unwrap();
+        let expected = parse(json).unwrap().poses;
         for text in [plain, &headed, real_last] {
-            let found = parse(text).unwrap();
+            let found = parse(text).unwrap().poses;
             assert_eq!(found.len(), 2);
             for (p, q) in found.iter().zip(&expected) {
                 assert!(

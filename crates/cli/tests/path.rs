@@ -93,6 +93,35 @@ fn a_path_in_millimetres_is_undecided_and_says_why() {
     assert!(words.contains("warning the object is"), "{text}");
 }
 
+/// In the order of ROS no turn at all, it was half a turn about z without a word.
+#[test]
+fn poses_of_ros_without_a_header_were_half_turns_in_silence() {
+    let inputs = Inputs::new();
+    inputs.write("ros.csv", "# from a bag\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,-1\n");
+    let run = path(&inputs, "ros.csv", &["--json"]);
+    assert_eq!((run.code(), run.json_lines().len()), (0, 1), "{}", run.stderr());
+    let warning = run.stderr();
+    for part in [
+        "ros.csv: line 2: `0.01,0.02,0.6,0,0,0,1`",
+        "half turn about z",
+        "x,y,z,qw,qx,qy,qz",
+        "x,y,z,qx,qy,qz,qw",
+    ] {
+        assert!(warning.contains(part), "`{part}` is not in {warning}");
+    }
+    assert_eq!(warning.lines().count(), 1, "{warning}");
+    // Said by a header, or with another turn among them, they are meant.
+    for (name, text) in [
+        ("said.csv", "x,y,z,qw,qx,qy,qz\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
+        ("ros_said.csv", "x,y,z,qx,qy,qz,qw\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
+        ("turned.csv", "0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,1,0,0,0\n"),
+        ("about_x.csv", "0.01,0.02,0.6,0,1,0,0\n0.01,0.02,0.4,0,1,0,0\n"),
+    ] {
+        inputs.write(name, text);
+        path(&inputs, name, &[]).quiet(0);
+    }
+}
+
 #[test]
 fn bad_paths_are_named_with_what_to_do() {
     let inputs = Inputs::new();
