@@ -34,6 +34,12 @@ pub(crate) struct Loaded<C> {
     pub input: Input,
 }
 
+impl<C> Loaded<C> {
+    pub(crate) fn is_mesh(&self) -> bool {
+        matches!(self.body, Body::Mesh(_))
+    }
+}
+
 impl<C: PreparedCloud> Loaded<C> {
     /// With the surface of a cloud computed everywhere, if that pays for so many poses.
     pub(crate) fn refined_for(self, poses: usize, refine: Refine) -> Result<Self> {
@@ -124,7 +130,7 @@ pub(crate) fn surroundings(
         Geometry::Mesh(mesh) => of_mesh(path, units.meshes, Role::Scene, &mesh, common),
         Geometry::Cloud(cloud) => {
             let scene = (units.clouds, Role::Scene);
-            of_clouds(&named(path), scene, vec![cloud], common.sensor, common, robot)
+            of_clouds(&named(path), scene, vec![cloud], common.scene_sensor(), common, robot)
         }
     }
 }

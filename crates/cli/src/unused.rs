@@ -3,25 +3,48 @@
 use anyhow::{Result, bail};
 
 use crate::args::CommonArguments;
+use crate::load::Role;
 
-/// Refuses options about clouds where no file is one, and about meshes where none is.
-pub(crate) fn check(common: &CommonArguments, is_mesh: &[bool]) -> Result<()> {
-    let (any_mesh, any_cloud) = (is_mesh.contains(&true), is_mesh.contains(&false));
+/// Refuses options about clouds where no file is one, and about meshes where none is. `files` are all
+/// that were read, each with whether it is a mesh.
+pub(crate) fn check(common: &CommonArguments, files: &[(Role, bool)]) -> Result<()> {
+    let any_mesh = files.iter().any(|(_, is_mesh)| *is_mesh);
+    let any_cloud = files.iter().any(|(_, is_mesh)| !is_mesh);
     if common.unit.is_some() && !any_mesh && common.robot.is_empty() {
         bail!("--unit is for meshes, and no file is one: give --cloud-unit for clouds");
     }
-    let of_clouds = [
+    let for_clouds = [
         ("--cloud-unit", common.cloud_unit.is_some()),
+        ("--sensor", common.sensor.is_some()),
         ("--object-sensor", common.object_sensor.is_some()),
         ("--min-range", common.min_range.is_some()),
         ("--max-range", common.max_range.is_some()),
         ("--outliers", common.outliers.is_some()),
         ("--keep-veil", common.keep_veil),
+        ("--max-unseen", common.caution.max_unseen.is_some()),
+        ("--max-missing", common.caution.max_missing.is_some()),
+        ("--refine", common.effort.refine.is_some()),
     ];
-    if let Some((option, _)) = of_clouds.iter().find(|(_, is_given)| *is_given)
+    if let Some((option, _)) = for_clouds.iter().find(|(_, is_given)| *is_given)
         && !any_cloud
     {
-        bail!("{option} is for clouds, and no file is one: leave it out");
+        bail!(of_clouds(option));
+    }
+    // Of clouds of one role only; the sensor of scenes is that of objects where these have none.
+    if common.object_sensor.is_some() {
+        if !files.contains(&(Role::Object, false)) {
+            bail!(
+                "--object-sensor is for objects that are clouds, and no object is one: leave it out"
+            );
+        }
+        if common.sensor.is_some() && !files.contains(&(Role::Scene, false)) {
+            bail!("--sensor is for scenes that are clouds, and no scene is one: leave it out");
+        }
     }
     Ok(())
+}
+
+/// Why an option about clouds is refused where no file is one.
+pub(crate) fn of_clouds(option: &str) -> String {
+    format!("{option} is for clouds, and no file is one: leave it out")
 }

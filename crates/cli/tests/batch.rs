@@ -278,3 +278,26 @@ fn two_cases_of_one_name_were_not_told() {
         assert!(run.stderr().contains(part), "`{part}` is not in {}", run.stderr());
     }
 }
+
+/// It had no use, or was the reason why all cases of a file that is gone were refused.
+#[test]
+fn options_are_refused_where_no_file_has_a_use_for_them_and_all_are_read() {
+    let inputs = Inputs::new();
+    let plain = |id: &str| case_at(id, 0.5).replace("\"scene_sensor\":\"iso:0.002\",", "");
+    let meshes = plain("a").replace("floor.pcd", "box.obj");
+    for (case, option, part) in [
+        (&meshes, "--sensor=iso:0.002", "--sensor is for clouds"),
+        (&meshes, "--sensor-for=box=iso:0.002", "--sensor-for is for clouds"),
+        (&plain("a"), "--object-sensor=iso:0.002", "--object-sensor is for"),
+    ] {
+        inputs.write("cases.json", &case_file(std::slice::from_ref(case)));
+        let run = inputs.run(&["batch", "cases.json", option]);
+        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{option}: {}", run.stderr());
+        assert!(run.stderr().contains(part), "{}", run.stderr());
+    }
+    // What cannot be read may be a cloud.
+    let gone = plain("gone").replace("floor.pcd", "gone.pcd");
+    inputs.write("cases.json", &case_file(&[meshes, gone]));
+    let lines = inputs.run(&["batch", "cases.json", "--json", "--sensor=iso:0.002"]).quiet(1);
+    assert_eq!(lines.json_lines().len(), 2);
+}

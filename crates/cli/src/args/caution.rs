@@ -12,10 +12,10 @@ use cloudtouch_cli::numbers;
 pub(crate) struct CautionArguments {
     /// Undecided when more of an object is unseen, 0 to 1 [default: 0.05]
     #[arg(long, value_name = "SHARE", value_parser = numbers::share, allow_negative_numbers = true)]
-    max_unseen: Option<f64>,
+    pub max_unseen: Option<f64>,
     /// Undecided when more rows are missing, 0 to 1 [default: 0.25]
     #[arg(long, value_name = "SHARE", value_parser = numbers::share, allow_negative_numbers = true)]
-    max_missing: Option<f64>,
+    pub max_missing: Option<f64>,
     /// Sizes and distances are meant: warn of them, and decide all the same
     #[arg(long)]
     trust_units: bool,
@@ -39,14 +39,18 @@ pub(crate) struct EffortArguments {
     /// Stop each query after so many milliseconds, undecided at worst
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..))]
     deadline: Option<u64>,
-    /// Compute surfaces before the first query: auto, yes or no
-    #[arg(long, value_enum, hide_possible_values = true, default_value_t = Refine::Auto)]
-    pub refine: Refine,
+    /// Compute surfaces before the first query: auto, yes or no [auto]
+    #[arg(long, value_enum, hide_possible_values = true)]
+    pub refine: Option<Refine>,
 }
 
 impl EffortArguments {
     pub(crate) fn deadline(&self) -> Option<Duration> {
         self.deadline.map(Duration::from_millis)
+    }
+
+    pub(crate) fn refine(&self) -> Refine {
+        self.refine.unwrap_or(Refine::Auto)
     }
 }
 

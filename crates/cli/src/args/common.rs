@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use cloudtouch::noise::SensorModel;
 use cloudtouch::{FilterSettings, OutlierSettings, PaperSettings, Pooling, QuerySettings};
 use cloudtouch_cli::numbers::{self, Rigid};
 use cloudtouch_io::LengthUnit;
@@ -19,9 +20,9 @@ use super::parse::{
 /// What query and batch share.
 #[derive(Debug, Args)]
 pub(crate) struct CommonArguments {
-    /// Sensor of scene clouds; see below
-    #[arg(long, value_name = "SPEC", default_value = "iso:0.005", help_heading = "Files")]
-    pub sensor: SensorChoice,
+    /// Sensor of scene clouds; see below [iso:0.005]
+    #[arg(long, value_name = "SPEC", help_heading = "Files")]
+    pub sensor: Option<SensorChoice>,
     /// Sensor of object clouds; that of the scene when not given
     #[arg(long, value_name = "SPEC", help_heading = "Files")]
     pub object_sensor: Option<SensorChoice>,
@@ -83,14 +84,25 @@ pub(crate) struct CommonArguments {
           requires = "robot", help_heading = "Cleaning")]
     pub robot_padding: f64,
     #[command(flatten)]
-    caution: CautionArguments,
+    pub caution: CautionArguments,
     #[command(flatten)]
     pub effort: EffortArguments,
     #[command(flatten)]
     pub limits: LimitArguments,
 }
 
+/// What a cloud is taken to be from where nothing is said.
+const USUAL_SENSOR: SensorChoice = SensorChoice::Stated(SensorModel::Isotropic { std: 0.005 });
+
 impl CommonArguments {
+    pub(crate) fn scene_sensor(&self) -> SensorChoice {
+        self.sensor.unwrap_or(USUAL_SENSOR)
+    }
+
+    pub(crate) fn object_sensor(&self) -> SensorChoice {
+        self.object_sensor.unwrap_or(self.scene_sensor())
+    }
+
     pub(crate) fn query_settings(&self) -> QuerySettings {
         let usual = QuerySettings::default();
         QuerySettings {
@@ -135,7 +147,7 @@ impl CommonArguments {
             _ if self.mode == ModeName::Paper && self.prior.is_some() => {
                 Err("--prior has no effect in the paper's mode: leave it out".to_owned())
             }
-            _ if self.mode == ModeName::Paper && self.effort.refine == Refine::Yes => {
+            _ if self.mode == ModeName::Paper && self.effort.refine == Some(Refine::Yes) => {
                 Err("--refine has no effect in the paper's mode: leave it out".to_owned())
             }
             _ => Ok(()),

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, anyhow};
+use anyhow::{Result, anyhow, ensure};
 use cloudtouch::{PaperQuery, Query};
 use cloudtouch_io::write_atomically;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -15,7 +15,7 @@ use crate::answer::{Answer as Line, json_error_line};
 use crate::args::{BatchArguments, ModeName};
 use crate::batch_page::{Answered, Shown};
 use crate::batch_table::Table;
-use crate::body::{self, Body};
+use crate::body;
 use crate::case_file::{self, Case, CaseFile};
 use crate::load::{self, Input, Loaded, Role};
 use crate::per_point::Details;
@@ -161,11 +161,10 @@ fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
         let sensor = given.or(named(path)).unwrap_or(default);
         (path.to_owned(), role, sensor.to_string())
     };
-    let object_default = common.object_sensor.unwrap_or(common.sensor);
     let given = |sensor: Option<_>| sensor.map(SensorChoice::Stated);
     [
-        key(&case.scene, Role::Scene, given(case.scene_sensor), common.sensor),
-        key(&case.object, Role::Object, given(case.object_sensor), object_default),
+        key(&case.scene, Role::Scene, given(case.scene_sensor), common.scene_sensor()),
+        key(&case.object, Role::Object, given(case.object_sensor), common.object_sensor()),
     ]
 }
 
@@ -189,17 +188,23 @@ fn prepare_all<'a, C: body::PreparedCloud>(
                 .parse::<SensorChoice>()
                 .map_err(|error| anyhow!("{error}"))
                 .and_then(|sensor| load::body(path, *role, sensor, common))
-                .and_then(|loaded| loaded.refined_for(poses, common.effort.refine))
+                .and_then(|loaded| loaded.refined_for(poses, common.effort.refine()))
                 .map_err(|error| format!("{error:#}"));
             progress.inc(1);
             (key, body)
         })
         .collect();
     progress.finish_and_clear();
-    let loaded = || bodies.values().filter_map(|body| body.as_ref().ok());
-    let is_mesh: Vec<bool> = loaded().map(|l| matches!(l.body, Body::Mesh(_))).collect();
-    if !is_mesh.is_empty() {
-        unused::check(common, &is_mesh)?;
+    let is_mesh = |((_, role, _), body): (&BodyKey, &Result<Loaded<C>, String>)| {
+        body.as_ref().ok().map(|loaded| (*role, loaded.is_mesh()))
+    };
+    // What cannot be read may be what an option is for.
+    if let Some(are) = bodies.iter().map(is_mesh).collect::<Option<Vec<_>>>()
+        && !are.is_empty()
+    {
+        unused::check(common, &are)?;
+        let any_cloud = are.iter().any(|(_, is_mesh)| !is_mesh);
+        ensure!(any_cloud || arguments.sensor_for.is_empty(), unused::of_clouds("--sensor-for"));
     }
     Ok(bodies)
 }

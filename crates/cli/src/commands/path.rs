@@ -8,7 +8,6 @@ use cloudtouch::geom::Pose;
 use cloudtouch::{Cloud, Query};
 
 use crate::args::PathArguments;
-use crate::body::Body;
 use crate::inside::with_points_inside;
 use crate::load::{self, Role};
 use crate::{output, page, path_answer, path_file, path_page, print, unused};
@@ -23,14 +22,17 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let output: Vec<&Path> = arguments.html.iter().map(PathBuf::as_path).collect();
     output::check(&output, inputs, arguments.force)?;
     let path = path_file::read(&arguments.poses, arguments.screw)?;
-    let object_sensor = common.object_sensor.unwrap_or(common.sensor);
-    let scene =
-        load::bodies::<Cloud>(&[arguments.scene.as_path()], Role::Scene, common.sensor, common)?;
-    let object = load::body::<Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
-    let is_mesh = [&scene, &object].map(|loaded| matches!(loaded.body, Body::Mesh(_)));
-    unused::check(common, &is_mesh)?;
-    let scene = scene.refined_for(POSES, common.effort.refine)?;
-    let object = object.refined_for(POSES, common.effort.refine)?;
+    let scene = load::bodies::<Cloud>(
+        &[arguments.scene.as_path()],
+        Role::Scene,
+        common.scene_sensor(),
+        common,
+    )?;
+    let object =
+        load::body::<Cloud>(&arguments.object, Role::Object, common.object_sensor(), common)?;
+    unused::check(common, &[(Role::Scene, scene.is_mesh()), (Role::Object, object.is_mesh())])?;
+    let scene = scene.refined_for(POSES, common.effort.refine())?;
+    let object = object.refined_for(POSES, common.effort.refine())?;
     let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;
     if let Some(output) = &arguments.html {
         let limits = common.limits.read_limits();

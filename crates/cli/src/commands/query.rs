@@ -50,16 +50,15 @@ fn run_by<P: body::Path>(
     let inputs = inputs.chain(&arguments.pose.pose).chain(settings).map(PathBuf::as_path);
     output::check(&outputs, inputs, arguments.force)?;
     let pose = pose(&arguments.pose)?;
-    let object_sensor = common.object_sensor.unwrap_or(common.sensor);
     let scans: Vec<&Path> =
         std::iter::once(&arguments.scene).chain(&arguments.also).map(PathBuf::as_path).collect();
-    let scene = load::bodies::<P::Cloud>(&scans, Role::Scene, common.sensor, common)?;
+    let scene = load::bodies::<P::Cloud>(&scans, Role::Scene, common.scene_sensor(), common)?;
     let scene = with_kappas(scene, arguments)?;
-    let object = load::body::<P::Cloud>(&arguments.object, Role::Object, object_sensor, common)?;
-    let is_mesh = [&scene, &object].map(|loaded| matches!(loaded.body, Body::Mesh(_)));
-    unused::check(common, &is_mesh)?;
-    let scene = scene.refined_for(1, common.effort.refine)?;
-    let object = object.refined_for(1, common.effort.refine)?;
+    let object =
+        load::body::<P::Cloud>(&arguments.object, Role::Object, common.object_sensor(), common)?;
+    unused::check(common, &[(Role::Scene, scene.is_mesh()), (Role::Object, object.is_mesh())])?;
+    let scene = scene.refined_for(1, common.effort.refine())?;
+    let object = object.refined_for(1, common.effort.refine())?;
     let (report, classifiers, nearness) = if arguments.explain {
         let (report, classifiers) = query.explain(&scene.body, &object.body, &pose)?;
         (report, classifiers, None)

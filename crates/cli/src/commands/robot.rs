@@ -11,7 +11,8 @@ use cloudtouch_robot::{Robot, RobotChecker, SURROUNDINGS, Touching};
 
 use crate::args::RobotArguments;
 use crate::body::Body;
-use crate::{load, pose_file, print, robot_answer, scene_answer, unused};
+use crate::load::{self, Role};
+use crate::{pose_file, print, robot_answer, scene_answer, unused};
 
 pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -32,9 +33,8 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     }
     let links = seen(arguments, &robot, &base)?;
     let scan = load::surroundings(&arguments.scan, links, common)?;
-    let is_mesh = [matches!(scan.body, Body::Mesh(_))];
-    unused::check(common, &is_mesh)?;
-    let scan = scan.refined_for(path.len(), common.effort.refine)?;
+    unused::check(common, &[(Role::Scene, scan.is_mesh())])?;
+    let scan = scan.refined_for(path.len(), common.effort.refine())?;
     let words = words(&robot, arguments, &print::body("scan", &scan));
     let body: cloudtouch::Body = match scan.body {
         Body::Cloud(cloud) => cloud.into(),

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::args::{CommonArguments, SceneArguments};
 use crate::body::Body;
-use crate::load::{self, Input, Loaded};
+use crate::load::{self, Input, Loaded, Role};
 use crate::sensor::SensorChoice;
 use crate::{print, scene_answer, unused};
 
@@ -105,7 +105,7 @@ fn keys(common: &CommonArguments, file: &SceneFile) -> Result<Vec<BodyKey>> {
         load::check(file).with_context(place)?;
         let sensor = match sensor {
             Some(spec) => spec.parse::<SensorChoice>().map_err(|error| anyhow!("{error}")),
-            None => Ok(common.sensor),
+            None => Ok(common.scene_sensor()),
         };
         Ok((file.clone(), *unit, sensor.with_context(place)?.to_string()))
     };
@@ -123,12 +123,12 @@ fn prepare(common: &CommonArguments, keys: &[BodyKey]) -> Result<BTreeMap<BodyKe
         let (path, unit, sensor) = key;
         let sensor = sensor.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))?;
         let loaded = load::body_in::<Cloud>(path, *unit, sensor, common)?;
-        Ok((key, loaded.refined_for(bodies, common.effort.refine)?))
+        Ok((key, loaded.refined_for(bodies, common.effort.refine())?))
     });
     let loaded: Vec<(&BodyKey, Loaded<Cloud>)> = loaded.collect::<Result<_>>()?;
-    let is_mesh: Vec<bool> =
-        loaded.iter().map(|(_, loaded)| matches!(loaded.body, Body::Mesh(_))).collect();
-    unused::check(common, &is_mesh)?;
+    let are: Vec<(Role, bool)> =
+        loaded.iter().map(|(_, loaded)| (Role::Scene, loaded.is_mesh())).collect();
+    unused::check(common, &are)?;
     let prepared = loaded.into_iter().map(|(key, loaded)| {
         let words = print::about(&loaded);
         let body = Arc::new(match loaded.body {
