@@ -78,6 +78,24 @@ fn on_a_phone_a_finger_turns_two_come_nearer_and_nothing_is_wider_than_the_scree
     assert!(size.as_f64().unwrap() >= 11.5, "{size}");
     let below = tab.value("document.querySelector('aside').getBoundingClientRect().top");
     assert!(below.as_f64().unwrap() < 0.7 * 844.0, "{below}");
+    // The scale bar, as long as it gets, the legend and the axes lie beside or above one another.
+    let edges = "(() => {
+        const bar = document.querySelector('.bar'), width = bar.style.width;
+        bar.style.width = '120px';
+        const boxes = ['.bar', '#legend', '.axes', '#picture'].map((name) => {
+          const { left, right, top, bottom } = document.querySelector(name).getBoundingClientRect();
+          return [left, right, top, bottom]; });
+        bar.style.width = width;
+        return boxes; })()";
+    let boxes: Vec<[f64; 4]> = serde_json::from_value(tab.value(edges)).unwrap();
+    for (i, [left, right, top, bottom]) in boxes[..3].iter().enumerate() {
+        assert!(*left >= 0.0 && *right <= 390.0 && *bottom <= boxes[3][3], "{boxes:?}");
+        for other in &boxes[i + 1..3] {
+            let is_apart =
+                [left >= &other[1], right <= &other[0], top >= &other[3], bottom <= &other[2]];
+            assert!(is_apart.contains(&true), "{boxes:?}");
+        }
+    }
     let (axes, pixels_per_metre) = view(&mut tab);
     touch(&mut tab, "touchStart", &[[150, 250]]);
     touch(&mut tab, "touchMove", &[[190, 260]]);
