@@ -25,6 +25,7 @@ function start() {
     if (!picture) return;
     picture.show(view);
     buttons.contact.disabled = view.contacts.length === 0;
+    buttons.tellTurn();
   };
   const poses = new Poses(document.getElementById('poses'), data, show);
   // `report.html#3` opens at the third pose.
@@ -56,12 +57,14 @@ function drawButtons(picture) {
   const contact = button('Contact', () => picture.frame('contact'));
   button('Whole scene', () => picture.frame('scene'));
   const turn = button(turned(), () => {
-    picture.turn(other());
-    picture.frame('object', true);
-    turn.textContent = turned();
+    picture.turnScene(other());
+    tellTurn();
   });
+  const tellTurn = () => {
+    turn.textContent = turned();
+  };
   turn.title = 'which way is up';
-  return { contact };
+  return { contact, tellTurn };
 }
 
 if (data.views.length > 0) start();

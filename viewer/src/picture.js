@@ -17,11 +17,12 @@ const LOOKS = {
 const MARGIN = 1.2;
 
 export class Picture {
-  constructor(container, { bodies, upright }) {
+  constructor(container, { bodies }) {
     this.container = container;
     this.data = bodies;
     this.drawn = new Map();
-    this.upright = upright;
+    // Which way is up in each scene that was turned by hand.
+    this.turned = new Map();
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     container.append(this.renderer.domElement);
@@ -39,7 +40,7 @@ export class Picture {
     this.above = new Scene();
     this.isCut = true;
     this.drawScale = overlay(container);
-    this.turn(upright);
+    this.turn('z');
     new ResizeObserver(() => this.resize()).observe(container);
   }
 
@@ -50,6 +51,13 @@ export class Picture {
     this.controls?.dispose();
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.wish());
+  }
+
+  // By hand: it stays so in this scene.
+  turnScene(upright) {
+    this.turned.set(this.view.scene, upright);
+    this.turn(upright);
+    this.frame('object', true);
   }
 
   show(view) {
@@ -79,6 +87,11 @@ export class Picture {
     if (contact) {
       const center = new Vector3(...contact.point).sub(scene.middle);
       this.spheres.contact = new Sphere(center, 0.45 * object.radius);
+    }
+    const upright = this.turned.get(view.scene) ?? view.upright;
+    if (upright !== this.upright) {
+      this.turn(upright);
+      this.frame('object', true);
     }
     this.wish();
   }

@@ -113,3 +113,39 @@ fn on_a_phone_a_finger_turns_two_come_nearer_and_nothing_is_wider_than_the_scree
     // Pixels and not the page: it is the picture that came nearer.
     assert_eq!(tab.value("window.visualViewport.scale"), 1);
 }
+
+#[test]
+fn each_scene_of_a_batch_is_shown_as_it_was_seen() {
+    let Some(browser) = chromium() else {
+        return println!("skipped: no Chromium is found; CHROMIUM names one");
+    };
+    let inputs = Inputs::new();
+    // A wall 2 m before a camera, beside the floor.
+    let rows = (0..400).map(|i| (0.05 * f64::from(i % 20), 0.05 * f64::from(i / 20)));
+    let rows: String = rows.map(|(x, y)| format!("{} {} 2\n", x - 0.5, y - 0.5)).collect();
+    inputs.write("wall.xyz", &rows);
+    let wall = case_at("wall", 1.5).replace("floor.pcd", "wall.xyz");
+    inputs.write("cases.json", &case_file(&[case_at("apart", 0.5), wall, case_at("near", 0.12)]));
+    inputs.run(&["batch", "cases.json", "--html=o.html"]).quiet(0);
+    let mut tab = Tab::open(&browser, &inputs.path("o.html"), [1000, 700], false);
+    let turned = "document.querySelector('.buttons button:last-child').textContent";
+    let pair = |tab: &mut Tab, place: u32| {
+        let choose = format!(
+            "(() => {{ const pairs = document.querySelector('select'); pairs.selectedIndex = {place};
+               pairs.dispatchEvent(new Event('change')); return pairs.value; }})()"
+        );
+        tab.value(&choose);
+        view(tab).0
+    };
+    let (floor, words) = (view(&mut tab).0, tab.value(turned));
+    assert_eq!(words, "z is up");
+    let wall = pair(&mut tab, 1);
+    assert_eq!(tab.value(turned), "as the camera saw it");
+    assert_ne!(wall, floor);
+    // A turn by the button stays with its scene.
+    tab.value("document.querySelector('.buttons button:last-child').click()");
+    assert_eq!(tab.value(turned), "z is up");
+    assert_eq!((pair(&mut tab, 0), tab.value(turned)), (floor, "z is up".into()));
+    pair(&mut tab, 1);
+    assert_eq!(tab.value(turned), "z is up");
+}

@@ -20,7 +20,6 @@ const LEAST_LIKELY: f64 = 0.01;
 /// All that is drawn.
 #[derive(Serialize)]
 pub(crate) struct Data<'a> {
-    upright: Upright,
     start: usize,
     bodies: Vec<Drawn<'a>>,
     views: Vec<Posed<'a>>,
@@ -45,6 +44,8 @@ struct Posed<'a> {
     name: &'a str,
     scene: usize,
     object: usize,
+    /// Of its scene.
+    upright: Upright,
     /// Object to scene, row by row.
     pose: [f64; 16],
     probability: f64,
@@ -80,10 +81,14 @@ pub(crate) fn of_page<'a>(page: &'a Page<'_>) -> (Data<'a>, Vec<String>) {
     let bodies = page.bodies.iter().zip(&chosen);
     let limits = Share::of(page.bodies.iter().map(|body| triangles(&body.shape)), MOST_TRIANGLES);
     let bodies = bodies.map(|(body, chosen)| draw(body, chosen, &limits, &mut notes)).collect();
-    let views = page.views.iter().zip(&listed).map(|(view, likely)| posed(view, likely, &chosen));
-    let first = page.views.get(page.start).and_then(|view| page.bodies.get(view.scene));
-    let upright = first.map_or(Upright::Z, |scene| upright(scene.shape.points()));
-    (Data { upright, start: page.start, bodies, views: views.collect() }, notes)
+    let mut known: BTreeMap<usize, Upright> = BTreeMap::new();
+    let mut of_scene = |scene: usize| {
+        let found = || page.bodies.get(scene).map_or(Upright::Z, |of| upright(of.shape.points()));
+        *known.entry(scene).or_insert_with(found)
+    };
+    let views = page.views.iter().zip(&listed);
+    let views = views.map(|(view, likely)| posed(view, of_scene(view.scene), likely, &chosen));
+    (Data { start: page.start, bodies, views: views.collect() }, notes)
 }
 
 /// How much of something each body may have, where all together may have no more than a limit.
@@ -200,6 +205,7 @@ fn draw<'a>(
 
 fn posed<'a>(
     view: &'a View<'_>,
+    upright: Upright,
     listed: &[Vec<(usize, f64)>; 2],
     chosen: &[Vec<usize>],
 ) -> Posed<'a> {
@@ -210,6 +216,7 @@ fn posed<'a>(
         name: &view.name,
         scene: view.scene,
         object: view.object,
+        upright,
         pose: rows(&view.scene_from_object),
         probability: view.report.collision_probability,
         bounds: view.report.bounds,

@@ -3,7 +3,7 @@
 use cloudtouch::geom::{Point3, bounding_box};
 use serde::Serialize;
 
-/// How the picture is turned at first; the page has a button for the other way.
+/// How the picture of a scene is turned at first; the page has a button for the other way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Upright {

@@ -74,3 +74,23 @@ fn many_views_that_colour_many_points_stay_within_the_limit() {
     assert_eq!(html.matches(&note).count(), 1);
     assert!(html.len() < 12_000_000, "{}", html.len());
 }
+
+/// All poses were shown as that of the first suited.
+#[test]
+fn each_pose_is_turned_as_its_own_scene_is_upright() {
+    let cloud = floor();
+    let report = report(&cloud);
+    let room = page(&cloud, [&report, &report, &report]);
+    // A wall as a camera sees it: about its axis, 2 m ahead.
+    let middle = Vector3::new(0.7, 0.7, -2.0);
+    let shape = Shape::cloud(cloud.len(), |index| cloud.point(index) - middle);
+    let wall = Body { name: "wall".to_owned(), about: "a cloud".to_owned(), shape };
+    let mut page = Page { bodies: vec![room.bodies[0].clone(), wall], ..room };
+    page.views[1].scene = 1;
+    let html = page.html();
+    let (_, data) = html.split_once("id=\"data\">").unwrap();
+    let data: serde_json::Value =
+        serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let upright = data["views"].as_array().unwrap().iter().map(|view| view["upright"].as_str());
+    assert_eq!(upright.collect::<Vec<_>>(), [Some("z"), Some("camera"), Some("z")]);
+}
