@@ -9,8 +9,12 @@ use serde_json::Value;
 
 /// A pose as four rows of four numbers.
 pub(crate) fn matrix(value: Value) -> Result<Pose> {
-    let rows: Vec<[f64; 4]> = serde_json::from_value(value)
-        .context("the pose is not a list of four rows of four numbers")?;
+    const FORM: &str = "the pose is not a list of four rows of four numbers";
+    if let Some((row, column, found)) = no_number(&value) {
+        return Err(anyhow!("({row}, {column}) is {found}: every entry must be a finite number"))
+            .context(FORM);
+    }
+    let rows: Vec<[f64; 4]> = serde_json::from_value(value).context(FORM)?;
     if rows.len() != 4 {
         bail!("the pose has {} rows: it must be 4x4", rows.len());
     }
@@ -18,11 +22,26 @@ pub(crate) fn matrix(value: Value) -> Result<Pose> {
     Ok(Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?)
 }
 
+/// The first entry of a list of rows that is no number, with its place, as the file has it.
+fn no_number(rows: &Value) -> Option<(usize, usize, String)> {
+    let places = rows.as_array()?.iter().enumerate().flat_map(|(row, entries)| {
+        let entries = entries.as_array().into_iter().flatten().enumerate();
+        entries.map(move |(column, entry)| (row, column, entry))
+    });
+    let (row, column, found) = places.into_iter().find(|(_, _, entry)| !entry.is_number())?;
+    let word = WORDS.iter().find(|(_, instead)| *instead == found.to_string().as_bytes());
+    let found = word
+        .map_or_else(|| found.to_string(), |(word, _)| String::from_utf8_lossy(word).into_owned());
+    Some((row, column, found))
+}
+
+/// Numbers that JSON does not have, and what is read in their place.
+const WORDS: [(&[u8], &[u8]); 3] =
+    [(b"-Infinity", b"\"-Infin.\""), (b"Infinity", b"\"Infin.\""), (b"NaN", b"\"N\"")];
+
 /// The text with strings of the same length for `NaN`, `Infinity` and `-Infinity`, which Python writes
 /// and JSON does not have: they are wrong only where a number is used.
 pub(crate) fn without_bare_words(text: &[u8]) -> Cow<'_, [u8]> {
-    const WORDS: [(&[u8], &[u8]); 3] =
-        [(b"-Infinity", b"\"-Infin.\""), (b"Infinity", b"\"Infin.\""), (b"NaN", b"\"N\"")];
     let mut text = Cow::Borrowed(text);
     let (mut at, mut in_string) = (0, false);
     while at < text.len() {

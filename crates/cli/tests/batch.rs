@@ -59,7 +59,9 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
         ("last row", with("[0,0,0,1]", "[0,0,1,1]")),
         ("unknown sensor `sonar`", with("iso:0.002", "sonar")),
         // Python's json writes the first, any language the second, a broken text the third.
-        ("string \"N\"", with("[[1,", "[[NaN,")),
+        ("(0, 0) is NaN: every entry must be a finite number", with("[[1,", "[[NaN,")),
+        ("(2, 3) is -Infinity", with("[0,0,1,0.1]", "[0,0,1,-Infinity]")),
+        ("(0, 0) is \"1\"", with("[[1,", "[[\"1\",")),
         ("number out of range", with("[[1,", "[[1e400,")),
         ("hex escape", with("iso:0.002", "\\ud800")),
     ];
@@ -82,7 +84,7 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
     }
     assert_eq!(lines.last().unwrap()["verdict"], "free");
     let table = inputs.run(&["batch", "cases.json"]).quiet(1).stdout();
-    assert!(table.contains("1 answers, 14 errors"), "{table}");
+    assert!(table.contains("1 answers, 16 errors"), "{table}");
 }
 
 #[test]
