@@ -1,9 +1,11 @@
 //! Positions of joints in a file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 use std::path::Path;
 
 use anyhow::{Context as _, Result, bail};
+use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
 
 use crate::json_text::{shortened, without_bare_words};
@@ -28,16 +30,27 @@ pub fn parse(text: &[u8]) -> Result<Vec<Joints>> {
     let text = without_bare_words(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text));
     let value: Value = serde_json::from_slice(&text)
         .context("not a JSON object of joint names and positions, nor a list of such objects")?;
-    match value {
+    let is_list = value.is_array();
+    let read = match value {
         Value::Array(list) if list.len() < 2 => {
             bail!("{} positions: a path needs two; write one as an object alone", list.len())
         }
         Value::Array(list) => {
             let place = |(index, one)| positions(one).with_context(|| format!("position {index}"));
-            list.into_iter().enumerate().map(place).collect()
+            list.into_iter().enumerate().map(place).collect::<Result<_>>()?
         }
-        one => Ok(vec![positions(one)?]),
+        one => vec![positions(one)?],
+    };
+    // The last of two would have counted.
+    if is_list {
+        let names: Vec<Names> = serde_json::from_slice(&text)?;
+        for (index, names) in names.iter().enumerate() {
+            names.check().with_context(|| format!("position {index}"))?;
+        }
+    } else {
+        serde_json::from_slice::<Names>(&text)?.check()?;
     }
+    Ok(read)
 }
 
 fn positions(value: Value) -> Result<Joints> {
@@ -49,6 +62,41 @@ fn positions(value: Value) -> Result<Joints> {
         None => bail!("joint `{name}` is at {value}: give a finite number, in rad or m"),
     };
     entries.into_iter().map(number).collect()
+}
+
+/// The names of an object, each as often as it is there.
+struct Names(Vec<String>);
+
+impl Names {
+    fn check(&self) -> Result<()> {
+        let mut known = BTreeSet::new();
+        match self.0.iter().find(|name| !known.insert(*name)) {
+            Some(name) => bail!("joint `{name}` is there twice: give it one position"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Names {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Each;
+        impl<'de> Visitor<'de> for Each {
+            type Value = Names;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object of joint names and positions")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Names, A::Error> {
+                let mut names = Vec::new();
+                while let Some((name, IgnoredAny)) = map.next_entry()? {
+                    names.push(name);
+                }
+                Ok(Names(names))
+            }
+        }
+        deserializer.deserialize_map(Each)
+    }
 }
 
 #[cfg(test)]
@@ -64,6 +112,9 @@ mod tests {
             ("[{\"a\": 1}]", vec!["1 positions", "as an object"]),
             ("[{\"a\": 1}, {\"a\": NaN}]", vec!["position 1", "`a`", "finite"]),
             ("{\"a\": \"1\"}", vec!["`a`", "finite"]),
+            // The last of them counted.
+            ("{\"a\": 1, \"b\": 2, \"a\": 1}", vec!["`a`", "twice"]),
+            ("[{\"a\": 1}, {\"a\": 1, \"\\u0061\": 2}]", vec!["position 1", "`a`", "twice"]),
             ("[[1, 2], [3, 4]]", vec!["position 0", "such as"]),
             ("{\"a\"", vec!["not a JSON object"]),
         ] {
