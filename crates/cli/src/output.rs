@@ -6,7 +6,7 @@ use anyhow::{Result, bail};
 use cloudtouch_io::recording::file_of;
 
 /// Whether files may be written: each is in a folder that is there, is none of the inputs and none of the
-/// others, and not there unless `force` is given. A pipe or a device may be.
+/// others, and not there unless `force` is given. `-` is no name of one. A pipe or a device may be.
 pub(crate) fn check<'a>(
     outputs: &[&Path],
     inputs: impl Iterator<Item = &'a Path> + Clone,
@@ -31,6 +31,12 @@ fn check_one<'a>(
     mut inputs: impl Iterator<Item = &'a Path>,
     force: bool,
 ) -> Result<()> {
+    if output.as_os_str() == "-" {
+        bail!(
+            "-: would be a file of this name, not standard output, which has the answer without it: \
+             name a file"
+        );
+    }
     let Ok(existing) = std::fs::canonicalize(output) else { return check_folder(output) };
     if existing.is_dir() {
         bail!("{}: cannot be written: is a folder: name a file in it", output.display());

@@ -167,6 +167,24 @@ fn a_folder_that_is_not_there_was_told_after_hours_of_work() {
     }
 }
 
+/// A file of that name was made, and nothing came out.
+#[test]
+fn standard_output_in_place_of_a_file_was_a_file_called_so() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &support::case_file(&[support::case_at("a", 0.5)]));
+    inputs.write("path.csv", "0,0,0.5,1,0,0,0\n0,0,0.3,1,0,0,0\n");
+    for arguments in [
+        &["query", "floor.pcd", "box.obj", "--csv", "-"][..],
+        &["query", "floor.pcd", "box.obj", "--ply=-", "--force"],
+        &["batch", "cases.json", "--jsonl", "-"],
+        &["batch", "cases.json", "--html=-"],
+        &["path", "floor.pcd", "box.obj", "--poses=path.csv", "--html=-"],
+        &["demo", "--html", "-"],
+    ] {
+        check(&inputs, arguments, &["-: ", "standard output", "name a file"]);
+    }
+}
+
 /// Its extension was said to be "" and the file to be renamed.
 #[cfg(unix)]
 #[test]
