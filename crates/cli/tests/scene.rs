@@ -109,7 +109,7 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
     };
     for (file, parts) in [
         (with("name", json!("floor")), vec!["body 1", "`floor`", "another name"]),
-        (with("attached_to", json!("hand")), vec!["body 1", "`hand`", "add it first"]),
+        (with("attached_to", json!("hand")), vec!["body 1", "`hand`", "name a body of the file"]),
         (with("attached_to", json!("box")), vec!["body 1", "`box`", "detach"]),
         (with("file", json!("gone.obj")), vec!["body 1 `box`", "gone.obj", "cannot be read"]),
         (with("file", json!("scene.json")), vec!["body 1 `box`", "scene.json"]),
@@ -118,7 +118,10 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         (with("pose", json!([[1, 0, 0, 0]])), vec!["body 1 `box`", "1 rows", "4x4"]),
         (with("pose", json!("here")), vec!["body 1 `box`", "four rows of four numbers"]),
         (with("atached_to", json!("floor")), vec!["body 1 `box`", "`atached_to`", "`attached_to`"]),
-        (of_scene("allowed", json!([["box", "wall"]])), vec!["pair 0 of \"allowed\"", "`wall`"]),
+        (
+            of_scene("allowed", json!([["box", "wall"]])),
+            vec!["pair 0 of \"allowed\"", "`wall`", "of the file"],
+        ),
         (of_scene("allowed", json!([["box"]])), vec!["pair 0 of \"allowed\"", "two names"]),
         (of_scene("threshold", json!(0.7)), vec!["threshold 0.7", "0 to 0.5"]),
         (of_scene("format", json!(2)), vec!["format 2", "format 1"]),

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use anyhow::{Context as _, Result, anyhow, ensure};
 use cloudtouch::geom::{Point3, TriangleMesh};
-use cloudtouch::{Cloud, Mesh, Query, QuerySettings, Scene};
+use cloudtouch::{Cloud, Mesh, Query, QuerySettings, Scene, SceneError};
 use cloudtouch_cli::scene_file::{self, BodyEntry, SceneFile};
 use cloudtouch_io::LengthUnit;
 use rayon::prelude::*;
@@ -87,14 +87,25 @@ fn outline(file: &SceneFile) -> Result<Scene> {
     }
     for (index, BodyEntry { name, pose, attached_to, .. }) in file.bodies.iter().enumerate() {
         if let Some(to) = attached_to {
-            let attached = scene.attach(name, to, *pose);
+            let attached = scene.attach(name, to, *pose).map_err(of_a_file);
             attached.with_context(|| format!("\"attached_to\" of body {index}"))?;
         }
     }
     for (index, [a, b]) in file.allowed.iter().enumerate() {
-        scene.allow(a, b).with_context(|| format!("pair {index} of \"allowed\""))?;
+        let allowed = scene.allow(a, b).map_err(of_a_file);
+        allowed.with_context(|| format!("pair {index} of \"allowed\""))?;
     }
     Ok(scene)
+}
+
+/// A program adds the body that is missing; whoever wrote a file has to name one that is there.
+fn of_a_file(error: SceneError) -> anyhow::Error {
+    match error {
+        SceneError::UnknownName { name } => {
+            anyhow!("no body is named `{name}`: name a body of the file")
+        }
+        other => other.into(),
+    }
 }
 
 /// What to read for each body, after a look whether it is there.
