@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, Result, bail, ensure};
-use cloudtouch::geom::{PointCloud, Pose, TriangleMesh};
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use cloudtouch::geom::{MeshError, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, Mesh, SelfMesh};
+use cloudtouch::{Cloud, Mesh, PrepareError, SelfMesh};
 use cloudtouch_cli::numbers::Rigid;
 use cloudtouch_io::{
     Geometry, LengthUnit, ReadLimits, check_extension, read_geometry_within, read_mesh_within,
@@ -155,7 +155,7 @@ fn of_mesh<C>(
             named(path)
         );
     }
-    let mesh = Mesh::prepare(mesh).with_context(|| named(path))?;
+    let mesh = prepared(mesh).with_context(|| named(path))?;
     if unit == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
         tracing::warn!(
             "{}: the mesh is {:.0} m across: if the file is in millimetres, give --unit mm",
@@ -166,6 +166,17 @@ fn of_mesh<C>(
     let unit = unit.to_string();
     let input = Input { file: named(path), unit, sensor: None, sensor_because: None };
     Ok(Loaded { body: Body::Mesh(mesh), input })
+}
+
+fn prepared(mesh: &TriangleMesh) -> Result<Mesh> {
+    Mesh::prepare(mesh).map_err(|error| match error {
+        // There are triangles, or it would not have been read.
+        PrepareError::Mesh(MeshError::Empty) => anyhow!(
+            "no triangle has an area, of {}: two corners of each are in one place; check the file",
+            mesh.triangles().len()
+        ),
+        other => other.into(),
+    })
 }
 
 /// The sensor of several scans is that chosen for the first.
@@ -258,7 +269,7 @@ fn robot(common: &CommonArguments) -> Result<Vec<SelfMesh>> {
         .map(|path| {
             let unit = common.unit.unwrap_or_default();
             let mesh = read_mesh_within(path, unit, &common.limits.read_limits())?;
-            let mesh = Mesh::prepare(&mesh).with_context(|| named(path))?;
+            let mesh = prepared(&mesh).with_context(|| named(path))?;
             Ok(SelfMesh {
                 mesh: Arc::new(mesh),
                 cloud_from_link: Pose::identity(),

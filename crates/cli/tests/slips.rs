@@ -158,6 +158,8 @@ const REFUSED: &[Slip] = &[
     ("cut.stl floor.pcd", &["cut.stl", "byte 80"]),
     ("corner.obj floor.pcd", &["corner.obj: line 4", "9", "vert"]),
     ("faceless.obj floor.pcd", &["faceless.obj: line 1", "no faces", "export it as a mesh"]),
+    ("collapsed.obj floor.pcd", &["collapsed.obj: no triangle has an area, of 1", "check"]),
+    ("floor.pcd box.obj --robot collapsed.obj", &["collapsed.obj: no triangle has an area"]),
     ("infinite.obj floor.pcd", &["infinite.obj: line 1", "inf", "finite"]),
     ("bad.ply floor.pcd", &["bad.ply", "line"]),
     ("floor.pcd box.obj --sensor per-point", &["floor.pcd", "covariance"]),
@@ -240,6 +242,7 @@ fn inputs() -> Inputs {
     write("corner.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n".to_owned());
     write("faceless.obj", "v 0 0 0\nv 1 0 0\n".to_owned());
     write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n".to_owned());
+    write("collapsed.obj", "v 1 2 3\nv 1 2 3\nv 0 1 0\nf 1 2 3\n".to_owned());
     write("infinite.obj", "v 0 0 inf\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_owned());
     write("bad.ply", "ply\nformat ascii 1.0\nelement vertex -3\nend_header\n".to_owned());
     let pose = |first: &str, last: &str| format!("{first}\n0 1 0 0\n0 0 1 0\n{last}\n");

@@ -3,12 +3,12 @@
 use std::sync::{Arc, PoisonError, RwLock};
 
 use cloudtouch::geom::{
-    Covariance, Matrix3, Point3, PointCloud, Pose, TriangleMesh, Vector3, unit,
+    Covariance, Matrix3, MeshError, Point3, PointCloud, Pose, TriangleMesh, Vector3, unit,
 };
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Body as Prepared, BodyRef, Change, ChangeError, Cloud, CloudSettings, Mesh, OutlierSettings,
-    SelfMesh,
+    PrepareError, SelfMesh,
 };
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2, PyReadonlyArray3};
@@ -308,8 +308,15 @@ pub(crate) fn mesh(
     let indices = triangles.as_array();
     let triangles = indices.rows().into_iter().map(|t| [t[0], t[1], t[2]]).collect();
     let given = TriangleMesh::try_new(vertices.points(), triangles).map_err(refused)?;
-    let prepared = on_all_threads(py, || Mesh::prepare(&given))?;
-    Ok(Body::new(prepared.map_err(refused)?, Given::Mesh(given)))
+    let prepared = on_all_threads(py, || Mesh::prepare(&given))?.map_err(|error| match error {
+        // There are triangles, or they would not have been taken.
+        PrepareError::Mesh(MeshError::Empty) => refused(format_args!(
+            "no triangle has an area, of {}: two corners of each are in one place",
+            given.triangles().len()
+        )),
+        other => refused(other),
+    })?;
+    Ok(Body::new(prepared, Given::Mesh(given)))
 }
 
 /// Points as rows.

@@ -32,7 +32,8 @@ def test_meshes_of_other_libraries_are_taken_as_they_are(table, parcel):
         (np.array([[0, 1, 2**40]]), ValueError, "indices from 0 to 1099511627776"),
         (np.array([[0, 1, 8]]), ct.CloudtouchError, "triangle 0 names vertex 8, but there are only 8"),
         ([], ct.CloudtouchError, "the mesh has no triangles"),
-        (np.array([[1, 1, 1]]), ct.CloudtouchError, "mesh"),
+        (np.array([[1, 1, 1]]), ct.CloudtouchError, "no triangle has an area, of 1"),
+        (np.array([[0, 1, 1], [2, 2, 3]]), ct.CloudtouchError, "no triangle has an area, of 2"),
     ],
 )
 def test_bad_triangles_are_refused(triangles, kind, says):
