@@ -23,8 +23,8 @@ const LARGE_OBJECT: f64 = 20.0;
 /// ... in a scene so many times smaller.
 const LARGE_OBJECT_RATIO: f64 = 3.0;
 /// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
-/// a thirtieth of that size off.
-const FARTHEST_SIZES: f64 = 30.0;
+/// a twenty-fifth of that size off.
+const FARTHEST_SIZES: f64 = 40.0;
 
 /// The warnings about a pair, gravest first. `a_from_b` maps local frames.
 pub(crate) fn doubts(
