@@ -132,6 +132,13 @@ impl Tree {
                 self.graft(names[1], second);
                 self.graft(names[0], first);
             }
+            Grown::All(nodes) if leaf == 0 && self.nodes.len() == 1 => {
+                // PERF: all there is has the names it grew with.
+                self.nodes = nodes;
+                for id in 0..self.nodes.len() as u32 {
+                    self.tell_leaf(id);
+                }
+            }
             Grown::All(nodes) => {
                 let mut names = vec![leaf];
                 let mut nodes = nodes.into_iter();
@@ -151,6 +158,12 @@ impl Tree {
         let node = &mut self.nodes[id as usize];
         node.parent = node.parent.map(name);
         node.children = node.children.map(|children| children.map(name));
+        self.tell_leaf(id);
+    }
+
+    /// Tells what a leaf holds where it is.
+    fn tell_leaf(&mut self, id: u32) {
+        let node = &self.nodes[id as usize];
         if node.children.is_none() {
             for &index in &self.order[node.start as usize..][..node.count as usize] {
                 self.leaf_of[index as usize] = Some(id);

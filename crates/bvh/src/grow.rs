@@ -59,7 +59,8 @@ impl<'a> Growth<'a> {
         on: Threads,
     ) -> Self {
         let are_points = indices.iter().all(|&index| primitives.is_point(index));
-        let least_shared = if on == Threads::All { LEAST_SHARED } else { usize::MAX };
+        let is_alone = on == Threads::This || rayon::current_num_threads() == 1;
+        let least_shared = if is_alone { usize::MAX } else { LEAST_SHARED };
         Self { primitives, settings, least_shared, are_points }
     }
 

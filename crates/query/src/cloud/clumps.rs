@@ -7,8 +7,11 @@ const RANKS: [usize; 4] = [6, 24, 96, 384];
 /// Four times as many neighbours of a sample of a surface are twice as far, of one on a line four times; where
 /// they are more often farther than this, the nearer ones are of one clump.
 const MOST_STEP: f64 = 6.0;
+/// In a clump sixteen times as many neighbours are two and a half times as far, on a surface four times: only
+/// where they are no farther than this, more are asked for than the first three ranks.
+const MAYBE_CLUMP: f64 = 3.7;
 /// Points whose neighbours are asked for, at most.
-const ASKED: usize = 16;
+const ASKED: usize = 12;
 
 /// The distances of clumps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,19 +26,33 @@ pub(crate) struct Clumps {
 /// the border of a clump, and nothing is known to be between two.
 pub(super) fn clumps(points: &Neighborhoods, sample: &[usize]) -> Option<Clumps> {
     let every = sample.len().div_ceil(ASKED).max(1);
-    let [.., most] = RANKS;
-    let neighbors: Vec<Vec<f64>> = (sample.iter().step_by(every))
-        .map(|&index| points.nearest(index, most))
-        .map(|near| near.iter().map(|near| near.squared_distance.sqrt()).collect())
-        .collect();
-    RANKS.windows(2).find_map(|ranks| {
-        let distances =
-            |near: &Vec<f64>| Some((*near.get(ranks[0] - 1)?, *near.get(ranks[1] - 1)?));
-        let mut all: Vec<(f64, f64)> = neighbors.iter().filter_map(distances).collect();
-        all.sort_by(|(a, b), (c, d)| (b / a).total_cmp(&(d / c)));
-        let &(across, apart) = all.get(all.len() / 2)?;
-        (apart > MOST_STEP * across).then_some(Clumps { across, apart })
-    })
+    let up_to = |most: usize| -> Vec<Vec<f64>> {
+        (sample.iter().step_by(every))
+            .map(|&index| points.nearest(index, most))
+            .map(|near| near.iter().map(|near| near.squared_distance.sqrt()).collect())
+            .collect()
+    };
+    let [first, second, third, most] = RANKS;
+    let few = up_to(third);
+    let steps = [[first, second], [second, third]];
+    let found = steps.into_iter().find_map(|ranks| long_step(&few, ranks));
+    let may_be_one =
+        || median(&few, [first, third]).is_some_and(|(near, far)| far < MAYBE_CLUMP * near);
+    // PERF: hundreds of neighbours take ten times as long to find.
+    found.or_else(|| if may_be_one() { long_step(&up_to(most), [third, most]) } else { None })
+}
+
+fn long_step(neighbors: &[Vec<f64>], ranks: [usize; 2]) -> Option<Clumps> {
+    let (across, apart) = median(neighbors, ranks)?;
+    (apart > MOST_STEP * across).then_some(Clumps { across, apart })
+}
+
+/// The distances of neighbours of two ranks where their ratio is the median.
+fn median(neighbors: &[Vec<f64>], ranks: [usize; 2]) -> Option<(f64, f64)> {
+    let of = |near: &Vec<f64>| Some((*near.get(ranks[0] - 1)?, *near.get(ranks[1] - 1)?));
+    let mut all: Vec<(f64, f64)> = neighbors.iter().filter_map(of).collect();
+    all.sort_by(|(a, b), (c, d)| (b / a).total_cmp(&(d / c)));
+    all.get(all.len() / 2).copied()
 }
 
 #[cfg(test)]
@@ -63,7 +80,7 @@ mod tests {
 
     #[test]
     fn scans_of_the_same_rays_are_clumps() {
-        for times in [7, 20, 80] {
+        for times in [7, 20, 80, 200] {
             let clumps = of(lattice(times, 0.0002)).expect("clumps");
             assert!(clumps.across < 0.001 && clumps.apart > 0.008, "{clumps:?}");
         }
