@@ -31,11 +31,11 @@ pub(crate) fn tree_of(
     by: Threads,
 ) -> Result<ImmutableKdTree<f64, 3>, NoiseError> {
     let builder = ImmutableKdTree::builder();
-    let built = match by {
-        Threads::This => builder.with_serial_construction().build_from_entries(entries),
-        Threads::All => {
-            builder.with_parallel_construction_threshold(LEAST_SHARED).build_from_entries(entries)
-        }
+    // PERF: alone, what is shared takes longer.
+    let built = if by == Threads::This || rayon::current_num_threads() == 1 {
+        builder.with_serial_construction().build_from_entries(entries)
+    } else {
+        builder.with_parallel_construction_threshold(LEAST_SHARED).build_from_entries(entries)
     };
     built.map_err(|error| NoiseError::Index { points: entries.len(), reason: error.to_string() })
 }
