@@ -22,7 +22,8 @@ pub struct Cloud {
 cloud_accessors!(Cloud);
 
 impl Cloud {
-    /// Filters a cloud, models its sensor, and builds its index and tree.
+    /// Filters a cloud, models its sensor, and builds its index and tree, on all threads of the pool, with the
+    /// same result on one: so not within something that others of them wait for, such as a `OnceLock`.
     ///
     /// # Errors
     /// When nothing is left after filtering, a coordinate is beyond 1e10 m, a covariance is not one,
