@@ -4,32 +4,38 @@ use std::collections::BTreeMap;
 
 use cloudtouch_geom::Point3;
 
-/// Fewer places are asked one by one.
-const FEW: usize = 32;
+/// Fewer places are asked one by one, and are in no cell.
+const FEW: usize = 64;
 
-/// Numbers of places, from 0 on, by the cells of a grid that they are in.
+/// Places by their numbers, from 0 on, and by the cells of a grid that they are in.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
+    places: Vec<Point3>,
     /// Length of an edge, m: how far the first place looked.
     size: f64,
     cells: BTreeMap<[i64; 3], Vec<usize>>,
-    count: usize,
 }
 
 impl Cells {
     /// Puts the next number at a place that looks so far, m.
     pub(super) fn push(&mut self, place: &Point3, reach: f64) {
-        if self.count == 0 {
+        if self.places.is_empty() {
             self.size = reach.max(f64::MIN_POSITIVE);
         }
-        self.cells.entry(self.cell(place, 0.0)).or_default().push(self.count);
-        self.count += 1;
+        self.places.push(*place);
+        let count = self.places.len();
+        // PERF: most searches find few, and put none in cells.
+        let new = if count == FEW { 0..count } else { count - 1..count };
+        for number in new.filter(|_| count >= FEW) {
+            self.cells.entry(self.cell(&self.places[number], 0.0)).or_default().push(number);
+        }
     }
 
     /// Puts a number at another place.
-    pub(super) fn shift(&mut self, number: usize, from: &Point3, to: &Point3) {
-        let [from, to] = [from, to].map(|place| self.cell(place, 0.0));
-        if from != to {
+    pub(super) fn shift(&mut self, number: usize, to: &Point3) {
+        let [from, to] = [std::mem::replace(&mut self.places[number], *to), *to]
+            .map(|place| self.cell(&place, 0.0));
+        if self.places.len() >= FEW && from != to {
             self.cells.entry(from).or_default().retain(|&other| other != number);
             self.cells.entry(to).or_default().push(number);
         }
@@ -40,8 +46,8 @@ impl Cells {
         let (low, high) = (self.cell(place, -reach), self.cell(place, reach));
         let rows = (high[0].saturating_sub(low[0])).saturating_add(1) as f64
             * (high[1].saturating_sub(low[1])).saturating_add(1) as f64;
-        if self.count < FEW || rows > self.cells.len() as f64 {
-            return (0..self.count).for_each(visit);
+        if self.places.len() < FEW || rows > self.cells.len() as f64 {
+            return (0..self.places.len()).for_each(visit);
         }
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
@@ -80,7 +86,7 @@ mod tests {
             places.iter().for_each(|place| cells.push(place, first_reach));
             for number in (0..places.len()).step_by(3) {
                 let to = places[number] + Vector3::from(moved);
-                cells.shift(number, &places[number], &to);
+                cells.shift(number, &to);
                 places[number] = to;
             }
             for at in &places {

@@ -113,7 +113,7 @@ impl Crossings {
             (seen.clearest, seen.clearest_by_pose) = (clear, by_pose.clear);
         }
         if probability > seen.best.probability {
-            self.cells.shift(number, &seen.best.place, &crossing.place);
+            self.cells.shift(number, &crossing.place);
             seen.best = crossing;
         }
         self.last = Some(number);
