@@ -76,6 +76,34 @@ impl<'a> Pairs<'a> {
         recent.1
     }
 
+    /// Tests all that waits anew, by trees of the same nodes.
+    pub(crate) fn go_on_by(
+        &mut self,
+        [a, b]: [&'a Tree; 2],
+        a_from_b: &Pose,
+        within: f64,
+        outcome: &mut SurfaceOutcome,
+    ) {
+        let mut waiting = std::mem::take(&mut self.queue).into_vec();
+        // Those of a node of B together, so that it is moved once.
+        waiting.sort_unstable_by_key(|pair| (pair.nodes().1, pair.nodes().0));
+        let nodes = [(a, a.root), (b, b.root)];
+        let [Some(root_a), Some(root_b)] =
+            nodes.map(|(tree, root)| Some(&tree.nodes[root? as usize]))
+        else {
+            return;
+        };
+        self.rounding = self.rounding.max(pose_rounding([root_a, root_b], a_from_b));
+        (self.a, self.b) = (a, b);
+        self.moved.clear();
+        self.carried.clear();
+        self.recent = [(u32::MAX, 0); RECENT];
+        for pair in waiting {
+            let (a, b) = pair.nodes();
+            self.test(a, b, within, outcome);
+        }
+    }
+
     /// The pair that comes next.
     pub(crate) fn most_urgent(&self) -> Option<Queued<Waiting>> {
         self.queue.peek().copied()
@@ -85,11 +113,11 @@ impl<'a> Pairs<'a> {
         self.queue.pop();
     }
 
-    /// Queues the pair of the roots where it is wanted.
-    pub(crate) fn test_roots(&mut self, a: u32, b: u32, within: f64, outcome: &mut SurfaceOutcome) {
-        let roots = Tested { nodes: (a, b), box_of_b: self.moved(b) };
-        let [apart, _] = self.by_faces([roots; 2], within, outcome);
-        let wanted = self.wanted(roots, apart, within, outcome);
+    /// Queues a pair, such as that of the roots, where it is wanted.
+    pub(crate) fn test(&mut self, a: u32, b: u32, within: f64, outcome: &mut SurfaceOutcome) {
+        let pair = Tested { nodes: (a, b), box_of_b: self.moved(b) };
+        let [apart, _] = self.by_faces([pair; 2], within, outcome);
+        let wanted = self.wanted(pair, apart, within, outcome);
         self.queue.extend(wanted);
     }
 

@@ -22,10 +22,13 @@ pub struct SurfacePair {
 }
 
 /// Whether to go on after a pair of leaves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SurfaceFlow {
+#[derive(Debug, Clone, Copy)]
+pub enum SurfaceFlow<'a> {
     /// On to the next pair with fewer deviations than these, or whose surfaces may cross.
     Within(f64),
+    /// The same, by trees of the same nodes whose boxes and bounds are others and hold too, such as a
+    /// clone that was refitted: what waits is tested anew.
+    WithinBy(f64, [&'a Tree; 2]),
     /// No further pairs.
     Stop,
 }
@@ -47,18 +50,18 @@ pub enum SurfaceFlow {
 ///
 /// # Errors
 /// When the pose or the margin is not finite, or the margin is negative.
-pub fn visit_surfaces(
-    (a, b): (&Tree, &Tree),
+pub fn visit_surfaces<'a>(
+    (a, b): (&'a Tree, &'a Tree),
     a_from_b: &Pose,
     sought: Sought,
-    mut visit: impl FnMut(SurfacePair) -> SurfaceFlow,
+    mut visit: impl FnMut(SurfacePair) -> SurfaceFlow<'a>,
 ) -> Result<SurfaceOutcome, TreeError> {
     check(a_from_b, &sought)?;
     let mut within = sought.within;
     let mut outcome = SurfaceOutcome::NOTHING;
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(outcome) };
     let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought, USUAL_PAIRS);
-    pairs.test_roots(root_a, root_b, within, &mut outcome);
+    pairs.test(root_a, root_b, within, &mut outcome);
     while let Some(pair) = pairs.most_urgent() {
         let Waiting { deviations, surfaces, .. } = pair.item;
         if deviations >= within && !pairs.may_cross(&pair) {
@@ -76,6 +79,10 @@ pub fn visit_surfaces(
         let (a, b) = pair.nodes();
         match visit(SurfacePair { a: NodeId(a), b: NodeId(b), deviations, may_cross }) {
             SurfaceFlow::Within(limit) => within = within.min(limit),
+            SurfaceFlow::WithinBy(limit, trees) => {
+                within = within.min(limit);
+                pairs.go_on_by(trees, a_from_b, within, &mut outcome);
+            }
             SurfaceFlow::Stop => {
                 (outcome.deviations, outcome.apart) = (0.0, f64::NEG_INFINITY);
                 outcome.stopped = true;
@@ -101,7 +108,7 @@ pub fn urgency_of_roots(
     let (Some(root_a), Some(root_b)) = (a.root, b.root) else { return Ok(None) };
     let mut pairs = Pairs::new((a, root_a), (b, root_b), a_from_b, sought, 1);
     let mut outcome = SurfaceOutcome::NOTHING;
-    pairs.test_roots(root_a, root_b, sought.within, &mut outcome);
+    pairs.test(root_a, root_b, sought.within, &mut outcome);
     Ok(pairs.most_urgent().map(|roots| roots.urgency()))
 }
 

@@ -92,6 +92,38 @@ proptest! {
         }
     }
 
+    /// A search that goes on by trees with narrower boxes comes by all that those have to be looked at
+    /// for, and by no pair twice.
+    #[test]
+    fn going_on_by_narrower_trees_leaves_out_nothing_more(
+        streams in (0..1000_u64, 0..1000_u64),
+        offset in prop::array::uniform3(-0.4..0.4_f64),
+        angles in prop::array::uniform3(-3.1..3.1_f64),
+        within in 0.5..8.0_f64,
+        after in 1_usize..60,
+    ) {
+        let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
+        let narrow = [(streams.0, 150), (streams.1 + 1000, 120)]
+            .map(|(stream, count)| small_leaves(discs(stream, count)));
+        let mut loose = narrow.clone();
+        for tree in &mut loose {
+            tree.set_leaf_bounds(|_| LeafBounds { std: 0.1, shift: 0.05, reach: 0.1 }).unwrap();
+        }
+        let mut all = BTreeSet::new();
+        let outcome = visit_surfaces((&loose[0], &loose[1]), &pose, sought(within), |pair| {
+            assert!(all.insert((pair.a, pair.b)), "visited twice");
+            match all.len() == after {
+                true => SurfaceFlow::WithinBy(within, narrow.each_ref()),
+                false => SurfaceFlow::Within(within),
+            }
+        }).unwrap();
+        let (of_narrow, _, _) = visited((&narrow[0], &narrow[1]), &pose, within);
+        let (of_loose, _, _) = visited((&loose[0], &loose[1]), &pose, within);
+        prop_assert!(all.is_superset(&of_narrow) && all.is_subset(&of_loose));
+        prop_assert!(all.len() <= of_narrow.len() + after);
+        prop_assert!(outcome.deviations >= within);
+    }
+
     /// Every two points, one of each tree, that are not in a pair that was visited have as many
     /// deviations between them as the outcome says, and at least those asked for.
     #[test]

@@ -122,7 +122,7 @@ impl Prepared {
     }
 
     /// Whether the surface was computed everywhere and the tree fitted to it.
-    pub(super) fn is_refined(&self) -> bool {
+    pub(crate) fn is_refined(&self) -> bool {
         self.surface.surfels.is_empty()
     }
 

@@ -2,12 +2,13 @@
 
 use std::sync::OnceLock;
 
-use cloudtouch_bvh::{NodeId, Primitive};
+use cloudtouch_bvh::{NodeId, Primitive, Tree, TreeError};
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3};
 use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
 use crate::error::PrepareError;
+use crate::report::Stats;
 
 use super::edge::{DISC_SPACINGS, Edge};
 use super::leaf::{LeafEdges, LeafSurface};
@@ -30,11 +31,45 @@ impl Prepared {
         leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
             self.leaf_edges_with(leaf, scratch);
         });
+        self.tree = match self.surface.fitted.take().flatten() {
+            Some(fitted) => *fitted,
+            None => self.fitted_tree()?,
+        };
         // Every leaf has copies of its own.
         let slots = std::mem::take(&mut self.surface.surfels);
         let unknown = Basis { reach: f64::INFINITY, nearest: None };
         let basis = |slot: &OnceLock<Box<Fitted>>| slot.get().map_or(unknown, |f| f.basis);
         self.surface.bases = slots.iter().map(basis).collect();
+        self.enclose_again();
+        self.prepare_time += start.elapsed();
+        Ok(())
+    }
+
+    /// The tree that a refined cloud has, for a query that comes by most of this one: kept, and counted
+    /// among what it prepared. `None` where the time is over before the surface is known everywhere, or
+    /// that is beyond what a tree holds.
+    pub(crate) fn tree_fitted(
+        &self,
+        stats: &mut Stats,
+        is_over: impl Fn() -> bool,
+    ) -> Option<&Tree> {
+        if self.surface.fitted.get().is_none() {
+            // On this thread: whoever waits for others may be given another query to answer meanwhile.
+            let mut scratch = Scratch::default();
+            for leaf in self.tree.leaves() {
+                if is_over() {
+                    return None;
+                }
+                let (_, computed) = self.leaf_surface_with(leaf.id(), &mut scratch);
+                stats.leaves_prepared += usize::from(computed);
+            }
+        }
+        let fitted = || self.fitted_tree().ok().map(Box::new);
+        self.surface.fitted.get_or_init(fitted).as_deref()
+    }
+
+    /// The tree fitted to the surface everywhere.
+    fn fitted_tree(&self) -> Result<Tree, TreeError> {
         let pieces = self.surface.spacing_caps.len();
         let mut extents = vec![Covariance::zero(); pieces];
         let mut primitives =
@@ -44,11 +79,10 @@ impl Prepared {
                 (primitives[piece as usize], extents[piece as usize]) = (primitive, extent);
             }
         }
-        self.tree.refit(&primitives)?;
-        self.tree.set_extents(extents)?;
-        self.enclose_again();
-        self.prepare_time += start.elapsed();
-        Ok(())
+        let mut tree = self.tree.clone();
+        tree.refit(&primitives)?;
+        tree.set_extents(extents)?;
+        Ok(tree)
     }
 
     /// Encloses what the leaves hold along the sides that these have now.

@@ -23,6 +23,7 @@ impl Prepared {
         patched: &Patched,
         lost: &[u32],
     ) -> Result<usize, PrepareError> {
+        self.surface.fitted.take();
         let mut is_lost = vec![false; before.len()];
         lost.iter().for_each(|&piece| is_lost[piece as usize] = true);
         let renumbered = |basis: &Basis| Basis {

@@ -42,6 +42,9 @@ pub(super) struct LazySurface {
     pub edges: Vec<OnceLock<Box<LeafEdges>>>,
     /// What the spacing of each of them is limited to, m.
     pub spacing_caps: Vec<f64>,
+    /// The tree fitted to all of it, made when a query first comes by most of it; `None` where it cannot
+    /// be.
+    pub fitted: OnceLock<Option<Box<Tree>>>,
 }
 
 impl LazySurface {
@@ -54,6 +57,7 @@ impl LazySurface {
             shared: slots(tree.node_slots()),
             edges: slots(tree.node_slots()),
             spacing_caps,
+            fitted: OnceLock::new(),
         }
     }
 
@@ -66,6 +70,7 @@ impl LazySurface {
             shared: Vec::new(),
             edges: Vec::new(),
             spacing_caps: Vec::new(),
+            fitted: OnceLock::new(),
         }
     }
 

@@ -21,6 +21,7 @@ mod run;
 mod side;
 mod swept;
 mod through_mesh;
+mod trees;
 mod wrench;
 
 pub(crate) use beyond::least_beyond;

@@ -19,6 +19,7 @@ use super::gather::{
 use super::leaf::{Between, Leaf};
 use super::meeting::{Meeting, deviations_by_pose};
 use super::nearest::{Nearest, nearest_pieces};
+use super::trees::Trees;
 use super::wrench::Wrench;
 
 /// Places that are more than this many deviations above the least are not looked at ...
@@ -66,15 +67,24 @@ pub(crate) fn search<'a>(
     let mut found =
         Found { deviations: MOST_DEVIATIONS, at_least: f64::INFINITY, ..Found::default() };
     let motion = Motion::from(a_from_b);
-    let trees = (a.shape().tree(), b.shape().tree());
+    let mut trees = Trees::of(a, b);
     let sought = Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: true, drift: None };
-    let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
+    let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), &motion, &pair, stats);
-        if is_enough(found.deviations, found.crossings.last_clearness()) {
+        let (deviations, clearness) = (found.deviations, found.crossings.last_clearness());
+        if is_enough(deviations, clearness) {
             return SurfaceFlow::Stop;
         }
-        SurfaceFlow::Within(found.deviations_of_interest())
+        let within = found.deviations_of_interest();
+        trees.count_pair([found.leaves_a.len(), found.leaves_b.len()]);
+        if !trees.are_loose() {
+            return SurfaceFlow::Within(within);
+        }
+        match trees.fit(stats, || is_enough(deviations, clearness)) {
+            Some((a, b)) => SurfaceFlow::WithinBy(within, [a, b]),
+            None => SurfaceFlow::Stop,
+        }
     })?;
     stats.nodes_visited += outcome.nodes_visited;
     found.at_least = found.at_least.min(outcome.apart);
