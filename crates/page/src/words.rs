@@ -16,7 +16,7 @@ pub fn undecided(by: Undecided) -> &'static str {
         }
         Undecided::Units => "sizes or distance cannot be meant",
         Undecided::Sparse => "a body fits between points of the other, or between clumps of them",
-        Undecided::Noise => "the noise is larger than a body",
+        Undecided::Noise => "the noise is larger than a body, or than points scatter",
         Undecided::NoSurface => "a cloud spans no surface",
         Undecided::Missing => "too many rows have no return, or were taken for the robot",
         Undecided::Sensor => "the sensor cannot have seen this cloud",

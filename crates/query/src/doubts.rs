@@ -3,7 +3,7 @@
 
 use cloudtouch_geom::Pose;
 
-use crate::cloud::{Clumps, Makeup, SensorDoubt};
+use crate::cloud::{Clumps, Makeup, Overstated, Prepared, SensorDoubt};
 use crate::placement::box_gap;
 use crate::report::Unseen;
 use crate::safeguards::Safeguards;
@@ -25,6 +25,8 @@ const LARGE_OBJECT_RATIO: f64 = 3.0;
 /// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
 /// a twenty-fifth of that size off.
 const FARTHEST_SIZES: f64 = 40.0;
+/// Noise beyond this part of the other body had better be there.
+const LARGE_NOISE: f64 = 0.1;
 
 /// The warnings about a pair, gravest first. `a_from_b` maps local frames.
 pub(crate) fn doubts(
@@ -37,7 +39,7 @@ pub(crate) fn doubts(
     let bodies = [(Which::A, a, b), (Which::B, b, a)];
     let clouds = || {
         bodies.into_iter().filter_map(|(body, shape, other)| match shape {
-            Shape::Cloud(cloud) => Some((body, cloud.makeup(), other.size())),
+            Shape::Cloud(cloud) => Some((body, cloud, other.size())),
             Shape::Mesh(_) => None,
         })
     };
@@ -49,6 +51,7 @@ pub(crate) fn doubts(
         }
     }
     for (body, cloud, _) in clouds() {
+        let cloud = cloud.makeup();
         if cloud.is_line {
             warnings.push(Warning::NoSurface { body, points: cloud.distinct });
         }
@@ -59,10 +62,10 @@ pub(crate) fn doubts(
     warnings.extend(units((a, b)));
     warnings.extend(clouds().filter_map(|(body, cloud, size)| scale(body, cloud, size)));
     warnings.extend(clouds().filter_map(|(body, cloud, _)| {
-        let Clumps { across, apart } = cloud.clumps?;
+        let Clumps { across, apart } = cloud.makeup().clumps?;
         Some(Warning::Clumps { body, across_m: across, apart_m: apart })
     }));
-    warnings.extend(clouds().flat_map(|(body, cloud, _)| sensors(body, cloud)));
+    warnings.extend(clouds().flat_map(|(body, cloud, _)| sensors(body, cloud.makeup())));
     warnings.extend(apart((a, b), a_from_b));
     let share = unseen.map_or(0.0, Unseen::share);
     if let Some(Unseen { body, .. }) = unseen.filter(|_| share > limits.max_unseen) {
@@ -87,14 +90,21 @@ fn units((a, b): (Shape<'_>, Shape<'_>)) -> Option<Warning> {
     of(Which::A, a, b).or_else(|| of(Which::B, b, a))
 }
 
-fn scale(body: Which, cloud: &Makeup, other_size_m: f64) -> Option<Warning> {
-    let Makeup { spacing: spacing_m, std: std_m, .. } = *cloud;
+fn scale(body: Which, cloud: &Prepared, other_size_m: f64) -> Option<Warning> {
+    let Makeup { spacing: spacing_m, std: std_m, .. } = *cloud.makeup();
     if other_size_m == 0.0 {
         None
     } else if spacing_m > other_size_m {
         Some(Warning::Sparse { body, spacing_m, other_size_m })
     } else if std_m > other_size_m {
         Some(Warning::Noise { body, std_m, other_size_m })
+    } else if std_m > LARGE_NOISE * other_size_m {
+        let overstated = |Overstated { stated: std_m, seen: seen_m }| Warning::NoiseOverstated {
+            body,
+            std_m,
+            seen_m,
+        };
+        cloud.overstated().map(overstated)
     } else {
         None
     }

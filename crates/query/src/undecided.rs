@@ -18,7 +18,8 @@ pub enum Undecided {
     Units,
     /// One body fits between the points of the other, or these lie in clumps with nothing known between.
     Sparse,
-    /// The noise of a cloud is larger than the other body.
+    /// The noise stated for a cloud is larger than the other body, or far larger than its points have and
+    /// not small beside the other body.
     Noise,
     /// The points of a cloud span no surface: they are on a line, or are one.
     NoSurface,

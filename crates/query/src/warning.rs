@@ -89,6 +89,15 @@ pub enum Warning {
         /// Diagonal of the other's box, m.
         other_size_m: f64,
     },
+    /// Far more noise is stated for a cloud than its points have: nearby, probabilities mean nothing.
+    NoiseOverstated {
+        /// Whose noise.
+        body: Which,
+        /// Typical standard deviation stated across its surface, m.
+        std_m: f64,
+        /// Typical standard deviation of its points from planes, m.
+        seen_m: f64,
+    },
     /// So many points are beside or behind the camera that is said to have seen them.
     SensorPose {
         /// Whose.
@@ -155,6 +164,7 @@ impl Warning {
             | Self::Sparse { body, .. }
             | Self::Clumps { body, .. }
             | Self::Noise { body, .. }
+            | Self::NoiseOverstated { body, .. }
             | Self::SensorPose { body, .. }
             | Self::SensorRange { body, .. }
             | Self::SensorLayout { body }
@@ -173,7 +183,7 @@ impl Warning {
             Self::Missing { .. } | Self::SelfFilter { .. } => Some(Undecided::Missing),
             Self::Units { .. } | Self::FarAway { .. } => Some(Undecided::Units),
             Self::Sparse { .. } | Self::Clumps { .. } => Some(Undecided::Sparse),
-            Self::Noise { .. } => Some(Undecided::Noise),
+            Self::Noise { .. } | Self::NoiseOverstated { .. } => Some(Undecided::Noise),
             Self::SensorPose { .. } | Self::SensorRange { .. } | Self::ImagePlace { .. } => {
                 Some(Undecided::Sensor)
             }
@@ -232,6 +242,13 @@ impl fmt::Display for Warning {
                  in metres",
                 length(std_m),
                 length(other_size_m)
+            ),
+            Self::NoiseOverstated { body, std_m, seen_m } => write!(
+                f,
+                "the noise stated for the {body} is {} and its points are {} off planes: give the \
+                 sensor's noise, in metres",
+                length(std_m),
+                length(seen_m)
             ),
             Self::SensorPose { body, share } => write!(
                 f,

@@ -277,3 +277,33 @@ fn a_laser_scanner_with_the_image_of_a_camera_is_warned_of() {
     let report = ask(Mode::Calibrated, &cloud, &mesh(&tool()), &at(0.6, 0.0, 1.2));
     assert!(matches!(report.warnings[..], [Warning::SensorLayout { .. }]), "{report:?}");
 }
+
+/// Noise said in millimetres, or a hundred times what it is, made everything nearby free: a surface known to
+/// half a metre may well be elsewhere.
+#[test]
+fn noise_that_points_do_not_have_read_free() {
+    for std in [0.03, 0.2] {
+        let sensor = SensorModel::Isotropic { std };
+        let overstated = |mode| Scan::of(&table(), sensor, mode).expect("a good cloud");
+        // 3 cm of overlap.
+        let report = ask(
+            Mode::Calibrated,
+            &overstated(Mode::Calibrated),
+            &mesh(&tool()),
+            &at(0.1, 0.2, 0.07),
+        );
+        let is_told =
+            |w: &Warning| matches!(w, Warning::NoiseOverstated { std_m, .. } if *std_m > 0.9 * std);
+        assert!(report.warnings.iter().any(is_told), "{report:?}");
+        assert_ne!(report.verdict, Verdict::Free, "{report:?}");
+    }
+    // Where not even so much noise brings them together, free is free.
+    let overstated = Scan::of(&table(), SensorModel::Isotropic { std: 0.03 }, Mode::Calibrated);
+    let far = ask(
+        Mode::Calibrated,
+        &overstated.expect("a good cloud"),
+        &mesh(&tool()),
+        &at(0.1, 0.2, 0.4),
+    );
+    assert_eq!(far.verdict, Verdict::Free, "{far:?}");
+}

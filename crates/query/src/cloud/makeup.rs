@@ -1,5 +1,7 @@
 //! What a cloud is like as a whole: what queries look at before they believe it.
 
+use std::sync::OnceLock;
+
 use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing_at};
 
@@ -7,6 +9,7 @@ use crate::filter::StageReport;
 
 use super::clumps::{Clumps, clumps};
 use super::pinhole::is_misplaced;
+use super::scatter::Overstated;
 
 /// Points that spacing, noise and distance are told from, at most.
 const SAMPLE: usize = 200;
@@ -59,6 +62,8 @@ pub(crate) struct Makeup {
     /// Share of the rows without return, of a cloud whose layout does not tell where.
     pub missing: f64,
     pub sensor_doubts: Vec<SensorDoubt>,
+    /// Noise that is stated and not there; told when first asked for.
+    pub overstated: OnceLock<Option<Overstated>>,
 }
 
 impl Makeup {
@@ -81,6 +86,7 @@ impl Makeup {
             is_line: !has_area(points, (corners[1] - corners[0]).norm()) && is_line(points),
             missing,
             sensor_doubts,
+            overstated: OnceLock::new(),
         }
     }
 
@@ -110,7 +116,7 @@ pub(super) fn sample_of(points: &[Point3]) -> Vec<usize> {
 
 /// Some of the points, evenly spread by how far they are from the middle of all: probabilities depend on
 /// what is told from them, and keep in whatever order and frame the points come.
-fn spread(points: &[Point3], count: usize) -> Vec<usize> {
+pub(super) fn spread(points: &[Point3], count: usize) -> Vec<usize> {
     if points.len() <= count {
         return (0..points.len()).collect();
     }

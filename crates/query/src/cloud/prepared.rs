@@ -14,6 +14,7 @@ use super::makeup::{Makeup, sample_of};
 use super::pieces::Pieces;
 use super::preparation::Preparation;
 use super::scans::Scans;
+use super::scatter::{Overstated, overstated};
 use super::slots::{LazySurface, spacing_cap};
 use super::view::SingleView;
 
@@ -207,6 +208,12 @@ impl Prepared {
     /// What the cloud is like as a whole.
     pub(crate) fn makeup(&self) -> &Makeup {
         &self.makeup
+    }
+
+    /// Noise that is stated of its points and that they do not have.
+    pub(crate) fn overstated(&self) -> Option<Overstated> {
+        let told = || overstated(&self.neighborhoods, &self.scans.noise);
+        *self.makeup.overstated.get_or_init(told)
     }
 
     /// Distance of a place in the local frame to the nearest point, m.

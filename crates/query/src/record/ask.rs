@@ -21,6 +21,9 @@ use super::closeness::Closeness;
 use super::estimate::{Estimate, Places};
 use super::evidence::Evidence;
 
+/// Bodies farther apart than so many standard deviations are so, however large these are said to be.
+const CLEAR_DEVIATIONS: f64 = 3.0;
+
 /// By what a path turns what it gathered into a report.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Terms {
@@ -56,8 +59,11 @@ impl Terms {
         let mut estimate = estimate(start, &local, &mut evidence)?;
         let unseen = unseen(a, b, &local);
         let warnings = doubts((a, b), &local, unseen.as_ref(), &self.safeguards);
+        // Noise that points do not have only makes them seem nearer than they are.
+        let is_clear = estimate.evidence.is_some_and(|of| of.deviations > CLEAR_DEVIATIONS);
+        let counts = |w: &&Warning| !(is_clear && matches!(w, Warning::NoiseOverstated { .. }));
         let doubt = if estimate.probability <= self.accept {
-            self.doubt((a, b), &local, &warnings)
+            self.doubt((a, b), &local, warnings.iter().filter(counts))
         } else {
             None
         };
@@ -94,17 +100,17 @@ impl Terms {
         let local = a.local_from(&b, a_from_b);
         let unseen = unseen(a, b, &local);
         let warnings = doubts((a, b), &local, unseen.as_ref(), &self.safeguards);
-        (self.doubt((a, b), &local, &warnings), warnings)
+        (self.doubt((a, b), &local, warnings.iter()), warnings)
     }
 
-    fn doubt(
+    fn doubt<'w>(
         &self,
         (a, b): (Shape<'_>, Shape<'_>),
         local: &Pose,
-        warnings: &[Warning],
+        mut warnings: impl Iterator<Item = &'w Warning>,
     ) -> Option<Undecided> {
         let enclosed = || is_enclosed(a, b, local).then_some(Undecided::Enclosed);
-        warnings.iter().find_map(|warning| self.reason(warning)).or_else(enclosed)
+        warnings.find_map(|warning| self.reason(warning)).or_else(enclosed)
     }
 
     /// Why a pair with this warning does not read as free; `None` where it may.

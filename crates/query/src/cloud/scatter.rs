@@ -1,0 +1,149 @@
+//! How far points are off the surface they are on, beside what is stated of their noise.
+
+use cloudtouch_geom::{Matrix3, Vector3};
+use cloudtouch_noise::{Neighborhoods, SensorNoise};
+
+use super::makeup::spread;
+
+/// Places that are looked about, and points that are looked at from each, at most.
+const PLACES: usize = 24;
+const POINTS: usize = 4000;
+/// Where these are too sparse, so many of the nearest are.
+const NEAREST: usize = 96;
+/// A plane through fewer of them tells nothing.
+const LEAST: usize = 12;
+/// Within this many standard deviations of the noise, ...
+const WIDEST: f64 = 2.0;
+/// ... and down by halves to this part of it, points are held against a plane.
+const NARROWEST: f64 = 0.05;
+/// Points of so much noise that they fill a ball are off any plane by this part of its radius: a ball's
+/// own is the root of a fifth.
+const OF_BALL: f64 = 0.44;
+/// Of the noise that is stated they are off a plane by more than this part, whatever the surface is.
+const LEAST_SHARE: f64 = 0.15;
+
+/// Noise that points do not have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Overstated {
+    /// Standard deviation stated across the surface, m.
+    pub stated: f64,
+    /// That from a plane, there, m.
+    pub seen: f64,
+}
+
+/// What is stated of the noise where a fourth of the places of a cloud are far flatter than that leaves
+/// them: elsewhere the surface itself may be bent, or a board. Only errors that neighbours share could be
+/// so large.
+pub(super) fn overstated(cloud: &Neighborhoods, noise: &SensorNoise) -> Option<Overstated> {
+    let [places, others] = [PLACES, POINTS].map(|count| spread(cloud.points(), count));
+    let mut found: Vec<Flattest> =
+        places.iter().filter_map(|&at| flattest(at, cloud, noise, &others)).collect();
+    // Places with too few points about them tell nothing.
+    if 2 * found.len() < places.len() {
+        return None;
+    }
+    found.sort_by(|p, q| p.share.total_cmp(&q.share));
+    let Flattest { share, stated, seen } = *found.get(found.len() / 4)?;
+    (share < LEAST_SHARE).then_some(Overstated { stated, seen })
+}
+
+/// The scale at which the points about a place are on a plane best, beside their noise.
+#[derive(Clone, Copy)]
+struct Flattest {
+    /// What they are off it, as a part of what the noise would make of them.
+    share: f64,
+    stated: f64,
+    seen: f64,
+}
+
+fn flattest(
+    at: usize,
+    cloud: &Neighborhoods,
+    noise: &SensorNoise,
+    others: &[usize],
+) -> Option<Flattest> {
+    let points = cloud.points();
+    let std = noise[at].max_std();
+    let mut far: Vec<Vector3> = others.iter().map(|&i| points[i] - points[at]).collect();
+    let near = cloud.nearest(at, NEAREST).into_iter();
+    let mut near: Vec<Vector3> = near.map(|near| points[near.index] - points[at]).collect();
+    let mut radius = WIDEST * std;
+    let mut best: Option<Flattest> = None;
+    while radius >= NARROWEST * std {
+        far.retain(|offset| offset.norm() <= radius);
+        near.retain(|offset| offset.norm() <= radius);
+        let offsets = if far.len() < LEAST { &near } else { &far };
+        if offsets.len() < LEAST {
+            break;
+        }
+        let (normal, seen) = off_plane(offsets);
+        let stated = noise[at].variance_along(&normal).sqrt();
+        let share = seen / stated.min(OF_BALL * radius);
+        if best.as_ref().is_none_or(|best| share < best.share) {
+            best = Some(Flattest { share, stated, seen });
+        }
+        radius *= 0.5;
+    }
+    best
+}
+
+/// The normal of the plane through places by least squares, and their standard deviation from it.
+fn off_plane(offsets: &[Vector3]) -> (Vector3, f64) {
+    let count = offsets.len() as f64;
+    let middle = offsets.iter().sum::<Vector3>() / count;
+    let scatter: Matrix3 = offsets.iter().map(|o| (o - middle) * (o - middle).transpose()).sum();
+    let axes = scatter.symmetric_eigen();
+    let least = axes.eigenvalues.imin();
+    let variance = axes.eigenvalues[least].max(0.0) / (count - 3.0);
+    (axes.eigenvectors.column(least).into(), variance.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{PointCloud, TriangleMesh};
+    use cloudtouch_noise::SensorModel;
+    use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+    use cloudtouch_testkit::{scene, surface};
+
+    use super::*;
+    use crate::{Cloud, CloudSettings};
+
+    /// Of a surface with this noise, of which is said that.
+    fn of(mesh: &TriangleMesh, count: usize, [is, said]: [f64; 2]) -> Option<Overstated> {
+        let samples = surface::positions(&surface::sample_surface(mesh, count, 3));
+        let points = add_noise(&samples, NoiseKind::Gaussian, is, 4);
+        let settings = CloudSettings::new(SensorModel::Isotropic { std: said });
+        let cloud = PointCloud::from_points(points);
+        Cloud::prepare(&cloud, &settings).unwrap().prepared().overstated()
+    }
+
+    #[test]
+    fn noise_as_large_as_stated_is_not_overstated() {
+        let (room, ball, cube) =
+            (scene::room(), scene::sphere(0.05, 4), scene::cuboid([0.12, 0.12, 0.12]));
+        for std in [0.001, 0.003, 0.01, 0.03] {
+            for (mesh, count) in
+                [(&room, 10_000), (&room, 100_000), (&ball, 3_000), (&cube, 10_000)]
+            {
+                assert_eq!(of(mesh, count, [std; 2]), None, "{std} m, {count} points");
+                assert_eq!(of(mesh, count, [std, 3.0 * std]), None, "{std} m, {count} points");
+            }
+        }
+    }
+
+    #[test]
+    fn noise_that_nothing_scatters_by_is() {
+        // Between points as far apart as that nothing is known.
+        assert_eq!(of(&scene::room(), 10_000, [0.002, 0.05]), None);
+        for (mesh, count) in [(&scene::room(), 100_000), (&scene::plane_patch(1.0), 40_000)] {
+            for stated in [0.05, 0.2, 0.6] {
+                let found = of(mesh, count, [0.002, stated])
+                    .unwrap_or_else(|| panic!("{stated} m, {count} points"));
+                assert!(
+                    found.seen < 0.1 * found.stated && found.stated > 0.9 * stated,
+                    "{found:?}"
+                );
+            }
+        }
+    }
+}
