@@ -1,10 +1,15 @@
 //! From spots to what is reported: contacts merged to patches, and the clearance.
 
 use crate::CONTACT_FLOOR;
+use crate::classifier::Clock;
 use crate::report::{Clearance, Contact};
+use crate::search::least_beyond;
 
 use super::parting::Partings;
 use super::spots::{Spot, Spots};
+
+/// A distance is clearly less than another that is so many standard deviations more.
+const CLEARLY: f64 = 2.0;
 
 /// Contact patches, likeliest first: spots within a spacing of a likelier one belong to its patch.
 /// None is more probable than the collision is.
@@ -46,6 +51,19 @@ pub(super) fn nearest<'s>(spots: &'s Spots<'_>, collision: f64) -> Option<&'s Sp
         .filter(|spot| spot.gap < 0.0 && spot.probability >= 0.9 * likeliest.probability)
         .min_by(|p, q| p.gap.total_cmp(&q.gap));
     Some(deepest.filter(|_| is_likely).unwrap_or(likeliest))
+}
+
+impl Spots<'_> {
+    /// Whether the surfaces are nearer elsewhere than a place tells where no pieces face each other: those
+    /// likeliest to meet are known worst, which need not be the nearest.
+    pub(super) fn are_nearer_than(&self, spot: &Spot, clock: &Clock) -> bool {
+        let least = (spot.gap - CLEARLY * spot.std).max(0.0);
+        let found = || least_beyond(self.bodies, &self.pose, least, clock);
+        // What is within a spacing is told as well as anything.
+        spot.is_beside
+            && spot.gap > spot.spacing
+            && found().is_ok_and(|found| found.deviations < 0.0 || !found.is_complete)
+    }
 }
 
 /// The distance of the two surfaces there.

@@ -1,6 +1,6 @@
 //! One query on the default path: the evidence, and what the judge makes of it.
 
-use cloudtouch_geom::{Motion, Pose};
+use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
@@ -28,8 +28,7 @@ pub(super) fn estimate(
         return exact((a, b), a_from_b, evidence);
     }
     let weighed = weigh((a, b), a_from_b, task, &mut evidence.stats)?;
-    let of_full = (task.settings.detail == Detail::Full)
-        .then(|| weighed.spots((a, b), Motion::from(a_from_b)));
+    let of_full = (task.settings.detail == Detail::Full).then(|| weighed.spots((a, b), a_from_b));
     Ok(weighed.estimate(of_full.as_ref(), task, evidence))
 }
 
@@ -38,7 +37,7 @@ impl Weighed<'_> {
     pub(super) fn spots<'b>(
         &self,
         bodies: (BodyRef<'b>, BodyRef<'b>),
-        a_from_b: Motion,
+        a_from_b: &Pose,
     ) -> Spots<'b> {
         spots(bodies, a_from_b, &self.found, self.looked.deepest.as_ref())
     }
@@ -82,7 +81,10 @@ impl Weighed<'_> {
                 add_points(found, probability, evidence);
                 Places {
                     contacts: contacts(spots, probability, settings.max_contacts),
-                    clearance: self.nearest_spot(spots, probability).map(clearance),
+                    clearance: self
+                        .nearest_spot(spots, probability)
+                        .filter(|spot| !spots.are_nearer_than(spot, &task.clock))
+                        .map(clearance),
                     at_least,
                 }
             }

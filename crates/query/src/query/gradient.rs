@@ -85,14 +85,15 @@ impl Query {
                 }
                 let task = query.task(start, (a, b));
                 let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;
-                let spots = weighed.spots((a, b), motion);
+                let spots = weighed.spots((a, b), local);
                 let estimate = weighed.estimate(Some(&spots), &task, evidence);
                 let p = estimate.probability;
                 let log_odds =
                     weighed.log_odds_by_pose((a, b), local, &task, &mut evidence.stats)?;
                 gradient.log_odds = of(log_odds);
                 gradient.probability = of(log_odds * (p * (1.0 - p)));
-                let nearest = weighed.nearest_spot(&spots, p);
+                let is_told = estimate.places.as_ref().is_some_and(|at| at.clearance.is_some());
+                let nearest = weighed.nearest_spot(&spots, p).filter(|_| is_told);
                 gradient.clearance =
                     nearest.map(|spot| of(weighed.gap_by_pose((a, b), &motion, spot)));
                 Ok(estimate)

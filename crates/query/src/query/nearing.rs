@@ -36,7 +36,7 @@ impl Query {
                 }
                 let task = self.task(start, (a, b));
                 let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;
-                let spots = weighed.spots((a, b), motion);
+                let spots = weighed.spots((a, b), local);
                 let is_full = self.settings().detail == Detail::Full;
                 let estimate = weighed.estimate(is_full.then_some(&spots), &task, evidence);
                 let nearest = weighed.nearest_spot(&spots, estimate.probability);

@@ -1,7 +1,7 @@
 //! The places where two bodies are nearest to touching, as geometry sees them: normals of surfaces,
 //! and gaps along them.
 
-use cloudtouch_geom::{Motion, Point3, Vector3};
+use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::search::{Crossing, Finding, Found, Inside, Wrench, probability_at};
@@ -23,6 +23,8 @@ pub(super) struct Spot {
     pub normal: Vector3,
     /// Distance of the surfaces along it, m; negative in overlap.
     pub gap: f64,
+    /// Whether the pieces that tell it do not face each other.
+    pub is_beside: bool,
     /// Whether the overlap is at least so deep: of surfaces that cross only a part is seen.
     pub is_bound: bool,
     /// Its standard deviation, m.
@@ -53,6 +55,7 @@ const MOST_SPOTS: usize = 400;
 pub(super) struct Spots<'a> {
     pub bodies: (BodyRef<'a>, BodyRef<'a>),
     /// Of their local frames.
+    pub pose: Pose,
     pub a_from_b: Motion,
     /// In the order of what they say, likeliest first; the deeper of two that are equally likely. The
     /// order does not depend on that of the search.
@@ -62,7 +65,7 @@ pub(super) struct Spots<'a> {
 /// The spots of a search.
 pub(super) fn spots<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
-    a_from_b: Motion,
+    pose: &Pose,
     found: &Found<'_>,
     inside: Option<&Inside>,
 ) -> Spots<'a> {
@@ -78,7 +81,7 @@ pub(super) fn spots<'a>(
     pairs.extend(crossed);
     pairs.extend(inside.map(|inside| within(a, inside)));
     sort(&mut pairs);
-    Spots { bodies: (a, b), a_from_b, sorted: pairs }
+    Spots { bodies: (a, b), pose: *pose, a_from_b: Motion::from(pose), sorted: pairs }
 }
 
 /// Sorts spots, and keeps no more than [`MOST_SPOTS`].
@@ -134,7 +137,8 @@ fn near((a, b): (BodyRef<'_>, BodyRef<'_>), index: usize, finding: &Finding) -> 
     let (place, spacing) = (meeting.place, nearest.spacing);
     let std = of_pieces.hypot(BEND_SPACINGS * spacing);
     let told_by = ToldBy::Pieces(index);
-    Spot { place, normal, gap, is_bound: false, std, spacing, probability, told_by }
+    let is_beside = beyond > 0.0 || common_normal(finding).is_none();
+    Spot { place, normal, gap, is_beside, is_bound: false, std, spacing, probability, told_by }
 }
 
 /// The mean of the normals of two pieces that are of one plane, or the only one there is.
@@ -170,7 +174,8 @@ fn through(crossing: &Crossing) -> Spot {
     let footprint = FOOTPRINT_SPACINGS * spacing;
     let (gap, std) = (-depth.min(footprint), std.hypot(0.5 * footprint));
     let told_by = ToldBy::Crossing(crossing.by_pose.depth);
-    Spot { place, normal: axis, gap, is_bound: true, std, spacing, probability, told_by }
+    let (is_beside, is_bound, normal) = (false, true, axis);
+    Spot { place, normal, gap, is_beside, is_bound, std, spacing, probability, told_by }
 }
 
 /// A crossing has no direction of its own: it takes that of the nearest pair of pieces.
@@ -188,5 +193,6 @@ fn within(a: BodyRef<'_>, inside: &Inside) -> Spot {
     let normal = if matches!(a, BodyRef::Mesh(_)) { outward } else { -outward };
     let probability = 1.0 - probability_at(std::f64::consts::SQRT_2 * deviations);
     let (gap, told_by) = (-depth, ToldBy::Inside);
-    Spot { place, normal, gap, is_bound: true, std, spacing, probability, told_by }
+    let (is_beside, is_bound) = (false, true);
+    Spot { place, normal, gap, is_beside, is_bound, std, spacing, probability, told_by }
 }
