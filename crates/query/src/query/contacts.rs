@@ -57,11 +57,10 @@ impl Spots<'_> {
     /// Whether the surfaces are nearer elsewhere than a place tells where no pieces face each other: those
     /// likeliest to meet are known worst, which need not be the nearest.
     pub(super) fn are_nearer_than(&self, spot: &Spot, clock: &Clock) -> bool {
-        let least = (spot.gap - CLEARLY * spot.std).max(0.0);
+        let least = spot.gap - CLEARLY * spot.std;
         let found = || least_beyond(self.bodies, &self.pose, least, clock);
-        // What is within a spacing is told as well as anything.
         spot.is_beside
-            && spot.gap > spot.spacing
+            && least > 0.0
             && found().is_ok_and(|found| found.deviations < 0.0 || !found.is_complete)
     }
 }

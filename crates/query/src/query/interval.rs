@@ -17,8 +17,9 @@ const FINEST: f64 = 1e-5;
 
 impl Query {
     /// Between what distances (m) the surfaces lie with a probability of `share`, as likely to be
-    /// nearer than the first as farther than the second: the margins that [`Self::within`] finds so
-    /// likely. 0 where a collision alone is.
+    /// nearer than the first as farther than the second: the margins that the bounds of [`Self::within`]
+    /// leave so likely. The first is 0 where a collision alone is, or may be: where nothing is known of what
+    /// a camera did not see, nor of how far off it is.
     ///
     /// # Errors
     /// When the share is not between 0 and 1, and those of [`Self::run`].
@@ -66,22 +67,25 @@ impl Query {
         share: f64,
     ) -> Result<[f64; 2], QueryError> {
         let below = 0.5 * (1.0 - share);
-        let low = self.margin_of(bodies, a_from_b, report, below)?;
-        Ok([low, self.margin_of(bodies, a_from_b, report, 1.0 - below)?.max(low)])
+        let of = |wanted, of: fn([f64; 2]) -> f64| {
+            self.margin_of(bodies, a_from_b, wanted, |margin| {
+                Ok(of(self.beyond_collision(bodies, a_from_b, margin, report)?.bounds))
+            })
+        };
+        // What is not known may be either: nearer than the first end, and farther than the second.
+        let (low, high) = (of(below, |[_, most]| most)?, of(1.0 - below, |[least, _]| least)?);
+        Ok([low, high.max(low)])
     }
 
-    /// The least margin within which the bodies are with this probability.
+    /// The least margin within which the bodies are as likely as wanted.
     fn margin_of(
         &self,
         bodies: (BodyRef<'_>, BodyRef<'_>),
         a_from_b: &Pose,
-        report: &Report,
         wanted: f64,
+        likely: impl Fn(f64) -> Result<f64, QueryError>,
     ) -> Result<f64, QueryError> {
-        let is_likely = |margin: f64| -> Result<bool, QueryError> {
-            let within = self.beyond_collision(bodies, a_from_b, margin, report)?;
-            Ok(within.probability >= wanted)
-        };
+        let is_likely = |margin: f64| Ok::<_, QueryError>(likely(margin)? >= wanted);
         if is_likely(0.0)? {
             return Ok(0.0);
         }
