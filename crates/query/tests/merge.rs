@@ -130,3 +130,12 @@ fn no_scan_is_no_map() {
     assert!(matches!(Cloud::merge(&[]), Err(PrepareError::NothingLeft { before: 0, .. })));
     assert!(matches!(PaperCloud::merge(&[]), Err(PrepareError::NothingLeft { before: 0, .. })));
 }
+
+/// A scan given twice, by its name or as a copy, counted as two that agree: contact read .67 where it was .98.
+#[test]
+fn a_scan_that_is_given_twice_is_refused() {
+    let [one, other] = views();
+    let by = CloudSettings::new(SensorModel::Kinect);
+    let twice = Cloud::merge(&[(&one, &by), (&other, &by), (&one.clone(), &by)]);
+    assert_eq!(twice.expect_err("the first again"), PrepareError::RepeatedScan { scan: 3 });
+}

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use cloudtouch_geom::{Covariance, Point3, PointCloud, UnitVector3};
-use cloudtouch_noise::{Combination, MotionNoise, SensorNoise};
+use cloudtouch_noise::{Combination, MotionNoise, Places, SensorNoise};
 
 use crate::error::PrepareError;
 use crate::filter::{StageReport, filter};
@@ -53,6 +53,7 @@ impl Scans {
         let mut normals = Some(Vec::new());
         let mut noise = Vec::new();
         let mut have_rows = true;
+        let mut ends = Vec::new();
         for &(scan, by) in scans {
             by.validate()?;
             let filtered = filter(scan, by.filter)?;
@@ -88,7 +89,9 @@ impl Scans {
             all.stages.extend(filtered.stages);
             append(&mut all.points, kept.points);
             all.row_count += scan.len();
+            ends.push(all.points.len());
         }
+        check_for_repeats(&all.points, &ends)?;
         if !have_rows {
             all.rows.clear();
         }
@@ -156,6 +159,23 @@ impl Scans {
             ..*self
         }
     }
+}
+
+/// Whether each scan has a point of its own, given where the points of each end among those of all.
+fn check_for_repeats(points: &[Point3], ends: &[usize]) -> Result<(), PrepareError> {
+    if ends.len() < 2 {
+        return Ok(());
+    }
+    let mut places = Places::of(points);
+    let mut start = 0;
+    for (scan, &end) in (1..).zip(ends) {
+        // All are to be seen, not the first alone.
+        if (start..end).filter(|&index| places.is_first(index)).count() == 0 {
+            return Err(PrepareError::RepeatedScan { scan });
+        }
+        start = end;
+    }
+    Ok(())
 }
 
 /// Puts a list behind another, without a copy of the first that comes.

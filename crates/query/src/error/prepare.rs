@@ -22,6 +22,12 @@ pub enum PrepareError {
         /// What each stage removed.
         stages: String,
     },
+    /// A scan that was merged before: what it says twice would count twice.
+    #[error("scan {scan} has no point that those before it have not: give each scan once")]
+    RepeatedScan {
+        /// Which of the scans, from 1.
+        scan: usize,
+    },
     /// A coordinate is so large that doubles do not tell micrometres apart there.
     #[error(
         "point {index} has the coordinate {}, beyond 1e10 m: check the unit, or remove the \
