@@ -14,9 +14,9 @@ use crate::warning::{Warning, Which};
 const LARGEST_RATIO: f64 = 1000.0;
 /// ... and no object as its scene.
 const LARGEST_OBJECT_RATIO: f64 = 200.0;
-/// Meshes seldom say their unit. In metres none is so large, m, ...
+/// Meshes seldom say their unit. In metres none is so large, m, that is an object, or ...
 const LARGE_MESH: f64 = 100.0;
-/// ... beside a body so many times smaller, ...
+/// ... a scene beside a body so many times smaller, ...
 const LARGE_MESH_RATIO: f64 = 100.0;
 /// ... and no object is, m, ...
 const LARGE_OBJECT: f64 = 20.0;
@@ -84,6 +84,7 @@ fn units((a, b): (Shape<'_>, Shape<'_>)) -> Option<Warning> {
             && (beyond(0.0, LARGEST_RATIO)
                 || body == Which::B && beyond(0.0, LARGEST_OBJECT_RATIO)
                 || is_mesh && beyond(LARGE_MESH, LARGE_MESH_RATIO)
+                || is_mesh && body == Which::B && beyond(LARGE_MESH, 0.0)
                 || is_mesh && body == Which::B && beyond(LARGE_OBJECT, LARGE_OBJECT_RATIO));
         is_suspicious.then_some(Warning::Units { body, size_m, other_size_m })
     };

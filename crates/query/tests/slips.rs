@@ -5,7 +5,7 @@ use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, FilterSettings, Mesh, Mode, PaperCloud, PaperCloudSettings, PrepareError,
-    Report, Safeguards, SelfMesh, Undecided, Unseen, Verdict, Warning,
+    Report, Safeguards, SelfMesh, Undecided, Unseen, Verdict, Warning, Which,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -73,6 +73,15 @@ fn a_mesh_in_millimetres_read_free() {
     let in_mm = mesh(&tool().scaled(1000.0));
     let told = |w: &Warning| matches!(w, Warning::Units { size_m, .. } if *size_m > 200.0);
     check(|mode| scan(&table(), mode), &in_mm, &at(0.1, 0.2, 150.0), Undecided::Units, told);
+}
+
+/// Sizes that fit each other say nothing of their unit.
+#[test]
+fn both_files_and_the_pose_in_millimetres_read_free() {
+    let in_mm = |mode| scan(&scaled(&table(), 1000.0), mode);
+    let told = |w: &Warning| matches!(w, Warning::Units { body: Which::B, .. });
+    let tool = mesh(&tool().scaled(1000.0));
+    check(in_mm, &tool, &at(100.0, 200.0, 300.0), Undecided::Units, told);
 }
 
 #[test]
