@@ -65,7 +65,7 @@ fn beyond((joint, offset): (&Matrix3, &Vector3), weighted: &Vector3, margin: f64
     of(weighted).max(of(offset))
 }
 
-/// (n·δ − m)/√(nᵀΣn) in one direction, of any length. Pieces at one place have none: all that can be said is
+/// (n·δ − m)/√(nᵀΣn) in one direction, n that of unit length. Pieces at one place have none: all that can be said is
 /// that they are within the margin.
 pub(super) fn beyond_along(
     (joint, offset): (&Matrix3, &Vector3),
@@ -74,7 +74,7 @@ pub(super) fn beyond_along(
 ) -> f64 {
     let Some(n) = direction.try_normalize(0.0) else { return f64::NEG_INFINITY };
     let variance = n.dot(&(joint * n)) + LEAST_STD.powi(2);
-    (offset.dot(&n) - margin * n.norm()) / variance.sqrt()
+    (offset.dot(&n) - margin) / variance.sqrt()
 }
 
 impl Meeting {
