@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result, bail};
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
 
-use crate::json_text::{shortened, without_bare_words};
+use crate::json_text::{as_written, shortened, without_bare_words};
 
 /// Positions of joints by name, rad or m.
 pub type Joints = BTreeMap<String, f64>;
@@ -36,8 +36,8 @@ pub fn parse(text: &[u8]) -> Result<Vec<Joints>> {
             bail!("{} positions: a path needs two; write one as an object alone", list.len())
         }
         Value::Array(list) => {
-            let place = |(index, one)| positions(one).with_context(|| format!("position {index}"));
-            list.into_iter().enumerate().map(place).collect::<Result<_>>()?
+            let read = |(index, one)| positions(one).with_context(|| place(index));
+            list.into_iter().enumerate().map(read).collect::<Result<_>>()?
         }
         one => vec![positions(one)?],
     };
@@ -45,12 +45,17 @@ pub fn parse(text: &[u8]) -> Result<Vec<Joints>> {
     if is_list {
         let names: Vec<Names> = serde_json::from_slice(&text)?;
         for (index, names) in names.iter().enumerate() {
-            names.check().with_context(|| format!("position {index}"))?;
+            names.check().with_context(|| place(index))?;
         }
     } else {
         serde_json::from_slice::<Names>(&text)?.check()?;
     }
     Ok(read)
+}
+
+/// A position of a list in words, counted from 1; by its index.
+pub fn place(index: usize) -> String {
+    format!("position {} of the list", index + 1)
 }
 
 fn positions(value: Value) -> Result<Joints> {
@@ -59,7 +64,9 @@ fn positions(value: Value) -> Result<Joints> {
     };
     let number = |(name, value): (String, Value)| match value.as_f64() {
         Some(position) => Ok((name, position)),
-        None => bail!("joint `{name}` is at {value}: give a finite number, in rad or m"),
+        None => {
+            bail!("joint `{name}` is at {}: give a finite number, in rad or m", as_written(&value))
+        }
     };
     entries.into_iter().map(number).collect()
 }
@@ -110,12 +117,19 @@ mod tests {
         assert_eq!(parse(b"[{\"a\": 1}, {\"a\": 2}]").unwrap()[1]["a"], 2.0);
         for (text, parts) in [
             ("[{\"a\": 1}]", vec!["1 positions", "as an object"]),
-            ("[{\"a\": 1}, {\"a\": NaN}]", vec!["position 1", "`a`", "finite"]),
+            (
+                "[{\"a\": 1}, {\"a\": NaN}]",
+                vec!["position 2 of the list", "`a` is at NaN:", "finite"],
+            ),
+            ("{\"a\": -Infinity}", vec!["`a` is at -Infinity:"]),
             ("{\"a\": \"1\"}", vec!["`a`", "finite"]),
             // The last of them counted.
             ("{\"a\": 1, \"b\": 2, \"a\": 1}", vec!["`a`", "twice"]),
-            ("[{\"a\": 1}, {\"a\": 1, \"\\u0061\": 2}]", vec!["position 1", "`a`", "twice"]),
-            ("[[1, 2], [3, 4]]", vec!["position 0", "such as"]),
+            (
+                "[{\"a\": 1}, {\"a\": 1, \"\\u0061\": 2}]",
+                vec!["position 2 of the list", "`a`", "twice"],
+            ),
+            ("[[1, 2], [3, 4]]", vec!["position 1 of the list", "such as"]),
             ("{\"a\"", vec!["not a JSON object"]),
         ] {
             let error = format!("{:#}", parse(text.as_bytes()).unwrap_err());

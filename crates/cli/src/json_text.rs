@@ -29,10 +29,14 @@ fn no_number(rows: &Value) -> Option<(usize, usize, String)> {
         entries.map(move |(column, entry)| (row, column, entry))
     });
     let (row, column, found) = places.into_iter().find(|(_, _, entry)| !entry.is_number())?;
-    let word = WORDS.iter().find(|(_, instead)| *instead == found.to_string().as_bytes());
-    let found = word
-        .map_or_else(|| found.to_string(), |(word, _)| String::from_utf8_lossy(word).into_owned());
-    Some((row, column, found))
+    Some((row, column, as_written(found)))
+}
+
+/// A value as the file has it, before it was [without bare words](without_bare_words).
+pub(crate) fn as_written(value: &Value) -> String {
+    let text = value.to_string();
+    let word = WORDS.iter().find(|(_, instead)| *instead == text.as_bytes());
+    word.map_or(text, |(word, _)| String::from_utf8_lossy(word).into_owned())
 }
 
 /// Numbers that JSON does not have, and what is read in their place.

@@ -22,6 +22,57 @@ struct Line<'a> {
     looked_at: usize,
     /// Each as the answer to one position.
     given: Vec<Box<RawValue>>,
+    #[serde(flatten)]
+    asked: Asked<'a>,
+}
+
+/// The answer to one position.
+#[derive(Serialize)]
+struct Position<'a> {
+    #[serde(flatten)]
+    scene: scene_answer::Line<'a>,
+    #[serde(flatten)]
+    asked: Asked<'a>,
+}
+
+/// What was asked, and so what was not.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Asked<'a> {
+    /// Links that can be seen and have no `<collision>`.
+    pub unchecked_links: &'a [String],
+    /// Whether the robot was removed from the scan.
+    pub self_filter: bool,
+    /// Whether links were asked about one another.
+    pub self_collision: bool,
+}
+
+impl Asked<'_> {
+    /// What is not asked about, in words.
+    pub(crate) fn text(&self) -> String {
+        let mut text = String::new();
+        if !self.unchecked_links.is_empty() {
+            let links: Vec<String> = self.unchecked_links.iter().map(|l| one_line(l)).collect();
+            let links = links.join(", ");
+            let _ = writeln!(text, "not checked            {links} (no <collision> in the URDF)");
+        }
+        if !self.self_filter {
+            text += "self filter            none: give --scan-joints if the scan shows the robot\n";
+        }
+        if !self.self_collision {
+            text += "self collision         not asked: give --self-collision\n";
+        }
+        text
+    }
+}
+
+pub(crate) fn json_line(
+    checked: &Checked,
+    threshold: f64,
+    bodies: BTreeMap<&str, &Input>,
+    asked: Asked<'_>,
+) -> Result<String> {
+    let scene = scene_answer::line(checked, threshold, bodies);
+    Ok(serde_json::to_string(&Position { scene, asked })?)
 }
 
 #[derive(Serialize)]
@@ -35,6 +86,7 @@ pub(crate) fn path_line(
     checked: &PathChecked,
     threshold: f64,
     bodies: BTreeMap<&str, &Input>,
+    asked: Asked<'_>,
 ) -> Result<String> {
     let given = checked.given.iter().map(|at| {
         let line = scene_answer::json_line(at, threshold, bodies.clone())?;
@@ -52,6 +104,7 @@ pub(crate) fn path_line(
         stopped,
         looked_at: checked.looked_at,
         given: given.collect::<Result<_>>()?,
+        asked,
     };
     Ok(serde_json::to_string(&line)?)
 }
@@ -78,7 +131,7 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
             at.pairs.iter().map(|pair| format!("{} / {}", one_line(&pair.a), one_line(&pair.b)));
         let pairs = pairs.collect::<Vec<_>>().join(", ");
         let of = if pairs.is_empty() { String::new() } else { format!(": {pairs}") };
-        let _ = writeln!(text, "position {index:<13} {}{of}", at.verdict());
+        let _ = writeln!(text, "position {:<13} {}{of}", index + 1, at.verdict());
     }
     let _ = write!(text, "{}: {} positions looked at", checked.verdict(), checked.looked_at);
     text

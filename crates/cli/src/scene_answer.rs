@@ -10,8 +10,9 @@ use serde::Serialize;
 use crate::load::Input;
 use crate::print::{self, one_line, probability};
 
+/// What a scene answers, in JSON.
 #[derive(Serialize)]
-struct Line<'a> {
+pub(crate) struct Line<'a> {
     verdict: Verdict,
     threshold: f64,
     pairs: Vec<Pair<'a>>,
@@ -52,15 +53,22 @@ pub(crate) fn json_line(
     threshold: f64,
     bodies: BTreeMap<&str, &Input>,
 ) -> Result<String> {
+    Ok(serde_json::to_string(&line(checked, threshold, bodies))?)
+}
+
+pub(crate) fn line<'a>(
+    checked: &'a Checked,
+    threshold: f64,
+    bodies: BTreeMap<&'a str, &'a Input>,
+) -> Line<'a> {
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
-    let line = Line {
+    Line {
         verdict: checked.verdict(),
         threshold,
         pairs: checked.pairs.iter().map(Pair::from).collect(),
         counts: Counts { pairs: count, allowed, ruled_out, asked },
         bodies,
-    };
-    Ok(serde_json::to_string(&line)?)
+    }
 }
 
 /// The same as a table.

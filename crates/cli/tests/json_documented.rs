@@ -142,8 +142,12 @@ fn keys_of_a_scene_and_of_a_robot_are_documented() {
         let arguments = ["robot", "floor.pcd", "arm.urdf", "--joints=joints.json", "--json"];
         inputs.run(&arguments).quiet(0).json_lines().remove(0)
     };
-    let one = robot(json!({"shoulder": 0.6}));
+    let mut one = robot(json!({"shoulder": 0.6}));
     assert_eq!(one["verdict"], "in_collision");
+    // What is told of one position beside its scene.
+    for key in ["unchecked_links", "self_filter", "self_collision"] {
+        assert!(one.as_object_mut().unwrap().remove(key).is_some(), "{key}: {one}");
+    }
     check("scene", &[scene, one]);
     let path = robot(json!([{"shoulder": 0.6}, {"shoulder": 0.0}]));
     let of_scene: BTreeSet<String> = documented("scene").into_iter().map(|row| row.key).collect();

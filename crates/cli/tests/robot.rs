@@ -50,6 +50,9 @@ fn an_arm_that_bends_down_touches_the_floor() {
             robot(&inputs, &json!({"shoulder": angle}), &["--json", "--exit-code"]).quiet(code);
         let answer = run.json_lines().remove(0);
         assert_eq!(answer["verdict"], verdict, "{angle}");
+        // Only the text told of what was not asked.
+        let asked = ["unchecked_links", "self_filter", "self_collision"].map(|key| &answer[key]);
+        assert_eq!(asked, [&json!(["post"]), &json!(false), &json!(false)]);
         let text = robot(&inputs, &json!({"shoulder": angle}), &[]).quiet(0).stdout();
         assert!(text.contains("not checked            post"), "{text}");
         if code == 20 {
@@ -84,9 +87,10 @@ fn a_path_is_certified_or_ends_where_the_arm_meets_the_floor() {
     let until = answer["certified_free_until"].as_f64().unwrap();
     assert!((0.4..0.48).contains(&until), "{until}");
     assert_eq!(answer["given"][1]["verdict"], "in_collision");
+    assert_eq!(answer["unchecked_links"], json!(["post"]));
     let text = robot(&inputs, &down, &[]).quiet(0).stdout();
     assert!(
-        text.contains("free for certain       until 4") && text.contains("position 1"),
+        text.contains("free for certain       until 4") && text.contains("position 2  "),
         "{text}"
     );
 }
@@ -128,8 +132,20 @@ fn wrong_use_is_refused_with_the_remedy() {
         (json!({"shoulder": 2.0}), vec![], 1, vec!["`shoulder`", "beyond its limits -1.5 .. 1.5"]),
         (json!({"shoulder": 0, "elbow": 0}), vec![], 1, vec!["`elbow`", "`shoulder`"]),
         (json!([home]), vec![], 1, vec!["1 positions"]),
+        (
+            json!([home, {"shoulder": 2.0}]),
+            vec![],
+            1,
+            vec!["joints.json: position 2 of the list: joint `shoulder`", "beyond its limits"],
+        ),
         (home.clone(), vec!["--mode=paper"], 2, vec!["leave --mode out"]),
         (home.clone(), vec!["--package=mine"], 2, vec!["NAME=FOLDER"]),
+        (
+            home.clone(),
+            vec!["--package=mime=parts"],
+            1,
+            vec!["--package mime=parts", "arm.urdf", "one of mine"],
+        ),
         (home.clone(), vec!["--srdf=arm.srdf"], 2, vec!["--self-collision"]),
         (home.clone(), vec!["--robot=box.obj"], 2, vec!["--scan-joints"]),
         (

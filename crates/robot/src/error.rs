@@ -95,6 +95,19 @@ pub enum RobotFault {
         /// The joint.
         joint: String,
     },
+    /// A joint that turns or slides by itself, and nothing says how far.
+    #[error(
+        "joint `{joint}` has no <limit> with a range, which a {kind} joint needs: add <limit lower=\"…\" \
+         upper=\"…\" effort=\"…\" velocity=\"…\"/>, or make it {instead}"
+    )]
+    NoLimit {
+        /// The joint.
+        joint: String,
+        /// Its kind.
+        kind: &'static str,
+        /// A kind without limits.
+        instead: &'static str,
+    },
     /// A lower limit above the upper.
     #[error("joint `{joint}` has the limits {lower} .. {upper}: the lower must not be the greater")]
     Limits {

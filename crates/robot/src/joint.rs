@@ -76,6 +76,16 @@ impl Joint {
             return Err(RobotFault::NoAxis { joint: name });
         };
         let limits = match kind {
+            // As what is left out is read; a range of nothing that a file does write is a locked joint.
+            JointKind::Revolute | JointKind::Prismatic
+                if urdf.limit == urdf_rs::JointLimit::default() =>
+            {
+                let (kind, instead) = match kind {
+                    JointKind::Revolute => ("revolute", "continuous"),
+                    _ => ("prismatic", "fixed"),
+                };
+                return Err(RobotFault::NoLimit { joint: name, kind, instead });
+            }
             JointKind::Revolute | JointKind::Prismatic => Some(limits(&urdf.limit, &name)?),
             JointKind::Fixed | JointKind::Continuous => None,
         };

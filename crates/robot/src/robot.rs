@@ -14,6 +14,7 @@ use crate::joint::{Joint, JointKind};
 use crate::link::{Shape, Sources};
 use crate::srdf::disabled_pairs;
 use crate::tree::Tree;
+use crate::uri::in_package;
 
 /// A robot read from a URDF, with the `<collision>` geometry of its links prepared for queries.
 ///
@@ -116,6 +117,12 @@ impl Robot {
     /// Links that have `<visual>` geometry and no `<collision>`: no query sees them.
     pub fn unchecked_links(&self) -> &[String] {
         &self.unchecked
+    }
+
+    /// The packages that meshes of links are in, by the names in their `package://`.
+    pub fn packages(&self) -> BTreeSet<&str> {
+        let uris = self.shapes.iter().filter_map(|shape| shape.uri.as_deref());
+        uris.filter_map(in_package).map(|(package, _)| package).collect()
     }
 
     /// Whether two links may touch: where no joint between them moves, where one is the next with

@@ -18,12 +18,7 @@ pub(crate) fn locate(
     let path = if let Some(path) = uri.strip_prefix("file://") {
         // Relative ones are not by the standard, and common.
         folder.join(path)
-    } else if let Some(rest) =
-        uri.strip_prefix("package://").or_else(|| uri.strip_prefix("model://"))
-    {
-        // Some write one slash too many.
-        let rest = rest.trim_start_matches('/');
-        let (package, rest) = rest.split_once('/').unwrap_or((rest, ""));
+    } else if let Some((package, rest)) = in_package(uri) {
         let given = packages.iter().find(|(name, _)| name == package).map(|(_, at)| at.clone());
         let Some(at) = given.or_else(|| around(folder, package)) else {
             return Err(RobotFault::UnknownPackage {
@@ -45,6 +40,14 @@ pub(crate) fn locate(
         return Err(RobotFault::MissingMesh { link, uri: owned, path });
     }
     Ok(path)
+}
+
+/// The package of a file, and where it is in that.
+pub(crate) fn in_package(uri: &str) -> Option<(&str, &str)> {
+    let rest = uri.strip_prefix("package://").or_else(|| uri.strip_prefix("model://"))?;
+    // Some write one slash too many.
+    let rest = rest.trim_start_matches('/');
+    Some(rest.split_once('/').unwrap_or((rest, "")))
 }
 
 fn around(folder: &Path, package: &str) -> Option<PathBuf> {

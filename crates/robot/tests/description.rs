@@ -54,6 +54,9 @@ fn what_is_wrong_is_named_with_file_value_and_remedy() {
         (joint("type='continuous'><axis xyz='0 0 0'/>"), vec!["`j`", "axis of length zero"]),
         (joint("type='fixed'><origin xyz='0 nan 0'/>"), vec!["`j`", "NaN", "origin xyz"]),
         (joint(&format!("type='revolute'>{limits}")), vec!["`j`", "1 .. -1"]),
+        // The joints were told to be beyond limits of 0 .. 0.
+        (joint("type='revolute'>"), vec!["`j`", "no <limit>", "revolute", "make it continuous"]),
+        (joint("type='prismatic'>"), vec!["`j`", "no <limit>", "prismatic", "make it fixed"]),
         (joint("type='continuous'><mimic joint='k'/>"), vec!["`j`", "mimics `k`"]),
         (joint("type='continuous'><mimic joint='j'/>"), vec!["`j`", "mimics `j`"]),
         (joint(FIXED).replace("child link='b'", "child link='c'"), vec!["`j`", "child `c`"]),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use cloudtouch::Query;
 use cloudtouch::geom::Pose;
 use cloudtouch_cli::joints_file::{self, Joints};
@@ -12,6 +12,7 @@ use cloudtouch_robot::{Robot, RobotChecker, SURROUNDINGS, Touching};
 use crate::args::RobotArguments;
 use crate::body::Body;
 use crate::load::{self, Role};
+use crate::robot_answer::Asked;
 use crate::{pose_file, print, robot_answer, scene_answer, unused};
 
 pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
@@ -24,18 +25,28 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         arguments.robot.base_pose.as_deref().map(pose_file::read).transpose()?.unwrap_or_default();
     let mut robot =
         Robot::from_urdf_within(&arguments.robot.urdf, &arguments.robot.package, &limits)?;
+    check_packages(arguments, &robot)?;
     if let Some(srdf) = &arguments.robot.srdf {
         robot = robot.with_srdf(srdf)?;
     }
     // Wrong positions are told before a large scan is read.
-    for joints in &path {
-        robot.link_poses(joints).with_context(|| arguments.robot.joints.display().to_string())?;
+    let named = || arguments.robot.joints.display().to_string();
+    for (index, joints) in path.iter().enumerate() {
+        let posed = robot.link_poses(joints).map(|_| ()).map_err(anyhow::Error::from);
+        let placed = if path.len() > 1 { posed.context(joints_file::place(index)) } else { posed };
+        placed.with_context(named)?;
     }
     let links = seen(arguments, &robot, &base)?;
     let scan = load::surroundings(&arguments.scan, links, common)?;
     unused::check(common, &[(Role::Scene, scan.is_mesh())])?;
     let scan = scan.refined_for(path.len(), common.effort.refine())?;
-    let words = words(&robot, arguments, &print::body("scan", &scan));
+    let unchecked = robot.unchecked_links().to_vec();
+    let asked = Asked {
+        unchecked_links: &unchecked,
+        self_filter: arguments.robot.scan_joints.is_some(),
+        self_collision: arguments.robot.self_collision,
+    };
+    let words = format!("{}\n{}", print::body("scan", &scan), asked.text());
     let body: cloudtouch::Body = match scan.body {
         Body::Cloud(cloud) => cloud.into(),
         Body::Mesh(mesh) => mesh.into(),
@@ -48,7 +59,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let (text, verdict, failed) = if let [joints] = &path[..] {
         let checked = checker.check(&query, joints)?;
         let text = if arguments.answer.json {
-            scene_answer::json_line(&checked, threshold, bodies)?
+            robot_answer::json_line(&checked, threshold, bodies, asked)?
         } else {
             [words, robot_answer::worst(&checked), scene_answer::text(&checked, threshold)].concat()
         };
@@ -56,7 +67,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     } else {
         let checked = checker.check_path(&query, &path, TOLERANCE)?;
         let text = if arguments.answer.json {
-            robot_answer::path_line(&checked, threshold, bodies)?
+            robot_answer::path_line(&checked, threshold, bodies, asked)?
         } else {
             words + &robot_answer::path_text(&checked)
         };
@@ -66,6 +77,28 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(arguments.answer.exit_code(verdict, failed))
+}
+
+/// Refuses the folder of a package that no link needs: its name is misspelt, and another may have been read.
+fn check_packages(arguments: &RobotArguments, robot: &Robot) -> Result<()> {
+    let used = robot.packages();
+    let options = &arguments.robot;
+    if let Some((name, folder)) =
+        options.package.iter().find(|(name, _)| !used.contains(name.as_str()))
+    {
+        let names = used.into_iter().collect::<Vec<_>>().join(", ");
+        let remedy = if names.is_empty() {
+            "leave it out".to_owned()
+        } else {
+            format!("leave it out, or correct it to one of {names}")
+        };
+        bail!(
+            "--package {name}={}: no <collision> mesh of {} is in the package `{name}`: {remedy}",
+            folder.display(),
+            options.urdf.display()
+        );
+    }
+    Ok(())
 }
 
 /// How finely a path is looked at, as a share of it.
@@ -85,27 +118,4 @@ fn seen(
         .map_err(|_| anyhow::anyhow!("a list: a scan is taken at one position"))
         .with_context(named)?;
     robot.self_filter(&joints, base, arguments.robot.padding).with_context(named)
-}
-
-/// What was read, and what is not asked about.
-fn words(robot: &Robot, arguments: &RobotArguments, scan: &str) -> String {
-    let mut text = format!("{scan}\n");
-    if !robot.unchecked_links().is_empty() {
-        text += &format!(
-            "not checked            {} (no <collision> in the URDF)\n",
-            robot
-                .unchecked_links()
-                .iter()
-                .map(|link| print::one_line(link))
-                .collect::<Vec<_>>()
-                .join(", ")
-        );
-    }
-    if arguments.robot.scan_joints.is_none() {
-        text += "self filter            none: give --scan-joints if the scan shows the robot\n";
-    }
-    if !arguments.robot.self_collision {
-        text += "self collision         not asked: give --self-collision\n";
-    }
-    text
 }
