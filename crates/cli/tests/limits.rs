@@ -28,9 +28,21 @@ fn each_limit_can_be_set() {
     let inputs = Inputs::new();
     let limits = ["--max-points=440", "--max-triangles=11", "--max-bytes=30"];
     for (limit, file, parts) in [
-        (limits[0], "floor.pcd", &["floor.pcd", "441 points", "440", "limit"][..]),
-        (limits[1], "box.obj", &["box.obj", "12 triangles", "11", "limit"]),
-        (limits[2], "floor.pcd", &["floor.pcd", "more than 30 bytes", "limit"]),
+        (
+            limits[0],
+            "floor.pcd",
+            &["floor.pcd", "441 points", "440", "limit on points (--max-points)"][..],
+        ),
+        (
+            limits[1],
+            "box.obj",
+            &["box.obj", "12 triangles", "11", "limit on triangles (--max-triangles)"],
+        ),
+        (
+            limits[2],
+            "floor.pcd",
+            &["floor.pcd", "more than 30 bytes", "limit on bytes (--max-bytes)"],
+        ),
     ] {
         check(&inputs, &["info", file, limit], parts);
         check(&inputs, &["query", "floor.pcd", "box.obj", limit], parts);

@@ -26,7 +26,7 @@ pub enum ReadError {
     /// It has more bytes than are read.
     #[error(
         "{}: has more than {limit} bytes, the most that is read: split or thin the file, or raise \
-         the limit on bytes",
+         the limit on bytes (--max-bytes)",
         path.display()
     )]
     TooLarge {

@@ -6,6 +6,8 @@ use clap::{Args, ValueEnum};
 use cloudtouch::Safeguards;
 use cloudtouch_cli::numbers;
 
+use super::parse::parse_milliseconds;
+
 /// What keeps a pair from reading as free beside the evidence.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Caution")]
@@ -37,7 +39,8 @@ impl CautionArguments {
 #[command(next_help_heading = "Effort")]
 pub(crate) struct EffortArguments {
     /// Stop each query after so many milliseconds, undecided at worst
-    #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "MS", value_parser = parse_milliseconds,
+          allow_negative_numbers = true)]
     deadline: Option<u64>,
     /// Compute surfaces before the first query: auto, yes or no [auto]
     #[arg(long, value_enum, hide_possible_values = true)]

@@ -59,7 +59,7 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_enum, hide_possible_values = true, help_heading = "Estimate")]
     pub pooling: Option<PoolingName>,
     /// Paper: seed of the stochastic traversal [0]
-    #[arg(long, value_name = "N", help_heading = "Estimate")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Estimate")]
     pub seed: Option<u64>,
     /// Drop points nearer to the sensor [camera, lidar with a place: 0.1]
     #[arg(long, value_name = "METRES", value_parser = parse_length, allow_negative_numbers = true, help_heading = "Cleaning")]

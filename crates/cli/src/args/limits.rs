@@ -8,15 +8,15 @@ use cloudtouch_io::ReadLimits;
 pub(crate) struct LimitArguments {
     /// Read at most this many points of a file
     #[arg(long, value_name = "N", default_value_t = ReadLimits::default().points,
-          help_heading = "Limits")]
+          allow_negative_numbers = true, help_heading = "Limits")]
     max_points: usize,
     /// Read at most this many triangles of a file
     #[arg(long, value_name = "N", default_value_t = ReadLimits::default().triangles,
-          help_heading = "Limits")]
+          allow_negative_numbers = true, help_heading = "Limits")]
     max_triangles: usize,
     /// Read at most this many bytes of a file
     #[arg(long, value_name = "N", default_value_t = ReadLimits::default().bytes,
-          help_heading = "Limits")]
+          allow_negative_numbers = true, help_heading = "Limits")]
     max_bytes: u64,
 }
 

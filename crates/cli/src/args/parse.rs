@@ -31,6 +31,13 @@ pub(super) fn parse_reject(text: &str) -> Result<f64, String> {
     if (0.0..=0.5).contains(&reject) { Ok(reject) } else { Err("give 0 to 0.5".to_owned()) }
 }
 
+pub(super) fn parse_milliseconds(text: &str) -> Result<u64, String> {
+    match text.trim().parse::<u64>() {
+        Ok(milliseconds) if milliseconds > 0 => Ok(milliseconds),
+        _ => Err("give whole milliseconds, 1 or more".to_owned()),
+    }
+}
+
 /// More neighbours than this take minutes and smooth everything away.
 const MOST_NEIGHBORS: usize = 200;
 
