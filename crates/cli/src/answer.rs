@@ -5,6 +5,7 @@ use cloudtouch::geom::Pose;
 use cloudtouch::{Placement, Report};
 use serde::Serialize;
 
+use crate::doubt::Doubt;
 use crate::load::Input;
 use crate::margin::Nearness;
 use crate::per_point::Details;
@@ -18,6 +19,8 @@ pub(crate) struct Answer<'a> {
     /// What was asked for beyond that.
     pub details: Details<'a>,
     pub nearness: Option<Nearness>,
+    /// Of the options, beside what the report warns of.
+    pub doubt: Option<&'a Doubt>,
 }
 
 /// An answer with the name of its case: one line of JSON.
@@ -54,11 +57,18 @@ pub(crate) fn matrix(pose: &Pose) -> [[f64; 4]; 4] {
 impl Answer<'_> {
     pub(crate) fn json_line(&self, id: &str, [scene, object]: [&Input; 2]) -> Result<String> {
         let pose = matrix(self.pose);
-        let Self { report, placement, details, nearness, .. } = self;
+        let Self { report, placement, details, nearness, doubt, .. } = self;
         let line = Line { id, report, details, placement, pose, scene, object };
-        let Some(nearness) = nearness else { return Ok(serde_json::to_string(&line)?) };
+        if nearness.is_none() && doubt.is_none() {
+            return Ok(serde_json::to_string(&line)?);
+        }
         let mut line = serde_json::to_value(&line)?;
-        nearness.add_to(&mut line);
+        if let Some(nearness) = nearness {
+            nearness.add_to(&mut line);
+        }
+        if let (Some(doubt), Some(warnings)) = (doubt, line["warnings"].as_array_mut()) {
+            warnings.push(serde_json::to_value(doubt)?);
+        }
         Ok(line.to_string())
     }
 }

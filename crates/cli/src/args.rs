@@ -298,7 +298,7 @@ pub(crate) struct BatchArguments {
     /// Replace an output file that is there already
     #[arg(long, help_heading = "Output")]
     pub force: bool,
-    /// Sensor of files whose path contains NAME; the first match counts
+    /// Sensor of files with NAME in their path in the case file; the first counts
     #[arg(long, value_name = "NAME=SPEC", value_parser = parse_sensor_for,
           help_heading = "Files")]
     pub sensor_for: Vec<(String, SensorChoice)>,

@@ -7,12 +7,15 @@ use anyhow::Result;
 use cloudtouch::{Report, Warning};
 
 use crate::case_file::Case;
+use crate::margin::Nearness;
 use crate::print;
 
 /// Widths of the columns, and what the last line is made of.
 pub(crate) struct Table {
     id_width: usize,
     label_width: usize,
+    /// The head of the column about a margin, where one is asked for.
+    margin: Option<String>,
     answers: usize,
     errors: usize,
     query_us: Vec<u64>,
@@ -21,14 +24,15 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// For these cases, of which only names and labels are looked at.
-    pub(crate) fn new(cases: &[(String, Result<Case>)]) -> Self {
+    /// For these cases, of which only names and labels are looked at, and the margin asked about, m.
+    pub(crate) fn new(cases: &[(String, Result<Case>)], margin: Option<f64>) -> Self {
         let width = |texts: &mut dyn Iterator<Item = String>, least: usize| {
             texts.map(|text| text.chars().count()).fold(least, usize::max)
         };
         Self {
             id_width: width(&mut cases.iter().map(|(id, _)| print::one_line(id)), 4),
             label_width: width(&mut cases.iter().map(|(_, case)| label(case)), 5),
+            margin: margin.map(|margin| format!("P(<{:.0} mm)", 1e3 * margin)),
             answers: 0,
             errors: 0,
             query_us: Vec::new(),
@@ -38,9 +42,10 @@ impl Table {
     }
 
     pub(crate) fn head(&self) -> String {
-        let Self { id_width, label_width, .. } = self;
+        let Self { id_width, label_width, margin, .. } = self;
+        let margin = margin.as_ref().map_or(String::new(), |head| format!("  {head}"));
         format!(
-            "{:<id_width$}  {:<label_width$}  {:>5}  {:<14}  {:<12}  {:>14}  {:>10}  scene / object\n",
+            "{:<id_width$}  {:<label_width$}  {:>5}  {:<14}  {:<12}  {:>14}{margin}  {:>10}  scene / object\n",
             "case", "label", "P", "bounds", "verdict", "clearance (mm)", "time"
         )
     }
@@ -49,12 +54,12 @@ impl Table {
         &mut self,
         id: &str,
         case: &Result<Case>,
-        answer: Result<&Report, &str>,
+        answer: Result<(&Report, Option<&Nearness>), &str>,
     ) -> String {
-        let Self { id_width, label_width, .. } = *self;
+        let (id_width, label_width) = (self.id_width, self.label_width);
         let start = format!("{:<id_width$}  {:<label_width$}", print::one_line(id), label(case));
-        let report = match answer {
-            Ok(report) => report,
+        let (report, nearness) = match answer {
+            Ok(answer) => answer,
             Err(error) => {
                 self.errors += 1;
                 return format!("{start}  error: {}\n", print::one_line(error));
@@ -70,6 +75,11 @@ impl Table {
         });
         let reason =
             report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
+        let margin = self.margin.as_ref().map_or(String::new(), |head| {
+            let likely =
+                nearness.map_or("-".to_owned(), |of| print::probability(of.within.probability));
+            format!("  {likely:>width$}", width = head.len())
+        });
         for warning in &report.warnings {
             let is_same = |known: &&mut Warned| discriminant(&known.first) == discriminant(warning);
             match self.warned.iter_mut().find(is_same) {
@@ -78,7 +88,7 @@ impl Table {
             }
         }
         format!(
-            "{start}  {:>5}  {:<14}  {:<12}  {:>14}  {:>7.1} ms  {}{reason}\n",
+            "{start}  {:>5}  {:<14}  {:<12}  {:>14}{margin}  {:>7.1} ms  {}{reason}\n",
             print::probability(report.collision_probability),
             format!("{low} .. {high}"),
             report.verdict,

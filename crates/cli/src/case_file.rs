@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 use cloudtouch::geom::Pose;
-use cloudtouch::noise::SensorModel;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
@@ -13,6 +12,7 @@ use serde_json::value::RawValue;
 
 use crate::case_fields;
 use crate::json_text::{matrix, shortened, without_bare_words};
+use crate::sensor::SensorChoice;
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.
 #[derive(Debug)]
@@ -31,9 +31,9 @@ pub struct Case {
     /// Maps the object into the scene.
     pub scene_from_object: Pose,
     /// What measured the scene, where the file says so.
-    pub scene_sensor: Option<SensorModel>,
+    pub scene_sensor: Option<SensorChoice>,
     /// What measured the object, where the file says so.
-    pub object_sensor: Option<SensorModel>,
+    pub object_sensor: Option<SensorChoice>,
     /// What the file says the answer is, shown beside ours; never used.
     pub label: Option<String>,
     /// The true distance that the file claims, m; negative in overlap; never used either.
@@ -160,7 +160,7 @@ fn parse_case(value: Value, folder: &Path) -> Result<Case> {
     let raw = RawCase::deserialize(&value)?;
     let scene_from_object = matrix(raw.pose)?;
     let sensor = |spec: Option<String>| {
-        spec.map(|s| s.parse::<SensorModel>().map_err(|error| anyhow!("{error}"))).transpose()
+        spec.map(|s| s.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))).transpose()
     };
     Ok(Case {
         scene: folder.join(raw.scene),

@@ -9,3 +9,4 @@ pub mod numbers;
 pub mod path_text;
 pub mod pose_text;
 pub mod scene_file;
+pub mod sensor;

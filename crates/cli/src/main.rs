@@ -6,6 +6,7 @@ mod batch_page;
 mod batch_table;
 mod body;
 mod commands;
+mod doubt;
 mod gradient;
 mod inside;
 mod interrupt;
@@ -25,7 +26,7 @@ mod print;
 mod report_text;
 mod robot_answer;
 mod scene_answer;
-mod sensor;
+mod sensor_for;
 mod settings_file;
 mod unused;
 
@@ -34,7 +35,7 @@ use std::process::ExitCode;
 
 use clap::CommandFactory as _;
 use clap::error::ErrorKind;
-use cloudtouch_cli::case_file;
+use cloudtouch_cli::{case_file, sensor};
 
 use args::{Arguments, Command};
 

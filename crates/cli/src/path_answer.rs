@@ -7,6 +7,7 @@ use cloudtouch_page::Fact;
 use serde::Serialize;
 
 use crate::answer::matrix;
+use crate::doubt::Doubt;
 use crate::load::Input;
 use crate::print::{probability, undecided};
 use crate::report_text::labelled;
@@ -17,13 +18,21 @@ struct Line<'a> {
     bounds: [f64; 2],
     verdict: Verdict,
     undecided_by: Option<Undecided>,
-    warnings: &'a [Warning],
+    warnings: Vec<Warned<'a>>,
     most_probable: Place<'a>,
     first: Option<First<'a>>,
     certified_free_until: f64,
     stats: SweepStats,
     scene: &'a Input,
     object: &'a Input,
+}
+
+/// Of the poses, or of the file they are in.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Warned<'a> {
+    Pose(&'a Warning),
+    File(&'a Doubt),
 }
 
 #[derive(Serialize)]
@@ -56,13 +65,18 @@ impl<'a> From<&'a AlongPath> for Place<'a> {
     }
 }
 
-pub(crate) fn json_line(swept: &Swept, [scene, object]: [&Input; 2]) -> Result<String> {
+pub(crate) fn json_line(
+    swept: &Swept,
+    doubt: Option<&Doubt>,
+    [scene, object]: [&Input; 2],
+) -> Result<String> {
+    let of_poses = swept.warnings.iter().map(Warned::Pose);
     let line = Line {
         max_probability: swept.most_probable.report.collision_probability,
         bounds: swept.bounds,
         verdict: swept.verdict,
         undecided_by: swept.undecided_by,
-        warnings: &swept.warnings,
+        warnings: of_poses.chain(doubt.map(Warned::File)).collect(),
         most_probable: (&swept.most_probable).into(),
         first: swept
             .first

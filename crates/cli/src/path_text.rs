@@ -12,8 +12,8 @@ const EXCERPT: usize = 40;
 pub struct PathText {
     /// Object to scene, m.
     pub poses: Vec<Pose>,
-    /// The first row of a table without a header, with its line from 1, where every row is exactly half a
-    /// turn about z: where the real part is written last, as ROS does, that is no turn at all.
+    /// The first row of a table without a header, with its line from 1, where every row is half a turn:
+    /// where the real part is written last, as ROS does, none of them is turned about x.
     pub half_turns: Option<(usize, String)>,
 }
 
@@ -22,7 +22,7 @@ pub struct PathText {
 /// these names in its first line.
 ///
 /// # Errors
-/// Names the pose, from 0, or the line, from 1, that is none.
+/// Names the pose, from 1, or the line, from 1, that is none.
 pub fn parse(text: &str) -> Result<PathText> {
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with('{') {
@@ -39,10 +39,13 @@ fn matrices(text: &str) -> Result<Vec<Pose>> {
         .context("the path is not a list of poses, each four rows of four numbers")?;
     let pose = |(index, rows): (usize, [[f64; 4]; 4])| {
         let matrix = Matrix4::from_row_slice(rows.as_flattened());
-        Pose::try_from_matrix(&matrix).with_context(|| format!("pose {index} of the path"))
+        Pose::try_from_matrix(&matrix).with_context(|| format!("pose {} of the path", index + 1))
     };
     all.into_iter().enumerate().map(pose).collect()
 }
+
+/// What stays of a zero that was computed, or written with six digits.
+const NO_REAL_PART: f64 = 1e-6;
 
 /// The columns of a table.
 const COLUMNS: [&str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
@@ -65,7 +68,7 @@ fn table(text: &str) -> Result<PathText> {
             is_doubted = false;
         } else {
             let pose = row(content, order).with_context(place)?;
-            is_doubted &= is_half_turn_about_z(&pose);
+            is_doubted &= pose.rotation().w.abs() < NO_REAL_PART;
             first.get_or_insert((line + 1, content));
             poses.push(pose);
         }
@@ -73,12 +76,6 @@ fn table(text: &str) -> Result<PathText> {
     let first = first.filter(|_| is_doubted);
     let half_turns = first.map(|(line, row)| (line, row.chars().take(EXCERPT).collect()));
     Ok(PathText { poses, half_turns })
-}
-
-/// Exactly, as nobody computes it.
-fn is_half_turn_about_z(pose: &Pose) -> bool {
-    let turn = pose.rotation();
-    turn.w == 0.0 && turn.i == 0.0 && turn.j == 0.0
 }
 
 /// Where each column is: many write the real part of a quaternion last.
@@ -145,7 +142,7 @@ mod tests {
     #[test]
     fn messages_say_which_pose_and_what_to_write() {
         for (text, part) in [
-            ("[[[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]", "pose 0 of the path"),
+            ("[[[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]", "pose 1 of the path"),
             ("[[1,0,0,0]]", "each four rows of four numbers"),
             ("0,0,0,1,0,0,0\n0,0,0,1,0,0", "line 2 of the path: write seven numbers"),
             ("0,0,nan,1,0,0,0", "line 1 of the path: `nan` is not a finite number"),

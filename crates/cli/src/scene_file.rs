@@ -120,6 +120,9 @@ fn threshold(value: Value) -> Result<f64> {
 
 fn body(value: Value, folder: &Path) -> Result<BodyEntry> {
     let raw = RawBody::deserialize(value)?;
+    if raw.name.trim().is_empty() {
+        bail!("its `name` is empty: give it one, by which answers call it");
+    }
     let unit = raw.unit.map(|unit| unit.parse::<LengthUnit>()).transpose();
     Ok(BodyEntry {
         name: raw.name,

@@ -8,21 +8,25 @@ use cloudtouch::noise::{NoiseError, SensorModel};
 
 /// A sensor as an option states it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum SensorChoice {
+pub enum SensorChoice {
     /// What the layout and the extent of the cloud suggest.
     Auto,
+    /// This one.
     Stated(SensorModel),
 }
 
 /// A sensor, and why it was chosen where nobody stated it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Chosen {
+pub struct Chosen {
+    /// How noisy the points are.
     pub sensor: SensorModel,
+    /// Why, in words; `None` where it was stated.
     pub because: Option<&'static str>,
 }
 
 impl SensorChoice {
-    pub(crate) fn of(self, cloud: &PointCloud) -> Chosen {
+    /// The sensor stated, or what this cloud suggests.
+    pub fn of(self, cloud: &PointCloud) -> Chosen {
         match self {
             Self::Stated(sensor) => Chosen { sensor, because: None },
             Self::Auto => suggestion(cloud),
@@ -66,7 +70,7 @@ impl fmt::Display for SensorChoice {
 }
 
 /// A file does not say which sensor made it: this is a guess from its layout and extent.
-pub(crate) fn suggestion(cloud: &PointCloud) -> Chosen {
+pub fn suggestion(cloud: &PointCloud) -> Chosen {
     let (far_from_origin, extent) = match cloud.bounding_box() {
         Some((low, high)) => (low.coords.amax().min(high.coords.amax()) > 1e4, (high - low).amax()),
         None => (false, 0.0),

@@ -44,7 +44,12 @@ pub(crate) fn check(common: &CommonArguments, files: &[(Role, bool)]) -> Result<
     Ok(())
 }
 
+/// Why what a file says of the sensor of a mesh is refused.
+pub(crate) fn of_a_mesh(field: &str, file: &str) -> String {
+    format!("`{field}` is of a cloud, and {file} is a mesh, which has no sensor: leave it out")
+}
+
 /// Why an option about clouds is refused where no file is one.
-pub(crate) fn of_clouds(option: &str) -> String {
+fn of_clouds(option: &str) -> String {
     format!("{option} is for clouds, and no file is one: leave it out")
 }

@@ -289,7 +289,8 @@ fn options_are_refused_where_no_file_has_a_use_for_them_and_all_are_read() {
     let meshes = plain("a").replace("floor.pcd", "box.obj");
     for (case, option, part) in [
         (&meshes, "--sensor=iso:0.002", "--sensor is for clouds"),
-        (&meshes, "--sensor-for=box=iso:0.002", "--sensor-for is for clouds"),
+        (&meshes, "--sensor-for=box=iso:0.002", "is for clouds"),
+        (&plain("a"), "--sensor-for=box=iso:0.002", "--sensor-for box=iso:0.002 is for clouds"),
         (&plain("a"), "--object-sensor=iso:0.002", "--object-sensor is for"),
     ] {
         inputs.write("cases.json", &case_file(std::slice::from_ref(case)));
@@ -302,4 +303,52 @@ fn options_are_refused_where_no_file_has_a_use_for_them_and_all_are_read() {
     inputs.write("cases.json", &case_file(&[meshes, gone]));
     let lines = inputs.run(&["batch", "cases.json", "--json", "--sensor=iso:0.002"]).quiet(1);
     assert_eq!(lines.json_lines().len(), 2);
+}
+
+/// It was an unknown sensor there, and known to options and scene files.
+#[test]
+fn auto_was_no_sensor_in_a_case() {
+    let inputs = Inputs::new();
+    let case = case_at("own", 0.5).replace("iso:0.002", "auto");
+    inputs.write("cases.json", &case_file(&[case]));
+    let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(0).json_lines();
+    assert_eq!(lines[0]["scene"]["sensor"], "iso:0.005", "{}", lines[0]);
+    assert_eq!(lines[0]["scene"]["sensor_because"], "nothing in the file tells");
+}
+
+/// A typo gave the usual noise, and the name of the folder that all is in gave every file that sensor.
+#[test]
+fn a_sensor_for_no_file_was_taken_in_silence() {
+    let inputs = Inputs::new();
+    let plain = case_at("a", 0.5).replace("\"scene_sensor\":\"iso:0.002\",", "");
+    std::fs::create_dir(inputs.path("kinect")).unwrap();
+    for name in ["floor.pcd", "box.obj"] {
+        std::fs::copy(inputs.path(name), inputs.path("kinect").join(name)).unwrap();
+    }
+    inputs.write("kinect/cases.json", &case_file(std::slice::from_ref(&plain)));
+    for name in ["flor", "kinect"] {
+        let run =
+            inputs.run(&["batch", "kinect/cases.json", &format!("--sensor-for={name}=kinect")]);
+        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{}", run.stderr());
+        for part in
+            [&format!("--sensor-for {name}=kinect"), "kinect/cases.json", "box.obj, floor.pcd"]
+        {
+            assert!(run.stderr().contains(part), "{part}: {}", run.stderr());
+        }
+    }
+    inputs.run(&["batch", "kinect/cases.json", "--sensor-for=floor=iso:0.002"]).quiet(0);
+    // What cannot be read may name the file.
+    inputs.write("cases.json", &case_file(&[plain, "5".to_owned()]));
+    inputs.run(&["batch", "cases.json", "--sensor-for=flor=iso:0.002"]).quiet(1);
+}
+
+#[test]
+fn a_sensor_of_a_mesh_was_passed_over_in_a_case() {
+    let inputs = Inputs::new();
+    let case = case_at("a", 0.5).replace("scene_sensor", "object_sensor");
+    inputs.write("cases.json", &case_file(&[case, case_at("b", 0.5)]));
+    let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines();
+    let error = lines[0]["error"].as_str().unwrap();
+    assert!(error.contains("`object_sensor`") && error.contains("box.obj is a mesh"), "{error}");
+    assert_eq!(lines[1]["verdict"], "free");
 }

@@ -39,6 +39,29 @@ fn a_margin_of_nothing_is_the_collision_and_a_batch_answers_too() {
     }
 }
 
+/// Without --json a batch answered nothing of it.
+#[test]
+fn a_margin_was_not_in_the_table_of_a_batch() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &case_file(&[0.5, 0.15].map(|z| case_at(&z.to_string(), z))));
+    let asked = ["batch", "cases.json", "--margin=0.2"];
+    let lines = inputs.run(&[&asked[..], &["--json"]].concat()).quiet(0).json_lines();
+    assert!(lines[1]["margin"]["probability"].as_f64().unwrap() > 0.9, "{}", lines[1]);
+    let table = inputs.run(&asked).quiet(0).stdout();
+    let rows: Vec<&str> = table.lines().collect();
+    let end = rows[0].find("P(<200 mm)").unwrap() + "P(<200 mm)".len();
+    for (row, line) in rows[1..].iter().zip(&lines) {
+        let told: String = row.chars().take(end).collect();
+        let told = told.rsplit(' ').next().unwrap().parse::<f64>().unwrap();
+        let meant = line["margin"]["probability"].as_f64().unwrap();
+        assert!((told - meant).abs() < 1e-3, "{meant}: {table}");
+    }
+    // What was measured of nothing is an object all the same.
+    assert!(lines[0]["clearance_m"]["mean"].is_null() && lines[0]["clearance_m"]["std"].is_null());
+    assert!(lines[0]["clearance_m"].is_object(), "{}", lines[0]);
+    assert!(!inputs.run(&asked[..2]).quiet(0).stdout().contains("P(<"));
+}
+
 #[test]
 fn an_uncertain_pose_is_answered_over_all_that_it_may_be() {
     let inputs = Inputs::new();

@@ -93,7 +93,7 @@ fn a_path_in_millimetres_is_undecided_and_says_why() {
     assert!(words.contains("warning the object is"), "{text}");
 }
 
-/// In the order of ROS no turn at all, it was half a turn about z without a word.
+/// In the order of ROS no turn at all, or none about x, it was half a turn without a word.
 #[test]
 fn poses_of_ros_without_a_header_were_half_turns_in_silence() {
     let inputs = Inputs::new();
@@ -103,19 +103,36 @@ fn poses_of_ros_without_a_header_were_half_turns_in_silence() {
     let warning = run.stderr();
     for part in [
         "ros.csv: line 2: `0.01,0.02,0.6,0,0,0,1`",
-        "half turn about z",
+        "half a turn",
         "x,y,z,qw,qx,qy,qz",
         "x,y,z,qx,qy,qz,qw",
     ] {
         assert!(warning.contains(part), "`{part}` is not in {warning}");
     }
     assert_eq!(warning.lines().count(), 1, "{warning}");
+    let of_json = |run: &Run| {
+        let answer = run.json_lines().remove(0);
+        let warnings = answer["warnings"].as_array().unwrap().clone();
+        warnings.into_iter().find(|warning| warning["code"] == "quaternion_order")
+    };
+    let in_json = of_json(&run).unwrap();
+    assert_eq!(in_json["values"]["line"], 2, "{in_json}");
+    assert!(warning.contains(in_json["words"].as_str().unwrap()), "{in_json}");
+    // Turned about z by ROS, and about y by half a turn.
+    for (name, text) in [
+        ("yaw.csv", "0.01,0.02,0.6,0,0,0.6,0.8\n0.01,0.02,0.4,1e-7,0,0.8,0.6\n"),
+        ("about_x.csv", "0.01,0.02,0.6,0,1,0,0\n0.01,0.02,0.4,0,1,0,0\n"),
+    ] {
+        inputs.write(name, text);
+        let run = path(&inputs, name, &["--json"]);
+        assert!(of_json(&run).is_some() && run.stderr().contains(name), "{}", run.stderr());
+    }
     // Said by a header, or with another turn among them, they are meant.
     for (name, text) in [
         ("said.csv", "x,y,z,qw,qx,qy,qz\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
         ("ros_said.csv", "x,y,z,qx,qy,qz,qw\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
         ("turned.csv", "0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,1,0,0,0\n"),
-        ("about_x.csv", "0.01,0.02,0.6,0,1,0,0\n0.01,0.02,0.4,0,1,0,0\n"),
+        ("about_x.csv", "x,y,z,qw,qx,qy,qz\n0,0.02,0.6,0,1,0,0\n0,0.02,0.4,0,1,0,0\n"),
     ] {
         inputs.write(name, text);
         path(&inputs, name, &[]).quiet(0);

@@ -151,3 +151,21 @@ fn the_picture_keeps_the_colours_of_the_scan() {
     assert_eq!(painted[..floor.len()], colors);
     assert!(painted[floor.len()..].iter().all(|color| *color == [70, 130, 220]));
 }
+
+/// Whoever writes w first means no turn; it was half a turn about x without a word.
+#[test]
+fn no_turn_with_w_first_was_half_a_turn_in_silence() {
+    let inputs = Inputs::new();
+    let run = inputs.query_at(0.5, &["--quaternion=1,0,0,0", "--json"]);
+    let answer = run.json_lines().remove(0);
+    assert_eq!((run.code(), &answer["verdict"]), (0, &"free".into()), "{}", run.stderr());
+    let warnings = answer["warnings"].as_array().unwrap();
+    let warning = warnings.iter().find(|warning| warning["code"] == "quaternion_order").unwrap();
+    for part in ["--quaternion 1,0,0,0", "0,0,0,1", "--rotate-deg 180,0,0"] {
+        assert!(warning["words"].as_str().unwrap().contains(part), "{warning}");
+        assert!(run.stderr().contains(part), "{}", run.stderr());
+    }
+    for turn in ["--quaternion=0,0,0,1", "--quaternion=0,1,0,0", "--rotate-deg=180,0,0"] {
+        inputs.query_at(0.5, &[turn, "--json"]).quiet(0);
+    }
+}

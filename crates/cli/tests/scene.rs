@@ -97,6 +97,7 @@ fn units_sensors_and_the_threshold_are_those_of_the_file() {
 #[test]
 fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
     let inputs = Inputs::new();
+    inputs.write("nan.xyz", "nan nan nan\nnan nan nan\n");
     let with = |key: &str, value: Value| {
         let mut changed = body("box", "box.obj", 1.0);
         changed[key] = value;
@@ -108,6 +109,8 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         file
     };
     for (file, parts) in [
+        (with("name", json!("")), vec!["body 1", "`name` is empty"]),
+        (with("file", json!("nan.xyz")), vec!["body 1 `box`", "nan.xyz", "no point is left"]),
         (with("name", json!("floor")), vec!["body 1", "`floor`", "another name"]),
         (with("attached_to", json!("hand")), vec!["body 1", "`hand`", "name a body of the file"]),
         (with("attached_to", json!("box")), vec!["body 1", "`box`", "detach"]),
@@ -148,4 +151,27 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         let run = scene(&inputs, &of_bodies(&[floor()]), &options);
         assert!(run.code() == 2 && run.stderr().contains(part), "{}", run.stderr());
     }
+}
+
+#[test]
+fn sensors_without_a_cloud_were_passed_over() {
+    let inputs = Inputs::new();
+    let of_a_mesh = {
+        let mut with = body("box", "box.obj", 0.5);
+        with["sensor"] = json!("iso:0.002");
+        of_bodies(&[floor(), with])
+    };
+    let plain = of_bodies(&[floor(), body("box", "box.obj", 0.5)]);
+    for (file, options, parts) in [
+        (&of_a_mesh, &[][..], ["body 1 `box`", "`sensor`", "box.obj is a mesh"]),
+        (&plain, &["--sensor=iso:0.03"], ["--sensor is for", "each cloud has one", "leave it out"]),
+    ] {
+        let run = scene(&inputs, file, options);
+        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{}", run.stderr());
+        assert!(parts.iter().all(|part| run.stderr().contains(part)), "{}", run.stderr());
+    }
+    let mut own = floor();
+    own["sensor"] = Value::Null;
+    scene(&inputs, &of_bodies(&[own, body("box", "box.obj", 0.5)]), &["--sensor=iso:0.03"])
+        .quiet(0);
 }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Result, anyhow};
 use cloudtouch::{PaperQuery, Query};
 use cloudtouch_io::write_atomically;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -20,6 +20,7 @@ use crate::case_file::{self, Case, CaseFile};
 use crate::load::{self, Input, Loaded, Role};
 use crate::per_point::Details;
 use crate::sensor::SensorChoice;
+use crate::sensor_for::SensorsFor;
 use crate::{ordered, output, print, unused};
 
 /// A file in a role seen by a sensor (by its spec, which names it fully).
@@ -46,10 +47,11 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     let inputs = files.chain(others.map(PathBuf::as_path));
     let outputs = arguments.jsonl.iter().chain(&arguments.html).map(PathBuf::as_path);
     output::check(&outputs.collect::<Vec<_>>(), inputs, arguments.force)?;
+    sensors_for(arguments).check(&file)?;
     warn_of_same_names(arguments, &file);
     let bodies = prepare_all::<P::Cloud>(arguments, good())?;
     let progress = progress_bar(file.cases.len(), "queries");
-    let mut table = Table::new(&file.cases);
+    let mut table = Table::new(&file.cases, arguments.common.margin);
     let mut failed = false;
     let mut shown = Shown::new();
     let mut write = |jsonl: &mut dyn Write| -> io::Result<()> {
@@ -68,7 +70,8 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
                 Ok(Answered { report, placement, pose, bodies, nearness }) => {
                     let (details, nearness) = (Details::default(), *nearness);
                     let inputs = bodies.map(|(_, loaded)| &loaded.input);
-                    Line { report, placement, pose, details, nearness }.json_line(id, inputs)
+                    Line { report, placement, pose, details, nearness, doubt: None }
+                        .json_line(id, inputs)
                 }
                 Err(error) => json_error_line(id, error),
             };
@@ -76,9 +79,12 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
             failed |= answer.is_err();
             writeln!(jsonl, "{line}")?;
             progress.inc(1);
-            let report = answer.as_ref().map(|answered| &answered.report).map_err(String::as_str);
+            let told = answer
+                .as_ref()
+                .map(|answered| (&answered.report, answered.nearness.as_ref()))
+                .map_err(String::as_str);
             progress.suspend(|| {
-                let row = table.row(id, case, report);
+                let row = table.row(id, case, told);
                 to_stdout(&if arguments.json { format!("{line}\n") } else { row })
             })?;
             if arguments.html.is_some() {
@@ -142,6 +148,13 @@ fn answer<'a, P: body::Path>(
         None => Err(format!("{}: not prepared", key.0.display())),
     });
     let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
+    let sensors =
+        [("scene_sensor", case.scene_sensor, scene), ("object_sensor", case.object_sensor, object)];
+    for (field, sensor, body) in sensors {
+        if sensor.is_some() && body.is_mesh() {
+            return Err(unused::of_a_mesh(field, &body.input.file));
+        }
+    }
     let (report, nearness) = query
         .ask_within(&scene.body, &object.body, pose, arguments.common.margin)
         .map_err(|error| error.to_string())?;
@@ -150,21 +163,20 @@ fn answer<'a, P: body::Path>(
     Ok(Answered { report, placement, pose, bodies, nearness })
 }
 
+fn sensors_for(arguments: &BatchArguments) -> SensorsFor<'_> {
+    SensorsFor { given: &arguments.sensor_for, cases: &arguments.cases }
+}
+
 fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
     let common = &arguments.common;
-    let named = |path: &Path| {
-        let name = path.to_string_lossy();
-        let found = arguments.sensor_for.iter().find(|(part, _)| name.contains(part.as_str()));
-        found.map(|(_, sensor)| *sensor)
-    };
+    let named = sensors_for(arguments);
     let key = |path: &Path, role, given: Option<SensorChoice>, default: SensorChoice| {
-        let sensor = given.or(named(path)).unwrap_or(default);
+        let sensor = given.or(named.of(path)).unwrap_or(default);
         (path.to_owned(), role, sensor.to_string())
     };
-    let given = |sensor: Option<_>| sensor.map(SensorChoice::Stated);
     [
-        key(&case.scene, Role::Scene, given(case.scene_sensor), common.scene_sensor()),
-        key(&case.object, Role::Object, given(case.object_sensor), common.object_sensor()),
+        key(&case.scene, Role::Scene, case.scene_sensor, common.scene_sensor()),
+        key(&case.object, Role::Object, case.object_sensor, common.object_sensor()),
     ]
 }
 
@@ -195,16 +207,17 @@ fn prepare_all<'a, C: body::PreparedCloud>(
         })
         .collect();
     progress.finish_and_clear();
-    let is_mesh = |((_, role, _), body): (&BodyKey, &Result<Loaded<C>, String>)| {
-        body.as_ref().ok().map(|loaded| (*role, loaded.is_mesh()))
-    };
     // What cannot be read may be what an option is for.
-    if let Some(are) = bodies.iter().map(is_mesh).collect::<Option<Vec<_>>>()
+    let are = bodies.iter().map(|((path, role, _), body)| {
+        body.as_ref().ok().map(|loaded| (path.as_path(), *role, loaded.is_mesh()))
+    });
+    if let Some(are) = are.collect::<Option<Vec<_>>>()
         && !are.is_empty()
     {
-        unused::check(common, &are)?;
-        let any_cloud = are.iter().any(|(_, is_mesh)| !is_mesh);
-        ensure!(any_cloud || arguments.sensor_for.is_empty(), unused::of_clouds("--sensor-for"));
+        let roles: Vec<_> = are.iter().map(|(_, role, is_mesh)| (*role, *is_mesh)).collect();
+        unused::check(common, &roles)?;
+        let files: Vec<_> = are.iter().map(|(path, _, is_mesh)| (*path, *is_mesh)).collect();
+        sensors_for(arguments).check_meshes(&files)?;
     }
     Ok(bodies)
 }

@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let inputs = files.into_iter().chain(&common.robot).map(PathBuf::as_path);
     let output: Vec<&Path> = arguments.html.iter().map(PathBuf::as_path).collect();
     output::check(&output, inputs, arguments.force)?;
-    let path = path_file::read(&arguments.poses, arguments.screw)?;
+    let (path, doubt) = path_file::read(&arguments.poses, arguments.screw)?;
     let scene = load::bodies::<Cloud>(
         &[arguments.scene.as_path()],
         Role::Scene,
@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
         path_page::write(output, bodies, &swept, &path, ask, colored)?;
     }
     let text = if arguments.answer.json {
-        path_answer::json_line(&swept, [&scene.input, &object.input])?
+        path_answer::json_line(&swept, doubt.as_ref(), [&scene.input, &object.input])?
     } else {
         let bodies = [print::body("scene", &scene), print::body("object", &object)];
         format!("{}\n{}", bodies.join("\n"), path_answer::text(&swept))

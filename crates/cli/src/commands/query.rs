@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context as _, Result, bail};
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{PaperQuery, Placement, PoseDistribution, Query, Report};
-use cloudtouch_cli::numbers::{PoseStd, Triple};
+use cloudtouch_cli::numbers::{PoseStd, Triple, Turn};
 use cloudtouch_io::read_colors_within;
 use cloudtouch_page::{Fact, Page, View};
 use nalgebra::UnitQuaternion;
@@ -14,6 +14,7 @@ use nalgebra::UnitQuaternion;
 use crate::answer::Answer;
 use crate::args::{ModeName, PoseArguments, QueryArguments};
 use crate::body::{self, Body, PreparedCloud};
+use crate::doubt::Doubt;
 use crate::inside::with_points_inside;
 use crate::load::{self, Loaded, Role};
 use crate::per_point::{self, Details};
@@ -50,6 +51,10 @@ fn run_by<P: body::Path>(
     let inputs = inputs.chain(&arguments.pose.pose).chain(settings).map(PathBuf::as_path);
     output::check(&outputs, inputs, arguments.force)?;
     let pose = pose(&arguments.pose)?;
+    let doubt = arguments.pose.quaternion.and_then(|Turn(turn)| Doubt::of_option(&turn));
+    if let Some(doubt) = &doubt {
+        tracing::warn!("{}", doubt.words);
+    }
     let scans: Vec<&Path> =
         std::iter::once(&arguments.scene).chain(&arguments.also).map(PathBuf::as_path).collect();
     let scene = load::bodies::<P::Cloud>(&scans, Role::Scene, common.scene_sensor(), common)?;
@@ -112,8 +117,8 @@ fn run_by<P: body::Path>(
             penetration: out,
             classifiers: arguments.explain.then_some(&classifiers[..]),
         };
-        let answer =
-            Answer { report: &report, placement: &placement, pose: &pose, details, nearness };
+        let (doubt, report, placement, pose) = (doubt.as_ref(), &report, &placement, &pose);
+        let answer = Answer { report, placement, pose, details, nearness, doubt };
         answer.json_line("query", [&scene.input, &object.input])?
     } else {
         let mut parts = vec![

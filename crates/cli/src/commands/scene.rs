@@ -37,7 +37,8 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     // What can be told without work comes first.
     let mut scene = outline(&file).with_context(named)?;
     let keys = keys(common, &file).with_context(named)?;
-    let prepared = prepare(common, &keys)?;
+    let prepared = prepare(common, &file, &keys).with_context(named)?;
+    check_sensors(common, &file, &keys, &prepared).with_context(named)?;
     let bodies: BTreeMap<&str, &Prepared> =
         file.bodies.iter().zip(&keys).map(|(of, key)| (of.name.as_str(), &prepared[key])).collect();
     for (name, prepared) in &bodies {
@@ -123,8 +124,42 @@ fn keys(common: &CommonArguments, file: &SceneFile) -> Result<Vec<BodyKey>> {
     file.bodies.iter().enumerate().map(key).collect()
 }
 
+/// Refuses a sensor of a mesh, and one of all clouds where each has its own.
+fn check_sensors(
+    common: &CommonArguments,
+    file: &SceneFile,
+    keys: &[BodyKey],
+    prepared: &BTreeMap<BodyKey, Prepared>,
+) -> Result<()> {
+    let mut any_without = false;
+    for (index, (entry, key)) in file.bodies.iter().zip(keys).enumerate() {
+        let is_mesh = matches!(*prepared[key].body, cloudtouch::Body::Mesh(_));
+        ensure!(
+            !is_mesh || entry.sensor.is_none(),
+            "body {index} `{}`: {}",
+            entry.name,
+            unused::of_a_mesh("sensor", &prepared[key].input.file)
+        );
+        any_without |= !is_mesh && entry.sensor.is_none();
+    }
+    ensure!(
+        any_without || common.sensor.is_none(),
+        "--sensor is for clouds without a `sensor` of their own, and each cloud has one: leave it out"
+    );
+    Ok(())
+}
+
 /// Reads every file once for all bodies that take it for the same.
-fn prepare(common: &CommonArguments, keys: &[BodyKey]) -> Result<BTreeMap<BodyKey, Prepared>> {
+fn prepare(
+    common: &CommonArguments,
+    file: &SceneFile,
+    keys: &[BodyKey],
+) -> Result<BTreeMap<BodyKey, Prepared>> {
+    // Of several bodies of one file the first.
+    let first = |key: &BodyKey| {
+        let index = keys.iter().position(|other| other == key).unwrap_or_default();
+        format!("body {index} `{}`", file.bodies[index].name)
+    };
     let wanted: BTreeMap<&BodyKey, usize> = keys.iter().fold(BTreeMap::new(), |mut wanted, key| {
         *wanted.entry(key).or_default() += 1;
         wanted
@@ -133,7 +168,8 @@ fn prepare(common: &CommonArguments, keys: &[BodyKey]) -> Result<BTreeMap<BodyKe
     let loaded = wanted.into_par_iter().map(|(key, bodies)| {
         let (path, unit, sensor) = key;
         let sensor = sensor.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))?;
-        let loaded = load::body_in::<Cloud>(path, *unit, sensor, common)?;
+        let loaded = load::body_in::<Cloud>(path, *unit, sensor, common);
+        let loaded = loaded.with_context(|| first(key))?;
         Ok((key, loaded.refined_for(bodies, common.effort.refine())?))
     });
     let loaded: Vec<(&BodyKey, Loaded<Cloud>)> = loaded.collect::<Result<_>>()?;
