@@ -110,6 +110,24 @@ def test_sensors_and_filters_out_of_range_are_named():
             ct.Cloud(points, sensor="exact", **arguments)
 
 
+def test_a_sensor_that_is_a_number_is_told_what_to_be():
+    with pytest.raises(TypeError, match='sensor is 0.002: give a str .* "kinect", or "iso:0.002"'):
+        ct.Cloud(np.zeros((3, 3)), sensor=0.002)
+    with pytest.raises(TypeError, match='sensor is NoneType: .* "iso:0.002"'):
+        ct.Cloud(np.zeros((3, 3)), sensor=None)
+
+
+def test_what_is_no_body_was_told_to_lack_an_attribute(table, parcel):
+    query = ct.Query()
+    for ask in [query.run, query.gradient]:
+        with pytest.raises(TypeError, match="b is of the type ndarray: give a cloudtouch.Cloud or a cloudtouch.Mesh"):
+            ask(table, np.eye(4), parcel)
+    with pytest.raises(TypeError, match="b is of the type list"):
+        query.run_batch(table, [], np.eye(4)[np.newaxis])
+    with pytest.raises(TypeError, match="a is of the type str"):
+        query.within("table.pcd", parcel, np.eye(4), 0.1)
+
+
 def test_covariances_of_the_points_are_those_of_the_sensor_that_has_them(floor, plate):
     points = floor.points
     each = ct.Cloud(points, sensor="per-point", covariances=np.tile(1e-6 * np.eye(3), (len(points), 1, 1)))

@@ -182,6 +182,11 @@ def test_wrong_positions_and_files_are_told(robot, folder, floor_under):
     ]:
         with pytest.raises(ValueError, match=says):
             checker.check(ct.Query(), joints)
+    for padding in [-1, np.nan]:
+        with pytest.raises(ValueError, match=f"padding is {padding}: give metres, 0 or more"):
+            robot.seen(at(0.0), padding=padding)
+    with pytest.raises(TypeError, match="surroundings is of the type ndarray"):
+        ct.RobotChecker(robot, np.zeros((5, 3)))
     with pytest.raises(ct.CloudtouchError, match="path has 1 positions"):
         checker.check_path(ct.Query(), [at(0.0)])
     with pytest.raises(ct.CloudtouchError, match="position 1 of the path: joint `shoulder`"):

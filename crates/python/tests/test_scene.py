@@ -52,6 +52,9 @@ def test_wrong_names_and_poses_are_told(scene, floor):
         scene.set_pose("floor", np.diag([2.0, 1, 1, 1]))
     with pytest.raises(ValueError, match="pose has the shape"):
         scene.add("other", floor, np.eye(3))
+    for add in [scene.add, scene.replace]:
+        with pytest.raises(TypeError, match="body is of the type ndarray: give a cloudtouch.Cloud"):
+            add("floor", np.zeros((5, 3)))
 
 
 @pytest.mark.parametrize("height", [0.056, 0.058])

@@ -391,6 +391,19 @@ class Mesh:
         self._body = _native.mesh(vertices, _arrays.indices(triangles, "triangles"))
 
 
+def native_body(body: Any, name: str) -> _native.Body:
+    """What the compiled half knows of a body; ``name`` is that of the argument."""
+    if not isinstance(body, (Cloud, Mesh)):
+        kind = type(body).__name__
+        raise TypeError(f"{name} is of the type {kind}: give a cloudtouch.Cloud or a cloudtouch.Mesh")
+    return body._body
+
+
+def native_pair(a: Any, b: Any) -> tuple[_native.Body, _native.Body]:
+    """The same of both bodies of a query."""
+    return native_body(a, "a"), native_body(b, "b")
+
+
 def _scan(
     points: Any,
     *,
@@ -408,6 +421,13 @@ def _scan(
     """Rows of points, and everything else that a cloud is made of, by its name."""
     if not isinstance(points, np.ndarray) and hasattr(points, "points"):
         points = points.points
+    if not isinstance(sensor, str):
+        said = f"{sensor:g}" if isinstance(sensor, (int, float)) else type(sensor).__name__
+        example = f"iso:{said}" if isinstance(sensor, (int, float)) else "iso:0.002"
+        raise TypeError(
+            f'sensor is {said}: give a str that says what measured the points, such as "kinect", or "{example}" for '
+            "that standard deviation, m, in every direction"
+        )
     rows, image_size = _arrays.points(points, "points")
     count = len(rows)
 

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cloudtouch import _arrays, _native
-from cloudtouch.bodies import Cloud, Mesh
+from cloudtouch.bodies import Cloud, Mesh, native_pair
 from cloudtouch.motion import Gradient, Penetration, Swept, UnderPoses
 from cloudtouch.page import Page
 from cloudtouch.report import Batch, Report, Within
@@ -104,7 +104,7 @@ class Query:
             ``pose`` is no rigid motion, or the meshes cannot be tested against each other. A pair that could not be
             decided is no error but a verdict, and never reads as free.
         """
-        return Report._of(self._query.run(a._body, b._body, _arrays.numbers(pose, "pose", (4, 4))))
+        return Report._of(self._query.run(*native_pair(a, b), _arrays.numbers(pose, "pose", (4, 4))))
 
     def within(self, a: Body, b: Body, pose: npt.ArrayLike, margin: float) -> tuple[Report, Within]:
         """The report of :meth:`run`, and how likely the surfaces are within ``margin`` metres of each other.
@@ -117,7 +117,7 @@ class Query:
             ``margin`` is negative or not finite, and what :meth:`run` raises.
         """
         matrix = _arrays.numbers(pose, "pose", (4, 4))
-        report, within = self._query.within(a._body, b._body, matrix, margin)
+        report, within = self._query.within(*native_pair(a, b), matrix, margin)
         return Report._of(report), Within(**within)
 
     def clearance_interval(self, a: Body, b: Body, pose: npt.ArrayLike, share: float = 0.9) -> tuple[float, float]:
@@ -130,7 +130,7 @@ class Query:
         CloudtouchError
             ``share`` is not between 0 and 1, and what :meth:`run` raises.
         """
-        low, high = self._query.clearance_interval(a._body, b._body, _arrays.numbers(pose, "pose", (4, 4)), share)
+        low, high = self._query.clearance_interval(*native_pair(a, b), _arrays.numbers(pose, "pose", (4, 4)), share)
         return low, high
 
     def run_uncertain(
@@ -162,7 +162,7 @@ class Query:
                 raise ValueError(f"covariance: {stds.min()} is negative: a standard deviation is 0 or more")
             covariance = np.diag(stds**2)
         spread = _arrays.numbers(covariance, "covariance", (6, 6))
-        report, under = self._query.run_uncertain(a._body, b._body, matrix, spread)
+        report, under = self._query.run_uncertain(*native_pair(a, b), matrix, spread)
         return Report._of(report), UnderPoses(**under)
 
     def gradient(self, a: Body, b: Body, pose: npt.ArrayLike) -> tuple[Report, Gradient]:
@@ -173,7 +173,7 @@ class Query:
         CloudtouchError
             What :meth:`run` raises.
         """
-        report, slopes = self._query.gradient(a._body, b._body, _arrays.numbers(pose, "pose", (4, 4)))
+        report, slopes = self._query.gradient(*native_pair(a, b), _arrays.numbers(pose, "pose", (4, 4)))
         return Report._of(report), Gradient(**slopes)
 
     def penetration(
@@ -194,7 +194,7 @@ class Query:
             ``probability`` is not between 0 and 1, and what :meth:`run` raises.
         """
         matrix = _arrays.numbers(pose, "pose", (4, 4))
-        report, out = self._query.penetration(a._body, b._body, matrix, probability)
+        report, out = self._query.penetration(*native_pair(a, b), matrix, probability)
         return Report._of(report), None if out is None else Penetration(**out)
 
     def sweep(
@@ -223,7 +223,7 @@ class Query:
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
         if screw and len(matrices) != 2:
             raise ValueError(f"poses are {len(matrices)}: a screw is from one pose to another")
-        return Swept._of(self._query.sweep(a._body, b._body, matrices, screw, tolerance))
+        return Swept._of(self._query.sweep(*native_pair(a, b), matrices, screw, tolerance))
 
     def run_batch(
         self, a: Body, b: Body, poses: npt.ArrayLike, *, errors: Literal["raise", "keep"] = "raise"
@@ -250,7 +250,7 @@ class Query:
         if errors not in ("raise", "keep"):
             raise ValueError(f"errors is {errors!r}: give 'raise' or 'keep'")
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
-        return Batch._of(self._query.run_batch(a._body, b._body, matrices, errors == "keep"))
+        return Batch._of(self._query.run_batch(*native_pair(a, b), matrices, errors == "keep"))
 
     def page(self, a: Body, b: Body, poses: npt.ArrayLike, *, title: str = "cloudtouch") -> Page:
         """Both bodies and the answers of :meth:`run`, to look at: a notebook shows it, :meth:`Page.save` writes it.
@@ -270,7 +270,7 @@ class Query:
         if np.ndim(poses) == 2:
             poses = _arrays.numbers(poses, "poses", (4, 4))[None]
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4)).copy()
-        return Page(lambda height: self._query.page(a._body, b._body, matrices, title, height))
+        return Page(lambda height: self._query.page(*native_pair(a, b), matrices, title, height))
 
     def __repr__(self) -> str:
         return f"Query({', '.join(f'{name}={value!r}' for name, value in self._settings.items())})"

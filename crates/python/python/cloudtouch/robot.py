@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cloudtouch import _arrays, _native
-from cloudtouch.bodies import Mesh, SeenLink
+from cloudtouch.bodies import Mesh, SeenLink, native_body
 from cloudtouch.query import Body, Query
 from cloudtouch.report import Floats, Verdict
 from cloudtouch.scene import Checked, PairAnswer
@@ -130,8 +131,10 @@ class Robot:
         Raises
         ------
         ValueError, CloudtouchError
-            As :meth:`link_poses`.
+            As :meth:`link_poses`, and where ``padding`` is negative or not finite.
         """
+        if not 0 <= padding < math.inf:
+            raise ValueError(f"padding is {padding}: give metres, 0 or more")
         links = self._robot.seen(self._named(joints, "joints"), _base(base_pose))
         return tuple(SeenLink(Mesh(vertices, triangles), pose, padding) for vertices, triangles, pose in links)
 
@@ -214,7 +217,8 @@ class RobotChecker:
         self_collision: bool = False,
     ) -> None:
         self._robot = robot
-        self._checker = _native.RobotChecker(robot._robot, surroundings._body, _base(base_pose), self_collision)
+        body = native_body(surroundings, "surroundings")
+        self._checker = _native.RobotChecker(robot._robot, body, _base(base_pose), self_collision)
 
     @property
     def robot(self) -> Robot:

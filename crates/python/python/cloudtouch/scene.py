@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cloudtouch import _arrays, _native
+from cloudtouch.bodies import native_body
 from cloudtouch.query import Body, Query
 from cloudtouch.report import Report, Verdict
 
@@ -83,11 +84,11 @@ class Scene:
 
     def add(self, name: str, body: Body, pose: npt.ArrayLike | None = None) -> None:
         """Adds a body; at the origin where no pose is given."""
-        self._scene.add(name, body._body, _matrix(pose))
+        self._scene.add(name, native_body(body, "body"), _matrix(pose))
 
     def replace(self, name: str, body: Body) -> None:
         """Puts another body in the place of one, such as a new scan of the same thing."""
-        self._scene.replace(name, body._body)
+        self._scene.replace(name, native_body(body, "body"))
 
     def remove(self, name: str) -> None:
         """Removes a body that no other is attached to."""
