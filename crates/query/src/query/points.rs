@@ -7,7 +7,7 @@ use crate::search::{Found, Leaf, NoisyLeaf};
 pub(super) fn add_points(found: &Found<'_>, collision: f64, evidence: &mut Evidence) {
     let within = found.deviations_of_interest();
     for (side, leaves) in [(Side::A, &found.leaves_a), (Side::B, &found.leaves_b)] {
-        for leaf in leaves.values() {
+        for leaf in leaves.in_order() {
             if let Leaf::Noisy(leaf) = leaf {
                 add_leaf(side, leaf, (within, collision), evidence);
             }

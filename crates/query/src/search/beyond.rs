@@ -1,8 +1,6 @@
 //! How many deviations two bodies are from being within a margin of each other.
 
-use std::collections::BTreeMap;
-
-use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, visit_surfaces};
+use cloudtouch_bvh::{Sought, SurfaceFlow, visit_surfaces};
 use cloudtouch_geom::{Motion, Pose};
 
 use crate::body::BodyRef;
@@ -12,6 +10,7 @@ use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
 use super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
+use super::leaves::Leaves;
 use super::meeting::deviations_beyond;
 
 /// What a search beyond a margin found.
@@ -38,12 +37,11 @@ pub(crate) fn least_beyond<'a>(
     let motion = Motion::from(a_from_b);
     let trees = (a.shape().tree(), b.shape().tree());
     let sought = Sought { within: MOST_DEVIATIONS, margin, crossings: false, drift: None };
-    let mut leaves: (BTreeMap<NodeId, Leaf<'a>>, BTreeMap<NodeId, Leaf<'a>>) = Default::default();
+    let mut leaves: (Leaves<'a>, Leaves<'a>) = Default::default();
     let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
-        let leaf_a = leaves.0.entry(pair.a);
-        let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, &mut stats));
-        let leaf_b = leaves.1.entry(pair.b);
-        let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(&motion), &mut stats));
+        let leaf_a = leaves.0.get_or_load(pair.a, || Leaf::load(a, pair.a, None, &mut stats));
+        let load_b = || Leaf::load(b, pair.b, Some(&motion), &mut stats);
+        let leaf_b = leaves.1.get_or_load(pair.b, load_b);
         least = least_of(leaf_a, leaf_b, margin, least).max(-MOST_DEVIATIONS);
         if clock.is_over() || least <= -MOST_DEVIATIONS {
             return SurfaceFlow::Stop;

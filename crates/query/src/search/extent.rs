@@ -1,8 +1,5 @@
 //! Over how much surface two bodies are about as near as where they are nearest.
 
-use std::collections::BTreeMap;
-
-use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Pose, UncertainPoint, normal};
 
 use crate::body::BodyRef;
@@ -10,14 +7,13 @@ use crate::mesh::Mesh;
 
 use super::facet::Whitening;
 use super::leaf::{Leaf, NoisyLeaf};
+use super::leaves::Leaves;
 use super::meeting::{deviations_by_pose, squared_deviations};
 use super::run::{FURTHER_DEVIATIONS, Found};
 use super::wrench::Wrench;
 
 /// A piece counts in full up to this share of the deviations that are looked at beyond the least.
 const FULL: f64 = 0.6;
-
-type Leaves<'a> = BTreeMap<NodeId, Leaf<'a>>;
 
 /// The pieces of surface of one body that are looked at, and the other body.
 struct Facing<'f, 'a> {
@@ -116,7 +112,7 @@ impl Found<'_> {
         if window <= 0.0 {
             return;
         }
-        for leaf in facing.own.values() {
+        for leaf in facing.own.in_order() {
             let Leaf::Noisy(leaf) = leaf else { continue };
             for (place, squared) in leaf.squared.iter().enumerate() {
                 let deviations = squared.sqrt();
@@ -171,7 +167,7 @@ fn nearest_to(
     let whitening = Whitening::of(surfel);
     let mut limit = squared * (1.0 + ROUNDING) + f64::MIN_POSITIVE;
     let mut nearest = None;
-    for other in others.values() {
+    for other in others.all() {
         match other {
             Leaf::Noisy(other) => {
                 for on_other in other.surfels.iter() {

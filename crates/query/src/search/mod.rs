@@ -14,6 +14,7 @@ mod facet;
 mod gather;
 mod inside;
 mod leaf;
+mod leaves;
 mod meeting;
 mod nearest;
 mod past;

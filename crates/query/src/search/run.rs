@@ -1,8 +1,6 @@
 //! The search for what two bodies say of a collision by their geometry alone.
 
-use std::collections::BTreeMap;
-
-use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, SurfacePair, visit_surfaces};
+use cloudtouch_bvh::{Sought, SurfaceFlow, SurfacePair, visit_surfaces};
 use cloudtouch_geom::{Motion, Pose, Vector3};
 
 use crate::body::BodyRef;
@@ -17,6 +15,7 @@ use super::gather::{
     reaching,
 };
 use super::leaf::{Between, Leaf};
+use super::leaves::Leaves;
 use super::meeting::{Meeting, deviations_by_pose};
 use super::nearest::{Nearest, nearest_pieces};
 use super::trees::Trees;
@@ -41,8 +40,8 @@ pub(crate) struct Finding {
 /// All that the search found.
 #[derive(Debug, Default)]
 pub(crate) struct Found<'a> {
-    pub leaves_a: BTreeMap<NodeId, Leaf<'a>>,
-    pub leaves_b: BTreeMap<NodeId, Leaf<'a>>,
+    pub leaves_a: Leaves<'a>,
+    pub leaves_b: Leaves<'a>,
     pub findings: Vec<Finding>,
     /// The least deviations between two pieces of surface, at most [`MOST_DEVIATIONS`].
     pub deviations: f64,
@@ -126,10 +125,9 @@ impl<'a> Found<'a> {
         stats: &mut Stats,
     ) {
         let most = self.deviations_of_interest();
-        let leaf_a = self.leaves_a.entry(pair.a);
-        let leaf_a = leaf_a.or_insert_with(|| Leaf::load(a, pair.a, None, stats));
-        let leaf_b = self.leaves_b.entry(pair.b);
-        let leaf_b = leaf_b.or_insert_with(|| Leaf::load(b, pair.b, Some(a_from_b), stats));
+        let leaf_a = self.leaves_a.get_or_load(pair.a, || Leaf::load(a, pair.a, None, stats));
+        let load_b = || Leaf::load(b, pair.b, Some(a_from_b), stats);
+        let leaf_b = self.leaves_b.get_or_load(pair.b, load_b);
         let Between { of_means, of_surfaces, most_std } = leaf_a.between(leaf_b);
         self.at_least = self.at_least.min(of_surfaces);
         // PERF: what the tree knows of leaves whose surface it has not seen is loose.

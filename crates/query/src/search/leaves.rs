@@ -1,0 +1,66 @@
+//! The leaves of one body that a search came by.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+use cloudtouch_bvh::NodeId;
+
+use super::leaf::Leaf;
+
+/// Leaves, each loaded once.
+#[derive(Debug, Default)]
+pub(crate) struct Leaves<'a> {
+    /// In the order in which they were first seen.
+    seen: Vec<(NodeId, Leaf<'a>)>,
+    places: HashMap<usize, usize, BuildHasherDefault<Spread>>,
+}
+
+impl<'a> Leaves<'a> {
+    pub(super) fn get_or_load(
+        &mut self,
+        id: NodeId,
+        load: impl FnOnce() -> Leaf<'a>,
+    ) -> &mut Leaf<'a> {
+        let Self { seen, places } = self;
+        let place = *places.entry(id.index()).or_insert_with(|| {
+            seen.push((id, load()));
+            seen.len() - 1
+        });
+        &mut seen[place].1
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.seen.len()
+    }
+
+    /// In the order of the search.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Leaf<'a>> {
+        self.seen.iter().map(|(_, leaf)| leaf)
+    }
+
+    /// By the names of their nodes, whatever the order of the search.
+    pub(crate) fn in_order(&self) -> impl Iterator<Item = &Leaf<'a>> {
+        let mut order: Vec<&(NodeId, Leaf<'a>)> = self.seen.iter().collect();
+        order.sort_unstable_by_key(|(id, _)| *id);
+        order.into_iter().map(|(_, leaf)| leaf)
+    }
+}
+
+/// Spreads the names of nodes, which nobody chooses to collide: a search looks two of them up for every pair.
+#[derive(Debug, Default)]
+struct Spread(u64);
+
+impl Hasher for Spread {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_usize(usize::from(byte)));
+    }
+
+    fn write_usize(&mut self, name: usize) {
+        // The golden ratio, in 64 bits.
+        self.0 = (self.0 ^ name as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
