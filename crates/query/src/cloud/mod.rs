@@ -31,6 +31,7 @@ mod scatter;
 mod settings;
 mod slab;
 mod slots;
+mod spread;
 mod surfel;
 mod view;
 

@@ -13,11 +13,11 @@ use crate::error::PrepareError;
 
 use super::lost::{Before, after};
 use super::makeup::Makeup;
-use super::makeup::sample_of;
 use super::pieces::Pieces;
 use super::prepared::{Prepared, makeup_of, measured_point};
 use super::scans::Scans;
 use super::slots::{LazySurface, slots, spacing_cap};
+use super::spread::sample_of;
 use super::view::SingleView;
 
 /// A tree is built anew when so many times as many points as it holds have come or gone ...

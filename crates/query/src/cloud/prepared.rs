@@ -10,12 +10,13 @@ use crate::error::PrepareError;
 use crate::filter::StageReport;
 
 use super::edge::DISC_SPACINGS;
-use super::makeup::{Makeup, sample_of};
+use super::makeup::Makeup;
 use super::pieces::Pieces;
 use super::preparation::Preparation;
 use super::scans::Scans;
 use super::scatter::{Overstated, overstated};
 use super::slots::{LazySurface, spacing_cap};
+use super::spread::sample_of;
 use super::view::SingleView;
 
 /// Points with more noise than half the size of their cloud say nothing.

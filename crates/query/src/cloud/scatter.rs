@@ -3,7 +3,7 @@
 use cloudtouch_geom::{Matrix3, Vector3};
 use cloudtouch_noise::{Neighborhoods, SensorNoise};
 
-use super::makeup::spread;
+use super::spread::spread;
 
 /// Places that are looked about, and points that are looked at from each, at most.
 const PLACES: usize = 24;
