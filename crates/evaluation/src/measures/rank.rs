@@ -38,14 +38,8 @@ mod tests {
     use super::*;
 
     fn known() -> Sample {
-        Sample::of_probabilities([
-            (0.9, true),
-            (0.4, true),
-            (0.4, false),
-            (0.1, false),
-            (0.2, true),
-            (0.3, false),
-        ])
+        let collides = [true, true, false, false, true, false];
+        Sample::of_probabilities([0.9, 0.4, 0.4, 0.1, 0.2, 0.3].into_iter().zip(collides))
     }
 
     #[test]

@@ -5,13 +5,17 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, FilterSettings, Mesh, Query, QuerySettings, Report};
-use cloudtouch_geom::{PointCloud, Pose, seed};
+use cloudtouch_geom::seed::derive;
+use cloudtouch_geom::{PointCloud, Pose};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
+use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::family::{Family, Side};
 use cloudtouch_testkit::noise::NoiseKind;
+use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
+use cloudtouch_testkit::scene::cuboid;
 use rayon::ThreadPoolBuilder;
 
-use super::scene::{Class, POINTS, STD, Scene};
+use super::scene::{Class, POINTS, STD, Scene, sampled};
 use super::timing::{p95, time, timed};
 use crate::real_scans::cases;
 use crate::report::{Findings, Section, Table, Target};
@@ -25,6 +29,10 @@ const POSES: usize = 10;
 const DEPTH_STD: f64 = 0.002;
 /// Standard deviation that the real scan is said to have, m.
 const SCAN_STD: f64 = 0.005;
+/// Standard deviations of things much blurred for their size, m: boxes of 12 cm with a sample every 3 mm, and
+/// poses asked of each pair.
+const BLURRED: [f64; 2] = [0.01, 0.02];
+const BOX_POSES: usize = 30;
 
 /// A pose, and whether it collides where that is known.
 type Labelled = (Pose, Option<bool>);
@@ -51,6 +59,11 @@ pub(super) fn measure(scene: &Scene, data: Option<&Path>) -> Findings {
     };
     let what = "first query of a fresh 10k pair, preparation included: near, median ≤ 15 ms";
     add("two clouds", what.into(), 0.015, clouds(scene)?);
+    for std in BLURRED {
+        let name = format!("two boxes, {:.0} mm", 1e3 * std);
+        let what = format!("{name} of noise, prepared, and {BOX_POSES} poses: ≤ 5 ms a pose");
+        add(&name, what, 0.005 * BOX_POSES as f64, boxes(scene.seed, std)?);
+    }
     let what = "prepared, and 10 gripper poses ≤ 25 ms";
     let frame = |kind: &str| format!("40k-point depth frame ({kind}), {what}");
     add("simulated frame", frame("simulated"), 0.025, simulated(scene.seed)?);
@@ -61,6 +74,8 @@ pub(super) fn measure(scene: &Scene, data: Option<&Path>) -> Findings {
         "*Two clouds*: the near poses again, with {:.0} mm of noise. Both clouds are prepared anew for \
          each: filter, sensor model, neighbour index, tree; *on two* threads too. The query then computes the noise model \
          where it looks; its answers are those of the prepared queries.\n\n\
+         *Two boxes* of 12 cm in {POINTS} points each, much blurred for their size as by a stereo camera: \
+         {BOX_POSES} poses near contact are asked of each of three pairs; times are of all.\n\n\
          *Frames*: {FRAMES} of about {RETURNS} returns, as a camera at 20 Hz has 50 ms for. *Prepare* \
          is all of it: near returns and veils dropped, sensor model, neighbour index, tree. Then \
          {POSES} poses of a gripper, known as a mesh and prepared once, are asked of the frame, \
@@ -138,15 +153,32 @@ fn clouds(scene: &Scene) -> Result<Fresh> {
     Ok(fresh)
 }
 
+fn boxes(from: u64, std: f64) -> Result<Fresh> {
+    let cube = cuboid([0.12; 3]);
+    let exact = ExactMesh::new(&cube);
+    let poses = known(&poses_near_contact(&exact, &exact, BOX_POSES, derive(from, 5, 0)));
+    let query = Query::new(QuerySettings::default())?;
+    let mut fresh = Fresh::default();
+    for draw in 0..3 {
+        let [a, b] = [0, 1].map(|side| sampled(&cube, POINTS, std, derive(from, 6 + side, draw)));
+        let both = || Ok((prepare(&a.cloud, std)?, prepare(&b.cloud, std)?));
+        fresh.add(both, |(a, b), pose| Ok(query.run(a, b, pose)?), &poses)?;
+    }
+    Ok(fresh)
+}
+
+/// Poses with what the exact surfaces say.
+fn known(poses: &[LabelledPose]) -> Vec<Labelled> {
+    poses.iter().map(|pose| (pose.scene_from_object, Some(pose.in_collision))).collect()
+}
+
 fn simulated(from: u64) -> Result<Fresh> {
-    let scene = Family::Tabletop.scene(seed::derive(from, 3, 0));
-    let poses = scene.poses(4 * POSES, seed::derive(from, 3, 1));
-    let poses: Vec<Labelled> =
-        poses.iter().map(|p| (p.scene_from_object, Some(p.in_collision))).collect();
+    let scene = Family::Tabletop.scene(derive(from, 3, 0));
+    let poses = known(&scene.poses(4 * POSES, derive(from, 3, 1)));
     let gripper = Mesh::prepare(scene.b.mesh())?;
     let mut fresh = Fresh::default();
     for (number, asked) in (0..FRAMES).zip(poses.chunks(POSES).cycle()) {
-        let draw = seed::derive(from, 4, number as u64);
+        let draw = derive(from, 4, number as u64);
         let frame = scene.observe(Side::A, RETURNS, NoiseKind::Gaussian, DEPTH_STD, draw).cloud;
         fresh.add_frame(&frame, SensorModel::PerPoint, &gripper, asked)?;
     }
@@ -162,12 +194,10 @@ fn real(data: &Path) -> Result<Fresh> {
     ensure!(series.len() == POSES, "{} poses of a series, not {POSES}", series.len());
     let frame = thinned(&read_cloud(&series[0].scene)?, RETURNS)?;
     let gripper = Mesh::prepare(&read_mesh(&series[0].object, LengthUnit::Metres)?)?;
-    let known = |label: &str| match label {
-        "free" => Some(false),
-        "collision" => Some(true),
-        _ => None,
-    };
-    let poses: Vec<_> = series.iter().map(|case| (case.pose, known(&case.label))).collect();
+    let clear = [("free", false), ("collision", true)];
+    let said =
+        |label: &str| clear.iter().find(|(of, _)| *of == label).map(|(_, collides)| *collides);
+    let poses: Vec<_> = series.iter().map(|case| (case.pose, said(&case.label))).collect();
     let mut fresh = Fresh::default();
     for _ in 0..FRAMES {
         fresh.add_frame(&frame, SensorModel::Isotropic { std: SCAN_STD }, &gripper, &poses)?;

@@ -116,7 +116,8 @@ impl Scene {
     }
 }
 
-fn sampled(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
+/// So many points of a surface, with noise of this standard deviation (m).
+pub(super) fn sampled(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
     let exact = positions(&sample_surface(mesh, points, stream));
     let noisy = add_noise(&exact, NoiseKind::Gaussian, std, derive(stream, 1, 0));
     observed(PointCloud::from_points(noisy), std)

@@ -1,11 +1,11 @@
 //! Leaf problems by our solver and by Clarabel.
 
 use anyhow::Result;
-use cloudtouch_geom::Vector3;
 use cloudtouch_geom::seed::{derive, unit};
-use cloudtouch_svm::{Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
+use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, Vector3};
+use cloudtouch_svm::{Class, Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 
-use super::leaf::{self, Leaf, SHAPES};
 use super::timing::{least_of, ratio, three_digits, times};
 use crate::report::{Findings, Section, Table, Target};
 use crate::statistics::median;
@@ -113,14 +113,35 @@ impl Compared {
 }
 
 impl Cell {
-    /// A problem of this kind, with equal or lopsided noise.
+    /// A problem of this kind, with equal or lopsided noise: so many measured points of a cap, a wedge or a
+    /// sheet, and as many of the plane below.
     fn problem(&self, per_side: usize, from: u64) -> Vec<Sample> {
         let draw = |k| unit(derive(from, 0, k));
         let between = |[low, high]: [f64; 2], k| low + (high - low) * draw(k);
         let root = if draw(4) < 0.5 { Vector3::repeat(1.0) } else { Vector3::new(0.2, 0.5, 1.0) };
-        let shape = (SHAPES.len() as f64 * draw(3)) as usize;
-        let leaf = Leaf { shape, gap: between([-0.1, 0.3], 0), std: root * between(self.noise, 1) };
-        leaf::samples(leaf.clouds(per_side, from), between(self.radius, 2), self.penalty)
+        let (gap, std) = (between([-0.1, 0.3], 0), root * between(self.noise, 1));
+        let (radius, penalty) = (between(self.radius, 2), self.penalty);
+        let variances = Matrix3::from_diagonal(&std.component_mul(&std));
+        let covariance = Covariance::from_symmetric(&variances);
+        let samples = |(side, class): (u64, Class)| {
+            let at = |i: u64| {
+                let draw = |k| unit(derive(derive(from, 1, side), i, k)) - 0.5;
+                let (x, y) = (draw(0), draw(1));
+                let above = match (3.0 * unit(derive(from, 0, 3))) as usize {
+                    0 => 0.6 * (x * x + y * y),
+                    1 => 0.8 * x.abs(),
+                    _ => 0.4 * (x + 0.5),
+                };
+                Point3::new(x, y, if side == 0 { gap + above } else { 0.0 })
+            };
+            let exact: Vec<Point3> = (0..per_side as u64).map(at).collect();
+            let moved = add_noise(&exact, NoiseKind::Gaussian, 1.0, derive(from, 2, side));
+            let errors = exact.iter().zip(moved).map(|(p, q)| (q - p).component_mul(&std));
+            let means = exact.iter().zip(errors).map(|(p, error)| p + error);
+            let points = means.map(|mean| UncertainPoint { mean, covariance });
+            points.map(|point| Sample { point, class, radius, penalty }).collect::<Vec<_>>()
+        };
+        [(0, Class::A), (1, Class::B)].into_iter().flat_map(samples).collect()
     }
 }
 
