@@ -25,8 +25,8 @@ const LARGE_OBJECT_RATIO: f64 = 3.0;
 /// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
 /// a twenty-fifth of that size off.
 const FARTHEST_SIZES: f64 = 40.0;
-/// Noise beyond this part of the other body had better be there.
-const LARGE_NOISE: f64 = 0.1;
+/// Noise beyond this part of the other body had better be there: its fingers are a tenth of it.
+const LARGE_NOISE: f64 = 0.05;
 
 /// The warnings about a pair, gravest first. `a_from_b` maps local frames.
 pub(crate) fn doubts(

@@ -138,4 +138,8 @@ fn a_scan_that_is_given_twice_is_refused() {
     let by = CloudSettings::new(SensorModel::Kinect);
     let twice = Cloud::merge(&[(&one, &by), (&other, &by), (&one.clone(), &by)]);
     assert_eq!(twice.expect_err("the first again"), PrepareError::RepeatedScan { scan: 3 });
+    // What holds all of another is not that.
+    let half = PointCloud::from_points(one.points.iter().copied().step_by(2).collect());
+    let by = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    assert!(Cloud::merge(&[(&one, &by), (&half, &by)]).is_ok());
 }

@@ -4,8 +4,9 @@ use crate::common::{AnyQuery, MODES, Scan, ask, at, measured, mesh};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, FilterSettings, Mesh, Mode, PaperCloud, PaperCloudSettings, PrepareError,
-    Report, Safeguards, SelfMesh, Undecided, Unseen, Verdict, Warning, Which,
+    Cloud, CloudSettings, FilterSettings, Mesh, Mode, PaperCloud, PaperCloudSettings, Path,
+    PrepareError, Query, QuerySettings, Report, Safeguards, SelfMesh, Undecided, Unseen, Verdict,
+    Warning, Which,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -315,4 +316,19 @@ fn noise_that_points_do_not_have_read_free() {
         &at(0.1, 0.2, 0.4),
     );
     assert_eq!(far.verdict, Verdict::Free, "{far:?}");
+}
+
+/// A path was undecided all along, whose every pose was free.
+#[test]
+fn a_path_far_from_noise_that_points_do_not_have_is_free() {
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.03 });
+    let table = Cloud::prepare(&table(), &settings).expect("a good cloud");
+    let query = Query::new(QuerySettings::default()).expect("default settings");
+    let swept = |height: f64| {
+        let path = Path::linear(&at(0.0, 0.0, height), &at(0.2, 0.1, height)).expect("two poses");
+        query.sweep(&table, &mesh(&tool()), &path, 0.01).expect("good poses")
+    };
+    assert_eq!(swept(0.5).verdict, Verdict::Free);
+    let near = swept(0.11);
+    assert_ne!(near.verdict, Verdict::Free, "{near:?}");
 }

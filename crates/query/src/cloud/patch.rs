@@ -100,7 +100,9 @@ impl Prepared {
 
         let old = self.take_surface(before, &patched);
         let lost = self.lost(&old, before, &changed, &patched);
-        self.regrow(old, before, &patched, &lost)
+        let kept = self.regrow(old, before, &patched, &lost)?;
+        self.around = self.tree.root().map(|root| *root.obb());
+        Ok(kept)
     }
 
     /// Gives the surface room for the new points, with what leaves that did not change hold.

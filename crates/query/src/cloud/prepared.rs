@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{LeafBounds, Node, NodeId, Primitive, Primitives, Tree, TreeSettings};
+use cloudtouch_bvh::{LeafBounds, Node, NodeId, Obb, Primitive, Primitives, Tree, TreeSettings};
 use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, Vector3, bounding_box};
 use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
 
@@ -40,6 +40,8 @@ pub(crate) struct Prepared {
     pub(super) pieces: Pieces,
     pub(super) noise: NoiseModel,
     pub(super) tree: Tree,
+    /// The box around what was measured, whatever became of the tree's.
+    pub(super) around: Option<Obb>,
     pub(super) surface: LazySurface,
     pub(super) makeup: Makeup,
     /// Depth images that it was seen in.
@@ -120,6 +122,7 @@ impl Prepared {
             neighborhoods,
             pieces,
             noise,
+            around: tree.root().map(|root| *root.obb()),
             tree,
             surface,
             makeup,
@@ -195,6 +198,11 @@ impl Prepared {
 
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
+    }
+
+    /// The box around what was measured, in the local frame.
+    pub(crate) fn around(&self) -> Option<&Obb> {
+        self.around.as_ref()
     }
 
     /// The direction in which a leaf is all but flat: along the shortest side of its box.

@@ -63,6 +63,12 @@ impl Prepared {
                 let (_, computed) = self.leaf_surface_with(leaf.id(), &mut scratch);
                 stats.leaves_prepared += usize::from(computed);
             }
+            for leaf in self.tree.leaves() {
+                if is_over() {
+                    return None;
+                }
+                self.leaf_edges_with(leaf.id(), &mut scratch);
+            }
         }
         let fitted = || self.fitted_tree().ok().map(Box::new);
         self.surface.fitted.get_or_init(fitted).as_deref()

@@ -161,18 +161,21 @@ impl Scans {
     }
 }
 
-/// Whether each scan has a point of its own, given where the points of each end among those of all.
+/// Whether no scan is one that was given before, whose points are as many: given where the points of each end
+/// among those of all. Maps of cells may well hold all of a smaller one.
 fn check_for_repeats(points: &[Point3], ends: &[usize]) -> Result<(), PrepareError> {
     if ends.len() < 2 {
         return Ok(());
     }
     let mut places = Places::of(points);
-    let mut start = 0;
+    let (mut start, mut counts) = (0, Vec::new());
     for (scan, &end) in (1..).zip(ends) {
         // All are to be seen, not the first alone.
-        if (start..end).filter(|&index| places.is_first(index)).count() == 0 {
+        let own = (start..end).filter(|&index| places.is_first(index)).count();
+        if own == 0 && counts.contains(&(end - start)) {
             return Err(PrepareError::RepeatedScan { scan });
         }
+        counts.push(end - start);
         start = end;
     }
     Ok(())

@@ -19,6 +19,9 @@ const NARROWEST: f64 = 0.05;
 /// Points of so much noise that they fill a ball are off any plane by this part of its radius: a ball's
 /// own is the root of a fifth.
 const OF_BALL: f64 = 0.44;
+/// What is on a plane to this part of its noise was rounded to one, as the steps of a disparity are, or is a
+/// scan of a single line: it tells nothing.
+const EXACT: f64 = 1e-3;
 /// Of the noise that is stated they are off a plane by more than this part, whatever the surface is.
 const LEAST_SHARE: f64 = 0.15;
 
@@ -79,7 +82,7 @@ fn flattest(
         let (normal, seen) = off_plane(offsets);
         let stated = noise[at].variance_along(&normal).sqrt();
         let share = seen / stated.min(OF_BALL * radius);
-        if best.as_ref().is_none_or(|best| share < best.share) {
+        if share > EXACT && best.as_ref().is_none_or(|best| share < best.share) {
             best = Some(Flattest { share, stated, seen });
         }
         radius *= 0.5;
@@ -145,5 +148,19 @@ mod tests {
                 );
             }
         }
+    }
+    /// Within a step of the disparity all is on one plane, and so is a scan of a single line.
+    #[test]
+    fn what_was_rounded_to_planes_tells_nothing() {
+        let slope = |i: u64| {
+            let [x, y] = [i % 200, i / 200].map(|k| 0.005 * k as f64);
+            let step = 0.02;
+            Vector3::new(x, y, ((0.5 * x + 0.1 * y) / step).round() * step)
+        };
+        let points = (0..40_000).map(|i| slope(i).into()).collect();
+        let sensor = SensorModel::Isotropic { std: 0.02 / 12.0_f64.sqrt() };
+        let by = CloudSettings::new(sensor);
+        let cloud = Cloud::prepare(&PointCloud::from_points(points), &by).unwrap();
+        assert_eq!(cloud.prepared().overstated(), None);
     }
 }

@@ -30,7 +30,10 @@ const SURFACE_SPACINGS: f64 = 1.0;
 /// one, as a single triangle that is missing leaves it, surrounds what a cloud would.
 pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
     let of = |body: Shape<'_>| {
-        let obb = body.tree().root().map(|root| *root.obb());
+        let obb = match body {
+            Shape::Cloud(cloud) => cloud.around().copied(),
+            Shape::Mesh(mesh) => mesh.tree().root().map(|root| *root.obb()),
+        };
         obb.map_or((Point3::origin(), 0.0), |obb| (obb.centre, obb.radius()))
     };
     let ((middle_of_a, radius_of_a), (middle_of_b, radius_of_b)) = (of(a), of(b));
@@ -56,8 +59,7 @@ fn nearly_surrounds(mesh: &Mesh, place: &Point3) -> bool {
 }
 
 fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
-    let Some(root) = cloud.tree().root() else { return false };
-    if !root.obb().contains(place) {
+    if !cloud.around().is_some_and(|around| around.contains(place)) {
         return false;
     }
     let points = cloud.points();

@@ -23,7 +23,7 @@ pub enum PrepareError {
         stages: String,
     },
     /// A scan that was merged before: what it says twice would count twice.
-    #[error("scan {scan} has no point that those before it have not: give each scan once")]
+    #[error("scan {scan} is one of those before it, to the point: give each scan once")]
     RepeatedScan {
         /// Which of the scans, from 1.
         scan: usize,

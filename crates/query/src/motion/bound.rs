@@ -7,6 +7,7 @@ use crate::classifier::Clock;
 use crate::error::QueryError;
 use crate::judge::{JudgeOfPair, probability};
 use crate::query::{Query, noise_over_spacing};
+use crate::record::CLEAR_DEVIATIONS;
 use crate::report::Stats;
 use crate::search::{greatest_depth, reach_of};
 
@@ -57,6 +58,14 @@ impl Drifting<'_> {
         let reach = reach_of((a, b), &local, &self.drift, is_enough, stats)?;
         let upper = at_most(given(reach.deviations), reach.clearness);
         Ok(if reach.is_complete { upper } else { 1.0 })
+    }
+
+    /// Whether a bound on the probability leaves none of the way less than [`CLEAR_DEVIATIONS`] from a
+    /// collision.
+    pub(super) fn is_clear(&self, query: &Query, upper: f64) -> bool {
+        let settings = query.settings();
+        let judge = settings.judge.for_noise(noise_over_spacing(self.bodies));
+        upper <= at_most(&judge, settings.prior, CLEAR_DEVIATIONS, 0.0)
     }
 
     /// Where two exact surfaces never touch, one is inside the other all the time or never.

@@ -255,7 +255,8 @@ impl Sweep<'_> {
         if interval.upper < self.query.settings().reject {
             let at = segment as f64 + interval.middle();
             let shapes = (a.shape(), b.shape());
-            let (doubt, warnings) = self.query.terms().doubt_at(shapes, &a_from_b);
+            let is_clear = drifting.is_clear(self.query, interval.upper);
+            let (doubt, warnings) = self.query.terms().doubt_at(shapes, &a_from_b, is_clear);
             interval.is_doubtful = doubt.is_some();
             if interval.is_doubtful {
                 self.tested.not_free_from = self.tested.not_free_from.min(at);

@@ -22,7 +22,13 @@ use super::estimate::{Estimate, Places};
 use super::evidence::Evidence;
 
 /// Bodies farther apart than so many standard deviations are so, however large these are said to be.
-const CLEAR_DEVIATIONS: f64 = 3.0;
+pub(crate) const CLEAR_DEVIATIONS: f64 = 3.0;
+
+/// Whether a warning counts where bodies are so clear of each other, or not known to be: noise that points do
+/// not have only makes them seem nearer than they are.
+fn counts(warning: &Warning, is_clear: bool) -> bool {
+    !(is_clear && matches!(warning, Warning::NoiseOverstated { .. }))
+}
 
 /// By what a path turns what it gathered into a report.
 #[derive(Debug, Clone, Copy)]
@@ -59,11 +65,10 @@ impl Terms {
         let mut estimate = estimate(start, &local, &mut evidence)?;
         let unseen = unseen(a, b, &local);
         let warnings = doubts((a, b), &local, unseen.as_ref(), &self.safeguards);
-        // Noise that points do not have only makes them seem nearer than they are.
-        let is_clear = estimate.evidence.is_some_and(|of| of.deviations > CLEAR_DEVIATIONS);
-        let counts = |w: &&Warning| !(is_clear && matches!(w, Warning::NoiseOverstated { .. }));
+        let is_clear = estimate.evidence.is_some_and(|of| of.deviations >= CLEAR_DEVIATIONS);
         let doubt = if estimate.probability <= self.accept {
-            self.doubt((a, b), &local, warnings.iter().filter(counts))
+            let counting = warnings.iter().filter(|warning| counts(warning, is_clear));
+            self.doubt((a, b), &local, counting)
         } else {
             None
         };
@@ -91,16 +96,18 @@ impl Terms {
     }
 
     /// The gravest reason not to believe that a pair is free at a pose, if it should read so, and the
-    /// warnings about it.
+    /// warnings about it; `is_clear` says that they are no fewer than [`CLEAR_DEVIATIONS`] apart.
     pub(crate) fn doubt_at(
         &self,
         (a, b): (Shape<'_>, Shape<'_>),
         a_from_b: &Pose,
+        is_clear: bool,
     ) -> (Option<Undecided>, Vec<Warning>) {
         let local = a.local_from(&b, a_from_b);
         let unseen = unseen(a, b, &local);
         let warnings = doubts((a, b), &local, unseen.as_ref(), &self.safeguards);
-        (self.doubt((a, b), &local, warnings.iter()), warnings)
+        let counting = warnings.iter().filter(|warning| counts(warning, is_clear));
+        (self.doubt((a, b), &local, counting), warnings)
     }
 
     fn doubt<'w>(
@@ -128,7 +135,8 @@ impl Terms {
     pub(crate) fn may_doubt(&self, (a, b): (Shape<'_>, Shape<'_>)) -> bool {
         let is_of_a = |warning: &&Warning| warning.body() == Some(Which::A);
         let warnings = doubts((a, b), &Pose::identity(), None, &self.safeguards);
-        let mut of_a = warnings.iter().filter(is_of_a);
+        // Pairs that nobody looks at are clear of each other.
+        let mut of_a = warnings.iter().filter(is_of_a).filter(|warning| counts(warning, true));
         is_image(a) || of_a.any(|warning| self.reason(warning).is_some())
     }
 

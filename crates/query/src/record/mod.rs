@@ -6,7 +6,7 @@ mod estimate;
 mod evidence;
 mod point;
 
-pub(crate) use ask::Terms;
+pub(crate) use ask::{CLEAR_DEVIATIONS, Terms};
 pub use closeness::Closeness;
 pub(crate) use estimate::{Estimate, Places};
 pub(crate) use evidence::Evidence;

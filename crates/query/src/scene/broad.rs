@@ -78,7 +78,7 @@ impl BroadPhase {
             Ok(None) if self.nothing_is_free => {}
             Ok(None) | Err(_) => return Some(f64::INFINITY),
         }
-        self.terms.doubt_at((shape_a, shape_b), a_from_b).0.map(|_| f64::INFINITY)
+        self.terms.doubt_at((shape_a, shape_b), a_from_b, true).0.map(|_| f64::INFINITY)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::report::Stats;
 use super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use super::leaves::Leaves;
 use super::meeting::deviations_beyond;
+use super::trees::Trees;
 
 /// What a search beyond a margin found.
 #[derive(Debug, Clone, Copy)]
@@ -35,10 +36,10 @@ pub(crate) fn least_beyond<'a>(
     // A margin is told without what it cost.
     let mut stats = Stats::default();
     let motion = Motion::from(a_from_b);
-    let trees = (a.shape().tree(), b.shape().tree());
+    let mut trees = Trees::of(a, b);
     let sought = Sought { within: MOST_DEVIATIONS, margin, crossings: false, drift: None };
     let mut leaves: (Leaves<'a>, Leaves<'a>) = Default::default();
-    let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
+    let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
         let leaf_a = leaves.0.get_or_load(pair.a, || Leaf::load(a, pair.a, None, &mut stats));
         let load_b = || Leaf::load(b, pair.b, Some(&motion), &mut stats);
         let leaf_b = leaves.1.get_or_load(pair.b, load_b);
@@ -47,7 +48,9 @@ pub(crate) fn least_beyond<'a>(
             return SurfaceFlow::Stop;
         }
         // Of pairs whose boxes are within the margin no more is known than that: all are looked at.
-        SurfaceFlow::Within(least.max(f64::MIN_POSITIVE))
+        let within = least.max(f64::MIN_POSITIVE);
+        trees.count_pair([leaves.0.len(), leaves.1.len()]);
+        trees.flow(within, &mut stats, || clock.is_over())
     })?;
     let is_complete = !outcome.stopped || least <= -MOST_DEVIATIONS;
     Ok(Beyond { deviations: least, is_complete })

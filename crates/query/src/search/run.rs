@@ -75,15 +75,9 @@ pub(crate) fn search<'a>(
         if is_enough(deviations, clearness) {
             return SurfaceFlow::Stop;
         }
-        let within = found.deviations_of_interest();
         trees.count_pair([found.leaves_a.len(), found.leaves_b.len()]);
-        if !trees.are_loose() {
-            return SurfaceFlow::Within(within);
-        }
-        match trees.fit(stats, || is_enough(deviations, clearness)) {
-            Some((a, b)) => SurfaceFlow::WithinBy(within, [a, b]),
-            None => SurfaceFlow::Stop,
-        }
+        let within = found.deviations_of_interest();
+        trees.flow(within, stats, || is_enough(deviations, clearness))
     })?;
     stats.nodes_visited += outcome.nodes_visited;
     found.at_least = found.at_least.min(outcome.apart);

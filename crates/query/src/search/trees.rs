@@ -3,7 +3,7 @@
 //! What a tree knows of leaves whose surface nobody has seen is loose. Where the noise is not small
 //! beside a body, such leaves all reach one another, and a search comes by nearly every pair of them.
 
-use cloudtouch_bvh::Tree;
+use cloudtouch_bvh::{SurfaceFlow, Tree};
 
 use crate::body::BodyRef;
 use crate::report::Stats;
@@ -45,19 +45,32 @@ impl<'a> Trees<'a> {
         self.leaves = leaves;
     }
 
+    /// How a search goes on within so many deviations: by trees that are fitted, where it comes by too much; not
+    /// where the time is over before they are.
+    pub(super) fn flow(
+        &mut self,
+        within: f64,
+        stats: &mut Stats,
+        is_over: impl Fn() -> bool,
+    ) -> SurfaceFlow<'a> {
+        if !self.are_loose() {
+            return SurfaceFlow::Within(within);
+        }
+        match self.fit(stats, is_over) {
+            Some(fitted) => SurfaceFlow::WithinBy(within, fitted),
+            None => SurfaceFlow::Stop,
+        }
+    }
+
     /// Whether the search had better go on by trees that are fitted. This hangs on bodies and pose alone, not
     /// on what was asked before.
-    pub(super) fn are_loose(&self) -> bool {
+    fn are_loose(&self) -> bool {
         let [of_a, of_b] = self.leaves;
         self.pairs > PAIRS_OF_LEAF * (of_a + of_b) && (self.is_loose(0) || self.is_loose(1))
     }
 
     /// The trees from now on; `None` where the time is over before they are fitted.
-    pub(super) fn fit(
-        &mut self,
-        stats: &mut Stats,
-        is_over: impl Fn() -> bool,
-    ) -> Option<(&'a Tree, &'a Tree)> {
+    fn fit(&mut self, stats: &mut Stats, is_over: impl Fn() -> bool) -> Option<[&'a Tree; 2]> {
         for side in [0, 1] {
             if !self.is_loose(side) {
                 continue;
@@ -70,7 +83,7 @@ impl<'a> Trees<'a> {
                 None => {}
             }
         }
-        Some(self.both())
+        Some(self.trees)
     }
 
     /// Whether a tree that can be fitted has been seen in large part; of its nodes half are leaves.

@@ -11,6 +11,7 @@ use crate::judge::MOST_DEVIATIONS;
 use crate::report::Stats;
 
 use super::super::around::{Around, OfMesh};
+use super::super::trees::Trees;
 use super::drifts::Drifts;
 use super::facets::may_touch;
 use super::gather::{
@@ -52,17 +53,19 @@ pub(crate) fn reach_of<'a>(
         passages: Passages::default(),
         around: Around::default(),
     };
-    let trees = (a.shape().tree(), b.shape().tree());
+    let mut trees = Trees::of(a, b);
     let is_exact = matches!((a, b), (BodyRef::Mesh(_), BodyRef::Mesh(_)));
     let sought =
         Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: !is_exact, drift: Some(*drift) };
-    let outcome = visit_surfaces(trees, a_from_b, sought, |pair| {
+    let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
         stats.leaf_pairs += 1;
         way.look_at(&pair, stats);
-        if is_enough(way.deviations, way.passages.last_clearness()) {
+        let (deviations, clearness) = (way.deviations, way.passages.last_clearness());
+        if is_enough(deviations, clearness) {
             return SurfaceFlow::Stop;
         }
-        SurfaceFlow::Within(way.deviations)
+        trees.count_pair([way.leaves.0.len(), way.leaves.1.len()]);
+        trees.flow(deviations, stats, || is_enough(deviations, clearness))
     })?;
     stats.nodes_visited += outcome.nodes_visited;
     let clearness = way.passages.clearness();
