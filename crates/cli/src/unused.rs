@@ -44,7 +44,7 @@ pub(crate) fn check(common: &CommonArguments, files: &[(Role, bool)]) -> Result<
     Ok(())
 }
 
-/// Why what a file says of the sensor of a mesh is refused.
+/// What is wrong with a sensor that a file gives a mesh.
 pub(crate) fn of_a_mesh(field: &str, file: &str) -> String {
     format!("`{field}` is of a cloud, and {file} is a mesh, which has no sensor: leave it out")
 }

@@ -50,6 +50,7 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     sensors_for(arguments).check(&file)?;
     warn_of_same_names(arguments, &file);
     let bodies = prepare_all::<P::Cloud>(arguments, good())?;
+    warn_of_sensors_of_meshes(arguments, good(), &bodies);
     let progress = progress_bar(file.cases.len(), "queries");
     let mut table = Table::new(&file.cases, arguments.common.margin);
     let mut failed = false;
@@ -123,6 +124,25 @@ fn warn_of_same_names(arguments: &BatchArguments, file: &CaseFile) {
     }
 }
 
+/// Cases are often written by programs, the same fields for clouds and meshes: one is told, and none refused.
+fn warn_of_sensors_of_meshes<'a, C: body::PreparedCloud>(
+    arguments: &BatchArguments,
+    mut cases: impl Iterator<Item = &'a Case>,
+    bodies: &Bodies<C>,
+) {
+    let found = cases.find_map(|case| {
+        let given = [case.scene_sensor.is_some(), case.object_sensor.is_some()];
+        let fields = ["scene_sensor", "object_sensor"].into_iter().zip(given);
+        fields.zip(keys(arguments, case)).find_map(|((field, is_given), key)| {
+            let body = bodies.get(&key)?.as_ref().ok()?;
+            (is_given && body.is_mesh()).then(|| unused::of_a_mesh(field, &body.input.file))
+        })
+    });
+    if let Some(words) = found {
+        tracing::warn!("{}: {words}", arguments.cases.display());
+    }
+}
+
 /// What was taken for the sensor of each file where nothing was said.
 fn guessed<C: body::PreparedCloud>(bodies: &Bodies<C>) -> String {
     let input = |loaded: &Loaded<C>| {
@@ -148,13 +168,6 @@ fn answer<'a, P: body::Path>(
         None => Err(format!("{}: not prepared", key.0.display())),
     });
     let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
-    let sensors =
-        [("scene_sensor", case.scene_sensor, scene), ("object_sensor", case.object_sensor, object)];
-    for (field, sensor, body) in sensors {
-        if sensor.is_some() && body.is_mesh() {
-            return Err(unused::of_a_mesh(field, &body.input.file));
-        }
-    }
     let (report, nearness) = query
         .ask_within(&scene.body, &object.body, pose, arguments.common.margin)
         .map_err(|error| error.to_string())?;
