@@ -1,33 +1,17 @@
 //! The `cloudtouch` command: queries, paths, scenes, robots, batches, file information and a demo.
 
-mod answer;
+mod answers;
 mod args;
-mod batch_page;
-mod batch_table;
 mod body;
 mod commands;
-mod doubt;
-mod gradient;
 mod inside;
 mod interrupt;
 mod load;
 mod margin;
 mod ordered;
 mod output;
-mod page;
-mod path_answer;
-mod path_file;
-mod path_page;
-mod penetration;
-mod per_point;
+mod pages;
 mod picture;
-mod pose_file;
-mod print;
-mod report_text;
-mod robot_answer;
-mod scene_answer;
-mod sensor_for;
-mod settings_file;
 mod unused;
 
 use std::io::{IsTerminal as _, Write as _};
@@ -35,7 +19,7 @@ use std::process::ExitCode;
 
 use clap::CommandFactory as _;
 use clap::error::ErrorKind;
-use cloudtouch_cli::{case_file, sensor};
+use cloudtouch_cli::sensor;
 
 use args::{Arguments, Command};
 

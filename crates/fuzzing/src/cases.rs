@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use cloudtouch_cli::case_file;
+use cloudtouch_cli::files::case;
 
 /// No message is longer: it holds an excerpt of the file, never the file.
 const LONGEST_MESSAGE: usize = 450;
@@ -12,7 +12,7 @@ const LONGEST_MESSAGE: usize = 450;
 /// # Panics
 /// When a case that was taken has a pose that is not finite, or an error says nothing.
 pub fn case_file(bytes: &[u8]) {
-    match case_file::parse(bytes, Path::new("folder")) {
+    match case::parse(bytes, Path::new("folder")) {
         Ok(file) => {
             for (id, case) in file.cases {
                 match case {

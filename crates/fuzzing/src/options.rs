@@ -2,8 +2,8 @@
 
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
+use cloudtouch_cli::files::pose;
 use cloudtouch_cli::numbers::{self, Rigid, Triple, Turn};
-use cloudtouch_cli::pose_text;
 
 /// The longest message beside what it quotes, which is no more than a few times the text itself.
 const LONGEST_BESIDE: usize = 500;
@@ -14,7 +14,7 @@ const LONGEST_BESIDE: usize = 500;
 /// When what is taken is not finite or not rigid, or an error says nothing or quotes far too much.
 pub fn options(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    check(text, pose_text::parse(text).map_err(|error| format!("{error:#}")), is_rigid);
+    check(text, pose::parse(text).map_err(|error| format!("{error:#}")), is_rigid);
     check(text, numbers::rigid(text), |Rigid(pose)| is_rigid(pose));
     check(text, numbers::triple(text), |Triple(numbers)| numbers.iter().all(|v| v.is_finite()));
     for turn in [numbers::turn_in_radians, numbers::turn_in_degrees, numbers::quaternion] {

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::Args;
 use cloudtouch::Verdict;
 
-use crate::print;
+use crate::answers::print;
 
 /// What path, scene and robot share.
 #[derive(Debug, Args)]

@@ -8,8 +8,8 @@ use cloudtouch::{FilterSettings, OutlierSettings, PaperSettings, Pooling, QueryS
 use cloudtouch_cli::numbers::{self, Rigid};
 use cloudtouch_io::LengthUnit;
 
+use crate::load::settings::{self, SettingsFile};
 use crate::sensor::SensorChoice;
-use crate::settings_file::{self, SettingsFile};
 
 use super::caution::{CautionArguments, EffortArguments, Refine};
 use super::limits::LimitArguments;
@@ -46,7 +46,7 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_name = "B", value_parser = parse_reject, allow_negative_numbers = true, help_heading = "Estimate")]
     pub reject: Option<f64>,
     /// Paper: its settings, as `cloudtouch settings` prints them
-    #[arg(long, value_name = "FILE", value_parser = settings_file::read,
+    #[arg(long, value_name = "FILE", value_parser = settings::read,
           help_heading = "Estimate")]
     pub settings: Option<SettingsFile>,
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]

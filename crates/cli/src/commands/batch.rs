@@ -11,17 +11,18 @@ use cloudtouch_io::write_atomically;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-use crate::answer::{Answer as Line, json_error_line};
+use crate::answers::per_point::Details;
+use crate::answers::print;
+use crate::answers::query::{Answer as Line, json_error_line};
+use crate::answers::table::Table;
 use crate::args::{BatchArguments, ModeName};
-use crate::batch_page::{Answered, Shown};
-use crate::batch_table::Table;
 use crate::body;
-use crate::case_file::{self, Case, CaseFile};
+use crate::load::sensor_for::SensorsFor;
 use crate::load::{self, Input, Loaded, Role};
-use crate::per_point::Details;
+use crate::pages::batch::{Answered, Shown};
 use crate::sensor::SensorChoice;
-use crate::sensor_for::SensorsFor;
-use crate::{ordered, output, print, unused};
+use crate::{ordered, output, unused};
+use cloudtouch_cli::files::case::{self, Case, CaseFile};
 
 /// A file in a role seen by a sensor (by its spec, which names it fully).
 type BodyKey = (PathBuf, Role, String);
@@ -39,7 +40,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
 }
 
 fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCode> {
-    let file = case_file::read(&arguments.cases, arguments.common.limits.read_limits().bytes)?;
+    let file = case::read(&arguments.cases, arguments.common.limits.read_limits().bytes)?;
     let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
     let files = good().flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
     let settings = arguments.common.settings.as_ref().map(|file| &file.path);

@@ -9,13 +9,15 @@ use anyhow::{Context, Result};
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{PaperQuery, PaperSettings, Placement, Query, QuerySettings, Report, Verdict};
+use cloudtouch_cli::files::case;
 use cloudtouch_io::{LengthUnit, ReadLimits, pcd};
 use cloudtouch_page::{Fact, Page, View};
 
+use crate::answers::print;
 use crate::args::{DemoArguments, ModeName};
 use crate::body::{self, Body, PreparedCloud};
 use crate::load::{Input, Loaded};
-use crate::{case_file, output, page, picture, print, report_text};
+use crate::{answers, output, pages, picture};
 
 const ROOM: &[u8] = include_bytes!("../../demo/room.pcd");
 const PIANO: &[u8] = include_bytes!("../../demo/piano.pcd");
@@ -60,7 +62,7 @@ fn run_by<P: body::Path>(
         let _ = write!(
             text,
             "\nPose {number} in full:\n{}\n",
-            report_text::text(report, placement, shows_work)
+            answers::text::text(report, placement, shows_work)
         );
         if let Some(path) = &arguments.ply {
             picture::write(path, (&room.body, None), (&piano.body, None), pose, report)?;
@@ -81,7 +83,7 @@ fn write_page<C: PreparedCloud>(
     bodies: [&Loaded<C>; 2],
     poses: &[Answered],
 ) -> Result<()> {
-    let drawn = bodies.map(|body| page::body(body, None, &ReadLimits::default()));
+    let drawn = bodies.map(|body| pages::body(body, None, &ReadLimits::default()));
     let views = poses.iter().enumerate().map(|(index, pose)| View {
         name: format!("pose {}", index + 1),
         scene: 0,
@@ -98,7 +100,7 @@ fn write_page<C: PreparedCloud>(
         start: most_open(poses).map_or(0, |(number, _)| number - 1),
         ..Page::default()
     };
-    page::write(path, &page)
+    pages::write(path, &page)
 }
 
 /// A pose with what is true of it and what was answered.
@@ -141,7 +143,7 @@ fn poses<P: body::Path>(
     room: &Body<P::Cloud>,
     piano: &Body<P::Cloud>,
 ) -> Result<Vec<Answered>> {
-    let file = case_file::parse(CASES, Path::new(""))?;
+    let file = case::parse(CASES, Path::new(""))?;
     let answered = file.cases.into_iter().map(|(id, case)| {
         let case = case.with_context(|| id.clone())?;
         let truth = case.signed_distance.with_context(|| format!("{id}: no true distance"))?;

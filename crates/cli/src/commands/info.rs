@@ -8,9 +8,9 @@ use cloudtouch::noise::{Neighborhoods, typical_spacing};
 use cloudtouch::{FilterSettings, Mesh, filter};
 use cloudtouch_io::Geometry;
 
+use crate::answers::print;
 use crate::args::InfoArguments;
 use crate::load::{self, SUSPICIOUS_MESH_SIZE, Units};
-use crate::print;
 use crate::sensor::{Chosen, suggestion};
 
 /// Points whose neighbours tell the spacing.

@@ -7,10 +7,11 @@ use anyhow::Result;
 use cloudtouch::geom::Pose;
 use cloudtouch::{Cloud, Query};
 
+use crate::answers::print;
 use crate::args::PathArguments;
 use crate::inside::with_points_inside;
 use crate::load::{self, Role};
-use crate::{output, page, path_answer, path_file, path_page, print, unused};
+use crate::{answers, output, pages, unused};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -21,7 +22,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let inputs = files.into_iter().chain(&common.robot).map(PathBuf::as_path);
     let output: Vec<&Path> = arguments.html.iter().map(PathBuf::as_path).collect();
     output::check(&output, inputs, arguments.force)?;
-    let (path, doubt) = path_file::read(&arguments.poses, arguments.screw)?;
+    let (path, doubt) = load::path::read(&arguments.poses, arguments.screw)?;
     let scene = load::bodies::<Cloud>(
         &[arguments.scene.as_path()],
         Role::Scene,
@@ -37,19 +38,19 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     if let Some(output) = &arguments.html {
         let limits = common.limits.read_limits();
         let bodies = [
-            page::body(&scene, Some(&arguments.scene), &limits)?,
-            page::body(&object, Some(&arguments.object), &limits)?,
+            pages::body(&scene, Some(&arguments.scene), &limits)?,
+            pages::body(&object, Some(&arguments.object), &limits)?,
         ];
         let (scene, object) = (&scene.body, &object.body);
         let ask = |pose: &Pose| query.run(scene, object, pose);
         let colored = |report, pose: &Pose| with_points_inside(report, (scene, object), pose);
-        path_page::write(output, bodies, &swept, &path, ask, colored)?;
+        pages::path::write(output, bodies, &swept, &path, ask, colored)?;
     }
     let text = if arguments.answer.json {
-        path_answer::json_line(&swept, doubt.as_ref(), [&scene.input, &object.input])?
+        answers::path::json_line(&swept, doubt.as_ref(), [&scene.input, &object.input])?
     } else {
         let bodies = [print::body("scene", &scene), print::body("object", &object)];
-        format!("{}\n{}", bodies.join("\n"), path_answer::text(&swept))
+        format!("{}\n{}", bodies.join("\n"), answers::path::text(&swept))
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(arguments.answer.exit_code(swept.verdict, false))

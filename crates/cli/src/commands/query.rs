@@ -11,14 +11,15 @@ use cloudtouch_io::read_colors_within;
 use cloudtouch_page::{Fact, Page, View};
 use nalgebra::UnitQuaternion;
 
-use crate::answer::Answer;
+use crate::answers::doubt::Doubt;
+use crate::answers::per_point::{self, Details};
+use crate::answers::print;
+use crate::answers::query::Answer;
 use crate::args::{ModeName, PoseArguments, QueryArguments};
 use crate::body::{self, Body, PreparedCloud};
-use crate::doubt::Doubt;
 use crate::inside::with_points_inside;
 use crate::load::{self, Loaded, Role};
-use crate::per_point::{self, Details};
-use crate::{gradient, output, page, penetration, picture, pose_file, print, report_text, unused};
+use crate::{answers, output, pages, picture, unused};
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -101,9 +102,9 @@ fn run_by<P: body::Path>(
     }
     let more: Vec<Fact> = nearness
         .as_ref()
-        .map(report_text::nearness)
+        .map(answers::text::nearness)
         .into_iter()
-        .chain(pose_uncertainty.as_ref().map(report_text::over_poses))
+        .chain(pose_uncertainty.as_ref().map(answers::text::over_poses))
         .collect();
     if arguments.html.is_some() {
         let answer = (&shown, &placement, &more[..]);
@@ -124,12 +125,12 @@ fn run_by<P: body::Path>(
         let mut parts = vec![
             print::body("scene", &scene),
             print::body("object", &object),
-            report_text::text(&report, &placement, shows_work),
+            answers::text::text(&report, &placement, shows_work),
         ];
-        parts.extend(more.iter().map(report_text::line));
-        parts.extend(slopes.as_ref().map(gradient::text));
+        parts.extend(more.iter().map(answers::text::line));
+        parts.extend(slopes.as_ref().map(answers::gradient::text));
         if let Some(probability) = arguments.penetration {
-            parts.push(penetration::text(out.flatten().as_ref(), probability));
+            parts.push(answers::penetration::text(out.flatten().as_ref(), probability));
         }
         if !arguments.pose.is_given() {
             parts.push("pose                   not given: the identity".to_owned());
@@ -151,8 +152,10 @@ fn write_page<C: PreparedCloud>(
     let limits = arguments.common.limits.read_limits();
     // Rows of several scans are not those of the first file.
     let scan = Some(arguments.scene.as_path()).filter(|_| arguments.also.is_empty());
-    let bodies =
-        [page::body(scene, scan, &limits)?, page::body(object, Some(&arguments.object), &limits)?];
+    let bodies = [
+        pages::body(scene, scan, &limits)?,
+        pages::body(object, Some(&arguments.object), &limits)?,
+    ];
     let view = View {
         name: "The pose asked about".to_owned(),
         scene: 0,
@@ -164,7 +167,7 @@ fn write_page<C: PreparedCloud>(
     };
     let title = format!("{} in {}", bodies[1].name, bodies[0].name);
     let page = Page { title, bodies: bodies.into(), views: vec![view], ..Page::default() };
-    page::write(path, &page)
+    pages::write(path, &page)
 }
 
 /// Gives each row of the scene its own κ, where a file says so.
@@ -184,7 +187,7 @@ fn with_kappas<C: PreparedCloud>(
 
 fn pose(arguments: &PoseArguments) -> Result<Pose> {
     if let Some(path) = &arguments.pose {
-        return pose_file::read(path);
+        return load::pose::read(path);
     }
     let offset = arguments.translate.map_or(Vector3::zeros(), |Triple(offset)| offset.into());
     let turn = arguments.turn().map_or(UnitQuaternion::identity(), |turn| turn.0);

@@ -5,8 +5,8 @@ use cloudtouch::geom::PointCloud;
 use cloudtouch_io::recording::{RecordedScan, Recording, ScanName, Topic};
 use cloudtouch_io::scaled_cloud;
 
+use crate::answers::print::one_line;
 use crate::args::InfoArguments;
-use crate::print::one_line;
 
 /// The topics of a recording, or where and when the scan named was taken and what `describe_cloud`
 /// says of it.

@@ -6,23 +6,24 @@ use std::process::ExitCode;
 use anyhow::{Context as _, Result, bail};
 use cloudtouch::Query;
 use cloudtouch::geom::Pose;
-use cloudtouch_cli::joints_file::{self, Joints};
+use cloudtouch_cli::files::joints::{self, Joints};
 use cloudtouch_robot::{Robot, RobotChecker, SURROUNDINGS, Touching};
 
+use crate::answers::print;
+use crate::answers::robot::Asked;
 use crate::args::RobotArguments;
 use crate::body::Body;
 use crate::load::{self, Role};
-use crate::robot_answer::Asked;
-use crate::{pose_file, print, robot_answer, scene_answer, unused};
+use crate::{answers, unused};
 
 pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let common = &arguments.common;
     let limits = common.limits.read_limits();
     let query = Query::new(common.query_settings())?;
     load::check(&arguments.scan)?;
-    let path = joints_file::read(&arguments.robot.joints, limits.bytes)?;
+    let path = joints::read(&arguments.robot.joints, limits.bytes)?;
     let base =
-        arguments.robot.base_pose.as_deref().map(pose_file::read).transpose()?.unwrap_or_default();
+        arguments.robot.base_pose.as_deref().map(load::pose::read).transpose()?.unwrap_or_default();
     let mut robot =
         Robot::from_urdf_within(&arguments.robot.urdf, &arguments.robot.package, &limits)?;
     check_packages(arguments, &robot)?;
@@ -33,7 +34,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let named = || arguments.robot.joints.display().to_string();
     for (index, joints) in path.iter().enumerate() {
         let posed = robot.link_poses(joints).map(|_| ()).map_err(anyhow::Error::from);
-        let placed = if path.len() > 1 { posed.context(joints_file::place(index)) } else { posed };
+        let placed = if path.len() > 1 { posed.context(joints::place(index)) } else { posed };
         placed.with_context(named)?;
     }
     let links = seen(arguments, &robot, &base)?;
@@ -59,17 +60,18 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let (text, verdict, failed) = if let [joints] = &path[..] {
         let checked = checker.check(&query, joints)?;
         let text = if arguments.answer.json {
-            robot_answer::json_line(&checked, threshold, bodies, asked)?
+            answers::robot::json_line(&checked, threshold, bodies, asked)?
         } else {
-            [words, robot_answer::worst(&checked), scene_answer::text(&checked, threshold)].concat()
+            [words, answers::robot::worst(&checked), answers::scene::text(&checked, threshold)]
+                .concat()
         };
         (text, checked.verdict(), checked.pairs.iter().any(|pair| pair.answer.is_err()))
     } else {
         let checked = checker.check_path(&query, &path, TOLERANCE)?;
         let text = if arguments.answer.json {
-            robot_answer::path_line(&checked, threshold, bodies, asked)?
+            answers::robot::path_line(&checked, threshold, bodies, asked)?
         } else {
-            words + &robot_answer::path_text(&checked)
+            words + &answers::robot::path_text(&checked)
         };
         let pairs = checked.given.iter().flat_map(|at| &at.pairs);
         let mut pairs = pairs.chain(checked.stopped.as_ref().and_then(|at| at.pair.as_ref()));
@@ -112,7 +114,7 @@ fn seen(
 ) -> Result<Vec<cloudtouch::SelfMesh>> {
     let Some(path) = &arguments.robot.scan_joints else { return Ok(Vec::new()) };
     let named = || path.display().to_string();
-    let positions = joints_file::read(path, arguments.common.limits.read_limits().bytes)?;
+    let positions = joints::read(path, arguments.common.limits.read_limits().bytes)?;
     let [joints]: [Joints; 1] = positions
         .try_into()
         .map_err(|_| anyhow::anyhow!("a list: a scan is taken at one position"))

@@ -8,15 +8,16 @@ use std::sync::Arc;
 use anyhow::{Context as _, Result, anyhow, ensure};
 use cloudtouch::geom::{Point3, TriangleMesh};
 use cloudtouch::{Cloud, Mesh, Query, QuerySettings, Scene, SceneError};
-use cloudtouch_cli::scene_file::{self, BodyEntry, SceneFile};
+use cloudtouch_cli::files::scene::{self, BodyEntry, SceneFile};
 use cloudtouch_io::LengthUnit;
 use rayon::prelude::*;
 
+use crate::answers::print;
 use crate::args::{CommonArguments, SceneArguments};
 use crate::body::Body;
 use crate::load::{self, Input, Loaded, Role};
 use crate::sensor::SensorChoice;
-use crate::{print, scene_answer, unused};
+use crate::{answers, unused};
 
 /// A file, the unit it is said to be in and the sensor that saw it, by its spec.
 type BodyKey = (PathBuf, Option<LengthUnit>, String);
@@ -32,7 +33,7 @@ struct Prepared {
 pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     let common = &arguments.common;
     let named = || arguments.scene.display().to_string();
-    let file = scene_file::read(&arguments.scene, common.limits.read_limits().bytes)?;
+    let file = scene::read(&arguments.scene, common.limits.read_limits().bytes)?;
     let query = Query::new(settings(common, &file).with_context(named)?)?;
     // What can be told without work comes first.
     let mut scene = outline(&file).with_context(named)?;
@@ -48,11 +49,11 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     let threshold = query.settings().reject;
     let text = if arguments.answer.json {
         let inputs = bodies.iter().map(|(name, prepared)| (*name, &prepared.input)).collect();
-        scene_answer::json_line(&checked, threshold, inputs)?
+        answers::scene::json_line(&checked, threshold, inputs)?
     } else {
         let lines =
             file.bodies.iter().map(|of| format!("{}\n", bodies[of.name.as_str()].words_of(of)));
-        lines.collect::<String>() + &scene_answer::text(&checked, threshold)
+        lines.collect::<String>() + &answers::scene::text(&checked, threshold)
     };
     print::to_stdout(&format!("{text}\n"))?;
     let has_failed = checked.pairs.iter().any(|pair| pair.answer.is_err());

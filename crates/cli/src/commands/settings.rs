@@ -4,9 +4,10 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 
-use crate::{print, settings_file};
+use crate::answers::print;
+use crate::load;
 
 pub(crate) fn run() -> Result<ExitCode> {
-    print::to_stdout(settings_file::DEFAULTS)?;
+    print::to_stdout(load::settings::DEFAULTS)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
-use cloudtouch_cli::case_file;
+use cloudtouch_cli::files::case;
 use cloudtouch_geom::Pose;
 use cloudtouch_io::ReadLimits;
 
@@ -40,7 +40,7 @@ pub(crate) fn folder(root: &Path, data: &Path) -> Option<PathBuf> {
 
 /// All cases of a file, in order.
 pub(crate) fn read(path: &Path) -> Result<Vec<Labelled>> {
-    let cases = case_file::read(path, ReadLimits::default().bytes)?.cases;
+    let cases = case::read(path, ReadLimits::default().bytes)?.cases;
     ensure!(!cases.is_empty(), "{}: no cases", path.display());
     cases.into_iter().map(|(id, case)| labelled(&id, case?).with_context(|| id)).collect()
 }
@@ -63,7 +63,7 @@ pub(crate) fn at_advance(series: &[(f64, Labelled)], wanted: f64) -> Result<usiz
     found.with_context(|| format!("no case of the series is {wanted} mm past first contact"))
 }
 
-fn labelled(id: &str, case: case_file::Case) -> Result<Labelled> {
+fn labelled(id: &str, case: case::Case) -> Result<Labelled> {
     let written = &case.written;
     let measured = written["measured"]["min_signed_distance_m"].as_f64();
     let advance = written["advance_past_first_contact_m"].as_f64();

@@ -2,9 +2,9 @@
 
 use anyhow::{Context, Result};
 use cloudtouch::Path;
-use cloudtouch_cli::path_text::{self, PathText};
+use cloudtouch_cli::files::path::{self, PathText};
 
-use crate::doubt::Doubt;
+use crate::answers::doubt::Doubt;
 
 /// The poses of a file, each joined to the next by a screw or by a straight way and slerp; and what is
 /// to be doubted of them, which has been warned of.
@@ -12,7 +12,7 @@ pub(crate) fn read(file: &std::path::Path, is_screw: bool) -> Result<(Path, Opti
     let named = || file.display().to_string();
     let text = std::fs::read_to_string(file)
         .with_context(|| format!("{}: cannot read the path", file.display()))?;
-    let PathText { poses, half_turns } = path_text::parse(&text).with_context(named)?;
+    let PathText { poses, half_turns } = path::parse(&text).with_context(named)?;
     let doubt = half_turns.map(|(line, row)| Doubt::half_turns(line, &row));
     if let Some(doubt) = &doubt {
         tracing::warn!("{}: {}", file.display(), doubt.words);

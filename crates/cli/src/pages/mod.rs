@@ -1,14 +1,17 @@
 //! `--html`: what a command knows, as a report page shows it.
 
+pub(crate) mod batch;
+pub(crate) mod path;
+
 use std::path::Path;
 
 use anyhow::Result;
 use cloudtouch_io::{ReadLimits, read_colors_within, write_atomically};
 use cloudtouch_page::{Body as Drawn, Page, Shape};
 
+use crate::answers::print;
 use crate::body::{Body, PreparedCloud};
 use crate::load::Loaded;
-use crate::print;
 
 /// Writes a page whole or not at all.
 pub(crate) fn write(path: &Path, page: &Page<'_>) -> Result<()> {

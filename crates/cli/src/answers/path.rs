@@ -6,11 +6,11 @@ use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Undecided, Verdict, Warn
 use cloudtouch_page::Fact;
 use serde::Serialize;
 
-use crate::answer::matrix;
-use crate::doubt::Doubt;
+use crate::answers::doubt::Doubt;
+use crate::answers::print::{probability, undecided};
+use crate::answers::query::matrix;
+use crate::answers::text::labelled;
 use crate::load::Input;
-use crate::print::{probability, undecided};
-use crate::report_text::labelled;
 
 #[derive(Serialize)]
 struct Line<'a> {

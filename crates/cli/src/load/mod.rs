@@ -1,5 +1,10 @@
 //! From files to bodies ready for queries.
 
+pub(crate) mod path;
+pub(crate) mod pose;
+pub(crate) mod sensor_for;
+pub(crate) mod settings;
+
 use std::path::Path;
 use std::sync::Arc;
 

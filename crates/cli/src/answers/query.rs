@@ -5,10 +5,10 @@ use cloudtouch::geom::Pose;
 use cloudtouch::{Placement, Report};
 use serde::Serialize;
 
-use crate::doubt::Doubt;
+use crate::answers::doubt::Doubt;
+use crate::answers::per_point::Details;
 use crate::load::Input;
 use crate::margin::Nearness;
-use crate::per_point::Details;
 
 /// A report with where the object was.
 pub(crate) struct Answer<'a> {

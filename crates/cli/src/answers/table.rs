@@ -6,9 +6,9 @@ use std::path::Path;
 use anyhow::Result;
 use cloudtouch::{Report, Warning};
 
-use crate::case_file::Case;
+use crate::answers::print;
 use crate::margin::Nearness;
-use crate::print;
+use cloudtouch_cli::files::case::Case;
 
 /// Widths of the columns, and what the last line is made of.
 pub(crate) struct Table {

@@ -7,8 +7,8 @@ use anyhow::Result;
 use cloudtouch::{Checked, PairAnswer, Report, Verdict};
 use serde::Serialize;
 
+use crate::answers::print::{self, one_line, probability};
 use crate::load::Input;
-use crate::print::{self, one_line, probability};
 
 /// What a scene answers, in JSON.
 #[derive(Serialize)]

@@ -12,7 +12,7 @@ use crate::body::PreparedCloud;
 use crate::inside::with_points_inside;
 use crate::load::Loaded;
 use crate::margin::Nearness;
-use crate::{page, report_text};
+use crate::{answers, pages};
 
 /// A report with where the object was and what the files were taken for.
 pub(crate) struct Answered<'a, C> {
@@ -69,7 +69,7 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
                 *place = found.unwrap_or(known.len());
                 if found.is_none() {
                     known.push(loaded);
-                    bodies.push(page::body(loaded, Some(file), limits)?);
+                    bodies.push(pages::body(loaded, Some(file), limits)?);
                 }
             }
             views.push(View {
@@ -79,12 +79,12 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
                 scene_from_object: *answered.pose,
                 report: colored,
                 placement: Some(&answered.placement),
-                more: answered.nearness.as_ref().map(report_text::nearness).into_iter().collect(),
+                more: answered.nearness.as_ref().map(answers::text::nearness).into_iter().collect(),
             });
         }
         let title = format!("{} poses of {cases}", views.len());
         let notes = note.into_iter().collect();
-        page::write(path, &Page { title, summary, notes, bodies, views, start: 0 })
+        pages::write(path, &Page { title, summary, notes, bodies, views, start: 0 })
     }
 }
 

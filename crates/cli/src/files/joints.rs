@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result, bail};
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
 
-use crate::json_text::{as_written, shortened, without_bare_words};
+use crate::files::json::{as_written, shortened, without_bare_words};
 
 /// Positions of joints by name, rad or m.
 pub type Joints = BTreeMap<String, f64>;

@@ -10,8 +10,8 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 use serde_json::value::RawValue;
 
-use crate::case_fields;
-use crate::json_text::{matrix, shortened, without_bare_words};
+use crate::files::case_fields;
+use crate::files::json::{matrix, shortened, without_bare_words};
 use crate::sensor::SensorChoice;
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.

@@ -9,9 +9,9 @@ use cloudtouch_robot::PathChecked;
 use serde::Serialize;
 use serde_json::value::RawValue;
 
+use crate::answers::print::{one_line, probability};
+use crate::answers::scene::{self, Pair};
 use crate::load::Input;
-use crate::print::{one_line, probability};
-use crate::scene_answer::{self, Pair};
 
 #[derive(Serialize)]
 struct Line<'a> {
@@ -30,7 +30,7 @@ struct Line<'a> {
 #[derive(Serialize)]
 struct Position<'a> {
     #[serde(flatten)]
-    scene: scene_answer::Line<'a>,
+    scene: scene::Line<'a>,
     #[serde(flatten)]
     asked: Asked<'a>,
 }
@@ -71,7 +71,7 @@ pub(crate) fn json_line(
     bodies: BTreeMap<&str, &Input>,
     asked: Asked<'_>,
 ) -> Result<String> {
-    let scene = scene_answer::line(checked, threshold, bodies);
+    let scene = scene::line(checked, threshold, bodies);
     Ok(serde_json::to_string(&Position { scene, asked })?)
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn path_line(
     asked: Asked<'_>,
 ) -> Result<String> {
     let given = checked.given.iter().map(|at| {
-        let line = scene_answer::json_line(at, threshold, bodies.clone())?;
+        let line = scene::json_line(at, threshold, bodies.clone())?;
         Ok(RawValue::from_string(line)?)
     });
     let stopped = checked.stopped.as_ref().map(|at| Stopped {

@@ -7,7 +7,7 @@ use cloudtouch::geom::Pose;
 use cloudtouch::{AlongPath, QueryError, Report, Swept};
 use cloudtouch_page::{Body, MOST_VIEWS, Page, View};
 
-use crate::{page, path_answer};
+use crate::{answers, pages};
 
 /// A pose of the path that is shown.
 struct Shown {
@@ -23,7 +23,7 @@ fn insert(shown: &mut Vec<Shown>, at: &AlongPath, what: &str) {
     match shown.get_mut(index) {
         Some(same) if same.share == at.share => same.name = format!("{}: {what}", same.name),
         _ => {
-            let name = format!("At {} of the path: {what}", path_answer::percent(at.share));
+            let name = format!("At {} of the path: {what}", answers::path::percent(at.share));
             let (share, pose, report) = (at.share, at.pose, at.report.clone());
             shown.insert(index, Shown { share, name, pose, report });
         }
@@ -50,7 +50,7 @@ pub(crate) fn write(
         let name = format!(
             "Pose {} of {given}, at {} of the path",
             number + 1,
-            path_answer::percent(share)
+            answers::path::percent(share)
         );
         shown.push(Shown { share, name, pose, report: ask(&pose)? });
     }
@@ -77,11 +77,11 @@ pub(crate) fn write(
     });
     let page = Page {
         title: format!("{} along a path in {}", object.name, scene.name),
-        summary: path_answer::facts(swept),
+        summary: answers::path::facts(swept),
         notes: notes.into_iter().collect(),
         views: views.collect(),
         bodies: vec![scene, object],
         start,
     };
-    page::write(output, &page)
+    pages::write(output, &page)
 }

@@ -8,7 +8,7 @@ use cloudtouch_io::LengthUnit;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::json_text::{matrix, shortened, without_bare_words};
+use crate::files::json::{matrix, shortened, without_bare_words};
 
 /// A scene as its file says.
 #[derive(Debug, Clone, PartialEq)]

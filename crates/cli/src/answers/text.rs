@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use cloudtouch::{Placement, Report, Stats, UnderPoses, Within};
 use cloudtouch_page::{Fact, words};
 
+use crate::answers::print::{probability, undecided};
 use crate::margin::{Nearness, SHARE};
-use crate::print::{probability, undecided};
 
 /// A report for people shows this many contacts; JSON has them all.
 const CONTACTS_SHOWN: usize = 5;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
-use cloudtouch_cli::case_file::CaseFile;
+use cloudtouch_cli::files::case::CaseFile;
 
 use crate::sensor::SensorChoice;
 

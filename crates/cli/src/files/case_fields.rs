@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use serde_json::{Map, Value};
 
-use crate::near_name;
+use crate::files::near_name;
 
 /// Fields that an answer depends on: what nearly has one of these names is an error, all else is passed over.
 const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];

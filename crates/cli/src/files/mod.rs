@@ -1,0 +1,10 @@
+//! What the files of the tool say: the cases of a batch, a scene, a path, a pose, positions of joints.
+
+pub mod case;
+mod case_fields;
+pub mod joints;
+mod json;
+mod near_name;
+pub mod path;
+pub mod pose;
+pub mod scene;
