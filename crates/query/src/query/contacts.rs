@@ -3,7 +3,7 @@
 use crate::CONTACT_FLOOR;
 use crate::classifier::Clock;
 use crate::report::{Clearance, Contact};
-use crate::search::least_beyond;
+use crate::search::may_be_within;
 
 use super::parting::Partings;
 use super::spots::{Spot, Spots};
@@ -58,10 +58,8 @@ impl Spots<'_> {
     /// likeliest to meet are known worst, which need not be the nearest.
     pub(super) fn are_nearer_than(&self, spot: &Spot, clock: &Clock) -> bool {
         let least = spot.gap - CLEARLY * spot.std;
-        let found = || least_beyond(self.bodies, &self.pose, least, clock);
-        spot.is_beside
-            && least > 0.0
-            && found().is_ok_and(|found| found.deviations < 0.0 || !found.is_complete)
+        let is_one = || may_be_within(self.bodies, &self.pose, least, clock);
+        spot.is_beside && least > 0.0 && is_one().unwrap_or(true)
     }
 }
 

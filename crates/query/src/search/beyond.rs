@@ -24,36 +24,66 @@ pub(crate) struct Beyond {
     pub is_complete: bool,
 }
 
+/// Deviations that a search tells apart: more than `most` are none, and fewer than `enough` no better.
+struct Span {
+    most: f64,
+    enough: f64,
+}
+
 /// Looks for the two pieces that are most clearly within a margin (m) of each other, until the time is
 /// over. It does not end when two are likely enough: a wider margin could then be found less likely.
-pub(crate) fn least_beyond<'a>(
-    (a, b): (BodyRef<'a>, BodyRef<'a>),
+pub(crate) fn least_beyond(
+    bodies: (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
     margin: f64,
     clock: &Clock,
 ) -> Result<Beyond, QueryError> {
-    let mut least = MOST_DEVIATIONS;
+    let span = Span { most: MOST_DEVIATIONS, enough: -MOST_DEVIATIONS };
+    least_within(bodies, a_from_b, margin, span, clock)
+}
+
+/// Whether two pieces are nearer to each other than a margin (m), as far as that is known: ends at the
+/// first two, and where the time is over, which may have left some out.
+pub(crate) fn may_be_within(
+    bodies: (BodyRef<'_>, BodyRef<'_>),
+    a_from_b: &Pose,
+    margin: f64,
+    clock: &Clock,
+) -> Result<bool, QueryError> {
+    let span = Span { most: 0.0, enough: -f64::MIN_POSITIVE };
+    let found = least_within(bodies, a_from_b, margin, span, clock)?;
+    Ok(found.deviations < 0.0 || !found.is_complete)
+}
+
+/// The least deviations beyond a margin, within a span of them.
+fn least_within<'a>(
+    (a, b): (BodyRef<'a>, BodyRef<'a>),
+    a_from_b: &Pose,
+    margin: f64,
+    Span { most, enough }: Span,
+    clock: &Clock,
+) -> Result<Beyond, QueryError> {
+    let mut least = most;
     // A margin is told without what it cost.
     let mut stats = Stats::default();
     let motion = Motion::from(a_from_b);
     let mut trees = Trees::of(a, b);
-    let sought = Sought { within: MOST_DEVIATIONS, margin, crossings: false, drift: None };
+    // Of pairs whose boxes are within the margin no more is known than that: all are looked at.
+    let reach = |least: f64| least.max(f64::MIN_POSITIVE);
+    let sought = Sought { within: reach(most), margin, crossings: false, drift: None };
     let mut leaves: (Leaves<'a>, Leaves<'a>) = Default::default();
     let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
         let leaf_a = leaves.0.get_or_load(pair.a, || Leaf::load(a, pair.a, None, &mut stats));
         let load_b = || Leaf::load(b, pair.b, Some(&motion), &mut stats);
         let leaf_b = leaves.1.get_or_load(pair.b, load_b);
         least = least_of(leaf_a, leaf_b, margin, least).max(-MOST_DEVIATIONS);
-        if clock.is_over() || least <= -MOST_DEVIATIONS {
+        if clock.is_over() || least <= enough {
             return SurfaceFlow::Stop;
         }
-        // Of pairs whose boxes are within the margin no more is known than that: all are looked at.
-        let within = least.max(f64::MIN_POSITIVE);
         trees.count_pair([leaves.0.len(), leaves.1.len()]);
-        trees.flow(within, &mut stats, || clock.is_over())
+        trees.flow(reach(least), &mut stats, || clock.is_over())
     })?;
-    let is_complete = !outcome.stopped || least <= -MOST_DEVIATIONS;
-    Ok(Beyond { deviations: least, is_complete })
+    Ok(Beyond { deviations: least, is_complete: !outcome.stopped || least <= enough })
 }
 
 /// The least deviations beyond the margin of two pieces of two leaves; `most` where none has fewer.

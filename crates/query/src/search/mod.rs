@@ -25,7 +25,7 @@ mod through_mesh;
 mod trees;
 mod wrench;
 
-pub(crate) use beyond::least_beyond;
+pub(crate) use beyond::{least_beyond, may_be_within};
 pub(crate) use crossing::Crossing;
 pub(crate) use inside::{Inside, Looked, look_inside};
 pub(crate) use leaf::{Leaf, NoisyLeaf};
