@@ -4,8 +4,8 @@
 use cloudtouch_geom::{Covariance, Matrix3, Point3};
 
 use crate::error::NoiseError;
+use crate::index::positions::Neighbor;
 use crate::neighborhoods::Neighborhoods;
-use crate::positions::Neighbor;
 use crate::settings_error::{SettingsError, check_at_least_one, check_positive};
 
 /// Which points the sums of eq. 17 run over.

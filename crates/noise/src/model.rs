@@ -4,19 +4,19 @@ use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
 
 use crate::discretization::sampling_error;
 use crate::error::NoiseError;
+use crate::index::positions::Neighbor;
+use crate::index::spacing::{SPACING_NEIGHBORS, spacing_around};
+use crate::index::spatial_order::in_spatial_order;
 use crate::limited::limited;
 use crate::neighborhoods::Neighborhoods;
 use crate::parallel::parallel;
-use crate::patch::MOST_NEIGHBORS;
-use crate::positions::Neighbor;
 use crate::posterior::{disc, posterior};
 use crate::refined::{Bounds, Refined};
 use crate::representatives::Representatives;
 use crate::scratch::Scratch;
-use crate::sensor_noise::SensorNoise;
+use crate::sensor::noise::SensorNoise;
 use crate::settings::{Combination, NoiseSettings};
-use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
-use crate::spatial_order::in_spatial_order;
+use crate::surface::patch::MOST_NEIGHBORS;
 
 /// Turns measured points into uncertain surface points.
 ///

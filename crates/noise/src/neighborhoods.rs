@@ -4,12 +4,12 @@ use std::sync::{Arc, OnceLock};
 
 use cloudtouch_geom::Point3;
 
-use crate::density::{Density, densest_first};
 use crate::error::NoiseError;
 use crate::finite::is_finite;
-use crate::positions::{Neighbor, Positions};
+use crate::index::density::{Density, densest_first};
+use crate::index::positions::{Neighbor, Positions};
+use crate::index::thinned::Thinned;
 use crate::scratch::Scratch;
-use crate::thinned::Thinned;
 
 /// An index over a cloud that answers which points are nearest.
 ///

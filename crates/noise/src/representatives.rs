@@ -2,12 +2,12 @@
 
 use cloudtouch_geom::Point3;
 
-use crate::density::Density;
 use crate::error::NoiseError;
+use crate::index::density::Density;
+use crate::index::positions::Positions;
+use crate::index::spacing::is_noisy;
 use crate::neighborhoods::Neighborhoods;
-use crate::positions::Positions;
-use crate::sensor_noise::SensorNoise;
-use crate::spacing::is_noisy;
+use crate::sensor::noise::SensorNoise;
 
 /// A representative stands for the points up to so many spacings from it, ...
 const REACH_SPACINGS: f64 = 2.0;

@@ -2,10 +2,10 @@
 
 use cloudtouch_geom::Point3;
 
-use crate::block::Block;
-use crate::patch::{NoiseLanes, Offsets, Patch, PatchNoise};
-use crate::positions::Neighbor;
-use crate::sensor_noise::SensorNoise;
+use crate::index::block::Block;
+use crate::index::positions::Neighbor;
+use crate::sensor::noise::SensorNoise;
+use crate::surface::patch::{NoiseLanes, Offsets, Patch, PatchNoise};
 
 /// Buffers reused from one refinement to the next; holds no results.
 #[derive(Debug, Default)]

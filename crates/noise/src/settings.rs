@@ -1,7 +1,7 @@
 //! Which noise model to use, and its settings.
 
 use crate::discretization::Discretization;
-use crate::posterior_settings::PosteriorSettings;
+use crate::posterior::settings::PosteriorSettings;
 use crate::settings_error::SettingsError;
 
 /// How position noise Σᵢ and sampling become the mean and covariance of a surface point.

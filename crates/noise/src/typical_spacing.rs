@@ -1,7 +1,7 @@
 //! How far apart the samples of a cloud are.
 
+use crate::index::spacing::{SPACING_NEIGHBORS, spacing_around};
 use crate::neighborhoods::Neighborhoods;
-use crate::spacing::{SPACING_NEIGHBORS, spacing_around};
 
 /// The typical spacing of a cloud, m: the median over `sample` points, evenly spread over the
 /// indices, of dₖ √(π/k) with dₖ the distance to the sixth neighbour.

@@ -5,10 +5,10 @@
 
 use cloudtouch_geom::{Vector3, normal};
 
-use crate::kernel::Kernel;
+use crate::problem::kernel::Kernel;
 use crate::problem::{PreparedPoint, Problem};
+use crate::smo::state::{Certificate, State};
 use crate::solution::ErrorBounds;
-use crate::state::{Certificate, State};
 
 /// The feature vector ρφ(centre) that others are measured from.
 ///

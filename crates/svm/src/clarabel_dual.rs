@@ -8,7 +8,7 @@ use clarabel::solver::{
 use cloudtouch_geom::Vector3;
 use faer::Mat;
 
-use crate::gram::{begins, gram};
+use crate::interior::gram::{begins, gram};
 use crate::problem::Problem;
 use crate::status::Status;
 

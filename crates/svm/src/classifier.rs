@@ -3,11 +3,11 @@
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3, normal};
 
 use crate::bounds::{Range, Reference};
-use crate::kernel::Kernel;
 use crate::problem::Problem;
-use crate::sample::Class;
+use crate::problem::kernel::Kernel;
+use crate::problem::sample::Class;
+use crate::problem::unit_box::UnitBox;
 use crate::solution::{ErrorBounds, Solution, Undetermined};
-use crate::unit_box::UnitBox;
 
 /// A trained decision function f: positive on the side of class A, negative on that of B.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,0 +1,154 @@
+//! Grows what is below a node: large halves each on a thread of their own, with the same result.
+
+use crate::build::fit::overlapping;
+use crate::build::parts::{Memory, Part, fitted_parts, halve, set_far_apart};
+use crate::tree::node::NodeData;
+use crate::{Moments, Obb, Primitives, TreeSettings};
+
+/// Halves of a node of fewer are not worth a thread of their own.
+const LEAST_SHARED: usize = 2048;
+
+/// Who grows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Threads {
+    /// The caller alone: whoever waits for others may be given work meanwhile that waits for the caller.
+    This,
+    /// All of the pool.
+    All,
+}
+
+/// What nodes are grown over, and how.
+pub(crate) struct Growth<'a> {
+    primitives: &'a Primitives,
+    settings: &'a TreeSettings,
+    /// Halves of fewer are grown by who grew the node.
+    least_shared: usize,
+    /// Whether all are points, which their centroids tell all of.
+    are_points: bool,
+}
+
+/// A node with all that grew below it.
+pub(crate) enum Grown {
+    /// The node first, then the others in the order in which they were split; their names are their places.
+    All(Vec<NodeData>),
+    Halves(Box<(NodeData, [Grown; 2])>),
+}
+
+impl Grown {
+    /// The node itself.
+    pub(crate) fn top(&self) -> &NodeData {
+        match self {
+            Self::All(nodes) => &nodes[0],
+            Self::Halves(halves) => &halves.0,
+        }
+    }
+}
+
+/// Where a node is parted.
+struct Cut {
+    middle: usize,
+    /// Whether only what is far from the rest was set apart, so that the first part is as good as all.
+    is_of_far: bool,
+}
+
+impl<'a> Growth<'a> {
+    pub(crate) fn new(
+        primitives: &'a Primitives,
+        settings: &'a TreeSettings,
+        indices: &[u32],
+        on: Threads,
+    ) -> Self {
+        let are_points = indices.iter().all(|&index| primitives.is_point(index));
+        let is_alone = on == Threads::This || rayon::current_num_threads() == 1;
+        let least_shared = if is_alone { usize::MAX } else { LEAST_SHARED };
+        Self { primitives, settings, least_shared, are_points }
+    }
+
+    /// Splits a fitted node, and its halves, as often as the settings ask for, and brings its parts in the
+    /// order of the leaves.
+    pub(crate) fn grow(&self, top: NodeData, parts: &mut [Part], memory: &mut Memory) -> Grown {
+        // Only all of them are asked for what is far, and what is left then: of a part its ends would be.
+        let is_all = top.parent.is_none();
+        self.grow_any(top, parts, is_all, memory)
+    }
+
+    fn grow_any(
+        &self,
+        top: NodeData,
+        parts: &mut [Part],
+        is_all: bool,
+        memory: &mut Memory,
+    ) -> Grown {
+        if parts.len() < self.least_shared {
+            return self.grow_small(top, parts, is_all, memory);
+        }
+        let Some(Cut { middle, is_of_far }) = self.cut(&top, parts, is_all, memory) else {
+            return Grown::All(vec![top]);
+        };
+        let (low, high) = parts.split_at_mut(middle);
+        let (of_low, of_high) = rayon::join(|| self.fitted(low), || self.fitted(high));
+        let [first, second] = self.halves(&top, middle, [of_low, of_high]);
+        let (first, second) = rayon::join(
+            || self.grow_any(first, low, is_of_far, memory),
+            || self.grow_any(second, high, false, &mut Memory::default()),
+        );
+        Grown::Halves(Box::new((top, [first, second])))
+    }
+
+    /// The same on this thread.
+    fn grow_small(
+        &self,
+        top: NodeData,
+        parts: &mut [Part],
+        is_all: bool,
+        memory: &mut Memory,
+    ) -> Grown {
+        let start = top.start;
+        let mut nodes = vec![NodeData { parent: None, ..top }];
+        let mut stack = vec![(0, is_all)];
+        while let Some((id, is_all)) = stack.pop() {
+            let node = &nodes[id];
+            let begin = (node.start - start) as usize;
+            let own = &mut parts[begin..begin + node.count as usize];
+            let Some(Cut { middle, is_of_far }) = self.cut(node, own, is_all, memory) else {
+                continue;
+            };
+            let (low, high) = own.split_at(middle);
+            let halves = self.halves(node, middle, [self.fitted(low), self.fitted(high)]);
+            let first = nodes.len();
+            nodes[id].children = Some([first as u32, first as u32 + 1]);
+            nodes.extend(halves.map(|half| NodeData { parent: Some(id as u32), ..half }));
+            stack.extend([(first, is_of_far), (first + 1, false)]);
+        }
+        Grown::All(nodes)
+    }
+
+    /// Parts a node where the settings ask for that.
+    fn cut(
+        &self,
+        node: &NodeData,
+        parts: &mut [Part],
+        is_all: bool,
+        memory: &mut Memory,
+    ) -> Option<Cut> {
+        if !self.settings.asks_to_split(parts.len(), node.fitted_variation()) {
+            return None;
+        }
+        let (axis, mean) = (node.obb.axes.column(0).into_owned(), node.moments.mean);
+        let far = if is_all { set_far_apart(parts, &mean, memory) } else { None };
+        let middle = far.unwrap_or_else(|| halve(parts, &axis, &mean, memory));
+        Some(Cut { middle, is_of_far: far.is_some() })
+    }
+
+    fn fitted(&self, parts: &[Part]) -> (Moments, Obb) {
+        fitted_parts(parts, self.primitives, self.are_points)
+    }
+
+    /// Leaves over both parts of a node.
+    fn halves(&self, node: &NodeData, middle: usize, fitted: [(Moments, Obb); 2]) -> [NodeData; 2] {
+        let [first, second] = overlapping(&node.obb, fitted, self.settings.sibling_overlap);
+        let count = middle as u32;
+        let leaf = |start, count, (moments, obb)| NodeData::leaf(start, count, moments, obb);
+        [leaf(node.start, count, first), leaf(node.start + count, node.count - count, second)]
+    }
+}

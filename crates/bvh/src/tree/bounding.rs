@@ -1,0 +1,138 @@
+//! How bounds on the points of a tree are set, and climb it.
+
+use cloudtouch_geom::{Covariance, Matrix3, Vector3};
+use rayon::prelude::*;
+
+use crate::tree::bounds::{SpreadBounds, along};
+use crate::tree::bounds_list::BoundsList;
+use crate::{LeafBounds, Node, Tree, TreeError};
+
+impl Tree {
+    /// Sets, for every leaf, what a later refinement may do to its points, and carries it upward.
+    ///
+    /// From then on these bounds stand for the covariances of the points wherever a bound is
+    /// wanted (not in the coverage, which describes the points as given). They stay with the
+    /// primitives through [`Self::refit`], splits and [`Self::rebuild`]; a primitive inserted
+    /// later has its own covariance and no shift until they are set again. `bounds_of` is called on all
+    /// threads of the pool.
+    ///
+    /// # Errors
+    /// [`TreeError::LeafBounds`] when a bound is negative or NaN, or a shift infinite; the tree is
+    /// then unchanged.
+    pub fn set_leaf_bounds(
+        &mut self,
+        bounds_of: impl Fn(Node<'_>) -> LeafBounds + Sync,
+    ) -> Result<(), TreeError> {
+        self.refined = self.listed(bounds_of)?;
+        self.extents.clear();
+        self.update_all_bounds();
+        Ok(())
+    }
+
+    /// What is said of every leaf, by the primitives of the leaves.
+    pub(crate) fn listed(
+        &self,
+        bounds_of: impl Fn(Node<'_>) -> LeafBounds + Sync,
+    ) -> Result<BoundsList, TreeError> {
+        let leaves: Vec<Node<'_>> = self.leaves().collect();
+        let said: Vec<LeafBounds> = leaves.par_iter().map(|&leaf| bounds_of(leaf)).collect();
+        let mut listed = BoundsList::default();
+        for (leaf, bounds) in leaves.into_iter().zip(said) {
+            bounds.check(leaf.id().index())?;
+            listed.set(leaf.primitive_indices(), bounds, self.primitives.len());
+        }
+        Ok(listed)
+    }
+
+    /// Sets, by index, how far the surface that a primitive stands for reaches from its mean, and
+    /// carries it upward: along a unit vector n √(nᵀEn), E the extent. Without it no surface reaches
+    /// beyond the primitives themselves.
+    ///
+    /// What [`Self::set_leaf_bounds`] said is forgotten, as extents are when it is called: either the
+    /// primitives are what they will stay or they are not. Every node's bounds are taken from its
+    /// primitives, O(n log n). Extents stay with the primitives as bounds do; a primitive inserted
+    /// later has none.
+    ///
+    /// # Errors
+    /// [`TreeError::Count`] when there is not one for every index; the tree is then unchanged.
+    pub fn set_extents(&mut self, extents: Vec<Covariance>) -> Result<(), TreeError> {
+        if extents.len() != self.primitives.len() {
+            let (expected, found) = (self.primitives.len(), extents.len());
+            return Err(TreeError::Count { expected, found });
+        }
+        self.extents = extents;
+        self.refined = BoundsList::default();
+        self.update_all_bounds();
+        Ok(())
+    }
+
+    /// The bounds of one primitive seen along `axes`.
+    pub(crate) fn bounds_of_primitive(&self, index: u32, axes: &Matrix3) -> SpreadBounds {
+        let extent = self.extents.get(index as usize);
+        let covariance = self.primitives.covariance(index);
+        SpreadBounds::of(covariance, self.refined.get(index), extent, axes)
+    }
+
+    /// Recomputes the bounds of everything below `from` and of itself, children before parents.
+    pub(crate) fn update_bounds(&mut self, from: Option<u32>) {
+        for &id in self.preorder(from).iter().rev() {
+            self.nodes[id as usize].bounds = self.bounds_of(id);
+        }
+    }
+
+    /// The same of all nodes, leaves on all threads of the pool.
+    pub(crate) fn update_all_bounds(&mut self) {
+        let (leaves, inner): (Vec<u32>, Vec<u32>) = (self.preorder(self.root).into_iter())
+            .partition(|&id| self.nodes[id as usize].children.is_none());
+        let of_leaves: Vec<SpreadBounds> =
+            leaves.par_iter().map(|&leaf| self.bounds_of(leaf)).collect();
+        for (leaf, bounds) in leaves.into_iter().zip(of_leaves) {
+            self.nodes[leaf as usize].bounds = bounds;
+        }
+        for id in inner.into_iter().rev() {
+            self.nodes[id as usize].bounds = self.bounds_of(id);
+        }
+    }
+
+    /// The bounds of a node from its primitives, or of an inner node from those of its children.
+    ///
+    /// The latter is cheap, and looser at each level where boxes are turned against one another:
+    /// extents, which are set once for many traversals, are worth a pass over all primitives.
+    pub(crate) fn bounds_of(&self, id: u32) -> SpreadBounds {
+        let node = &self.nodes[id as usize];
+        let axes = &node.obb.axes;
+        let Some(children) = node.children else {
+            let mut bounds = SpreadBounds::NONE;
+            let mut last = None;
+            for &index in self.indices_of(id) {
+                // Those of a leaf were mostly given the same.
+                let refined = self.refined.get(index);
+                if refined.is_none() || refined != last {
+                    bounds = bounds.max(&self.bounds_of_primitive(index, axes));
+                }
+                last = refined;
+            }
+            return bounds;
+        };
+        let from_children = (children.map(|child| &self.nodes[child as usize]).iter())
+            .map(|child| child.bounds.turned(&child.obb.axes, axes))
+            .fold(SpreadBounds::NONE, |all, one| all.max(&one));
+        if self.extents.is_empty() {
+            return from_children;
+        }
+        let mut tight = SpreadBounds {
+            axis_std: Vector3::zeros(),
+            axis_reach: Vector3::zeros(),
+            ..from_children
+        };
+        for &index in self.indices_of(id) {
+            if let Some(extent) = self.extents.get(index as usize) {
+                tight.axis_reach = tight.axis_reach.sup(&along(extent, axes));
+            }
+            if let Some(covariance) = self.primitives.covariance(index) {
+                tight.axis_std = tight.axis_std.sup(&along(covariance, axes));
+            }
+        }
+        tight
+    }
+}

@@ -1,0 +1,86 @@
+//! A part of a cloud, evenly taken, that stands for it where a fit needs no more.
+
+use crate::finite::is_finite;
+use crate::index::positions::Positions;
+
+/// Some of the positions of a cloud.
+#[derive(Debug)]
+pub(crate) struct Thinned {
+    /// Their indices in the cloud.
+    indices: Vec<u32>,
+    positions: Positions,
+}
+
+impl Thinned {
+    /// Every fourth and every sixteenth position, in order of density: dense places and sparse ones
+    /// keep their part, and neither the frame nor the order of the points matters.
+    pub(crate) fn fourth_and_sixteenth(cloud: &Positions, densest_first: &[u32]) -> Vec<Self> {
+        let points = cloud.points();
+        let mut order = densest_first.to_vec();
+        order.retain(|&index| is_finite(&points[index as usize]));
+        // Copies of a position have the same neighbours, and so stand together.
+        order.dedup_by(|later, first| points[*later as usize] == points[*first as usize]);
+        [4, 16].into_iter().filter_map(|step| Self::every(step, cloud, &order)).collect()
+    }
+
+    fn every(step: usize, cloud: &Positions, order: &[u32]) -> Option<Self> {
+        let mut indices: Vec<u32> = order.iter().copied().skip(step - 1).step_by(step).collect();
+        indices.sort_unstable();
+        let points = indices.iter().map(|&index| cloud.points()[index as usize]).collect();
+        // Points that could be indexed before can be again.
+        Some(Self { indices, positions: Positions::on_this_thread(points).ok()? })
+    }
+
+    pub(crate) fn positions(&self) -> &Positions {
+        &self.positions
+    }
+
+    /// The index in the cloud of one of them.
+    pub(crate) fn index(&self, place: usize) -> usize {
+        self.indices[place] as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Point3, seed};
+
+    use super::*;
+    use crate::index::density::{Density, densest_first};
+
+    fn cloud(copies: usize) -> Positions {
+        let place = |i: u64| Point3::from([0, 1, 2].map(|k| seed::unit(seed::derive(2, i, k))));
+        Positions::try_new((0..1600).map(place).cycle().take(1600 * copies).collect()).unwrap()
+    }
+
+    fn places(thinned: &Thinned) -> Vec<Point3> {
+        let mut places = thinned.positions().points().to_vec();
+        places.sort_by(|p, q| p.x.total_cmp(&q.x));
+        places
+    }
+
+    fn thin(cloud: &Positions) -> Vec<Thinned> {
+        Thinned::fourth_and_sixteenth(cloud, &densest_first(&Density::everywhere(cloud)))
+    }
+
+    /// A cloud stored twice is the cloud.
+    #[test]
+    fn copies_do_not_count() {
+        let (once, twice) = (cloud(1), cloud(2));
+        for (once, twice) in thin(&once).iter().zip(&thin(&twice)) {
+            assert_eq!(places(once), places(twice));
+        }
+        assert_eq!(thin(&once)[0].positions().distinct(), 400);
+        assert_eq!(thin(&once)[1].positions().distinct(), 100);
+    }
+
+    #[test]
+    fn the_same_are_taken_of_points_in_another_order() {
+        let points = cloud(1).points().to_vec();
+        let reversed = Positions::try_new(points.iter().rev().copied().collect()).unwrap();
+        for (a, b) in thin(&cloud(1)).iter().zip(&thin(&reversed)) {
+            assert_eq!(places(a), places(b));
+            assert_eq!(a.positions().points()[3], cloud(1).points()[a.index(3)]);
+        }
+    }
+}

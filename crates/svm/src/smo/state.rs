@@ -1,0 +1,234 @@
+//! A dual point with the decision function it induces at the samples, and its duality gap.
+
+use cloudtouch_geom::Vector3;
+
+use crate::lanes::Lanes;
+use crate::problem::{PreparedPoint, Problem};
+use crate::smo::ball::clip_to_ball;
+use crate::smo::bias::Slack;
+use crate::smo::rows::KernelRows;
+use crate::smo::spread::{Field, Source};
+
+/// α and p of a sample: the cone vector in the eigenbasis of its covariance, |p| ≤ α.
+pub(crate) type Dual = (f64, Vector3);
+
+/// Dual variables and, kept in step with them, f₀ and its gradient at every sample.
+#[derive(Debug)]
+pub(crate) struct State<'a> {
+    pub(crate) problem: &'a Problem,
+    pub(crate) numbers: Numbers,
+}
+
+/// The numbers of a [`State`], one entry a sample; kept from solve to solve for their memory.
+#[derive(Debug, Default)]
+pub(crate) struct Numbers {
+    pub(crate) alpha: Lanes,
+    /// Dual vectors in the eigenbasis of each covariance, |p| ≤ α.
+    p: [Lanes; 3],
+    pub(crate) field: Field,
+    slack: Slack,
+}
+
+impl Numbers {
+    pub(crate) fn p(&self, i: usize) -> Vector3 {
+        Vector3::from_fn(|axis, _| self.p[axis].at(i))
+    }
+
+    pub(crate) fn p_lanes(&self) -> &[Lanes; 3] {
+        &self.p
+    }
+
+    /// Moves the dual variables of a sample; what they induce stays.
+    pub(crate) fn put(&mut self, i: usize, alpha: f64, p: &Vector3) {
+        self.alpha.put(i, alpha);
+        for axis in 0..3 {
+            self.p[axis].put(i, p[axis]);
+        }
+    }
+}
+
+/// A dual point's certificate of how far it can be from the optimum.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Certificate {
+    pub(crate) bias: f64,
+    pub(crate) primal: f64,
+    pub(crate) dual: f64,
+    pub(crate) squared_norm: f64,
+    /// primal − dual, as a sum of non-negative terms.
+    pub(crate) gap: f64,
+}
+
+impl Certificate {
+    pub(crate) fn is_finite(&self) -> bool {
+        [self.bias, self.primal, self.dual, self.squared_norm, self.gap]
+            .iter()
+            .all(|v| v.is_finite())
+    }
+
+    /// gap / primal, infinite when it cannot be told.
+    pub(crate) fn relative_gap(&self) -> f64 {
+        if self.is_finite() && self.primal > 0.0 { self.gap / self.primal } else { f64::INFINITY }
+    }
+}
+
+impl<'a> State<'a> {
+    /// The dual point 0, in the memory of `numbers`.
+    pub(crate) fn cold(problem: &'a Problem, mut numbers: Numbers) -> Self {
+        let n = problem.len();
+        numbers.alpha.reset(n);
+        numbers.p.iter_mut().for_each(|lanes| lanes.reset(n));
+        numbers.field.reset(n);
+        Self { problem, numbers }
+    }
+
+    /// The nearest feasible point found by clipping to the box and the cones, then shrinking the
+    /// heavier class until Σcα = 0. Values that are not finite become 0.
+    pub(crate) fn from_duals(
+        problem: &'a Problem,
+        numbers: Numbers,
+        duals: impl IntoIterator<Item = Dual>,
+        rows: &mut KernelRows,
+    ) -> Self {
+        let mut state = Self::cold(problem, numbers);
+        let numbers = &mut state.numbers;
+        let mut totals = [0.0; 2];
+        for (i, (alpha, p)) in duals.into_iter().enumerate().take(problem.len()) {
+            let point = &problem.points[i];
+            let alpha = if alpha.is_finite() { alpha.clamp(0.0, point.penalty) } else { 0.0 };
+            totals[usize::from(point.sign < 0.0)] += alpha;
+            let has_cone = point.is_uncertain() && p.iter().all(|v| v.is_finite());
+            let p = p.zip_map(&point.t, |p, t| if has_cone && t > 0.0 { p } else { 0.0 });
+            numbers.put(i, alpha, &p);
+        }
+        let lighter = totals[0].min(totals[1]);
+        let shrink = totals.map(|total| if total > lighter { lighter / total } else { 1.0 });
+        for (i, point) in problem.points.iter().enumerate() {
+            let factor = shrink[usize::from(point.sign < 0.0)];
+            let alpha = numbers.alpha.at(i) * factor;
+            let p = clip_to_ball(&(numbers.p(i) * factor), alpha);
+            numbers.put(i, alpha, &p);
+        }
+        state.recompute(rows);
+        state
+    }
+
+    /// A copy of the dual point.
+    pub(crate) fn copied(&self, rows: &mut KernelRows) -> Self {
+        let duals = (0..self.problem.len()).map(|i| self.dual(i));
+        Self::from_duals(self.problem, Numbers::default(), duals, rows)
+    }
+
+    pub(crate) fn dual(&self, i: usize) -> Dual {
+        (self.numbers.alpha.at(i), self.numbers.p(i))
+    }
+
+    /// Computes f₀ and its gradient from the dual variables alone.
+    pub(crate) fn recompute(&mut self, rows: &mut KernelRows) {
+        let problem = self.problem;
+        self.numbers.field.reset(problem.len());
+        for (i, point) in problem.points.iter().enumerate() {
+            let alpha = self.numbers.alpha.at(i);
+            if alpha == 0.0 {
+                continue;
+            }
+            rows.ensure(problem, i);
+            let (a, s) = (point.sign * alpha, point.displacement(&self.numbers.p(i)));
+            let source = Source { x: point.x, row: rows.row(i), a, s };
+            self.numbers.field.add(problem, &[source], true);
+        }
+    }
+
+    /// y = 1 − c f₀ + |T∇f₀|: how far the worst point of the ellipsoid is inside the margin, b aside.
+    #[inline]
+    pub(crate) fn violation(&self, i: usize) -> f64 {
+        let field = &self.numbers.field;
+        1.0 - self.problem.points[i].sign * field.f.at(i) + field.norm.at(i)
+    }
+
+    /// y − cb: how far the worst point of the ellipsoid is inside the margin with this bias.
+    pub(crate) fn excess(&self, i: usize, bias: f64) -> f64 {
+        self.violation(i) - self.problem.points[i].sign * bias
+    }
+
+    /// Objective values and gap, from the f₀ and gradients at hand.
+    pub(crate) fn certificate(&mut self) -> Certificate {
+        let Numbers { alpha, p, field, slack } = &mut self.numbers;
+        let points = &self.problem.points;
+        certify(points, slack, |i| Margin {
+            alpha: alpha.at(i),
+            value: points[i].sign * field.f.at(i),
+            norm: field.norm.at(i),
+            turned: (0..3).map(|axis| p[axis].at(i) * field.scaled[axis].at(i)).sum(),
+        })
+    }
+
+    /// The biases that the gap of the last certificate, handed in, cannot tell apart.
+    pub(crate) fn bias_interval(&self, certificate: &Certificate) -> [f64; 2] {
+        self.numbers.slack.within(certificate.gap, certificate.bias)
+    }
+
+    /// By how much the optimality conditions are missed.
+    pub(crate) fn largest_violation(&self) -> f64 {
+        let at = |i: usize| (self.numbers.alpha.at(i), self.violation(i));
+        largest_violation(&self.problem.points, at)
+    }
+}
+
+/// What a sample adds to a certificate.
+pub(crate) struct Margin {
+    pub(crate) alpha: f64,
+    /// c f₀.
+    pub(crate) value: f64,
+    /// |T∇f₀|.
+    pub(crate) norm: f64,
+    /// p·T∇f₀.
+    pub(crate) turned: f64,
+}
+
+/// Objective values and gap of a dual point with these margins.
+///
+/// gap = Σ (C−α)(y−cb)₊ + α(y−cb)₋ + (α|g| + p·g), with b the minimiser of Σ C(y−cb)₊.
+pub(crate) fn certify(
+    points: &[PreparedPoint],
+    slack: &mut Slack,
+    at: impl Fn(usize) -> Margin,
+) -> Certificate {
+    let violation = |margin: &Margin| 1.0 - margin.value + margin.norm;
+    let terms = points.iter().enumerate();
+    slack.set(terms.map(|(i, point)| (point.sign, violation(&at(i)), point.penalty)));
+    let bias = slack.minimiser();
+    let (mut sum, mut squared_norm, mut loss, mut gap) = (0.0, 0.0, 0.0, 0.0);
+    for (i, point) in points.iter().enumerate() {
+        let margin = at(i);
+        let excess = violation(&margin) - point.sign * bias;
+        let above = excess.max(0.0);
+        sum += margin.alpha;
+        squared_norm += margin.alpha * margin.value + margin.turned;
+        loss += point.penalty * above;
+        gap += (point.penalty - margin.alpha) * above + margin.alpha * (above - excess);
+        gap += (margin.alpha * margin.norm + margin.turned).max(0.0);
+    }
+    let squared_norm = squared_norm.max(0.0);
+    Certificate {
+        bias,
+        primal: 0.5 * squared_norm + loss,
+        dual: sum - 0.5 * squared_norm,
+        squared_norm,
+        gap,
+    }
+}
+
+/// By how much the optimality conditions are missed, given α and y of each sample: by the values that
+/// b must have for the points that may rise and those that may fall.
+pub(crate) fn largest_violation(points: &[PreparedPoint], at: impl Fn(usize) -> (f64, f64)) -> f64 {
+    let mut highest = f64::NEG_INFINITY;
+    let mut lowest = f64::INFINITY;
+    for (i, point) in points.iter().enumerate() {
+        let (alpha, violation) = at(i);
+        let value = point.sign * violation;
+        let [may_rise, may_fall] = point.may_move(alpha);
+        highest = if may_rise { highest.max(value) } else { highest };
+        lowest = if may_fall { lowest.min(value) } else { lowest };
+    }
+    (highest - lowest).max(0.0)
+}
