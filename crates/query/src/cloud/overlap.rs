@@ -6,7 +6,7 @@ use cloudtouch_geom::Vector3;
 use cloudtouch_noise::Scratch;
 
 use super::prepared::Prepared;
-use super::surfel::Surfel;
+use super::surface::surfel::Surfel;
 
 /// A part of space that a node takes of its parent.
 struct HalfSpace {

@@ -6,12 +6,12 @@ use cloudtouch_geom::{Point3, PointCloud};
 use crate::error::PrepareError;
 
 use super::accessors::cloud_accessors;
-use super::edge::Edge;
-use super::leaf::{LeafEdges, LeafSurface};
-use super::onward::Onward;
 use super::prepared::Prepared;
 use super::settings::CloudSettings;
-use super::surfel::Surfel;
+use super::surface::edge::Edge;
+use super::surface::leaf::{LeafEdges, LeafSurface};
+use super::surface::onward::Onward;
+use super::surface::surfel::Surfel;
 
 /// A noisy cloud, ready to be queried in any pose, from many threads at once.
 #[derive(Debug)]

@@ -9,14 +9,14 @@ use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNo
 use crate::error::PrepareError;
 use crate::filter::StageReport;
 
-use super::edge::DISC_SPACINGS;
 use super::makeup::Makeup;
+use super::makeup::scatter::{Overstated, overstated};
+use super::makeup::spread::sample_of;
 use super::pieces::Pieces;
 use super::preparation::Preparation;
 use super::scans::Scans;
-use super::scatter::{Overstated, overstated};
-use super::slots::{LazySurface, spacing_cap};
-use super::spread::sample_of;
+use super::surface::edge::DISC_SPACINGS;
+use super::surface::slots::{LazySurface, spacing_cap};
 use super::view::SingleView;
 
 /// Points with more noise than half the size of their cloud say nothing.

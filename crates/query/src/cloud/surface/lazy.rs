@@ -5,9 +5,9 @@ use cloudtouch_geom::{Point3, UnitVector3};
 use cloudtouch_noise::Scratch;
 
 use super::leaf::LeafSurface;
-use super::prepared::Prepared;
 use super::slots::{Basis, Fitted, NEIGHBORS};
 use super::surfel::Surfel;
+use crate::cloud::prepared::Prepared;
 
 /// Relative rounding of an eigenvalue, generously.
 const ROUNDING: f64 = 1e-9;
@@ -69,7 +69,7 @@ impl Prepared {
     }
 
     /// The surface at one piece.
-    pub(super) fn surfel(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
+    pub(in crate::cloud) fn surfel(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
         match self.surface.surfels.get(piece as usize) {
             Some(slot) => &slot.get_or_init(|| Box::new(self.fitted(piece, scratch))).surfel,
             None => self.kept(piece),
@@ -77,7 +77,7 @@ impl Prepared {
     }
 
     /// The surface at one piece, where it was computed already.
-    pub(super) fn known(&self, piece: u32) -> Option<Fitted> {
+    pub(in crate::cloud) fn known(&self, piece: u32) -> Option<Fitted> {
         match self.surface.surfels.get(piece as usize) {
             Some(slot) => slot.get().map(|fitted| **fitted),
             None => {
@@ -88,7 +88,7 @@ impl Prepared {
     }
 
     /// The pieces nearest to one, where its surface was computed and tells.
-    pub(super) fn known_nearest(&self, piece: u32) -> Option<[u32; NEIGHBORS]> {
+    pub(in crate::cloud) fn known_nearest(&self, piece: u32) -> Option<[u32; NEIGHBORS]> {
         match self.surface.surfels.get(piece as usize) {
             Some(slot) => slot.get()?.basis.nearest,
             None => self.surface.bases.get(piece as usize)?.nearest,
@@ -117,7 +117,7 @@ impl Prepared {
     }
 
     /// Whether the surface at one piece was computed already.
-    pub(super) fn is_known(&self, piece: u32) -> bool {
+    pub(in crate::cloud) fn is_known(&self, piece: u32) -> bool {
         self.surface.surfels.get(piece as usize).is_none_or(|slot| slot.get().is_some())
     }
 
@@ -135,7 +135,7 @@ impl Prepared {
     }
 
     /// Computes the surface at one piece.
-    pub(super) fn fitted(&self, piece: u32, scratch: &mut Scratch) -> Fitted {
+    pub(in crate::cloud) fn fitted(&self, piece: u32, scratch: &mut Scratch) -> Fitted {
         let index = self.pieces.index(piece);
         let cap = self.surface.spacing_caps[piece as usize];
         let near = &self.neighborhoods;

@@ -4,11 +4,10 @@ use cloudtouch_geom::Point3;
 use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
-use crate::error::PrepareError;
-
 use super::lost::{after, is_within_caps, may_change};
-use super::prepared::Prepared;
-use super::slots::Fitted;
+use crate::cloud::prepared::Prepared;
+use crate::cloud::surface::slots::Fitted;
+use crate::error::PrepareError;
 
 impl Prepared {
     /// Takes the surface of a cloud for this one, which it became, where it was computed and would come

@@ -8,7 +8,7 @@ pub(super) const SAMPLE: usize = 200;
 const SHELLS: usize = 4096;
 
 /// Some hundred of the points, from all over the cloud.
-pub(super) fn sample_of(points: &[Point3]) -> Vec<usize> {
+pub(in crate::cloud) fn sample_of(points: &[Point3]) -> Vec<usize> {
     spread(points, SAMPLE)
 }
 

@@ -4,13 +4,12 @@ use cloudtouch_geom::{Point3, PointCloud};
 use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
+use crate::cloud::change::Change;
+use crate::cloud::prepare::Cloud;
+use crate::cloud::scans::Scans;
+use crate::cloud::settings::CloudSettings;
+use crate::cloud::view::SingleView;
 use crate::error::{ChangeError, PrepareError};
-
-use super::change::Change;
-use super::prepare::Cloud;
-use super::scans::Scans;
-use super::settings::CloudSettings;
-use super::view::SingleView;
 
 /// Views that a cloud keeps of its frames: what only older ones saw to be empty counts as unseen again.
 const MOST_VIEWS: usize = 32;

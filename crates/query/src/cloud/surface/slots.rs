@@ -14,14 +14,14 @@ const REGION_POINTS: usize = 40;
 
 /// The surface at a piece, and what it rests on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Fitted {
+pub(in crate::cloud) struct Fitted {
     pub surfel: Surfel,
     pub basis: Basis,
 }
 
 /// What the surface at a piece rests on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Basis {
+pub(in crate::cloud) struct Basis {
     /// Points farther away had no part in it, m.
     pub reach: f64,
     /// The pieces nearest to it, where the fit told.
@@ -31,7 +31,7 @@ pub(super) struct Basis {
 /// One slot per piece, and per tree node, of which only those of leaves are ever filled. Each is a
 /// pure function of the cloud, so it does not matter which thread fills it.
 #[derive(Debug)]
-pub(super) struct LazySurface {
+pub(in crate::cloud) struct LazySurface {
     /// None once all leaves hold theirs.
     pub surfels: Vec<OnceLock<Box<Fitted>>>,
     /// Of each what it rests on, once all leaves hold theirs.
@@ -49,7 +49,7 @@ pub(super) struct LazySurface {
 
 impl LazySurface {
     /// For a tree with pieces of these limits.
-    pub(super) fn new(tree: &Tree, spacing_caps: Vec<f64>) -> Self {
+    pub(in crate::cloud) fn new(tree: &Tree, spacing_caps: Vec<f64>) -> Self {
         Self {
             surfels: slots(spacing_caps.len()),
             bases: Vec::new(),
@@ -62,7 +62,7 @@ impl LazySurface {
     }
 
     /// Of no pieces.
-    pub(super) fn empty() -> Self {
+    pub(in crate::cloud) fn empty() -> Self {
         Self {
             surfels: Vec::new(),
             bases: Vec::new(),
@@ -75,19 +75,19 @@ impl LazySurface {
     }
 
     /// What the spacing of each point of a leaf is limited to, m.
-    pub(super) fn spacing_cap(&self, leaf: Node<'_>) -> f64 {
+    pub(in crate::cloud) fn spacing_cap(&self, leaf: Node<'_>) -> f64 {
         leaf.primitive_indices().first().map_or(0.0, |&index| self.spacing_caps[index as usize])
     }
 }
 
-pub(super) fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
+pub(in crate::cloud) fn slots<T>(count: usize) -> Vec<OnceLock<T>> {
     (0..count).map(|_| OnceLock::new()).collect()
 }
 
 /// The spacing a point of a leaf may be given at most, on which the tree's bounds rest: half more
 /// than that of as many points spread evenly over the two longest sides of the region's box, or on a
 /// line.
-pub(super) fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
+pub(in crate::cloud) fn spacing_cap(tree: &Tree, leaf: Node<'_>) -> f64 {
     let around = region(tree, leaf);
     let mut sides: [f64; 3] = (2.0 * around.obb().half_extents).into();
     sides.sort_by(f64::total_cmp);

@@ -5,7 +5,7 @@ use cloudtouch_noise::Scratch;
 
 use super::edge::Edge;
 use super::join::runs_along;
-use super::prepared::Prepared;
+use crate::cloud::prepared::Prepared;
 
 /// A neighbour counts in part from this cosine of its direction to that of the edge on, in full straight
 /// ahead.

@@ -7,14 +7,13 @@ use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3};
 use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
-use crate::error::PrepareError;
-use crate::report::Stats;
-
 use super::edge::{DISC_SPACINGS, Edge};
 use super::leaf::{LeafEdges, LeafSurface};
-use super::prepared::Prepared;
 use super::slots::{Basis, Fitted};
 use super::surfel::Surfel;
+use crate::cloud::prepared::Prepared;
+use crate::error::PrepareError;
+use crate::report::Stats;
 
 /// The half axes of an ellipsoid, along a disc and across it, that holds everything up to (1, 1): the
 /// sum of their inverse squares is less than one.
@@ -22,7 +21,7 @@ const HOLDS_BOTH: [f64; 2] = [1.1, 2.5];
 
 impl Prepared {
     /// Computes the surface at every point, on all threads of the pool, and fits the tree to it.
-    pub(super) fn refine(&mut self) -> Result<(), PrepareError> {
+    pub(in crate::cloud) fn refine(&mut self) -> Result<(), PrepareError> {
         let start = std::time::Instant::now();
         let leaves: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
         leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
@@ -106,7 +105,10 @@ impl Prepared {
     }
 
     /// What the tree is to hold of the pieces of a leaf, once their surface is known, and how far that reaches.
-    pub(super) fn primitives_of(&self, leaf: NodeId) -> Vec<(u32, Primitive, Covariance)> {
+    pub(in crate::cloud) fn primitives_of(
+        &self,
+        leaf: NodeId,
+    ) -> Vec<(u32, Primitive, Covariance)> {
         let Some(node) = self.tree.leaf(leaf) else { return Vec::new() };
         let surfels = self.leaf(leaf).0.iter().zip(self.near_halves(leaf));
         let of = |(&piece, (surfel, edges)): (&u32, (&Surfel, [f64; 2]))| {

@@ -6,13 +6,12 @@ use cloudtouch_bvh::{NodeId, Patched};
 use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
-use crate::error::PrepareError;
-
-use super::leaf::LeafSurface;
 use super::lost::Before;
-use super::prepared::{Prepared, leaf_bounds};
-use super::slots::{Basis, Fitted};
-use super::surfel::Surfel;
+use crate::cloud::prepared::{Prepared, leaf_bounds};
+use crate::cloud::surface::leaf::LeafSurface;
+use crate::cloud::surface::slots::{Basis, Fitted};
+use crate::cloud::surface::surfel::Surfel;
+use crate::error::PrepareError;
 
 impl Prepared {
     /// Takes over what is not lost; computes the rest at once in a refined cloud.

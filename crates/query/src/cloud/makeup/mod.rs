@@ -1,16 +1,20 @@
 //! What a cloud is like as a whole: what queries look at before they believe it.
 
+pub(super) mod clumps;
+mod pinhole;
+pub(super) mod scatter;
+pub(super) mod spread;
+
 use std::sync::OnceLock;
 
 use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing_at};
 
+use crate::cloud::makeup::clumps::{Clumps, clumps};
+use crate::cloud::makeup::pinhole::is_misplaced;
+use crate::cloud::makeup::scatter::Overstated;
+use crate::cloud::makeup::spread::SAMPLE;
 use crate::filter::StageReport;
-
-use super::clumps::{Clumps, clumps};
-use super::pinhole::is_misplaced;
-use super::scatter::Overstated;
-use super::spread::SAMPLE;
 
 /// Points are on a line when none is farther from it than this share of its length: single precision
 /// is no better.

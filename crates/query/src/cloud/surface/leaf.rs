@@ -27,7 +27,7 @@ pub(crate) struct LeafEdges {
 
 impl LeafSurface {
     /// Of a leaf that is thin along a unit vector.
-    pub(super) fn new(surfels: Vec<Surfel>, thin: Vector3) -> Self {
+    pub(in crate::cloud) fn new(surfels: Vec<Surfel>, thin: Vector3) -> Self {
         let (ball, slab) = (Ball::around(&surfels), Slab::around_discs(&surfels, thin));
         Self { surfels, ball, slab }
     }

@@ -7,9 +7,9 @@ use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
-use super::prepared::Prepared;
-use super::slots::{Basis, LazySurface};
-use super::surfel::Surfel;
+use crate::cloud::prepared::Prepared;
+use crate::cloud::surface::slots::{Basis, LazySurface};
+use crate::cloud::surface::surfel::Surfel;
 
 /// Relative rounding of a distance, generously.
 const ROUNDING: f64 = 1e-9;

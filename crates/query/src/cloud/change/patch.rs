@@ -9,16 +9,15 @@ use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
-use crate::error::PrepareError;
-
 use super::lost::{Before, after};
-use super::makeup::Makeup;
-use super::pieces::Pieces;
-use super::prepared::{Prepared, makeup_of, measured_point};
-use super::scans::Scans;
-use super::slots::{LazySurface, slots, spacing_cap};
-use super::spread::sample_of;
-use super::view::SingleView;
+use crate::cloud::makeup::Makeup;
+use crate::cloud::makeup::spread::sample_of;
+use crate::cloud::pieces::Pieces;
+use crate::cloud::prepared::{Prepared, makeup_of, measured_point};
+use crate::cloud::scans::Scans;
+use crate::cloud::surface::slots::{LazySurface, slots, spacing_cap};
+use crate::cloud::view::SingleView;
+use crate::error::PrepareError;
 
 /// A tree is built anew when so many times as many points as it holds have come or gone ...
 const MOST_DRIFT: f64 = 1.0;

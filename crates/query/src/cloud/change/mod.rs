@@ -1,16 +1,21 @@
 //! A cloud whose points come, go and move.
 
+mod carry;
+mod frame;
+mod lost;
+mod patch;
+mod regrow;
+
 use std::time::Instant;
 
 use cloudtouch_geom::{Point3, PointCloud, Vector3, bounding_box};
 
+use crate::cloud::prepare::Cloud;
+use crate::cloud::prepared::Prepared;
+use crate::cloud::scans::Scans;
+use crate::cloud::settings::CloudSettings;
 use crate::error::ChangeError;
 use crate::range::LARGEST_COORDINATE;
-
-use super::prepare::Cloud;
-use super::prepared::Prepared;
-use super::scans::Scans;
-use super::settings::CloudSettings;
 
 /// What a change did to a cloud.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,12 +1,14 @@
 //! A single depth image: what its camera did not look at, or not see, was never seen to be empty.
 
+pub(super) mod raster;
+
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::SensorNoise;
 
-use super::raster::{Raster, Sight};
+use crate::cloud::view::raster::{Raster, Sight};
 
 /// Where the sensor stood, and the raster of its view once that is needed.
 #[derive(Debug)]

@@ -37,7 +37,10 @@ pub(crate) struct Overstated {
 /// What is stated of the noise where a fourth of the places of a cloud are far flatter than that leaves
 /// them: elsewhere the surface itself may be bent, or a board. Only errors that neighbours share could be
 /// so large.
-pub(super) fn overstated(cloud: &Neighborhoods, noise: &SensorNoise) -> Option<Overstated> {
+pub(in crate::cloud) fn overstated(
+    cloud: &Neighborhoods,
+    noise: &SensorNoise,
+) -> Option<Overstated> {
     let [places, others] = [PLACES, POINTS].map(|count| spread(cloud.points(), count));
     let mut found: Vec<Flattest> =
         places.iter().filter_map(|&at| flattest(at, cloud, noise, &others)).collect();

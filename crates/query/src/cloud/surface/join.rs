@@ -7,9 +7,9 @@ use cloudtouch_noise::Scratch;
 
 use super::edge::{EDGE_SPACINGS, Edge, SLOPE};
 use super::leaf::LeafEdges;
-use super::prepared::Prepared;
 use super::slots::NEIGHBORS;
 use super::surfel::Surfel;
+use crate::cloud::prepared::Prepared;
 
 impl Prepared {
     /// The edges that start or end at a point of a leaf.
@@ -21,7 +21,11 @@ impl Prepared {
     }
 
     /// [`Self::leaf_edges`] with buffers that leaves nearby were joined with.
-    pub(super) fn leaf_edges_with(&self, id: NodeId, scratch: &mut Scratch) -> &LeafEdges {
+    pub(in crate::cloud) fn leaf_edges_with(
+        &self,
+        id: NodeId,
+        scratch: &mut Scratch,
+    ) -> &LeafEdges {
         self.surface.edges[id.index()].get_or_init(|| {
             let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
             Box::new(LeafEdges::new(edges_of(self, pieces, scratch), self.thin_side(id)))
