@@ -240,7 +240,12 @@ fn a_field_of_a_scene_file_or_of_an_option_was_passed_over_in_a_case() {
         ("unit", "\"mm\"", &["--unit", "--cloud-unit"]),
         ("object_unit", "\"mm\"", &["--unit", "--cloud-unit"]),
         ("cloud_unit", "\"mm\"", &["--cloud-unit"]),
-        ("margin", "0.1", &["--margin"]),
+        ("margin", "0.1", &["option"]),
+        ("threshold", "0.0001", &["--reject"]),
+        ("reject", "0.01", &["option"]),
+        ("max-unseen", "0.5", &["option"]),
+        ("sensor_pose", "[0,0,1]", &["option"]),
+        ("translate", "[0,0,1]", &["`pose`"]),
     ];
     let with = |(i, (name, value, _)): (usize, &(&str, &str, &[&str]))| {
         let field = format!("\"{name}\":{value}");

@@ -3,7 +3,7 @@
 
 use crate::support;
 use crate::support::Inputs;
-use cloudtouch::geom::{Point3, PointCloud};
+use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
 
 #[test]
 fn counts_what_a_cloud_holds() {
@@ -63,4 +63,23 @@ fn a_unit_of_the_other_kind_of_file_is_refused() {
         assert_eq!(run.code(), 1);
         assert!(run.stderr().contains(other), "{}", run.stderr());
     }
+}
+
+/// Whoever followed it left out surface: a plate about the origin, of which no sensor was known, read free.
+#[test]
+fn points_at_the_origin_of_any_cloud_were_called_no_returns() {
+    let inputs = Inputs::new();
+    let points =
+        (0..400).map(|i| Point3::new(0.01 * f64::from(i % 20), 0.01 * f64::from(i / 20), 0.0));
+    let mut cloud = PointCloud::from_points(points.collect());
+    let told = |cloud: &PointCloud| {
+        cloudtouch_io::write_cloud_pcd(inputs.path("plate.pcd"), cloud).unwrap();
+        inputs.run(&["info", "plate.pcd"]).quiet(0).stdout()
+    };
+    let text = told(&cloud);
+    assert!(text.contains("at origin   ") && text.contains("surface, unless"), "{text}");
+    assert!(!text.contains("no returns"), "{text}");
+    cloud.sensor_pose = Some(Pose::from_translation(Vector3::new(0.0, 0.0, 0.05)));
+    let text = told(&cloud);
+    assert!(text.contains("too near    ") && text.contains("no returns, left out"), "{text}");
 }

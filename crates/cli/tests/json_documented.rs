@@ -125,12 +125,16 @@ fn keys_of_a_path_are_documented() {
 #[test]
 fn keys_of_a_scene_and_of_a_robot_are_documented() {
     let inputs = Inputs::new();
-    let bodies = json!({"format": 1, "length_unit": "m", "bodies": [
-        {"name": "floor", "file": "floor.pcd", "sensor": "iso:0.002"},
-        {"name": "box", "file": "box.obj"},
-    ]});
-    inputs.write("scene.json", &bodies.to_string());
-    let scene = inputs.run(&["scene", "scene.json", "--json"]).quiet(0).json_lines().remove(0);
+    let scene = |x: f64| {
+        let pose = json!([[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]);
+        let bodies = json!({"format": 1, "length_unit": "m", "bodies": [
+            {"name": "floor", "file": "floor.pcd", "sensor": "iso:0.002"},
+            {"name": "box", "file": "box.obj", "pose": pose},
+        ]});
+        inputs.write("scene.json", &bodies.to_string());
+        inputs.run(&["scene", "scene.json", "--json"]).quiet(0).json_lines().remove(0)
+    };
+    let (scene, far) = (scene(0.0), scene(30.0));
     let urdf = "<robot name='arm'><link name='post'/><link name='bar'><collision>
         <origin xyz='0.3 0 0'/><geometry><box size='0.6 0.1 0.1'/></geometry></collision></link>
         <joint name='shoulder' type='revolute'><parent link='post'/><child link='bar'/>
@@ -148,7 +152,7 @@ fn keys_of_a_scene_and_of_a_robot_are_documented() {
     for key in ["unchecked_links", "self_filter", "self_collision"] {
         assert!(one.as_object_mut().unwrap().remove(key).is_some(), "{key}: {one}");
     }
-    check("scene", &[scene, one]);
+    check("scene", &[scene, far, one]);
     let path = robot(json!([{"shoulder": 0.6}, {"shoulder": 0.0}]));
     let of_scene: BTreeSet<String> = documented("scene").into_iter().map(|row| row.key).collect();
     assert_eq!(keys(&path["given"][0]), of_scene);

@@ -167,3 +167,22 @@ fn wrong_use_is_refused_with_the_remedy() {
         "{error}"
     );
 }
+
+/// Millimetres read as metres: the arm was 400 m away, free, and nothing said so.
+#[test]
+fn a_robot_far_from_its_scan_was_free_without_a_word() {
+    let inputs = inputs();
+    for (x, is_told) in [("0.2", false), ("400", true)] {
+        inputs.write("base.txt", &format!("1 0 0 {x}\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"));
+        for joints in [json!({"shoulder": 0.1}), json!([{"shoulder": 0.1}, {"shoulder": 0.2}])] {
+            let run = robot(&inputs, &joints, &["--base-pose=base.txt", "--json"]);
+            assert_eq!(run.code(), 0, "{}", run.stderr());
+            let text = robot(&inputs, &joints, &["--base-pose=base.txt"]).quiet(0).stdout();
+            assert_eq!(text.contains("warning                `arm` is 39"), is_told, "{text}");
+            let answer = run.json_lines().remove(0);
+            let outside = answer.pointer("/given/0/outside").unwrap_or(&answer["outside"]);
+            let names = outside.as_array().unwrap().iter().map(|of| of["name"].as_str().unwrap());
+            assert_eq!(names.collect::<Vec<_>>().contains(&"arm"), is_told, "{outside}");
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! A triangle mesh as read from a file.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use crate::bounding_box::bounding_box;
 use crate::message::number;
@@ -160,6 +160,38 @@ impl TriangleMesh {
         self.edge_balance().values().filter(|&&(sum, _)| sum != 0).count()
     }
 
+    /// Triangles without which the surface has a border where they would be: holes of three edges, as a triangle that
+    /// a file lacks leaves them, filled the way the others are turned. Call it on a [`merged`](Self::merged) mesh whose triangles are
+    /// [turned alike](Self::turned_alike).
+    pub fn missing_triangles(&self) -> Vec<[u32; 3]> {
+        // Against the triangle that is there.
+        let lacking = |(&(low, high), &(sum, _)): (&(u32, u32), &(i32, u32))| match sum {
+            0 => None,
+            1.. => Some((high, low)),
+            _ => Some((low, high)),
+        };
+        let balance = self.edge_balance();
+        let lacking: BTreeSet<(u32, u32)> = balance.iter().filter_map(lacking).collect();
+        // One that is joined to no other is bordered as the other side of it would be.
+        let sorted = |mut of: [u32; 3]| {
+            of.sort_unstable();
+            of
+        };
+        let known: BTreeSet<[u32; 3]> = match lacking.is_empty() {
+            true => BTreeSet::new(),
+            false => self.triangles.iter().map(|&of| sorted(of)).collect(),
+        };
+        let after = |b: u32| lacking.range((b, 0)..=(b, u32::MAX)).map(|&(_, c)| c);
+        let mut missing = Vec::new();
+        for &(a, b) in &lacking {
+            // Each once, from its first corner on.
+            let closes = |&c: &u32| a < b.min(c) && lacking.contains(&(c, a));
+            let of = after(b).filter(closes).map(|c| [a, b, c]);
+            missing.extend(of.filter(|&of| !known.contains(&sorted(of))));
+        }
+        missing
+    }
+
     /// For every edge, how many more triangles run along it upwards than downwards, and how many do.
     fn edge_balance(&self) -> HashMap<(u32, u32), (i32, u32)> {
         let mut balance: HashMap<(u32, u32), (i32, u32)> = HashMap::new();
@@ -189,6 +221,34 @@ mod tests {
         let vertices = faces.iter().flatten().map(|&i: &usize| corners[i]).collect();
         let triangles = (0..4).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         TriangleMesh::try_new(vertices, triangles).unwrap()
+    }
+
+    #[test]
+    fn triangles_that_are_missing_are_found_as_they_were_turned() {
+        let whole = tetrahedron_soup().merged();
+        assert_eq!(whole.missing_triangles(), [[0; 3]; 0]);
+        for lost in 0..4 {
+            let mut rest = whole.triangles().to_vec();
+            let gone = rest.remove(lost);
+            let open = TriangleMesh::try_new(whole.vertices().to_vec(), rest).unwrap();
+            let [missing] = open.missing_triangles()[..] else { panic!("{lost}") };
+            rest_with(&open, missing);
+            let turns = [0, 1, 2].map(|k| [gone[k], gone[(k + 1) % 3], gone[(k + 2) % 3]]);
+            assert!(turns.contains(&missing), "{missing:?} for {gone:?}");
+        }
+        // A triangle alone lacks nothing, and a face of two is an opening.
+        let alone =
+            TriangleMesh::try_new(whole.vertices().to_vec(), whole.triangles()[..1].to_vec());
+        assert_eq!(alone.unwrap().missing_triangles(), [[0; 3]; 0]);
+        let open =
+            TriangleMesh::try_new(whole.vertices().to_vec(), whole.triangles()[..2].to_vec());
+        assert_eq!(open.unwrap().missing_triangles(), [[0; 3]; 0]);
+    }
+
+    fn rest_with(open: &TriangleMesh, missing: [u32; 3]) {
+        let all = open.triangles().iter().copied().chain([missing]).collect();
+        let closed = TriangleMesh::try_new(open.vertices().to_vec(), all).unwrap();
+        assert_eq!(closed.open_edges(), 0);
     }
 
     #[test]

@@ -34,7 +34,7 @@ struct Named {
 pub(crate) type Pair<'py> = (String, String, Option<Bound<'py, PyDict>>, Option<String>);
 
 /// Pairs that are not free; pairs there are, allowed, ruled out and asked.
-pub(crate) type Found<'py> = (Vec<Pair<'py>>, [usize; 4]);
+pub(crate) type Found<'py> = (Vec<Pair<'py>>, [usize; 4], Vec<(String, f64, f64)>);
 
 impl Scene {
     /// What a thread that panicked left is whole: each change is made at once or not at all.
@@ -149,9 +149,10 @@ impl Scene {
 
 /// All pairs that are not free, the worst first.
 pub(crate) fn found(py: Python<'_>, checked: Checked) -> PyResult<Found<'_>> {
-    let Checked { pairs, count, allowed, ruled_out, asked } = checked;
+    let Checked { pairs, count, allowed, ruled_out, asked, outside } = checked;
     let pairs: PyResult<_> = pairs.into_iter().map(|found| pair(py, found)).collect();
-    Ok((pairs?, [count, allowed, ruled_out, asked]))
+    let outside = outside.into_iter().map(|of| (of.name, of.gap_m, of.size_m)).collect();
+    Ok((pairs?, [count, allowed, ruled_out, asked], outside))
 }
 
 pub(crate) fn pair(py: Python<'_>, found: PairAnswer) -> PyResult<Pair<'_>> {

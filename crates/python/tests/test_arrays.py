@@ -4,6 +4,7 @@ import types
 
 import hypothesis.extra.numpy as arrays
 import numpy as np
+import pandas as pd
 import pytest
 from conftest import lifted, sheet
 from hypothesis import given, settings
@@ -184,3 +185,13 @@ def test_no_pose_is_an_empty_batch(floor, plate):
     batch = ct.Query().run_batch(floor, plate, np.empty((0, 4, 4)))
     assert len(batch) == 0 and batch.contact_point.shape == (0, 3) and batch.verdict.shape == (0,)
     assert repr(batch) == "<Batch: 0 poses>"
+
+
+def test_columns_of_a_table_were_taken_by_their_places(plate):
+    points = sheet(seed=5)
+    xyz = pd.DataFrame(points, columns=["x", "y", "z"])
+    wanted = ct.Query().run(ct.Cloud(points, sensor="iso:0.001"), plate, lifted(0.004))
+    for frame in (xyz, xyz[["z", "y", "x"]], xyz.assign(intensity=1.0), pd.DataFrame(points)):
+        assert_same_report(ct.Query().run(ct.Cloud(frame, sensor="iso:0.001"), plate, lifted(0.004)), wanted)
+    with pytest.raises(ValueError, match="points has the fields X, y, z: x is missing"):
+        ct.Cloud(xyz.rename(columns={"x": "X"}), sensor="iso:0.001")

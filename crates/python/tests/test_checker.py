@@ -3,6 +3,7 @@
 import pickle
 
 import numpy as np
+import pandas as pd
 import pytest
 from conftest import lifted, sheet
 from hypothesis import HealthCheck, given, settings
@@ -135,3 +136,18 @@ def test_a_batch_keeps_going_where_that_is_asked(floor, plate):
     assert batch.verdict.tolist() == ["free", "error", "uncertain"] and batch.error[1].startswith("poses[1]: ")
     with pytest.raises(ValueError, match="errors is 'ignore'"):
         ct.Query().run_batch(floor, plate, poses, errors="ignore")
+
+
+def test_rows_of_a_shuffled_table_were_asked_about_the_bodies_of_others(root, whole):
+    """Columns of pandas go by their labels: a frame in another order than its index had poses of other rows."""
+    rows = table()
+    frame = pd.DataFrame({name: list(column) for name, column in rows.items()})
+    checker = ct.PoseChecker(root, sensor="iso:0.001")
+    parts = [frame.sample(frac=1, random_state=1), frame[frame["id"] % 3 == 1], pd.concat([frame, frame]), frame[:0]]
+    for part in parts:
+        told = checker(part)
+        assert isinstance(told, pd.DataFrame) and told.index.equals(part.index)
+        as_columns = checker({name: part[name] for name in part})
+        for name in ("probability", "lower", "verdict", "error"):
+            wanted = whole[name][part["id"].to_numpy()]
+            assert told[name].tolist() == as_columns[name].tolist() == wanted.tolist(), name

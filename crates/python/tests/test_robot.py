@@ -4,6 +4,7 @@ import pickle
 
 import hypothesis.extra.numpy as arrays
 import numpy as np
+import pandas as pd
 import pytest
 from conftest import lifted
 from hypothesis import given, settings
@@ -201,3 +202,18 @@ def test_wrong_positions_and_files_are_told(robot, folder, floor_under):
         ct.Robot(folder / "gone.urdf")
     with pytest.raises(TypeError, match="does not pickle"):
         pickle.dumps(robot)
+
+
+def test_a_row_of_a_joint_log_lost_the_names_of_its_joints(robot, floor_under):
+    """A pandas row was taken as numbers in the order of ``Robot.moving``, whatever its columns are."""
+    log = pd.DataFrame([{"opening": 0.02, "shoulder": 0.1}, {"opening": 0.03, "shoulder": 0.7}])
+    assert list(log.columns) != list(robot.moving)
+    checker, query = ct.RobotChecker(robot, floor_under), ct.Query()
+    for _, row in log.iterrows():
+        wanted = checker.check(query, row.to_dict())
+        assert checker.check(query, row).verdict == wanted.verdict
+        assert robot.link_poses(row)["left"].tolist() == robot.link_poses(row.to_dict())["left"].tolist()
+    by_names = checker.check_path(query, log.to_dict("records"))
+    assert checker.check_path(query, log).certified_free_until == by_names.certified_free_until
+    in_order = pd.Series([0.1, 0.02])
+    assert robot.link_poses(in_order)["left"].tolist() == robot.link_poses([0.1, 0.02])["left"].tolist()

@@ -22,6 +22,8 @@ const LARGE_MESH_RATIO: f64 = 100.0;
 const LARGE_OBJECT: f64 = 20.0;
 /// ... in a scene so many times smaller.
 const LARGE_OBJECT_RATIO: f64 = 3.0;
+/// A scan of surroundings is larger than what moves in them.
+const EXCHANGED_RATIO: f64 = 3.0;
 /// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
 /// a twenty-fifth of that size off.
 const FARTHEST_SIZES: f64 = 40.0;
@@ -66,6 +68,7 @@ pub(crate) fn doubts(
         Some(Warning::Clumps { body, across_m: across, apart_m: apart })
     }));
     warnings.extend(clouds().flat_map(|(body, cloud, _)| sensors(body, cloud.makeup())));
+    warnings.extend(exchanged(a, b));
     warnings.extend(apart((a, b), a_from_b));
     let share = unseen.map_or(0.0, Unseen::share);
     if let Some(Unseen { body, .. }) = unseen.filter(|_| share > limits.max_unseen) {
@@ -114,6 +117,7 @@ fn scale(body: Which, cloud: &Prepared, other_size_m: f64) -> Option<Warning> {
 fn sensors(body: Which, cloud: &Makeup) -> impl Iterator<Item = Warning> + '_ {
     cloud.sensor_doubts.iter().filter_map(move |doubt| match *doubt {
         SensorDoubt::Beside { share } => Some(Warning::SensorPose { body, share }),
+        SensorDoubt::Turn { share } => Some(Warning::SensorTurn { body, share }),
         SensorDoubt::Range { median, limit } => {
             Some(Warning::SensorRange { body, range_m: median, limit_m: limit })
         }
@@ -123,6 +127,14 @@ fn sensors(body: Which, cloud: &Makeup) -> impl Iterator<Item = Warning> + '_ {
         // Of an object it is taken for granted that it may have a back.
         SensorDoubt::NoImage => (body == Which::A).then_some(Warning::NoImage { body }),
     })
+}
+
+/// A cloud many times as large as what it is to be moved in is rather the scene.
+fn exchanged(a: Shape<'_>, b: Shape<'_>) -> Option<Warning> {
+    let (size_m, other_size_m) = (b.size(), a.size());
+    let is_cloud = matches!(b, Shape::Cloud(_));
+    let is_larger = other_size_m > 0.0 && size_m > EXCHANGED_RATIO * other_size_m;
+    (is_cloud && is_larger).then_some(Warning::Exchanged { size_m, other_size_m })
 }
 
 fn apart((a, b): (Shape<'_>, Shape<'_>), a_from_b: &Pose) -> Option<Warning> {

@@ -55,7 +55,7 @@ pub use query::{
 };
 pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Unseen, Verdict};
 pub use safeguards::Safeguards;
-pub use scene::{Checked, PairAnswer, Scene};
+pub use scene::{Checked, Outside, PairAnswer, Scene};
 pub use undecided::Undecided;
 pub use warning::{Warning, Which};
 

@@ -389,3 +389,20 @@ fn cpu_seconds() -> f64 {
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
     [11, 12].map(|field| fields[field].parse::<f64>().unwrap()).iter().sum::<f64>() / 100.0
 }
+
+/// It counted as a second look at the same surface: touching poses read free.
+#[test]
+fn a_scan_that_is_in_the_cloud_already_was_taken_for_another() {
+    let ball = measured(&scene::sphere(0.1, 3), 0.01, 0.002, 5);
+    let scan = PointCloud::from_points(ball.clone());
+    let mut changed = cloud(&ball, &settings(0.002));
+    let count = ball.len();
+    let again = changed.insert(&scan, &settings(0.002));
+    assert_eq!(again, Err(ChangeError::RepeatedScan { count }));
+    assert_eq!(changed.len(), count);
+    // Another look is welcome, and so is what had gone.
+    let other = PointCloud::from_points(measured(&scene::sphere(0.1, 3), 0.01, 0.002, 6));
+    changed.insert(&other, &settings(0.002)).unwrap();
+    changed.remove(&(0..count).collect::<Vec<_>>()).unwrap();
+    assert_eq!(changed.insert(&scan, &settings(0.002)).unwrap().inserted, count);
+}

@@ -2,8 +2,10 @@
 
 use std::time::Duration;
 
-use crate::common::{AnyQuery, Asked, MODES, assert_sound, at, mesh, scan};
-use cloudtouch::{Mode, Verdict};
+use crate::common::{AnyQuery, Asked, MODES, assert_sound, at, measured, mesh, scan};
+use cloudtouch::geom::PointCloud;
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Cloud, CloudSettings, Mode, PoseDistribution, Query, QuerySettings, Verdict};
 use cloudtouch_testkit::scene;
 
 #[test]
@@ -42,4 +44,29 @@ fn without_time_nothing_is_free_and_the_bounds_hold_the_answer() {
             assert_eq!(ask(Some(Duration::from_secs(600))).collision_probability, p);
         }
     }
+}
+
+/// Each of some three hundred queries had a deadline of its own.
+#[test]
+fn a_way_out_and_uncertain_poses_had_the_time_of_all_their_queries() {
+    let settings = QuerySettings { deadline: Some(Duration::ZERO), ..QuerySettings::default() };
+    let query = Query::new(settings).expect("good settings");
+    let usual = Query::new(QuerySettings::default()).expect("good settings");
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    let floor = measured(&scene::plane_patch(0.4), 0.015, 0.002, 1);
+    let floor = Cloud::prepare(&PointCloud::from_points(floor), &settings).expect("a good cloud");
+    let ball = mesh(&scene::sphere(0.1, 3));
+    let into = at(0.0, 0.0, 0.09);
+    let (report, out) = query.penetration(&floor, &ball, &into, 0.1).expect("a good pose");
+    assert_sound(&report);
+    assert_eq!(out, None);
+    assert!(usual.penetration(&floor, &ball, &into, 0.1).expect("a good pose").1.is_some());
+    let poses = PoseDistribution::from_std(into, [0.005; 6]);
+    let (_, hasty) = query.run_uncertain(&floor, &ball, &poses).expect("a good pose");
+    let (_, whole) = usual.run_uncertain(&floor, &ball, &poses).expect("a good pose");
+    assert!(
+        hasty.bounds[0] <= whole.probability && whole.probability <= hasty.bounds[1],
+        "{hasty:?}"
+    );
+    assert!(hasty.bounds[1] > 0.99, "{hasty:?}");
 }

@@ -1,10 +1,11 @@
 //! A closed cloud or mesh within a closed cloud: in a hollow space or within a solid, no surface tells which.
 
 use crate::common::{assert_sound, at, measured};
-use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Mesh, Query, QuerySettings, Report, Undecided, Verdict};
 use cloudtouch_testkit::scene;
+use cloudtouch_testkit::surface::{positions, sample_surface};
 
 /// Seen from a place, or from who knows where.
 fn cloud(shape: &TriangleMesh, sensor: Option<Vector3>, seed: u64) -> Cloud {
@@ -84,6 +85,34 @@ fn a_body_within_a_mesh_with_a_hole_read_free() {
     assert_eq!((in_bowl.verdict, in_bowl.undecided_by), (Verdict::Free, None), "{in_bowl:?}");
 }
 
+/// A twelfth of all directions is open then, more than were taken for a hole.
+#[test]
+fn a_body_within_a_box_that_lacks_a_triangle_read_free() {
+    let whole = scene::cuboid([0.4, 0.3, 0.2]);
+    let without = |lost: &[usize]| {
+        let kept = |(t, of): (usize, &[u32; 3])| (!lost.contains(&t)).then_some(*of);
+        let faces = whole.triangles().iter().enumerate().filter_map(kept).collect();
+        let mesh = TriangleMesh::try_new(whole.vertices().to_vec(), faces).expect("a mesh");
+        Mesh::prepare(&mesh).expect("a good mesh")
+    };
+    let small = cloud(&scene::sphere(0.05, 3), None, 2);
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    for lost in 0..whole.triangles().len() {
+        let report =
+            query.run(&without(&[lost]), &small, &at(0.05, 0.02, 0.0)).expect("a good pose");
+        assert_eq!(report.undecided_by, Some(Undecided::Enclosed), "{lost}: {report:?}");
+    }
+    // Both of a face are a tote's open top.
+    let normal = |t: usize| {
+        let [a, b, c] = whole.corners(t);
+        (b - a).cross(&(c - a)).normalize()
+    };
+    let same = (1..whole.triangles().len()).find(|&t| (normal(t) - normal(0)).norm() < 1e-9);
+    let tote = without(&[0, same.expect("a face of two")]);
+    let within = query.run(&tote, &small, &at(0.0, 0.0, 0.0)).expect("a good pose");
+    assert_eq!((within.verdict, within.undecided_by), (Verdict::Free, None), "{within:?}");
+}
+
 #[test]
 fn a_sensor_within_the_hollow_tells_that_it_is_one() {
     let inner = cloud(&scene::sphere(0.05, 3), None, 2);
@@ -115,4 +144,22 @@ fn an_object_in_an_open_box_is_free() {
     let inner = cloud(&scene::sphere(0.05, 3), None, 2);
     let report = ask(&cloud(&walls, None, 3), &inner, &at(0.0, 0.0, 0.2));
     assert_eq!(report.verdict, Verdict::Free, "{report:?}");
+}
+
+/// Directions are told apart by squares along the axes of the file, of which a few have no point by chance.
+#[test]
+fn a_closed_cloud_was_all_around_in_some_frames_only() {
+    let hull = positions(&sample_surface(&scene::cuboid([0.5, 0.35, 0.3]), 700, 4));
+    let inner = Mesh::prepare(&scene::cuboid([0.05; 3])).expect("a good mesh");
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    for turn in 0..60 {
+        let angle = |k| 6.3 * seed::unit(seed::derive(9, turn, k));
+        let turned = Pose::from_translation_rpy(Vector3::zeros(), [angle(0), angle(1), angle(2)]);
+        let points = hull.iter().map(|p| turned.transform_point(p)).collect();
+        let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+        let outer = Cloud::prepare(&PointCloud::from_points(points), &settings).expect("points");
+        let report = query.run(&outer, &inner, &turned.after(&at(0.05, 0.02, 0.0)));
+        let report = report.expect("a good pose");
+        assert_eq!(report.undecided_by, Some(Undecided::Enclosed), "{turn}: {report:?}");
+    }
 }

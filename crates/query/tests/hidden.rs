@@ -1,7 +1,7 @@
 //! A single depth image leaves space unseen: an object there does not read as free.
 
 use crate::common::{MODES, Scan, ask, at, mesh, scan};
-use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Mode, Query, QuerySettings, Report, Verdict, Warning};
 use cloudtouch_testkit::camera::DepthCamera;
@@ -129,5 +129,32 @@ fn what_was_not_seen_may_be_at_any_distance() {
         let interval = query.clearance_interval(&image, &mesh(&object()), &pose, 0.9);
         let [low, _] = interval.expect("a good pose");
         assert_eq!(low > 0.0, seen, "{place}: {low}");
+    }
+}
+
+/// A black box returns nothing. Cells were as large as returns are far apart, so where every other pixel of the
+/// rest had none either, its hole was taken for one of many, and for seen.
+#[test]
+fn a_dark_thing_among_missing_returns_was_taken_for_empty_space() {
+    let mut image = view();
+    let (width, _) = image.image_size.expect("an image");
+    let lost = Point3::new(f64::NAN, f64::NAN, f64::NAN);
+    // 9 pixels wide, beside the block and before the wall, where each pixel is 21 mm at 3 m.
+    let (columns, rows) = (120..129, 55..64);
+    for (row, point) in image.points.iter_mut().enumerate() {
+        let is_dark = columns.contains(&(row % width)) && rows.contains(&(row / width));
+        let is_thinned = seed::unit(seed::derive(5, row as u64, 0)) < 0.6;
+        if is_dark || is_thinned {
+            *point = lost;
+        }
+    }
+    // In the middle of the hole, 1.5 m away, and as large as it.
+    let ball = mesh(&scene::sphere(0.045, 2));
+    let pose = at(1.5 * (124.5 - 80.0) / 140.0, 1.5 * (59.5 - 60.0) / 140.0, 1.5);
+    for mode in MODES {
+        check(&ask(mode, &prepared(&image, mode), &ball, &pose), false, mode);
+        // Of what else is missing nothing is hidden.
+        let beside = at(-0.6, 0.0, 1.5);
+        check(&ask(mode, &prepared(&image, mode), &ball, &beside), true, mode);
     }
 }

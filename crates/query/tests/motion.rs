@@ -131,6 +131,29 @@ fn a_path_through_poses_says_in_which_segment() {
 }
 
 /// An arm reaches into a closed box, or flies inside of it: never free.
+/// Halving stretches never comes by where two of them meet: a pose that alone was in collision made a path uncertain.
+#[test]
+fn the_poses_of_a_path_were_not_asked_about() {
+    let floor = body(false, &scene::plane_patch(0.4), 0.012, 0.001, 1);
+    let ball = body(true, &scene::sphere(0.05, 3), 0.008, 0.001, 2);
+    let mut collisions = 0;
+    for depth in 0..12 {
+        let low = at(0.01, 0.0, 0.056 - 0.001 * f64::from(depth));
+        let ends = [at(-0.1, 0.0, 0.3), at(0.13, 0.0, 0.3)];
+        let alone = query().run(&floor, &ball, &low).expect("a good pose");
+        let path = Path::through(&[ends[0], low, ends[1]]).expect("three poses");
+        let swept = sweep(&floor, &ball, &path, 0.01);
+        if alone.verdict != Verdict::Free {
+            assert!(swept.bounds[0] >= alone.bounds[0], "{depth}: {swept:?}");
+        }
+        if alone.verdict == Verdict::InCollision {
+            collisions += 1;
+            assert_eq!(swept.verdict, Verdict::InCollision, "{depth}: {swept:?}");
+        }
+    }
+    assert!(collisions > 2, "{collisions}");
+}
+
 #[test]
 fn what_is_inside_a_closed_mesh_all_the_way_collides_all_the_way() {
     let ball = scene::sphere(0.03, 2);

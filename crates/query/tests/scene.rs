@@ -261,6 +261,10 @@ fn far_from_one_body_is_no_doubt_and_far_from_all_is() {
     scene.add("left", Arc::clone(&screw), at(0.0, 0.0, 0.0)).unwrap();
     scene.add("middle", Arc::clone(&screw), at(0.5, 0.0, 0.0)).unwrap();
     scene.add("right", Arc::clone(&screw), at(2.0, 0.0, 0.0)).unwrap();
+    let outside = |scene: &Scene| {
+        scene.check(&query()).outside.iter().map(|of| of.name.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(outside(&scene), ["right"]);
     let pair = scene.between("left", "right").unwrap();
     let alone = query().run(&*screw, &*screw, &pair).unwrap();
     assert_eq!(alone.undecided_by, Some(Undecided::Units));

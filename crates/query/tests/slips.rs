@@ -280,6 +280,20 @@ fn a_sensor_that_cannot_have_seen_the_cloud_read_free() {
     }
 }
 
+/// A camera that looks backwards, or whose turn is that from the file into it: it was passed over.
+#[test]
+fn a_turn_that_is_not_believed_was_passed_over_in_silence() {
+    let turned = |yaw: f64| {
+        let sensor_pose = Some(Pose::from_translation_rpy(Vector3::zeros(), [0.0, yaw, 0.0]));
+        let image = PointCloud { sensor_pose, ..image() };
+        let cloud = Scan::of(&image, SensorModel::Kinect, Mode::Calibrated).expect("a cloud");
+        ask(Mode::Calibrated, &cloud, &mesh(&tool()), &at(0.6, 0.0, 1.2)).warnings
+    };
+    let told = |w: &Warning| matches!(w, Warning::SensorTurn { share, .. } if *share > 0.9);
+    assert!(turned(3.1).iter().any(told));
+    assert!(!turned(0.0).iter().any(told));
+}
+
 #[test]
 fn a_laser_scanner_with_the_image_of_a_camera_is_warned_of() {
     let sensor = SensorModel::Lidar { range_std: 0.02, beam_rad: 0.003 };
@@ -331,4 +345,25 @@ fn a_path_far_from_noise_that_points_do_not_have_is_free() {
     assert_eq!(swept(0.5).verdict, Verdict::Free);
     let near = swept(0.11);
     assert_ne!(near.verdict, Verdict::Free, "{near:?}");
+}
+
+/// The pose leads the wrong way then, and a gripper in the wall read free.
+#[test]
+fn a_scan_given_as_the_object_was_not_wondered_at() {
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    let scan = Cloud::prepare(&table(), &CloudSettings::new(NOISE)).expect("points are left");
+    let tool = mesh(&tool());
+    let is_told = |report: &Report| {
+        report
+            .warnings
+            .iter()
+            .any(|w| matches!(w, Warning::Exchanged { size_m, .. } if *size_m > 1.4))
+    };
+    let into = at(0.1, 0.2, 0.05);
+    assert!(!is_told(&query.run(&scan, &tool, &into).expect("a good pose")));
+    let exchanged = query.run(&tool, &scan, &into).expect("a good pose");
+    assert!(is_told(&exchanged), "{exchanged:?}");
+    // Of two meshes either may be the scene.
+    let table = mesh(&scene::plane_patch(1.0));
+    assert!(!is_told(&query.run(&tool, &table, &into).expect("a good pose")));
 }

@@ -5,6 +5,7 @@ use cloudtouch::PoseGradient;
 /// Lines about what a small motion along and about the axes of the object changes.
 pub(crate) fn text(gradient: &PoseGradient) -> String {
     let mut lines = vec![format!("gradient of P          {}", spelled(&gradient.probability, ""))];
+    lines.push(format!("   of its log odds     {}", spelled(&gradient.log_odds, "")));
     if let Some(clearance) = &gradient.clearance {
         lines.push(format!("   of the clearance    {}", spelled(clearance, "m ")));
     }

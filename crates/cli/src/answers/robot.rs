@@ -126,6 +126,8 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
             None => text += "                       free there, too near to be sure around it\n",
         }
     }
+    let far = checked.given.iter().find(|at| !at.outside.is_empty());
+    text += &far.map(scene::outside).unwrap_or_default();
     for (index, at) in checked.given.iter().enumerate() {
         let pairs =
             at.pairs.iter().map(|pair| format!("{} / {}", one_line(&pair.a), one_line(&pair.b)));

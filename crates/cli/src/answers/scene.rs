@@ -4,11 +4,15 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use cloudtouch::{Checked, PairAnswer, Report, Verdict};
+use cloudtouch::{Checked, Outside, PairAnswer, Report, Verdict};
 use serde::Serialize;
 
 use crate::answers::print::{self, one_line, probability};
+use crate::answers::text::labelled;
 use crate::load::Input;
+
+/// Of many bodies far from all others no more are named.
+const OUTSIDE_TOLD: usize = 3;
 
 /// What a scene answers, in JSON.
 #[derive(Serialize)]
@@ -17,6 +21,7 @@ pub(crate) struct Line<'a> {
     threshold: f64,
     pairs: Vec<Pair<'a>>,
     counts: Counts,
+    outside: &'a [Outside],
     bodies: BTreeMap<&'a str, &'a Input>,
 }
 
@@ -67,6 +72,7 @@ pub(crate) fn line<'a>(
         threshold,
         pairs: checked.pairs.iter().map(Pair::from).collect(),
         counts: Counts { pairs: count, allowed, ruled_out, asked },
+        outside: &checked.outside,
         bodies,
     }
 }
@@ -74,7 +80,7 @@ pub(crate) fn line<'a>(
 /// The same as a table.
 pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
-    let mut text = String::new();
+    let mut text = outside(checked);
     if !checked.pairs.is_empty() {
         let names: Vec<String> = checked.pairs.iter().map(names).collect();
         let width = names.iter().map(|name| name.chars().count()).fold(4, usize::max);
@@ -95,6 +101,18 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
         checked.pairs.len(),
         probability(threshold),
     );
+    text
+}
+
+/// A line for each body far from all others: that is free for certain, and seldom meant.
+pub(crate) fn outside(checked: &Checked) -> String {
+    let told = checked.outside.iter().take(OUTSIDE_TOLD);
+    let mut text: String =
+        told.map(|outside| labelled("warning", &one_line(&outside.to_string())) + "\n").collect();
+    if let Some(more) = checked.outside.len().checked_sub(OUTSIDE_TOLD).filter(|more| *more > 0) {
+        text += &labelled("", &format!("{more} more bodies are as far from all others"));
+        text += "\n";
+    }
     text
 }
 

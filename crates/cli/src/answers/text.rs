@@ -45,7 +45,7 @@ pub(crate) fn over_poses(under: &UnderPoses) -> Fact {
     let of = probability(under.probability);
     let poses = match under.poses {
         1 => "one pose tells of all".to_owned(),
-        count => format!("{count} poses"),
+        count => format!("± {} by {count} poses", probability(under.std_error)),
     };
     Fact::new("over uncertain poses", format!("{of}   (within {low} .. {high}; {poses})"))
 }

@@ -52,7 +52,7 @@ pub(crate) struct CommonArguments {
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
     #[arg(long, value_name = "P", value_parser = parse_fraction, allow_negative_numbers = true, help_heading = "Estimate")]
     pub prior: Option<f64>,
-    /// Calibrated: also how likely the bodies are nearer than this
+    /// Calibrated: also how likely they are nearer than this; the verdict stays
     #[arg(long, value_name = "METRES", value_parser = parse_length, allow_negative_numbers = true, help_heading = "Estimate")]
     pub margin: Option<f64>,
     /// Paper: how point probabilities make one: max, or noisy-or [max]

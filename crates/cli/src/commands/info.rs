@@ -66,9 +66,16 @@ fn describe_cloud(cloud: &PointCloud) -> Result<String> {
         let spacing = typical_spacing(&Neighborhoods::try_new(local)?, SPACING_SAMPLE);
         lines.push(format!("spacing     {:.1} mm (median)", 1e3 * spacing));
         if near > 0 {
-            lines.push(format!(
-                "too near    {near} points within 0.1 m of where the sensor stood, as far as the file\n            says: no returns? (--min-range 0.1)"
-            ));
+            lines.push(match cloud.is_image() || cloud.sensor_pose.is_some() {
+                true => format!(
+                    "too near    {near} points within 0.1 m of where the sensor stood: no returns, left out"
+                ),
+                // In a map, or about an object, it is a place like others.
+                false => format!(
+                    "at origin   {near} points within 0.1 m of it: surface, unless the sensor stood there\n            \
+                     (then --min-range 0.1 leaves them out)"
+                ),
+            });
         }
         let Chosen { sensor, because } = suggestion(cloud);
         lines.push(format!("sensor      {sensor} ({})", because.unwrap_or_default()));

@@ -9,15 +9,35 @@ use crate::files::near_name;
 const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];
 
 /// Fields of scene files, and options spelt as fields, that no case has, and what says the same of a case.
-const OF_OTHERS: [(&str, &str); 7] = [
+const OF_OTHERS: [(&str, &str); 25] = [
     ("sensor", SENSORS),
     ("unit", UNITS),
     ("mesh_unit", UNITS),
     ("cloud_unit", UNITS),
     ("scene_unit", UNITS),
     ("object_unit", UNITS),
-    ("margin", "give --margin, for all cases"),
+    ("threshold", "give --reject, for all cases"),
+    ("accept", OPTION),
+    ("reject", OPTION),
+    ("prior", OPTION),
+    ("margin", OPTION),
+    ("mode", OPTION),
+    ("sensor_pose", OPTION),
+    ("min_range", OPTION),
+    ("max_range", OPTION),
+    ("robot", OPTION),
+    ("robot_padding", OPTION),
+    ("max_unseen", OPTION),
+    ("max_missing", OPTION),
+    ("trust_units", OPTION),
+    ("deadline", OPTION),
+    ("translate", POSES),
+    ("rotate_rpy", POSES),
+    ("rotate_deg", POSES),
+    ("quaternion", POSES),
 ];
+const OPTION: &str = "give it as an option of the command, for all cases";
+const POSES: &str = "write all of the pose as 4 rows in `pose`";
 const SENSORS: &str = "write `scene_sensor` or `object_sensor` in each case, or give --sensor or \
                        --object-sensor for all";
 const UNITS: &str = "give --unit for all meshes, --cloud-unit for all clouds";
@@ -47,7 +67,9 @@ pub(crate) fn check_beside(name: &str) -> Result<()> {
 }
 
 fn check_of_others(name: &str) -> Result<()> {
-    match OF_OTHERS.iter().find(|(other, _)| name.eq_ignore_ascii_case(other)) {
+    // As an option is spelt, or a field.
+    let spelt = name.trim_start_matches('-').replace('-', "_");
+    match OF_OTHERS.iter().find(|(other, _)| spelt.eq_ignore_ascii_case(other)) {
         Some((_, remedy)) => bail!("there is no field `{name}`: {remedy}"),
         None => Ok(()),
     }

@@ -17,7 +17,7 @@ from cloudtouch.page import Page
 from cloudtouch.query import Query
 from cloudtouch.report import Batch, Contact, Evidence, PointProbabilities, Report, Within
 from cloudtouch.robot import Joint, PathChecked, Robot, RobotChecker, Stopped
-from cloudtouch.scene import Checked, PairAnswer, Scene
+from cloudtouch.scene import Checked, Outside, PairAnswer, Scene
 
 __all__ = [
     "AlongPath",
@@ -31,6 +31,7 @@ __all__ = [
     "Gradient",
     "Joint",
     "Mesh",
+    "Outside",
     "Page",
     "PairAnswer",
     "PathChecked",

@@ -11,15 +11,26 @@ import numpy.typing as npt
 FREE = -1
 
 
+def by_name(value: Any) -> Any:
+    """A row of a pandas table as a mapping, for its numbers are in whatever order its columns are."""
+    row = value.to_dict() if hasattr(value, "to_dict") else None
+    return row if row and all(isinstance(name, str) for name in row) else value
+
+
+def rows_of(value: Any) -> Any:
+    """The rows of a pandas table by the names of its columns; of anything else what it holds."""
+    return value.to_dict("records") if hasattr(value, "columns") and hasattr(value, "to_dict") else value
+
+
 def points(value: Any, name: str) -> tuple[npt.NDArray[Any], tuple[int, int] | None]:
     """Rows of x, y and z, and width and height where they are those of an image."""
     array = np.asarray(value) if not isinstance(value, np.ma.MaskedArray) else _refuse_mask(name)
-    if array.dtype.names is not None:
-        missing = [field for field in "xyz" if field not in array.dtype.names]
+    fields = _fields(value, array)
+    if fields is not None:
+        missing = [field for field in "xyz" if field not in fields]
         if missing:
-            have = ", ".join(array.dtype.names)
-            raise ValueError(f"{name} has the fields {have}: {', '.join(missing)} is missing")
-        array = np.stack([array[field] for field in "xyz"], axis=-1)
+            raise ValueError(f"{name} has the fields {', '.join(fields)}: {', '.join(missing)} is missing")
+        array = np.stack([fields[field] for field in "xyz"], axis=-1)
     image_size = None
     if array.ndim == 3:
         height, width = array.shape[:2]
@@ -31,6 +42,16 @@ def points(value: Any, name: str) -> tuple[npt.NDArray[Any], tuple[int, int] | N
             f"{name} has the shape {array.shape}: give (N, 3), or (height, width, 3) for a depth image"
         )
     return _readable(array, name), image_size
+
+
+def _fields(value: Any, array: npt.NDArray[Any]) -> dict[str, npt.NDArray[Any]] | None:
+    """The columns of a structured array or of a pandas table, by name; ``None`` where they have none."""
+    if array.dtype.names is not None:
+        return {field: array[field] for field in array.dtype.names}
+    names = list(value.columns) if hasattr(value, "columns") and array.ndim == 2 else []
+    if any(isinstance(column, str) for column in names):
+        return {str(column): array[:, place] for place, column in enumerate(names)}
+    return None
 
 
 def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:

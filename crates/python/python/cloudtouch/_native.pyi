@@ -89,7 +89,7 @@ class Query:
 def refused(message: str, count: int, /) -> dict[str, Any]: ...
 
 Pair = tuple[str, str, Optional[dict[str, Any]], Optional[str]]
-Found = tuple[list[Pair], list[int]]
+Found = tuple[list[Pair], list[int], list[tuple[str, float, float]]]
 
 @final
 class Scene:

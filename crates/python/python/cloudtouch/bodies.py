@@ -57,7 +57,8 @@ class Cloud:
         (N, 3), float32 or float64, m: rows of NaN are passed over, as missing returns. Or (height, width, 3): a depth
         image as its camera delivers it, NaN where nothing came back, of which it is known what was not seen. Any strides;
         read where they are. A structured array with fields x, y and z (as ROS's PointCloud2 is read), of one or two
-        dimensions, will do, and so will an object with ``.points``, such as an Open3D cloud.
+        dimensions, will do, and so will a pandas table with such columns or an object with ``.points``, such as an
+        Open3D cloud.
     sensor
         What measured it, and how noisy that is: ``"kinect"``, ``"stereo:BASELINE_M,FOCAL_PX,DISPARITY_STD_PX"``,
         ``"lidar:RANGE_STD_M,BEAM_RAD"``, ``"iso:STD_M"``, ``"axes:SX,SY,SZ"``, ``"grid:RESOLUTION_M"``, ``"exact"`` or

@@ -29,7 +29,7 @@ class PoseChecker:
     """Answers rows of (scene, object, pose); call it with columns.
 
     A plain class that keeps the bodies it prepared last: Ray Data's ``map_batches``, Dask's ``map_partitions`` and a loop
-    of your own run it as it is. Answers do not depend on how rows are shared out. A row that cannot be answered has the
+    of your own run it as it is; a table of pandas comes back as one. Answers do not depend on how rows are shared out. A row that cannot be answered has the
     verdict ``"error"`` and says why; it costs no other row its answer.
 
     Parameters
@@ -71,14 +71,19 @@ class PoseChecker:
         self._scenes: _Kept[Body] = _Kept(keep)
         self._objects: _Kept[Body] = _Kept(keep)
 
-    def __call__(self, rows: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+    def __call__(self, rows: Any) -> Any:
         """The columns of ``rows``, and those of :class:`Batch` beside them.
 
         Parameters
         ----------
         rows
-            Columns of M rows. ``scene`` and ``object``: paths. ``pose``: from object to scene, 16 numbers row by row,
-            (4, 4) or as nested lists. All others are handed on.
+            Columns of M rows by their names, or a DataFrame of pandas, whose index stays. ``scene`` and ``object``: paths.
+            ``pose``: from object to scene, 16 numbers row by row, (4, 4) or as nested lists. All others are handed on.
+
+        Returns
+        -------
+        dict or DataFrame
+            As ``rows`` are.
 
         Raises
         ------
@@ -86,14 +91,18 @@ class PoseChecker:
             A column is missing, or has another length.
         """
         count = _count(rows)
-        poses = [_sixteen(pose) for pose in rows["pose"]]
+        # By place from here on: a column of pandas goes by its labels, which need not be in order, nor be there.
+        columns = {name: _array(column) for name, column in rows.items()}
+        poses = [_sixteen(pose) for pose in columns["pose"]]
         answers = _refused("", count).columns()
         answers = {name: column.astype(_wide(column.dtype)) for name, column in answers.items()}
-        for names, places in _groups(rows, poses):
+        for names, places in _groups(columns, poses):
             batch = self._answer(names, [poses[place] for place in places])
             for name, column in batch.columns().items():
                 answers[name][places] = column
-        return {**{name: _array(column) for name, column in rows.items()}, **answers}
+        if hasattr(rows, "assign"):
+            return rows.assign(**{name: list(column) for name, column in answers.items()})
+        return {**columns, **answers}
 
     def _answer(self, names: tuple[str, str], poses: list[Any]) -> Batch:
         if poses[0] is None:
@@ -140,7 +149,7 @@ class _Kept(Generic[Prepared]):
         return self._known[name]
 
 
-def _count(rows: Mapping[str, npt.NDArray[Any]]) -> int:
+def _count(rows: Any) -> int:
     missing = [name for name in NEEDED if name not in rows]
     if missing:
         raise ValueError(f"columns {', '.join(rows)}: {', '.join(missing)} is missing")

@@ -17,7 +17,8 @@ from cloudtouch.query import Body, Query
 from cloudtouch.report import Floats, Verdict
 from cloudtouch.scene import Checked, PairAnswer
 
-#: Positions of joints: by name, or (J,) in the order of ``Robot.moving``; rad, and m for those that slide.
+#: Positions of joints: by name, as in a row of a pandas table, or (J,) in the order of ``Robot.moving``; rad, and m
+#: for those that slide.
 Positions = Union[Mapping[str, float], npt.ArrayLike]
 
 
@@ -103,7 +104,7 @@ class Robot:
         Parameters
         ----------
         joints
-            By name, or (J,) in the order of :attr:`moving`; rad or m.
+            By name, as in a row of a pandas table, or (J,) in the order of :attr:`moving`; rad or m.
 
         Raises
         ------
@@ -139,6 +140,7 @@ class Robot:
         return tuple(SeenLink(Mesh(vertices, triangles), pose, padding) for vertices, triangles, pose in links)
 
     def _named(self, value: Positions, name: str) -> dict[str, float]:
+        value = _arrays.by_name(value)
         if isinstance(value, Mapping):
             numbers = _arrays.numbers(list(value.values()), name, (len(value),)) if value else np.empty(0)
             return dict(zip(map(str, value), numbers.tolist()))
@@ -242,8 +244,7 @@ class RobotChecker:
         CloudtouchError
             A joint is unknown, left out, not finite or beyond its limits.
         """
-        pairs, counts = self._checker.check(query._query, self._robot._named(joints, "joints"))
-        return Checked._of(pairs, counts)
+        return Checked._of(*self._checker.check(query._query, self._robot._named(joints, "joints")))
 
     def check_path(self, query: Query, path: Iterable[Positions], *, tolerance: float = 0.001) -> PathChecked:
         """How far along a path every position is free, nothing between those given left out.
@@ -253,7 +254,7 @@ class RobotChecker:
         Parameters
         ----------
         path
-            (M, J), or positions by name, at least two.
+            (M, J), or positions by name, at least two; or a table of pandas with a column for each joint.
         tolerance
             How finely it is looked at, as a share of the path.
 
@@ -264,7 +265,8 @@ class RobotChecker:
         CloudtouchError
             There are fewer than two, ``tolerance`` is not above 0 and at most 1, or as :meth:`check`.
         """
-        positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(path)]
+        rows = _arrays.rows_of(path)
+        positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(rows)]
         given, until, stopped, looked_at, verdict = self._checker.check_path(query._query, positions, tolerance)
         place = None
         if stopped is not None:

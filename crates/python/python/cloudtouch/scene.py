@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, NamedTuple, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -41,6 +41,17 @@ class PairAnswer:
         return f"<PairAnswer: {self.a!r} and {self.b!r}, {self.error or self.report}>"
 
 
+class Outside(NamedTuple):
+    """A body of a scene that is far from all others."""
+
+    name: str
+    """Its name."""
+    gap_m: float
+    """Between its box and that around all others, m."""
+    size_m: float
+    """Diagonal of the larger of the two, m."""
+
+
 @dataclass(frozen=True, eq=False)
 class Checked:
     """What is found of all pairs of bodies of a scene."""
@@ -55,6 +66,8 @@ class Checked:
     """Pairs known to be free by their boxes alone."""
     asked: int
     """Pairs that were asked about."""
+    outside: tuple[Outside, ...]
+    """Bodies farther from all others than either is large: free, but perhaps by a pose in another unit."""
 
     @property
     def verdict(self) -> Verdict:
@@ -63,9 +76,14 @@ class Checked:
 
     @classmethod
     def _of(
-        cls, pairs: list[tuple[str, str, dict[str, Any] | None, str | None]], counts: list[int]
+        cls,
+        pairs: list[tuple[str, str, dict[str, Any] | None, str | None]],
+        counts: list[int],
+        outside: list[tuple[str, float, float]],
     ) -> Checked:
-        return cls(tuple(map(PairAnswer._of, pairs)), *counts)
+        count, allowed, ruled_out, asked = counts
+        far = tuple(Outside(*of) for of in outside)
+        return cls(tuple(map(PairAnswer._of, pairs)), count, allowed, ruled_out, asked, far)
 
 
 class Scene:

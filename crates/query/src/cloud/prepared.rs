@@ -115,7 +115,7 @@ impl Prepared {
             leaf.primitive_indices().iter().for_each(|&piece| caps[piece as usize] = cap);
         }
         let surface = LazySurface::new(&tree, caps);
-        let view = |(sensor, points): (Point3, _)| SingleView::new(sensor - origin, points);
+        let view = |image| SingleView::new(image, &origin);
         let images = std::mem::take(&mut all.images);
         Ok(Self {
             origin,

@@ -1,8 +1,6 @@
 //! What sensors delivered, made ready: scans filtered, each with the noise of its sensor, and put
 //! together in one frame.
 
-use std::ops::Range;
-
 use cloudtouch_geom::{Covariance, Point3, PointCloud, UnitVector3};
 use cloudtouch_noise::{Combination, MotionNoise, Places, SensorNoise};
 
@@ -12,6 +10,7 @@ use crate::range::check_points;
 
 use super::makeup::{SensorDoubt, missing, mostly_robot, sensor_doubts};
 use super::preparation::Preparation;
+use super::view::Image;
 
 /// Scans in one frame.
 #[derive(Debug, Clone)]
@@ -32,8 +31,8 @@ pub(super) struct Scans {
     pub missing: f64,
     /// Signs that a sensor did not see its scan.
     pub sensor_doubts: Vec<SensorDoubt>,
-    /// Scans that are depth images and were not looked through yet: where the sensor stood, and which points are its.
-    pub images: Vec<(Point3, Range<usize>)>,
+    /// Scans that are depth images and were not looked through yet.
+    pub images: Vec<Image>,
 }
 
 impl Scans {
@@ -78,8 +77,9 @@ impl Scans {
             all.sensor_doubts.extend(mostly_robot(scan, &filtered.stages));
             // An organised cloud is a depth image: one view, with unseen space behind it.
             if scan.is_image() {
-                let range = all.points.len()..all.points.len() + kept.len();
-                all.images.push((kept.sensor_origin(), range));
+                let points = all.points.len()..all.points.len() + kept.len();
+                let pixels = pixels_about(scan, &filtered.rows).unwrap_or(kept.len());
+                all.images.push(Image { sensor_origin: kept.sensor_origin(), points, pixels });
             }
             all.origins.extend(kept.sensor_pose.map(|pose| Point3::from(pose.translation())));
             have_rows &= !filtered.rows.is_empty();
@@ -103,8 +103,10 @@ impl Scans {
     /// Puts others of the same frame behind these, as if all had been given at once.
     pub(super) fn append(&mut self, others: Self) {
         let Self { points, noise, normals, rows, row_count, stages, origins, missing, .. } = others;
-        let shifted = |(place, range): (Point3, Range<usize>)| {
-            (place, self.points.len() + range.start..self.points.len() + range.end)
+        let before = self.points.len();
+        let shifted = |image: Image| Image {
+            points: before + image.points.start..before + image.points.end,
+            ..image
         };
         self.images.extend(others.images.into_iter().map(shifted));
         self.noise = joined(&[&self.noise, &noise]);
@@ -179,6 +181,17 @@ fn check_for_repeats(points: &[Point3], ends: &[usize]) -> Result<(), PrepareErr
         start = end;
     }
     Ok(())
+}
+
+/// Pixels of the part of an image that these of its rows are in, with and without return.
+fn pixels_about(image: &PointCloud, rows: &[usize]) -> Option<usize> {
+    let (width, _) = image.image_size?;
+    let side = |of: &dyn Fn(usize) -> usize| {
+        let (least, most) =
+            (rows.iter().map(|&row| of(row)).min()?, rows.iter().map(|&row| of(row)).max()?);
+        Some(most - least + 1)
+    };
+    Some(side(&|row| row % width)? * side(&|row| row / width)?)
 }
 
 /// Puts a list behind another, without a copy of the first that comes.

@@ -45,6 +45,14 @@ pub enum ChangeError {
          cloud, or insert its points"
     )]
     NotAnImage,
+    /// A scan of which every point is in the cloud already: it would count as a second look, which it is not.
+    #[error(
+        "all {count} points of the scan are in the cloud already: it tells nothing new; give each scan once"
+    )]
+    RepeatedScan {
+        /// Its points, as filtered.
+        count: usize,
+    },
     /// What was given cannot be prepared, or not together with the rest.
     #[error(transparent)]
     Prepare(#[from] PrepareError),

@@ -38,6 +38,8 @@ pub struct Mesh {
     /// The tree of the paper's path, once that is needed.
     paper_tree: OnceLock<Tree>,
     pub(super) winding: Winding,
+    /// Corners of the triangles that an open mesh lacks.
+    pub(super) missing: Vec<[Point3; 3]>,
     watertight: bool,
     closed: bool,
     /// On which side places are, once that is needed.
@@ -80,6 +82,8 @@ impl Mesh {
             merged.triangles().to_vec(),
         )
         .map_err(|error| PrepareError::Surface { reason: error.to_string() })?;
+        let corner = |vertex: u32| merged.vertices()[vertex as usize];
+        let missing = merged.missing_triangles().into_iter().map(|of| of.map(corner)).collect();
         let triangles: Vec<_> = (0..merged.triangles().len()).map(|t| merged.corners(t)).collect();
         let tree = tree_of(triangles.iter().copied(), LEAF_TRIANGLES, 0.0)?;
         let winding = Winding::new(triangles);
@@ -90,6 +94,7 @@ impl Mesh {
             tree,
             paper_tree: OnceLock::new(),
             winding,
+            missing,
             watertight,
             closed,
             cells: OnceLock::new(),

@@ -4,7 +4,7 @@ use cloudtouch_geom::{Point3, Vector3};
 
 use super::cells::{Cell, Cells};
 use super::prepare::Mesh;
-use super::winding::FarRadii;
+use super::winding::{FarRadii, Winding};
 
 /// Wrapped around at least so often a place is inside, and at most so often outside: halfway between
 /// what a closed mesh has there and on its surface.
@@ -38,6 +38,11 @@ impl Mesh {
     /// surface: a whole number for a closed mesh, −1 in a part that is turned inside out.
     pub(crate) fn winding_number(&self, local: &Point3) -> f64 {
         self.winding.fast(local, FarRadii::FINE)
+    }
+
+    /// The same with the triangles that an open mesh lacks.
+    pub(crate) fn winding_number_when_filled(&self, local: &Point3) -> f64 {
+        self.winding_number(local) + Winding::of_triangles(&self.missing, local)
     }
 
     /// On which side of the mesh a place in the local frame is.

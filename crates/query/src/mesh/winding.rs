@@ -97,7 +97,12 @@ impl Winding {
 
     /// The same by every triangle.
     pub(super) fn plain(&self, place: &Point3) -> f64 {
-        half_angles_of(&self.triangles, place) / std::f64::consts::TAU
+        Self::of_triangles(&self.triangles, place)
+    }
+
+    /// How often triangles wrap around a place.
+    pub(super) fn of_triangles(triangles: &[[Point3; 3]], place: &Point3) -> f64 {
+        half_angles_of(triangles, place) / std::f64::consts::TAU
     }
 }
 

@@ -24,6 +24,8 @@ impl Query {
     /// [`Self::run`] would find at its middle if every piece of surface came as near, and crossed as
     /// clearly, as the motion lets it. Stretches whose bound is not below the reject threshold are
     /// halved, down to `tolerance` as a share of the path; what is open then stays in the bounds.
+    /// Poses that the path leads through are asked about where they may matter.
+    ///
     /// What [`Self::run`] says of surface that no point stands for holds here too. A deadline
     /// counts for the sweep, and for each pose.
     ///
@@ -111,13 +113,21 @@ struct Sweep<'a> {
 impl Sweep<'_> {
     /// Stretches that together are the whole path, in no order.
     fn look_along(&mut self) -> Result<Vec<Interval>, QueryError> {
-        let mut waiting = BinaryHeap::new();
+        let mut whole = Vec::with_capacity(self.path.segments());
         for segment in 0..self.path.segments() {
-            waiting.push(self.bounded(segment, [0.0, 1.0])?);
+            whole.push(self.bounded(segment, [0.0, 1.0])?);
         }
-        if waiting.iter().any(|interval| self.tested.is_wanted(interval)) {
+        // The poses that were given: no halving comes by them, and whoever asks about these alone knows more.
+        for (before, after) in whole.iter().zip(&whole[1..]) {
+            let is_wanted = [before, after].iter().any(|at| self.tested.is_wanted(at));
+            if is_wanted && before.end() < self.tested.end() {
+                self.test(before.segment, 1.0)?;
+            }
+        }
+        if whole.iter().any(|interval| self.tested.is_wanted(interval)) {
             self.test(self.path.segments() - 1, 1.0)?;
         }
+        let mut waiting = BinaryHeap::from(whole);
         let mut looked_at = Vec::new();
         while !waiting.is_empty() {
             self.halve(&mut waiting, &mut looked_at)?;

@@ -37,8 +37,9 @@ impl Query {
             return Err(QueryError::Share { value: share });
         }
         let bodies = (a.into(), b.into());
-        let report = self.run(bodies.0, bodies.1, a_from_b)?;
-        self.interval(bodies, a_from_b, &report, share)
+        let this = self.begun_now();
+        let report = this.run(bodies.0, bodies.1, a_from_b)?;
+        this.interval(bodies, a_from_b, &report, share)
     }
 
     /// The answers to [`Self::within`] and [`Self::clearance_interval`], by one query.
@@ -57,8 +58,9 @@ impl Query {
             return Err(QueryError::Share { value: share });
         }
         let bodies = (a.into(), b.into());
-        let (report, within) = self.within(bodies.0, bodies.1, a_from_b, margin)?;
-        let interval = self.interval(bodies, a_from_b, &report, share)?;
+        let this = self.begun_now();
+        let (report, within) = this.within(bodies.0, bodies.1, a_from_b, margin)?;
+        let interval = this.interval(bodies, a_from_b, &report, share)?;
         Ok((report, within, interval))
     }
 

@@ -1,9 +1,12 @@
 //! How far the object has to move to be out of a collision.
 
+use std::time::Instant;
+
 use cloudtouch_geom::{Pose, Vector3};
 use serde::Serialize;
 
 use crate::body::BodyRef;
+use crate::classifier::Clock;
 use crate::error::QueryError;
 use crate::report::{Report, vector_as_array};
 
@@ -51,6 +54,8 @@ pub struct Penetration {
 struct Overlap<'a> {
     /// Decides at the probability it is out below.
     query: Query,
+    /// Once it is over nothing more is out.
+    clock: Clock,
     /// What is to be below it.
     told: fn(&Report) -> f64,
     bodies: (BodyRef<'a>, BodyRef<'a>),
@@ -66,8 +71,8 @@ impl Query {
     /// along the axes of both bodies and evenly in all directions, and turns the best toward the normal at
     /// its end. Only translations are tried, and only where they end: on the way the object may pass through
     /// something. `None` where no direction frees it, as where a doubt about the bodies themselves, their
-    /// units say, keeps every place from reading as free. Takes some three hundred queries in a collision
-    /// and one elsewhere.
+    /// units say, keeps every place from reading as free, and where the deadline is over before all is
+    /// told. Takes some three hundred queries in a collision and one elsewhere.
     ///
     /// ```
     /// use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
@@ -100,8 +105,10 @@ impl Query {
         if !(probability > 0.0 && probability < 1.0) {
             return Err(QueryError::Probability { value: probability });
         }
+        let this = self.begun_now();
+        let clock = this.clock(Instant::now());
         let bodies = (a.into(), b.into());
-        let (report, gradient) = self.gradient(bodies.0, bodies.1, a_from_b)?;
+        let (report, gradient) = this.gradient(bodies.0, bodies.1, a_from_b)?;
         if report.bounds[1] < probability {
             let here = Penetration {
                 direction: Vector3::zeros(),
@@ -111,8 +118,8 @@ impl Query {
             };
             return Ok((report, Some(here)));
         }
-        let query = self.deciding(probability);
-        let overlap = Overlap { query, told: |report| report.bounds[1], bodies, a_from_b };
+        let query = this.deciding(probability);
+        let overlap = Overlap { query, clock, told: |report| report.bounds[1], bodies, a_from_b };
         let mut likely: Vec<Vector3> = report.contacts.iter().map(|c| c.normal_a_to_b).collect();
         let climb = |gradient: &[f64; 6]| a_from_b.transform_vector(&first(gradient));
         likely.push(-climb(&gradient.log_odds));
@@ -133,7 +140,7 @@ impl Query {
         let Some(mut best) = best else { return Ok((report, None)) };
         for _ in 0..TURNS {
             let before = best;
-            let toward = overlap.normal_at(best.direction * best.free, self)?;
+            let toward = overlap.normal_at(best.direction * best.free, &this)?;
             if let Some(normal) = toward {
                 best = overlap.shortened(best, normal, &[SHORTER])?;
             }
@@ -145,7 +152,7 @@ impl Query {
         let Way { direction, free: distance_m, .. } = overlap.between(best, PRECISION)?;
         // No guarantees but expectations: bounds, which are wider the less is known, would only add to them.
         let until = |likely: f64| {
-            let query = self.deciding(likely);
+            let query = this.deciding(likely);
             Overlap { query, told: |report: &Report| report.collision_probability, ..overlap }
         };
         let [nearer, even, farther] = LIKELY.map(until);
@@ -160,6 +167,10 @@ impl Query {
         let [near, far] = [nearer, farther]
             .map(|until| until.way_out(&report, depth.direction, depth.free).map(|way| way.free));
         let (depth_m, std_m) = (depth.free, 0.5 * (far? - near?));
+        // What was not looked at in time counted as no way out, which would tell too deep.
+        if clock.is_over() {
+            return Ok((report, None));
+        }
         Ok((report, Some(Penetration { direction, distance_m, depth_m, std_m })))
     }
 }
@@ -192,7 +203,7 @@ impl Overlap<'_> {
     fn is_free(&self, offset: Vector3) -> Result<bool, QueryError> {
         let (a, b) = self.bodies;
         let pose = Pose::from_translation(offset).after(self.a_from_b);
-        Ok(self.reads_free(&self.query.run(a, b, &pose)?))
+        Ok(!self.clock.is_over() && self.reads_free(&self.query.run(a, b, &pose)?))
     }
 
     fn reads_free(&self, report: &Report) -> bool {

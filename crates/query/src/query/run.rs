@@ -20,6 +20,8 @@ use super::task::Task;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Query {
     settings: QuerySettings,
+    /// When what is asked on behalf of one call began, where that is more than one query: all share its time.
+    begun: Option<Instant>,
 }
 
 impl Query {
@@ -29,7 +31,7 @@ impl Query {
     /// Names the setting that is out of range, and its value.
     pub fn new(settings: QuerySettings) -> Result<Self, SettingsError> {
         settings.validate()?;
-        Ok(Self { settings })
+        Ok(Self { settings, begun: None })
     }
 
     /// The settings, as checked.
@@ -39,23 +41,28 @@ impl Query {
 
     /// The same with more or less said.
     pub(super) fn with_detail(&self, detail: Detail) -> Self {
-        Self { settings: QuerySettings { detail, ..self.settings } }
+        Self { settings: QuerySettings { detail, ..self.settings }, ..*self }
     }
 
     /// The same, asked no more than whether a probability is below this one.
     pub(super) fn deciding(&self, probability: f64) -> Self {
         let (accept, reject, detail) = (probability, probability, Detail::Verdict);
-        Self { settings: QuerySettings { accept, reject, detail, ..self.settings } }
+        Self { settings: QuerySettings { accept, reject, detail, ..self.settings }, ..*self }
     }
 
     /// The same to the end: it does not stop where a collision is likely enough, and tells all.
     pub(super) fn unstopped(&self) -> Self {
         let (stop_above, detail) = (f64::INFINITY, Detail::Full);
-        Self { settings: QuerySettings { stop_above, detail, ..self.settings } }
+        Self { settings: QuerySettings { stop_above, detail, ..self.settings }, ..*self }
+    }
+
+    /// The same for all that one call asks: their time together is that of a query.
+    pub(super) fn begun_now(&self) -> Self {
+        Self { begun: self.begun.or_else(|| Some(Instant::now())), ..*self }
     }
 
     pub(crate) fn clock(&self, start: Instant) -> Clock {
-        Clock::new(start, self.settings.deadline)
+        Clock::new(self.begun.unwrap_or(start), self.settings.deadline)
     }
 
     pub(crate) fn terms(&self) -> Terms {
@@ -122,5 +129,21 @@ impl Query {
         terms.ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
             estimate((a, b), local, &self.task(start, (a, b)), evidence)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn what_one_call_asks_has_its_time_together() {
+        let settings = QuerySettings { deadline: Some(Duration::ZERO), ..QuerySettings::default() };
+        let query = Query::new(settings).unwrap();
+        let later = Instant::now() + Duration::from_secs(3600);
+        assert!(!query.clock(later).is_over());
+        assert!(query.begun_now().deciding(0.1).clock(later).is_over());
     }
 }

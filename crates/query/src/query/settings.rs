@@ -53,10 +53,12 @@ pub struct QuerySettings {
     pub stop_above: f64,
     /// How much of the answer is wanted.
     pub detail: Detail,
-    /// How long a query may search. What was not looked at by then raises the upper bound, to 1 as a
-    /// rule, and is no guess. The clock is looked at before each leaf pair and each classifier,
-    /// and while one is trained: the limit is exceeded by milliseconds as a rule. What a leaf pair takes
-    /// beyond that is bounded for any settings, by the work that Clarabel, which is not interrupted, may
+    /// How long a query may search, and a call that asks several
+    /// ([`Query::penetration`](crate::Query::penetration)) altogether. What was not looked at by then raises
+    /// the upper bound, to 1 as a rule, and is no guess. The clock is looked at before each leaf pair and
+    /// each classifier, and while one is trained: the limit is exceeded by milliseconds as a rule, and once
+    /// by some 60 for each 40,000 points where a cloud has more noise than spacing and is not
+    /// [`refined`](crate::Cloud::refined). What a leaf pair takes beyond that is bounded for any settings, by the work that Clarabel, which is not interrupted, may
     /// do (some seconds) and by `max_mesh_parts`. With a limit answers depend on the speed of the
     /// machine.
     pub deadline: Option<Duration>,

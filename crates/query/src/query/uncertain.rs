@@ -156,14 +156,15 @@ impl Query {
         a_from_b: &PoseDistribution,
     ) -> Result<(Report, UnderPoses), QueryError> {
         let (a, b) = (a.into(), b.into());
+        let this = self.begun_now();
         let mean = &a_from_b.mean;
         let axes = a_from_b.axes()?;
         if axes.is_empty() {
-            let report = self.run(a, b, mean)?;
+            let report = this.run(a, b, mean)?;
             let plain = UnderPoses::one(&report);
             return Ok((report, plain));
         }
-        let (report, nearing) = self.run_and_nearing((a, b), mean)?;
+        let (report, nearing) = this.run_and_nearing((a, b), mean)?;
         let plain = UnderPoses::one(&report);
         let first = motions(&axes, &nearing, FIRST_PAIRS, 2 * FIRST_PAIRS + 1);
         let more = motions(&axes, &nearing, MORE_PAIRS, 2 * MORE_PAIRS);
@@ -175,14 +176,14 @@ impl Query {
                 shift.norm() + turn.norm() * radius
             };
             let farthest = first.iter().chain(&more).map(moves).fold(0.0, f64::max);
-            let near = self.beyond_collision((a, b), mean, FARTHER * farthest, &report)?;
+            let near = this.beyond_collision((a, b), mean, FARTHER * farthest, &report)?;
             if near.bounds[1] < OUT_OF_REACH {
                 let [low, high] = plain.bounds;
                 let bounds = [low, high.max(near.bounds[1])];
                 return Ok((report, UnderPoses { bounds, ..plain }));
             }
         }
-        let query = self.with_detail(Detail::Probability);
+        let query = this.with_detail(Detail::Probability);
         let ask = |motions: &[Vector6<f64>]| -> Result<Vec<Said>, QueryError> {
             let poses: Vec<Pose> = motions.iter().map(|motion| moved(mean, motion)).collect();
             let answers = query.run_batch(a, b, &poses).into_iter();

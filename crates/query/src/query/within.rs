@@ -69,8 +69,9 @@ impl Query {
             return Err(QueryError::Margin { value: margin });
         }
         let (a, b) = (a.into(), b.into());
-        let report = self.run(a, b, a_from_b)?;
-        let within = self.beyond_collision((a, b), a_from_b, margin, &report)?;
+        let this = self.begun_now();
+        let report = this.run(a, b, a_from_b)?;
+        let within = this.beyond_collision((a, b), a_from_b, margin, &report)?;
         Ok((report, within))
     }
 

@@ -1,9 +1,13 @@
 //! What is found of the bodies of a scene.
 
 use std::cmp::{Ordering, Reverse};
+use std::fmt;
+
+use serde::Serialize;
 
 use crate::error::QueryError;
 use crate::report::{Report, Verdict};
+use crate::warning::length;
 
 /// Two bodies that do not read as free.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +35,33 @@ pub struct Checked {
     pub ruled_out: usize,
     /// Pairs that were asked about.
     pub asked: usize,
+    /// Bodies outside of the box around all others by more than either is large, by their names: free, but
+    /// perhaps by a pose in another unit or the wrong way round.
+    pub outside: Vec<Outside>,
+}
+
+/// A body of a scene that is far from all others. Displays as a sentence with a remedy.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outside {
+    /// Its name.
+    pub name: String,
+    /// Between its box and that around all others, m.
+    pub gap_m: f64,
+    /// Diagonal of the larger of the two, m.
+    pub size_m: f64,
+}
+
+impl fmt::Display for Outside {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, gap_m, size_m } = self;
+        write!(
+            f,
+            "`{name}` is {} from all others, farther than either is large ({}): are poses in metres, into the \
+             frame of the scene?",
+            length(*gap_m),
+            length(*size_m)
+        )
+    }
 }
 
 impl Checked {

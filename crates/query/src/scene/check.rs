@@ -8,11 +8,11 @@ use rayon::prelude::*;
 use crate::body::BodyRef;
 use crate::query::Query;
 
-use super::answer::{Checked, PairAnswer};
+use super::answer::{Checked, Outside, PairAnswer};
 use super::bodies::Scene;
 use super::broad::BroadPhase;
 use super::near::{Corners, everywhere, meeting};
-use super::stray::strays;
+use super::stray::{Beside, beside_others};
 
 impl Scene {
     /// All pairs of bodies that do not read as free at the thresholds of the query, the worst first, on
@@ -26,8 +26,9 @@ impl Scene {
     /// the others take a test of two boxes, and those near each other, or in doubt, a query.
     pub fn check(&self, query: &Query) -> Checked {
         let broad = BroadPhase::new(query);
-        let candidates = self.candidates(&broad);
-        let asked: Vec<PairAnswer> = candidates
+        let members = self.members();
+        let asked: Vec<PairAnswer> = self
+            .candidates(&members, &broad)
             .par_iter()
             .filter(|pair| broad.urgency(pair.bodies(), &pair.a_from_b, pair.is_astray).is_some())
             .map(|pair| pair.ask(query))
@@ -35,9 +36,18 @@ impl Scene {
         let bodies = self.bodies.len();
         let (count, allowed) = (bodies * bodies.saturating_sub(1) / 2, self.allowed.len());
         let ruled_out = count - allowed - asked.len();
-        let mut checked = Checked { count, allowed, ruled_out, asked: asked.len(), pairs: asked };
+        // Of two the smaller one is.
+        let may_be = members.iter().skip(usize::from(bodies == 2));
+        let outside = may_be.filter(|member| member.beside.is_outside());
+        let outside = outside.map(|&Member { name, beside: Beside { gap_m, size_m }, .. }| {
+            Outside { name: name.to_owned(), gap_m, size_m }
+        });
+        let outside = outside.collect();
+        let mut checked =
+            Checked { count, allowed, ruled_out, asked: asked.len(), pairs: asked, outside };
         checked.pairs.retain(|pair| !pair.is_free());
         checked.pairs.sort_by(PairAnswer::by_gravity);
+        checked.outside.sort_by(|p, q| p.name.cmp(&q.name));
         checked
     }
 
@@ -48,7 +58,8 @@ impl Scene {
     /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest.
     pub fn check_first(&self, query: &Query) -> Option<PairAnswer> {
         let broad = BroadPhase::new(query);
-        let candidates = self.candidates(&broad);
+        let members = self.members();
+        let candidates = self.candidates(&members, &broad);
         let urgency =
             |pair: &Candidate<'_>| broad.urgency(pair.bodies(), &pair.a_from_b, pair.is_astray);
         let mut open: Vec<(f64, &Candidate<'_>)> =
@@ -57,24 +68,29 @@ impl Scene {
         open.into_iter().map(|(_, pair)| pair.ask(query)).find(|pair| !pair.is_free())
     }
 
-    /// The pairs that may not touch and whose boxes meet.
-    fn candidates(&self, broad: &BroadPhase) -> Vec<Candidate<'_>> {
+    /// The bodies, the largest first: of a pair the query takes the larger, A, for the surroundings.
+    fn members(&self) -> Vec<Member<'_>> {
         let mut bodies: Vec<Member<'_>> = Vec::with_capacity(self.bodies.len());
         for (name, placed) in &self.bodies {
             // Every name of the map is in the scene.
             let Ok(pose) = self.pose(name) else { continue };
             let body = BodyRef::from(&*placed.body);
-            bodies.push(Member { name, body, pose, size: body.shape().size(), is_astray: false });
+            let beside = Beside { gap_m: 0.0, size_m: 0.0 };
+            bodies.push(Member { name, body, pose, size: body.shape().size(), beside });
         }
         let places: Vec<_> = bodies.iter().map(|of| (of.body.shape(), of.pose)).collect();
-        for (member, is_astray) in bodies.iter_mut().zip(strays(&places)) {
-            member.is_astray = is_astray;
+        for (member, beside) in bodies.iter_mut().zip(beside_others(&places)) {
+            member.beside = beside;
         }
-        // The larger is A: of a pair the query takes A for the surroundings.
         bodies.sort_by(|p, q| q.size.total_cmp(&p.size));
+        bodies
+    }
+
+    /// The pairs that may not touch and whose boxes meet.
+    fn candidates<'a>(&self, bodies: &[Member<'a>], broad: &BroadPhase) -> Vec<Candidate<'a>> {
         let smallest = bodies.iter().rfind(|of| of.size > 0.0).or(bodies.last());
         let Some(smallest) = smallest.map(|of| of.body.shape()) else { return Vec::new() };
-        let zone = |of: &Member<'_>| match of.is_astray {
+        let zone = |of: &Member<'_>| match of.beside.is_astray() {
             true => everywhere(),
             false => broad.zone(of.body.shape(), &of.pose, smallest),
         };
@@ -96,7 +112,8 @@ struct Member<'a> {
     pose: Pose,
     /// m.
     size: f64,
-    is_astray: bool,
+    /// Where it is beside all others.
+    beside: Beside,
 }
 
 /// Two bodies that may not touch.
@@ -115,7 +132,7 @@ impl<'a> Candidate<'a> {
             bodies: [a.body, b.body],
             scene_from_a: a.pose,
             a_from_b: a.pose.inverse().after(&b.pose),
-            is_astray: a.is_astray || b.is_astray,
+            is_astray: a.beside.is_astray() || b.beside.is_astray(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! A cloud that a moving camera keeps up to date: what it looks at is as it sees it, the rest stays.
 
-use cloudtouch_geom::{Point3, PointCloud};
+use cloudtouch_geom::{PointCloud, Vector3};
 use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
@@ -40,7 +40,7 @@ impl Cloud {
             return Err(ChangeError::NotAnImage);
         }
         let added = Scans::of(&[(frame, settings.preparation())])?;
-        let kept = self.not_seen_by(&added, &frame.sensor_origin())?;
+        let kept = self.not_seen_by(&added)?;
         let stages = added.stages.clone();
         let change = self.keep_and_append(&kept, Some(added))?;
         self.prepared.forget_frames(MOST_VIEWS, stages);
@@ -48,11 +48,14 @@ impl Cloud {
     }
 
     /// The points that a frame neither sees through nor measures again.
-    fn not_seen_by(&self, frame: &Scans, camera: &Point3) -> Result<Vec<u32>, PrepareError> {
+    fn not_seen_by(&self, frame: &Scans) -> Result<Vec<u32>, PrepareError> {
         let own = &self.prepared.scans;
-        let view = SingleView::new(*camera, 0..frame.points.len());
+        let all = || Ok((0..own.points.len() as u32).collect());
+        let Some(image) = frame.images.first() else { return all() };
+        let camera = image.sensor_origin;
+        let view = SingleView::new(image.clone(), &Vector3::zeros());
         let Some((looks_past, pixels)) = view.looks_past((&frame.points, &frame.noise)) else {
-            return Ok((0..own.points.len() as u32).collect());
+            return all();
         };
         let measured = Neighborhoods::try_new(frame.points.clone())?;
         let stays = |&index: &u32| {

@@ -38,6 +38,9 @@ pub struct Change {
     pub is_rebuilt: bool,
 }
 
+/// So many points that are all in the cloud already are a scan that was given before.
+const LEAST_REPEATED: usize = 100;
+
 impl Cloud {
     /// Adds what another scan of the same frame has, filtered and with the noise by its own settings, as
     /// if both had been [merged](Self::merge): its points come after those that there are.
@@ -72,15 +75,28 @@ impl Cloud {
     /// ```
     ///
     /// # Errors
-    /// As [`Self::prepare`] for the scan, or for all together.
+    /// As [`Self::prepare`] for the scan, or for all together; and where it is there already.
     pub fn insert(
         &mut self,
         scan: &PointCloud,
         settings: &CloudSettings,
     ) -> Result<Change, ChangeError> {
         let added = Scans::of(&[(scan, settings.preparation())])?;
+        if self.has_all_of(&added) {
+            return Err(ChangeError::RepeatedScan { count: added.points.len() });
+        }
         let all: Vec<u32> = (0..self.len() as u32).collect();
         self.keep_and_append(&all, Some(added))
+    }
+
+    /// Whether each of many points is where one is already. Maps of cells may well hold all of a smaller one.
+    fn has_all_of(&self, added: &Scans) -> bool {
+        let origin = self.prepared.origin();
+        let is_known = |place: &Point3| self.prepared.distance_to(&(place - origin)) == Some(0.0);
+        // Few may be there by chance, of a sensor that counts in millimetres.
+        added.points.len() >= LEAST_REPEATED
+            && !added.rows.is_empty()
+            && added.points.iter().all(is_known)
     }
 
     /// Removes points, by their indices as filtered ([`Self::point`]); those after them move up.

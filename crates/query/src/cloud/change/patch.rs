@@ -91,7 +91,7 @@ impl Prepared {
         let measured = (self.points(), self.sensor());
         let settled = |view: &SingleView| view.settled(measured, &Vector3::zeros());
         let mut views: Vec<SingleView> = self.views.iter().filter_map(settled).collect();
-        let image = |(sensor, points): (Point3, _)| SingleView::new(sensor - self.origin, points);
+        let image = |image| SingleView::new(image, &self.origin);
         views.extend(mem::take(&mut scans.images).into_iter().map(image));
         self.views = views;
         self.sensor_origins = scans.origins.iter().map(|place| place - self.origin).collect();

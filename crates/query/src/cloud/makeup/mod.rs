@@ -28,11 +28,17 @@ const MOST_ROBOT: f64 = 0.5;
 /// A structured-light camera sees no farther, m: its fit ends at 3 m, its returns at some 8 m.
 const KINECT_RANGE: f64 = 10.0;
 
+/// With more points behind the camera than this, the turn stated for it is not believed
+/// ([`position_noise`](cloudtouch_noise::position_noise)).
+const MOST_BEHIND: f64 = 0.5;
+
 /// A sign that the sensor stated did not see the cloud.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SensorDoubt {
     /// So large a share of the points is beside or behind the camera.
     Beside { share: f64 },
+    /// So large a share of the points is behind the camera by the turn stated for it, which is not believed.
+    Turn { share: f64 },
     /// The points are farther away than the sensor sees, m.
     Range { median: f64, limit: f64 },
     /// A laser scanner, and the layout of a camera's image.
@@ -166,8 +172,12 @@ pub(super) fn sensor_doubts(
             // The turn that a file states may be one that its points are not in.
             let stated = cloud.from_sensor().transform_vector(&Vector3::z());
             let share = share(stated).min(share(Vector3::z()));
+            let behind = rays().filter(|ray| ray.dot(&stated) <= 0.0).count() as f64;
+            let behind = behind / points.len().max(1) as f64;
             if share > MOST_BESIDE {
                 doubts.push(SensorDoubt::Beside { share });
+            } else if behind > MOST_BEHIND {
+                doubts.push(SensorDoubt::Turn { share: behind });
             }
             if !cloud.is_image() {
                 doubts.push(SensorDoubt::NoImage);

@@ -10,19 +10,30 @@ use cloudtouch_noise::SensorNoise;
 
 use crate::cloud::view::raster::{Raster, Sight};
 
+/// A scan that is a depth image.
+#[derive(Debug, Clone)]
+pub(super) struct Image {
+    /// Where the sensor stood, m.
+    pub sensor_origin: Point3,
+    /// Which points are its.
+    pub points: Range<usize>,
+    /// How many pixels are where these are, those without return too.
+    pub pixels: usize,
+}
+
 /// Where the sensor stood, and the raster of its view once that is needed.
 #[derive(Debug)]
 pub(crate) struct SingleView {
-    /// In the cloud's local frame, m.
-    sensor_origin: Point3,
-    /// Which points of the cloud are those of the image.
-    points: Range<usize>,
+    /// In the cloud's local frame.
+    image: Image,
     raster: OnceLock<Option<Arc<Raster>>>,
 }
 
 impl SingleView {
-    pub(super) fn new(sensor_origin: Point3, points: Range<usize>) -> Self {
-        Self { sensor_origin, points, raster: OnceLock::new() }
+    /// Of an image in a frame that lies at `origin` in that of the cloud.
+    pub(super) fn new(image: Image, origin: &Vector3) -> Self {
+        let image = Image { sensor_origin: image.sensor_origin - origin, ..image };
+        Self { image, raster: OnceLock::new() }
     }
 
     /// What the camera knows of places, all in the cloud's local frame, given what it measured and
@@ -32,7 +43,7 @@ impl SingleView {
         measured: (&[Point3], &SensorNoise),
     ) -> Option<impl Fn(&Point3) -> Sight + 'a> {
         let raster = self.raster(measured)?;
-        Some(move |place: &Point3| raster.sight(&(place - self.sensor_origin)))
+        Some(move |place: &Point3| raster.sight(&(place - self.image.sensor_origin)))
     }
 
     /// Whether the camera looked past places, each with a standard deviation of its own, in their
@@ -44,14 +55,15 @@ impl SingleView {
     ) -> Option<(impl Fn(&Point3, f64) -> bool + Sync + 'a, f64)> {
         let raster = self.raster(measured)?;
         let looks_past =
-            move |place: &Point3, std| raster.looks_past(&(place - self.sensor_origin), std);
+            move |place: &Point3, std| raster.looks_past(&(place - self.image.sensor_origin), std);
         Some((looks_past, raster.pixel()))
     }
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
         let raster = self.raster.get_or_init(|| {
-            let own = self.points.clone().map(|index| (points[index], noise[index].std_bound()));
-            Raster::new(&self.sensor_origin, own).map(Arc::new)
+            let Image { sensor_origin, points: own, pixels } = &self.image;
+            let own = own.clone().map(|index| (points[index], noise[index].std_bound()));
+            Raster::new(sensor_origin, own, *pixels).map(Arc::new)
         });
         raster.as_deref()
     }
@@ -64,8 +76,8 @@ impl SingleView {
         shift: &Vector3,
     ) -> Option<Self> {
         let _looked = self.sight(measured)?;
-        let (sensor_origin, raster) = (self.sensor_origin - shift, self.raster.clone());
-        Some(Self { sensor_origin, points: 0..0, raster })
+        let settled = Self::new(Image { points: 0..0, ..self.image.clone() }, shift);
+        Some(Self { raster: self.raster.clone(), ..settled })
     }
 }
 
@@ -118,7 +130,12 @@ mod tests {
         for turn in [[0.0; 3], [0.7, -1.1, 2.9], [-2.0, 0.3, 0.4]] {
             let turned = Pose::from_translation_rpy(Vector3::zeros(), turn);
             let points: Vec<Point3> = seen.iter().map(|p| turned.transform_point(p)).collect();
-            let view = SingleView::new(Point3::origin(), 0..points.len());
+            let image = Image {
+                sensor_origin: Point3::origin(),
+                points: 0..points.len(),
+                pixels: points.len(),
+            };
+            let view = SingleView::new(image, &Vector3::zeros());
             let sight = view.sight((&points, &noise)).expect("points with directions");
             for index in 0..700 {
                 let unit = |k: u64| 2.0 * seed::unit(seed::derive(7, index, k)) - 1.0;

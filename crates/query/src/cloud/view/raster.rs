@@ -9,9 +9,9 @@ use cloudtouch_geom::{Point3, Vector3};
 
 /// Edge of a raster's cell in pixels: no cell between measured pixels is left empty by chance.
 const CELL_PIXELS: f64 = 2.0;
-/// A place is in a hole when nothing was measured so many cells around its own: smaller holes are
-/// specks that no surface hides in.
-const HOLE_CELLS: isize = 2;
+/// A place is in a hole when nothing was measured so many cells around its own: every hole eight pixels wide has
+/// such places, and smaller ones are specks that hardly a surface hides in.
+const HOLE_CELLS: isize = 1;
 /// Standard deviations of the measured surface that count as clearly behind it.
 const CLEARLY: f64 = 3.0;
 /// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
@@ -50,10 +50,14 @@ pub(super) struct Raster {
 }
 
 impl Raster {
-    /// Of the points measured, each with an upper bound of its standard deviations, m.
+    /// Of the points measured, each with an upper bound of its standard deviations, m, in so many pixels.
+    ///
+    /// Cells are as large as pixels are, however many of these have no return: by the returns alone holes
+    /// would be the smaller the more of them there are.
     pub(super) fn new(
         origin: &Point3,
         measured: impl Iterator<Item = (Point3, f64)>,
+        pixels: usize,
     ) -> Option<Self> {
         let rays: Vec<(Vector3, f64)> = measured.map(|(p, std)| (p - origin, std)).collect();
         let lens = Lens::of(rays.iter().map(|(ray, _)| ray))?;
@@ -73,7 +77,7 @@ impl Raster {
         }
         let extent = [high[0] - low[0], high[1] - low[1]];
         let area = extent[0] * extent[1];
-        let pitch = (CELL_PIXELS * (area / placed.len().max(1) as f64).sqrt())
+        let pitch = (CELL_PIXELS * (area / pixels.max(placed.len()).max(1) as f64).sqrt())
             .max((area / MOST_CELLS).sqrt())
             .max(extent[0].max(extent[1]) / MOST_COLUMNS);
         if !(pitch > 0.0 && pitch.is_finite()) {

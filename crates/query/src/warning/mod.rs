@@ -1,5 +1,9 @@
 //! What a report warns of: signs of a slip beside the answer.
 
+mod words;
+
+pub(crate) use words::length;
+
 use std::fmt;
 
 use serde::{Serialize, Serializer};
@@ -105,6 +109,13 @@ pub enum Warning {
         /// Share of the points, 0 to 1.
         share: f64,
     },
+    /// So many points are behind the camera by the turn stated for it: it counts as looking along z instead.
+    SensorTurn {
+        /// Whose.
+        body: Which,
+        /// Share of the points, 0 to 1.
+        share: f64,
+    },
     /// The sensor does not see so far.
     SensorRange {
         /// Whose.
@@ -143,6 +154,13 @@ pub enum Warning {
         /// Diagonal of the scene's box, m.
         size_m: f64,
     },
+    /// Scene and object are as if exchanged: the object is a cloud many times as large.
+    Exchanged {
+        /// Diagonal of the object's box, m.
+        size_m: f64,
+        /// Diagonal of the scene's box, m.
+        other_size_m: f64,
+    },
     /// Surface of a body lies where the depth image of the other saw nothing.
     Unseen {
         /// Whose surface.
@@ -166,13 +184,14 @@ impl Warning {
             | Self::Noise { body, .. }
             | Self::NoiseOverstated { body, .. }
             | Self::SensorPose { body, .. }
+            | Self::SensorTurn { body, .. }
             | Self::SensorRange { body, .. }
             | Self::SensorLayout { body }
             | Self::NoImage { body }
             | Self::ImagePlace { body }
             | Self::SelfFilter { body, .. }
             | Self::Unseen { body, .. } => Some(body),
-            Self::FarAway { .. } | Self::OutsideScene { .. } => None,
+            Self::FarAway { .. } | Self::OutsideScene { .. } | Self::Exchanged { .. } => None,
         }
     }
 
@@ -188,130 +207,12 @@ impl Warning {
                 Some(Undecided::Sensor)
             }
             Self::Unseen { .. } => Some(Undecided::Unseen),
-            Self::SensorLayout { .. } | Self::NoImage { .. } | Self::OutsideScene { .. } => None,
+            Self::SensorTurn { .. }
+            | Self::SensorLayout { .. }
+            | Self::NoImage { .. }
+            | Self::OutsideScene { .. }
+            | Self::Exchanged { .. } => None,
         }
-    }
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::NoSurface { body, points } => write!(
-                f,
-                "the {body} has {points} distinct points or corners, all on a line: they span no \
-                 surface; check the file"
-            ),
-            Self::Missing { body, share } => write!(
-                f,
-                "{:.0} % of the rows of the {body} have no return, and without an image layout it is \
-                 not known where: give the organised cloud, or drop rows that stand for empty space",
-                100.0 * share
-            ),
-            Self::Units { body, size_m, other_size_m } => write!(
-                f,
-                "the {body} is {} across and the other body {}: is a file in another unit? (--unit mm \
-                 for meshes, --cloud-unit mm for clouds; neither where it is in metres)",
-                length(size_m),
-                length(other_size_m)
-            ),
-            Self::FarAway { gap_m, size_m } => write!(
-                f,
-                "the object is {} away from a scene {} across: check the pose, its direction and its \
-                 unit (metres), or the units of the files",
-                length(gap_m),
-                length(size_m)
-            ),
-            Self::Sparse { body, spacing_m, other_size_m } => write!(
-                f,
-                "points of the {body} are {} apart and the other body is {} across: it fits between \
-                 them; is a file in millimetres? (--cloud-unit mm, --unit mm)",
-                length(spacing_m),
-                length(other_size_m)
-            ),
-            Self::Clumps { body, across_m, apart_m } => write!(
-                f,
-                "points of the {body} lie in clumps some {} across and {} from one another, as many scans \
-                 of the same rays do: nothing is known between them; put fewer scans together, or keep \
-                 one point of each clump",
-                length(across_m),
-                length(apart_m)
-            ),
-            Self::Noise { body, std_m, other_size_m } => write!(
-                f,
-                "the noise of the {body} is {} and the other body {} across: give the sensor's noise \
-                 in metres",
-                length(std_m),
-                length(other_size_m)
-            ),
-            Self::NoiseOverstated { body, std_m, seen_m } => write!(
-                f,
-                "the noise stated for the {body} is {} and its points are {} off planes: give the \
-                 sensor's noise, in metres",
-                length(std_m),
-                length(seen_m)
-            ),
-            Self::SensorPose { body, share } => write!(
-                f,
-                "{:.0} % of the points of the {body} are beside or behind the camera stated for it: \
-                 it looks along z of the file; say where it stood (VIEWPOINT, --sensor-pose) if the \
-                 points are in another frame",
-                (100.0 * share).ceil()
-            ),
-            Self::SensorRange { body, range_m, limit_m } => write!(
-                f,
-                "points of the {body} are {} away and its sensor sees no farther than {}: another \
-                 sensor (--sensor auto), or another unit (--cloud-unit)?",
-                length(range_m),
-                length(limit_m)
-            ),
-            Self::SensorLayout { body } => write!(
-                f,
-                "the {body} is laid out as the image of a camera and its sensor is stated as a laser \
-                 scanner: kinect or stereo? (--sensor auto)"
-            ),
-            Self::NoImage { body } => write!(
-                f,
-                "the {body} is of a camera and has no image layout: what the camera did not see \
-                 counts as empty; give the organised cloud"
-            ),
-            Self::ImagePlace { body } => write!(
-                f,
-                "the {body} has rows and columns as an image, which no camera at the place stated for it \
-                 has: say where it stood (VIEWPOINT, --sensor-pose) if the points are in another \
-                 frame, or give them without the layout"
-            ),
-            Self::SelfFilter { body, share } => write!(
-                f,
-                "{:.0} % of the points of the {body} were taken for the robot and left out: check its \
-                 pose, its joints and the padding (metres), or give the organised cloud",
-                100.0 * share
-            ),
-            Self::OutsideScene { gap_m, size_m } => write!(
-                f,
-                "the object is outside of the scene, {} from its box of {}: is the pose object to \
-                 scene, in metres?",
-                length(gap_m),
-                length(size_m)
-            ),
-            Self::Unseen { body, share, limit } => write!(
-                f,
-                "{:.0} % of the surface of the {body} lies where the camera saw nothing (allowed: \
-                 {:.0} %): look from elsewhere, or raise --max-unseen",
-                (100.0 * share).ceil(),
-                100.0 * limit
-            ),
-        }
-    }
-}
-
-/// A length with as many digits as help.
-fn length(metres: f64) -> String {
-    match metres {
-        m if m > 0.0 && m < 0.01 => format!("{:.2e} m", m),
-        m if m < 1.0 => format!("{:.3} m", m),
-        m if m < 100.0 => format!("{:.1} m", m),
-        m if m < 1e6 => format!("{:.0} m", m),
-        m => format!("{m:.1e} m"),
     }
 }
 
