@@ -12,7 +12,6 @@ mod robot;
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
-use cloudtouch_cli::numbers;
 use cloudtouch_io::LengthUnit;
 
 use crate::sensor::SensorChoice;
@@ -196,7 +195,7 @@ pub(crate) struct PathArguments {
     #[arg(long)]
     pub screw: bool,
     /// How finely the path is looked at, as a share of it
-    #[arg(long, value_name = "SHARE", value_parser = numbers::finite, default_value_t = 0.01,
+    #[arg(long, value_name = "SHARE", value_parser = parse_fraction, default_value_t = 0.01,
           allow_negative_numbers = true)]
     pub tolerance: f64,
     #[command(flatten)]

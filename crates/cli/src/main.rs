@@ -13,6 +13,7 @@ mod output;
 mod pages;
 mod picture;
 mod unused;
+mod usage;
 
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
@@ -22,6 +23,7 @@ use clap::error::ErrorKind;
 use cloudtouch_cli::sensor;
 
 use args::{Arguments, Command};
+use usage::WrongUsage;
 
 fn main() -> ExitCode {
     let arguments = Arguments::read();
@@ -53,6 +55,6 @@ fn main() -> ExitCode {
     outcome.unwrap_or_else(|error| {
         // When standard error is gone too, the exit code still tells.
         let _ = writeln!(std::io::stderr(), "error: {error:#}");
-        ExitCode::FAILURE
+        if error.is::<WrongUsage>() { ExitCode::from(usage::EXIT_CODE) } else { ExitCode::FAILURE }
     })
 }

@@ -4,6 +4,7 @@ use anyhow::{Result, bail};
 
 use crate::args::CommonArguments;
 use crate::load::Role;
+use crate::usage::WrongUsage;
 
 /// Refuses options about clouds where no file is one, and about meshes where none is. `files` are all
 /// that were read, each with whether it is a mesh.
@@ -11,7 +12,8 @@ pub(crate) fn check(common: &CommonArguments, files: &[(Role, bool)]) -> Result<
     let any_mesh = files.iter().any(|(_, is_mesh)| *is_mesh);
     let any_cloud = files.iter().any(|(_, is_mesh)| !is_mesh);
     if common.unit.is_some() && !any_mesh && common.robot.is_empty() {
-        bail!("--unit is for meshes, and no file is one: give --cloud-unit for clouds");
+        let message = "--unit is for meshes, and no file is one: give --cloud-unit for clouds";
+        bail!(WrongUsage(message.to_owned()));
     }
     let for_clouds = [
         ("--cloud-unit", common.cloud_unit.is_some()),
@@ -28,17 +30,15 @@ pub(crate) fn check(common: &CommonArguments, files: &[(Role, bool)]) -> Result<
     if let Some((option, _)) = for_clouds.iter().find(|(_, is_given)| *is_given)
         && !any_cloud
     {
-        bail!(of_clouds(option));
+        bail!(of_clouds(option, "file"));
     }
     // Of clouds of one role only; the sensor of scenes is that of objects where these have none.
     if common.object_sensor.is_some() {
         if !files.contains(&(Role::Object, false)) {
-            bail!(
-                "--object-sensor is for objects that are clouds, and no object is one: leave it out"
-            );
+            bail!(of_clouds("--object-sensor", "object"));
         }
         if common.sensor.is_some() && !files.contains(&(Role::Scene, false)) {
-            bail!("--sensor is for scenes that are clouds, and no scene is one: leave it out");
+            bail!(of_clouds("--sensor", "scene"));
         }
     }
     Ok(())
@@ -49,7 +49,7 @@ pub(crate) fn of_a_mesh(field: &str, file: &str) -> String {
     format!("`{field}` is of a cloud, and {file} is a mesh, which has no sensor: leave it out")
 }
 
-/// Why an option about clouds is refused where no file is one.
-fn of_clouds(option: &str) -> String {
-    format!("{option} is for clouds, and no file is one: leave it out")
+/// Why an option about clouds is refused where nothing of this role is one.
+fn of_clouds(option: &str, role: &str) -> WrongUsage {
+    WrongUsage(format!("{option} is for clouds, and no {role} is one: leave it out"))
 }

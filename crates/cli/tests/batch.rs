@@ -300,7 +300,7 @@ fn options_are_refused_where_no_file_has_a_use_for_them_and_all_are_read() {
     ] {
         inputs.write("cases.json", &case_file(std::slice::from_ref(case)));
         let run = inputs.run(&["batch", "cases.json", option]);
-        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{option}: {}", run.stderr());
+        assert_eq!((run.code(), run.stdout().as_str()), (2, ""), "{option}: {}", run.stderr());
         assert!(run.stderr().contains(part), "{}", run.stderr());
     }
     // What cannot be read may be a cloud.
@@ -334,7 +334,7 @@ fn a_sensor_for_no_file_was_taken_in_silence() {
     for name in ["flor", "kinect"] {
         let run =
             inputs.run(&["batch", "kinect/cases.json", &format!("--sensor-for={name}=kinect")]);
-        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{}", run.stderr());
+        assert_eq!((run.code(), run.stdout().as_str()), (2, ""), "{}", run.stderr());
         for part in
             [&format!("--sensor-for {name}=kinect"), "kinect/cases.json", "box.obj, floor.pcd"]
         {

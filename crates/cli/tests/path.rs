@@ -154,8 +154,10 @@ fn bad_paths_are_named_with_what_to_do() {
         assert!(error.contains(name) && error.contains(part), "{error}");
     }
     inputs.write("good.csv", &csv(&[0.5, 0.4]));
-    let run = path(&inputs, "good.csv", &["--tolerance", "2"]);
-    assert!(run.code() == 1 && run.stderr().contains("the tolerance is 2"), "{}", run.stderr());
+    for tolerance in ["0", "2"] {
+        let run = path(&inputs, "good.csv", &["--tolerance", tolerance]);
+        assert!(run.code() == 2 && run.stderr().contains("--tolerance"), "{}", run.stderr());
+    }
     let run = path(&inputs, "good.csv", &["--mode", "paper"]);
     assert!(run.code() == 2 && run.stderr().contains("calibrated mode"), "{}", run.stderr());
     let run = path(&inputs, "good.csv", &["--margin", "0.1"]);

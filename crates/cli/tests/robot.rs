@@ -143,7 +143,7 @@ fn wrong_use_is_refused_with_the_remedy() {
         (
             home.clone(),
             vec!["--package=mime=parts"],
-            1,
+            2,
             vec!["--package mime=parts", "arm.urdf", "one of mine"],
         ),
         (home.clone(), vec!["--srdf=arm.srdf"], 2, vec!["--self-collision"]),

@@ -91,7 +91,7 @@ fn units_sensors_and_the_threshold_are_those_of_the_file() {
     let answer = scene(&inputs, &file, &["--json"]).quiet(0).json_lines().remove(0);
     assert_eq!((answer["threshold"].as_f64(), pairs(&answer).len()), (Some(0.00001), 1));
     let both = scene(&inputs, &file, &["--reject", "0.2"]);
-    assert!(both.code() == 1 && both.stderr().contains("give one of them"), "{}", both.stderr());
+    assert!(both.code() == 2 && both.stderr().contains("give one of them"), "{}", both.stderr());
 }
 
 #[test]
@@ -162,12 +162,17 @@ fn sensors_without_a_cloud_were_passed_over() {
         of_bodies(&[floor(), with])
     };
     let plain = of_bodies(&[floor(), body("box", "box.obj", 0.5)]);
-    for (file, options, parts) in [
-        (&of_a_mesh, &[][..], ["body 1 `box`", "`sensor`", "box.obj is a mesh"]),
-        (&plain, &["--sensor=iso:0.03"], ["--sensor is for", "each cloud has one", "leave it out"]),
+    for (file, options, code, parts) in [
+        (&of_a_mesh, &[][..], 1, ["body 1 `box`", "`sensor`", "box.obj is a mesh"]),
+        (
+            &plain,
+            &["--sensor=iso:0.03"],
+            2,
+            ["--sensor is for", "each cloud has one", "leave it out"],
+        ),
     ] {
         let run = scene(&inputs, file, options);
-        assert_eq!((run.code(), run.stdout().as_str()), (1, ""), "{}", run.stderr());
+        assert_eq!((run.code(), run.stdout().as_str()), (code, ""), "{}", run.stderr());
         assert!(parts.iter().all(|part| run.stderr().contains(part)), "{}", run.stderr());
     }
     let mut own = floor();

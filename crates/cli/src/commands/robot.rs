@@ -14,6 +14,7 @@ use crate::answers::robot::Asked;
 use crate::args::RobotArguments;
 use crate::body::Body;
 use crate::load::{self, Role};
+use crate::usage::WrongUsage;
 use crate::{answers, unused};
 
 pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
@@ -94,11 +95,11 @@ fn check_packages(arguments: &RobotArguments, robot: &Robot) -> Result<()> {
         } else {
             format!("leave it out, or correct it to one of {names}")
         };
-        bail!(
+        bail!(WrongUsage(format!(
             "--package {name}={}: no <collision> mesh of {} is in the package `{name}`: {remedy}",
             folder.display(),
             options.urdf.display()
-        );
+        )));
     }
     Ok(())
 }

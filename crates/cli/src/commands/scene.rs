@@ -17,6 +17,7 @@ use crate::args::{CommonArguments, SceneArguments};
 use crate::body::Body;
 use crate::load::{self, Input, Loaded, Role};
 use crate::sensor::SensorChoice;
+use crate::usage::WrongUsage;
 use crate::{answers, unused};
 
 /// A file, the unit it is said to be in and the sensor that saw it, by its spec.
@@ -69,10 +70,9 @@ impl Prepared {
 }
 
 fn settings(common: &CommonArguments, file: &SceneFile) -> Result<QuerySettings> {
-    ensure!(
-        file.threshold.is_none() || common.reject.is_none(),
-        "has a threshold, and --reject is one too: give one of them"
-    );
+    let both = "has a threshold, and --reject is one too: give one of them";
+    let is_twice = file.threshold.is_some() && common.reject.is_some();
+    ensure!(!is_twice, WrongUsage(both.to_owned()));
     let usual = common.query_settings();
     Ok(QuerySettings { reject: file.threshold.unwrap_or(usual.reject), ..usual })
 }
@@ -143,10 +143,9 @@ fn check_sensors(
         );
         any_without |= !is_mesh && entry.sensor.is_none();
     }
-    ensure!(
-        any_without || common.sensor.is_none(),
-        "--sensor is for clouds without a `sensor` of their own, and each cloud has one: leave it out"
-    );
+    let each_has_one = "--sensor is for clouds without a `sensor` of their own, and each cloud has one: \
+                        leave it out";
+    ensure!(any_without || common.sensor.is_none(), WrongUsage(each_has_one.to_owned()));
     Ok(())
 }
 

@@ -22,6 +22,7 @@ use serde::Serialize;
 use crate::args::{CommonArguments, Refine};
 use crate::body::{Body, PreparedCloud};
 use crate::sensor::{Chosen, SensorChoice};
+use crate::usage::WrongUsage;
 
 /// What a body is used as: only scenes are cleaned of the robot and turned into collision maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -155,10 +156,10 @@ fn of_mesh<C>(
     if role == Role::Scene
         && let Some((option, _)) = of_clouds.iter().find(|(_, is_given)| *is_given)
     {
-        bail!(
+        bail!(WrongUsage(format!(
             "{}: {option} is for a scene that is a cloud, and this is a mesh: leave it out",
             named(path)
-        );
+        )));
     }
     let mesh = prepared(mesh).with_context(|| named(path))?;
     if unit == LengthUnit::Metres && mesh.size() > SUSPICIOUS_MESH_SIZE {
@@ -196,7 +197,8 @@ fn of_clouds<C: PreparedCloud>(
     if role == Role::Scene
         && let Some(Rigid(pose)) = common.sensor_pose
     {
-        ensure!(scans.len() == 1, "{name}: --sensor-pose is for one scan, and these are several");
+        let several = "--sensor-pose is for one scan, and these are several";
+        ensure!(scans.len() == 1, WrongUsage(format!("{name}: {several}")));
         scans.iter_mut().for_each(|scan| scan.sensor_pose = Some(pose));
     }
     let first = scans.first().with_context(|| format!("{name}: no scan"))?;

@@ -6,6 +6,7 @@ use anyhow::{Result, bail};
 use cloudtouch_cli::files::case::CaseFile;
 
 use crate::sensor::SensorChoice;
+use crate::usage::WrongUsage;
 
 /// Of many files no more are named in a message.
 const FILES_NAMED: usize = 5;
@@ -35,12 +36,12 @@ impl SensorsFor<'_> {
         paths.sort_unstable();
         paths.dedup();
         match self.given.iter().find(|(name, _)| !paths.iter().any(|path| self.has(path, name))) {
-            Some((name, sensor)) => bail!(
+            Some((name, sensor)) => bail!(WrongUsage(format!(
                 "--sensor-for {name}={sensor}: no file of {} has `{name}` in its path: correct it to \
                  part of {}",
                 self.cases.display(),
                 self.listed(&paths)
-            ),
+            ))),
             None => Ok(()),
         }
     }
@@ -52,10 +53,10 @@ impl SensorsFor<'_> {
             found.peek().is_some() && found.all(|(_, is_mesh)| *is_mesh)
         };
         match self.given.iter().find(|(name, _)| of_meshes(name)) {
-            Some((name, sensor)) => bail!(
+            Some((name, sensor)) => bail!(WrongUsage(format!(
                 "--sensor-for {name}={sensor} is for clouds, and all files with `{name}` in their path \
                  are meshes: leave it out"
-            ),
+            ))),
             None => Ok(()),
         }
     }
