@@ -1,24 +1,46 @@
 //! Output files: no input is ever replaced, and nothing else without being asked.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use cloudtouch_io::recording::file_of;
 
+use crate::usage::WrongUsage;
+
+/// A file that an option names.
+pub(crate) struct Output<'a> {
+    path: &'a Path,
+    /// What other programs know its format by; a table may have any.
+    extension: Option<&'static str>,
+}
+
+impl<'a> Output<'a> {
+    /// A picture or page, if it is asked for.
+    pub(crate) fn of(extension: &'static str, path: &'a Option<PathBuf>) -> Option<Self> {
+        Some(Self { path: path.as_deref()?, extension: Some(extension) })
+    }
+
+    /// A table, if it is asked for.
+    pub(crate) fn table(path: &'a Option<PathBuf>) -> Option<Self> {
+        Some(Self { path: path.as_deref()?, extension: None })
+    }
+}
+
 /// Whether files may be written: each is in a folder that is there, is none of the inputs and none of the
-/// others, and not there unless `force` is given. `-` is no name of one. A pipe or a device may be.
+/// others, has no extension of another format, and is not there unless `force` is given. `-` is no name
+/// of one. A pipe or a device may be.
 pub(crate) fn check<'a>(
-    outputs: &[&Path],
+    outputs: &[Option<Output<'_>>],
     inputs: impl Iterator<Item = &'a Path> + Clone,
     force: bool,
 ) -> Result<()> {
+    let outputs: Vec<&Output<'_>> = outputs.iter().flatten().collect();
     for (number, output) in outputs.iter().enumerate() {
-        let is_same =
-            |other: &&Path| std::path::absolute(other).ok() == std::path::absolute(output).ok();
-        if outputs[..number].iter().any(is_same) {
+        let at = |output: &Output<'_>| std::path::absolute(output.path).ok();
+        if outputs[..number].iter().any(|other| at(other) == at(output)) {
             bail!(
                 "{}: is to be written twice: give each output a file of its own",
-                output.display()
+                output.path.display()
             );
         }
         check_one(output, inputs.clone(), force)?;
@@ -27,7 +49,7 @@ pub(crate) fn check<'a>(
 }
 
 fn check_one<'a>(
-    output: &Path,
+    &Output { path: output, extension }: &Output<'_>,
     mut inputs: impl Iterator<Item = &'a Path>,
     force: bool,
 ) -> Result<()> {
@@ -37,7 +59,10 @@ fn check_one<'a>(
              name a file"
         );
     }
-    let Ok(existing) = std::fs::canonicalize(output) else { return check_folder(output) };
+    let Ok(existing) = std::fs::canonicalize(output) else {
+        check_folder(output)?;
+        return check_extension(output, extension);
+    };
     if existing.is_dir() {
         bail!("{}: cannot be written: is a folder: name a file in it", output.display());
     }
@@ -47,10 +72,26 @@ fn check_one<'a>(
     if inputs.any(is_input) {
         bail!("{}: is an input of this very command: write to another file", output.display());
     }
+    check_extension(output, extension)?;
     if existing.is_file() && !force {
         bail!("{}: is there already: give --force to replace it", output.display());
     }
     Ok(())
+}
+
+/// A name that promises another format; one without an extension promises none.
+fn check_extension(output: &Path, wanted: Option<&str>) -> Result<()> {
+    match (output.extension(), wanted) {
+        (Some(given), Some(wanted)) if !given.eq_ignore_ascii_case(wanted) => {
+            bail!(WrongUsage(format!(
+                "{}: is written as {}: name it {}",
+                output.display(),
+                wanted.to_uppercase(),
+                output.with_extension(wanted).display()
+            )))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Told before the work is done that is to be written.

@@ -138,6 +138,45 @@ fn outputs_that_cannot_be_written() {
     check(&inputs, &jsonl, &["gone/out.jsonl: cannot be written"]);
 }
 
+/// It was written all the same, and no program that goes by names could open it.
+#[test]
+fn a_page_and_a_picture_were_written_under_any_name() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &support::case_file(&[support::case_at("a", 0.5)]));
+    inputs.write("path.csv", "0,0,0.5,1,0,0,0\n0,0,0.3,1,0,0,0\n");
+    std::fs::create_dir(inputs.path("a.b")).unwrap();
+    let before = inputs.names();
+    for (arguments, parts) in [
+        (
+            &["query", "floor.pcd", "box.obj", "--ply", "o.stl"][..],
+            ["o.stl: is written as PLY", "name it o.ply"],
+        ),
+        (
+            &["query", "floor.pcd", "box.obj", "--html", "o.ply"],
+            ["o.ply: is written as HTML", "name it o.html"],
+        ),
+        (
+            &["batch", "cases.json", "--html", "a.b/o.txt"],
+            ["a.b/o.txt: is written", "name it a.b/o.html"],
+        ),
+        (
+            &["path", "floor.pcd", "box.obj", "--poses=path.csv", "--html=o.htm"],
+            ["o.htm: ", "o.html"],
+        ),
+        (&["demo", "--ply", "o.pcd"], ["o.pcd: ", "name it o.ply"]),
+        (&["demo", "--html", "o.pdf"], ["o.pdf: ", "name it o.html"]),
+    ] {
+        let run = inputs.run(arguments);
+        assert_eq!((run.code(), run.stdout().as_str()), (2, ""), "{arguments:?}");
+        for part in parts {
+            assert!(run.stderr().contains(part), "`{part}` is not in {}", run.stderr());
+        }
+        assert_eq!(inputs.names(), before, "{arguments:?} left something behind");
+    }
+    inputs.run(&["query", "floor.pcd", "box.obj", "--ply=O.PLY", "--html=O.HTML"]).quiet(0);
+    inputs.run(&["query", "floor.pcd", "box.obj", "--ply=picture"]).quiet(0);
+}
+
 /// It was told when all the work was done.
 #[test]
 fn a_folder_that_is_not_there_was_told_after_hours_of_work() {

@@ -19,6 +19,7 @@ use crate::args::{BatchArguments, ModeName};
 use crate::body;
 use crate::load::sensor_for::SensorsFor;
 use crate::load::{self, Input, Loaded, Role};
+use crate::output::Output;
 use crate::pages::batch::{Answered, Shown};
 use crate::sensor::SensorChoice;
 use crate::{ordered, output, unused};
@@ -46,8 +47,8 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     let settings = arguments.common.settings.as_ref().map(|file| &file.path);
     let others = arguments.common.robot.iter().chain([&arguments.cases]).chain(settings);
     let inputs = files.chain(others.map(PathBuf::as_path));
-    let outputs = arguments.jsonl.iter().chain(&arguments.html).map(PathBuf::as_path);
-    output::check(&outputs.collect::<Vec<_>>(), inputs, arguments.force)?;
+    let outputs = [Output::table(&arguments.jsonl), Output::of("html", &arguments.html)];
+    output::check(&outputs, inputs, arguments.force)?;
     sensors_for(arguments).check(&file)?;
     warn_of_same_names(arguments, &file);
     let bodies = prepare_all::<P::Cloud>(arguments, good())?;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
@@ -17,6 +17,7 @@ use crate::answers::print;
 use crate::args::{DemoArguments, ModeName};
 use crate::body::{self, Body, PreparedCloud};
 use crate::load::{Input, Loaded};
+use crate::output::Output;
 use crate::{answers, output, pages, picture};
 
 const ROOM: &[u8] = include_bytes!("../../demo/room.pcd");
@@ -29,8 +30,8 @@ const NOISE: f64 = 0.002;
 const BAR: usize = 10;
 
 pub(crate) fn run(arguments: &DemoArguments, shows_work: bool) -> Result<ExitCode> {
-    let outputs = arguments.ply.iter().chain(&arguments.html).map(PathBuf::as_path);
-    output::check(&outputs.collect::<Vec<_>>(), std::iter::empty(), arguments.force)?;
+    let outputs = [Output::of("ply", &arguments.ply), Output::of("html", &arguments.html)];
+    output::check(&outputs, std::iter::empty(), arguments.force)?;
     match arguments.mode {
         ModeName::Calibrated => {
             run_by(&Query::new(QuerySettings::default())?, arguments, shows_work)

@@ -1,6 +1,6 @@
 //! `cloudtouch path`: one object along a path in one scene.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
@@ -11,6 +11,7 @@ use crate::answers::print;
 use crate::args::PathArguments;
 use crate::inside::with_points_inside;
 use crate::load::{self, Role};
+use crate::output::Output;
 use crate::{answers, output, pages, unused};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
@@ -20,8 +21,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     inputs.into_iter().try_for_each(|path| load::check(path))?;
     let files = [&arguments.scene, &arguments.object, &arguments.poses];
     let inputs = files.into_iter().chain(&common.robot).map(PathBuf::as_path);
-    let output: Vec<&Path> = arguments.html.iter().map(PathBuf::as_path).collect();
-    output::check(&output, inputs, arguments.force)?;
+    output::check(&[Output::of("html", &arguments.html)], inputs, arguments.force)?;
     let (path, doubt) = load::path::read(&arguments.poses, arguments.screw)?;
     let scene = load::bodies::<Cloud>(
         &[arguments.scene.as_path()],

@@ -19,6 +19,7 @@ use crate::args::{ModeName, PoseArguments, QueryArguments};
 use crate::body::{self, Body, PreparedCloud};
 use crate::inside::with_points_inside;
 use crate::load::{self, Loaded, Role};
+use crate::output::Output;
 use crate::{answers, output, pages, picture, unused};
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
@@ -46,8 +47,11 @@ fn run_by<P: body::Path>(
         .chain(&arguments.kappas)
         .chain(&common.robot);
     inputs.clone().try_for_each(|path| load::check(path))?;
-    let outputs = [&arguments.ply, &arguments.csv, &arguments.html];
-    let outputs: Vec<&Path> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let outputs = [
+        Output::of("ply", &arguments.ply),
+        Output::table(&arguments.csv),
+        Output::of("html", &arguments.html),
+    ];
     let settings = common.settings.as_ref().map(|file| &file.path);
     let inputs = inputs.chain(&arguments.pose.pose).chain(settings).map(PathBuf::as_path);
     output::check(&outputs, inputs, arguments.force)?;
