@@ -2,6 +2,7 @@
 
 mod answer;
 mod caution;
+mod commas;
 mod common;
 mod limits;
 mod parse;
@@ -65,7 +66,8 @@ impl Arguments {
     /// Reads the command line, or ends with what is wrong with it.
     pub(crate) fn read() -> Self {
         let command = refused::hidden(Self::command());
-        Self::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit())
+        let matches = command.try_get_matches().unwrap_or_else(|error| commas::told(error).exit());
+        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
     }
 
     /// Refuses options that contradict one another; the message names them.

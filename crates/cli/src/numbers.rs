@@ -115,9 +115,21 @@ pub fn share(text: &str) -> Result<f64, String> {
 }
 
 fn numbers<const N: usize>(text: &str, form: &str) -> Result<[f64; N], String> {
+    if let Some(separated) = separated(text) {
+        return Err(format!("numbers are separated by commas: write {separated}"));
+    }
     let numbers = text.split(',').map(finite).collect::<Result<Vec<f64>, String>>()?;
     let count = numbers.len();
     numbers.try_into().map_err(|_| format!("{count} numbers are given: write {form}"))
+}
+
+/// The same numbers with commas, where spaces stand in the place of some.
+fn separated(text: &str) -> Option<String> {
+    let lacks_some = text.split(',').any(|part| part.split_whitespace().nth(1).is_some());
+    let parts =
+        || text.split(|c: char| c == ',' || c.is_whitespace()).filter(|part| !part.is_empty());
+    let are_numbers = parts().all(|part| finite(part).is_ok());
+    (lacks_some && are_numbers).then(|| parts().collect::<Vec<_>>().join(","))
 }
 
 fn from_rpy(angles: [f64; 3]) -> Turn {
@@ -160,6 +172,9 @@ mod tests {
         for (result, part) in [
             (triple("1,2").map(|_| ()), "2 numbers are given"),
             (triple("1,2,nan").map(|_| ()), "`nan` is not finite"),
+            (triple("0.1 0 0.7").map(|_| ()), "write 0.1,0,0.7"),
+            (rigid("1, 2 3 0 0 0 1").map(|_| ()), "write 1,2,3,0,0,0,1"),
+            (triple("a man").map(|_| ()), "`a man` is not a number"),
             (quaternion("0,0,0").map(|_| ()), "write four"),
             (quaternion("0,0,0,2").map(|_| ()), "length"),
             (rigid("1,2,3,4").map(|_| ()), "write four"),

@@ -179,6 +179,9 @@ const MISUSED: &[Slip] = &[
     ("floor.pcd box.obj --quaternion 0,0,1", &["3 numbers", "x,y,z,w"]),
     ("floor.pcd box.obj --translate 0.4", &["1 numbers", "0.4,0,-1.2"]),
     ("floor.pcd box.obj --translate 0.4;0;1", &["`0.4;0;1` is not a number"]),
+    ("floor.pcd box.obj --translate 0.1 0 0.7", &["'0'", "commas", "as in 0.1,0,0.7"]),
+    ("--translate 0.1 0 0.7 floor.pcd box.obj", &["'0.1'", "commas", "as in 0.1,0,0.7"]),
+    ("floor.pcd box.obj --sensor-pose 1 -2.5 3", &["'-2'", "commas", "as in 1,-2.5,3"]),
     ("floor.pcd box.obj --sensor kinect2", &["`kinect2`", "kinect"]),
     ("floor.pcd box.obj --sensor iso:5mm", &["`5mm`", "iso:STD"]),
     ("floor.pcd box.obj --sensor-pose 1,2,3,4", &["write four"]),
@@ -315,9 +318,6 @@ fn what_is_wrong_is_refused_in_one_line() {
     });
 }
 
-#[test]
-fn what_is_misused_is_told_before_any_work() {
-    each(MISUSED, &["query"], |code, out, err| {
 /// They gave 1, as a broken file does, where other wrong options give 2.
 #[test]
 fn options_that_the_files_have_no_use_for_were_no_wrong_usage() {
@@ -327,6 +327,9 @@ fn options_that_the_files_have_no_use_for_were_no_wrong_usage() {
     });
 }
 
+#[test]
+fn what_is_misused_is_told_before_any_work() {
+    each(MISUSED, &["query"], |code, out, err| {
         let has_usage = err.contains("Usage") || err.contains("--help");
         (code != 2 || !out.is_empty() || !has_usage).then(|| format!("exit code {code}"))
     });
