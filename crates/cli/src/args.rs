@@ -49,7 +49,8 @@ Examples:
   cloudtouch batch cases.json --jsonl answers.jsonl
   cloudtouch query run.mcap#/points@12.5 gripper.stl   (built with --features mcap)
 
-Exit codes: 0 done, 1 error, 2 wrong usage; query --exit-code tells the verdict.";
+Exit codes: 0 done, 1 error, 2 wrong usage; with --exit-code of query, path, scene and robot
+  0 free, 10 uncertain, 20 in collision, 30 undecided.";
 
 /// How likely is it that the surfaces behind two noisy point clouds touch?
 #[derive(Debug, Parser)]

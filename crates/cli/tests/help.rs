@@ -43,6 +43,17 @@ fn an_option_that_is_refused_was_listed() {
     }
 }
 
+/// They stood in the help of single commands, and the verdict was said to be told by `query` alone.
+#[test]
+fn exit_codes_of_verdicts_were_not_named() {
+    let help = Inputs::new().run(&["--help"]).quiet(0).stdout();
+    let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in ["query, path, scene and robot", "10 uncertain", "20 in collision", "30 undecided"]
+    {
+        assert!(words.contains(part), "`{part}` is not in {help}");
+    }
+}
+
 #[test]
 fn options_that_need_another_did_not_say_so() {
     let inputs = Inputs::new();
