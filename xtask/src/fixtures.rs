@@ -28,7 +28,7 @@ const WANTED: [f64; 12] =
     [0.3, 0.2, 0.1, 0.05, 0.025, 0.01, -0.01, -0.025, -0.05, -0.07, -0.09, -0.12];
 
 /// The folders that hold nothing but what this task makes, and pages that describe it.
-const FOLDERS: [&str; 2] = ["fixtures", DEMO_FOLDER];
+const FOLDERS: [&str; 2] = ["fixtures/piano-room", DEMO_FOLDER];
 /// The tool carries a copy of the files of its demo: a package holds only what is below it.
 const DEMO_FOLDER: &str = "crates/cli/demo";
 const OF_DEMO: [&str; 3] = ["cases.json", "piano.pcd", "room.pcd"];
@@ -251,7 +251,7 @@ mod tests {
         compare(&root, files()).unwrap();
         fs::write(root.join("fixtures/piano-room/room.obj"), "v 0 0 0\n").unwrap();
         fs::remove_file(root.join("fixtures/piano-room/cases.json")).unwrap();
-        fs::write(root.join("fixtures/notes.txt"), "").unwrap();
+        fs::write(root.join("fixtures/piano-room/notes.txt"), "").unwrap();
         fs::write(root.join("crates/cli/demo/room.pcd"), "").unwrap();
         let error = compare(&root, files()).unwrap_err().to_string();
         fs::remove_dir_all(&root).unwrap();

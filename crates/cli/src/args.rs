@@ -52,6 +52,14 @@ Examples:
 Exit codes: 0 done, 1 error, 2 wrong usage; with --exit-code of query, path, scene and robot
   0 free, 10 uncertain, 20 in collision, 30 undecided.";
 
+const SCENE_FILE: &str = "\
+A scene file, of which docs/scenes.md has every field:
+  {\"format\": 1, \"length_unit\": \"m\",
+   \"bodies\": [{\"name\": \"room\", \"file\": \"room.pcd\", \"sensor\": \"kinect\"},
+              {\"name\": \"hand\", \"file\": \"hand.stl\", \"unit\": \"mm\", \"pose\": [...]},
+              {\"name\": \"cup\", \"file\": \"cup.obj\", \"attached_to\": \"hand\"}],
+   \"allowed\": [[\"hand\", \"cup\"]]}";
+
 /// How likely is it that the surfaces behind two noisy point clouds touch?
 #[derive(Debug, Parser)]
 #[command(name = "cloudtouch", version, after_help = EXAMPLES)]
@@ -224,7 +232,7 @@ impl PathArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = SENSORS)]
+#[command(after_help = format!("{SCENE_FILE}\n\n{SENSORS}"))]
 pub(crate) struct SceneArguments {
     /// Scene file (JSON); its paths are relative to it
     pub scene: PathBuf,

@@ -54,6 +54,15 @@ fn exit_codes_of_verdicts_were_not_named() {
     }
 }
 
+/// The format stood in a file of the repository that no help named.
+#[test]
+fn the_help_of_scene_did_not_say_what_a_scene_file_holds() {
+    let help = Inputs::new().run(&["scene", "--help"]).quiet(0).stdout();
+    for part in ["\"bodies\"", "\"attached_to\"", "\"allowed\"", "docs/scenes.md"] {
+        assert!(help.contains(part), "`{part}` is not in {help}");
+    }
+}
+
 #[test]
 fn options_that_need_another_did_not_say_so() {
     let inputs = Inputs::new();

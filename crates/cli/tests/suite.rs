@@ -2,6 +2,7 @@
 
 mod batch;
 mod demo;
+mod documented;
 mod effort;
 mod errors;
 mod exit_codes;
