@@ -17,6 +17,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Rows, matrix};
 use crate::error::{refused, refused_for};
 use crate::pool::{on_all_threads, pool};
+use crate::sensor::stated;
 
 /// A prepared body, shared by threads.
 #[pyclass(frozen, module = "cloudtouch._native")]
@@ -232,8 +233,7 @@ pub(crate) struct CloudArguments<'py> {
 
 impl CloudArguments<'_> {
     fn settings(&self, py: Python<'_>) -> PyResult<CloudSettings> {
-        let sensor: SensorModel = self.sensor.parse().map_err(refused)?;
-        let mut settings = CloudSettings::new(sensor);
+        let mut settings = CloudSettings::new(stated(&self.sensor).map_err(refused)?);
         let filter = &mut settings.filter;
         filter.min_range = self.min_range.or(filter.min_range);
         filter.max_range = self.max_range.unwrap_or(filter.max_range);

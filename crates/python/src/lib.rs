@@ -14,6 +14,7 @@ mod pool;
 mod query;
 mod robot;
 mod scene;
+mod sensor;
 mod sweep;
 
 #[pyo3::pymodule]
@@ -32,6 +33,8 @@ mod _native {
     use crate::robot::{Robot, RobotChecker};
     #[pymodule_export]
     use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::sensor::check_sensor;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "the name Python gives a version")]

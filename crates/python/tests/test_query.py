@@ -117,6 +117,11 @@ def test_a_sensor_that_is_a_number_is_told_what_to_be():
         ct.Cloud(np.zeros((3, 3)), sensor=None)
 
 
+def test_a_sensor_that_only_the_tool_chooses_was_unknown_without_a_remedy():
+    with pytest.raises(ct.CloudtouchError, match="^sensor: `auto` .*cloudtouch info FILE"):
+        ct.Cloud(np.zeros((3, 3)), sensor="auto")
+
+
 def test_what_is_no_body_was_told_to_lack_an_attribute(table, parcel):
     query = ct.Query()
     for ask in [query.run, query.gradient]:

@@ -62,7 +62,7 @@ class Cloud:
     sensor
         What measured it, and how noisy that is: ``"kinect"``, ``"stereo:BASELINE_M,FOCAL_PX,DISPARITY_STD_PX"``,
         ``"lidar:RANGE_STD_M,BEAM_RAD"``, ``"iso:STD_M"``, ``"axes:SX,SY,SZ"``, ``"grid:RESOLUTION_M"``, ``"exact"`` or
-        ``"per-point"``. State it as it is: twice the noise reads more touching surfaces as free, half of it stops more.
+        ``"per-point"``; of a file ``cloudtouch info FILE`` suggests one. State it as it is: twice the noise reads more touching surfaces as free, half of it stops more.
     sensor_pose
         (4, 4): from the frame of the sensor (of a camera x right, y down, z forward) into that of the points. Where
         it is not given it counts as the identity, but nothing is concluded from where the sensor stood.
@@ -405,6 +405,18 @@ def native_pair(a: Any, b: Any) -> tuple[_native.Body, _native.Body]:
     return native_body(a, "a"), native_body(b, "b")
 
 
+def check_sensor(sensor: Any, name: str) -> None:
+    """Refuses what is no sensor, by the name of the argument."""
+    if not isinstance(sensor, str):
+        said = f"{sensor:g}" if isinstance(sensor, (int, float)) else type(sensor).__name__
+        example = f"iso:{said}" if isinstance(sensor, (int, float)) else "iso:0.002"
+        raise TypeError(
+            f'{name} is {said}: give a str that says what measured the points, such as "kinect", or "{example}" for '
+            "that standard deviation, m, in every direction"
+        )
+    _native.check_sensor(sensor, name)
+
+
 def _scan(
     points: Any,
     *,
@@ -422,13 +434,7 @@ def _scan(
     """Rows of points, and everything else that a cloud is made of, by its name."""
     if not isinstance(points, np.ndarray) and hasattr(points, "points"):
         points = points.points
-    if not isinstance(sensor, str):
-        said = f"{sensor:g}" if isinstance(sensor, (int, float)) else type(sensor).__name__
-        example = f"iso:{said}" if isinstance(sensor, (int, float)) else "iso:0.002"
-        raise TypeError(
-            f'sensor is {said}: give a str that says what measured the points, such as "kinect", or "{example}" for '
-            "that standard deviation, m, in every direction"
-        )
+    check_sensor(sensor, "sensor")
     rows, image_size = _arrays.points(points, "points")
     count = len(rows)
 
