@@ -1,7 +1,7 @@
 """Which of many grasps of a scan are free? Beside what is usually done, and the truth where it is known.
 
 python grasp_filter.py [--grasps 100000] [--seed 1] [--svg FILE]: on a generated scene whose solids are known.
-python grasp_filter.py --scan FILE --sensor SPEC [--svg FILE]: on a scan of yours, without truth.
+python grasp_filter.py --scan FILE --sensor SPEC [--svg FILE]: on a depth image of yours, without truth.
 """
 
 from __future__ import annotations
@@ -72,6 +72,8 @@ def main() -> None:
     options.add_argument("--sensor", default="kinect")
     options.add_argument("--svg")
     given = options.parse_args()
+    if given.grasps < 1:
+        options.error(f"--grasps {given.grasps}: try at least one")
     random = np.random.default_rng(given.seed)
 
     solids = None if given.scan else scene(random)
@@ -80,6 +82,12 @@ def main() -> None:
     else:
         scan = ct.Cloud(seen(solids, random), sensor=given.sensor, refined=True)
     hand = ct.Mesh(*mesh(gripper()))
+    # Of an image alone it is known what it did not see.
+    if ct.Query().run(scan, hand, np.eye(4)).unseen is None:
+        options.error(
+            f"{given.scan} is no depth image: give one with rows and columns, in the frame of its camera, as its driver "
+            "publishes it"
+        )
     range_of = np.linalg.norm(scan.points, axis=1)
     poses = grasps(scan.points[range_of < REACH], given.grasps, random)
     # All that a gripper there can meet.
