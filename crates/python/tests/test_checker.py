@@ -128,6 +128,20 @@ def test_wrong_tables_are_told(root):
         ct.PoseChecker(root, sensor="exact", query={"prior": 2.0})
 
 
+def test_what_no_row_can_be_answered_with_was_told_in_each_row(root):
+    for arguments, says in [
+        ({"sensor": "sonar"}, "^sensor: unknown sensor `sonar`"),
+        ({"sensor": "auto"}, "^sensor: `auto` .*cloudtouch info FILE"),
+        ({"sensor": "exact", "object_sensor": "iso:-1"}, "^object_sensor: .*not negative"),
+    ]:
+        with pytest.raises(ct.CloudtouchError, match=says):
+            ct.PoseChecker(root, **arguments)
+    with pytest.raises(TypeError, match="^sensor is 0.002: give a str"):
+        ct.PoseChecker(root, sensor=0.002)
+    with pytest.raises(ValueError, match="^root is .*gone: there is no such folder"):
+        ct.PoseChecker(root / "gone", sensor="exact")
+
+
 def test_a_batch_keeps_going_where_that_is_asked(floor, plate):
     poses = np.stack([lifted(0.03), np.full((4, 4), np.nan), lifted(0.0)])
     with pytest.raises(ct.CloudtouchError, match=r"poses\[1\]"):

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cloudtouch import _native
-from cloudtouch.bodies import Cloud, Mesh
+from cloudtouch.bodies import Cloud, Mesh, check_sensor
 from cloudtouch.query import Body, Query
 from cloudtouch.report import Batch
 
@@ -49,8 +49,10 @@ class PoseChecker:
 
     Raises
     ------
+    ValueError
+        There is no folder ``root``.
     CloudtouchError
-        A setting of ``query`` is out of range.
+        A sensor is not known, or a setting of ``query`` is out of range.
     """
 
     def __init__(
@@ -65,7 +67,11 @@ class PoseChecker:
         keep: int = 4,
     ) -> None:
         self._root = Path(root)
+        if not self._root.is_dir():
+            raise ValueError(f"root is {root}: there is no such folder: give the one that the paths start from")
         self._sensors = (sensor, sensor if object_sensor is None else object_sensor)
+        for stated, name in zip(self._sensors, ("sensor", "object_sensor")):
+            check_sensor(stated, name)
         self._units = (unit, cloud_unit)
         self._query = Query(**(query or {}))
         self._scenes: _Kept[Body] = _Kept(keep)
