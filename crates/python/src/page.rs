@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cloudtouch::geom::Pose;
-use cloudtouch::{Body as Prepared, Query, Report};
+use cloudtouch::{Body as Prepared, Query, Report, StageReport};
 use cloudtouch_page::{Body as Drawn, MOST_VIEWS, Page, Shape, View, notebook_frame};
 use pyo3::prelude::*;
 
@@ -14,9 +14,9 @@ use crate::pool::on_all_threads;
 pub(crate) fn answer(
     py: Python<'_>,
     query: &Query,
-    [a, b]: [Arc<Prepared>; 2],
+    [(a, sensor_a), (b, sensor_b)]: [(Arc<Prepared>, Option<String>); 2],
     poses: &[Pose],
-    title: &str,
+    title: String,
     height: Option<u32>,
 ) -> PyResult<String> {
     if poses.is_empty() || poses.len() > MOST_VIEWS {
@@ -29,9 +29,9 @@ pub(crate) fn answer(
     };
     let reports: PyResult<Vec<Report>> = reports.into_iter().enumerate().map(failed).collect();
     let reports = reports?;
-    let bodies = vec![drawn("a", &a), drawn("b", &b)];
+    let bodies = vec![drawn("a", &a, sensor_a), drawn("b", &b, sensor_b)];
     let views = poses.iter().zip(&reports).enumerate().map(|(index, (pose, report))| View {
-        name: format!("pose {index}"),
+        name: format!("pose {}", index + 1),
         scene: 0,
         object: 1,
         scene_from_object: *pose,
@@ -40,18 +40,27 @@ pub(crate) fn answer(
         more: Vec::new(),
     });
     let views = views.collect();
-    let page = Page { title: title.to_owned(), bodies, views, ..Page::default() };
+    let page = Page { title, bodies, views, ..Page::default() };
     Ok(py.detach(|| height.map_or_else(|| page.html(), |height| notebook_frame(&page, height))))
 }
 
-fn drawn(name: &str, body: &Prepared) -> Drawn {
+/// In the words of the tool's pages.
+fn drawn(name: &str, body: &Prepared, sensor: Option<String>) -> Drawn {
     let (about, shape) = match body {
-        Prepared::Cloud(cloud) => (
-            format!("cloud of {} points", cloud.len()),
-            Shape::cloud(cloud.len(), |index| cloud.point(index)),
-        ),
+        Prepared::Cloud(cloud) => {
+            let removed =
+                |stage: &StageReport| format!("{} removed {}", stage.stage, stage.removed);
+            let stages: Vec<String> = cloud.filter_stages().iter().map(removed).collect();
+            let (count, sensor) = (cloud.len(), sensor.unwrap_or_default());
+            (
+                format!("cloud of {count} points in m, sensor {sensor} ({})", stages.join(", ")),
+                Shape::cloud(count, |index| cloud.point(index)),
+            )
+        }
         Prepared::Mesh(mesh) => {
-            (format!("mesh of {} triangles", mesh.triangle_count()), mesh.into())
+            let kind = if mesh.is_watertight() { "watertight" } else { "open" };
+            let (count, size) = (mesh.triangle_count(), mesh.size());
+            (format!("{kind} mesh of {count} triangles in m, {size:.3} m across"), mesh.into())
         }
     };
     Drawn { name: name.to_owned(), about, shape }

@@ -184,18 +184,19 @@ impl Query {
         sweep::answer(py, &swept)
     }
 
-    #[pyo3(signature = (a, b, poses, title, height, /))]
+    #[pyo3(signature = (a, b, poses, words, height, /))]
     fn page<'py>(
         &self,
         py: Python<'py>,
         a: &Bound<'py, Body>,
         b: &Bound<'py, Body>,
         poses: PyReadonlyArray3<'py, f64>,
-        title: &str,
+        words: (String, [Option<String>; 2]),
         height: Option<u32>,
     ) -> PyResult<String> {
+        let (title, [sensor_a, sensor_b]) = words;
         let poses: PyResult<Vec<Pose>> = all_rigid(&poses).into_iter().collect();
-        let bodies = [a.get().now(py)?, b.get().now(py)?];
+        let bodies = [(a.get().now(py)?, sensor_a), (b.get().now(py)?, sensor_b)];
         page::answer(py, &self.checked, bodies, &poses?, title, height)
     }
 

@@ -18,8 +18,19 @@ def test_a_page_says_what_a_report_says(tmp_path, floor, table):
     assert frame.startswith("<iframe") and "480" in frame
 
 
+def test_poses_were_counted_from_0_under_a_slider_that_counts_from_1(floor, table):
+    text = ct.Query().page(floor, table, [lifted(z) for z in (0.1, 0.0)]).html
+    assert "pose 1" in text and "pose 2" in text and "pose 0" not in text
+
+
 def test_one_pose_is_a_page_too(floor, table):
-    assert "pose 0" in ct.Query().page(floor, table, lifted(0.1)).html
+    assert "pose 1" in ct.Query().page(floor, table, lifted(0.1)).html
+
+
+def test_a_page_did_not_say_what_the_bodies_were_taken_for(floor, table):
+    text = ct.Query().page(floor, table, lifted(0.1)).html
+    assert "cloud of 400 points in m, sensor iso:0.001 (missing removed 0, duplicates removed 0)" in text
+    assert f"watertight mesh of {len(table)} triangles in m, " in text and " m across" in text
 
 
 def test_poses_of_a_page(floor, table):

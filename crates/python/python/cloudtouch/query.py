@@ -258,7 +258,7 @@ class Query:
         Parameters
         ----------
         poses
-            (4, 4) or (M, 4, 4), at most 500, in the order of the slider.
+            (4, 4) or (M, 4, 4), at most 500, in the order of the slider, which counts from 1.
 
         Raises
         ------
@@ -270,7 +270,8 @@ class Query:
         if np.ndim(poses) == 2:
             poses = _arrays.numbers(poses, "poses", (4, 4))[None]
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4)).copy()
-        return Page(lambda height: self._query.page(*native_pair(a, b), matrices, title, height))
+        words = (title, [body.sensor if isinstance(body, Cloud) else None for body in (a, b)])
+        return Page(lambda height: self._query.page(*native_pair(a, b), matrices, words, height))
 
     def __repr__(self) -> str:
         return f"Query({', '.join(f'{name}={value!r}' for name, value in self._settings.items())})"
