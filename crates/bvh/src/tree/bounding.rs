@@ -3,7 +3,7 @@
 use cloudtouch_geom::{Covariance, Matrix3, Vector3};
 use rayon::prelude::*;
 
-use crate::tree::bounds::{SpreadBounds, along};
+use crate::tree::bounds::{SpreadBounds, variances_along};
 use crate::tree::bounds_list::BoundsList;
 use crate::{LeafBounds, Node, Tree, TreeError};
 
@@ -120,19 +120,17 @@ impl Tree {
         if self.extents.is_empty() {
             return from_children;
         }
-        let mut tight = SpreadBounds {
-            axis_std: Vector3::zeros(),
-            axis_reach: Vector3::zeros(),
-            ..from_children
-        };
+        // PERF: the root of the largest, not the largest of the roots.
+        let (mut reach, mut spread) = (Vector3::zeros(), Vector3::zeros());
         for &index in self.indices_of(id) {
             if let Some(extent) = self.extents.get(index as usize) {
-                tight.axis_reach = tight.axis_reach.sup(&along(extent, axes));
+                reach = reach.sup(&variances_along(extent, axes));
             }
             if let Some(covariance) = self.primitives.covariance(index) {
-                tight.axis_std = tight.axis_std.sup(&along(covariance, axes));
+                spread = spread.sup(&variances_along(covariance, axes));
             }
         }
-        tight
+        let [axis_reach, axis_std] = [reach, spread].map(|squared| squared.map(f64::sqrt));
+        SpreadBounds { axis_std, axis_reach, ..from_children }
     }
 }

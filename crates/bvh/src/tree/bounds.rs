@@ -122,8 +122,13 @@ impl SpreadBounds {
     }
 }
 
+/// Variances along three axes.
+pub(crate) fn variances_along(covariance: &Covariance, axes: &Matrix3) -> Vector3 {
+    let of = |k| covariance.variance_along(&axes.column(k).into_owned());
+    Vector3::new(of(0), of(1), of(2))
+}
+
 /// Standard deviations along three axes.
-pub(crate) fn along(covariance: &Covariance, axes: &Matrix3) -> Vector3 {
-    let std = |k| covariance.std_along(&axes.column(k).into_owned());
-    Vector3::new(std(0), std(1), std(2))
+fn along(covariance: &Covariance, axes: &Matrix3) -> Vector3 {
+    variances_along(covariance, axes).map(f64::sqrt)
 }
