@@ -9,10 +9,10 @@ use crate::judge::{ContactEvidence, probability};
 use crate::mesh::Mesh;
 use crate::record::{Estimate, Evidence, Places};
 
-use super::contacts::{clearance, contacts, nearest};
-use super::points::add_points;
+use super::places::contacts::{clearance, contacts, nearest};
+use super::places::points::add_points;
+use super::places::spots::{Spot, Spots, spots};
 use super::settings::Detail;
-use super::spots::{Spot, Spots, spots};
 use super::task::Task;
 use super::weigh::{Weighed, weigh};
 

@@ -3,20 +3,19 @@
 use cloudtouch_geom::{Motion, Pose};
 use serde::Serialize;
 
+use super::gap_by_pose::gap_by_pose;
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::exact::nearest_places;
 use crate::mesh::Mesh;
+use crate::query::classify::{MisclassifiedBy, misclassified_by_pose};
+use crate::query::estimate::exact;
+use crate::query::places::spots::{Spot, ToldBy};
+use crate::query::run::Query;
+use crate::query::task::Task;
+use crate::query::weigh::{Weighed, weigh};
 use crate::report::{Report, Stats};
 use crate::search::{Wrench, force_at, in_object_frame};
-
-use super::classify::{MisclassifiedBy, misclassified_by_pose};
-use super::estimate::exact;
-use super::gap_by_pose::gap_by_pose;
-use super::run::Query;
-use super::spots::{Spot, ToldBy};
-use super::task::Task;
-use super::weigh::{Weighed, weigh};
 
 /// What an answer changes by for a small motion of the object before its pose, in the object's own frame,
 /// as in a [`PoseDistribution`](crate::PoseDistribution): per metre of translation along x, y and z, then

@@ -4,7 +4,7 @@ use crate::record::{Evidence, PointProbability, Side};
 use crate::search::{Found, Leaf, NoisyLeaf};
 
 /// Adds the points that were looked for; none is more probable than the collision is.
-pub(super) fn add_points(found: &Found<'_>, collision: f64, evidence: &mut Evidence) {
+pub(in crate::query) fn add_points(found: &Found<'_>, collision: f64, evidence: &mut Evidence) {
     let within = found.deviations_of_interest();
     for (side, leaves) in [(Side::A, &found.leaves_a), (Side::B, &found.leaves_b)] {
         for leaf in leaves.in_order() {

@@ -4,9 +4,8 @@ use cloudtouch_geom::{Matrix3, Motion, Point3, Vector3};
 use nalgebra::Matrix3x6;
 
 use crate::body::BodyRef;
+use crate::query::places::spots::{FOOTPRINT_SPACINGS, ONE_PLANE, Spot, common_normal, outward};
 use crate::search::{Changes, Finding, Wrench, of_direction, of_place, way_to_triangle};
-
-use super::spots::{FOOTPRINT_SPACINGS, ONE_PLANE, Spot, common_normal, outward};
 
 /// A vector and what it changes by as the body that moves does.
 #[derive(Debug, Clone, Copy)]

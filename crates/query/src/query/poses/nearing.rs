@@ -2,16 +2,15 @@
 
 use cloudtouch_geom::{Motion, Pose};
 
+use super::gradient::clearance_of_meshes;
 use crate::body::BodyRef;
 use crate::error::QueryError;
+use crate::query::estimate::exact;
+use crate::query::run::Query;
+use crate::query::settings::Detail;
+use crate::query::weigh::weigh;
 use crate::report::Report;
 use crate::search::{Wrench, force_at, in_object_frame};
-
-use super::estimate::exact;
-use super::gradient::clearance_of_meshes;
-use super::run::Query;
-use super::settings::Detail;
-use super::weigh::weigh;
 
 impl Query {
     /// The answer to [`Self::run`], and the motion of the object, in its own frame, along which the

@@ -6,10 +6,9 @@ use serde::Serialize;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
+use crate::query::run::Query;
+use crate::query::settings::Detail;
 use crate::report::Report;
-
-use super::run::Query;
-use super::settings::Detail;
 
 /// Pairs of opposite poses that stand for all, with the most probable one: at first ...
 const FIRST_PAIRS: usize = 3;

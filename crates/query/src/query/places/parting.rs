@@ -7,10 +7,9 @@
 
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
+use super::spots::{Spot, Spots};
 use crate::body::BodyRef;
 use crate::cloud::Surfel;
-
-use super::spots::{Spot, Spots};
 
 /// The surroundings reach so many units, each the spacing of the samples or their noise. The first count in
 /// which the bodies stand apart: in a deep overlap that is seen from farther off.

@@ -9,15 +9,15 @@ use crate::search::{Crossing, Finding, Found, Inside, Wrench, probability_at};
 /// A crossing less probable than this is told by the gap of the pieces nearest to it.
 const LIKELY: f64 = 0.5;
 /// Normals of two pieces with a smaller cosine between them belong to no common plane.
-pub(super) const ONE_PLANE: f64 = 0.7;
+pub(in crate::query) const ONE_PLANE: f64 = 0.7;
 /// Between its samples a surface may be so many spacings off the flat pieces that stand for it.
 const BEND_SPACINGS: f64 = 0.2;
 /// The piece of surface about a sample reaches so many spacings.
-pub(super) const FOOTPRINT_SPACINGS: f64 = 0.5;
+pub(in crate::query) const FOOTPRINT_SPACINGS: f64 = 0.5;
 
 /// A place where the bodies touch, overlap or come near.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spot {
+pub(in crate::query) struct Spot {
     pub place: Point3,
     /// Unit normal from A to B.
     pub normal: Vector3,
@@ -38,7 +38,7 @@ pub(super) struct Spot {
 
 /// What tells of a spot.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum ToldBy {
+pub(in crate::query) enum ToldBy {
     /// Two pieces that face each other: a finding, by its place among all.
     Pieces(usize),
     /// A crossing, whose depth changes so with the pose.
@@ -52,7 +52,7 @@ const MOST_SPOTS: usize = 400;
 
 /// Where two bodies touch, overlap or come near.
 #[derive(Debug)]
-pub(super) struct Spots<'a> {
+pub(in crate::query) struct Spots<'a> {
     pub bodies: (BodyRef<'a>, BodyRef<'a>),
     /// Of their local frames.
     pub pose: Pose,
@@ -63,7 +63,7 @@ pub(super) struct Spots<'a> {
 }
 
 /// The spots of a search.
-pub(super) fn spots<'a>(
+pub(in crate::query) fn spots<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     pose: &Pose,
     found: &Found<'_>,
@@ -142,7 +142,7 @@ fn near((a, b): (BodyRef<'_>, BodyRef<'_>), index: usize, finding: &Finding) -> 
 }
 
 /// The mean of the normals of two pieces that are of one plane, or the only one there is.
-pub(super) fn common_normal(finding: &Finding) -> Option<Vector3> {
+pub(in crate::query) fn common_normal(finding: &Finding) -> Option<Vector3> {
     match finding.nearest.normals {
         [Some(a), Some(b)] => {
             let cosine = a.dot(&b);
@@ -154,7 +154,7 @@ pub(super) fn common_normal(finding: &Finding) -> Option<Vector3> {
 }
 
 /// The direction from A to B by the outside of a closed mesh.
-pub(super) fn outward(
+pub(in crate::query) fn outward(
     a: BodyRef<'_>,
     b: BodyRef<'_>,
     [of_a, of_b]: [Option<Vector3>; 2],

@@ -5,13 +5,12 @@ use std::time::Instant;
 use cloudtouch_geom::{Pose, Vector3};
 use serde::Serialize;
 
+use super::directions::{axes, ring, sphere};
 use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
+use crate::query::run::Query;
 use crate::report::{Report, vector_as_array};
-
-use super::directions::{axes, ring, sphere};
-use super::run::Query;
 
 /// The way out along a direction is told to this, relative and in metres.
 const PRECISION: f64 = 0.01;
