@@ -43,6 +43,9 @@ pub enum MeshError {
     Empty,
 }
 
+/// Borders that meet at a vertex, at most, where holes of three edges are looked for: a loose soup has thousands.
+const MOST_BORDERS: usize = 8;
+
 impl TriangleMesh {
     /// Checks vertices and triangles and takes them. Vertices that no triangle uses may be anything,
     /// NaN included: nothing looks at them.
@@ -184,6 +187,10 @@ impl TriangleMesh {
         let after = |b: u32| lacking.range((b, 0)..=(b, u32::MAX)).map(|&(_, c)| c);
         let mut missing = Vec::new();
         for &(a, b) in &lacking {
+            // Where many edges meet there are more than holes of three.
+            if after(b).nth(MOST_BORDERS).is_some() {
+                continue;
+            }
             // Each once, from its first corner on.
             let closes = |&c: &u32| a < b.min(c) && lacking.contains(&(c, a));
             let of = after(b).filter(closes).map(|c| [a, b, c]);

@@ -110,7 +110,7 @@ pub(crate) fn outside(checked: &Checked) -> String {
     let mut text: String =
         told.map(|outside| labelled("warning", &one_line(&outside.to_string())) + "\n").collect();
     if let Some(more) = checked.outside.len().checked_sub(OUTSIDE_TOLD).filter(|more| *more > 0) {
-        text += &labelled("", &format!("{more} more bodies are as far from all others"));
+        text += &labelled("", &format!("{more} more bodies are as far from the rest"));
         text += "\n";
     }
     text

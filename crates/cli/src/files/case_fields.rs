@@ -16,16 +16,16 @@ const OF_OTHERS: [(&str, &str); 25] = [
     ("cloud_unit", UNITS),
     ("scene_unit", UNITS),
     ("object_unit", UNITS),
+    ("scale", UNITS),
+    ("object_scale", UNITS),
     ("threshold", "give --reject, for all cases"),
     ("accept", OPTION),
     ("reject", OPTION),
     ("prior", OPTION),
     ("margin", OPTION),
-    ("mode", OPTION),
     ("sensor_pose", OPTION),
     ("min_range", OPTION),
     ("max_range", OPTION),
-    ("robot", OPTION),
     ("robot_padding", OPTION),
     ("max_unseen", OPTION),
     ("max_missing", OPTION),
@@ -51,7 +51,12 @@ pub(crate) fn check(fields: &Map<String, Value>) -> Result<()> {
         }
         // Beside the sensor that counts it is a note.
         let is_note = is_given("scene_sensor") && name.eq_ignore_ascii_case("sensor");
-        if !is_note && !value.is_null() {
+        // What an answer says under such a name is no number, and metres are what is meant.
+        let is_told = value.is_null() || value.is_object() || value == "m";
+        if !is_note && !is_told {
+            if near_name::is_spelt(name, "length_unit") {
+                bail!("`{name}` is in a case, and all are in metres: {UNITS}");
+            }
             check_of_others(name)?;
         }
     }
@@ -67,10 +72,10 @@ pub(crate) fn check_beside(name: &str) -> Result<()> {
 }
 
 fn check_of_others(name: &str) -> Result<()> {
-    // As an option is spelt, or a field.
-    let spelt = name.trim_start_matches('-').replace('-', "_");
-    match OF_OTHERS.iter().find(|(other, _)| spelt.eq_ignore_ascii_case(other)) {
-        Some((_, remedy)) => bail!("there is no field `{name}`: {remedy}"),
+    match OF_OTHERS.iter().find(|(other, _)| near_name::is_spelt(name, other)) {
+        Some((_, remedy)) => {
+            bail!("there is no field `{name}`: {remedy}; if it is a note, rename it")
+        }
         None => Ok(()),
     }
 }

@@ -13,17 +13,25 @@ pub(crate) fn meant<'a>(
     known.iter().find(is_meant).copied()
 }
 
+/// Whether a name is another, as an option or a field, in whatever case, in the plural or with a slip where it is long.
+pub(crate) fn is_spelt(name: &str, other: &str) -> bool {
+    let (name, other) = (letters(name), letters(other));
+    let is_plural = name.strip_suffix('s') == Some(&other);
+    name == other || is_plural || (other.len() >= 5 && osa_distance(&name, &other) <= 1)
+}
+
 /// The same letters, or as many words of which each is cut short or misspelt.
 fn is_near(name: &str, known: &str) -> bool {
-    let letters = |text: &str| -> String {
-        text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-    };
     let words = |text: &str| -> Vec<String> {
         text.split(|c: char| !c.is_alphanumeric()).map(letters).collect()
     };
     let (given, wanted) = (words(name), words(known));
     let all_near = || given.iter().zip(&wanted).all(|(a, b)| is_near_word(a, b));
     letters(name) == letters(known) || (given.len() == wanted.len() && all_near())
+}
+
+fn letters(text: &str) -> String {
+    text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
 /// Of short words most are a slip away from another.

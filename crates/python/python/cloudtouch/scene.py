@@ -42,7 +42,7 @@ class PairAnswer:
 
 
 class Outside(NamedTuple):
-    """A body of a scene that is far from all others."""
+    """A body of a scene that, alone or with others, is far from the rest."""
 
     name: str
     """Its name."""
@@ -67,7 +67,7 @@ class Checked:
     asked: int
     """Pairs that were asked about."""
     outside: tuple[Outside, ...]
-    """Bodies farther from all others than either is large: free, but perhaps by a pose in another unit."""
+    """Bodies farther from the rest than either is large: free, but perhaps by a pose in another unit."""
 
     @property
     def verdict(self) -> Verdict:

@@ -35,17 +35,17 @@ pub struct Checked {
     pub ruled_out: usize,
     /// Pairs that were asked about.
     pub asked: usize,
-    /// Bodies outside of the box around all others by more than either is large, by their names: free, but
-    /// perhaps by a pose in another unit or the wrong way round.
+    /// Bodies that alone or together are farther from the rest than either is large, by their names: free,
+    /// but perhaps by a pose in another unit or the wrong way round.
     pub outside: Vec<Outside>,
 }
 
-/// A body of a scene that is far from all others. Displays as a sentence with a remedy.
+/// A body of a scene that is far from the rest. Displays as a sentence with a remedy.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outside {
     /// Its name.
     pub name: String,
-    /// Between its box and that around all others, m.
+    /// Between the box around it and those with it, and that around the rest, m.
     pub gap_m: f64,
     /// Diagonal of the larger of the two, m.
     pub size_m: f64,
@@ -56,7 +56,7 @@ impl fmt::Display for Outside {
         let Self { name, gap_m, size_m } = self;
         write!(
             f,
-            "`{name}` is {} from all others, farther than either is large ({}): are poses in metres, into the \
+            "`{name}` is {} from the rest, farther than either is large ({}): are poses in metres, into the \
              frame of the scene?",
             length(*gap_m),
             length(*size_m)

@@ -36,9 +36,7 @@ impl Scene {
         let bodies = self.bodies.len();
         let (count, allowed) = (bodies * bodies.saturating_sub(1) / 2, self.allowed.len());
         let ruled_out = count - allowed - asked.len();
-        // Of two the smaller one is.
-        let may_be = members.iter().skip(usize::from(bodies == 2));
-        let outside = may_be.filter(|member| member.beside.is_outside());
+        let outside = members.iter().filter(|member| member.beside.is_outside());
         let outside = outside.map(|&Member { name, beside: Beside { gap_m, size_m }, .. }| {
             Outside { name: name.to_owned(), gap_m, size_m }
         });

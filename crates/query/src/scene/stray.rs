@@ -8,10 +8,10 @@ use crate::shape::Shape;
 
 type Corners = [Point3; 2];
 
-/// Where a body lies beside the box around all others.
+/// Where a body lies beside the rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Beside {
-    /// Between the two boxes, m; none where a body is alone: nothing is infinitely large the wrong way round.
+    /// Between its half and the other, m; none where nothing parts them.
     pub gap_m: f64,
     /// Diagonal of the larger box, m.
     pub size_m: f64,
@@ -24,27 +24,63 @@ impl Beside {
         self.size_m > 0.0 && self.gap_m > self.size_m
     }
 
+    /// That of two which is farther for its size.
+    fn farther(self, other: Self) -> Self {
+        let is_farther = other.gap_m * self.size_m > self.gap_m * other.size_m;
+        if is_farther || self.size_m == 0.0 { other } else { self }
+    }
+
     /// Whether its pose or a unit cannot be meant.
     pub(super) fn is_astray(&self) -> bool {
         self.size_m > 0.0 && self.gap_m > FARTHEST_SIZES * self.size_m
     }
 }
 
-/// For each body where it lies beside all others.
+/// For each body where it lies beside the rest: of all ways to part the boxes by a plane across an axis, the one
+/// whose halves are farthest apart for their size, and of these the smaller half. What a slip has put elsewhere
+/// may be several bodies, such as a hand with what it holds.
 pub(super) fn beside_others(bodies: &[(Shape<'_>, Pose)]) -> Vec<Beside> {
     let boxes: Vec<Corners> = bodies.iter().map(|(shape, pose)| in_scene(*shape, pose)).collect();
-    let nothing = [Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3])];
-    // What is before each, and what is after it.
-    let before = |around: &mut Corners, own: &Corners| {
-        let so_far = *around;
-        *around = union(around, own);
-        Some(so_far)
-    };
-    let first: Vec<Corners> = boxes.iter().scan(nothing, before).collect();
-    let mut last: Vec<Corners> = boxes.iter().rev().scan(nothing, before).collect();
-    last.reverse();
-    let others = first.iter().zip(&last).map(|(before, after)| union(before, after));
-    boxes.iter().zip(others).map(|(own, others)| beside(own, &others)).collect()
+    let mut found = vec![Beside { gap_m: 0.0, size_m: 0.0 }; boxes.len()];
+    for axis in 0..3 {
+        let mut order: Vec<usize> = (0..boxes.len()).collect();
+        order.sort_by(|&p, &q| boxes[p][0][axis].total_cmp(&boxes[q][0][axis]));
+        let around = |order: &mut dyn Iterator<Item = &usize>| -> Vec<Corners> {
+            let all = order.scan(NOTHING, |so_far, &k| {
+                *so_far = union(so_far, &boxes[k]);
+                Some(*so_far)
+            });
+            all.collect()
+        };
+        let (first, mut last) = (around(&mut order.iter()), around(&mut order.iter().rev()));
+        last.reverse();
+        for cut in 1..boxes.len() {
+            let (one, other) = (first[cut - 1], last[cut]);
+            let beside = beside(&one, &other);
+            let [size, other_size] = [one, other].map(|corners| diagonal(&corners));
+            let mut tell = |half: &[usize]| {
+                for &k in half {
+                    found[k] = found[k].farther(beside);
+                }
+            };
+            if size <= ALIKE * other_size {
+                tell(&order[..cut]);
+            }
+            if other_size <= ALIKE * size {
+                tell(&order[cut..]);
+            }
+        }
+    }
+    found
+}
+
+const NOTHING: Corners = [
+    Point3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+    Point3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
+];
+
+fn diagonal([low, high]: &Corners) -> f64 {
+    (high - low).norm()
 }
 
 fn in_scene(shape: Shape<'_>, pose: &Pose) -> Corners {
@@ -58,13 +94,17 @@ fn union([low, high]: &Corners, [other_low, other_high]: &Corners) -> Corners {
     ]
 }
 
+/// Boxes up to so much larger are as large, up to the rounding of far places: both halves are told.
+const ALIKE: f64 = 1.0 + 1e-6;
+
 /// No body is so many sizes away from all others: farther than an object from its scene, for a robot may have
 /// driven off.
 const FARTHEST_SIZES: f64 = 100.0;
 
 fn beside([low, high]: &Corners, [other_low, other_high]: &Corners) -> Beside {
     let apart = (other_low - high).sup(&(low - other_high)).map(|along| along.max(0.0)).norm();
-    Beside { gap_m: apart, size_m: (high - low).norm().max((other_high - other_low).norm()) }
+    let [size, other_size] = [[*low, *high], [*other_low, *other_high]].map(|c| diagonal(&c));
+    Beside { gap_m: apart, size_m: size.max(other_size) }
 }
 
 #[cfg(test)]
@@ -85,6 +125,8 @@ mod tests {
         assert_eq!(strays(&[at(0.0)]), [false]);
         assert_eq!(strays(&[at(0.0), at(17.0)]), [false; 2]);
         assert_eq!(strays(&[at(0.0), at(18.0)]), [true; 2]);
+        // What holds another does not hide it: a hand and its cup, in millimetres.
+        assert_eq!(strays(&[at(0.0), at(1.0), at(900.0), at(900.1)]), [false, false, true, true]);
         // Beside a third the first two are a scene of 18 m.
         assert_eq!(strays(&[at(0.0), at(18.0), at(900.0)]), [false; 3]);
         assert_eq!(strays(&[at(0.0), at(1.0), at(900.0)]), [false, false, true]);
@@ -102,5 +144,6 @@ mod tests {
         assert_eq!(outside(&[at(0.0), at(0.27)]), [false; 2]);
         assert_eq!(outside(&[at(0.0), at(0.28)]), [true; 2]);
         assert_eq!(outside(&[at(0.0), at(0.5), at(1.3)]), [false, false, true]);
+        assert_eq!(outside(&[at(0.0), at(0.5), at(5.0), at(5.2)]), [false, false, true, true]);
     }
 }
