@@ -202,7 +202,7 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
         })
         .collect();
     // Names of other things, and of a second one beside the first.
-    let other = r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"sensor":"a note","id""#;
+    let other = r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"sensor":"a note","margin":{"margin_m":1},"id""#;
     cases.push(case("good", "\"id\"", other));
     inputs.write("cases.json", &case_file(&cases));
     let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines();
@@ -238,6 +238,7 @@ fn a_field_of_a_scene_file_or_of_an_option_was_passed_over_in_a_case() {
         ("sensor", "\"iso:0.002\"", &["`scene_sensor`", "`object_sensor`"][..]),
         ("Sensor", "\"iso:0.002\"", &["`scene_sensor`", "`object_sensor`"]),
         ("unit", "\"mm\"", &["--unit", "--cloud-unit"]),
+        ("mesh_unit", "\"m\"", &["--unit", "--cloud-unit"]),
         ("object_unit", "\"mm\"", &["--unit", "--cloud-unit"]),
         ("cloud_unit", "\"mm\"", &["--cloud-unit"]),
         ("margin", "0.1", &["option"]),

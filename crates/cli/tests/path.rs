@@ -157,6 +157,7 @@ fn bad_paths_are_named_with_what_to_do() {
     for tolerance in ["0", "2"] {
         let run = path(&inputs, "good.csv", &["--tolerance", tolerance]);
         assert!(run.code() == 2 && run.stderr().contains("--tolerance"), "{}", run.stderr());
+        assert!(run.stderr().contains(&format!("'{tolerance}'")), "{}", run.stderr());
     }
     let run = path(&inputs, "good.csv", &["--mode", "paper"]);
     assert!(run.code() == 2 && run.stderr().contains("calibrated mode"), "{}", run.stderr());

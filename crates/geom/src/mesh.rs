@@ -163,9 +163,9 @@ impl TriangleMesh {
         self.edge_balance().values().filter(|&&(sum, _)| sum != 0).count()
     }
 
-    /// Triangles without which the surface has a border where they would be: holes of three edges, as a triangle that
-    /// a file lacks leaves them, filled the way the others are turned. Call it on a [`merged`](Self::merged) mesh whose triangles are
-    /// [turned alike](Self::turned_alike).
+    /// Triangles without which the surface has a border where they would be: holes of three edges, as a
+    /// triangle that a file lacks leaves them, filled the way the others are turned. Call it on a
+    /// [`merged`](Self::merged) mesh whose triangles are [turned alike](Self::turned_alike).
     pub fn missing_triangles(&self) -> Vec<[u32; 3]> {
         // Against the triangle that is there.
         let lacking = |(&(low, high), &(sum, _)): (&(u32, u32), &(i32, u32))| match sum {
@@ -180,10 +180,7 @@ impl TriangleMesh {
             of.sort_unstable();
             of
         };
-        let known: BTreeSet<[u32; 3]> = match lacking.is_empty() {
-            true => BTreeSet::new(),
-            false => self.triangles.iter().map(|&of| sorted(of)).collect(),
-        };
+        let known: BTreeSet<[u32; 3]> = self.triangles.iter().map(|&of| sorted(of)).collect();
         let after = |b: u32| lacking.range((b, 0)..=(b, u32::MAX)).map(|&(_, c)| c);
         let mut missing = Vec::new();
         for &(a, b) in &lacking {
@@ -239,7 +236,7 @@ mod tests {
             let gone = rest.remove(lost);
             let open = TriangleMesh::try_new(whole.vertices().to_vec(), rest).unwrap();
             let [missing] = open.missing_triangles()[..] else { panic!("{lost}") };
-            rest_with(&open, missing);
+            assert_closed_by(&open, missing);
             let turns = [0, 1, 2].map(|k| [gone[k], gone[(k + 1) % 3], gone[(k + 2) % 3]]);
             assert!(turns.contains(&missing), "{missing:?} for {gone:?}");
         }
@@ -252,7 +249,7 @@ mod tests {
         assert_eq!(open.unwrap().missing_triangles(), [[0; 3]; 0]);
     }
 
-    fn rest_with(open: &TriangleMesh, missing: [u32; 3]) {
+    fn assert_closed_by(open: &TriangleMesh, missing: [u32; 3]) {
         let all = open.triangles().iter().copied().chain([missing]).collect();
         let closed = TriangleMesh::try_new(open.vertices().to_vec(), all).unwrap();
         assert_eq!(closed.open_edges(), 0);

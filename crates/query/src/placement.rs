@@ -35,7 +35,11 @@ pub(crate) fn place(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> Placement {
 
 /// Distance of the boxes of two bodies along the axes of A, m; `a_from_b` maps local frames.
 pub(crate) fn box_gap(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> f64 {
-    let [[low, high], [other_low, other_high]] = [a.corners(), moved(b.corners(), a_from_b)];
+    gap(&a.corners(), &moved(b.corners(), a_from_b))
+}
+
+/// Distance of two boxes, m; zero where they overlap.
+pub(crate) fn gap([low, high]: &[Point3; 2], [other_low, other_high]: &[Point3; 2]) -> f64 {
     let apart = (other_low - high).sup(&(low - other_high));
     apart.map(|along| along.max(0.0)).norm()
 }

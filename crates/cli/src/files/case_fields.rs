@@ -51,14 +51,15 @@ pub(crate) fn check(fields: &Map<String, Value>) -> Result<()> {
         }
         // Beside the sensor that counts it is a note.
         let is_note = is_given("scene_sensor") && name.eq_ignore_ascii_case("sensor");
-        // What an answer says under such a name is no number, and metres are what is meant.
-        let is_told = value.is_null() || value.is_object() || value == "m";
-        if !is_note && !is_told {
-            if near_name::is_spelt(name, "length_unit") {
-                bail!("`{name}` is in a case, and all are in metres: {UNITS}");
-            }
-            check_of_others(name)?;
+        // An answer that is handed on tells a margin as an object.
+        let is_answer = name == "margin" && value.is_object();
+        if is_note || is_answer || value.is_null() {
+            continue;
         }
+        if near_name::is_spelt(name, "length_unit") && value != "m" {
+            bail!("`{name}` is in a case, and all are in metres: {UNITS}");
+        }
+        check_of_others(name)?;
     }
     Ok(())
 }

@@ -183,15 +183,15 @@ fn check_for_repeats(points: &[Point3], ends: &[usize]) -> Result<(), PrepareErr
     Ok(())
 }
 
-/// Pixels of the part of an image that these of its rows are in, with and without return.
+/// Pixels of the part of an image that these of its rows, in order, are in, with and without return.
 fn pixels_about(image: &PointCloud, rows: &[usize]) -> Option<usize> {
     let (width, _) = image.image_size?;
-    let side = |of: &dyn Fn(usize) -> usize| {
-        let (least, most) =
-            (rows.iter().map(|&row| of(row)).min()?, rows.iter().map(|&row| of(row)).max()?);
-        Some(most - least + 1)
+    let lines = (rows.last()? / width).abs_diff(rows.first()? / width) + 1;
+    let widen = |(least, most): (usize, usize), row: &usize| {
+        (least.min(row % width), most.max(row % width))
     };
-    Some(side(&|row| row % width)? * side(&|row| row / width)?)
+    let (least, most) = rows.iter().fold((width, 0), widen);
+    Some(lines * (most + 1).saturating_sub(least))
 }
 
 /// Puts a list behind another, without a copy of the first that comes.

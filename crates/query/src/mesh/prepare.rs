@@ -83,7 +83,8 @@ impl Mesh {
         )
         .map_err(|error| PrepareError::Surface { reason: error.to_string() })?;
         let corner = |vertex: u32| merged.vertices()[vertex as usize];
-        let missing = merged.missing_triangles().into_iter().map(|of| of.map(corner)).collect();
+        let missing = if closed { Vec::new() } else { merged.missing_triangles() };
+        let missing = missing.into_iter().map(|of| of.map(corner)).collect();
         let triangles: Vec<_> = (0..merged.triangles().len()).map(|t| merged.corners(t)).collect();
         let tree = tree_of(triangles.iter().copied(), LEAF_TRIANGLES, 0.0)?;
         let winding = Winding::new(triangles);

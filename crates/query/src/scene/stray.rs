@@ -3,7 +3,7 @@
 
 use cloudtouch_geom::{Point3, Pose};
 
-use crate::placement::moved;
+use crate::placement::{gap, moved};
 use crate::shape::Shape;
 
 type Corners = [Point3; 2];
@@ -11,7 +11,7 @@ type Corners = [Point3; 2];
 /// Where a body lies beside the rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Beside {
-    /// Between its half and the other, m; none where nothing parts them.
+    /// Between its half and the other, m; none where that is not more than either is large.
     pub gap_m: f64,
     /// Diagonal of the larger box, m.
     pub size_m: f64,
@@ -56,8 +56,11 @@ pub(super) fn beside_others(bodies: &[(Shape<'_>, Pose)]) -> Vec<Beside> {
         last.reverse();
         for cut in 1..boxes.len() {
             let (one, other) = (first[cut - 1], last[cut]);
-            let beside = beside(&one, &other);
             let [size, other_size] = [one, other].map(|corners| diagonal(&corners));
+            let beside = Beside { gap_m: gap(&one, &other), size_m: size.max(other_size) };
+            if !beside.is_outside() {
+                continue;
+            }
             let mut tell = |half: &[usize]| {
                 for &k in half {
                     found[k] = found[k].farther(beside);
@@ -100,12 +103,6 @@ const ALIKE: f64 = 1.0 + 1e-6;
 /// No body is so many sizes away from all others: farther than an object from its scene, for a robot may have
 /// driven off.
 const FARTHEST_SIZES: f64 = 100.0;
-
-fn beside([low, high]: &Corners, [other_low, other_high]: &Corners) -> Beside {
-    let apart = (other_low - high).sup(&(low - other_high)).map(|along| along.max(0.0)).norm();
-    let [size, other_size] = [[*low, *high], [*other_low, *other_high]].map(|c| diagonal(&c));
-    Beside { gap_m: apart, size_m: size.max(other_size) }
-}
 
 #[cfg(test)]
 mod tests {
