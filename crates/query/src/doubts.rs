@@ -124,6 +124,7 @@ fn sensors(body: Which, cloud: &Makeup) -> impl Iterator<Item = Warning> + '_ {
         SensorDoubt::Layout => Some(Warning::SensorLayout { body }),
         SensorDoubt::Misplaced => Some(Warning::ImagePlace { body }),
         SensorDoubt::Robot { share } => Some(Warning::SelfFilter { body, share }),
+        SensorDoubt::Padding { share } => Some(Warning::Padding { body, share }),
         // Of an object it is taken for granted that it may have a back.
         SensorDoubt::NoImage => (body == Which::A).then_some(Warning::NoImage { body }),
     })

@@ -141,6 +141,22 @@ fn a_scan_that_the_self_filter_took_away_read_free() {
     assert_eq!((collides.verdict, collides.warnings.len()), (Verdict::InCollision, 0));
 }
 
+/// A padding of 10 cm took what lay beside the gripper out of the scan, and said how many points only.
+#[test]
+fn a_padding_that_takes_more_than_the_robot_is_told() {
+    let link = Arc::new(mesh(&tool()));
+    for (padding, is_told) in [(0.02, false), (0.15, true)] {
+        let cloud_from_link = at(0.1, 0.1, 0.1);
+        let robot = vec![SelfMesh { mesh: link.clone(), cloud_from_link, padding }];
+        let filter = FilterSettings { robot, ..FilterSettings::default() };
+        let settings = CloudSettings { filter, ..CloudSettings::new(NOISE) };
+        let scan = Scan::Calibrated(Cloud::prepare(&table(), &settings).expect("points are left"));
+        let report = ask(Mode::Calibrated, &scan, &mesh(&tool()), &at(0.1, 0.1, 0.5));
+        let told = |w: &Warning| matches!(w, Warning::Padding { share, .. } if *share > 0.5);
+        assert_eq!(report.warnings.iter().any(told), is_told, "{padding}: {report:?}");
+    }
+}
+
 #[test]
 fn points_that_span_no_surface_read_free() {
     let told = |w: &Warning| matches!(w, Warning::NoSurface { .. });

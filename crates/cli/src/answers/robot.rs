@@ -42,6 +42,9 @@ pub(crate) struct Asked<'a> {
     pub unchecked_links: &'a [String],
     /// Whether the robot was removed from the scan.
     pub self_filter: bool,
+    /// How many points of the scan were removed as the robot's: among the stages of the scan in JSON.
+    #[serde(skip)]
+    pub self_filter_removed: usize,
     /// Whether links were asked about one another.
     pub self_collision: bool,
 }
@@ -57,6 +60,8 @@ impl Asked<'_> {
         }
         if !self.self_filter {
             text += "self filter            none: give --scan-joints if the scan shows the robot\n";
+        } else if self.self_filter_removed == 0 {
+            text += "self filter            removed nothing: are the joints and the base those of the scan?\n";
         }
         if !self.self_collision {
             text += "self collision         not asked: give --self-collision\n";

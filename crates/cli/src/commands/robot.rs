@@ -43,9 +43,17 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     unused::check(common, &[(Role::Scene, scan.is_mesh())])?;
     let scan = scan.refined_for(path.len(), common.effort.refine())?;
     let unchecked = robot.unchecked_links().to_vec();
+    let removed = match &scan.body {
+        Body::Cloud(cloud) => {
+            let of_robot = cloud.stages().iter().filter(|stage| stage.stage == "robot");
+            of_robot.map(|stage| stage.removed).sum()
+        }
+        Body::Mesh(_) => 0,
+    };
     let asked = Asked {
         unchecked_links: &unchecked,
         self_filter: arguments.robot.scan_joints.is_some(),
+        self_filter_removed: removed,
         self_collision: arguments.robot.self_collision,
     };
     let words = format!("{}\n{}", print::body("scan", &scan), asked.text());

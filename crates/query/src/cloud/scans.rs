@@ -5,7 +5,7 @@ use cloudtouch_geom::{Covariance, Point3, PointCloud, UnitVector3};
 use cloudtouch_noise::{Combination, MotionNoise, Places, SensorNoise};
 
 use crate::error::PrepareError;
-use crate::filter::{StageReport, filter};
+use crate::filter::{StageReport, beyond_noise, filter_and_tell};
 use crate::range::check_points;
 
 use super::makeup::{SensorDoubt, missing, mostly_robot, sensor_doubts};
@@ -55,7 +55,7 @@ impl Scans {
         let mut ends = Vec::new();
         for &(scan, by) in scans {
             by.validate()?;
-            let filtered = filter(scan, by.filter)?;
+            let (filtered, of_robot) = filter_and_tell(scan, by.filter)?;
             let kept = filtered.cloud;
             if kept.is_empty() {
                 return Err(nothing_left(scan.len(), &filtered.stages));
@@ -75,11 +75,13 @@ impl Scans {
             all.missing = all.missing.max(missing(scan, &filtered.stages));
             all.sensor_doubts.extend(sensor_doubts(scan, by.sensor, &kept.points));
             all.sensor_doubts.extend(mostly_robot(scan, &filtered.stages));
+            all.sensor_doubts.extend(padded(&scan.select(&of_robot), by)?);
             // An organised cloud is a depth image: one view, with unseen space behind it.
             if scan.is_image() {
                 let points = all.points.len()..all.points.len() + kept.len();
                 let pixels = pixels_about(scan, &filtered.rows).unwrap_or(kept.len());
-                all.images.push(Image { sensor_origin: kept.sensor_origin(), points, pixels });
+                let (sensor_origin, robot) = (kept.sensor_origin(), by.filter.robot.clone());
+                all.images.push(Image { sensor_origin, points, pixels, robot });
             }
             all.origins.extend(kept.sensor_pose.map(|pose| Point3::from(pose.translation())));
             have_rows &= !filtered.rows.is_empty();
@@ -181,6 +183,19 @@ fn check_for_repeats(points: &[Point3], ends: &[usize]) -> Result<(), PrepareErr
         start = end;
     }
     Ok(())
+}
+
+/// Points taken for the robot of which too many are farther from it than their noise tells.
+fn padded(of_robot: &PointCloud, by: Preparation<'_>) -> Result<Option<SensorDoubt>, PrepareError> {
+    /// Cables and joints that are a little off leave fewer.
+    const MOST: f64 = 0.5;
+    if of_robot.is_empty() {
+        return Ok(None);
+    }
+    let noise = moved(by.sensor.covariances(of_robot)?, &by.motion, &of_robot.points);
+    let points = of_robot.points.iter().zip(noise.iter().map(Covariance::max_std_at_most));
+    let share = beyond_noise(points, &by.filter.robot);
+    Ok((share > MOST).then_some(SensorDoubt::Padding { share }))
 }
 
 /// Pixels of the part of an image that these of its rows, in order, are in, with and without return.

@@ -18,6 +18,7 @@ use crate::error::FilterError;
 use missing::is_missing;
 
 pub use self_points::SelfMesh;
+pub(crate) use self_points::beyond_noise;
 pub use settings::{FilterSettings, OutlierSettings, VeilSettings};
 
 /// How many points one stage took away.
@@ -54,9 +55,18 @@ pub struct Filtered {
 /// When a setting is out of range, or the cloud does not have a covariance for each point or a point
 /// for each pixel; see [`FilterError`].
 pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered, FilterError> {
+    Ok(filter_and_tell(cloud, settings)?.0)
+}
+
+/// The same, with the rows that were taken for the robot.
+pub(crate) fn filter_and_tell(
+    cloud: &PointCloud,
+    settings: &FilterSettings,
+) -> Result<(Filtered, Vec<usize>), FilterError> {
     settings.validate()?;
     check_lengths(cloud)?;
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
+    let mut of_robot = Vec::new();
     run.stage("missing", |cloud, kept| kept.retain(|&i| !is_missing(&cloud.points[i])));
     if settings.min_range != Some(0.0) || settings.max_range.is_finite() {
         run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
@@ -65,7 +75,9 @@ pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered,
         run.stage("duplicates", duplicates::keep_first);
     }
     if !settings.robot.is_empty() {
-        run.stage("robot", |cloud, kept| self_points::keep_outside(cloud, kept, &settings.robot));
+        run.stage("robot", |cloud, kept| {
+            of_robot = self_points::keep_outside(cloud, kept, &settings.robot);
+        });
     }
     if let Some(veil) = &settings.veil {
         run.stage("veil", |cloud, kept| veil::drop_veil(cloud, kept, veil));
@@ -83,7 +95,7 @@ pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered,
         let removed = before - filtered.len();
         stages.push(StageReport { stage: "collision map", before, removed });
     }
-    Ok(Filtered { cloud: filtered, rows, stages })
+    Ok((Filtered { cloud: filtered, rows, stages }, of_robot))
 }
 
 fn check_lengths(cloud: &PointCloud) -> Result<(), FilterError> {

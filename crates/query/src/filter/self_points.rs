@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cloudtouch_geom::{PointCloud, Pose};
+use cloudtouch_geom::{Point3, PointCloud, Pose, Vector3};
 
 use crate::mesh::Mesh;
 
@@ -17,13 +17,52 @@ pub struct SelfMesh {
     pub padding: f64,
 }
 
-/// An open mesh has no inside: there only the padding removes points.
-pub(super) fn keep_outside(cloud: &PointCloud, kept: &mut Vec<usize>, robot: &[SelfMesh]) {
-    for link in robot {
-        let link_from_cloud = link.cloud_from_link.inverse();
-        kept.retain(|&i| {
-            let point = link_from_cloud.transform_point(&cloud.points[i]);
-            !link.mesh.is_within(&point, link.padding)
-        });
+impl SelfMesh {
+    /// Whether the link was at a place in the frame of the cloud, or within its padding: no other body was
+    /// there then. Places of its surface count, however they are rounded.
+    pub(crate) fn held(&self, place: &Point3) -> bool {
+        /// Of the size of the link; signed distances end within some 1e-7 of it.
+        const ROUNDING: f64 = 1e-6;
+        self.is_within(place, self.padding + ROUNDING * self.mesh.size())
     }
+
+    /// The same link in a frame that lies at `origin` in that of the cloud.
+    pub(crate) fn seen_from(&self, origin: &Vector3) -> Self {
+        let moved = Pose::from_translation(-origin).after(&self.cloud_from_link);
+        Self { mesh: self.mesh.clone(), cloud_from_link: moved, padding: self.padding }
+    }
+
+    /// Whether a place in the frame of the cloud is inside the link or so near to it, m.
+    fn is_within(&self, place: &Point3, distance: f64) -> bool {
+        let place = self.cloud_from_link.inverse().transform_point(place);
+        self.mesh.is_within(&place, distance)
+    }
+}
+
+/// Returns the rows that go. An open mesh has no inside: there only the padding removes points.
+pub(super) fn keep_outside(
+    cloud: &PointCloud,
+    kept: &mut Vec<usize>,
+    robot: &[SelfMesh],
+) -> Vec<usize> {
+    let is_robot =
+        |i: &mut usize| robot.iter().any(|link| link.is_within(&cloud.points[*i], link.padding));
+    kept.extract_if(.., is_robot).collect()
+}
+
+/// Of points that were removed, each with its standard deviation, m, the share that is farther from every link
+/// than its noise can tell.
+pub(crate) fn beyond_noise<'a>(
+    removed: impl Iterator<Item = (&'a Point3, f64)>,
+    robot: &[SelfMesh],
+) -> f64 {
+    /// Standard deviations that no noise reaches.
+    const DEVIATIONS: f64 = 6.0;
+    let (mut all, mut beyond) = (0_usize, 0_usize);
+    for (point, std) in removed {
+        all += 1;
+        let reach = |link: &SelfMesh| link.padding.min(DEVIATIONS * std);
+        beyond += usize::from(!robot.iter().any(|link| link.is_within(point, reach(link))));
+    }
+    beyond as f64 / all.max(1) as f64
 }

@@ -32,7 +32,8 @@ impl Mesh {
 
     /// Whether a point (file frame) is inside or within `padding` metres of the surface.
     pub(crate) fn is_within(&self, point: &Point3, padding: f64) -> bool {
-        self.signed_distance(point) <= padding
+        let local = point - self.origin();
+        self.distance_to_box(&local) <= padding && self.project(&local).signed_distance <= padding
     }
 
     /// The nearest surface point to a point in the local frame.

@@ -147,6 +147,13 @@ pub enum Warning {
         /// Share of the points, 0 to 1.
         share: f64,
     },
+    /// So many of the points that were taken for the robot itself are farther from it than their noise tells.
+    Padding {
+        /// Whose.
+        body: Which,
+        /// Share of the points that were left out, 0 to 1.
+        share: f64,
+    },
     /// The object is outside of the scene's box.
     OutsideScene {
         /// Between the two boxes, m.
@@ -190,6 +197,7 @@ impl Warning {
             | Self::NoImage { body }
             | Self::ImagePlace { body }
             | Self::SelfFilter { body, .. }
+            | Self::Padding { body, .. }
             | Self::Unseen { body, .. } => Some(body),
             Self::FarAway { .. } | Self::OutsideScene { .. } | Self::Exchanged { .. } => None,
         }
@@ -210,6 +218,7 @@ impl Warning {
             Self::SensorTurn { .. }
             | Self::SensorLayout { .. }
             | Self::NoImage { .. }
+            | Self::Padding { .. }
             | Self::OutsideScene { .. }
             | Self::Exchanged { .. } => None,
         }

@@ -104,6 +104,13 @@ impl fmt::Display for Warning {
                  pose, its joints and the padding (metres), or give the organised cloud",
                 100.0 * share
             ),
+            Self::Padding { body, share } => write!(
+                f,
+                "{:.0} % of the points of the {body} that were left out as the robot's are farther from it \
+                 than their noise tells, and may be of what is beside it: check its pose, its joints and the \
+                 padding (metres)",
+                100.0 * share
+            ),
             Self::OutsideScene { gap_m, size_m } => write!(
                 f,
                 "the object is outside of the scene, {} from its box of {}: is the pose object to \

@@ -49,6 +49,8 @@ pub(crate) enum SensorDoubt {
     Misplaced,
     /// So large a share of the points was taken for the robot itself.
     Robot { share: f64 },
+    /// So large a share of the points taken for the robot is farther from it than their noise tells.
+    Padding { share: f64 },
 }
 
 /// A cloud as a whole.

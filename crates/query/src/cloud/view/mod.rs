@@ -9,6 +9,7 @@ use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::SensorNoise;
 
 use crate::cloud::view::raster::{Raster, Sight};
+use crate::filter::SelfMesh;
 
 /// A scan that is a depth image.
 #[derive(Debug, Clone)]
@@ -19,6 +20,8 @@ pub(super) struct Image {
     pub points: Range<usize>,
     /// How many pixels are where these are, those without return too.
     pub pixels: usize,
+    /// The links of the robot that were taken out of it.
+    pub robot: Vec<SelfMesh>,
 }
 
 /// Where the sensor stood, and the raster of its view once that is needed.
@@ -32,18 +35,24 @@ pub(crate) struct SingleView {
 impl SingleView {
     /// Of an image in a frame that lies at `origin` in that of the cloud.
     pub(super) fn new(image: Image, origin: &Vector3) -> Self {
-        let image = Image { sensor_origin: image.sensor_origin - origin, ..image };
-        Self { image, raster: OnceLock::new() }
+        let sensor_origin = image.sensor_origin - origin;
+        let robot = image.robot.iter().map(|link| link.seen_from(origin)).collect();
+        Self { image: Image { sensor_origin, robot, ..image }, raster: OnceLock::new() }
     }
 
-    /// What the camera knows of places, all in the cloud's local frame, given what it measured and
-    /// with which noise; `None` where the measured points have no directions.
+    /// What is known of places by the image, all in the cloud's local frame, given what it measured and
+    /// with which noise; `None` where the measured points have no directions. Where the robot itself was
+    /// there was nothing else, whatever the camera saw.
     pub(crate) fn sight<'a>(
         &'a self,
         measured: (&[Point3], &SensorNoise),
     ) -> Option<impl Fn(&Point3) -> Sight + 'a> {
         let raster = self.raster(measured)?;
-        Some(move |place: &Point3| raster.sight(&(place - self.image.sensor_origin)))
+        Some(move |place: &Point3| {
+            let sight = raster.sight(&(place - self.image.sensor_origin));
+            let was_robot = || self.image.robot.iter().any(|link| link.held(place));
+            if sight != Sight::Seen && was_robot() { Sight::Seen } else { sight }
+        })
     }
 
     /// Whether the camera looked past places, each with a standard deviation of its own, in their
@@ -61,7 +70,7 @@ impl SingleView {
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
         let raster = self.raster.get_or_init(|| {
-            let Image { sensor_origin, points: own, pixels } = &self.image;
+            let Image { sensor_origin, points: own, pixels, .. } = &self.image;
             let own = own.clone().map(|index| (points[index], noise[index].std_bound()));
             Raster::new(sensor_origin, own, *pixels).map(Arc::new)
         });
@@ -134,6 +143,7 @@ mod tests {
                 sensor_origin: Point3::origin(),
                 points: 0..points.len(),
                 pixels: points.len(),
+                robot: Vec::new(),
             };
             let view = SingleView::new(image, &Vector3::zeros());
             let sight = view.sight((&points, &noise)).expect("points with directions");
