@@ -95,9 +95,6 @@ pub struct TraversalSettings {
     /// to the middle of the gap: none of these has a higher probability than Φ(−`cull_deviations`).
     /// Zero or more; the others do not use it.
     pub cull_deviations: f64,
-    /// Nodes of the first and of the second tree with at most so many primitives are taken for leaves;
-    /// those that are leaves always are.
-    pub leaf_points: [usize; 2],
 }
 
 impl Default for TraversalSettings {
@@ -106,7 +103,6 @@ impl Default for TraversalSettings {
             kind: Traversal::default(),
             // Below one in a million.
             cull_deviations: 4.76,
-            leaf_points: [0; 2],
         }
     }
 }

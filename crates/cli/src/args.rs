@@ -17,7 +17,7 @@ use cloudtouch_io::LengthUnit;
 
 use crate::sensor::SensorChoice;
 
-pub(crate) use answer::AnswerArguments;
+pub(crate) use answer::{AnswerArguments, exit_code};
 pub(crate) use caution::Refine;
 pub(crate) use common::{CommonArguments, ModeName};
 use limits::LimitArguments;

@@ -10,8 +10,8 @@ use cloudtouch::{
     PrepareError, Query, QueryError, Report, StageReport, UnderPoses,
 };
 
-use crate::load::settings::Settings;
 use crate::margin::{Nearness, SHARE};
+use crate::paper_settings::Settings;
 
 /// A cloud prepared for one of the paths, or a mesh.
 #[allow(clippy::large_enum_variant, reason = "there are a few, each far larger on the heap")]

@@ -70,7 +70,7 @@ fn the_page_of_a_query_says_what_the_answer_says() {
         assert_eq!(answer["verdict"], verdict);
         let page = page(&inputs, &name);
         check_alone(&page);
-        let words = verdict.replace("in_contact", "uncertain").replace('_', " ");
+        let words = verdict.replace('_', " ");
         assert!(page.contains(&format!("</span> {words} <b>")), "{verdict}");
         assert!(page.contains("<title>box.obj in floor.pcd</title>"));
         let view = &data(&page)["views"][0];

@@ -140,7 +140,7 @@ fn check_report(report: &Value) {
     let bounds = numbers(&report["bounds"], 2);
     assert!(0.0 <= bounds[0] && bounds[0] <= probability, "{report}");
     assert!(probability <= bounds[1] && bounds[1] <= 1.0, "{report}");
-    let verdicts = ["free", "in_contact", "in_collision", "undecided"];
+    let verdicts = ["free", "uncertain", "in_collision", "undecided"];
     assert!(verdicts.contains(&report["verdict"].as_str().unwrap()));
     if !report["clearance_m"].is_null() {
         check_keys(&report["clearance_m"], &CLEARANCE);

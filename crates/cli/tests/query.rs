@@ -11,9 +11,7 @@ fn says_free_uncertain_and_in_collision() {
         let answer = &inputs.query_at(height, &["--json"]).quiet(0).json_lines()[0];
         assert_eq!(answer["verdict"], verdict, "at {height} m: {answer}");
         let text = inputs.query_at(height, &[]).quiet(0).stdout();
-        // The word of JSON for it is that of earlier versions.
-        let word = if verdict == "in_contact" { "uncertain" } else { verdict };
-        assert!(text.contains(&word.replace('_', " ")), "{text}");
+        assert!(text.contains(&verdict.replace('_', " ")), "{text}");
         assert!(text.contains("441 points") && text.contains("watertight mesh of 12"), "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     }

@@ -133,7 +133,7 @@ mod with_feature {
             ),
         );
         let lines = inputs.run(&["batch", "cases.json", "--json"]).json_lines();
-        assert_eq!(lines[0]["verdict"], "in_contact");
+        assert_eq!(lines[0]["verdict"], "uncertain");
         assert_eq!(lines[1]["verdict"], "free");
         let error = lines[2]["error"].as_str().unwrap();
         assert!(error.contains("there is no topic /none: PointCloud2 is on /b, /floor"), "{error}");

@@ -3,7 +3,7 @@
 use crate::covariance::Covariance;
 use crate::pose::Pose;
 use crate::uncertain::UncertainPoint;
-use crate::vectors::{Matrix3, Point3, UnitVector3, Vector3};
+use crate::vectors::{Matrix3, Point3, Vector3};
 
 /// A rigid motion p ↦ R p + t with R as a matrix: what a [`Pose`] does, several times as fast once
 /// there are more than a few points to move.
@@ -50,13 +50,6 @@ impl Motion {
     #[inline]
     pub fn vector(&self, vector: &Vector3) -> Vector3 {
         self.rotation * vector
-    }
-
-    /// R n, of length one like n.
-    pub fn unit_vector(&self, unit: &UnitVector3) -> UnitVector3 {
-        let mut turned = UnitVector3::new_unchecked(self.rotation * unit.into_inner());
-        turned.renormalize_fast();
-        turned
     }
 
     /// R⁻¹ v.

@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{fault::FormatError, recording::RecordingFault};
+use crate::{fault::FormatError, recording_fault::RecordingFault};
 
 /// Why a file could not be read.
 #[derive(Debug, thiserror::Error)]

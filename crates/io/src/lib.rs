@@ -13,6 +13,7 @@ pub mod ply;
 pub mod pointcloud2;
 mod read;
 pub mod recording;
+mod recording_fault;
 mod scalar;
 pub mod stl;
 mod text;

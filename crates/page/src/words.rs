@@ -7,25 +7,6 @@ pub fn probability(p: f64) -> String {
     if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
 }
 
-/// Why there is no decision.
-pub fn undecided(by: Undecided) -> &'static str {
-    match by {
-        Undecided::Unseen => "the camera saw too little of where the object is",
-        Undecided::Enclosed => {
-            "one surface is all around the other: hollow or solid? (--sensor-pose, or fill the mesh)"
-        }
-        Undecided::Units => "sizes or distance cannot be meant",
-        Undecided::Sparse => "a body fits between points of the other, or between clumps of them",
-        Undecided::Noise => "the noise is larger than a body, or than points scatter",
-        Undecided::NoSurface => "a cloud spans no surface",
-        Undecided::Missing => "too many rows have no return, or were taken for the robot",
-        Undecided::Sensor => "the sensor cannot have seen this cloud",
-        Undecided::Unsolved => "a classifier could not be trained",
-        Undecided::Bounds => "what was not looked at, or is too noisy, could still collide",
-        _ => "see undecided_by in the JSON",
-    }
-}
-
 /// How much of a body a depth image did not see, and why.
 pub fn unseen(unseen: &Unseen) -> String {
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
@@ -61,7 +42,7 @@ pub fn verdict(verdict: Verdict, by: Option<Undecided>) -> String {
         Verdict::Undecided => {
             format!(
                 "No decision: {}. Treat it as not free.",
-                by.map_or("see the warnings", undecided)
+                by.map_or_else(|| "see the warnings".to_owned(), |by| by.to_string())
             )
         }
     }

@@ -1,39 +1,12 @@
 //! One report as what `cloudtouch.Report` is made of.
 
-use cloudtouch::{Penetration, PoseGradient, Report, Undecided, UnderPoses, Verdict, Within};
+use cloudtouch::{Penetration, PoseGradient, Report, Undecided, UnderPoses, Within};
 use numpy::IntoPyArray;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::body::table;
-
-/// Names, as reports and batches tell them.
-pub(crate) fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Free => "free",
-        Verdict::Uncertain => "uncertain",
-        Verdict::InCollision => "in_collision",
-        Verdict::Undecided => "undecided",
-    }
-}
-
-/// The same for why nothing was decided.
-pub(crate) fn cause(cause: Undecided) -> &'static str {
-    match cause {
-        Undecided::Unseen => "unseen",
-        Undecided::Enclosed => "enclosed",
-        Undecided::Units => "units",
-        Undecided::Sparse => "sparse",
-        Undecided::Noise => "noise",
-        Undecided::NoSurface => "no_surface",
-        Undecided::Missing => "missing",
-        Undecided::Sensor => "sensor",
-        Undecided::Unsolved => "unsolved",
-        Undecided::Bounds => "bounds",
-        _ => "other",
-    }
-}
 
 /// How long a query took, s: a report has whole microseconds.
 pub(crate) fn seconds(report: &Report) -> f64 {
@@ -47,8 +20,8 @@ pub(crate) fn report<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'p
     fields.set_item(intern!(py, "probability"), report.collision_probability)?;
     fields.set_item(intern!(py, "lower"), lower)?;
     fields.set_item(intern!(py, "upper"), upper)?;
-    fields.set_item(intern!(py, "verdict"), verdict(report.verdict))?;
-    fields.set_item(intern!(py, "undecided_by"), report.undecided_by.map(cause))?;
+    fields.set_item(intern!(py, "verdict"), report.verdict.code())?;
+    fields.set_item(intern!(py, "undecided_by"), report.undecided_by.map(Undecided::code))?;
     fields.set_item(intern!(py, "log_likelihood_ratio"), report.log_likelihood_ratio)?;
     let clearance = report.clearance_m;
     fields.set_item(intern!(py, "clearance"), clearance.map(|c| c.mean))?;

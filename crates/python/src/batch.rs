@@ -3,13 +3,13 @@
 //! A report becomes a row on the thread that asked: contacts and points that no column tells are given back
 //! while they are in its cache, and not kept for all poses.
 
-use cloudtouch::Report;
 use cloudtouch::geom::Vector3;
+use cloudtouch::{Report, Undecided};
 use numpy::{Element, IntoPyArray, PyArray1, PyFixedUnicode};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::answer::{cause, seconds, verdict};
+use crate::answer::seconds;
 use crate::body::table;
 
 /// Letters of the longest name: "in_collision".
@@ -45,8 +45,8 @@ impl From<&Report> for Row {
             probability: report.collision_probability,
             lower,
             upper,
-            verdict: verdict(report.verdict),
-            undecided_by: report.undecided_by.map_or("", cause),
+            verdict: report.verdict.code(),
+            undecided_by: report.undecided_by.map_or("", Undecided::code),
             log_likelihood_ratio: or_nan(report.log_likelihood_ratio),
             clearance: or_nan(clearance.map(|c| c.mean)),
             clearance_std: or_nan(clearance.map(|c| c.std)),

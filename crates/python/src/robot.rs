@@ -11,7 +11,6 @@ use cloudtouch_robot::{
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::answer::verdict;
 use crate::arrays::{matrix, of_pose};
 use crate::body::{Body, corners, rows};
 use crate::error::refused;
@@ -169,7 +168,7 @@ impl RobotChecker {
         let (checker, query) = (self.now(py)?, query.get().checked());
         let checked = on_all_threads(py, || checker.check_path(query, &path, tolerance))?;
         let checked = checked.map_err(refused)?;
-        let worst = verdict(checked.verdict());
+        let worst = checked.verdict().code();
         let PathChecked { given, certified_free_until, stopped, looked_at } = checked;
         let given: PyResult<_> = given.into_iter().map(|at| found(py, at)).collect();
         let stopped = stopped.map(|at| {

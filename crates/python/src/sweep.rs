@@ -1,10 +1,10 @@
 //! What is known along a path, as what `cloudtouch.Swept` is made of.
 
-use cloudtouch::{AlongPath, Swept};
+use cloudtouch::{AlongPath, Swept, Undecided};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::answer::{cause, report, verdict};
+use crate::answer::report;
 use crate::arrays::of_pose;
 
 /// The fields of a sweep, by their names in Python.
@@ -13,8 +13,8 @@ pub(crate) fn answer<'py>(py: Python<'py>, swept: &Swept) -> PyResult<Bound<'py,
     let [lower, upper] = swept.bounds;
     fields.set_item("lower", lower)?;
     fields.set_item("upper", upper)?;
-    fields.set_item("verdict", verdict(swept.verdict))?;
-    fields.set_item("undecided_by", swept.undecided_by.map(cause))?;
+    fields.set_item("verdict", swept.verdict.code())?;
+    fields.set_item("undecided_by", swept.undecided_by.map(Undecided::code))?;
     let warnings: Vec<String> = swept.warnings.iter().map(ToString::to_string).collect();
     fields.set_item("warnings", warnings)?;
     fields.set_item("most_probable", place(py, &swept.most_probable)?)?;

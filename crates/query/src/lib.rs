@@ -2,11 +2,10 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod body;
-mod checks;
+mod check;
 mod classifier;
 mod cloud;
-mod doubts;
-mod enclosed;
+mod doubt;
 mod error;
 mod exact;
 mod filter;
@@ -17,19 +16,19 @@ mod motion;
 pub mod paper;
 mod placement;
 mod query;
-mod range;
 mod record;
 mod report;
-mod safeguards;
 mod scene;
 mod search;
 mod shape;
-mod undecided;
-mod unseen;
-mod warning;
+mod stats;
 
 pub use body::{Body, BodyRef};
 pub use cloud::{Change, Cloud, CloudSettings};
+pub use doubt::safeguards::Safeguards;
+pub use doubt::undecided::Undecided;
+pub use doubt::unseen::Unseen;
+pub use doubt::warning::{Warning, Which};
 pub use error::{
     ChangeError, FilterError, PrepareError, QueryError, SceneError, SettingsError, SubdivisionError,
 };
@@ -53,11 +52,9 @@ pub use query::{
     Detail, NotFree, Penetration, PoseDistribution, PoseGradient, Query, QuerySettings, UnderPoses,
     Within,
 };
-pub use report::{Clearance, Contact, PointProbabilities, Report, Stats, Unseen, Verdict};
-pub use safeguards::Safeguards;
+pub use report::{Clearance, Contact, PointProbabilities, Report, Verdict};
 pub use scene::{Checked, Outside, PairAnswer, Scene};
-pub use undecided::Undecided;
-pub use warning::{Warning, Which};
+pub use stats::Stats;
 
 /// The crates below, for users who need their types: a query takes a [`geom::Pose`], a cloud a
 /// [`noise::SensorModel`].
@@ -67,10 +64,6 @@ pub use cloudtouch_noise as noise;
 
 /// Points with a smaller probability are not listed one by one.
 pub const POINT_FLOOR: f64 = 1e-6;
-
-/// Triangles that a mesh is split into at most where nothing else is said: their points take about
-/// 500 MB.
-pub const MAX_MESH_PARTS: usize = 5_000_000;
 
 /// Contacts with a smaller probability are not reported.
 pub const CONTACT_FLOOR: f64 = 0.01;

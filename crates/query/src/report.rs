@@ -3,12 +3,14 @@
 use std::fmt;
 
 use cloudtouch_geom::{Point3, Vector3};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
+use crate::doubt::undecided::Undecided;
+use crate::doubt::unseen::Unseen;
+use crate::doubt::warning::Warning;
 use crate::judge::ContactEvidence;
 use crate::mode::Mode;
-use crate::undecided::Undecided;
-use crate::warning::{Warning, Which};
+use crate::stats::Stats;
 
 /// The answer to one query. Serialises to the JSON object of the command-line tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -60,14 +62,11 @@ pub struct Report {
 }
 
 /// The decision a query takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// The upper bound on the probability is below the reject threshold.
     Free,
     /// The probability lies between the thresholds: the surfaces may touch, overlap or be apart.
-    /// Still `in_contact` in JSON, the name it had.
-    #[serde(rename = "in_contact")]
     Uncertain,
     /// The probability is above the accept threshold.
     InCollision,
@@ -75,6 +74,25 @@ pub enum Verdict {
     /// and the rest does not settle the matter; or what was found cannot be believed:
     /// [`Report::undecided_by`] says why.
     Undecided,
+}
+
+impl Verdict {
+    /// Its name in JSON and in Python.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Uncertain => "uncertain",
+            Self::InCollision => "in_collision",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// Its code.
+impl Serialize for Verdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.code())
+    }
 }
 
 impl fmt::Display for Verdict {
@@ -85,29 +103,6 @@ impl fmt::Display for Verdict {
             Self::InCollision => "in collision",
             Self::Undecided => "undecided",
         })
-    }
-}
-
-/// Where a body's surface lies as the single depth image of the other sees it: shares of the surface,
-/// from 0 to 1. What is in none of them was seen to be empty, or is on a measured surface.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Unseen {
-    /// Whose surface.
-    pub body: Which,
-    /// Behind the back of the camera.
-    pub behind_camera: f64,
-    /// Beside what it looked at.
-    pub outside_view: f64,
-    /// Where no return came from.
-    pub hole: f64,
-    /// Behind a surface that it met.
-    pub behind_returns: f64,
-}
-
-impl Unseen {
-    /// The share that was not seen, for whatever reason.
-    pub fn share(&self) -> f64 {
-        self.behind_camera + self.outside_view + self.hole + self.behind_returns
     }
 }
 
@@ -155,32 +150,6 @@ pub(crate) fn vector_as_array<S: serde::Serializer>(
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     [v.x, v.y, v.z].serialize(serializer)
-}
-
-/// What a query did: the cost that follows from how hard the pair was.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Stats {
-    /// Pairs of tree nodes tested, and nodes tested against a mesh.
-    pub nodes_visited: usize,
-    /// Pairs of leaves whose points were looked at.
-    pub leaf_pairs: usize,
-    /// Leaf pairs that a plane separates so well that no kernel problem was solved.
-    pub linear_certificates: usize,
-    /// Kernel problems solved.
-    pub kernel_solves: usize,
-    /// Kernel problems handed to the fallback solver.
-    pub fallbacks: usize,
-    /// Leaf pairs without an answer.
-    pub undecided: usize,
-    /// Largest relative gap between primal and dual value of any kernel problem.
-    pub max_relative_gap: f64,
-    /// Time to prepare the two bodies, once for all queries, µs.
-    pub prepare_us: u64,
-    /// Time of this query, µs.
-    pub query_us: u64,
-    /// Leaves whose noise model was computed for the first time by this query.
-    #[serde(skip)]
-    pub leaves_prepared: usize,
 }
 
 /// Probabilities of single points, as (index into the prepared cloud, probability) in index order.

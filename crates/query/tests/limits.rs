@@ -99,14 +99,3 @@ fn a_mesh_that_a_dense_cloud_would_split_millions_of_times_is_an_error() {
         "{error}"
     );
 }
-
-#[test]
-fn pictures_of_a_mesh_take_no_more_points_than_allowed() {
-    let mesh = triangle(1.0).unwrap();
-    // Halved over and over to 64 parts, all before counted.
-    assert!(mesh.surface_points(0.4, 127).is_ok());
-    assert_eq!(
-        mesh.surface_points(1e-9, 1_000_000),
-        Err(SubdivisionError { spacing: 1e-9, max_parts: 1_000_000 })
-    );
-}

@@ -5,9 +5,10 @@
 
 use cloudtouch_geom::{Vector3, normal};
 
+use crate::certificate::Certificate;
 use crate::problem::kernel::Kernel;
 use crate::problem::{PreparedPoint, Problem};
-use crate::smo::state::{Certificate, State};
+use crate::smo::state::State;
 use crate::solution::ErrorBounds;
 
 /// The feature vector ρφ(centre) that others are measured from.

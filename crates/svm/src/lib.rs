@@ -2,6 +2,7 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod bounds;
+mod certificate;
 #[cfg(feature = "clarabel")]
 mod clarabel_dual;
 mod classifier;

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::smo::state::Certificate;
+use crate::certificate::Certificate;
 use crate::status::Rung;
 
 /// One entry of the iteration log. Where the interior point method works on some of the points, the values

@@ -5,17 +5,11 @@ use crate::build::parts::{Memory, Part, fitted_parts, halve, set_far_apart};
 use crate::tree::node::NodeData;
 use crate::{Moments, Obb, Primitives, TreeSettings};
 
-/// Halves of a node of fewer are not worth a thread of their own.
-const LEAST_SHARED: usize = 2048;
-
-/// Who grows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Threads {
-    /// The caller alone: whoever waits for others may be given work meanwhile that waits for the caller.
-    This,
-    /// All of the pool.
-    All,
-}
+/// Halves of a node of fewer are not worth a thread of their own, ...
+pub(crate) const LEAST_SHARED: usize = 2048;
+/// ... and none is where the caller has to grow alone: whoever waits for others may be given work meanwhile
+/// that waits for the caller.
+pub(crate) const ALONE: usize = usize::MAX;
 
 /// What nodes are grown over, and how.
 pub(crate) struct Growth<'a> {
@@ -56,11 +50,10 @@ impl<'a> Growth<'a> {
         primitives: &'a Primitives,
         settings: &'a TreeSettings,
         indices: &[u32],
-        on: Threads,
+        least_shared: usize,
     ) -> Self {
         let are_points = indices.iter().all(|&index| primitives.is_point(index));
-        let is_alone = on == Threads::This || rayon::current_num_threads() == 1;
-        let least_shared = if is_alone { usize::MAX } else { LEAST_SHARED };
+        let least_shared = if rayon::current_num_threads() == 1 { ALONE } else { least_shared };
         Self { primitives, settings, least_shared, are_points }
     }
 

@@ -7,7 +7,7 @@ mod parts;
 
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
-use crate::build::grow::{Grown, Growth, Threads};
+use crate::build::grow::{ALONE, Grown, Growth, LEAST_SHARED};
 use crate::build::parts::{Memory, parts_of};
 use crate::tree::bounds_list::BoundsList;
 use crate::tree::node::NodeData;
@@ -33,7 +33,7 @@ impl Tree {
     /// number.
     pub fn build(primitives: Vec<Primitive>, settings: &TreeSettings) -> Result<Self, TreeError> {
         let mut tree = Self::of(Primitives::Each(primitives), settings)?;
-        tree.grow(Threads::This);
+        tree.grow(ALONE);
         tree.update_bounds(tree.root);
         Ok(tree)
     }
@@ -50,7 +50,7 @@ impl Tree {
         bounds_of: impl Fn(&Self, Node<'_>) -> LeafBounds + Sync,
     ) -> Result<Self, TreeError> {
         let mut tree = Self::of(primitives, settings)?;
-        tree.grow(Threads::All);
+        tree.grow(LEAST_SHARED);
         tree.refined = tree.listed(|leaf| bounds_of(&tree, leaf))?;
         tree.update_all_bounds();
         Ok(tree)
@@ -86,18 +86,18 @@ impl Tree {
         self.free.clear();
         // The order of indices, so that the result is that of a build and not of the history.
         self.order.sort_unstable();
-        self.grow(Threads::This);
+        self.grow(ALONE);
         self.update_bounds(self.root);
     }
 
-    /// Makes all nodes for `order`, without bounds.
-    fn grow(&mut self, on: Threads) {
+    /// Makes all nodes for `order`, without bounds; halves of at least so many on threads of their own.
+    fn grow(&mut self, least_shared: usize) {
         self.root = None;
         if !self.order.is_empty() {
             let root = self.new_node(None, 0, self.order.len() as u32);
             self.root = Some(root);
             self.fit_root();
-            self.partition(root, on);
+            self.partition(root, least_shared);
         }
         self.nodes.shrink_to_fit();
         self.spread_when_built = self.spread();
@@ -106,14 +106,15 @@ impl Tree {
     /// Splits a fitted leaf, and its halves, as often as the settings ask for; then sets the
     /// bounds of what is below it.
     pub(crate) fn subdivide(&mut self, leaf: u32) {
-        self.partition(leaf, Threads::This);
+        self.partition(leaf, ALONE);
         self.update_bounds(Some(leaf));
     }
 
-    fn partition(&mut self, leaf: u32, on: Threads) {
+    fn partition(&mut self, leaf: u32, least_shared: usize) {
         let top = self.nodes[leaf as usize].clone();
         let mut parts = parts_of(&self.primitives, self.indices_of(leaf));
-        let growth = Growth::new(&self.primitives, &self.settings, self.indices_of(leaf), on);
+        let growth =
+            Growth::new(&self.primitives, &self.settings, self.indices_of(leaf), least_shared);
         let start = top.start as usize;
         let grown = growth.grow(top, &mut parts, &mut Memory::default());
         let slots = self.order[start..].iter_mut();

@@ -107,11 +107,7 @@ impl<'a> Examiner<'a> {
         let (id_a, id_b) = (pair.a, pair.b);
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
         let a_is_larger = a.obb.radius() >= b.obb.radius();
-        let [leaf_a, leaf_b] = self.settings.leaf_points;
-        let below = |node: &NodeData, leaf_points: usize| {
-            node.children.filter(|_| node.count as usize > leaf_points)
-        };
-        match (below(a, leaf_a), below(b, leaf_b)) {
+        match (a.children, b.children) {
             (Some(children), None) => Some(children.map(|child| (child, id_b))),
             (None, Some(children)) => Some(children.map(|child| (id_a, child))),
             (Some(children), Some(_)) if a_is_larger => Some(children.map(|child| (child, id_b))),

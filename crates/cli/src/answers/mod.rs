@@ -1,6 +1,5 @@
 //! Answers, for programs (a line of JSON each) and for people.
 
-pub(crate) mod doubt;
 pub(crate) mod gradient;
 pub(crate) mod path;
 pub(crate) mod penetration;

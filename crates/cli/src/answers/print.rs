@@ -1,11 +1,10 @@
 //! Words and numbers of answers, and the way to standard output.
 
 use std::io::{ErrorKind, Write as _};
-use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use cloudtouch::{Clearance, StageReport, Verdict};
-pub(crate) use cloudtouch_page::words::{probability, undecided};
+use cloudtouch::{Clearance, StageReport};
+pub(crate) use cloudtouch_page::words::probability;
 
 use crate::body::{Body, PreparedCloud};
 use crate::load::{Input, Loaded};
@@ -60,16 +59,6 @@ fn stages(stages: &[StageReport]) -> String {
     let removed: Vec<String> =
         stages.iter().map(|s| format!("{} removed {}", s.stage, s.removed)).collect();
     removed.join(", ")
-}
-
-/// The verdict for the shell.
-pub(crate) fn exit_code(verdict: Verdict) -> ExitCode {
-    ExitCode::from(match verdict {
-        Verdict::Free => 0,
-        Verdict::Uncertain => 10,
-        Verdict::InCollision => 20,
-        Verdict::Undecided => 30,
-    })
 }
 
 /// A name of a case in one line of a table: what steers a terminal is spelled out.

@@ -5,8 +5,8 @@ use cloudtouch::geom::Pose;
 use cloudtouch::{Placement, Report};
 use serde::Serialize;
 
-use crate::answers::doubt::Doubt;
 use crate::answers::per_point::Details;
+use crate::doubt::Doubt;
 use crate::load::Input;
 use crate::margin::Nearness;
 

@@ -5,8 +5,6 @@ use std::process::ExitCode;
 use clap::Args;
 use cloudtouch::Verdict;
 
-use crate::answers::print;
-
 /// What path, scene and robot share.
 #[derive(Debug, Args)]
 pub(crate) struct AnswerArguments {
@@ -23,8 +21,18 @@ impl AnswerArguments {
     pub(crate) fn exit_code(&self, verdict: Verdict, has_failed: bool) -> ExitCode {
         match (has_failed, self.exit_code) {
             (true, _) => ExitCode::FAILURE,
-            (false, true) => print::exit_code(verdict),
+            (false, true) => exit_code(verdict),
             (false, false) => ExitCode::SUCCESS,
         }
     }
+}
+
+/// The verdict for the shell.
+pub(crate) fn exit_code(verdict: Verdict) -> ExitCode {
+    ExitCode::from(match verdict {
+        Verdict::Free => 0,
+        Verdict::Uncertain => 10,
+        Verdict::InCollision => 20,
+        Verdict::Undecided => 30,
+    })
 }

@@ -8,7 +8,7 @@ use cloudtouch::{FilterSettings, OutlierSettings, PaperSettings, Pooling, QueryS
 use cloudtouch_cli::numbers::{self, Rigid};
 use cloudtouch_io::LengthUnit;
 
-use crate::load::settings::{self, SettingsFile};
+use crate::paper_settings::{self, SettingsFile};
 use crate::sensor::SensorChoice;
 
 use super::caution::{CautionArguments, EffortArguments, Refine};
@@ -46,7 +46,7 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_name = "B", value_parser = parse_reject, allow_negative_numbers = true, help_heading = "Estimate")]
     pub reject: Option<f64>,
     /// Paper: its settings, as `cloudtouch settings` prints them
-    #[arg(long, value_name = "FILE", value_parser = settings::read,
+    #[arg(long, value_name = "FILE", value_parser = paper_settings::read,
           help_heading = "Estimate")]
     pub settings: Option<SettingsFile>,
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]

@@ -192,12 +192,14 @@ fn table(poses: &[Answered]) -> String {
 
 /// How many poses were left open for which reason.
 fn left_open(poses: &[Answered]) -> String {
-    let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     for Answered { report, .. } in poses {
         let reason = match report.verdict {
             Verdict::Free | Verdict::InCollision => continue,
-            Verdict::Uncertain => "the noise hides whether they touch",
-            Verdict::Undecided => report.undecided_by.map_or("undecided", print::undecided),
+            Verdict::Uncertain => "the noise hides whether they touch".to_owned(),
+            Verdict::Undecided => {
+                report.undecided_by.map_or("undecided".to_owned(), |by| by.to_string())
+            }
         };
         *reasons.entry(reason).or_default() += 1;
     }

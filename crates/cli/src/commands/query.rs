@@ -11,12 +11,12 @@ use cloudtouch_io::read_colors_within;
 use cloudtouch_page::{Fact, Page, View};
 use nalgebra::UnitQuaternion;
 
-use crate::answers::doubt::Doubt;
 use crate::answers::per_point::{self, Details};
 use crate::answers::print;
 use crate::answers::query::Answer;
-use crate::args::{ModeName, PoseArguments, QueryArguments};
+use crate::args::{ModeName, PoseArguments, QueryArguments, exit_code};
 use crate::body::{self, Body, PreparedCloud};
+use crate::doubt::Doubt;
 use crate::inside::with_points_inside;
 use crate::load::{self, Loaded, Role};
 use crate::output::Output;
@@ -142,7 +142,7 @@ fn run_by<P: body::Path>(
         parts.join("\n")
     };
     print::to_stdout(&format!("{text}\n"))?;
-    Ok(if arguments.exit_code { print::exit_code(report.verdict) } else { ExitCode::SUCCESS })
+    Ok(if arguments.exit_code { exit_code(report.verdict) } else { ExitCode::SUCCESS })
 }
 
 /// Both bodies and the answer, to look at.

@@ -12,7 +12,7 @@ use cloudtouch_robot::{Robot, RobotChecker, SURROUNDINGS, Touching};
 use crate::answers::print;
 use crate::answers::robot::Asked;
 use crate::args::RobotArguments;
-use crate::body::Body;
+use crate::body::{Body, PreparedCloud as _};
 use crate::load::{self, Role};
 use crate::usage::WrongUsage;
 use crate::{answers, unused};

@@ -5,9 +5,9 @@ use std::process::ExitCode;
 use anyhow::Result;
 
 use crate::answers::print;
-use crate::load;
+use crate::paper_settings::DEFAULTS;
 
 pub(crate) fn run() -> Result<ExitCode> {
-    print::to_stdout(load::settings::DEFAULTS)?;
+    print::to_stdout(DEFAULTS)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -3,7 +3,6 @@
 pub(crate) mod path;
 pub(crate) mod pose;
 pub(crate) mod sensor_for;
-pub(crate) mod settings;
 
 use std::path::Path;
 use std::sync::Arc;

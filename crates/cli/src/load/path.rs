@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use cloudtouch::Path;
 use cloudtouch_cli::files::path::{self, PathText};
 
-use crate::answers::doubt::Doubt;
+use crate::doubt::Doubt;
 
 /// The poses of a file, each joined to the next by a screw or by a straight way and slerp; and what is
 /// to be doubted of them, which has been warned of.

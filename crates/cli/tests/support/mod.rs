@@ -17,7 +17,7 @@ pub(crate) struct Inputs(TempDir);
 
 /// Poses of the box over the floor with clear answers: (verdict, exit code, height of its centre).
 pub(crate) const HEIGHTS: [(&str, i32, f64); 3] =
-    [("free", 0, 0.5), ("in_contact", 10, 0.1005), ("in_collision", 20, 0.05)];
+    [("free", 0, 0.5), ("uncertain", 10, 0.1005), ("in_collision", 20, 0.05)];
 
 impl Inputs {
     pub(crate) fn new() -> Self {

@@ -7,8 +7,9 @@ use mcap::{
     records::{ChunkIndex, Record, op},
 };
 
-use super::{fault::RecordingFault, source::Source};
+use super::source::Source;
 use crate::error::ReadError;
+use crate::recording_fault::RecordingFault;
 
 /// What the summary says.
 #[derive(Debug)]

@@ -1,6 +1,5 @@
 //! Scans out of recordings: `.mcap` files of robots, read with the feature `mcap`.
 
-mod fault;
 mod name;
 mod scan;
 
@@ -13,7 +12,7 @@ mod read;
 #[cfg(feature = "mcap")]
 mod source;
 
-pub use fault::{Names, RecordingFault};
+pub use crate::recording_fault::{Names, RecordingFault};
 pub use name::{ScanName, file_of};
 pub use scan::RecordedScan;
 

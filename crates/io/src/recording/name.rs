@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::fault::RecordingFault;
+use crate::recording_fault::RecordingFault;
 use crate::{error::ReadError, text::excerpt};
 
 /// A scan in a recording: `run.mcap#/topic@SECONDS`.

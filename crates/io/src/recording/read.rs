@@ -7,11 +7,11 @@ use mcap::records::ChunkIndex;
 
 use super::{
     chunk::for_each_message,
-    fault::{Names, RecordingFault},
     index::{self, Channel, Index},
     scan::RecordedScan,
     source::Source,
 };
+use crate::recording_fault::{Names, RecordingFault};
 use crate::{
     error::ReadError,
     limits::ReadLimits,

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::fault::RecordingFault;
+use crate::recording_fault::RecordingFault;
 use crate::{error::ReadError, limits::ReadLimits};
 
 /// An open file.

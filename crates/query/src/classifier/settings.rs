@@ -2,7 +2,7 @@
 
 use cloudtouch_svm::Kernel;
 
-use crate::checks::{fraction, not_negative, positive};
+use crate::check::settings::{fraction, not_negative, positive};
 use crate::error::SettingsError;
 
 /// What the robust classifier takes from the settings of a path.

@@ -8,7 +8,7 @@ use cloudtouch_svm::{
     UnitBox, balanced_penalties,
 };
 
-use crate::report::Stats;
+use crate::stats::Stats;
 
 use super::clock::Clock;
 use super::pair::{PairAnswer, PairPoint, PairPoints};

@@ -4,9 +4,9 @@
 use cloudtouch_geom::{Covariance, Point3, PointCloud, UnitVector3};
 use cloudtouch_noise::{Combination, MotionNoise, Places, SensorNoise};
 
+use crate::check::coordinates::check_points;
 use crate::error::PrepareError;
 use crate::filter::{StageReport, beyond_noise, filter_and_tell};
-use crate::range::check_points;
 
 use super::makeup::{SensorDoubt, missing, mostly_robot, sensor_doubts};
 use super::preparation::Preparation;

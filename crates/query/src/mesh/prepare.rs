@@ -8,12 +8,11 @@ use cloudtouch_geom::{MeshError, Point3, TriangleMesh, Vector3};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
 
-use crate::error::{PrepareError, SubdivisionError};
-use crate::range::check_points;
+use crate::check::coordinates::check_points;
+use crate::error::PrepareError;
 
 use super::cells::Cells;
 use super::parts::{Part, parts};
-use super::subdivide::{SampleRegion, sample_region};
 use super::winding::Winding;
 
 /// Triangles in a leaf of the tree that is searched.
@@ -123,29 +122,6 @@ impl Mesh {
     /// Diagonal of the bounding box, m.
     pub fn size(&self) -> f64 {
         self.surface.local_aabb().extents().length()
-    }
-
-    /// Points on the surface in the file frame, no farther apart than `spacing` metres along any
-    /// triangle: for pictures.
-    ///
-    /// # Errors
-    /// When that takes more than `max_parts` triangles before and after splitting, each of up to
-    /// four points; [`MAX_MESH_PARTS`](crate::MAX_MESH_PARTS) suits most.
-    pub fn surface_points(
-        &self,
-        spacing: f64,
-        max_parts: usize,
-    ) -> Result<Vec<Point3>, SubdivisionError> {
-        let everywhere = SampleRegion {
-            center: Point3::origin(),
-            core: f64::INFINITY,
-            radius: f64::INFINITY,
-            spacing,
-        };
-        let triangles = (0..self.triangle_count()).map(|t| self.corners(t));
-        let mut points = sample_region(triangles, &everywhere, max_parts)?;
-        points.iter_mut().for_each(|p| *p += self.origin);
-        Ok(points)
     }
 
     /// The surface as it was prepared, with merged vertices in the file frame, m.

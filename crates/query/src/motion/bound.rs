@@ -8,8 +8,8 @@ use crate::error::QueryError;
 use crate::judge::{JudgeOfPair, probability};
 use crate::query::{Query, noise_over_spacing};
 use crate::record::CLEAR_DEVIATIONS;
-use crate::report::Stats;
 use crate::search::{greatest_depth, reach_of};
+use crate::stats::Stats;
 
 /// Two bodies, and how the second drifts about a pose.
 #[derive(Debug, Clone, Copy)]

@@ -2,8 +2,8 @@
 
 use std::mem::discriminant;
 
-use crate::undecided::Undecided;
-use crate::warning::Warning;
+use crate::doubt::undecided::Undecided;
+use crate::doubt::warning::Warning;
 
 /// The warnings and doubts about some poses of a path.
 #[derive(Debug, Default)]

@@ -2,8 +2,8 @@
 
 use cloudtouch_geom::Pose;
 
+use crate::check::coordinates::bad_entry;
 use crate::error::QueryError;
-use crate::range::bad_entry;
 
 use super::leg::Leg;
 

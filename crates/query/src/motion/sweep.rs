@@ -5,10 +5,11 @@ use std::time::{Duration, Instant};
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
+use crate::doubt::undecided::Undecided;
 use crate::error::QueryError;
 use crate::query::Query;
-use crate::report::{Stats, Verdict};
-use crate::undecided::Undecided;
+use crate::report::Verdict;
+use crate::stats::Stats;
 
 use super::bound::Drifting;
 use super::interval::Interval;

@@ -3,9 +3,9 @@
 use cloudtouch_geom::Pose;
 use serde::Serialize;
 
+use crate::doubt::undecided::Undecided;
+use crate::doubt::warning::Warning;
 use crate::report::{Report, Verdict};
-use crate::undecided::Undecided;
-use crate::warning::Warning;
 
 /// How likely two bodies collide along a path.
 #[derive(Debug, Clone, PartialEq)]

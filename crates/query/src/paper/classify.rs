@@ -1,7 +1,7 @@
 //! One leaf pair: the kernel classifier, unless a plane is certain.
 
 use crate::classifier::{PairAnswer, PairPoints, Trained, by_kernel};
-use crate::report::Stats;
+use crate::stats::Stats;
 
 use super::plane::{Plane, by_plane};
 use super::task::Task;

@@ -98,7 +98,7 @@ mod tests {
     use crate::paper::PaperSettings;
     use crate::paper::classify::classify;
     use crate::paper::task::Task;
-    use crate::report::Stats;
+    use crate::stats::Stats;
 
     const SPACING: f64 = 0.02;
 

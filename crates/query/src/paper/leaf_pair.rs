@@ -7,8 +7,8 @@ use crate::classifier::{PairPoint, PairPoints, centroid};
 use crate::cloud::{Prepared, Surfel};
 use crate::error::SubdivisionError;
 use crate::mesh::{Mesh, SampleRegion, four_per_triangle, sample_region};
-use crate::report::Stats;
 use crate::shape::Shape;
+use crate::stats::Stats;
 
 use super::settings::{MeshPoints, PaperSettings};
 

@@ -26,7 +26,6 @@ mod inside;
 mod leaf_pair;
 mod leaf_pairs;
 mod plane;
-pub(crate) mod pool;
 mod run;
 mod settings;
 mod signed;

@@ -11,7 +11,7 @@ use crate::classifier::{ClassifierSettings, Clock, PairPoints, Trained};
 use crate::error::{QueryError, SettingsError};
 use crate::exact::add_exact;
 use crate::mode::Mode;
-use crate::record::{Estimate, Evidence, Side, Terms};
+use crate::record::{Estimate, Evidence, Side, Terms, pool};
 use crate::report::Report;
 use crate::shape::Shape;
 
@@ -19,7 +19,6 @@ use super::body::{PaperBodyRef, tree};
 use super::explain::LeafClassifier;
 use super::inside::add_points_inside;
 use super::leaf_pairs::traverse_leaf_pairs;
-use super::pool;
 use super::settings::{PaperSettings, Pooling, Scaling};
 use super::task::Task;
 

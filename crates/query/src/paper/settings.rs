@@ -7,11 +7,11 @@ use cloudtouch_noise::RadiusRule;
 use cloudtouch_svm::Kernel;
 use serde::{Deserialize, Serialize};
 
-use crate::checks::{fraction, not_negative, positive, thresholds};
+use crate::check::settings::{fraction, not_negative, positive, thresholds};
 use crate::classifier::ClassifierSettings;
+use crate::doubt::safeguards::Safeguards;
 use crate::error::SettingsError;
 use crate::record::Closeness;
-use crate::safeguards::Safeguards;
 
 /// How point probabilities become the probability of a pair of clouds (section 4.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

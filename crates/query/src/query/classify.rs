@@ -9,8 +9,8 @@ use crate::classifier::{
 };
 use crate::error::QueryError;
 use crate::judge::{DOUBT_KNOTS, JudgeOfPair};
-use crate::report::Stats;
 use crate::search::{Found, Wrench, force_at};
+use crate::stats::Stats;
 
 use super::patches::patches;
 use super::task::Task;

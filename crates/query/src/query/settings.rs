@@ -4,11 +4,11 @@ use std::time::Duration;
 
 use cloudtouch_svm::Kernel;
 
-use crate::checks::{fraction, positive, thresholds};
+use crate::check::settings::{fraction, positive, thresholds};
 use crate::classifier::ClassifierSettings;
+use crate::doubt::safeguards::Safeguards;
 use crate::error::SettingsError;
 use crate::judge::Judge;
-use crate::safeguards::Safeguards;
 
 /// How much of an answer is wanted: the less, the sooner it comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -7,8 +7,8 @@ use cloudtouch_geom::Pose;
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::{ContactEvidence, probability};
-use crate::report::Stats;
 use crate::search::{Found, Looked, look_inside, search};
+use crate::stats::Stats;
 
 use super::classify::{Misclassified, ask_classifier};
 use super::settings::Detail;

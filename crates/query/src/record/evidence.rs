@@ -3,7 +3,8 @@
 use cloudtouch_geom::Point3;
 
 use crate::POINT_FLOOR;
-use crate::report::{Clearance, Contact, PointProbabilities, Stats};
+use crate::report::{Clearance, Contact, PointProbabilities};
+use crate::stats::Stats;
 
 use super::point::{PointProbability, Side};
 

@@ -2,12 +2,16 @@
 
 mod ask;
 mod closeness;
+mod doubt;
 mod estimate;
 mod evidence;
 mod point;
+pub(crate) mod pool;
+mod verdict;
 
-pub(crate) use ask::{CLEAR_DEVIATIONS, Terms};
+pub(crate) use ask::Terms;
 pub use closeness::Closeness;
+pub(crate) use doubt::CLEAR_DEVIATIONS;
 pub(crate) use estimate::{Estimate, Places};
 pub(crate) use evidence::Evidence;
 pub(crate) use point::{PointProbability, Side};

@@ -5,9 +5,9 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::doubt::warning::length;
 use crate::error::QueryError;
 use crate::report::{Report, Verdict};
-use crate::warning::length;
 
 /// Two bodies that do not read as free.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use cloudtouch_geom::Pose;
 
 use crate::body::Body;
+use crate::check::coordinates::bad_entry;
 use crate::error::SceneError;
-use crate::range::bad_entry;
 
 /// Named bodies, each with its own pose, of which [`Self::check`] tells which may touch.
 ///

@@ -6,14 +6,15 @@
 //! a body that may be doubted however far away it is gets a box without end. What is left takes the query's
 //! own first test, of the boxes around both bodies, and is doubted as a pair that is asked.
 
-use cloudtouch_bvh::{Sought, urgency_of_roots};
+use cloudtouch_bvh::urgency_of_roots;
 use cloudtouch_geom::{Pose, Vector3};
 
 use crate::body::BodyRef;
+use crate::check::coordinates::{LARGEST_COORDINATE, bad_entry};
 use crate::judge::{MOST_DEVIATIONS, NOISE_KNOTS, probability};
 use crate::query::Query;
-use crate::range::{LARGEST_COORDINATE, bad_entry};
 use crate::record::Terms;
+use crate::search::SOUGHT;
 use crate::shape::Shape;
 
 use super::near::{Corners, everywhere};
@@ -71,9 +72,8 @@ impl BroadPhase {
             return Some(f64::INFINITY);
         }
         let local = shape_a.local_from(&shape_b, a_from_b);
-        let sought = Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: true, drift: None };
         let trees = (shape_a.tree(), shape_b.tree());
-        match urgency_of_roots(trees, &local, sought) {
+        match urgency_of_roots(trees, &local, SOUGHT) {
             Ok(Some(urgency)) => return Some(urgency),
             Ok(None) if self.nothing_is_free => {}
             Ok(None) | Err(_) => return Some(f64::INFINITY),

@@ -5,11 +5,11 @@ use cloudtouch_geom::{Pose, UncertainPoint, normal};
 use crate::body::BodyRef;
 use crate::mesh::Mesh;
 
-use super::facet::Whitening;
-use super::leaf::{Leaf, NoisyLeaf};
-use super::leaves::Leaves;
-use super::meeting::{deviations_by_pose, squared_deviations};
+use super::compare::facet::Whitening;
+use super::compare::meeting::{deviations_by_pose, squared_deviations};
 use super::run::{FURTHER_DEVIATIONS, Found};
+use super::visit::leaf::{Leaf, NoisyLeaf};
+use super::visit::leaves::Leaves;
 use super::wrench::Wrench;
 
 /// A piece counts in full up to this share of the deviations that are looked at beyond the least.

@@ -6,25 +6,29 @@ use cloudtouch_geom::{Motion, Pose, Vector3};
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
-use crate::report::Stats;
+use crate::stats::Stats;
 
-use super::around::{Around, OfMesh};
-use super::crossings::Crossings;
-use super::gather::{
+use super::compare::meeting::{Meeting, deviations_by_pose};
+use super::cross::crossings::Crossings;
+use super::cross::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach_facets,
     reaching,
 };
-use super::leaf::{Between, Leaf};
-use super::leaves::Leaves;
-use super::meeting::{Meeting, deviations_by_pose};
-use super::nearest::{Nearest, nearest_pieces};
-use super::trees::Trees;
+use super::measure::nearest::{Nearest, nearest_pieces};
+use super::visit::around::{Around, OfMesh};
+use super::visit::leaf::{Between, Leaf};
+use super::visit::leaves::Leaves;
+use super::visit::trees::Trees;
 use super::wrench::Wrench;
 
 /// Places that are more than this many deviations above the least are not looked at ...
 pub(super) const FURTHER_DEVIATIONS: f64 = 2.5;
 /// ... nor those beyond this, which have no contact that is reported.
 const CLEARLY_FREE: f64 = 4.5;
+
+/// What a search looks for: who rules a pair out beforehand has to look for the same.
+pub(crate) const SOUGHT: Sought =
+    Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: true, drift: None };
 
 /// Where the pieces of two leaves are least apart.
 #[derive(Debug, Clone, Copy)]
@@ -67,8 +71,7 @@ pub(crate) fn search<'a>(
         Found { deviations: MOST_DEVIATIONS, at_least: f64::INFINITY, ..Found::default() };
     let motion = Motion::from(a_from_b);
     let mut trees = Trees::of(a, b);
-    let sought = Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: true, drift: None };
-    let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
+    let outcome = visit_surfaces(trees.both(), a_from_b, SOUGHT, |pair| {
         stats.leaf_pairs += 1;
         found.add((a, b), &motion, &pair, stats);
         let (deviations, clearness) = (found.deviations, found.crossings.last_clearness());
@@ -188,10 +191,10 @@ mod tests {
     use crate::Cloud;
     use crate::CloudSettings;
     use crate::cloud::{Edge, Surfel, edges_of};
-    use crate::search::crossing::through_disc;
-    use crate::search::crossings::Witness;
-    use crate::search::meeting::squared_deviations;
-    use crate::search::past::Past;
+    use crate::search::compare::meeting::squared_deviations;
+    use crate::search::cross::crossing::through_disc;
+    use crate::search::cross::crossings::Witness;
+    use crate::search::cross::past::Past;
 
     fn ball(count: usize, std: f64, seed: u64) -> Cloud {
         let samples = surface::sample_surface(&scene::sphere(0.05, 2), count, seed);

@@ -12,12 +12,13 @@ mod newton;
 use cloudtouch_geom::Vector3;
 use nalgebra::Vector4;
 
+use crate::certificate::slack::Slack;
+use crate::certificate::{Certificate, Margin, certify, largest_violation};
 use crate::interior::cone::{Scaling, longest_step, product, quotient};
 use crate::interior::newton::Newton;
 use crate::problem::Problem;
 use crate::smo::ball::clip_to_ball;
-use crate::smo::bias::Slack;
-use crate::smo::state::{Certificate, Dual, Margin, certify, largest_violation};
+use crate::smo::state::Dual;
 use crate::status::{Rung, Status};
 use crate::watch::Watch;
 

@@ -5,7 +5,6 @@
 //! optimality conditions of the convex dual (eq. 13).
 
 pub(crate) mod ball;
-pub(crate) mod bias;
 mod choose;
 mod local;
 pub(crate) mod rows;
@@ -14,11 +13,12 @@ pub(crate) mod state;
 
 use cloudtouch_geom::Vector3;
 
+use crate::certificate::Certificate;
 use crate::smo::choose::{choose_pair, most_misaligned};
 use crate::smo::local::{Local, pair_step};
 use crate::smo::rows::KernelRows;
 use crate::smo::spread::Source;
-use crate::smo::state::{Certificate, State};
+use crate::smo::state::State;
 use crate::solution::Effort;
 use crate::status::{Rung, Status};
 use crate::watch::Watch;

@@ -1,11 +1,12 @@
 //! The ladder: SMO first, then the dense interior point method, then Clarabel.
 
 use crate::bounds::{bias_spread, error_bounds, is_collapsed};
+use crate::certificate::Certificate;
 #[cfg(feature = "clarabel")]
 use crate::clarabel_dual;
 use crate::interior::active::interior_point;
 use crate::problem::Problem;
-use crate::smo::state::{Certificate, Numbers, State};
+use crate::smo::state::{Numbers, State};
 use crate::smo::{Limits, Tools, improve};
 use crate::solution::{Effort, LARGEST_GAP, Solution, Undetermined};
 use crate::solver::settings::Settings;

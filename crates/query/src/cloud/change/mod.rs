@@ -10,12 +10,12 @@ use std::time::Instant;
 
 use cloudtouch_geom::{Point3, PointCloud, Vector3, bounding_box};
 
+use crate::check::coordinates::LARGEST_COORDINATE;
 use crate::cloud::prepare::Cloud;
 use crate::cloud::prepared::Prepared;
 use crate::cloud::scans::Scans;
 use crate::cloud::settings::CloudSettings;
 use crate::error::ChangeError;
-use crate::range::LARGEST_COORDINATE;
 
 /// What a change did to a cloud.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,7 +13,7 @@ use super::slots::{Basis, Fitted};
 use super::surfel::Surfel;
 use crate::cloud::prepared::Prepared;
 use crate::error::PrepareError;
-use crate::report::Stats;
+use crate::stats::Stats;
 
 /// The half axes of an ellipsoid, along a disc and across it, that holds everything up to (1, 1): the
 /// sum of their inverse squares is less than one.

@@ -14,8 +14,9 @@ use crate::query::places::spots::{Spot, ToldBy};
 use crate::query::run::Query;
 use crate::query::task::Task;
 use crate::query::weigh::{Weighed, weigh};
-use crate::report::{Report, Stats};
+use crate::report::Report;
 use crate::search::{Wrench, force_at, in_object_frame};
+use crate::stats::Stats;
 
 /// What an answer changes by for a small motion of the object before its pose, in the object's own frame,
 /// as in a [`PoseDistribution`](crate::PoseDistribution): per metre of translation along x, y and z, then

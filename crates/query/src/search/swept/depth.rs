@@ -7,7 +7,7 @@ use crate::body::BodyRef;
 use crate::cloud::Cloud;
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
-use crate::report::Stats;
+use crate::stats::Stats;
 
 /// A way is looked at in so many halvings before it is looked at closer.
 const HALVINGS: u32 = 4;

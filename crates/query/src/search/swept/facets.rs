@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Drift, Vector3};
 
-use super::super::facet::Facet;
+use crate::search::compare::facet::Facet;
 
 /// No for certain where a plane keeps between them all the way: one across a normal, across an edge of
 /// each, or across an edge and the way it is carried.

@@ -4,16 +4,16 @@ use cloudtouch_geom::Drift;
 
 use crate::cloud::{DISC_SPACINGS, Surfel, edge_along};
 
-use super::super::around::OfMesh;
-use super::super::crossings::Witness;
-use super::super::facet::Facet;
-use super::super::leaf::{ExactLeaf, NoisyLeaf};
-use super::super::past::Past;
 use super::drifts::Drifts;
 use super::leaf::{SweptCloud, SweptEdges, SweptMesh};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
 use super::pool::Passages;
 use super::track::{Direction, SweptFacet};
+use crate::search::compare::facet::Facet;
+use crate::search::cross::crossings::Witness;
+use crate::search::cross::past::Past;
+use crate::search::visit::around::OfMesh;
+use crate::search::visit::leaf::{ExactLeaf, NoisyLeaf};
 
 /// Whether an edge may get to a disc of another leaf, as `search/gather.rs` asks of leaves that keep
 /// still.

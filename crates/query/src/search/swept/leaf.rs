@@ -6,12 +6,12 @@ use cloudtouch_geom::{Drift, Matrix3, Motion, Vector3};
 
 use crate::body::BodyRef;
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
-use crate::report::Stats;
+use crate::stats::Stats;
 
-use super::super::facet::Facet;
-use super::super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use super::hull::Hull;
 use super::track::{Direction, SweptFacet, Track};
+use crate::search::compare::facet::Facet;
+use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 
 /// A leaf in the frame of A, and where its pieces get to.
 #[derive(Debug)]

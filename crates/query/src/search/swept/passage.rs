@@ -5,16 +5,16 @@ use cloudtouch_geom::{Drift, Point3, Vector3};
 
 use crate::cloud::{DISC_SPACINGS, Edge, Onward, Surfel};
 
-use super::super::around::OfMesh;
-use super::super::crossing::weight_at;
-use super::super::facet::Facet;
-use super::super::past::Past;
-use super::super::side::{CLEAREST, known_past_to, known_to};
-use super::super::through_mesh::Outline;
 use super::drifts::Drifts;
 use super::leaf::EdgeTrack;
 use super::plane::{Heights, Known, Plane};
 use super::track::{Approach, Direction, Drifting, SweptFacet, Track, piece_keeps_off};
+use crate::search::compare::facet::Facet;
+use crate::search::cross::crossing::weight_at;
+use crate::search::cross::past::Past;
+use crate::search::cross::side::{CLEAREST, known_past_to, known_to};
+use crate::search::cross::through_mesh::Outline;
+use crate::search::visit::around::OfMesh;
 
 /// A passage that may be.
 #[derive(Debug, Clone, Copy)]

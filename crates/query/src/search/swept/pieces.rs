@@ -9,11 +9,11 @@ use cloudtouch_geom::{Drift, Vector3};
 
 use crate::cloud::Surfel;
 
-use super::super::facet::{Whitening, nearest_to_origin};
-use super::super::meeting::{LEAST_STD, solve};
 use super::track::{
     Approach, Direction, Drifting, SweptFacet, Track, directions, least_at, nearest_time,
 };
+use crate::search::compare::facet::{Whitening, nearest_to_origin};
+use crate::search::compare::meeting::{LEAST_STD, solve};
 
 /// The pieces of two clouds, that of B drifting along its track; `None` where they have `limit` or more.
 pub(super) fn between_discs(

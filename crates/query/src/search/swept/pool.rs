@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use cloudtouch_geom::Point3;
 
-use super::super::crossings::{ONE_SIDED, PLACE_SPACINGS, Witness, by_both_sides};
 use super::passage::Passage;
+use crate::search::cross::crossings::{ONE_SIDED, PLACE_SPACINGS, Witness, by_both_sides};
 
 /// What one witness may see at most.
 #[derive(Debug, Clone, Copy)]

@@ -8,10 +8,9 @@ use cloudtouch_geom::{Drift, Motion, Pose};
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
-use crate::report::Stats;
+use crate::search::run::SOUGHT;
+use crate::stats::Stats;
 
-use super::super::around::{Around, OfMesh};
-use super::super::trees::Trees;
 use super::drifts::Drifts;
 use super::facets::may_touch;
 use super::gather::{
@@ -22,6 +21,8 @@ use super::leaf::{Swept, SweptCloud, SweptMesh};
 use super::pieces::{between_discs, to_facet, turned_variance};
 use super::pool::Passages;
 use super::track::Direction;
+use crate::search::visit::around::{Around, OfMesh};
+use crate::search::visit::trees::Trees;
 
 /// What the evidence can be on the way, at most.
 #[derive(Debug, Clone, Copy)]
@@ -55,8 +56,7 @@ pub(crate) fn reach_of<'a>(
     };
     let mut trees = Trees::of(a, b);
     let is_exact = matches!((a, b), (BodyRef::Mesh(_), BodyRef::Mesh(_)));
-    let sought =
-        Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: !is_exact, drift: Some(*drift) };
+    let sought = Sought { crossings: !is_exact, drift: Some(*drift), ..SOUGHT };
     let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
         stats.leaf_pairs += 1;
         way.look_at(&pair, stats);

@@ -1,15 +1,15 @@
 //! How clearly a piece of one surface is on either side of the other, in standard deviations.
 
-use super::wrench::Height;
+use crate::search::wrench::Height;
 
 /// Between its samples a surface may be so many spacings off the straight pieces that stand for it: it
 /// bends, and it ends.
 const BEND_SPACINGS: f64 = 0.25;
 /// No crossing is clearer than this many standard deviations.
-pub(super) const CLEAREST: f64 = 6.0;
+pub(in crate::search) const CLEAREST: f64 = 6.0;
 
 /// How well the height of an end is known, m, given its standard deviation and the spacing there.
-pub(super) fn known_to(std: f64, spacing: f64) -> f64 {
+pub(in crate::search) fn known_to(std: f64, spacing: f64) -> f64 {
     std.hypot(BEND_SPACINGS * spacing).max(f64::MIN_POSITIVE)
 }
 
@@ -40,7 +40,7 @@ pub(super) fn less_clear(
 /// How well the height of a place past an end is known above a disc, m: what stands for the surface about a
 /// sample says little of it farther away. Only where noise hides more than bends do it tells more than an
 /// end; without any it tells nothing, and this is infinite.
-pub(super) fn known_past_to(std: f64, spacing: f64) -> f64 {
+pub(in crate::search) fn known_past_to(std: f64, spacing: f64) -> f64 {
     let known = known_to(std, spacing);
     known * (known / std).powi(2)
 }

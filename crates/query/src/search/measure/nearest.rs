@@ -2,8 +2,8 @@
 
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 
-use super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
-use super::meeting::squared_deviations;
+use crate::search::compare::meeting::squared_deviations;
+use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 
 /// The two pieces of two leaves with the least deviations between them.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,11 @@ impl Nearest {
 
 /// `None` where all have so many deviations or more. Notes for every noisy piece what is its least,
 /// where that is less.
-pub(super) fn nearest_pieces(a: &mut Leaf<'_>, b: &mut Leaf<'_>, within: f64) -> Option<Nearest> {
+pub(in crate::search) fn nearest_pieces(
+    a: &mut Leaf<'_>,
+    b: &mut Leaf<'_>,
+    within: f64,
+) -> Option<Nearest> {
     let within = within * within;
     match (a, b) {
         (Leaf::Noisy(a), Leaf::Noisy(b)) => between_noisy(a, b, within),

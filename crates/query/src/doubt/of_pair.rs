@@ -4,11 +4,11 @@
 use cloudtouch_geom::Pose;
 
 use crate::cloud::{Clumps, Makeup, Overstated, Prepared, SensorDoubt};
+use crate::doubt::safeguards::Safeguards;
+use crate::doubt::unseen::Unseen;
+use crate::doubt::warning::{Warning, Which};
 use crate::placement::box_gap;
-use crate::report::Unseen;
-use crate::safeguards::Safeguards;
 use crate::shape::Shape;
-use crate::warning::{Warning, Which};
 
 /// No body is so many times as large as the other, ...
 const LARGEST_RATIO: f64 = 1000.0;

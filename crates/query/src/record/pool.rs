@@ -1,6 +1,7 @@
 //! From point probabilities to the probability of a pair of clouds (section 4.4 of the paper).
 
-use crate::record::{Closeness, PointProbability};
+use super::closeness::Closeness;
+use super::point::PointProbability;
 
 /// The largest probability; 0 without points.
 pub(crate) fn max(points: &[PointProbability]) -> f64 {

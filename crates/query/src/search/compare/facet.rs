@@ -8,7 +8,7 @@ use super::meeting::{LEAST_STD, beyond_along};
 
 /// A triangle in the local frame of A.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Facet {
+pub(in crate::search) struct Facet {
     /// Index in the prepared mesh.
     pub triangle: u32,
     pub corners: [Point3; 3],
@@ -18,21 +18,21 @@ pub(super) struct Facet {
 
 /// Where an edge passes through a facet.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pierced {
+pub(in crate::search) struct Pierced {
     pub place: Point3,
     /// Heights of the two ends above the facet, m: of unequal sign.
     pub heights: [f64; 2],
 }
 
 impl Facet {
-    pub(super) fn new(triangle: u32, corners: [Point3; 3]) -> Self {
+    pub(in crate::search) fn new(triangle: u32, corners: [Point3; 3]) -> Self {
         let [p, q, r] = corners;
         let normal = (q - p).cross(&(r - p)).try_normalize(0.0);
         Self { triangle, corners, normal }
     }
 
     /// The same in another frame.
-    pub(super) fn moved(&self, motion: &Motion) -> Self {
+    pub(in crate::search) fn moved(&self, motion: &Motion) -> Self {
         Self {
             corners: self.corners.map(|corner| motion.point(&corner)),
             normal: self.normal.map(|normal| motion.vector(&normal)),
@@ -41,12 +41,12 @@ impl Facet {
     }
 
     /// The height of a place above its plane, m; zero where it has none.
-    pub(super) fn height(&self, place: &Point3) -> f64 {
+    pub(in crate::search) fn height(&self, place: &Point3) -> f64 {
         self.normal.map_or(0.0, |normal| normal.dot(&(place - self.corners[0])))
     }
 
     /// Where the straight line between two ends passes through it; its border counts.
-    pub(super) fn pierced_by(&self, ends: &[Point3; 2]) -> Option<Pierced> {
+    pub(in crate::search) fn pierced_by(&self, ends: &[Point3; 2]) -> Option<Pierced> {
         let normal = self.normal?;
         let heights = ends.map(|end| self.height(&end));
         if heights[0] * heights[1] >= 0.0 {
@@ -63,7 +63,7 @@ impl Facet {
 
     /// How many deviations a surfel is from being within a margin (m) of the facet; negative where it is
     /// within it: across the plane that separates them best, or along the shortest way.
-    pub(super) fn deviations_beyond(
+    pub(in crate::search) fn deviations_beyond(
         &self,
         surfel: &Surfel,
         whitening: &Whitening,
@@ -83,7 +83,7 @@ impl Facet {
 
     /// Squared Mahalanobis distance from a surfel to the nearest place of the facet and the way
     /// there, where that is below `limit`.
-    pub(super) fn squared_deviations(
+    pub(in crate::search) fn squared_deviations(
         &self,
         surfel: &Surfel,
         whitening: &Whitening,
@@ -104,14 +104,14 @@ impl Facet {
 
 /// Lengths in standard deviations of a piece of surface, in every direction.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Whitening {
+pub(in crate::search) struct Whitening {
     /// Symmetric square roots of the covariance and of its inverse.
     root: Matrix3,
     inverse: Matrix3,
 }
 
 impl Whitening {
-    pub(super) fn of(surfel: &Surfel) -> Self {
+    pub(in crate::search) fn of(surfel: &Surfel) -> Self {
         match surfel.normal {
             Some(normal) => Self::of_disc(&normal, &surfel.point.covariance),
             None => Self::of_any(&surfel.point.covariance),
@@ -136,7 +136,7 @@ impl Whitening {
         Self { root: along(stds), inverse: along(stds.map(f64::recip)) }
     }
 
-    pub(super) fn apply(&self, offset: &Vector3) -> Vector3 {
+    pub(in crate::search) fn apply(&self, offset: &Vector3) -> Vector3 {
         self.inverse * offset
     }
 
@@ -147,7 +147,7 @@ impl Whitening {
 
 /// The place of a triangle nearest to the origin, by the regions of its corners, edges and inside
 /// (Ericson, Real-Time Collision Detection, 5.1.5).
-pub(super) fn nearest_to_origin([a, b, c]: &[Vector3; 3]) -> Vector3 {
+pub(in crate::search) fn nearest_to_origin([a, b, c]: &[Vector3; 3]) -> Vector3 {
     let (ab, ac) = (b - a, c - a);
     let (d1, d2) = (-ab.dot(a), -ac.dot(a));
     if d1 <= 0.0 && d2 <= 0.0 {

@@ -16,7 +16,7 @@ pub(crate) struct Leaves<'a> {
 }
 
 impl<'a> Leaves<'a> {
-    pub(super) fn get_or_load(
+    pub(in crate::search) fn get_or_load(
         &mut self,
         id: NodeId,
         load: impl FnOnce() -> Leaf<'a>,
@@ -29,12 +29,12 @@ impl<'a> Leaves<'a> {
         &mut seen[place].1
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(in crate::search) fn len(&self) -> usize {
         self.seen.len()
     }
 
     /// In the order of the search.
-    pub(super) fn all(&self) -> impl Iterator<Item = &Leaf<'a>> {
+    pub(in crate::search) fn all(&self) -> impl Iterator<Item = &Leaf<'a>> {
         self.seen.iter().map(|(_, leaf)| leaf)
     }
 

@@ -8,7 +8,7 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-use crate::undecided::Undecided;
+use crate::doubt::undecided::Undecided;
 
 /// Which of the two bodies of a query; the tool calls the first the scene, the second the object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -10,7 +10,7 @@ use crate::cloud::{Cloud, Surfel};
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 
-use super::wrench::{Wrench, force_at};
+use crate::search::wrench::{Wrench, force_at};
 
 /// The point of a cloud that is most clearly inside a closed mesh.
 #[derive(Debug, Clone, Copy)]

@@ -2,11 +2,34 @@
 //! something, and no search of what was measured can tell.
 
 use cloudtouch_geom::Pose;
+use serde::Serialize;
 
 use crate::cloud::{Prepared, Sight};
-use crate::report::Unseen;
+use crate::doubt::warning::Which;
 use crate::shape::Shape;
-use crate::warning::Which;
+
+/// Where a body's surface lies as the single depth image of the other sees it: shares of the surface,
+/// from 0 to 1. What is in none of them was seen to be empty, or is on a measured surface.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Unseen {
+    /// Whose surface.
+    pub body: Which,
+    /// Behind the back of the camera.
+    pub behind_camera: f64,
+    /// Beside what it looked at.
+    pub outside_view: f64,
+    /// Where no return came from.
+    pub hole: f64,
+    /// Behind a surface that it met.
+    pub behind_returns: f64,
+}
+
+impl Unseen {
+    /// The share that was not seen, for whatever reason.
+    pub fn share(&self) -> f64 {
+        self.behind_camera + self.outside_view + self.hole + self.behind_returns
+    }
+}
 
 /// How much of one body lies where the other, a single depth image, saw nothing. Of two images the
 /// larger one looks at the smaller; `None` without any. `a_from_b` maps local frames.

@@ -2,8 +2,8 @@
 
 use cloudtouch_geom::{Point3, Vector3};
 
-use super::facet::Facet;
-use super::wrench::{Height, Wrench, force_at};
+use crate::search::compare::facet::Facet;
+use crate::search::wrench::{Height, Wrench, force_at};
 
 /// What a mesh does near a disc: how far it reaches on either side within the disc's outline, and
 /// how near to the middle it passes.
@@ -38,7 +38,7 @@ enum Pull {
 
 /// A disc, seen along its normal.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Outline {
+pub(in crate::search) struct Outline {
     middle: Point3,
     radius: f64,
     normal: Vector3,
@@ -47,7 +47,7 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    pub(super) fn new(middle: Point3, normal: Vector3, radius: f64) -> Self {
+    pub(in crate::search) fn new(middle: Point3, normal: Vector3, radius: f64) -> Self {
         let first = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();
         Self { middle, radius, normal, across: [first, normal.cross(&first)] }
     }
@@ -138,7 +138,10 @@ impl Outline {
     }
 
     /// Between which heights over the disc these facets are, m; `None` where they are all aside.
-    pub(super) fn heights<'a>(&self, facets: impl Iterator<Item = &'a Facet>) -> Option<[f64; 2]> {
+    pub(in crate::search) fn heights<'a>(
+        &self,
+        facets: impl Iterator<Item = &'a Facet>,
+    ) -> Option<[f64; 2]> {
         let mut between = None;
         for facet in facets {
             let Some(corners) = self.corners_not_aside(facet) else { continue };

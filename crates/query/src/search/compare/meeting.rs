@@ -4,11 +4,11 @@ use cloudtouch_geom::{Matrix3, Point3, UncertainPoint, Vector3, normal};
 
 use crate::cloud::Surfel;
 
-use super::wrench::{Wrench, force_at};
+use crate::search::wrench::{Wrench, force_at};
 
 /// No coordinate is known better than this, m: what keeps exact pieces at one place from dividing
 /// nothing by nothing.
-pub(super) const LEAST_STD: f64 = 1e-12;
+pub(in crate::search) const LEAST_STD: f64 = 1e-12;
 
 /// Where two pieces of surface would meet.
 #[derive(Debug, Clone, Copy)]
@@ -33,7 +33,7 @@ pub(crate) fn probability_at(deviations: f64) -> f64 {
 
 /// Squared Mahalanobis distance δᵀ(Σa+Σb)⁻¹δ of two pieces; `None` where it is not below `limit`.
 /// Exact pieces are at one place or as good as infinitely far from each other.
-pub(super) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) -> Option<f64> {
+pub(in crate::search) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) -> Option<f64> {
     let offset = b.point.mean - a.point.mean;
     // No direction has more variance than this: most pairs end here.
     if offset.norm_squared() > limit * (a.most_variance + b.most_variance) {
@@ -47,7 +47,12 @@ pub(super) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) -> Option<f
 /// How many deviations two pieces are from being within a margin (m): the largest of
 /// (n·δ − m)/√(nᵀΣn) over a few directions n, which none can exceed; negative where they are within
 /// it. `None` where that is not below `limit`. Without a margin it is the Mahalanobis distance.
-pub(super) fn deviations_beyond(a: &Surfel, b: &Surfel, margin: f64, limit: f64) -> Option<f64> {
+pub(in crate::search) fn deviations_beyond(
+    a: &Surfel,
+    b: &Surfel,
+    margin: f64,
+    limit: f64,
+) -> Option<f64> {
     let offset = b.point.mean - a.point.mean;
     let reach = margin + limit.max(0.0) * (a.most_variance + b.most_variance).sqrt();
     if offset.norm_squared() > reach * reach {
@@ -79,7 +84,7 @@ pub(super) fn beyond_along(
 
 impl Meeting {
     /// The meeting of two pieces; `None` where numbers end.
-    pub(super) fn of(a: &UncertainPoint, b: &UncertainPoint) -> Option<Self> {
+    pub(in crate::search) fn of(a: &UncertainPoint, b: &UncertainPoint) -> Option<Self> {
         let offset = b.mean - a.mean;
         let joint = a.covariance.sum(&b.covariance);
         let weighted = solve(&joint.matrix(), &offset)?;
@@ -93,7 +98,10 @@ impl Meeting {
 /// What the deviations z = √(δᵀ(Σa+Σb)⁻¹δ) of two pieces change by as B moves: Σ⁻¹δ/z per metre at the
 /// place where they would meet, for Σb turns with B. Of a triangle the nearest place keeps to first
 /// order. `None` where they are at one place.
-pub(super) fn deviations_by_pose(a: &UncertainPoint, b: &UncertainPoint) -> Option<Wrench> {
+pub(in crate::search) fn deviations_by_pose(
+    a: &UncertainPoint,
+    b: &UncertainPoint,
+) -> Option<Wrench> {
     let offset = b.mean - a.mean;
     let joint = a.covariance.sum(&b.covariance);
     let weighted = solve(&joint.matrix(), &offset)?;
@@ -104,7 +112,7 @@ pub(super) fn deviations_by_pose(a: &UncertainPoint, b: &UncertainPoint) -> Opti
 
 /// Σ⁻¹v by cofactors, which round evenly for discs of any size; `None` where numbers end. What is
 /// exact counts as known to [`LEAST_STD`].
-pub(super) fn solve(sigma: &Matrix3, v: &Vector3) -> Option<Vector3> {
+pub(in crate::search) fn solve(sigma: &Matrix3, v: &Vector3) -> Option<Vector3> {
     let sigma = sigma + Matrix3::identity() * LEAST_STD.powi(2);
     let [x, y, z] = [0, 1, 2].map(|k| sigma.column(k).into_owned());
     let (yz, zx, xy) = (y.cross(&z), z.cross(&x), x.cross(&y));

@@ -8,35 +8,35 @@ use crate::cloud::{Edge, Surfel};
 
 use super::cells::Cells;
 use super::crossing::Crossing;
-use super::wrench::Wrench;
+use crate::search::wrench::Wrench;
 
 /// Crossings within so many spacings of one another are at one place: what adds up there does not
 /// grow with the area of contact.
-pub(super) const PLACE_SPACINGS: f64 = 3.0;
+pub(in crate::search) const PLACE_SPACINGS: f64 = 3.0;
 /// Clearness, in standard deviations, that a crossing seen from one side alone brings without any
 /// seen from the other.
-pub(super) const ONE_SIDED: f64 = 0.25;
+pub(in crate::search) const ONE_SIDED: f64 = 0.25;
 
 /// A piece of surface that passes through the other body: an edge, or the disc about a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Witness {
+pub(in crate::search) struct Witness {
     is_a: bool,
     points: [u32; 2],
 }
 
 impl Witness {
-    pub(super) fn edge(is_a: bool, edge: &Edge) -> Self {
+    pub(in crate::search) fn edge(is_a: bool, edge: &Edge) -> Self {
         let [p, q] = edge.points;
         Self { is_a, points: [p.min(q), p.max(q)] }
     }
 
-    pub(super) fn disc(is_a: bool, disc: &Surfel) -> Self {
+    pub(in crate::search) fn disc(is_a: bool, disc: &Surfel) -> Self {
         Self { is_a, points: [disc.index; 2] }
     }
 
     /// Whether it says that the surface of A is on both sides of that of B: an edge of A does, and a
     /// disc of B that a mesh passes.
-    pub(super) fn is_of_a(&self) -> bool {
+    pub(in crate::search) fn is_of_a(&self) -> bool {
         let is_disc = self.points[0] == self.points[1];
         self.is_a != is_disc
     }
@@ -88,7 +88,7 @@ struct Heard {
 }
 
 impl Crossings {
-    pub(super) fn add(&mut self, witness: Witness, crossing: &Crossing) {
+    pub(in crate::search) fn add(&mut self, witness: Witness, crossing: &Crossing) {
         // What passes may be of A: then it is what is passed that moves.
         let crossing = if witness.is_of_a() { crossing.reversed() } else { *crossing };
         let Crossing { clear, weight, probability, by_pose, .. } = crossing;
@@ -158,7 +158,7 @@ impl Crossings {
 
     /// The same at the place heard of last: no more than that. Most pairs of leaves add no crossing, and
     /// cost nothing here.
-    pub(super) fn last_clearness(&mut self) -> f64 {
+    pub(in crate::search) fn last_clearness(&mut self) -> f64 {
         if let Some(last) = self.last.take() {
             self.at_last = self.together(&Heard::of(&self.seen[last]));
         }
@@ -197,7 +197,7 @@ impl Heard {
 }
 
 /// Clearness given that of either side, each with [`ONE_SIDED`] on top.
-pub(super) fn by_both_sides(sums: [f64; 2]) -> f64 {
+pub(in crate::search) fn by_both_sides(sums: [f64; 2]) -> f64 {
     2.0 * ((sums[0] * sums[1]).sqrt() - ONE_SIDED)
 }
 
@@ -206,7 +206,7 @@ mod tests {
     use cloudtouch_geom::Vector3;
 
     use super::*;
-    use crate::search::crossing::CrossingByPose;
+    use crate::search::cross::crossing::CrossingByPose;
 
     fn crossing(x: f64) -> Crossing {
         Crossing {

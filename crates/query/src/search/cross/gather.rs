@@ -4,16 +4,16 @@ use cloudtouch_geom::Motion;
 
 use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, MOST_ALONG, edge_along};
 
-use super::around::OfMesh;
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
-use super::leaf::{ExactLeaf, NoisyLeaf};
 use super::past::Past;
 use super::through_mesh::Outline;
+use crate::search::visit::around::OfMesh;
+use crate::search::visit::leaf::{ExactLeaf, NoisyLeaf};
 
 /// Pieces of a leaf by their places in it, those from the last bit on together.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Reaching(u64);
+pub(in crate::search) struct Reaching(u64);
 
 impl Reaching {
     fn bit(place: usize) -> u64 {
@@ -25,7 +25,7 @@ impl Reaching {
         edge.own.iter().flatten().any(|&place| self.0 & Self::bit(place) != 0)
     }
 
-    pub(super) fn is_none(self) -> bool {
+    pub(in crate::search) fn is_none(self) -> bool {
         self.0 == 0
     }
 }
@@ -33,7 +33,7 @@ impl Reaching {
 /// The pieces of a leaf near which an edge from there may cross a disc of another leaf: that can be
 /// told before the edges are known, for half of one is not longer than a disc reaches, and runs along
 /// the surface.
-pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Reaching {
+pub(in crate::search) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Reaching {
     let NoisyLeaf { ball, slab, .. } = of_discs;
     let mut reaching = Reaching::default();
     for (place, surfel) in of_edges.surfels.iter().enumerate() {
@@ -53,7 +53,7 @@ pub(super) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Re
 }
 
 /// Whether a facet may be within reach of a disc or of the near half of an edge.
-pub(super) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> bool {
+pub(in crate::search) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> bool {
     of_edges.surfels.iter().any(|surfel| {
         surfel.normal.is_some()
             && facets.ball.is_within(&surfel.point.mean, DISC_SPACINGS * surfel.spacing)
@@ -63,7 +63,7 @@ pub(super) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> 
 /// Adds the crossings of edges of one leaf with discs of another near its pieces that [`reaching`] gave;
 /// the points they join, and those of the discs, are as probable as their clearest crossing. `motion` leads
 /// from where the edges were measured to the frame of A, none those of A; `places` is memory to use again.
-pub(super) fn add_edges_through_discs(
+pub(in crate::search) fn add_edges_through_discs(
     motion: Option<&Motion>,
     (of_edges, near): (&mut NoisyLeaf<'_>, Reaching),
     of_discs: &mut NoisyLeaf<'_>,
@@ -111,7 +111,7 @@ pub(super) fn add_edges_through_discs(
 }
 
 /// Adds the crossings of edges of a leaf with the triangles of another; `motion` as for discs.
-pub(super) fn add_edges_through_facets(
+pub(in crate::search) fn add_edges_through_facets(
     motion: Option<&Motion>,
     of_edges: &mut NoisyLeaf<'_>,
     facets: &ExactLeaf,
@@ -134,7 +134,7 @@ pub(super) fn add_edges_through_facets(
 
 /// Adds what a mesh does to the discs of a leaf that one of these triangles passes; `around` gives
 /// all triangles of the mesh within a distance of a place.
-pub(super) fn add_mesh_through_discs(
+pub(in crate::search) fn add_mesh_through_discs(
     is_a: bool,
     discs: &mut NoisyLeaf<'_>,
     facets: &ExactLeaf,

@@ -8,7 +8,7 @@ use crate::cloud::{Cloud, Edge, Onward};
 
 /// Told when it is asked for, once.
 #[derive(Debug)]
-pub(super) struct Past<'a> {
+pub(in crate::search) struct Past<'a> {
     cloud: &'a Cloud,
     edge: &'a Edge,
     motion: Option<&'a Motion>,
@@ -17,12 +17,16 @@ pub(super) struct Past<'a> {
 
 impl<'a> Past<'a> {
     /// Of an edge that `motion` moved from where it was measured to the frame of A; none moved those of A.
-    pub(super) fn new(cloud: &'a Cloud, edge: &'a Edge, motion: Option<&'a Motion>) -> Self {
+    pub(in crate::search) fn new(
+        cloud: &'a Cloud,
+        edge: &'a Edge,
+        motion: Option<&'a Motion>,
+    ) -> Self {
         Self { cloud, edge, motion, ends: Default::default() }
     }
 
     /// Past its first end, or its second.
-    pub(super) fn of(&self, end: usize) -> Onward {
+    pub(in crate::search) fn of(&self, end: usize) -> Onward {
         *self.ends[end].get_or_init(|| {
             let onward = self.cloud.onward(self.edge, end);
             self.motion.map_or(onward, |motion| onward.moved(motion))

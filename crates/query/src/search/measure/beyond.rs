@@ -7,12 +7,12 @@ use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
-use crate::report::Stats;
+use crate::stats::Stats;
 
-use super::leaf::{ExactLeaf, Leaf, NoisyLeaf};
-use super::leaves::Leaves;
-use super::meeting::deviations_beyond;
-use super::trees::Trees;
+use crate::search::compare::meeting::deviations_beyond;
+use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
+use crate::search::visit::leaves::Leaves;
+use crate::search::visit::trees::Trees;
 
 /// What a search beyond a margin found.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@
 use cloudtouch_bvh::{SurfaceFlow, Tree};
 
 use crate::body::BodyRef;
-use crate::report::Stats;
+use crate::stats::Stats;
 
 /// So many pairs for each leaf that a search came by say that it rules out too little, ...
 const PAIRS_OF_LEAF: usize = 8;
@@ -15,7 +15,7 @@ const LEAVES_TO_SEEN: usize = 4;
 
 /// The trees of two bodies, and how far a search by them came.
 #[derive(Debug)]
-pub(super) struct Trees<'a> {
+pub(in crate::search) struct Trees<'a> {
     bodies: [BodyRef<'a>; 2],
     trees: [&'a Tree; 2],
     /// Whether either may yet be fitted to a surface.
@@ -25,7 +25,7 @@ pub(super) struct Trees<'a> {
 }
 
 impl<'a> Trees<'a> {
-    pub(super) fn of(a: BodyRef<'a>, b: BodyRef<'a>) -> Self {
+    pub(in crate::search) fn of(a: BodyRef<'a>, b: BodyRef<'a>) -> Self {
         let bodies = [a, b];
         let may_be_loose = bodies.map(|body| match body {
             BodyRef::Cloud(cloud) => !cloud.prepared().is_refined(),
@@ -35,19 +35,19 @@ impl<'a> Trees<'a> {
         Self { bodies, trees, may_be_loose, pairs: 0, leaves: [0; 2] }
     }
 
-    pub(super) fn both(&self) -> (&'a Tree, &'a Tree) {
+    pub(in crate::search) fn both(&self) -> (&'a Tree, &'a Tree) {
         (self.trees[0], self.trees[1])
     }
 
     /// Counts a pair, after which so many leaves of either were seen.
-    pub(super) fn count_pair(&mut self, leaves: [usize; 2]) {
+    pub(in crate::search) fn count_pair(&mut self, leaves: [usize; 2]) {
         self.pairs += 1;
         self.leaves = leaves;
     }
 
     /// How a search goes on within so many deviations: by trees that are fitted, where it comes by too much; not
     /// where the time is over before they are.
-    pub(super) fn flow(
+    pub(in crate::search) fn flow(
         &mut self,
         within: f64,
         stats: &mut Stats,

@@ -7,18 +7,18 @@ use cloudtouch_geom::{Motion, Point3};
 
 use crate::body::BodyRef;
 
-use super::facet::Facet;
 use super::leaf::facets_of;
+use crate::search::compare::facet::Facet;
 
 /// Facets of the mesh of a pair in the frame of A, by the leaves of its tree: many discs pass the same
 /// leaves, and each is moved once.
 #[derive(Debug, Default)]
-pub(super) struct Around {
+pub(in crate::search) struct Around {
     leaves: BTreeMap<NodeId, Vec<Facet>>,
 }
 
 /// These and where they come from.
-pub(super) struct OfMesh<'a> {
+pub(in crate::search) struct OfMesh<'a> {
     pub known: &'a mut Around,
     pub body: BodyRef<'a>,
     /// `None` where the mesh is A.
@@ -27,7 +27,11 @@ pub(super) struct OfMesh<'a> {
 
 impl OfMesh<'_> {
     /// Those of the leaves within a distance (m) of a place in the frame of A; none of a cloud.
-    pub(super) fn near(&mut self, place: &Point3, radius: f64) -> impl Iterator<Item = &Facet> {
+    pub(in crate::search) fn near(
+        &mut self,
+        place: &Point3,
+        radius: f64,
+    ) -> impl Iterator<Item = &Facet> {
         let Self { known: Around { leaves }, body, a_from_mesh } = self;
         let mut near = Vec::new();
         if let BodyRef::Mesh(mesh) = body {

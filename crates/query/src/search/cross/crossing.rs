@@ -10,10 +10,10 @@ use cloudtouch_geom::{Point3, Vector3, normal};
 
 use crate::cloud::{DISC_SPACINGS, Edge, Onward, Surfel};
 
-use super::facet::Facet;
 use super::side::{CLEAREST, clearness, known_past_to, known_to, less_clear, past};
 use super::through_mesh::Through;
-use super::wrench::{Height, Wrench, force_at};
+use crate::search::compare::facet::Facet;
+use crate::search::wrench::{Height, Wrench, force_at};
 
 /// The weight of a disc falls off like a normal density with this many spacings.
 const WEIGHT_SPACINGS: f64 = 0.5;
@@ -98,7 +98,7 @@ pub(super) fn of_mesh(disc: &Surfel, axis: Vector3, through: &Through) -> Crossi
     Crossing { place: through.place, axis, ..of_pair }
 }
 
-pub(super) fn weight_at(spacings_off: f64) -> f64 {
+pub(in crate::search) fn weight_at(spacings_off: f64) -> f64 {
     (-0.5 * (spacings_off / WEIGHT_SPACINGS).powi(2)).exp()
 }
 
@@ -112,7 +112,7 @@ fn weight_by_pose(off: &Height, spacing: f64) -> Height {
 /// Whether an edge of a leaf crosses a disc; `None` too where the end nearer to the disc's plane is
 /// not a point of that leaf: the other leaf has the same edge and counts it.
 /// `onward` tells where the surface goes on past either end.
-pub(super) fn through_disc(
+pub(in crate::search) fn through_disc(
     edge: &Edge,
     disc: &Surfel,
     onward: impl Fn(usize) -> Onward,

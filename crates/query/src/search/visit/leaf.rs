@@ -9,10 +9,10 @@ use crate::body::BodyRef;
 use crate::cloud::{Ball, Cloud, DISC_SPACINGS, Edge, LeafEdges, LeafSurface, Slab, Surfel};
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
-use crate::report::Stats;
+use crate::stats::Stats;
 
-use super::facet::{Facet, Whitening};
-use super::meeting::probability_at;
+use crate::search::compare::facet::{Facet, Whitening};
+use crate::search::compare::meeting::probability_at;
 
 /// A leaf in the local frame of A: noisy pieces of surface, or exact ones.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ pub(crate) enum Leaf<'a> {
 
 /// How far the pieces of two leaves are from one another, by the balls around them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Between {
+pub(in crate::search) struct Between {
     /// The means are at least so far apart, m.
     pub of_means: f64,
     /// The surfaces that these stand for too, m.
@@ -35,18 +35,18 @@ pub(super) struct Between {
 /// A leaf of a mesh.
 #[derive(Debug)]
 pub(crate) struct ExactLeaf {
-    pub(super) facets: Vec<Facet>,
-    pub(super) ball: Ball,
+    pub(in crate::search) facets: Vec<Facet>,
+    pub(in crate::search) ball: Ball,
 }
 
 /// A leaf of a cloud.
 #[derive(Debug)]
 pub(crate) struct NoisyLeaf<'a> {
-    pub(super) cloud: &'a Cloud,
+    pub(in crate::search) cloud: &'a Cloud,
     pub surfels: Cow<'a, [Surfel]>,
     /// Where they were measured, for most are told to be far from another leaf before they are moved;
     /// `None` until they are needed.
-    pub(super) edges: Option<&'a LeafEdges>,
+    pub(in crate::search) edges: Option<&'a LeafEdges>,
     /// For each surfel lengths in its standard deviations; empty until they are needed.
     whitenings: Vec<Whitening>,
     /// For each surfel the squared deviations to the nearest piece of the other body, at most those
@@ -55,15 +55,15 @@ pub(crate) struct NoisyLeaf<'a> {
     /// For each surfel the probability of its clearest crossing.
     pub crossing: Vec<f64>,
     /// For each surfel whether a mesh was looked at that passes through its disc.
-    pub(super) is_pierced: Vec<bool>,
-    pub(super) ball: Ball,
+    pub(in crate::search) is_pierced: Vec<bool>,
+    pub(in crate::search) ball: Ball,
     /// Around its discs.
-    pub(super) slab: Slab,
+    pub(in crate::search) slab: Slab,
 }
 
 impl<'a> Leaf<'a> {
     /// A leaf of a body, moved to the frame of A by `motion`, or of A itself.
-    pub(super) fn load(
+    pub(in crate::search) fn load(
         body: BodyRef<'a>,
         id: NodeId,
         motion: Option<&Motion>,
@@ -76,7 +76,7 @@ impl<'a> Leaf<'a> {
     }
 
     /// How far the pieces of one leaf are from those of the other.
-    pub(super) fn between(&self, other: &Self) -> Between {
+    pub(in crate::search) fn between(&self, other: &Self) -> Between {
         /// Of the distance of the balls and their radii, generously.
         const ROUNDING: f64 = 1e-9;
         let (ball, around) = (self.ball(), other.ball());
@@ -96,7 +96,7 @@ impl<'a> Leaf<'a> {
         }
     }
 
-    pub(super) fn middle(&self) -> Point3 {
+    pub(in crate::search) fn middle(&self) -> Point3 {
         self.ball().middle
     }
 }
@@ -148,7 +148,7 @@ impl<'a> NoisyLeaf<'a> {
     }
 
     /// Lengths in the standard deviations of each surfel, beside what is changed with them.
-    pub(super) fn whitened(&mut self) -> (&[Surfel], &[Whitening], &mut [f64]) {
+    pub(in crate::search) fn whitened(&mut self) -> (&[Surfel], &[Whitening], &mut [f64]) {
         if self.whitenings.is_empty() {
             self.whitenings = self.surfels.iter().map(Whitening::of).collect();
         }
@@ -156,12 +156,12 @@ impl<'a> NoisyLeaf<'a> {
     }
 
     /// Gets its edges, once.
-    pub(super) fn load_edges(&mut self, id: NodeId) {
+    pub(in crate::search) fn load_edges(&mut self, id: NodeId) {
         self.edges.get_or_insert_with(|| self.cloud.leaf_edges(id));
     }
 
     /// Notes a crossing of an edge for the points that it joins.
-    pub(super) fn raise_ends(&mut self, edge: &Edge, probability: f64) {
+    pub(in crate::search) fn raise_ends(&mut self, edge: &Edge, probability: f64) {
         for place in edge.own.into_iter().flatten() {
             self.crossing[place] = self.crossing[place].max(probability);
         }

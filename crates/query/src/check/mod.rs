@@ -1,0 +1,4 @@
+//! What is in range: settings, coordinates and poses.
+
+pub(crate) mod coordinates;
+pub(crate) mod settings;

@@ -1,0 +1,9 @@
+//! Whether one surface passes through the other.
+
+pub(super) mod cells;
+pub(super) mod crossing;
+pub(super) mod crossings;
+pub(super) mod gather;
+pub(super) mod past;
+pub(super) mod side;
+pub(super) mod through_mesh;

@@ -1,0 +1,5 @@
+//! How near the surfaces are, and how deep one body is inside the other.
+
+pub(super) mod beyond;
+pub(super) mod inside;
+pub(super) mod nearest;

@@ -1,0 +1,6 @@
+//! Down two trees to the pairs of leaves that may matter, and what leaves hold.
+
+pub(super) mod around;
+pub(super) mod leaf;
+pub(super) mod leaves;
+pub(super) mod trees;
