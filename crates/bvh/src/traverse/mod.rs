@@ -250,8 +250,7 @@ mod tests {
             a.set_leaf_bounds(|_| bounds).unwrap();
             b.set_leaf_bounds(|_| bounds).unwrap();
         }
-        let traversal =
-            TraversalSettings { kind, cull_deviations: 3.72, ..TraversalSettings::default() };
+        let traversal = TraversalSettings { kind, cull_deviations: 3.72 };
         let (mut visited, mut culled) = (BTreeSet::new(), BTreeSet::new());
         let mut highest = 0.0_f64;
         let on_pair = |pair: LeafPair| {

@@ -142,7 +142,6 @@ impl PaperQuery {
             traversal: TraversalSettings {
                 kind: self.settings.traversal,
                 cull_deviations: self.cull_deviations.max(0.0),
-                ..TraversalSettings::default()
             },
             clock: Clock::new(start, self.settings.deadline),
         }

@@ -5,35 +5,18 @@ use std::time::{Duration, Instant};
 use cloudtouch_geom::{Pose, Vector3};
 
 use crate::check::coordinates::bad_entry;
-use crate::doubt::safeguards::Safeguards;
 use crate::doubt::undecided::Undecided;
 use crate::error::QueryError;
-use crate::mode::Mode;
 use crate::report::Report;
 use crate::shape::Shape;
 use crate::stats::Stats;
 
-use super::closeness::Closeness;
 use super::doubt::{CLEAR_DEVIATIONS, Doubts};
 use super::estimate::{Estimate, Places};
 use super::evidence::Evidence;
 use super::pool;
+use super::terms::Terms;
 use super::verdict::Thresholds;
-
-/// By what a path turns what it gathered into a report.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Terms {
-    pub mode: Mode,
-    pub seed: u64,
-    pub accept: f64,
-    pub reject: f64,
-    pub safeguards: Safeguards,
-    /// Whether a body may be too far away to be meant: not where there are many, most far from most.
-    pub doubts_distance: bool,
-    pub max_contacts: usize,
-    /// Which points the noisy-or counts.
-    pub closeness: Closeness,
-}
 
 impl Terms {
     /// Asks `estimate` and reports. It is given when the query began, the pose of B's local frame in

@@ -10,7 +10,7 @@ use crate::doubt::unseen::{is_image, unseen};
 use crate::doubt::warning::{Warning, Which};
 use crate::shape::Shape;
 
-use super::ask::Terms;
+use super::terms::Terms;
 
 /// Bodies farther apart than so many standard deviations are so, however large these are said to be.
 pub(crate) const CLEAR_DEVIATIONS: f64 = 3.0;

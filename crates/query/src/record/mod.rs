@@ -7,11 +7,12 @@ mod estimate;
 mod evidence;
 mod point;
 pub(crate) mod pool;
+mod terms;
 mod verdict;
 
-pub(crate) use ask::Terms;
 pub use closeness::Closeness;
 pub(crate) use doubt::CLEAR_DEVIATIONS;
 pub(crate) use estimate::{Estimate, Places};
 pub(crate) use evidence::Evidence;
 pub(crate) use point::{PointProbability, Side};
+pub(crate) use terms::Terms;

@@ -15,7 +15,7 @@ use crate::search::cross::past::Past;
 use crate::search::visit::around::OfMesh;
 use crate::search::visit::leaf::{ExactLeaf, NoisyLeaf};
 
-/// Whether an edge may get to a disc of another leaf, as `search/gather.rs` asks of leaves that keep
+/// Whether an edge may get to a disc of another leaf, as `search/cross/gather.rs` asks of leaves that keep
 /// still.
 pub(super) fn may_reach(
     of_edges: &SweptCloud<'_>,

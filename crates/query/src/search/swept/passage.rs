@@ -1,5 +1,5 @@
 //! How clearly a piece of one surface could pass through a piece of the other while one of them
-//! drifts: a bound on the crossings of `search/crossing.rs` at any pose on the way.
+//! drifts: a bound on the crossings of `search/cross/crossing.rs` at any pose on the way.
 
 use cloudtouch_geom::{Drift, Point3, Vector3};
 

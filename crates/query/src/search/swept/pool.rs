@@ -1,4 +1,4 @@
-//! All passages that may be, put together as `search/crossings.rs` does with crossings that are.
+//! All passages that may be, put together as `search/cross/crossings.rs` does with crossings that are.
 
 use std::collections::BTreeMap;
 
