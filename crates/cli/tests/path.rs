@@ -122,6 +122,8 @@ fn poses_of_ros_without_a_header_were_half_turns_in_silence() {
     for (name, text) in [
         ("yaw.csv", "0.01,0.02,0.6,0,0,0.6,0.8\n0.01,0.02,0.4,1e-7,0,0.8,0.6\n"),
         ("about_x.csv", "0.01,0.02,0.6,0,1,0,0\n0.01,0.02,0.4,0,1,0,0\n"),
+        // With a milliradian of roll and two degrees of pitch.
+        ("tilted.csv", "0.01,0.02,0.6,5e-4,0.0174,0.6,0.7998\n0.01,0.02,0.4,5e-4,0,0,1\n"),
     ] {
         inputs.write(name, text);
         let run = path(&inputs, name, &["--json"]);
@@ -131,6 +133,7 @@ fn poses_of_ros_without_a_header_were_half_turns_in_silence() {
     for (name, text) in [
         ("said.csv", "x,y,z,qw,qx,qy,qz\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
         ("ros_said.csv", "x,y,z,qx,qy,qz,qw\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
+        ("commented.csv", "# x,y,z,qx,qy,qz,qw\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
         ("turned.csv", "0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,1,0,0,0\n"),
         ("about_x.csv", "x,y,z,qw,qx,qy,qz\n0,0.02,0.6,0,1,0,0\n0,0.02,0.4,0,1,0,0\n"),
     ] {
@@ -145,7 +148,7 @@ fn bad_paths_are_named_with_what_to_do() {
     for (name, text, part) in [
         ("one.csv", csv(&[0.5]), "a path through 1 poses: give at least two"),
         ("still.json", json(&[0.5, 0.5]), "all 2 poses of the path are the same"),
-        ("short.csv", "0,0,0,1\n".to_owned(), "write seven numbers"),
+        ("short.csv", "0,0,0,1\n".to_owned(), "write 7 numbers"),
     ] {
         inputs.write(name, &text);
         let run = path(&inputs, name, &[]);

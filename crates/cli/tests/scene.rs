@@ -109,23 +109,23 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         file
     };
     for (file, parts) in [
-        (with("name", json!("")), vec!["body 1", "`name` is empty"]),
-        (with("file", json!("nan.xyz")), vec!["body 1 `box`", "nan.xyz", "no point is left"]),
-        (with("name", json!("floor")), vec!["body 1", "`floor`", "another name"]),
-        (with("attached_to", json!("hand")), vec!["body 1", "`hand`", "name a body of the file"]),
-        (with("attached_to", json!("box")), vec!["body 1", "`box`", "detach"]),
-        (with("file", json!("gone.obj")), vec!["body 1 `box`", "gone.obj", "cannot be read"]),
-        (with("file", json!("scene.json")), vec!["body 1 `box`", "scene.json"]),
-        (with("sensor", json!("sonar")), vec!["body 1 `box`", "`sonar`"]),
-        (with("unit", json!("miles")), vec!["body 1 `box`", "miles"]),
-        (with("pose", json!([[1, 0, 0, 0]])), vec!["body 1 `box`", "1 rows", "4x4"]),
-        (with("pose", json!("here")), vec!["body 1 `box`", "four rows of four numbers"]),
-        (with("atached_to", json!("floor")), vec!["body 1 `box`", "`atached_to`", "`attached_to`"]),
+        (with("name", json!("")), vec!["body 2", "`name` is empty"]),
+        (with("file", json!("nan.xyz")), vec!["body 2 `box`", "nan.xyz", "no point is left"]),
+        (with("name", json!("floor")), vec!["body 2", "`floor`", "another name"]),
+        (with("attached_to", json!("hand")), vec!["body 2", "`hand`", "name a body of the file"]),
+        (with("attached_to", json!("box")), vec!["body 2", "`box`", "detach"]),
+        (with("file", json!("gone.obj")), vec!["body 2 `box`", "gone.obj", "cannot be read"]),
+        (with("file", json!("scene.json")), vec!["body 2 `box`", "scene.json"]),
+        (with("sensor", json!("sonar")), vec!["body 2 `box`", "`sonar`"]),
+        (with("unit", json!("miles")), vec!["body 2 `box`", "miles"]),
+        (with("pose", json!([[1, 0, 0, 0]])), vec!["body 2 `box`", "1 rows", "4x4"]),
+        (with("pose", json!("here")), vec!["body 2 `box`", "four rows of four numbers"]),
+        (with("atached_to", json!("floor")), vec!["body 2 `box`", "`atached_to`", "`attached_to`"]),
         (
             of_scene("allowed", json!([["box", "wall"]])),
-            vec!["pair 0 of \"allowed\"", "`wall`", "of the file"],
+            vec!["pair 1 of \"allowed\"", "`wall`", "of the file"],
         ),
-        (of_scene("allowed", json!([["box"]])), vec!["pair 0 of \"allowed\"", "two names"]),
+        (of_scene("allowed", json!([["box"]])), vec!["pair 1 of \"allowed\"", "two names"]),
         (of_scene("threshold", json!(0.7)), vec!["threshold 0.7", "0 to 0.5"]),
         (of_scene("format", json!(2)), vec!["format 2", "format 1"]),
         (of_scene("length_unit", json!("mm")), vec!["length_unit `mm`", "metres"]),
@@ -142,7 +142,7 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         of_bodies(&[floor(), body("box", "box.obj", 1.25)]).to_string().replace("1.25", "NaN");
     inputs.write("nan.json", &text);
     let run = inputs.run(&["scene", "nan.json"]);
-    assert!(run.code() == 1 && run.stderr().contains("body 1 `box`"), "{}", run.stderr());
+    assert!(run.code() == 1 && run.stderr().contains("body 2 `box`"), "{}", run.stderr());
     for (options, part) in [
         (["--mode", "paper"], "calibrated mode"),
         (["--margin", "0.1"], "--margin"),
@@ -163,7 +163,7 @@ fn sensors_without_a_cloud_were_passed_over() {
     };
     let plain = of_bodies(&[floor(), body("box", "box.obj", 0.5)]);
     for (file, options, code, parts) in [
-        (&of_a_mesh, &[][..], 1, ["body 1 `box`", "`sensor`", "box.obj is a mesh"]),
+        (&of_a_mesh, &[][..], 1, ["body 2 `box`", "`sensor`", "box.obj is a mesh"]),
         (
             &plain,
             &["--sensor=iso:0.03"],

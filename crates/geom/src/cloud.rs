@@ -67,7 +67,8 @@ impl PointCloud {
     }
 
     /// The same cloud in the frame that `pose` maps its own into: points, covariances, normals and
-    /// where the sensor was: who moves a cloud says so, if its own frame was the sensor's.
+    /// where the sensor was. An image of which nobody said was in its camera's frame; of any other cloud it
+    /// stays unsaid: set `sensor_pose` to the identity first where its frame is its sensor's.
     #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
         let turned = |c: &Covariance| c.rotated(pose.rotation());
@@ -76,7 +77,10 @@ impl PointCloud {
             points: self.points.iter().map(|p| pose.transform_point(p)).collect(),
             covariances: self.covariances.as_ref().map(|all| all.iter().map(turned).collect()),
             normals: self.normals.as_ref().map(|all| all.iter().map(unit).collect()),
-            sensor_pose: Some(pose.after(&self.from_sensor())),
+            sensor_pose: match self.sensor_pose {
+                Some(sensor) => Some(pose.after(&sensor)),
+                None => self.is_image().then_some(*pose),
+            },
             image_size: self.image_size,
         }
     }
@@ -107,6 +111,7 @@ mod tests {
             covariances: Some(vec![Covariance::diagonal([4.0, 1.0, 1.0])]),
             normals: Some(vec![UnitVector3::new_normalize([1.0, 0.0, 0.0].into())]),
             image_size: Some((1, 1)),
+            sensor_pose: Some(Pose::identity()),
             ..PointCloud::from_points(vec![Point3::new(0.5, 0.0, 0.0)])
         };
         let moved = cloud.transformed(&pose);
@@ -117,6 +122,16 @@ mod tests {
         let back = moved.transformed(&pose.inverse());
         assert!((back.points[0] - cloud.points[0]).norm() < 1e-15);
         assert_eq!(back.image_size, cloud.image_size);
+    }
+
+    /// A cloud of who knows where became one whose sensor stood within it, and what it hides read free.
+    #[test]
+    fn only_of_an_image_it_goes_without_saying_where_the_sensor_was() {
+        let pose = Pose::from_translation([1.0, 2.0, 3.0].into());
+        let cloud = PointCloud::from_points(vec![Point3::origin(); 4]);
+        assert_eq!(cloud.transformed(&pose).sensor_pose, None);
+        let image = PointCloud { image_size: Some((2, 2)), ..cloud };
+        assert_eq!(image.transformed(&pose).sensor_pose, Some(pose));
     }
 
     #[test]

@@ -17,8 +17,8 @@ const MOST_COLUMNS: usize = 20;
 /// Values are separated by semicolons, or else by commas, or else by white space, as the first
 /// line that is neither blank nor a comment (from `#`) shows. When the first value of that line is
 /// not a number it names the columns: x, y, z and perhaps cov_xx, cov_xy, cov_xz, cov_yy, cov_yz,
-/// cov_zz (m², all six or none), in any order and case. Without names the first three columns are
-/// x, y, z. Other columns are passed over. `nan` is a missing return.
+/// cov_zz (m², all six or none), in any order and case; so does the last comment before it, when it has x, y
+/// and z among as many words as the line has numbers. Without names the first three columns are x, y, z. Other columns are passed over. `nan` is a missing return.
 ///
 /// # Errors
 /// When there is nothing but comments, a column is missing or named twice, a row is too short, a
@@ -34,14 +34,18 @@ pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
 /// As [`parse`].
 pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, FormatError> {
     let mut lines = Lines::new(bytes);
-    let first = next_row(&mut lines).ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
+    let (comment, first) = first_row(&mut lines);
+    let first = first.ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
     let separator = [b';', b','].into_iter().find(|separator| first.contains(separator));
 
     let mut pending = None;
+    let mut is_named = true;
     let columns =
         if values(first, separator).next().is_none_or(|v| parse_number::<f64>(v).is_some()) {
             pending = Some(first);
-            vec![0, 1, 2]
+            let by_comment = comment.and_then(|it| commented_columns(it, first, separator));
+            is_named = by_comment.is_some();
+            by_comment.unwrap_or_else(|| vec![0, 1, 2])
         } else {
             named_columns(first, separator, lines.place())?
         };
@@ -49,7 +53,6 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
     wanted.sort_unstable();
     let expected = wanted.last().map_or(0, |&(column, _)| column + 1);
 
-    let is_named = pending.is_none();
     let mut cloud = CloudBuilder::new(&columns, 0, limits);
     let mut widest = (0, lines.place());
     while let Some(line) = pending.take().or_else(|| next_row(&mut lines)) {
@@ -82,6 +85,33 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
         return Err(place.error(Fault::ManyColumns { found: columns }));
     }
     Ok(cloud.finish())
+}
+
+/// The first line with something in it, and the last comment before it.
+fn first_row<'a>(lines: &mut Lines<'a>) -> (Option<&'a [u8]>, Option<&'a [u8]>) {
+    let mut comment = None;
+    for line in lines.by_ref() {
+        match line.strip_prefix(b"#") {
+            Some(words) => comment = Some(words),
+            None => {
+                let row = line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii();
+                if !row.is_empty() {
+                    return (comment, Some(row));
+                }
+            }
+        }
+    }
+    (comment, None)
+}
+
+/// The columns that a comment names, as numpy writes a header: one for each number of the first row.
+fn commented_columns(comment: &[u8], row: &[u8], separator: Option<u8>) -> Option<Vec<usize>> {
+    let of_comment = [b';', b','].into_iter().find(|separator| comment.contains(separator));
+    let names: Vec<String> = values(comment.trim_ascii(), of_comment)
+        .map(|name| String::from_utf8_lossy(name).into_owned())
+        .collect();
+    let is_whole = names.len() == values(row, separator).count();
+    is_whole.then(|| find_columns(names.iter().map(String::as_str)).ok()).flatten()
 }
 
 /// The next line with something in it, without its comment.

@@ -52,6 +52,26 @@ fn covariance_columns_are_read_and_checked() {
     );
 }
 
+/// As `numpy.savetxt` writes a header; the first three columns were x, y and z whatever it said.
+#[test]
+fn a_comment_that_names_every_column_is_a_header() {
+    let point = |text: &str| xyz::parse(text.as_bytes()).unwrap().points[0];
+    let expected = Point3::new(1.0, 2.0, 3.0);
+    for text in [
+        "# y,x,z\n2,1,3\n",
+        "# from a bag\n# t x y z\n9 1 2 3\n",
+        "#intensity;x;y;z\n9;1;2;3\n",
+        "# y,x,z\n2 1 3\n",
+        // Words that are not one for each number are prose.
+        "# x y z of the room, in metres\n1 2 3\n",
+        "# z y x and an intensity\n1 2 3 9\n",
+        // Only what stands before the first row.
+        "1 2 3\n# y x z\n2 1 3\n",
+    ] {
+        assert_eq!(point(text), expected, "{text}");
+    }
+}
+
 #[test]
 fn faults_are_named_by_line_and_column() {
     let not_a_number = |found: &str| Fault::NotANumber { found: found.into() };

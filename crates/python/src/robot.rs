@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use cloudtouch::geom::{Point3, Pose};
 use cloudtouch_robot::{
-    JointKind, PathChecked, Robot as Described, RobotChecker as Checker, Touching,
+    JointKind, PathChecked, Robot as Described, RobotChecker as Checker, Stopped, Touching,
 };
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -27,7 +27,10 @@ type Link<'py> = (Matrix<'py>, Bound<'py, PyArray2<i64>>, Matrix<'py>);
 /// Answers at the positions given, how far it is free, segment, time and worst pair of where it stops,
 /// positions looked at, and the verdict.
 type Along<'py> =
-    (Vec<Found<'py>>, f64, Option<(usize, f64, Option<Pair<'py>>)>, usize, &'static str);
+    (Vec<Found<'py>>, f64, (Option<Place<'py>>, Option<Place<'py>>), usize, &'static str);
+
+/// Segment, time in it, the worst pair there, and that which is least sure around.
+type Place<'py> = (usize, f64, Option<Pair<'py>>, Option<(String, String, f64)>);
 
 /// A robot read from a URDF; immutable.
 #[pyclass(frozen, module = "cloudtouch._native")]
@@ -169,12 +172,14 @@ impl RobotChecker {
         let checked = on_all_threads(py, || checker.check_path(query, &path, tolerance))?;
         let checked = checked.map_err(refused)?;
         let worst = checked.verdict().code();
-        let PathChecked { given, certified_free_until, stopped, looked_at } = checked;
+        let PathChecked { given, certified_free_until, stopped, later, looked_at } = checked;
         let given: PyResult<_> = given.into_iter().map(|at| found(py, at)).collect();
-        let stopped = stopped.map(|at| {
+        let place = |at: Stopped| {
             let found = at.pair.map(|found| pair(py, found)).transpose()?;
-            PyResult::Ok((at.segment, at.t, found))
-        });
-        Ok((given?, certified_free_until, stopped.transpose()?, looked_at, worst))
+            let nearest = at.nearest.map(|near| (near.a, near.b, near.at_most));
+            PyResult::Ok((at.segment, at.t, found, nearest))
+        };
+        let [stopped, later] = [stopped, later].map(|at| at.map(place).transpose());
+        Ok((given?, certified_free_until, (stopped?, later?), looked_at, worst))
     }
 }

@@ -1,5 +1,6 @@
 //! Anything that can collide on the default path: a prepared cloud or a prepared mesh.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use cloudtouch_geom::Pose;
@@ -40,6 +41,18 @@ impl From<Cloud> for Body {
 impl From<Mesh> for Body {
     fn from(mesh: Mesh) -> Self {
         Self::Mesh(mesh)
+    }
+}
+
+impl From<Cloud> for Arc<Body> {
+    fn from(cloud: Cloud) -> Self {
+        Self::new(cloud.into())
+    }
+}
+
+impl From<Mesh> for Arc<Body> {
+    fn from(mesh: Mesh) -> Self {
+        Self::new(mesh.into())
     }
 }
 

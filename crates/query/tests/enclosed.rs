@@ -128,6 +128,39 @@ fn a_sensor_within_the_hollow_tells_that_it_is_one() {
     assert_eq!(within.undecided_by, Some(Undecided::Enclosed), "{within:?}");
 }
 
+/// From each place something is seen through a gap between samples, where a single line is asked.
+#[test]
+fn a_body_in_a_carton_was_seen_through_its_wall_from_one_of_many_sides() {
+    let carton = scene::cuboid([0.4, 0.3, 0.3]);
+    let inner = Mesh::prepare(&scene::cuboid([0.05; 3])).expect("a good mesh");
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+    for draw in 0..10 {
+        // What a turning table shows of it, each side from nearly across.
+        let all = positions(&sample_surface(&carton, 5000, draw));
+        let turn = |view: u32| f64::from(view) * std::f64::consts::TAU / 8.0 + 0.1;
+        let scans: Vec<PointCloud> = (0..8)
+            .map(|view| {
+                let seen = all.iter().skip(view as usize).step_by(8);
+                let (sin, cos) = turn(view).sin_cos();
+                let sensor = Vector3::new(1.2 * cos, 1.2 * sin, 0.3);
+                PointCloud {
+                    sensor_pose: Some(Pose::from_translation(sensor)),
+                    ..PointCloud::from_points(seen.copied().collect())
+                }
+            })
+            .collect();
+        let scans: Vec<_> = scans.iter().map(|scan| (scan, &settings)).collect();
+        let outer = Cloud::merge(&scans).expect("points");
+        for k in 0..5 {
+            let aside = |axis| 0.1 * (seed::unit(seed::derive(draw, k, axis)) - 0.5);
+            let report = query.run(&outer, &inner, &at(aside(0), aside(1), aside(2)));
+            let report = report.expect("a good pose");
+            assert_eq!(report.undecided_by, Some(Undecided::Enclosed), "{draw} {k}: {report:?}");
+        }
+    }
+}
+
 /// Five walls are a box with a way out.
 #[test]
 fn an_object_in_an_open_box_is_free() {

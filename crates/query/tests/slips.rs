@@ -1,7 +1,7 @@
 //! Slips of someone in a hurry: what cannot be meant does not read as free, and the report says why.
 
 use crate::common::{AnyQuery, MODES, Scan, ask, at, measured, mesh};
-use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Cloud, CloudSettings, FilterSettings, Mesh, Mode, PaperCloud, PaperCloudSettings, Path,
@@ -76,6 +76,23 @@ fn a_mesh_in_millimetres_read_free() {
     check(|mode| scan(&table(), mode), &in_mm, &at(0.1, 0.2, 150.0), Undecided::Units, told);
 }
 
+/// A tool of a few centimetres in inches is no larger than what is moved elsewhere: it is told only.
+#[test]
+fn an_object_larger_than_its_scene_read_free_in_silence() {
+    let told = |w: &Warning| matches!(w, Warning::Exchanged { .. });
+    for (scale, undecided) in [(4.0, None), (130.0, Some(Undecided::Units))] {
+        let larger = mesh(&scene::cuboid([scale; 3]));
+        let report = ask(
+            Mode::Calibrated,
+            &scan(&table(), Mode::Calibrated),
+            &larger,
+            &at(0.0, 0.0, 0.6 * scale),
+        );
+        assert!(report.warnings.iter().any(told), "{report:?}");
+        assert_eq!(report.undecided_by, undecided, "{report:?}");
+    }
+}
+
 /// Sizes that fit each other say nothing of their unit.
 #[test]
 fn both_files_and_the_pose_in_millimetres_read_free() {
@@ -138,7 +155,8 @@ fn a_scan_that_the_self_filter_took_away_read_free() {
     check(padded, &mesh(&tool()), &within, Undecided::Missing, told);
     let right = with_padding(0.02, Mode::Calibrated);
     let collides = ask(Mode::Calibrated, &right, &mesh(&tool()), &within);
-    assert_eq!((collides.verdict, collides.warnings.len()), (Verdict::InCollision, 0));
+    assert_eq!(collides.verdict, Verdict::InCollision);
+    assert!(matches!(collides.warnings[..], [Warning::NoRobot { .. }]), "{collides:?}");
 }
 
 /// A padding of 10 cm took what lay beside the gripper out of the scan, and said how many points only.
@@ -255,6 +273,37 @@ fn a_turned_image_sees_the_same() {
     ] {
         let report = ask(Mode::Calibrated, &cloud, &ball, &turn.after(&pose));
         assert_eq!(report.verdict, verdict, "{pose:?}: {report:?}");
+    }
+}
+
+/// The cells of the view were turned at random against its rows, and what is at its rim with them.
+#[test]
+fn how_much_was_unseen_hung_on_the_frame() {
+    let ball = mesh(&scene::sphere(0.06, 2));
+    // At the rim of the view, of the window and of the block.
+    let poses = [at(1.12, 0.0, 2.0), at(-1.1, 0.8, 1.9), at(0.24, 0.3, 1.9), at(-0.3, 0.2, 1.5)];
+    let shares = |turn: &Pose| {
+        let moved = PointCloud { sensor_pose: Some(Pose::identity()), ..image() }.transformed(turn);
+        let cloud = Scan::of(&moved, SensorModel::Kinect, Mode::Calibrated).expect("a good image");
+        poses.map(|pose| {
+            let report = ask(Mode::Calibrated, &cloud, &ball, &turn.after(&pose));
+            report.unseen.expect("an image").share()
+        })
+    };
+    let expected = shares(&Pose::identity());
+    assert!(
+        expected.iter().filter(|share| (0.05..0.95).contains(*share)).count() > 1,
+        "{expected:?}"
+    );
+    for k in 0..8 {
+        let angle = |axis| 6.3 * seed::unit(seed::derive(5, k, axis)) - 3.15;
+        let turn = Pose::from_translation_rpy(
+            Vector3::new(1.0, -2.0, 0.5),
+            [angle(0), angle(1), angle(2)],
+        );
+        for (found, expected) in shares(&turn).into_iter().zip(expected) {
+            assert!((found - expected).abs() < 0.02, "{k}: {found} {expected}");
+        }
     }
 }
 

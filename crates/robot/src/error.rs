@@ -43,6 +43,14 @@ pub enum RobotFault {
         /// What was found.
         value: f64,
     },
+    /// An angle of more than a whole turn, as of degrees.
+    #[error("{of} has {value} for its origin rpy: more than a whole turn; write radians")]
+    Turn {
+        /// The link or joint.
+        of: String,
+        /// What was found.
+        value: f64,
+    },
     /// Two links or two joints of one name.
     #[error("{what} `{name}` appears twice: names must differ")]
     Repeated {

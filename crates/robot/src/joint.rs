@@ -1,5 +1,7 @@
 //! Joints: what moves a link against its parent.
 
+use std::f64::consts::TAU;
+
 use cloudtouch::geom::{Pose, UnitVector3, Vector3};
 use nalgebra::UnitQuaternion;
 
@@ -126,10 +128,17 @@ fn limits(limit: &urdf_rs::JointLimit, joint: &str) -> Result<[f64; 2], RobotFau
     Err(RobotFault::Limits { joint: joint.to_owned(), lower, upper })
 }
 
+/// What a whole turn may be more, rad, where it is written with few digits.
+const ROUNDED: f64 = 0.01;
+
 /// An origin of the URDF.
 pub(crate) fn pose(origin: &urdf_rs::Pose, of: &str) -> Result<Pose, RobotFault> {
     let offset = finite(&origin.xyz.0, of, "origin xyz")?;
-    Ok(Pose::from_translation_rpy(offset.into(), finite(&origin.rpy.0, of, "origin rpy")?))
+    let turn = finite(&origin.rpy.0, of, "origin rpy")?;
+    if let Some(&value) = turn.iter().find(|angle| angle.abs() > TAU + ROUNDED) {
+        return Err(RobotFault::Turn { of: of.to_owned(), value });
+    }
+    Ok(Pose::from_translation_rpy(offset.into(), turn))
 }
 
 /// The numbers, where all are finite.

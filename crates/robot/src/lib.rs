@@ -16,6 +16,6 @@ mod uri;
 pub use checker::{RobotChecker, SURROUNDINGS, Touching};
 pub use error::{JointsError, PathError, RobotError, RobotFault};
 pub use joint::{Joint, JointKind, Mimic};
-pub use motion::{PathChecked, Stopped};
+pub use motion::{Nearest, PathChecked, Stopped};
 pub use primitive::EXCESS;
 pub use robot::Robot;

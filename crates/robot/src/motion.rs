@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use cloudtouch::geom::Pose;
 use cloudtouch::{BodyRef, Checked, PairAnswer, Query, Verdict};
 
 use crate::checker::{RobotChecker, SURROUNDINGS};
@@ -22,6 +21,9 @@ pub struct PathChecked {
     pub certified_free_until: f64,
     /// What is there, where that is not the end.
     pub stopped: Option<Stopped>,
+    /// The first collision found beyond, where none was found there or at a position given: of sixteen
+    /// positions in each segment, so that there may be others.
+    pub later: Option<Stopped>,
     /// Positions that were asked about, those given included.
     pub looked_at: usize,
 }
@@ -36,7 +38,23 @@ pub struct Stopped {
     /// The worst pair there; `None` where all read as free, but are so near that positions around
     /// are not known to be.
     pub pair: Option<PairAnswer>,
+    /// Then the pair that is least sure around there.
+    pub nearest: Option<Nearest>,
 }
+
+/// A pair that may meet around a position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Nearest {
+    /// The surroundings, or a link.
+    pub a: String,
+    /// A link.
+    pub b: String,
+    /// With at most this probability, which is not below the reject threshold.
+    pub at_most: f64,
+}
+
+/// Positions within a segment that are looked at for collisions where a path is certified no longer.
+const LATER: usize = 16;
 
 impl PathChecked {
     /// Free where the whole path is certified; else the worst verdict found, and undecided where none
@@ -45,6 +63,7 @@ impl PathChecked {
         let Some(stopped) = &self.stopped else { return Verdict::Free };
         let found: Vec<Verdict> = (self.given.iter().map(Checked::verdict))
             .chain(stopped.pair.as_ref().map(PairAnswer::verdict))
+            .chain(self.later.iter().flat_map(|at| &at.pair).map(PairAnswer::verdict))
             .collect();
         let worst = [Verdict::InCollision, Verdict::Undecided, Verdict::Uncertain];
         worst.into_iter().find(|verdict| found.contains(verdict)).unwrap_or(Verdict::Undecided)
@@ -58,8 +77,9 @@ impl RobotChecker {
     /// Over a stretch a link stays as near to its place in the middle as the turns and shifts of
     /// its joints let it (Schwarzer, Saha, Latombe 2005); if no surface is within that distance there by
     /// [`Query::within`], with the reject threshold of the query, the stretch is free. Else it is
-    /// halved, down to `tolerance` as a share of the path; there the search ends, so that what comes
-    /// later is known at the positions given only. With [`Detail::Full`](cloudtouch::Detail::Full).
+    /// halved, down to `tolerance` as a share of the path; there the search ends, and what comes
+    /// later is looked at for collisions at the positions given and some between them. Ask with
+    /// [`Detail::Full`](cloudtouch::Detail::Full) for contacts and clearances of what is found.
     ///
     /// # Errors
     /// With fewer than two positions, a tolerance that is not above 0 and at most 1, and when a joint
@@ -90,7 +110,8 @@ impl RobotChecker {
         let mut looked_at = given.len();
         let segments = (path.len() - 1) as f64;
         let mut certified_free_until = 0.0;
-        let mut stopped = given[0].pairs.first().map(|pair| (0, 0.0, Some(pair.clone())));
+        let at_once = given[0].pairs.first().cloned();
+        let mut stopped = at_once.map(|pair| Stopped::at(0, 0.0, Some(pair)));
         for (segment, ends) in path.windows(2).enumerate() {
             // What is before comes first.
             let mut open = vec![[0.0, 1.0]];
@@ -99,46 +120,91 @@ impl RobotChecker {
                 let middle = 0.5 * (from + to);
                 let of = |time| between(&ends[0], &ends[1], time);
                 let pair = check(segment, &of(middle))?.pairs.into_iter().next();
-                if pair.is_none() && self.is_clear(query, &of(middle), [&of(from), &of(to)]) {
+                let around = || self.around(query, &of(middle), [&of(from), &of(to)]);
+                let may_meet = |at_most: f64| at_most >= query.settings().reject;
+                if pair.is_none() && !around().any(|(_, at_most)| may_meet(at_most)) {
                     certified_free_until = (segment as f64 + to) / segments;
                 } else if to - from <= tolerance * segments {
-                    stopped = Some((segment, middle, pair));
+                    let least_sure = around().max_by(|(_, p), (_, q)| p.total_cmp(q));
+                    let nearest = least_sure.filter(|_| pair.is_none());
+                    let nearest = nearest.map(|(pair, at_most)| self.nearest(pair, at_most));
+                    stopped = Some(Stopped { nearest, ..Stopped::at(segment, middle, pair) });
                 } else {
                     open.extend([[middle, to], [from, middle]]);
                 }
             }
             if stopped.is_none() {
-                let pair = given[segment + 1].pairs.first();
-                stopped = pair.map(|pair| (segment, 1.0, Some(pair.clone())));
+                let pair = given[segment + 1].pairs.first().cloned();
+                stopped = pair.map(|pair| Stopped::at(segment, 1.0, Some(pair)));
             }
         }
-        let stopped = stopped.map(|(segment, t, pair)| Stopped { segment, t, pair });
-        Ok(PathChecked { given, certified_free_until, stopped, looked_at })
+        let mut checked =
+            PathChecked { given, certified_free_until, stopped, later: None, looked_at };
+        let Some(Stopped { segment: first, t, .. }) = checked.stopped else { return Ok(checked) };
+        for (segment, time) in later_than((first, t), path.len() - 1) {
+            if checked.verdict() == Verdict::InCollision {
+                break;
+            }
+            checked.looked_at += 1;
+            let found = check(segment, &between(&path[segment], &path[segment + 1], time))?;
+            let collides = found.pairs.into_iter().find(|p| p.verdict() == Verdict::InCollision);
+            checked.later = collides.map(|pair| Stopped::at(segment, time, Some(pair)));
+        }
+        Ok(checked)
     }
 
-    /// Whether no pair can meet on the way from one position to the other, of which `middle` is the
-    /// middle.
-    fn is_clear(&self, query: &Query, middle: &[f64], ends: [&[f64]; 2]) -> bool {
+    /// Of every pair that may touch the largest probability that it meets on the way from one position to the
+    /// other, of which `middle` is the middle: of the surroundings (`None`) or a shape, and another shape.
+    fn around<'a>(
+        &'a self,
+        query: &'a Query,
+        middle: &[f64],
+        ends: [&[f64]; 2],
+    ) -> impl Iterator<Item = (Pair, f64)> + use<'a> {
         let Robot { tree, shapes, .. } = &*self.robot;
         let poses = tree.poses(middle);
         let ways: Vec<f64> = shapes.iter().map(|shape| farthest(tree, shape, ends)).collect();
-        let at = |i: usize| self.scene_from_base.after(&poses[shapes[i].link]);
-        let is_apart = |a: BodyRef<'_>, i: usize, a_from_shape: &Pose, way: f64| {
-            let found = query.within(a, &*shapes[i].body, a_from_shape, way);
-            // What cannot be asked is not clear.
-            found.is_ok_and(|(_, within)| within.bounds[1] < query.settings().reject)
+        let at = move |i: usize| self.scene_from_base.after(&poses[shapes[i].link]);
+        let of_all = |i: usize| std::iter::once(None).chain((0..i).map(Some)).map(move |j| (j, i));
+        let may_touch = |&(j, i): &Pair| match j {
+            Some(j) => self.scene.is_allowed(&self.names[i], &self.names[j]) != Ok(true),
+            None => true,
         };
-        let Ok(surroundings) = self.scene.body(SURROUNDINGS) else { return false };
-        (0..shapes.len()).all(|i| {
-            is_apart(surroundings.into(), i, &at(i), ways[i])
-                && (0..i).all(|j| {
-                    let is_allowed = self.scene.is_allowed(&self.names[i], &self.names[j]);
-                    let j_from_i = at(j).inverse().after(&at(i));
-                    is_allowed == Ok(true)
-                        || is_apart((&*shapes[j].body).into(), i, &j_from_i, ways[i] + ways[j])
-                })
-        })
+        let at_most = move |(j, i): Pair| {
+            let (a_from_b, way) = match j {
+                Some(j) => (at(j).inverse().after(&at(i)), ways[i] + ways[j]),
+                None => (at(i), ways[i]),
+            };
+            let a: Result<BodyRef<'_>, _> = match j {
+                Some(j) => Ok((&*shapes[j].body).into()),
+                None => self.scene.body(SURROUNDINGS).map(Into::into),
+            };
+            // What cannot be asked is not clear.
+            let found = a.ok().and_then(|a| query.within(a, &*shapes[i].body, &a_from_b, way).ok());
+            found.map_or(1.0, |(_, within)| within.bounds[1])
+        };
+        (0..shapes.len()).flat_map(of_all).filter(may_touch).map(move |pair| (pair, at_most(pair)))
     }
+
+    fn nearest(&self, (a, b): Pair, at_most: f64) -> Nearest {
+        let a = a.map_or(SURROUNDINGS, |a| &*self.names[a]);
+        Nearest { a: a.to_owned(), b: self.names[b].clone(), at_most }
+    }
+}
+
+/// A shape or the surroundings, and another shape.
+type Pair = (Option<usize>, usize);
+
+impl Stopped {
+    fn at(segment: usize, t: f64, pair: Option<PairAnswer>) -> Self {
+        Self { segment, t, pair, nearest: None }
+    }
+}
+
+/// Places to look at beyond one, each as a segment and a share of it, in order.
+fn later_than(from: (usize, f64), segments: usize) -> impl Iterator<Item = (usize, f64)> {
+    let within = |segment| (1..=LATER).map(move |k| (segment, k as f64 / (LATER + 1) as f64));
+    (from.0..segments).flat_map(within).filter(move |&at| at > from)
 }
 
 fn between(from: &[f64], to: &[f64], time: f64) -> Vec<f64> {

@@ -6,7 +6,7 @@ use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Undecided, Verdict, Warn
 use cloudtouch_page::Fact;
 use serde::Serialize;
 
-use crate::answers::print::probability;
+use crate::answers::print::{probability, undecided};
 use crate::answers::query::matrix;
 use crate::answers::text::labelled;
 use crate::doubt::Doubt;
@@ -147,7 +147,7 @@ pub(crate) fn facts(swept: &Swept) -> Vec<Fact> {
 }
 
 fn verdict(swept: &Swept) -> String {
-    let reason = swept.undecided_by.map_or(String::new(), |by| format!(": {by}"));
+    let reason = swept.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
     format!("{}{reason}", swept.verdict)
 }
 

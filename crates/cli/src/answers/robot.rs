@@ -19,6 +19,7 @@ struct Line<'a> {
     threshold: f64,
     certified_free_until: f64,
     stopped: Option<Stopped<'a>>,
+    later: Option<Stopped<'a>>,
     looked_at: usize,
     /// Each as the answer to one position.
     given: Vec<Box<RawValue>>,
@@ -85,6 +86,26 @@ struct Stopped<'a> {
     segment: usize,
     t: f64,
     pair: Option<Pair<'a>>,
+    nearest: Option<Nearest<'a>>,
+}
+
+#[derive(Serialize)]
+struct Nearest<'a> {
+    a: &'a str,
+    b: &'a str,
+    at_most: f64,
+}
+
+impl<'a> From<&'a cloudtouch_robot::Stopped> for Stopped<'a> {
+    fn from(at: &'a cloudtouch_robot::Stopped) -> Self {
+        let nearest = at.nearest.as_ref();
+        Self {
+            segment: at.segment,
+            t: at.t,
+            pair: at.pair.as_ref().map(Pair::from),
+            nearest: nearest.map(|pair| Nearest { a: &pair.a, b: &pair.b, at_most: pair.at_most }),
+        }
+    }
 }
 
 pub(crate) fn path_line(
@@ -97,16 +118,12 @@ pub(crate) fn path_line(
         let line = scene::json_line(at, threshold, bodies.clone())?;
         Ok(RawValue::from_string(line)?)
     });
-    let stopped = checked.stopped.as_ref().map(|at| Stopped {
-        segment: at.segment,
-        t: at.t,
-        pair: at.pair.as_ref().map(Pair::from),
-    });
     let line = Line {
         verdict: checked.verdict(),
         threshold,
         certified_free_until: checked.certified_free_until,
-        stopped,
+        stopped: checked.stopped.as_ref().map(Stopped::from),
+        later: checked.later.as_ref().map(Stopped::from),
         looked_at: checked.looked_at,
         given: given.collect::<Result<_>>()?,
         asked,
@@ -126,10 +143,20 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
     );
     if let Some(at) = &checked.stopped {
         let _ = writeln!(text, "then                   segment {}, t = {:.3}", at.segment, at.t);
-        match &at.pair {
-            Some(pair) => text += &described("worst pair there", pair),
-            None => text += "                       free there, too near to be sure around it\n",
+        if let Some(pair) = &at.pair {
+            text += &described("worst pair there", pair);
+        } else if let Some(near) = &at.nearest {
+            let (a, b) = (one_line(&near.a), one_line(&near.b));
+            let at_most = probability(near.at_most);
+            let _ = writeln!(
+                text,
+                "nearest pair there     {a} / {b}: free there, up to P = {at_most} around it"
+            );
         }
+    }
+    if let Some(at) = &checked.later {
+        let _ = writeln!(text, "later                  segment {}, t = {:.3}", at.segment, at.t);
+        text += &at.pair.as_ref().map_or(String::new(), |pair| described("worst pair there", pair));
     }
     let far = checked.given.iter().find(|at| !at.outside.is_empty());
     text += &far.map(scene::outside).unwrap_or_default();

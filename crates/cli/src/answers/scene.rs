@@ -126,7 +126,8 @@ fn row(pair: &PairAnswer) -> String {
         Err(error) => return format!("error: {}", one_line(&error.to_string())),
     };
     let [low, high] = report.bounds.map(probability);
-    let reason = report.undecided_by.map_or(String::new(), |by| format!("  ({by})"));
+    let reason =
+        report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
     format!(
         "{:>5}  {:<14}  {:<12}  {:>14}{reason}",
         probability(report.collision_probability),

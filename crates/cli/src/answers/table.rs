@@ -73,7 +73,8 @@ impl Table {
             let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
             format!("{} / {}", name(&c.scene), name(&c.object))
         });
-        let reason = report.undecided_by.map_or(String::new(), |by| format!("  ({by})"));
+        let reason =
+            report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
         let margin = self.margin.as_ref().map_or(String::new(), |head| {
             let likely =
                 nearness.map_or("-".to_owned(), |of| print::probability(of.within.probability));

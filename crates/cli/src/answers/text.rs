@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use cloudtouch::{Placement, Report, Stats, UnderPoses, Within};
 use cloudtouch_page::{Fact, words};
 
-use crate::answers::print::probability;
+use crate::answers::print::{probability, undecided};
 use crate::margin::{Nearness, SHARE};
 
 /// A report for people shows this many contacts; JSON has them all.
@@ -73,7 +73,7 @@ fn found(report: &Report) -> String {
         "collision probability  {}   (within {low} .. {high})",
         probability(report.collision_probability)
     );
-    let reason = report.undecided_by.map_or(String::new(), |by| format!(": {by}"));
+    let reason = report.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
     let _ = writeln!(text, "{}", labelled("verdict", &format!("{}{reason}", report.verdict)));
     match report.clearance_m {
         Some(c) => {

@@ -85,17 +85,17 @@ fn outline(file: &SceneFile) -> Result<Scene> {
     let mut scene = Scene::default();
     for (index, BodyEntry { name, pose, .. }) in file.bodies.iter().enumerate() {
         let added = scene.add(name, Arc::clone(&stand_in), *pose);
-        added.with_context(|| format!("body {index}"))?;
+        added.with_context(|| format!("body {}", index + 1))?;
     }
     for (index, BodyEntry { name, pose, attached_to, .. }) in file.bodies.iter().enumerate() {
         if let Some(to) = attached_to {
             let attached = scene.attach(name, to, *pose).map_err(of_a_file);
-            attached.with_context(|| format!("\"attached_to\" of body {index}"))?;
+            attached.with_context(|| format!("\"attached_to\" of body {}", index + 1))?;
         }
     }
     for (index, [a, b]) in file.allowed.iter().enumerate() {
         let allowed = scene.allow(a, b).map_err(of_a_file);
-        allowed.with_context(|| format!("pair {index} of \"allowed\""))?;
+        allowed.with_context(|| format!("pair {} of \"allowed\"", index + 1))?;
     }
     Ok(scene)
 }
@@ -113,7 +113,7 @@ fn of_a_file(error: SceneError) -> anyhow::Error {
 /// What to read for each body, after a look whether it is there.
 fn keys(common: &CommonArguments, file: &SceneFile) -> Result<Vec<BodyKey>> {
     let key = |(index, entry): (usize, &BodyEntry)| {
-        let place = || format!("body {index} `{}`", entry.name);
+        let place = || format!("body {} `{}`", index + 1, entry.name);
         let BodyEntry { file, sensor, unit, .. } = entry;
         load::check(file).with_context(place)?;
         let sensor = match sensor {
@@ -137,7 +137,8 @@ fn check_sensors(
         let is_mesh = matches!(*prepared[key].body, cloudtouch::Body::Mesh(_));
         ensure!(
             !is_mesh || entry.sensor.is_none(),
-            "body {index} `{}`: {}",
+            "body {} `{}`: {}",
+            index + 1,
             entry.name,
             unused::of_a_mesh("sensor", &prepared[key].input.file)
         );
@@ -158,7 +159,7 @@ fn prepare(
     // Of several bodies of one file the first.
     let first = |key: &BodyKey| {
         let index = keys.iter().position(|other| other == key).unwrap_or_default();
-        format!("body {index} `{}`", file.bodies[index].name)
+        format!("body {} `{}`", index + 1, file.bodies[index].name)
     };
     let wanted: BTreeMap<&BodyKey, usize> = keys.iter().fold(BTreeMap::new(), |mut wanted, key| {
         *wanted.entry(key).or_default() += 1;

@@ -12,14 +12,14 @@ const EXCERPT: usize = 40;
 pub struct PathText {
     /// Object to scene, m.
     pub poses: Vec<Pose>,
-    /// The first row of a table without a header, with its line from 1, where every row is half a turn:
-    /// where the real part is written last, as ROS does, none of them is turned about x.
+    /// The first row of a table without a header, with its line from 1, where every row is half a turn or
+    /// nearly: where the real part is written last, as ROS does, none of them is turned much about x.
     pub half_turns: Option<(usize, String)>,
 }
 
 /// Poses, object to scene, in metres: JSON where the text begins with a bracket, a list of 4×4
 /// row-major matrices; else a table with a pose in each line, `x,y,z,qw,qx,qy,qz`, or in the order of
-/// these names in its first line.
+/// these names before its first row, behind a `#` or not; a column of times among them is passed over.
 ///
 /// # Errors
 /// Names the pose, from 1, or the line, from 1, that is none.
@@ -44,30 +44,40 @@ fn matrices(text: &str) -> Result<Vec<Pose>> {
     all.into_iter().enumerate().map(pose).collect()
 }
 
-/// What stays of a zero that was computed, or written with six digits.
-const NO_REAL_PART: f64 = 1e-6;
+/// Real parts smaller than that are of half a turn, or of one that lacks some two degrees.
+const NO_REAL_PART: f64 = 0.02;
 
 /// The columns of a table.
 const COLUMNS: [&str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+
+/// What recorders put beside them.
+const TIMES: [&str; 4] = ["t", "time", "timestamp", "stamp"];
+
+/// Where in a line each of the columns is, and how many numbers it has.
+struct Order {
+    places: [usize; 7],
+    count: usize,
+}
 
 fn table(text: &str) -> Result<PathText> {
     let mut poses = Vec::new();
     let mut first = None;
     let mut is_doubted = true;
-    // Where in a line each of the columns is.
-    let mut order = [0, 1, 2, 3, 4, 5, 6];
+    let mut order = Order { places: [0, 1, 2, 3, 4, 5, 6], count: COLUMNS.len() };
     for (line, content) in text.lines().enumerate() {
         let content = content.trim();
         let is_header = line == 0 && content.starts_with(|c: char| c.is_alphabetic() || c == '"');
-        if content.is_empty() || content.starts_with('#') {
-            continue;
-        }
         let place = || format!("line {} of the path", line + 1);
-        if is_header {
+        if let Some(comment) = content.strip_prefix('#') {
+            // So numpy writes a header.
+            if let Some(named) = named(comment).filter(|_| poses.is_empty()) {
+                (order, is_doubted) = (named, false);
+            }
+        } else if is_header {
             order = header(content).with_context(place)?;
             is_doubted = false;
-        } else {
-            let pose = row(content, order).with_context(place)?;
+        } else if !content.is_empty() {
+            let pose = row(content, &order).with_context(place)?;
             is_doubted &= pose.rotation().w.abs() < NO_REAL_PART;
             first.get_or_insert((line + 1, content));
             poses.push(pose);
@@ -79,23 +89,26 @@ fn table(text: &str) -> Result<PathText> {
 }
 
 /// Where each column is: many write the real part of a quaternion last.
-fn header(content: &str) -> Result<[usize; 7]> {
-    let names: Vec<String> =
-        content.split(',').map(|name| name.trim().trim_matches('"').to_lowercase()).collect();
-    let mut order = [0; 7];
-    for (place, column) in order.iter_mut().zip(COLUMNS) {
-        match names.iter().position(|name| name == column) {
-            Some(found) if names.len() == COLUMNS.len() => *place = found,
-            _ => {
-                let given: String = content.chars().take(EXCERPT).collect();
-                bail!("`{given}`: name the columns {}, in any order", COLUMNS.join(","));
-            }
-        }
-    }
-    Ok(order)
+fn header(content: &str) -> Result<Order> {
+    named(content).with_context(|| {
+        let given: String = content.chars().take(EXCERPT).collect();
+        format!("`{given}`: name the columns {}, in any order", COLUMNS.join(","))
+    })
 }
 
-fn row(content: &str, order: [usize; 7]) -> Result<Pose> {
+/// The columns where these are all that is named.
+fn named(content: &str) -> Option<Order> {
+    let names: Vec<String> =
+        content.split(',').map(|name| name.trim().trim_matches('"').to_lowercase()).collect();
+    let mut places = [0; 7];
+    for (place, column) in places.iter_mut().zip(COLUMNS) {
+        *place = names.iter().position(|name| name == column)?;
+    }
+    let times = names.iter().filter(|name| TIMES.contains(&name.as_str())).count();
+    (names.len() == COLUMNS.len() + times).then_some(Order { places, count: names.len() })
+}
+
+fn row(content: &str, order: &Order) -> Result<Pose> {
     let number = |word: &str| -> Result<f64> {
         let word = word.trim();
         match word.parse::<f64>() {
@@ -107,10 +120,18 @@ fn row(content: &str, order: [usize; 7]) -> Result<Pose> {
         }
     };
     let numbers = content.split(',').map(number).collect::<Result<Vec<f64>>>()?;
-    let Ok(numbers) = <[f64; 7]>::try_from(numbers) else {
-        bail!("write seven numbers, {}: metres and a quaternion, with commas", COLUMNS.join(","));
-    };
-    let [x, y, z, w, i, j, k] = order.map(|place| numbers[place]);
+    if numbers.len() != order.count {
+        bail!(
+            "write {} numbers, {}: metres and a quaternion, with commas",
+            order.count,
+            if order.count == COLUMNS.len() {
+                COLUMNS.join(",")
+            } else {
+                "as the header has".to_owned()
+            }
+        );
+    }
+    let [x, y, z, w, i, j, k] = order.places.map(|place| numbers[place]);
     Ok(Pose::try_from_quaternion(Vector3::new(x, y, z), [w, i, j, k])?)
 }
 
@@ -125,10 +146,12 @@ mod tests {
                      [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]";
         let plain = "0.5,0,0.25,0,1,0,0\n0, 0, 0, 1, 0, 0, 0\n";
         let headed = format!("x,y,z,qw,qx,qy,qz\n# a half turn first\n{plain}");
+        let commented = "# x,y,z,qx,qy,qz,qw\n0.5,0,0.25,1,0,0,0\n0,0,0,0,0,0,1\n";
+        let timed = "time,x,y,z,qx,qy,qz,qw\n0.1,0.5,0,0.25,1,0,0,0\n0.2,0,0,0,0,0,0,1\n";
         // Once read as if the real part came first.
         let real_last = "\"X\", y, z, qx, qy, qz, qw\n0.5,0,0.25,1,0,0,0\n0,0,0,0,0,0,1\n";
         let expected = parse(json).unwrap().poses;
-        for text in [plain, &headed, real_last] {
+        for text in [plain, &headed, real_last, commented, timed] {
             let found = parse(text).unwrap().poses;
             assert_eq!(found.len(), 2);
             for (p, q) in found.iter().zip(&expected) {
@@ -144,7 +167,7 @@ mod tests {
         for (text, part) in [
             ("[[[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]", "pose 1 of the path"),
             ("[[1,0,0,0]]", "each four rows of four numbers"),
-            ("0,0,0,1,0,0,0\n0,0,0,1,0,0", "line 2 of the path: write seven numbers"),
+            ("0,0,0,1,0,0,0\n0,0,0,1,0,0", "line 2 of the path: write 7 numbers"),
             ("0,0,nan,1,0,0,0", "line 1 of the path: `nan` is not a finite number"),
             ("0,0,0,2,0,0,0", "line 1 of the path: the quaternion"),
             (

@@ -97,11 +97,11 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<SceneFile> {
     }
     let body = |(index, value): (usize, Value)| {
         let name = value.get("name").and_then(Value::as_str).map(|name| format!(" `{name}`"));
-        let place = || format!("body {index}{}", name.unwrap_or_default());
+        let place = || format!("body {}{}", index + 1, name.unwrap_or_default());
         body(value, folder).with_context(place)
     };
     let pair = |(index, value): (usize, Value)| {
-        let form = || format!("pair {index} of \"allowed\" is not a list of two names");
+        let form = || format!("pair {} of \"allowed\" is not a list of two names", index + 1);
         serde_json::from_value(value).with_context(form)
     };
     Ok(SceneFile {

@@ -91,6 +91,7 @@ class Query:
 def refused(message: str, count: int, /) -> dict[str, Any]: ...
 
 Pair = tuple[str, str, Optional[dict[str, Any]], Optional[str]]
+Place = tuple[int, float, Optional[Pair], Optional[tuple[str, str, float]]]
 Found = tuple[list[Pair], list[int], list[tuple[str, float, float]]]
 
 @final
@@ -131,4 +132,4 @@ class RobotChecker:
     def check(self, query: Query, joints: dict[str, float], /) -> Found: ...
     def check_path(
         self, query: Query, path: list[dict[str, float]], tolerance: float, /
-    ) -> tuple[list[Found], float, Optional[tuple[int, float, Optional[Pair]]], int, Verdict]: ...
+    ) -> tuple[list[Found], float, tuple[Optional[Place], Optional[Place]], int, Verdict]: ...

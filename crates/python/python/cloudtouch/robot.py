@@ -164,6 +164,8 @@ class Stopped:
     """Time in the segment, from 0 to 1."""
     pair: Optional[PairAnswer]
     """The worst pair there; ``None`` where all are free, but too near for positions around to be known to be."""
+    nearest: Optional[tuple[str, str, float]]
+    """Then the pair that is least sure around there, and the most that its probability may be."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,6 +178,8 @@ class PathChecked:
     """Share of the path up to which every position is free, those between the given ones too."""
     stopped: Optional[Stopped]
     """What is there; ``None`` where that is the end."""
+    later: Optional[Stopped]
+    """The first collision found beyond, of sixteen positions in each segment, where none was found so far."""
     looked_at: int
     """How many positions were asked about."""
     verdict: Verdict
@@ -267,13 +271,16 @@ class RobotChecker:
         """
         rows = _arrays.rows_of(path)
         positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(rows)]
-        given, until, stopped, looked_at, verdict = self._checker.check_path(query._query, positions, tolerance)
-        place = None
-        if stopped is not None:
-            segment, t, pair = stopped
-            place = Stopped(segment, t, None if pair is None else PairAnswer._of(pair))
+        given, until, places, looked_at, verdict = self._checker.check_path(query._query, positions, tolerance)
         checked = tuple(Checked._of(*at) for at in given)
-        return PathChecked(checked, until, place, looked_at, verdict)
+        return PathChecked(checked, until, *map(_place, places), looked_at, verdict)
+
+
+def _place(found: _native.Place | None) -> Stopped | None:
+    if found is None:
+        return None
+    segment, t, pair, nearest = found
+    return Stopped(segment, t, None if pair is None else PairAnswer._of(pair), nearest)
 
 
 def _base(pose: npt.ArrayLike | None) -> Floats:

@@ -1,5 +1,7 @@
 //! What was measured around a place, whatever surface is made of it.
 
+use std::f64::consts::PI;
+
 use cloudtouch_geom::Point3;
 
 use super::prepared::Prepared;
@@ -15,5 +17,15 @@ impl Prepared {
     ) {
         let pieces = self.near_pieces();
         pieces.visit_within(place, distance, |near| visit(&pieces.points()[near.index]));
+    }
+
+    /// How far apart samples are about a place in the local frame, m: those of one surface of that density,
+    /// whether they lie in clumps or not.
+    pub(crate) fn spacing_about(&self, place: &Point3) -> f64 {
+        /// Enough that several scans of the same rays have no more in a clump.
+        const NEIGHBORS: usize = 64;
+        let near = self.neighborhoods.nearest_to(place, NEIGHBORS);
+        let reach = near.last().map_or(0.0, |last| last.squared_distance.sqrt());
+        reach * (PI / near.len().max(1) as f64).sqrt()
     }
 }

@@ -8,7 +8,7 @@ use crate::check::coordinates::check_points;
 use crate::error::PrepareError;
 use crate::filter::{StageReport, beyond_noise, filter_and_tell};
 
-use super::makeup::{SensorDoubt, missing, mostly_robot, sensor_doubts};
+use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
 use super::preparation::Preparation;
 use super::view::Image;
 
@@ -74,14 +74,15 @@ impl Scans {
             }
             all.missing = all.missing.max(missing(scan, &filtered.stages));
             all.sensor_doubts.extend(sensor_doubts(scan, by.sensor, &kept.points));
-            all.sensor_doubts.extend(mostly_robot(scan, &filtered.stages));
+            all.sensor_doubts.extend(robot_doubt(&filtered.stages));
             all.sensor_doubts.extend(padded(&scan.select(&of_robot), by)?);
             // An organised cloud is a depth image: one view, with unseen space behind it.
             if scan.is_image() {
                 let points = all.points.len()..all.points.len() + kept.len();
                 let pixels = pixels_about(scan, &filtered.rows).unwrap_or(kept.len());
-                let (sensor_origin, robot) = (kept.sensor_origin(), by.filter.robot.clone());
-                all.images.push(Image { sensor_origin, points, pixels, robot });
+                let (sensor_origin, turn) = (kept.sensor_origin(), *kept.from_sensor().rotation());
+                let robot = by.filter.robot.clone();
+                all.images.push(Image { sensor_origin, turn, points, pixels, robot });
             }
             all.origins.extend(kept.sensor_pose.map(|pose| Point3::from(pose.translation())));
             have_rows &= !filtered.rows.is_empty();

@@ -12,8 +12,10 @@ use crate::shape::Shape;
 
 /// No body is so many times as large as the other, ...
 const LARGEST_RATIO: f64 = 1000.0;
-/// ... and no object as its scene.
-const LARGEST_OBJECT_RATIO: f64 = 200.0;
+/// ... and no object as its scene, where there is nothing else, ...
+const LARGEST_OBJECT_RATIO: f64 = 120.0;
+/// ... or among many bodies as another.
+const LARGEST_RATIO_AMONG_MANY: f64 = 200.0;
 /// Meshes seldom say their unit. In metres none is so large, m, that is an object, or ...
 const LARGE_MESH: f64 = 100.0;
 /// ... a scene beside a body so many times smaller, ...
@@ -22,19 +24,23 @@ const LARGE_MESH_RATIO: f64 = 100.0;
 const LARGE_OBJECT: f64 = 20.0;
 /// ... in a scene so many times smaller.
 const LARGE_OBJECT_RATIO: f64 = 3.0;
-/// A scan of surroundings is larger than what moves in them.
+/// Surroundings are larger than what moves in them; an inch is so many centimetres, nearly.
 const EXCHANGED_RATIO: f64 = 3.0;
+/// The same of two meshes.
+const EXCHANGED_MESHES_RATIO: f64 = 20.0;
 /// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
 /// a twenty-fifth of that size off.
 const FARTHEST_SIZES: f64 = 40.0;
 /// Noise beyond this part of the other body had better be there: its fingers are a tenth of it.
 const LARGE_NOISE: f64 = 0.05;
 
-/// The warnings about a pair, gravest first. `a_from_b` maps local frames.
+/// The warnings about a pair, gravest first. `a_from_b` maps local frames; the two may be all there is, a
+/// scene and an object in it, or two of many.
 pub(crate) fn doubts(
     (a, b): (Shape<'_>, Shape<'_>),
     a_from_b: &Pose,
     unseen: Option<&Unseen>,
+    are_alone: bool,
     limits: &Safeguards,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
@@ -61,14 +67,14 @@ pub(crate) fn doubts(
             warnings.push(Warning::Missing { body, share: cloud.missing });
         }
     }
-    warnings.extend(units((a, b)));
+    warnings.extend(units((a, b), are_alone));
     warnings.extend(clouds().filter_map(|(body, cloud, size)| scale(body, cloud, size)));
     warnings.extend(clouds().filter_map(|(body, cloud, _)| {
         let Clumps { across, apart } = cloud.makeup().clumps?;
         Some(Warning::Clumps { body, across_m: across, apart_m: apart })
     }));
     warnings.extend(clouds().flat_map(|(body, cloud, _)| sensors(body, cloud.makeup())));
-    warnings.extend(exchanged(a, b));
+    warnings.extend(exchanged(a, b).filter(|_| are_alone));
     warnings.extend(apart((a, b), a_from_b));
     let share = unseen.map_or(0.0, Unseen::share);
     if let Some(Unseen { body, .. }) = unseen.filter(|_| share > limits.max_unseen) {
@@ -77,7 +83,8 @@ pub(crate) fn doubts(
     warnings
 }
 
-fn units((a, b): (Shape<'_>, Shape<'_>)) -> Option<Warning> {
+fn units((a, b): (Shape<'_>, Shape<'_>), are_alone: bool) -> Option<Warning> {
+    let largest = if are_alone { LARGEST_OBJECT_RATIO } else { LARGEST_RATIO_AMONG_MANY };
     let of = |body, shape: Shape<'_>, other: Shape<'_>| {
         let (size_m, other_size_m) = (shape.size(), other.size());
         let is_mesh = matches!(shape, Shape::Mesh(_));
@@ -85,7 +92,7 @@ fn units((a, b): (Shape<'_>, Shape<'_>)) -> Option<Warning> {
         // A single point has no size; another warning tells of it.
         let is_suspicious = other_size_m > 0.0
             && (beyond(0.0, LARGEST_RATIO)
-                || body == Which::B && beyond(0.0, LARGEST_OBJECT_RATIO)
+                || body == Which::B && beyond(0.0, largest)
                 || is_mesh && beyond(LARGE_MESH, LARGE_MESH_RATIO)
                 || is_mesh && body == Which::B && beyond(LARGE_MESH, 0.0)
                 || is_mesh && body == Which::B && beyond(LARGE_OBJECT, LARGE_OBJECT_RATIO));
@@ -124,18 +131,21 @@ fn sensors(body: Which, cloud: &Makeup) -> impl Iterator<Item = Warning> + '_ {
         SensorDoubt::Layout => Some(Warning::SensorLayout { body }),
         SensorDoubt::Misplaced => Some(Warning::ImagePlace { body }),
         SensorDoubt::Robot { share } => Some(Warning::SelfFilter { body, share }),
+        SensorDoubt::NoRobot => Some(Warning::NoRobot { body }),
         SensorDoubt::Padding { share } => Some(Warning::Padding { body, share }),
         // Of an object it is taken for granted that it may have a back.
         SensorDoubt::NoImage => (body == Which::A).then_some(Warning::NoImage { body }),
     })
 }
 
-/// A cloud many times as large as what it is to be moved in is rather the scene.
+/// What is many times as large as what it is to be moved in is rather the scene, or in another unit.
 fn exchanged(a: Shape<'_>, b: Shape<'_>) -> Option<Warning> {
     let (size_m, other_size_m) = (b.size(), a.size());
-    let is_cloud = matches!(b, Shape::Cloud(_));
-    let is_larger = other_size_m > 0.0 && size_m > EXCHANGED_RATIO * other_size_m;
-    (is_cloud && is_larger).then_some(Warning::Exchanged { size_m, other_size_m })
+    // Of two meshes either may be the scene.
+    let any_cloud = [a, b].iter().any(|body| matches!(body, Shape::Cloud(_)));
+    let ratio = if any_cloud { EXCHANGED_RATIO } else { EXCHANGED_MESHES_RATIO };
+    let is_larger = other_size_m > 0.0 && size_m > ratio * other_size_m;
+    is_larger.then_some(Warning::Exchanged { size_m, other_size_m })
 }
 
 fn apart((a, b): (Shape<'_>, Shape<'_>), a_from_b: &Pose) -> Option<Warning> {

@@ -102,7 +102,7 @@ impl PaperQuery {
             accept: self.settings.accept,
             reject: self.settings.reject,
             safeguards: self.settings.safeguards,
-            doubts_distance: true,
+            are_alone: true,
             max_contacts: self.settings.max_contacts,
             closeness: self.settings.closeness,
         };

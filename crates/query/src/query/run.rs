@@ -72,7 +72,7 @@ impl Query {
             accept: self.settings.accept,
             reject: self.settings.reject,
             safeguards: self.settings.safeguards,
-            doubts_distance: true,
+            are_alone: true,
             max_contacts: self.settings.max_contacts,
             closeness: Closeness::default(),
         }
@@ -106,7 +106,7 @@ impl Query {
 
     /// The terms of a pair among many bodies, of which most are far from most.
     pub(crate) fn terms_in_scene(&self) -> Terms {
-        Terms { doubts_distance: false, ..self.terms() }
+        Terms { are_alone: false, ..self.terms() }
     }
 
     /// [`Self::run`] for a pair among many bodies; one that is astray is doubted for its distance too.

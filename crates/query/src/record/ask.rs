@@ -88,7 +88,8 @@ impl Terms {
             undecided_by,
             log_likelihood_ratio: estimate.log_likelihood_ratio,
             clearance_m: clearance,
-            clearance_at_least_m: at_least,
+            // What nobody knows of may be nearer.
+            clearance_at_least_m: at_least.filter(|_| doubt.is_none()),
             contacts,
             evidence: estimate.evidence,
             unseen: None,

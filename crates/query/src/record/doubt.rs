@@ -41,7 +41,7 @@ impl Terms {
         may_be_free: bool,
     ) -> Doubts {
         let unseen = unseen(a, b, local);
-        let warnings = doubts((a, b), local, unseen.as_ref(), &self.safeguards);
+        let warnings = doubts((a, b), local, unseen.as_ref(), self.are_alone, &self.safeguards);
         let gravest = || {
             let mut counting = warnings.iter().filter(|warning| counts(warning, is_clear));
             let enclosed = || is_enclosed(a, b, local).then_some(Undecided::Enclosed);
@@ -68,7 +68,7 @@ impl Terms {
     /// it is beside B, and what it did not see.
     pub(crate) fn may_doubt(&self, (a, b): (Shape<'_>, Shape<'_>)) -> bool {
         let is_of_a = |warning: &&Warning| warning.body() == Some(Which::A);
-        let warnings = doubts((a, b), &Pose::identity(), None, &self.safeguards);
+        let warnings = doubts((a, b), &Pose::identity(), None, self.are_alone, &self.safeguards);
         // Pairs that nobody looks at are clear of each other.
         let mut of_a = warnings.iter().filter(is_of_a).filter(|warning| counts(warning, true));
         is_image(a) || of_a.any(|warning| self.reason(warning).is_some())
@@ -76,7 +76,7 @@ impl Terms {
 
     /// Why a pair with this warning does not read as free; `None` where it may.
     fn reason(&self, warning: &Warning) -> Option<Undecided> {
-        if matches!(warning, Warning::FarAway { .. }) && !self.doubts_distance {
+        if matches!(warning, Warning::FarAway { .. }) && !self.are_alone {
             return None;
         }
         let counts =

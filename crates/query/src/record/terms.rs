@@ -13,8 +13,9 @@ pub(crate) struct Terms {
     pub accept: f64,
     pub reject: f64,
     pub safeguards: Safeguards,
-    /// Whether a body may be too far away to be meant: not where there are many, most far from most.
-    pub doubts_distance: bool,
+    /// Whether the two are all there is, and an object has to be near its scene and no larger: among many
+    /// bodies most are far from most.
+    pub are_alone: bool,
     pub max_contacts: usize,
     /// Which points the noisy-or counts.
     pub closeness: Closeness,

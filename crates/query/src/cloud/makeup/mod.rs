@@ -49,6 +49,8 @@ pub(crate) enum SensorDoubt {
     Misplaced,
     /// So large a share of the points was taken for the robot itself.
     Robot { share: f64 },
+    /// None was.
+    NoRobot,
     /// So large a share of the points taken for the robot is farther from it than their noise tells.
     Padding { share: f64 },
 }
@@ -111,11 +113,15 @@ pub(super) fn missing(scan: &PointCloud, stages: &[StageReport]) -> f64 {
     stage.map_or(0.0, |s| s.removed as f64 / s.before.max(1) as f64)
 }
 
-/// A scan of which the self filter took most away, where its layout does not tell where that was.
-pub(super) fn mostly_robot(scan: &PointCloud, stages: &[StageReport]) -> Option<SensorDoubt> {
-    let stage = stages.iter().find(|stage| stage.stage == "robot" && !scan.is_image())?;
+/// A scan of which the self filter took most away, or nothing.
+pub(super) fn robot_doubt(stages: &[StageReport]) -> Option<SensorDoubt> {
+    let stage = stages.iter().find(|stage| stage.stage == "robot")?;
     let share = stage.removed as f64 / stage.before.max(1) as f64;
-    (share > MOST_ROBOT).then_some(SensorDoubt::Robot { share })
+    if stage.removed == 0 {
+        Some(SensorDoubt::NoRobot)
+    } else {
+        (share > MOST_ROBOT).then_some(SensorDoubt::Robot { share })
+    }
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {

@@ -7,6 +7,7 @@ use std::sync::{Arc, OnceLock};
 
 use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::SensorNoise;
+use nalgebra::UnitQuaternion;
 
 use crate::cloud::view::raster::{Raster, Sight};
 use crate::filter::SelfMesh;
@@ -14,8 +15,9 @@ use crate::filter::SelfMesh;
 /// A scan that is a depth image.
 #[derive(Debug, Clone)]
 pub(super) struct Image {
-    /// Where the sensor stood, m.
+    /// Where the sensor stood, m, and which way it looked: x right, y down for a camera, z up for a scanner.
     pub sensor_origin: Point3,
+    pub turn: UnitQuaternion<f64>,
     /// Which points are its.
     pub points: Range<usize>,
     /// How many pixels are where these are, those without return too.
@@ -70,9 +72,9 @@ impl SingleView {
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
         let raster = self.raster.get_or_init(|| {
-            let Image { sensor_origin, points: own, pixels, .. } = &self.image;
+            let Image { sensor_origin, turn, points: own, pixels, .. } = &self.image;
             let own = own.clone().map(|index| (points[index], noise[index].std_bound()));
-            Raster::new(sensor_origin, own, *pixels).map(Arc::new)
+            Raster::new((sensor_origin, turn), own, *pixels).map(Arc::new)
         });
         raster.as_deref()
     }
@@ -141,6 +143,7 @@ mod tests {
             let points: Vec<Point3> = seen.iter().map(|p| turned.transform_point(p)).collect();
             let image = Image {
                 sensor_origin: Point3::origin(),
+                turn: *turned.rotation(),
                 points: 0..points.len(),
                 pixels: points.len(),
                 robot: Vec::new(),

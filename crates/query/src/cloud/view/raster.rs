@@ -6,6 +6,7 @@
 use std::f64::consts::TAU;
 
 use cloudtouch_geom::{Point3, Vector3};
+use nalgebra::UnitQuaternion;
 
 /// Edge of a raster's cell in pixels: no cell between measured pixels is left empty by chance.
 const CELL_PIXELS: f64 = 2.0;
@@ -55,12 +56,12 @@ impl Raster {
     /// Cells are as large as pixels are, however many of these have no return: by the returns alone holes
     /// would be the smaller the more of them there are.
     pub(super) fn new(
-        origin: &Point3,
+        (origin, turn): (&Point3, &UnitQuaternion<f64>),
         measured: impl Iterator<Item = (Point3, f64)>,
         pixels: usize,
     ) -> Option<Self> {
         let rays: Vec<(Vector3, f64)> = measured.map(|(p, std)| (p - origin, std)).collect();
-        let lens = Lens::of(rays.iter().map(|(ray, _)| ray))?;
+        let lens = Lens::of(rays.iter().map(|(ray, _)| ray), turn)?;
         let placed: Vec<([f64; 2], [f64; 2])> = rays
             .iter()
             .filter_map(|(ray, std)| {
@@ -158,28 +159,35 @@ impl Raster {
 /// How directions become places of a view.
 #[derive(Debug)]
 enum Lens {
-    /// A camera: right, down and forward as the points lie, whatever the file says of its turn.
+    /// A camera: forward is where the points lie, right and down are as nearly as can be those of its rows and
+    /// columns, so that its view is a rectangle of the raster in every frame.
     Camera([Vector3; 3]),
-    /// All around the vertical of the file: by azimuth and elevation.
-    Panorama,
+    /// All around the vertical of the sensor: by azimuth and elevation, from its frame.
+    Panorama(UnitQuaternion<f64>),
 }
 
 impl Lens {
-    fn of<'a>(rays: impl Iterator<Item = &'a Vector3> + Clone) -> Option<Self> {
+    fn of<'a>(
+        rays: impl Iterator<Item = &'a Vector3> + Clone,
+        turn: &UnitQuaternion<f64>,
+    ) -> Option<Self> {
         let directions = || rays.clone().filter_map(|ray| ray.try_normalize(0.0));
         let forward = directions().sum::<Vector3>().try_normalize(0.0)?;
         if directions().any(|direction| direction.dot(&forward) < PANORAMA) {
-            return Some(Self::Panorama);
+            return Some(Self::Panorama(turn.inverse()));
         }
-        let aside = Vector3::ith(forward.iamin(), 1.0);
-        let down = forward.cross(&aside).normalize();
+        // A camera looks along its z; one whose turn is stated otherwise, as in a frame with x forward, still has
+        // an axis aside.
+        let local = turn.inverse_transform_vector(&forward);
+        let right = if local.x.abs() < local.z.abs() { Vector3::x() } else { Vector3::y() };
+        let down = forward.cross(&turn.transform_vector(&right)).normalize();
         Some(Self::Camera([down.cross(&forward), down, forward]))
     }
 
     fn is_behind(&self, ray: &Vector3) -> bool {
         match self {
             Self::Camera([_, _, forward]) => ray.dot(forward) <= 0.0,
-            Self::Panorama => false,
+            Self::Panorama(_) => false,
         }
     }
 
@@ -190,8 +198,8 @@ impl Lens {
                 let depth = ray.dot(forward);
                 (depth > 0.0).then(|| [ray.dot(right) / depth, ray.dot(down) / depth])
             }
-            Self::Panorama => {
-                let range = ray.norm();
+            Self::Panorama(to_sensor) => {
+                let (range, ray) = (ray.norm(), to_sensor.transform_vector(ray));
                 (range > 0.0).then(|| [ray.y.atan2(ray.x).rem_euclid(TAU), (ray.z / range).asin()])
             }
         }

@@ -2,6 +2,7 @@
 //! says on which side of that surface it is.
 
 mod open_side;
+mod sight;
 mod squares;
 
 use cloudtouch_geom::{Point3, Pose};
@@ -11,6 +12,7 @@ use crate::mesh::Mesh;
 use crate::shape::Shape;
 
 use open_side::has_open_side;
+use sight::sees;
 use squares::{MOST_SQUARES, Squares};
 
 /// Points that stand for the surface around, at most.
@@ -21,9 +23,6 @@ const POINTS_PER_SQUARE: f64 = 8.0;
 const SMALL_SQUARES: usize = 3;
 /// With this share of the squares filled there is no way out.
 const CLOSED: f64 = 0.97;
-
-/// A way that keeps so many spacings from every point passes no surface.
-const SURFACE_SPACINGS: f64 = 1.0;
 
 /// Whether the surface of a cloud is all around the other body, so that neither knows whether the space
 /// between them is empty. Where a sensor's place is known and it looks at the inner one past no
@@ -92,20 +91,6 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
     // A small square all alone among filled ones has no point by chance, which hangs on the axes of the file.
     let alone = if a_side >= SMALL_SQUARES { squares.alone_among(filled) } else { 0 };
     filled.count_ones() + alone >= enough && !is_seen_into()
-}
-
-/// Whether no point of the cloud is near the way from its sensor to a place.
-fn sees(cloud: &Prepared, sensor: &Point3, place: &Point3) -> bool {
-    let way = place - sensor;
-    let length = way.norm();
-    let spacing = cloud.makeup().spacing;
-    cloud.points().iter().all(|point| {
-        let offset = point - sensor;
-        let along = offset.dot(&way) / length.max(f64::MIN_POSITIVE);
-        let aside = (offset.norm_squared() - along * along).max(0.0).sqrt();
-        let is_between = along > 0.0 && along < length;
-        !is_between || aside > SURFACE_SPACINGS * spacing
-    })
 }
 
 #[cfg(test)]

@@ -140,12 +140,17 @@ pub enum Warning {
         /// Whose.
         body: Which,
     },
-    /// So many points of a cloud without image layout were taken for the robot itself.
+    /// So many points of a cloud were taken for the robot itself.
     SelfFilter {
         /// Whose.
         body: Which,
         /// Share of the points, 0 to 1.
         share: f64,
+    },
+    /// No point of a cloud lies on the robot that was to be left out of it.
+    NoRobot {
+        /// Whose.
+        body: Which,
     },
     /// So many of the points that were taken for the robot itself are farther from it than their noise tells.
     Padding {
@@ -161,7 +166,7 @@ pub enum Warning {
         /// Diagonal of the scene's box, m.
         size_m: f64,
     },
-    /// Scene and object are as if exchanged: the object is a cloud many times as large.
+    /// Scene and object are as if exchanged, or one of them is in another unit: the object is many times as large.
     Exchanged {
         /// Diagonal of the object's box, m.
         size_m: f64,
@@ -195,6 +200,7 @@ impl Warning {
             | Self::SensorRange { body, .. }
             | Self::SensorLayout { body }
             | Self::NoImage { body }
+            | Self::NoRobot { body }
             | Self::ImagePlace { body }
             | Self::SelfFilter { body, .. }
             | Self::Padding { body, .. }
@@ -218,6 +224,7 @@ impl Warning {
             Self::SensorTurn { .. }
             | Self::SensorLayout { .. }
             | Self::NoImage { .. }
+            | Self::NoRobot { .. }
             | Self::Padding { .. }
             | Self::OutsideScene { .. }
             | Self::Exchanged { .. } => None,

@@ -101,8 +101,13 @@ impl fmt::Display for Warning {
             Self::SelfFilter { body, share } => write!(
                 f,
                 "{:.0} % of the points of the {body} were taken for the robot and left out: check its \
-                 pose, its joints and the padding (metres), or give the organised cloud",
+                 pose, its joints, its unit and the padding (metres)",
                 100.0 * share
+            ),
+            Self::NoRobot { body } => write!(
+                f,
+                "no point of the {body} lies on the robot that was to be left out: if the sensor saw it, its \
+                 base, its joints or a unit are wrong"
             ),
             Self::Padding { body, share } => write!(
                 f,
@@ -120,8 +125,8 @@ impl fmt::Display for Warning {
             ),
             Self::Exchanged { size_m, other_size_m } => write!(
                 f,
-                "the object is a cloud {} across and the scene {}: are the two exchanged? The scene comes \
-                 first, and the pose leads from the object into it",
+                "the object is {} across and the scene {}: are the two exchanged? The scene comes first, and \
+                 the pose leads from the object into it. Or is one in another unit than metres?",
                 length(size_m),
                 length(other_size_m)
             ),
