@@ -1,6 +1,7 @@
 //! `cargo xtask calibrate`: the surfaces that turn evidence into a probability.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -12,7 +13,7 @@ use cloudtouch::{
 use cloudtouch_testkit::family::Kind;
 
 use crate::answers::Answers;
-use crate::measures::{Axis, SurfaceSample, fit_surface};
+use crate::measures::{Axis, Sample, SurfaceSample, border, calibration_error, fit_surface};
 use crate::methods::{Fitted, Ours};
 use crate::sweep::{Asked, ORACLE, OURS, Plan, ask};
 
@@ -22,8 +23,9 @@ const ADVERSARIAL: f64 = 0.25;
 
 /// Values of a surface over geometry.
 const GEOMETRY_VALUES: usize = DEVIATION_KNOTS.len() * CROSSING_KNOTS.len();
-/// Knots of the noise and of the extent.
-const BESIDE_ODDS: usize = NOISE_KNOTS.len() * EXTENT_KNOTS.len();
+/// Knots of the noise up to which ordinary scenes are observed. Those beyond are fitted to denser ones, with
+/// the last of these as it is.
+const ORDINARY: usize = 3;
 
 /// What `cargo xtask calibrate` is given.
 #[derive(Args)]
@@ -34,6 +36,9 @@ pub struct Arguments {
     /// Poses of each draw
     #[arg(long, default_value_t = 20)]
     poses: usize,
+    /// Fit what is beyond the noise of ordinary scenes, to far denser ones, and keep the rest as it is
+    #[arg(long)]
+    dense: bool,
     /// Keep the fit, in the lab and as the library's default
     #[arg(long)]
     update: bool,
@@ -41,23 +46,61 @@ pub struct Arguments {
 
 /// Fits, prints, and keeps when asked to.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
-    let Arguments { draws, poses, update } = *arguments;
+    let Arguments { draws, poses, dense, update } = *arguments;
     let gathering = |ours: Ours| Asked::always(ours.gathering_everything());
-    let methods = [gathering(Ours::new(OURS)?), gathering(Ours::oracle(ORACLE)?)];
-    let answers = ask(&Plan::evidence(draws, poses), &methods)?;
-    let without_each = |method: &str| -> Result<BTreeMap<String, Judge>> {
-        let without =
-            |family: &'static str| Ok((family.to_owned(), fit(&answers, method, Some(family))?));
-        answers.families().into_iter().map(without).collect()
-    };
-    let fitted = Fitted {
-        command: format!("cargo xtask calibrate --draws {draws} --poses {poses}"),
-        all: fit(&answers, OURS, None)?,
-        without: without_each(OURS)?,
-        oracle_without: without_each(ORACLE)?,
+    let command = format!("cargo xtask calibrate --draws {draws} --poses {poses}");
+    let fitted = if dense {
+        let answers = ask(&Plan::dense(draws, poses), &[gathering(Ours::new(OURS)?)])?;
+        beyond(Fitted::stored()?, &answers, &command)?
+    } else {
+        let methods = [gathering(Ours::new(OURS)?), gathering(Ours::oracle(ORACLE)?)];
+        ordinary(&ask(&Plan::evidence(draws, poses), &methods)?, command)?
     };
     println!("{}", fitted.as_source());
     if update { fitted.write(root) } else { Ok(()) }
+}
+
+fn ordinary(answers: &Answers, command: String) -> Result<Fitted> {
+    let without_each = |method: &str| -> Result<BTreeMap<String, Judge>> {
+        let without =
+            |family: &'static str| Ok((family.to_owned(), fit(answers, method, Some(family))?));
+        answers.families().into_iter().map(without).collect()
+    };
+    Ok(Fitted {
+        command,
+        all: fit(answers, OURS, None)?,
+        without: without_each(OURS)?,
+        oracle_without: without_each(ORACLE)?,
+    })
+}
+
+/// The same with what is beyond the noise of ordinary scenes fitted to answers about denser ones, and how
+/// stated and true differ there before and after, each family by a judge that does not know it.
+fn beyond(mut fitted: Fitted, answers: &Answers, command: &str) -> Result<Fitted> {
+    let before = fitted.clone();
+    fitted.command = format!("{} and {command} --dense", fitted.command);
+    fitted.all = fit_beyond(fitted.all, &records(answers, OURS, None)?)?;
+    for (family, judge) in &mut fitted.without {
+        *judge = fit_beyond(*judge, &records(answers, OURS, Some(family))?)?;
+    }
+    let [.., from, more, most] = NOISE_KNOTS;
+    for [from, to] in [[from, more], [more, most]] {
+        for (name, fit) in [("before", &before), ("after", &fitted)] {
+            let asked = answers.rows.iter().filter(|(of, _)| of.kind != Kind::Adversarial);
+            let said = asked.filter_map(|(of, said)| {
+                let evidence = said[0].and_then(|said| said.evidence)?;
+                let odds = fit.to_judge(of.family, false).log_odds(&evidence);
+                let is_here = (from..to).contains(&evidence.noise_over_spacing);
+                is_here.then_some((1.0 / (1.0 + (-odds).exp()), of.collides))
+            });
+            let said: Vec<(f64, bool)> = said.collect();
+            let bias = said.iter().map(|&(p, came)| p - f64::from(u8::from(came))).sum::<f64>();
+            let (count, sample) = (said.len(), Sample::of_probabilities(said));
+            let (bias, error) = (bias / count as f64, calibration_error(&sample, &sample.ones()));
+            println!("// {from} to {to}, {count} poses, {name}: off by {bias:+.3}, ECE {error:.3}");
+        }
+    }
+    Ok(fitted)
 }
 
 /// One answer that is fitted to.
@@ -75,6 +118,10 @@ impl Record {
 
 /// Fitted on all families but one, on clouds and on meshes alike.
 fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> {
+    fit_judge(&records(answers, method, without)?)
+}
+
+fn records(answers: &Answers, method: &str, without: Option<&str>) -> Result<Vec<Record>> {
     let method = answers.index(method).with_context(|| format!("{method} did not answer"))?;
     let mut records: Vec<Record> = Vec::new();
     for (question, said) in &answers.rows {
@@ -85,44 +132,17 @@ fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> 
             records.push(Record { evidence, collides: question.collides, weight });
         }
     }
-    fit_judge(&records)
+    Ok(records)
 }
 
 /// The surface over geometry first; then what the extent makes of it, and where that leaves doubt, how the
 /// classifier revises it.
 fn fit_judge(records: &[Record]) -> Result<Judge> {
-    // Fewer deviations make a collision more probable: the axis is turned round, and back again.
-    let mut nearness = DEVIATION_KNOTS.map(|z| -z);
-    nearness.reverse();
-    let by_all = |record: &Record| {
-        let e = &record.evidence;
-        record.at([e.noise_over_spacing, -e.deviations, e.crossing])
-    };
-    let mut geometry: Vec<SurfaceSample<3>> = records.iter().map(by_all).collect();
-    geometry.extend(within());
-    let noise = Axis { knots: &NOISE_KNOTS, usual: None };
-    let nearness = Axis { knots: &nearness, usual: Some(3.0) };
-    let crossing = Axis { knots: &CROSSING_KNOTS, usual: Some(2.0) };
-    let fitted = fit_surface(&geometry, [noise, nearness, crossing], false);
     let mut judge = Judge::default().without_extent();
-    for (surface, values) in judge.by_geometry.iter_mut().zip(fitted.chunks(GEOMETRY_VALUES)) {
-        surface.as_flattened_mut().copy_from_slice(values);
-        surface.reverse();
-    }
-    let changeable = |record: &Record| -> Option<SurfaceSample<3>> {
-        let e = &record.evidence;
-        let by_place = judge.log_odds_by_place(e);
-        let at = [by_place, e.noise_over_spacing, -e.extent?.ln_1p()];
-        is_within(&ODDS_KNOTS, by_place).then_some(record.at(at))
-    };
-    let open: Vec<_> = records.iter().filter_map(changeable).collect();
-    let odds = Axis { knots: &ODDS_KNOTS, usual: Some(1.0) };
-    let extent = Axis { knots: &EXTENT_KNOTS, usual: Some(0.0) };
-    let over_extent = fit_surface(&open, [odds, noise, extent], true);
-    for (row, values) in over_extent.chunks(BESIDE_ODDS).enumerate() {
-        for (of_noise, values) in values.chunks(EXTENT_KNOTS.len()).enumerate() {
-            judge.over_extent[of_noise][row].copy_from_slice(values);
-        }
+    fit_knots(&mut judge, records, 0..ORDINARY);
+    for knot in ORDINARY..NOISE_KNOTS.len() {
+        judge.by_geometry[knot] = judge.by_geometry[ORDINARY - 1];
+        judge.over_extent[knot] = judge.over_extent[ORDINARY - 1];
     }
     let doubtful = |record: &Record| -> Option<SurfaceSample<2>> {
         let e = &record.evidence;
@@ -134,10 +154,69 @@ fn fit_judge(records: &[Record]) -> Result<Judge> {
     let in_doubt: Vec<_> = records.iter().filter_map(doubtful).collect();
     let doubt = Axis { knots: &DOUBT_KNOTS, usual: Some(1.0) };
     let misclassified = Axis { knots: &MISCLASSIFIED_KNOTS, usual: Some(0.2) };
-    let revised = fit_surface(&in_doubt, [doubt, misclassified], true);
+    let pins = border(&DOUBT_KNOTS, MISCLASSIFIED_KNOTS.len());
+    let revised = fit_surface(&in_doubt, [doubt, misclassified], &pins);
     judge.revised.as_flattened_mut().copy_from_slice(&revised);
     judge.validate()?;
     Ok(judge)
+}
+
+/// The same beyond the noise of ordinary scenes, where no classifier is asked.
+fn fit_beyond(mut judge: Judge, records: &[Record]) -> Result<Judge> {
+    fit_knots(&mut judge, records, ORDINARY - 1..NOISE_KNOTS.len());
+    judge.validate()?;
+    Ok(judge)
+}
+
+/// The surfaces at these knots of the noise; the first of them stays as it is, unless it is the first of all.
+fn fit_knots(judge: &mut Judge, records: &[Record], knots: Range<usize>) {
+    let from = NOISE_KNOTS[knots.start];
+    let records: Vec<&Record> =
+        records.iter().filter(|record| record.evidence.noise_over_spacing >= from).collect();
+    let is_given = knots.start > 0;
+    let noise = Axis { knots: &NOISE_KNOTS[knots.clone()], usual: None };
+    // Fewer deviations make a collision more probable: the axis is turned round, and back again.
+    let mut nearness = DEVIATION_KNOTS.map(|z| -z);
+    nearness.reverse();
+    let by_all = |record: &&Record| {
+        let e = &record.evidence;
+        record.at([e.noise_over_spacing, -e.deviations, e.crossing])
+    };
+    let mut geometry: Vec<SurfaceSample<3>> = records.iter().map(by_all).collect();
+    geometry.extend(within(noise.knots));
+    let nearness = Axis { knots: &nearness, usual: Some(3.0) };
+    let crossing = Axis { knots: &CROSSING_KNOTS, usual: Some(2.0) };
+    let mut given = judge.by_geometry[knots.start];
+    given.reverse();
+    let pins = given.as_flattened().iter().copied().enumerate();
+    let pins: Vec<(usize, f64)> = pins.filter(|_| is_given).collect();
+    let fitted = fit_surface(&geometry, [noise, nearness, crossing], &pins);
+    let surfaces = judge.by_geometry[knots.clone()].iter_mut();
+    for (surface, values) in surfaces.zip(fitted.chunks(GEOMETRY_VALUES)) {
+        surface.as_flattened_mut().copy_from_slice(values);
+        surface.reverse();
+    }
+    let changeable = |record: &&Record| -> Option<SurfaceSample<3>> {
+        let e = &record.evidence;
+        let by_place = judge.log_odds_by_place(e);
+        let at = [by_place, e.noise_over_spacing, -e.extent?.ln_1p()];
+        is_within(&ODDS_KNOTS, by_place).then_some(record.at(at))
+    };
+    let open: Vec<_> = records.iter().filter_map(changeable).collect();
+    let odds = Axis { knots: &ODDS_KNOTS, usual: Some(1.0) };
+    let extent = Axis { knots: &EXTENT_KNOTS, usual: Some(0.0) };
+    let mut pins = border(&ODDS_KNOTS, knots.len() * EXTENT_KNOTS.len());
+    let given = judge.over_extent[knots.start].iter().enumerate().filter(|_| is_given);
+    pins.extend(given.flat_map(|(row, values)| {
+        let start = row * knots.len() * EXTENT_KNOTS.len();
+        values.iter().enumerate().map(move |(k, &value)| (start + k, value))
+    }));
+    let over_extent = fit_surface(&open, [odds, noise, extent], &pins);
+    for (row, values) in over_extent.chunks(knots.len() * EXTENT_KNOTS.len()).enumerate() {
+        for (of_noise, values) in knots.clone().zip(values.chunks(EXTENT_KNOTS.len())) {
+            judge.over_extent[of_noise][row].copy_from_slice(values);
+        }
+    }
 }
 
 fn is_within(knots: &[f64], value: f64) -> bool {
@@ -146,14 +225,15 @@ fn is_within(knots: &[f64], value: f64) -> bool {
 
 /// Clouds wholly within solids, which hardly a pose that comes from outside is: a point clearly inside
 /// is a collision by what the words mean, whatever crosses.
-fn within() -> impl Iterator<Item = SurfaceSample<3>> {
+fn within(noises: &[f64]) -> impl Iterator<Item = SurfaceSample<3>> {
     const CLEARLY_INSIDE: f64 = -4.0;
     const WEIGHT: f64 = 100.0;
     let inside = DEVIATION_KNOTS.into_iter().filter(|&z| z <= CLEARLY_INSIDE);
     let places =
         inside.flat_map(|z| CROSSING_KNOTS.into_iter().map(move |crossing| (-z, crossing)));
-    let at_each = |(nearness, crossing)| NOISE_KNOTS.map(|noise| [noise, nearness, crossing]);
-    let weight = WEIGHT / NOISE_KNOTS.len() as f64;
+    let at_each =
+        move |(nearness, crossing)| noises.iter().map(move |&noise| [noise, nearness, crossing]);
+    let weight = WEIGHT / noises.len() as f64;
     places.flat_map(at_each).map(move |at| SurfaceSample { at, came: true, weight })
 }
 

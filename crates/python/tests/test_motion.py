@@ -70,6 +70,8 @@ def test_a_pose_known_roughly_is_in_doubt(floor, plate):
         ct.Query().run_uncertain(floor, plate, lifted(0.02), -np.eye(6))
     with pytest.raises(ValueError, match="-1.0 is negative"):
         ct.Query().run_uncertain(floor, plate, lifted(0.02), [0.01, 0, -1, 0, 0, 0])
+    with pytest.raises(ValueError, match="in degrees"):
+        ct.Query().run_uncertain(floor, plate, lifted(0.02), [0.01, 0, 0, 5, 5, 5])
     with pytest.raises(ValueError, match="covariance has the shape"):
         ct.Query().run_uncertain(floor, plate, lifted(0.02), [0.01])
 

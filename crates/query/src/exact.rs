@@ -36,7 +36,6 @@ pub(crate) fn add_exact(
     Ok(())
 }
 
-/// Tests two meshes with parry.
 /// The two places, on A and on B in the frame of A, where these are nearest to each other; `None` where they
 /// collide.
 pub(crate) fn nearest_places(
@@ -46,6 +45,7 @@ pub(crate) fn nearest_places(
     Ok(exact_pair(a, b, a_from_b)?.nearest.map(|(on_a, on_b)| [on_a, on_b]))
 }
 
+/// Tests two meshes with parry.
 fn exact_pair(a: &Mesh, b: &Mesh, a_from_b: &Pose) -> Result<ExactPair, QueryError> {
     let unsupported = |_| QueryError::Unsupported;
     let pose_a = math::Pose::IDENTITY;

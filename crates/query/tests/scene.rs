@@ -413,7 +413,7 @@ fn of_a_hundred_bodies_and_an_arm_few_pairs_are_asked() {
 }
 
 /// Prints what a check costs beside the pairs that are near: `cargo test --release -p cloudtouch --test
-/// scene -- --ignored --nocapture`.
+/// suite scene:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures time"]
 fn cost_of_a_scene_beside_its_near_pairs() {

@@ -101,12 +101,21 @@ impl RobotChecker {
             positions.map_err(|error| PathError::Joints { index, error })
         };
         let path = path.iter().enumerate().map(at).collect::<Result<Vec<Vec<f64>>, _>>()?;
-        let check = |index, joints: &[f64]| match self.placed(joints) {
-            Ok(scene) => Ok(scene.check(query)),
-            Err(error) => Err(PathError::Joints { index, error: error.into() }),
-        };
-        let given = path.iter().enumerate().map(|(index, joints)| check(index, joints));
-        let given: Vec<Checked> = given.collect::<Result<_, _>>()?;
+        let given = path.iter().enumerate().map(|(index, at)| self.check_at(query, index, at));
+        let given = given.collect::<Result<_, _>>()?;
+        let mut checked = self.certify(query, &path, given, tolerance)?;
+        self.look_later(query, &path, &mut checked)?;
+        Ok(checked)
+    }
+
+    /// How far a path is free for certain, given what is found at its positions.
+    fn certify(
+        &self,
+        query: &Query,
+        path: &[Vec<f64>],
+        given: Vec<Checked>,
+        tolerance: f64,
+    ) -> Result<PathChecked, PathError> {
         let mut looked_at = given.len();
         let segments = (path.len() - 1) as f64;
         let mut certified_free_until = 0.0;
@@ -119,7 +128,7 @@ impl RobotChecker {
                 looked_at += 1;
                 let middle = 0.5 * (from + to);
                 let of = |time| between(&ends[0], &ends[1], time);
-                let pair = check(segment, &of(middle))?.pairs.into_iter().next();
+                let pair = self.check_at(query, segment, &of(middle))?.pairs.into_iter().next();
                 let around = || self.around(query, &of(middle), [&of(from), &of(to)]);
                 let may_meet = |at_most: f64| at_most >= query.settings().reject;
                 if pair.is_none() && !around().any(|(_, at_most)| may_meet(at_most)) {
@@ -138,19 +147,36 @@ impl RobotChecker {
                 stopped = pair.map(|pair| Stopped::at(segment, 1.0, Some(pair)));
             }
         }
-        let mut checked =
-            PathChecked { given, certified_free_until, stopped, later: None, looked_at };
-        let Some(Stopped { segment: first, t, .. }) = checked.stopped else { return Ok(checked) };
+        Ok(PathChecked { given, certified_free_until, stopped, later: None, looked_at })
+    }
+
+    /// Looks for a collision beyond what is certified, until one is known.
+    fn look_later(
+        &self,
+        query: &Query,
+        path: &[Vec<f64>],
+        checked: &mut PathChecked,
+    ) -> Result<(), PathError> {
+        let Some(Stopped { segment: first, t, .. }) = checked.stopped else { return Ok(()) };
         for (segment, time) in later_than((first, t), path.len() - 1) {
             if checked.verdict() == Verdict::InCollision {
                 break;
             }
             checked.looked_at += 1;
-            let found = check(segment, &between(&path[segment], &path[segment + 1], time))?;
-            let collides = found.pairs.into_iter().find(|p| p.verdict() == Verdict::InCollision);
+            let joints = between(&path[segment], &path[segment + 1], time);
+            let mut found = self.check_at(query, segment, &joints)?.pairs.into_iter();
+            let collides = found.find(|pair| pair.verdict() == Verdict::InCollision);
             checked.later = collides.map(|pair| Stopped::at(segment, time, Some(pair)));
         }
-        Ok(checked)
+        Ok(())
+    }
+
+    /// What is found at joints on the way from a position, or at it.
+    fn check_at(&self, query: &Query, index: usize, joints: &[f64]) -> Result<Checked, PathError> {
+        match self.placed(joints) {
+            Ok(scene) => Ok(scene.check(query)),
+            Err(error) => Err(PathError::Joints { index, error: error.into() }),
+        }
     }
 
     /// Of every pair that may touch the largest probability that it meets on the way from one position to the

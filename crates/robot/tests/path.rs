@@ -31,13 +31,18 @@ fn a_wall_between_two_free_positions_is_found_where_the_arm_meets_it() {
     let path = [around(-1.4), around(1.4)];
     let found = checker.check_path(&query(), &path, TOLERANCE).unwrap();
     assert!(found.given.iter().all(|at| at.verdict() == Verdict::Free));
-    assert_ne!(found.verdict(), Verdict::Free);
     // The tip, with the radius of the hand, is at the wall where cos = 0.9 or a little sooner.
     let meets = |share: f64| (2.8 * share - 1.4).cos() * tip + 0.03;
     let until = found.certified_free_until;
     assert!((0.2..0.4).contains(&until) && meets(until) < 0.9 * tip + 0.05, "{until}");
     let stopped = found.stopped.as_ref().unwrap();
     assert!(stopped.segment == 0 && stopped.t >= until, "{stopped:?}");
+    // It read undecided, for nothing was known beyond.
+    assert_eq!(found.verdict(), Verdict::InCollision);
+    let later = found.later.as_ref().unwrap_or(stopped);
+    assert_eq!(later.pair.as_ref().unwrap().verdict(), Verdict::InCollision, "{later:?}");
+    // Either a pair is named, or that which is nearest.
+    assert_ne!(stopped.pair.is_some(), stopped.nearest.is_some(), "{stopped:?}");
     // What is certified is free wherever it is looked at.
     for k in 0..=60 {
         let waist = -1.4 + 2.8 * until * f64::from(k) / 60.0;

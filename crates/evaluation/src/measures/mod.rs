@@ -10,7 +10,7 @@ pub use bootstrap::{Clusters, Estimate};
 pub use calibration::{Bin, brier, calibration_error, chance_error, observed_within, reliability};
 pub use rank::{auc, false_stops};
 pub use sample::Sample;
-pub use surface::{Axis, Sample as SurfaceSample, fit_surface};
+pub use surface::{Axis, Sample as SurfaceSample, border, fit_surface};
 
 /// What a method can be judged by.
 #[derive(Debug, Clone, Copy, PartialEq)]

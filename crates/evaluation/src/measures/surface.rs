@@ -39,24 +39,30 @@ pub struct Sample<const D: usize> {
     pub weight: f64,
 }
 
-/// Fits values at the knots, the last axis running fastest. The first and the last values along the
-/// first axis are its knots themselves where `pins_border`.
+/// Pins of a surface whose first and last values along its first axis, each of so many, are its knots
+/// themselves.
+pub fn border(axis: &[f64], row: usize) -> Vec<(usize, f64)> {
+    let last = axis.len() - 1;
+    [0, last]
+        .into_iter()
+        .flat_map(|k| (k * row..(k + 1) * row).map(move |i| (i, axis[k])))
+        .collect()
+}
+
+/// Fits values at the knots, the last axis running fastest. Those that are pinned, by index, are what they
+/// are, and the others between the least and the most of them.
 ///
 /// # Panics
 /// When a knot is not finite: then nothing can be solved.
 pub fn fit_surface<const D: usize>(
     samples: &[Sample<D>],
     axes: [Axis<'_>; D],
-    pins_border: bool,
+    pins: &[(usize, f64)],
 ) -> Vec<f64> {
     let shares: Vec<(Terms, &Sample<D>)> =
         samples.iter().map(|sample| (shares(&axes, sample.at), sample)).collect();
     let penalties = penalties(&axes);
     let count: usize = axes.iter().map(|axis| axis.knots.len()).product();
-    let row = count / axes[0].knots.len();
-    let (least, most) = (axes[0].knots[0], axes[0].knots[axes[0].knots.len() - 1]);
-    let borders = [(0..row, least), (count - row..count, most)];
-    let pins = if pins_border { &borders[..] } else { &[] };
     let mut values = DVector::zeros(count);
     for _ in 0..MOST_STEPS {
         let mut hessian = DMatrix::from_diagonal_element(count, count, RIDGE);
@@ -83,10 +89,8 @@ pub fn fit_surface<const D: usize>(
             };
             add(terms, penalty * excess, penalty);
         }
-        for (places, knot) in pins {
-            for k in places.clone() {
-                add(&[(k, 1.0)], PINNED * (values[k] - knot), PINNED);
-            }
+        for &(k, pinned) in pins {
+            add(&[(k, 1.0)], PINNED * (values[k] - pinned), PINNED);
         }
         let step = hessian.cholesky().expect("a positive definite matrix").solve(&gradient);
         // Full steps overshoot where everything is certain.
@@ -98,9 +102,14 @@ pub fn fit_surface<const D: usize>(
     }
     let mut table: Vec<f64> = values.iter().copied().collect();
     round(&mut table, &axes);
-    for (places, knot) in pins {
+    if !pins.is_empty() {
+        let pinned = || pins.iter().map(|&(_, value)| value);
+        let least = pinned().fold(f64::INFINITY, f64::min);
+        let most = pinned().fold(f64::NEG_INFINITY, f64::max);
         table.iter_mut().for_each(|value| *value = value.clamp(least, most));
-        table[places.clone()].fill(*knot);
+    }
+    for &(k, pinned) in pins {
+        table[k] = pinned;
     }
     table
 }
@@ -207,7 +216,7 @@ mod tests {
     #[test]
     fn a_plane_is_found_again() {
         let plane = |x: f64, y: f64| 0.5 + 0.8 * x + 1.1 * y;
-        let table = fit_surface(&drawn(plane), [ROWS, COLUMNS], false);
+        let table = fit_surface(&drawn(plane), [ROWS, COLUMNS], &[]);
         for (row, x) in table.chunks(3).zip(ROWS.knots) {
             for (&found, y) in row.iter().zip(COLUMNS.knots) {
                 assert!((found - plane(*x, *y)).abs() < 0.4, "{x} {y}: {found}");
@@ -225,7 +234,7 @@ mod tests {
         };
         let samples: Vec<_> = (0..20_000).map(sample).collect();
         let noise = Axis { knots: &[0.0, 1.0, 2.0], usual: None };
-        let table = fit_surface(&samples, [noise, ROWS], false);
+        let table = fit_surface(&samples, [noise, ROWS], &[]);
         for (row, at) in table.chunks(4).zip(noise.knots) {
             assert!(row.is_sorted(), "{row:?}");
             let slope = row[1] - row[0];
@@ -237,18 +246,18 @@ mod tests {
     fn a_weight_is_so_many_samples() {
         let samples = drawn(|x, y| x + y - 3.0);
         let heavy = samples.iter().map(|sample| Sample { weight: 3.0, ..*sample });
-        let heavy = fit_surface(&heavy.collect::<Vec<_>>(), [ROWS, COLUMNS], false);
-        assert_eq!(heavy, fit_surface(&samples.repeat(3), [ROWS, COLUMNS], false));
+        let heavy = fit_surface(&heavy.collect::<Vec<_>>(), [ROWS, COLUMNS], &[]);
+        assert_eq!(heavy, fit_surface(&samples.repeat(3), [ROWS, COLUMNS], &[]));
     }
 
     #[test]
     fn what_goes_against_the_evidence_is_levelled_and_borders_are_kept() {
-        let table = fit_surface(&drawn(|x, y| x - y), [ROWS, COLUMNS], false);
+        let table = fit_surface(&drawn(|x, y| x - y), [ROWS, COLUMNS], &[]);
         let rows: Vec<&[f64]> = table.chunks(3).collect();
         for pair in rows.windows(2) {
             assert!(pair[0].is_sorted() && pair[0].iter().zip(pair[1]).all(|(a, b)| a <= b));
         }
-        let pinned = fit_surface(&drawn(|x, y| x + y), [ROWS, COLUMNS], true);
+        let pinned = fit_surface(&drawn(|x, y| x + y), [ROWS, COLUMNS], &border(ROWS.knots, 3));
         assert_eq!((pinned[2], pinned[9]), (0.0, 4.0));
     }
 }

@@ -59,7 +59,7 @@ fn fit_margins(answers: &Answers) -> Result<[f64; WITHIN_KNOTS.len()]> {
     let mut nearness = WITHIN_KNOTS.map(|z| -z);
     nearness.reverse();
     let axis = Axis { knots: &nearness, usual: Some(2.0) };
-    let mut fitted = fit_surface(&samples, [axis], false);
+    let mut fitted = fit_surface(&samples, [axis], &[]);
     fitted.reverse();
     fitted.try_into().map_err(|_| anyhow!("a value for each knot"))
 }

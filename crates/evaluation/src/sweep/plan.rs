@@ -52,6 +52,13 @@ impl Plan {
         Self { stream: 1, ..Self::full(draws, poses) }
     }
 
+    /// Of clouds far denser than they are sharp, drawn apart too.
+    pub fn dense(draws: u32, poses: usize) -> Self {
+        let of_points = |points| Condition { points, std: 0.02 };
+        let conditions = [10_000, 40_000, 120_000].map(of_points).to_vec();
+        Self { stream: 2, conditions, ..Self::full(draws, poses) }
+    }
+
     /// One condition of some families.
     pub fn of(families: Vec<Scenes>, draws: u32, poses: usize, points: usize, std: f64) -> Self {
         Self { families, conditions: vec![Condition { points, std }], ..Self::full(draws, poses) }

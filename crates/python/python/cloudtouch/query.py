@@ -160,6 +160,8 @@ class Query:
             stds = _arrays.numbers(covariance, "covariance", (6,))
             if (stds < 0).any():
                 raise ValueError(f"covariance: {stds.min()} is negative: a standard deviation is 0 or more")
+            if (stds[3:] > np.pi).any():
+                raise ValueError(f"covariance: {stds[3:].max()} rad is more than half a turn: is it in degrees?")
             covariance = np.diag(stds**2)
         spread = _arrays.numbers(covariance, "covariance", (6, 6))
         report, under = self._query.run_uncertain(*native_pair(a, b), matrix, spread)

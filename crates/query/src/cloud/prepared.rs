@@ -10,7 +10,7 @@ use crate::error::PrepareError;
 use crate::filter::StageReport;
 
 use super::makeup::Makeup;
-use super::makeup::scatter::{Overstated, overstated};
+use super::makeup::scatter::{Flattest, Overstated, scatter};
 use super::makeup::spread::sample_of;
 use super::pieces::Pieces;
 use super::preparation::Preparation;
@@ -219,10 +219,19 @@ impl Prepared {
         &self.makeup
     }
 
-    /// Noise that is stated of its points and that they do not have.
+    /// Noise that is stated and not there.
     pub(crate) fn overstated(&self) -> Option<Overstated> {
-        let told = || overstated(&self.neighborhoods, &self.scans.noise);
-        *self.makeup.overstated.get_or_init(told)
+        self.scatter()?.overstated()
+    }
+
+    /// How much of the noise that is stated shows in the points, from 0 to 1; none where they do not tell.
+    pub(crate) fn shows_noise(&self) -> f64 {
+        self.scatter().map_or(0.0, Flattest::shows)
+    }
+
+    fn scatter(&self) -> Option<Flattest> {
+        let told = || scatter(&self.neighborhoods, &self.scans.noise);
+        *self.makeup.scatter.get_or_init(told)
     }
 
     /// Distance of a place in the local frame to the nearest point, m.

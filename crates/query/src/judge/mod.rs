@@ -49,8 +49,9 @@ pub struct ContactEvidence {
     /// noise is as large as the spacing of the points, and no classifier was trained.
     pub misclassified: Option<f64>,
     /// How blurred the samples are: standard deviation of the noise over their spacing, both in the median
-    /// of a body, of both bodies together (the root of the sum of their squares); 0 of exact ones. It is
-    /// no evidence itself, but says what the rest is worth.
+    /// of a body, of both bodies together (the root of the sum of their squares); 0 of exact ones, and more
+    /// than 2 only as far as the points scatter by what is stated. It is no evidence itself, but says what the
+    /// rest is worth.
     pub noise_over_spacing: f64,
 }
 

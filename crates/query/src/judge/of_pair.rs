@@ -194,11 +194,22 @@ mod tests {
 
     #[test]
     fn nothing_found_is_improbable_and_everything_is_not() {
-        for judge in NOISE_KNOTS.map(judge) {
+        for noise in NOISE_KNOTS {
+            let judge = judge(noise);
             assert!(probability(judge.log_odds_by_place(MOST_DEVIATIONS, 0.0), 0.5) < 0.005);
-            assert!(probability(judge.log_odds_by_place(0.0, 6.0), 0.5) > 0.99);
+            // Of clouds this dense and blurred a few pieces cross by chance.
+            let crossing = if noise > 5.0 { 0.97 } else { 0.99 };
+            assert!(probability(judge.log_odds_by_place(0.0, 6.0), 0.5) > crossing);
             assert!(probability(judge.log_odds_by_place(-MOST_DEVIATIONS, 0.0), 0.5) > 0.99);
         }
+    }
+
+    /// The nearest of thousands of blurred pieces is near by chance: they were judged as those twice as blurred
+    /// as they are far apart.
+    #[test]
+    fn the_denser_a_blurred_cloud_the_less_says_what_is_near() {
+        let near = [2.0, 5.0, 12.0].map(|noise| judge(noise).log_odds_by_place(0.8, 0.5));
+        assert!(near[0] > near[1] + 0.5 && near[1] > near[2] + 0.5, "{near:?}");
     }
 
     #[test]
@@ -213,7 +224,7 @@ mod tests {
 
         #[test]
         fn more_evidence_never_makes_a_collision_less_probable(
-            noise in 0.0..3.0_f64, z in -7.0..7.0_f64, c in 0.0..6.0_f64, m in 0.0..40.0_f64,
+            noise in 0.0..12.0_f64, z in -7.0..7.0_f64, c in 0.0..6.0_f64, m in 0.0..40.0_f64,
             n in 0.0..500.0_f64,
             step in (0.0..1.0_f64, 0.0..1.0_f64, 0.0..5.0_f64, 0.0..1.0_f64),
         ) {
@@ -231,7 +242,7 @@ mod tests {
 
         #[test]
         fn slopes_are_what_a_small_step_changes(
-            noise in 0.0..3.0_f64, z in -7.0..7.0_f64, c in 0.01..6.0_f64, m in 0.01..40.0_f64,
+            noise in 0.0..12.0_f64, z in -7.0..7.0_f64, c in 0.01..6.0_f64, m in 0.01..40.0_f64,
         ) {
             const STEP: f64 = 1e-7;
             let judge = judge(noise);
@@ -263,7 +274,7 @@ mod tests {
 
         #[test]
         fn a_little_more_evidence_or_noise_changes_little(
-            noise in 0.0..3.0_f64, z in -7.0..7.0_f64, c in 0.0..6.0_f64, m in 0.0..40.0_f64,
+            noise in 0.0..12.0_f64, z in -7.0..7.0_f64, c in 0.0..6.0_f64, m in 0.0..40.0_f64,
         ) {
             let judge = judge(noise);
             let of = |z, c, m| judge.revise(judge.log_odds_by_place(z, c), m);

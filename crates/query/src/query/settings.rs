@@ -55,12 +55,14 @@ pub struct QuerySettings {
     pub detail: Detail,
     /// How long a query may search, and a call that asks several
     /// ([`Query::penetration`](crate::Query::penetration)) altogether. What was not looked at by then raises
-    /// the upper bound, to 1 as a rule, and is no guess. The clock is looked at before each leaf pair and
-    /// each classifier, and while one is trained: the limit is exceeded by milliseconds as a rule, and once
-    /// by some 60 for each 40,000 points where a cloud has more noise than spacing and is not
-    /// [`refined`](crate::Cloud::refined). What a leaf pair takes beyond that is bounded for any settings, by the work that Clarabel, which is not interrupted, may
-    /// do (some seconds) and by `max_mesh_parts`. With a limit answers depend on the speed of the
+    /// the upper bound, to 1 as a rule, and is no guess. With a limit, answers depend on the speed of the
     /// machine.
+    ///
+    /// The clock is looked at before each leaf pair and each classifier, and while one is trained, so that the
+    /// limit is exceeded by some milliseconds. Exception: the first query of a cloud that has more noise than
+    /// spacing and is not [`refined`](crate::Cloud::refined) exceeds it once, by about 60 ms for each 40,000
+    /// points. In no case does a leaf pair take longer than Clarabel, which is not interrupted, and
+    /// `max_mesh_parts` allow: some seconds.
     pub deadline: Option<Duration>,
     /// What keeps a pair from reading as free beside the evidence.
     pub safeguards: Safeguards,

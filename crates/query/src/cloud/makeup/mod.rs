@@ -12,7 +12,7 @@ use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing_
 
 use crate::cloud::makeup::clumps::{Clumps, clumps};
 use crate::cloud::makeup::pinhole::is_misplaced;
-use crate::cloud::makeup::scatter::Overstated;
+use crate::cloud::makeup::scatter::Flattest;
 use crate::cloud::makeup::spread::SAMPLE;
 use crate::filter::StageReport;
 
@@ -73,8 +73,8 @@ pub(crate) struct Makeup {
     /// Share of the rows without return, of a cloud whose layout does not tell where.
     pub missing: f64,
     pub sensor_doubts: Vec<SensorDoubt>,
-    /// Noise that is stated and not there; told when first asked for.
-    pub overstated: OnceLock<Option<Overstated>>,
+    /// What points scatter by; told when first asked for.
+    pub scatter: OnceLock<Option<Flattest>>,
 }
 
 impl Makeup {
@@ -97,7 +97,7 @@ impl Makeup {
             is_line: !has_area(points, (corners[1] - corners[0]).norm()) && is_line(points),
             missing,
             sensor_doubts,
-            overstated: OnceLock::new(),
+            scatter: OnceLock::new(),
         }
     }
 

@@ -22,8 +22,10 @@ const OF_BALL: f64 = 0.44;
 /// What is on a plane to this part of its noise was rounded to one, as the steps of a disparity are, or is a
 /// scan of a single line: it tells nothing.
 const EXACT: f64 = 1e-3;
-/// Of the noise that is stated they are off a plane by more than this part, whatever the surface is.
+/// Of the noise that is stated they are off a plane by more than this part, whatever the surface is, ...
 const LEAST_SHARE: f64 = 0.15;
+/// ... and by so much of a noise that is there.
+const USUAL_SHARE: f64 = 0.45;
 
 /// Noise that points do not have.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,13 +36,9 @@ pub(crate) struct Overstated {
     pub seen: f64,
 }
 
-/// What is stated of the noise where a fourth of the places of a cloud are far flatter than that leaves
-/// them: elsewhere the surface itself may be bent, or a board. Only errors that neighbours share could be
-/// so large.
-pub(in crate::cloud) fn overstated(
-    cloud: &Neighborhoods,
-    noise: &SensorNoise,
-) -> Option<Overstated> {
+/// What points scatter by where a fourth of the places of a cloud are flatter: elsewhere the surface itself may
+/// be bent, or a board. `None` where places have too few points about them to tell.
+pub(in crate::cloud) fn scatter(cloud: &Neighborhoods, noise: &SensorNoise) -> Option<Flattest> {
     let [places, others] = [PLACES, POINTS].map(|count| spread(cloud.points(), count));
     let mut found: Vec<Flattest> =
         places.iter().filter_map(|&at| flattest(at, cloud, noise, &others)).collect();
@@ -49,13 +47,26 @@ pub(in crate::cloud) fn overstated(
         return None;
     }
     found.sort_by(|p, q| p.share.total_cmp(&q.share));
-    let Flattest { share, stated, seen } = *found.get(found.len() / 4)?;
-    (share < LEAST_SHARE).then_some(Overstated { stated, seen })
+    found.get(found.len() / 4).copied()
+}
+
+impl Flattest {
+    /// Far flatter than what is stated leaves them: only errors that neighbours share could be so large.
+    pub(in crate::cloud) fn overstated(self) -> Option<Overstated> {
+        let Self { share, stated, seen } = self;
+        (share < LEAST_SHARE).then_some(Overstated { stated, seen })
+    }
+
+    /// How much of the noise that is stated shows in the points, from 0, where it is
+    /// [overstated](Self::overstated), to 1.
+    pub(in crate::cloud) fn shows(self) -> f64 {
+        ((self.share - LEAST_SHARE) / (USUAL_SHARE - LEAST_SHARE)).clamp(0.0, 1.0)
+    }
 }
 
 /// The scale at which the points about a place are on a plane best, beside their noise.
-#[derive(Clone, Copy)]
-struct Flattest {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Flattest {
     /// What they are off it, as a part of what the noise would make of them.
     share: f64,
     stated: f64,
