@@ -18,7 +18,8 @@ const MOST_COLUMNS: usize = 20;
 /// line that is neither blank nor a comment (from `#`) shows. When the first value of that line is
 /// not a number it names the columns: x, y, z and perhaps cov_xx, cov_xy, cov_xz, cov_yy, cov_yz,
 /// cov_zz (m², all six or none), in any order and case; so does the last comment before it, when it has x, y
-/// and z among as many words as the line has numbers. Without names the first three columns are x, y, z. Other columns are passed over. `nan` is a missing return.
+/// and z among as many words as the line has numbers. Without names the first three columns are x, y, z.
+/// Other columns are passed over. `nan` is a missing return.
 ///
 /// # Errors
 /// When there is nothing but comments, a column is missing or named twice, a row is too short, a
