@@ -271,9 +271,9 @@ class RobotChecker:
         """
         rows = _arrays.rows_of(path)
         positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(rows)]
-        given, until, places, looked_at, verdict = self._checker.check_path(query._query, positions, tolerance)
+        given, until, (stopped, later), looked_at, verdict = self._checker.check_path(query._query, positions, tolerance)
         checked = tuple(Checked._of(*at) for at in given)
-        return PathChecked(checked, until, *map(_place, places), looked_at, verdict)
+        return PathChecked(checked, until, _place(stopped), _place(later), looked_at, verdict)
 
 
 def _place(found: _native.Place | None) -> Stopped | None:
