@@ -121,15 +121,9 @@ fn row(content: &str, order: &Order) -> Result<Pose> {
     };
     let numbers = content.split(',').map(number).collect::<Result<Vec<f64>>>()?;
     if numbers.len() != order.count {
-        bail!(
-            "write {} numbers, {}: metres and a quaternion, with commas",
-            order.count,
-            if order.count == COLUMNS.len() {
-                COLUMNS.join(",")
-            } else {
-                "as the header has".to_owned()
-            }
-        );
+        let times = if order.count > COLUMNS.len() { " and a time, as the header has" } else { "" };
+        let (count, columns) = (order.count, COLUMNS.join(","));
+        bail!("write {count} numbers, {columns}{times}: metres and a quaternion, with commas");
     }
     let [x, y, z, w, i, j, k] = order.places.map(|place| numbers[place]);
     Ok(Pose::try_from_quaternion(Vector3::new(x, y, z), [w, i, j, k])?)

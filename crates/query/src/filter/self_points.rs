@@ -23,7 +23,7 @@ impl SelfMesh {
     pub(crate) fn held(&self, place: &Point3) -> bool {
         /// Of the size of the link; signed distances end within some 1e-7 of it.
         const ROUNDING: f64 = 1e-6;
-        self.is_within(place, self.padding + ROUNDING * self.mesh.size())
+        self.nearness()(place, self.padding + ROUNDING * self.mesh.size())
     }
 
     /// The same link in a frame that lies at `origin` in that of the cloud.
@@ -32,10 +32,12 @@ impl SelfMesh {
         Self { mesh: self.mesh.clone(), cloud_from_link: moved, padding: self.padding }
     }
 
-    /// Whether a place in the frame of the cloud is inside the link or so near to it, m.
-    fn is_within(&self, place: &Point3, distance: f64) -> bool {
-        let place = self.cloud_from_link.inverse().transform_point(place);
-        self.mesh.is_within(&place, distance)
+    /// Tells whether a place in the frame of the cloud is inside the link or so near to it, m; for many places.
+    fn nearness(&self) -> impl Fn(&Point3, f64) -> bool + '_ {
+        let link_from_cloud = self.cloud_from_link.inverse();
+        move |place, distance| {
+            self.mesh.is_within(&link_from_cloud.transform_point(place), distance)
+        }
     }
 }
 
@@ -45,8 +47,10 @@ pub(super) fn keep_outside(
     kept: &mut Vec<usize>,
     robot: &[SelfMesh],
 ) -> Vec<usize> {
-    let is_robot =
-        |i: &mut usize| robot.iter().any(|link| link.is_within(&cloud.points[*i], link.padding));
+    let links: Vec<_> = robot.iter().map(|link| (link.nearness(), link.padding)).collect();
+    let is_robot = |i: &mut usize| {
+        links.iter().any(|(is_within, padding)| is_within(&cloud.points[*i], *padding))
+    };
     kept.extract_if(.., is_robot).collect()
 }
 
@@ -58,11 +62,14 @@ pub(crate) fn beyond_noise<'a>(
 ) -> f64 {
     /// Standard deviations that no noise reaches.
     const DEVIATIONS: f64 = 6.0;
+    let links: Vec<_> = robot.iter().map(|link| (link.nearness(), link.padding)).collect();
     let (mut all, mut beyond) = (0_usize, 0_usize);
     for (point, std) in removed {
         all += 1;
-        let reach = |link: &SelfMesh| link.padding.min(DEVIATIONS * std);
-        beyond += usize::from(!robot.iter().any(|link| link.is_within(point, reach(link))));
+        let reach = DEVIATIONS * std;
+        let is_near =
+            links.iter().any(|(is_within, padding)| is_within(point, reach.min(*padding)));
+        beyond += usize::from(!is_near);
     }
     beyond as f64 / all.max(1) as f64
 }

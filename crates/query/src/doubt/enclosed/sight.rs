@@ -22,11 +22,10 @@ pub(super) fn sees(cloud: &Prepared, sensor: &Point3, place: &Point3) -> bool {
         let along = offset.dot(&way) / length.max(f64::MIN_POSITIVE);
         let aside = (offset.norm_squared() - along * along).max(0.0).sqrt();
         let is_between = along > 0.0 && along < length;
-        let most = LOCAL_SPACINGS * MOST_SPARSE * spacing;
-        !is_between
-            || aside > SURFACE_SPACINGS * spacing
-                && (aside > most
-                    || aside
-                        > LOCAL_SPACINGS * cloud.spacing_about(point).min(MOST_SPARSE * spacing))
+        let is_off_where_sparse = || {
+            aside > LOCAL_SPACINGS * MOST_SPARSE * spacing
+                || aside > LOCAL_SPACINGS * cloud.spacing_about(point)
+        };
+        !is_between || aside > SURFACE_SPACINGS * spacing && is_off_where_sparse()
     })
 }
