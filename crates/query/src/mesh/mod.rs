@@ -8,10 +8,12 @@ mod parts;
 mod prepare;
 mod project;
 mod side;
+mod sides;
 mod subdivide;
 mod surface;
 mod winding;
 
 pub(crate) use nearest_samples::nearest_in_region;
 pub use prepare::Mesh;
+pub(crate) use sides::Sides;
 pub(crate) use subdivide::{SampleRegion, four_per_triangle, sample_region};

@@ -2,10 +2,9 @@
 
 use cloudtouch_geom::Point3;
 use parry3d_f64::math;
-use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
+use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::Segment;
 
-use super::cells::Cell;
 use super::prepare::{Mesh, vector};
 use super::side::Side;
 
@@ -55,16 +54,13 @@ impl Mesh {
         (nearest, triangle as usize)
     }
 
-    /// Whether every place within a distance (m) of this one, in the local frame, is outside.
-    pub(crate) fn is_clear_of(&self, local: &Point3, distance: f64) -> bool {
-        let near = |p: &Point3| {
-            self.surface().project_local_point_with_max_dist(vector(p), false, distance).is_some()
-        };
-        self.is_surely_clear_of(local, distance)
-            || self.cell(local) != Some(Cell::Inside) && !near(local) && !self.encloses(local)
+    /// How far (m) a finite place in the local frame is from the surface.
+    pub(super) fn distance(&self, local: &Point3) -> f64 {
+        (local - self.nearest(local).0).norm()
     }
 
-    /// The same, told at once; no too where it takes a closer look.
+    /// Whether every place within a distance (m) of this one, in the local frame, is outside, as far as that is told
+    /// at once; no too where it takes a closer look.
     pub(crate) fn is_surely_clear_of(&self, local: &Point3, distance: f64) -> bool {
         let to_box = self.distance_to_box(local);
         let [low, high] = self.corners_of_box();

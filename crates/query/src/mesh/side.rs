@@ -68,6 +68,11 @@ impl Mesh {
         self.cell(local) == Some(Cell::Inside)
     }
 
+    /// The same of outside.
+    pub(crate) fn is_surely_outside(&self, local: &Point3) -> bool {
+        matches!(self.cell(local), Some(Cell::Outside(_)))
+    }
+
     /// How far (m) everything around a place within the box is outside, for certain; nothing is known of
     /// an open mesh.
     pub(super) fn clear_around(&self, local: &Point3) -> f64 {

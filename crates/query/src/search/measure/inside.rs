@@ -1,6 +1,8 @@
 //! How deep a cloud is inside a closed mesh: a search along surfaces does not see what lies wholly
 //! within.
 
+use std::cmp::Ordering;
+
 use cloudtouch_bvh::{NodeId, Visit};
 use cloudtouch_geom::{Point3, Pose, Vector3, normal};
 
@@ -8,7 +10,7 @@ use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::cloud::{Cloud, Surfel};
 use crate::judge::MOST_DEVIATIONS;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Sides};
 
 use crate::search::wrench::{Wrench, force_at};
 
@@ -94,7 +96,8 @@ fn deepest(
     }
     let cloud_from_mesh = mesh_from_cloud.inverse();
     // PERF: what is deepest comes first, since a point that is clearly inside spares all others their fits.
-    let mut leaves = looked.leaves_within(cloud, mesh, mesh_from_cloud, clock);
+    let mut sides = Sides::of(mesh);
+    let mut leaves = looked.leaves_within(cloud, (mesh, &mut sides), mesh_from_cloud, clock);
     leaves.sort_by(|(p, _), (q, _)| q.total_cmp(p));
     for (_, leaf) in leaves {
         if looked.deviations() >= MOST_DEVIATIONS {
@@ -108,7 +111,7 @@ fn deepest(
         let (surfels, computed) = cloud.leaf(leaf);
         looked.leaves_prepared += usize::from(computed);
         for surfel in surfels {
-            looked.look_at(surfel, mesh, mesh_from_cloud, &cloud_from_mesh);
+            looked.look_at(surfel, (mesh, &mut sides), mesh_from_cloud, &cloud_from_mesh);
         }
     }
     looked.deepest = looked.deepest.map(|inside| Inside {
@@ -161,7 +164,7 @@ impl Looked {
     fn leaves_within(
         &mut self,
         cloud: &Cloud,
-        mesh: &Mesh,
+        (mesh, sides): (&Mesh, &mut Sides<'_>),
         mesh_from_cloud: &Pose,
         clock: &Clock,
     ) -> Vec<(f64, NodeId)> {
@@ -180,7 +183,7 @@ impl Looked {
                 let is_clear = mesh.is_surely_clear_of(&middle, reach);
                 return if is_clear { Visit::Prune } else { Visit::Descend };
             }
-            if !mesh.is_clear_of(&middle, reach) {
+            if !sides.are_clear_around(&middle, reach) {
                 let depth = || (middle - mesh.nearest(&middle).0).norm();
                 let depth = if mesh.is_surely_inside(&middle) { depth() } else { 0.0 };
                 leaves.push((depth, node.id()));
@@ -198,29 +201,33 @@ impl Looked {
     fn look_at(
         &mut self,
         surfel: &Surfel,
-        mesh: &Mesh,
+        (mesh, sides): (&Mesh, &mut Sides<'_>),
         mesh_from_cloud: &Pose,
         cloud_from_mesh: &Pose,
     ) {
         let at = mesh_from_cloud.transform_point(&surfel.point.mean);
-        if !mesh.encloses(&at) {
+        if mesh.is_surely_outside(&at) {
             return;
         }
         let (place, _) = mesh.nearest(&at);
         let depth = (at - place).norm();
         let deviations = depth / surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
+        // PERF: on which side it is takes longest to tell.
+        if deviations.partial_cmp(&self.deviations()) != Some(Ordering::Greater)
+            || !sides.encloses(&at, depth)
+        {
+            return;
+        }
         // On the surface itself no direction is outward.
         let Some(outward) = (place - at).try_normalize(0.0) else { return };
-        if deviations > self.deviations() {
-            let in_cloud = cloud_from_mesh.transform_vector(&outward);
-            self.deepest = Some(Inside {
-                deviations,
-                depth,
-                std: surfel.point.covariance.std_along(&in_cloud),
-                place,
-                outward,
-                spacing: surfel.spacing,
-            });
-        }
+        let in_cloud = cloud_from_mesh.transform_vector(&outward);
+        self.deepest = Some(Inside {
+            deviations,
+            depth,
+            std: surfel.point.covariance.std_along(&in_cloud),
+            place,
+            outward,
+            spacing: surfel.spacing,
+        });
     }
 }
