@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use cloudtouch::geom::{Point3, Pose};
 use cloudtouch_robot::{
@@ -119,13 +119,18 @@ impl Robot {
 #[pyclass(frozen, module = "cloudtouch._native")]
 pub(crate) struct RobotChecker {
     /// With nobody around.
-    checker: Checker,
+    checker: Mutex<Checker>,
     surroundings: Py<Body>,
 }
 
 impl RobotChecker {
+    /// What a thread that panicked left is whole: each change is made at once or not at all.
+    fn lock(&self) -> MutexGuard<'_, Checker> {
+        self.checker.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn now(&self, py: Python<'_>) -> PyResult<Checker> {
-        let mut checker = self.checker.clone();
+        let mut checker = self.lock().clone();
         checker.replace_surroundings(self.surroundings.get().now(py)?).map_err(refused)?;
         Ok(checker)
     }
@@ -145,7 +150,30 @@ impl RobotChecker {
         let touching = if self_collision { Touching::AndItself } else { Touching::Surroundings };
         let robot = Arc::clone(&robot.get().described);
         let checker = Checker::new(robot, nobody()?, base, touching).map_err(refused)?;
-        Ok(Self { checker, surroundings: surroundings.unbind() })
+        Ok(Self { checker: Mutex::new(checker), surroundings: surroundings.unbind() })
+    }
+
+    #[pyo3(signature = (a, b, /))]
+    fn allow(&self, a: &str, b: &str) -> PyResult<()> {
+        self.lock().allow(a, b).map_err(refused)
+    }
+
+    #[pyo3(signature = (name, body, link, link_from_body, /))]
+    fn hold(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        body: &Bound<'_, Body>,
+        link: &str,
+        link_from_body: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<()> {
+        let (body, pose) = (body.get().now(py)?, rigid(&matrix(&link_from_body))?);
+        self.lock().hold(name, body, link, pose).map_err(refused)
+    }
+
+    #[pyo3(signature = (name, /))]
+    fn release(&self, name: &str) -> PyResult<()> {
+        self.lock().release(name).map(|_| ()).map_err(refused)
     }
 
     #[pyo3(signature = (query, joints, /))]

@@ -100,6 +100,34 @@ def test_links_touch_one_another_where_that_is_asked(robot, folder, floor_under)
     assert ct.RobotChecker(tolerant, floor_under, self_collision=True).check(ct.Query(), closed).verdict == "free"
 
 
+def test_what_may_touch_and_what_is_held(robot, floor_under):
+    checker = ct.RobotChecker(robot, floor_under)
+    down = at(0.5)
+    touching = {pair.b for pair in checker.check(ct.Query(), down).pairs}
+    for link in touching:
+        checker.allow(link)
+    assert checker.check(ct.Query(), down).verdict == "free"
+    # A rod of 60 cm across the bar's end, one half of it below.
+    corners = np.array([[x, y, z] for x in (-0.01, 0.01) for y in (-0.01, 0.01) for z in (-0.3, 0.3)])
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4]]
+    rod = ct.Mesh(corners, np.array([*faces, [1, 5, 7], [1, 7, 3]]))
+    there = np.eye(4)
+    there[0, 3] = 0.9
+    checker.hold("rod", rod, "bar", there)
+    found = checker.check(ct.Query(), at(0.3))
+    assert found.verdict == "in_collision" and {pair.b for pair in found.pairs} == {"rod"}
+    path = checker.check_path(ct.Query(), [at(-0.5), at(0.3)])
+    assert path.verdict == "in_collision" and 0.0 < path.certified_free_until < 1.0
+    with pytest.raises(ct.CloudtouchError, match="`rod`"):
+        checker.hold("rod", rod, "bar")
+    with pytest.raises(ct.CloudtouchError, match="`nobody`"):
+        checker.allow("nobody")
+    checker.release("rod")
+    assert checker.check(ct.Query(), at(0.3)).verdict == "free"
+    with pytest.raises(ct.CloudtouchError, match="`rod`"):
+        checker.release("rod")
+
+
 def test_a_path_is_free_up_to_where_it_is_not(robot, floor_under):
     checker = ct.RobotChecker(robot, floor_under)
     path = checker.check_path(ct.Query(), [at(-0.5), at(0.3)])

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Point3, Pose};
 
 use crate::cloud::Cloud;
 use crate::mesh::Mesh;
@@ -87,6 +87,11 @@ impl<'a> BodyRef<'a> {
     /// about a millisecond.
     pub fn placement(&self, other: BodyRef<'_>, self_from_other: &Pose) -> Placement {
         place(self.shape(), other.shape(), self_from_other)
+    }
+
+    /// Lowest and highest corner of the box around its points along the axes of its file frame, m.
+    pub fn corners(&self) -> [Point3; 2] {
+        self.shape().corners().map(|corner| corner + self.shape().origin())
     }
 
     pub(crate) fn shape(&self) -> Shape<'a> {

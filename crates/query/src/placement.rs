@@ -24,13 +24,20 @@ pub struct Placement {
 /// millisecond.
 pub(crate) fn place(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> Placement {
     let local = a.local_from(&b, a_from_b);
-    let in_file = |corners: [Point3; 2]| corners.map(|p| (p + a.origin()).coords.into());
+    let [scene_box, object_box] =
+        boxes(a, b, a_from_b).map(|corners| corners.map(|p| p.coords.into()));
     Placement {
-        scene_box: in_file(a.corners()),
-        object_box: in_file(moved(b.corners(), &local)),
+        scene_box,
+        object_box,
         box_gap_m: box_gap(a, b, &local),
         nearest_m: nearest(a, b, &local).or_else(|| nearest(b, a, &local.inverse())),
     }
+}
+
+/// The boxes of both bodies along the axes of A, in its file frame, m; that of `b` never too small.
+pub(crate) fn boxes(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> [[Point3; 2]; 2] {
+    let of_b = moved(b.corners(), &a.local_from(&b, a_from_b));
+    [a.corners(), of_b].map(|corners| corners.map(|p| p + a.origin()))
 }
 
 /// Distance of the boxes of two bodies along the axes of A, m; `a_from_b` maps local frames.

@@ -3,7 +3,9 @@
 use crate::common::{MODES, Scan, ask, at, mesh, scan};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode, Query, QuerySettings, Report, Verdict, Warning};
+use cloudtouch::{
+    Cloud, CloudSettings, Mode, Path, Query, QuerySettings, Report, Verdict, Warning,
+};
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
@@ -157,4 +159,44 @@ fn a_dark_thing_among_missing_returns_was_taken_for_empty_space() {
         let beside = at(-0.6, 0.0, 1.5);
         check(&ask(mode, &prepared(&image, mode), &ball, &beside), true, mode);
     }
+}
+
+/// Where the block hides half of the ball in the end, and nothing of it halfway there.
+fn into_the_shadow() -> Path {
+    Path::linear(&at(-0.9, 0.2, 2.5), &at(-0.5, 0.2, 2.5)).expect("two poses")
+}
+
+/// Doubts were looked for in the middle of a stretch: one that led into the shadow was certified free.
+#[test]
+fn a_path_that_ends_in_the_shadow_read_free() {
+    let image = CloudSettings::new(SensorModel::Kinect);
+    let image = Cloud::prepare(&view(), &image).expect("a good image");
+    let query = Query::new(QuerySettings::default()).expect("default settings");
+    let (ball, path) = (mesh(&object()), into_the_shadow());
+    let verdict =
+        |share: f64| query.run(&image, &ball, &path.pose(share)).expect("a good pose").verdict;
+    assert_eq!([0.0, 0.5, 1.0].map(verdict), [Verdict::Free, Verdict::Free, Verdict::Undecided]);
+    let swept = query.sweep(&image, &ball, &path, 0.01).expect("a good path");
+    assert_eq!(swept.verdict, Verdict::Undecided, "{swept:?}");
+    let until = swept.certified_free_until;
+    assert!((0.5..1.0).contains(&until) && verdict(until) == Verdict::Free, "{until}");
+    assert_eq!(verdict(until + 0.02), Verdict::Undecided, "{until}");
+}
+
+/// Something may stand in the shadow, which is 11 cm away.
+#[test]
+fn a_margin_that_reaches_into_the_shadow_was_free_for_certain() {
+    let image = CloudSettings::new(SensorModel::Kinect);
+    let image = Cloud::prepare(&view(), &image).expect("a good image");
+    let query = Query::new(QuerySettings::default()).expect("default settings");
+    let (ball, beside) = (mesh(&object()), at(-0.7, 0.2, 2.5));
+    let most = |margin| {
+        let (report, within) = query.within(&image, &ball, &beside, margin).expect("a good pose");
+        assert_eq!(report.verdict, Verdict::Free);
+        within.bounds[1]
+    };
+    assert!(most(0.05) < 0.1 && most(0.2) == 1.0, "{} {}", most(0.05), most(0.2));
+    let [low, _] = query.clearance_interval(&image, &ball, &beside, 0.9).expect("a good pose");
+    // As far as pixels at its rim and the distances looked at tell, which grow by a quarter.
+    assert!((0.1..0.19).contains(&low), "{low}");
 }

@@ -6,7 +6,8 @@ use crate::common::{at, measured};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Body, Cloud, CloudSettings, Mesh, Path, Query, QueryError, QuerySettings, Swept, Verdict,
+    Body, Cloud, CloudSettings, Detail, Mesh, Path, Query, QueryError, QuerySettings, Swept,
+    Verdict,
 };
 use cloudtouch_testkit::scene;
 
@@ -233,7 +234,29 @@ fn check_random_motion(index: u64, samples: u32) -> usize {
         assert!(first.not_before <= first.at.share);
         assert!(swept.certified_free_until <= first.at.share);
     }
+    // Asked for no more it says no less of whether the path is free.
+    let only = QuerySettings { detail: Detail::Verdict, ..QuerySettings::default() };
+    let only = Query::new(only).expect("good settings");
+    let only = only.sweep(&a, &b, &path, tolerance).expect("a good path");
+    assert_eq!(only.verdict == Verdict::Free, swept.verdict == Verdict::Free, "{index} {kinds:?}");
     swept.stats.stretches
+}
+
+/// Of a path through a sheet sixteen poses tell that it is not free; bounds for all that is between them took a
+/// hundred times as long.
+#[test]
+fn a_sweep_that_is_asked_for_the_verdict_alone_ends_with_the_first_pose_that_is_not_free() {
+    let sheet = cloud(&scene::cuboid([0.4, 0.4, 0.004]), 0.012, 0.001, 1);
+    let block = cloud(&scene::cuboid([0.1, 0.1, 0.1]), 0.012, 0.001, 2);
+    let path = Path::linear(&at(0.0, 0.0, 0.3), &at(0.0, 0.0, -0.3)).expect("two poses");
+    let settings = QuerySettings { detail: Detail::Verdict, ..QuerySettings::default() };
+    let swept = Query::new(settings).expect("good settings").sweep(&sheet, &block, &path, 0.01);
+    let swept = swept.expect("a good path");
+    assert_eq!(swept.verdict, Verdict::InCollision);
+    // Both ends and the middle.
+    assert_eq!((swept.stats.poses, swept.stats.stretches), (3, 0));
+    assert_eq!((swept.certified_free_until, swept.bounds[1]), (0.0, 1.0));
+    assert!(swept.first.is_some_and(|first| first.at.share == 0.5 && first.not_before == 0.0));
 }
 
 /// 200 of them here; 10,000 with

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use cloudtouch::geom::Pose;
 use cloudtouch::{Body, Checked, Query, Scene, SceneError};
 
+use crate::carried::Carried;
 use crate::error::JointsError;
 use crate::robot::Robot;
 
@@ -27,15 +28,18 @@ pub enum Touching {
 pub struct RobotChecker {
     pub(crate) robot: Arc<Robot>,
     pub(crate) scene: Scene,
-    /// For each shape its name in the scene.
-    pub(crate) names: Vec<String>,
+    /// The shapes of the links, and after these what they hold.
+    pub(crate) carried: Vec<Carried>,
     pub(crate) scene_from_base: Pose,
+    pub(crate) touching: Touching,
 }
 
 impl RobotChecker {
     /// Puts a robot into a cloud or a mesh, in whose frame its base is at `scene_from_base`.
     ///
-    /// Several may share a robot. A scan must not hold the robot itself: see [`Robot::self_filter`].
+    /// Several may share a robot. A scan must not hold the robot itself: see [`Robot::self_filter`]. A base that
+    /// touches what it stands on, or is out of the camera's view, collides or is undecided at any positions:
+    /// see [`Self::allow`].
     ///
     /// # Errors
     /// When the pose is not finite, or a link is called [`SURROUNDINGS`].
@@ -48,22 +52,32 @@ impl RobotChecker {
         let robot = robot.into();
         let mut scene = Scene::default();
         scene.add(SURROUNDINGS, surroundings, Pose::identity())?;
-        let names = robot.body_names();
-        for (name, shape) in names.iter().zip(&robot.shapes) {
-            scene.add(name, Arc::clone(&shape.body), scene_from_base)?;
+        let carried = Carried::shapes_of(&robot);
+        for part in &carried {
+            scene.add(&part.name, Arc::clone(&part.body), scene_from_base)?;
         }
-        let link = |place: usize| &robot.tree.links[robot.shapes[place].link];
-        for i in 0..names.len() {
-            for j in 0..i {
-                if touching == Touching::Surroundings
-                    || link(i) == link(j)
-                    || robot.may_touch(link(i), link(j))
-                {
-                    scene.allow(&names[i], &names[j])?;
-                }
+        let mut checker = Self { robot, scene, carried, scene_from_base, touching };
+        for place in 0..checker.carried.len() {
+            checker.allow_what_may_touch(place)?;
+        }
+        Ok(checker)
+    }
+
+    /// Allows the pairs of a part and those before it that are not asked about.
+    pub(crate) fn allow_what_may_touch(&mut self, place: usize) -> Result<(), SceneError> {
+        let Self { robot, scene, carried, touching, .. } = self;
+        let part = &carried[place];
+        for other in &carried[..place] {
+            let [link, beside] = [part, other].map(|part| &robot.tree.links[part.link]);
+            let are_parts_of_links = part.is_shape && other.is_shape;
+            if *touching == Touching::Surroundings
+                || part.link == other.link
+                || are_parts_of_links && robot.may_touch(link, beside)
+            {
+                scene.allow(&part.name, &other.name)?;
             }
         }
-        Ok(Self { robot, scene, names, scene_from_base })
+        Ok(())
     }
 
     /// The robot.
@@ -103,8 +117,8 @@ impl RobotChecker {
     pub(crate) fn placed(&self, positions: &[f64]) -> Result<Scene, SceneError> {
         let poses = self.robot.tree.poses(positions);
         let mut scene = self.scene.clone();
-        for (name, shape) in self.names.iter().zip(&self.robot.shapes) {
-            scene.set_pose(name, self.scene_from_base.after(&poses[shape.link]))?;
+        for part in &self.carried {
+            scene.set_pose(&part.name, self.scene_from_base.after(&part.pose(&poses)))?;
         }
         Ok(scene)
     }

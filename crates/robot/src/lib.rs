@@ -1,9 +1,11 @@
 #![doc = include_str!("../README.md")]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+mod carried;
 mod checker;
 mod error;
 mod essential;
+mod hold;
 mod joint;
 mod link;
 mod motion;

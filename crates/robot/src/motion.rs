@@ -7,8 +7,6 @@ use cloudtouch::{BodyRef, Checked, PairAnswer, Query, Verdict};
 use crate::checker::{RobotChecker, SURROUNDINGS};
 use crate::error::PathError;
 use crate::joint::JointKind;
-use crate::link::Shape;
-use crate::robot::Robot;
 use crate::tree::Tree;
 
 /// What is known of a path.
@@ -78,7 +76,8 @@ impl RobotChecker {
     /// its joints let it (Schwarzer, Saha, Latombe 2005); if no surface is within that distance there by
     /// [`Query::within`], with the reject threshold of the query, the stretch is free. Else it is
     /// halved, down to `tolerance` as a share of the path; there the search ends, and what comes
-    /// later is looked at for collisions at the positions given and some between them. Ask with
+    /// later is looked at for collisions at the positions given and some between them. A deadline of the query
+    /// counts for all of it. Ask with
     /// [`Detail::Full`](cloudtouch::Detail::Full) for contacts and clearances of what is found.
     ///
     /// # Errors
@@ -101,6 +100,7 @@ impl RobotChecker {
             positions.map_err(|error| PathError::Joints { index, error })
         };
         let path = path.iter().enumerate().map(at).collect::<Result<Vec<Vec<f64>>, _>>()?;
+        let query = &query.begun_now();
         let given = path.iter().enumerate().map(|(index, at)| self.check_at(query, index, at));
         let given = given.collect::<Result<_, _>>()?;
         let mut checked = self.certify(query, &path, given, tolerance)?;
@@ -180,45 +180,51 @@ impl RobotChecker {
     }
 
     /// Of every pair that may touch the largest probability that it meets on the way from one position to the
-    /// other, of which `middle` is the middle: of the surroundings (`None`) or a shape, and another shape.
+    /// other, of which `middle` is the middle: of the surroundings (`None`) or a part, and another part.
     fn around<'a>(
         &'a self,
         query: &'a Query,
         middle: &[f64],
         ends: [&[f64]; 2],
     ) -> impl Iterator<Item = (Pair, f64)> + use<'a> {
-        let Robot { tree, shapes, .. } = &*self.robot;
+        let (tree, parts) = (&self.robot.tree, &self.carried);
         let poses = tree.poses(middle);
-        let ways: Vec<f64> = shapes.iter().map(|shape| farthest(tree, shape, ends)).collect();
-        let at = move |i: usize| self.scene_from_base.after(&poses[shapes[i].link]);
+        let at = move |i: usize| self.scene_from_base.after(&parts[i].pose(&poses));
         let of_all = |i: usize| std::iter::once(None).chain((0..i).map(Some)).map(move |j| (j, i));
-        let may_touch = |&(j, i): &Pair| match j {
-            Some(j) => self.scene.is_allowed(&self.names[i], &self.names[j]) != Ok(true),
-            None => true,
+        let may_touch = |&(j, i): &Pair| {
+            let other = j.map_or(SURROUNDINGS, |j| &*parts[j].name);
+            self.scene.is_allowed(&parts[i].name, other) != Ok(true)
+        };
+        let ends = ends.map(<[f64]>::to_vec);
+        // What carries both changes nothing between them.
+        let way = move |i: usize, beside: Option<usize>| {
+            let carries = |joint: usize, j: usize| tree.chain(parts[j].link).any(|k| k == joint);
+            let is_common = |joint: usize| beside.is_some_and(|j| carries(joint, j));
+            farthest(tree, (parts[i].link, parts[i].radius), [&ends[0], &ends[1]], is_common)
         };
         let at_most = move |(j, i): Pair| {
             let (a_from_b, way) = match j {
-                Some(j) => (at(j).inverse().after(&at(i)), ways[i] + ways[j]),
-                None => (at(i), ways[i]),
+                Some(j) => (at(j).inverse().after(&at(i)), way(i, Some(j)) + way(j, Some(i))),
+                None => (at(i), way(i, None)),
             };
             let a: Result<BodyRef<'_>, _> = match j {
-                Some(j) => Ok((&*shapes[j].body).into()),
+                Some(j) => Ok((&*parts[j].body).into()),
                 None => self.scene.body(SURROUNDINGS).map(Into::into),
             };
             // What cannot be asked is not clear.
-            let found = a.ok().and_then(|a| query.within(a, &*shapes[i].body, &a_from_b, way).ok());
+            let found = a.ok().and_then(|a| query.within(a, &*parts[i].body, &a_from_b, way).ok());
             found.map_or(1.0, |(_, within)| within.bounds[1])
         };
-        (0..shapes.len()).flat_map(of_all).filter(may_touch).map(move |pair| (pair, at_most(pair)))
+        (0..parts.len()).flat_map(of_all).filter(may_touch).map(move |pair| (pair, at_most(pair)))
     }
 
     fn nearest(&self, (a, b): Pair, at_most: f64) -> Nearest {
-        let a = a.map_or(SURROUNDINGS, |a| &*self.names[a]);
-        Nearest { a: a.to_owned(), b: self.names[b].clone(), at_most }
+        let a = a.map_or(SURROUNDINGS, |a| &*self.carried[a].name);
+        Nearest { a: a.to_owned(), b: self.carried[b].name.clone(), at_most }
     }
 }
 
-/// A shape or the surroundings, and another shape.
+/// A part or the surroundings, and another part.
 type Pair = (Option<usize>, usize);
 
 impl Stopped {
@@ -237,11 +243,17 @@ fn between(from: &[f64], to: &[f64], time: f64) -> Vec<f64> {
     from.iter().zip(to).map(|(from, to)| from + (to - from) * time).collect()
 }
 
-/// No point of a shape is farther than this from where it is in the middle of a motion, m: every joint
-/// that carries it takes it along by no more than half its turn times its longest lever.
-fn farthest(tree: &Tree, shape: &Shape, [from, to]: [&[f64]; 2]) -> f64 {
-    let (mut lever, mut way) = (shape.radius, 0.0);
-    for joint in tree.chain(shape.link) {
+/// No point of what a link carries within a radius (m) is farther than this from where it is in the middle of a motion, m, seen from the outermost
+/// joint that `is_common` with what it is seen from: every joint that carries it on takes it along by no more than
+/// half its turn times its longest lever.
+fn farthest(
+    tree: &Tree,
+    (link, radius): (usize, f64),
+    [from, to]: [&[f64]; 2],
+    is_common: impl Fn(usize) -> bool,
+) -> f64 {
+    let (mut lever, mut way) = (radius, 0.0);
+    for joint in tree.chain(link).take_while(|&joint| !is_common(joint)) {
         let (from, to) = (from[joint], to[joint]);
         let half = 0.5 * (to - from).abs();
         let of = &tree.joints[joint];
@@ -260,6 +272,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::robot::Robot;
 
     const URDF: &str = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/><link name='d'>
         <collision><origin xyz='0.1 0.2 0'/><geometry><box size='0.5 0.1 0.2'/></geometry></collision></link>
@@ -284,18 +297,26 @@ mod tests {
             let file = folder.path().join("r.urdf");
             std::fs::write(&file, URDF).unwrap();
             let Robot { tree, shapes, .. } = Robot::from_urdf(file, &[]).unwrap();
-            let bound = farthest(&tree, &shapes[0], [&from, &to]);
-            let pose = |time| tree.poses(&between(&from, &to, time))[shapes[0].link];
-            let (middle, mut most) = (pose(0.5), 0.0_f64);
-            for time in times.into_iter().chain([0.0, 1.0]) {
-                for p in shapes[0].triangles.vertices() {
-                    let way = (pose(time).transform_point(p) - middle.transform_point(p)).norm();
-                    prop_assert!(way <= bound, "{} beyond {}", way, bound);
-                    most = most.max(way);
+            // Seen from the base, and from what the first joint carries.
+            for common in [0, 1] {
+                let is_common = |joint| joint < common;
+                let bound = farthest(&tree, (shapes[0].link, shapes[0].radius), [&from, &to], is_common);
+                let pose = |time| {
+                    let poses = tree.poses(&between(&from, &to, time));
+                    let seen_from = if common == 0 { 0 } else { tree.joints[0].child };
+                    poses[seen_from].inverse().after(&poses[shapes[0].link])
+                };
+                let (middle, mut most) = (pose(0.5), 0.0_f64);
+                for &time in times.iter().chain(&[0.0, 1.0]) {
+                    for p in shapes[0].triangles.vertices() {
+                        let way = (pose(time).transform_point(p) - middle.transform_point(p)).norm();
+                        prop_assert!(way <= bound, "{} beyond {}", way, bound);
+                        most = most.max(way);
+                    }
                 }
+                let moves_much = from.iter().zip(&to).all(|(from, to)| to - from > 0.5);
+                prop_assert!(!moves_much || bound < 5.0 * most, "{} against {}", bound, most);
             }
-            let moves_much = from.iter().zip(&to).all(|(from, to)| to - from > 0.5);
-            prop_assert!(!moves_much || bound < 5.0 * most, "{} against {}", bound, most);
         }
     }
 }

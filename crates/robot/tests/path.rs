@@ -1,14 +1,18 @@
 //! Between the positions of a path nothing is missed.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use std::collections::BTreeMap;
-use std::f64::consts::FRAC_PI_2;
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 
 use crate::support::{Arm, STD, joints, query, wall};
-use cloudtouch::geom::{PointCloud, Pose};
+use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Body, Cloud, CloudSettings, Verdict};
-use cloudtouch_robot::{PathError, RobotChecker, Touching};
+use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Verdict};
+use cloudtouch_robot::{PathError, RobotChecker, SURROUNDINGS, Touching};
+use cloudtouch_testkit::camera::DepthCamera;
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::scene;
 
 const TOLERANCE: f64 = 0.002;
 
@@ -84,4 +88,91 @@ fn paths_that_are_none_are_refused() {
         assert!(matches!(check(&two, bad), PathError::Tolerance { .. }), "{bad}");
     }
     assert!(matches!(check(&[around(0.0), around(9.0)], 0.1), PathError::Joints { index: 1, .. }));
+}
+
+/// A camera 3.5 m over the arm, with a plate before it that hides what is 80 cm in front of the arm.
+fn seen_past_a_plate() -> PointCloud {
+    let down = Pose::from_translation_rpy(Vector3::new(0.0, 0.0, 3.5), [PI, 0.0, 0.0]);
+    let at = |x: f64, z: f64| Pose::from_translation(Vector3::new(x, 0.0, z));
+    let part = |mesh: &TriangleMesh, pose: &Pose| ExactMesh::new(&scene::moved(mesh, pose));
+    let plate = part(&scene::cuboid([0.1, 0.1, 0.01]), &at(0.242, 2.5));
+    let floor = part(&scene::plane_patch(8.0), &at(0.0, -1.5));
+    let camera =
+        DepthCamera { depth_std_growth: 2e-4, veil_probability: 0.0, ..DepthCamera::default() };
+    PointCloud {
+        sensor_pose: Some(down),
+        ..camera.scan(&[&plate, &floor], &down, 5).transformed(&down)
+    }
+}
+
+/// Only the middle of a stretch was asked about what the camera did not see.
+#[test]
+fn a_path_through_what_the_camera_did_not_see_was_certified() {
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.006 });
+    let body = Body::from(Cloud::prepare(&seen_past_a_plate(), &settings).unwrap());
+    let checker =
+        RobotChecker::new(Arm::default().robot(), body, Pose::identity(), Touching::Surroundings)
+            .unwrap();
+    let verdict = |waist| checker.check(&query(), &around(waist)).unwrap().verdict();
+    let expected = [Verdict::Free, Verdict::Free, Verdict::Undecided, Verdict::Free];
+    assert_eq!([-1.2, -0.35, 0.0, 0.5].map(verdict), expected);
+    let path = [around(-1.2), around(0.5)];
+    let found = checker.check_path(&query(), &path, TOLERANCE).unwrap();
+    let until = found.certified_free_until;
+    assert!(found.verdict() == Verdict::Undecided && (0.4..0.7).contains(&until), "{found:?}");
+}
+
+/// A turn of the waist moves no link that it carries against another.
+#[test]
+fn links_that_turn_together_were_taken_to_turn_against_each_other() {
+    let checker = among(&wall(3.0 * Arm::TOP), Touching::AndItself);
+    let found = checker.check_path(&query(), &[around(-0.75), around(0.75)], TOLERANCE).unwrap();
+    // It took 65: what turns against the base alone is looked at closer.
+    assert!(found.certified_free_until == 1.0 && found.looked_at < 30, "{found:?}");
+}
+
+/// The base stands in what it is bolted to.
+#[test]
+fn a_link_may_touch_the_surroundings() {
+    let mut checker = among(&wall(0.0), Touching::Surroundings);
+    let path = [around(-0.3), around(0.3)];
+    let touching = |checker: &RobotChecker| -> BTreeSet<String> {
+        let found = checker.check(&query(), &path[0]).unwrap();
+        found.pairs.into_iter().map(|pair| pair.b).collect()
+    };
+    let links = touching(&checker);
+    assert!(links.contains("base"), "{links:?}");
+    for link in &links {
+        checker.allow(link, SURROUNDINGS).unwrap();
+    }
+    assert!(touching(&checker).is_empty());
+    assert_eq!(checker.check_path(&query(), &path, TOLERANCE).unwrap().verdict(), Verdict::Free);
+    let unknown = checker.allow("basis", SURROUNDINGS).unwrap_err().to_string();
+    assert!(unknown.contains("`basis`"), "{unknown}");
+}
+
+/// A rod in the hand, so long that it meets the wall where the hand does not.
+#[test]
+fn what_the_hand_holds_goes_along_and_is_let_go() {
+    let rod = Arc::new(Body::from(Mesh::prepare(&scene::cuboid([0.02, 0.02, 0.6])).unwrap()));
+    let mut checker = among(&wall(1.1 * Arm::TOP), Touching::AndItself);
+    let path = [around(-1.4), around(0.0)];
+    let until = |checker: &RobotChecker| {
+        checker.check_path(&query(), &path, TOLERANCE).unwrap().certified_free_until
+    };
+    assert_eq!(until(&checker), 1.0);
+    // 40 cm of it are beyond the end of the hand.
+    let ahead = Pose::from_translation(Vector3::new(0.0, 0.0, Arm::HAND + 0.1));
+    checker.hold("rod", Arc::clone(&rod), "hand", ahead).unwrap();
+    let found = checker.check(&query(), &path[1]).unwrap();
+    let worst = found.pairs.first().map(|pair| (pair.a.as_str(), pair.b.as_str(), pair.verdict()));
+    assert_eq!(worst, Some((SURROUNDINGS, "rod", Verdict::InCollision)), "{found:?}");
+    // It reaches 1.4 m, and meets the edge of the wall, 39.5 cm aside, before its middle.
+    let share = 1.0 - (0.395 / (1.1 * Arm::TOP)).atan() / 1.4;
+    assert!((share - 0.1..share).contains(&until(&checker)), "{} {share}", until(&checker));
+    assert!(checker.hold("rod", Arc::clone(&rod), "hand", ahead).is_err(), "the name is taken");
+    assert!(checker.hold("bar", Arc::clone(&rod), "nobody", ahead).is_err());
+    assert!(checker.release("hand").is_err(), "a link is not held");
+    assert!(Arc::ptr_eq(&checker.release("rod").unwrap(), &rod));
+    assert_eq!(until(&checker), 1.0);
 }

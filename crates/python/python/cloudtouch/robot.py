@@ -231,6 +231,49 @@ class RobotChecker:
         """The robot."""
         return self._robot
 
+    def allow(self, a: str, b: str = "surroundings") -> None:
+        """Say that two may touch, each a link, what is held, or the surroundings: they are not asked about.
+
+        A base that is bolted to its table, or that no camera sees around; a finger and what it holds.
+
+        Raises
+        ------
+        CloudtouchError
+            One of them has no shape that is checked.
+        """
+        self._checker.allow(a, b)
+
+    def hold(self, name: str, body: Body, link: str, link_from_body: npt.ArrayLike | None = None) -> None:
+        """Have a link hold a body, as it is now: it moves with the link from then on, along paths too.
+
+        It is asked about as the links are, but beside the one that holds it. The surroundings must not hold it any
+        more. With ``self_collision`` fingers that touch it have to be allowed (:meth:`allow`).
+
+        Parameters
+        ----------
+        link_from_body
+            (4, 4): from the frame of the body into that of the link, m; the identity where it is not given.
+
+        Raises
+        ------
+        ValueError
+            ``link_from_body`` has the wrong shape or type.
+        CloudtouchError
+            No link has that name, something else has the name of the body, or the pose is no rigid motion.
+        """
+        pose = np.eye(4) if link_from_body is None else _arrays.numbers(link_from_body, "link_from_body", (4, 4))
+        self._checker.hold(name, native_body(body, "body"), link, pose)
+
+    def release(self, name: str) -> None:
+        """Let go of a body that is held.
+
+        Raises
+        ------
+        CloudtouchError
+            Nothing of that name is held.
+        """
+        self._checker.release(name)
+
     def check(self, query: Query, joints: Positions) -> Checked:
         """All pairs that do not read as free, the worst first; the scan is called ``"surroundings"``.
 

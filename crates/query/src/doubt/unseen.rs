@@ -1,7 +1,7 @@
 //! Space that was never seen: an object where a single depth image saw nothing may be inside
 //! something, and no search of what was measured can tell.
 
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Point3, Pose, Vector3};
 use serde::Serialize;
 
 use crate::cloud::{Prepared, Sight};
@@ -34,8 +34,50 @@ impl Unseen {
 /// How much of one body lies where the other, a single depth image, saw nothing. Of two images the
 /// larger one looks at the smaller; `None` without any. `a_from_b` maps local frames.
 pub(crate) fn unseen(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> Option<Unseen> {
-    let of_b = || look(image(a)?, b, a_from_b, Which::B);
-    let of_a = || look(image(b)?, a, &a_from_b.inverse(), Which::A);
+    unseen_around((a, b), a_from_b, 1, &[Vector3::zeros()])
+}
+
+/// Distances that are looked at about a place, from the first on each so many times as far as the one before, m.
+const FIRST_DISTANCE: f64 = 2e-3;
+const FARTHER: f64 = 1.25;
+/// One in so many samples is looked around.
+const LOOKED_AROUND: usize = 4;
+
+/// The same of anywhere within a margin (m) of the body, or a little less: where something may be that is as near.
+/// Rises with the margin.
+pub(crate) fn unseen_within(
+    a: Shape<'_>,
+    b: Shape<'_>,
+    a_from_b: &Pose,
+    margin: f64,
+) -> Option<Unseen> {
+    let mut around = vec![Vector3::zeros()];
+    let mut distance = FIRST_DISTANCE;
+    while distance <= margin {
+        around.extend(directions().map(|direction| distance * direction));
+        distance *= FARTHER;
+    }
+    unseen_around((a, b), a_from_b, LOOKED_AROUND, &around)
+}
+
+/// Toward the middles of the faces of a cube and its corners.
+fn directions() -> impl Iterator<Item = Vector3> {
+    let signs = [-1.0, 1.0];
+    let faces = (0..3).flat_map(move |k| signs.map(|sign| sign * Vector3::ith(k, 1.0)));
+    let corners = signs.into_iter().flat_map(move |x| {
+        signs.into_iter().flat_map(move |y| signs.map(|z| Vector3::new(x, y, z).normalize()))
+    });
+    faces.chain(corners)
+}
+
+fn unseen_around(
+    (a, b): (Shape<'_>, Shape<'_>),
+    a_from_b: &Pose,
+    step: usize,
+    around: &[Vector3],
+) -> Option<Unseen> {
+    let of_b = || look(image(a)?, (b, Which::B), a_from_b, step, around);
+    let of_a = || look(image(b)?, (a, Which::A), &a_from_b.inverse(), step, around);
     if is_image(a) && is_image(b) && a.size() < b.size() { of_a() } else { of_b().or_else(of_a) }
 }
 
@@ -51,23 +93,26 @@ fn image(body: Shape<'_>) -> Option<&Prepared> {
     }
 }
 
+/// Looks at one in `step` samples of a body, each with what is `around` it: the least known of it counts.
 fn look(
     image: &Prepared,
-    other: Shape<'_>,
+    (other, body): (Shape<'_>, Which),
     image_from_other: &Pose,
-    body: Which,
+    step: usize,
+    around: &[Vector3],
 ) -> Option<Unseen> {
     let measured = (image.points(), image.sensor());
     let sights: Vec<_> = image.views().iter().filter_map(|view| view.sight(measured)).collect();
     if sights.is_empty() {
         return None;
     }
-    let samples = other.samples();
+    let samples: Vec<_> = other.samples().into_iter().step_by(step).collect();
     let mut counts = [0_usize; 4];
     for sample in &samples {
         let place = image_from_other.transform_point(sample);
         // Of several images, the one that knows most of a place tells.
-        match sights.iter().map(|sight| sight(&place)).min() {
+        let most = |place: Point3| sights.iter().map(|sight| sight(&place)).min();
+        match around.iter().filter_map(|offset| most(place + offset)).max() {
             None | Some(Sight::Seen) => {}
             Some(Sight::BehindCamera) => counts[0] += 1,
             Some(Sight::OutsideView) => counts[1] += 1,

@@ -2,16 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use cloudtouch_geom::TriangleMesh;
+use cloudtouch_geom::{Point3, TriangleMesh};
 
 /// A part whose volume is less than this times its area to the power of 3/2 encloses nothing:
 /// rounding leaves some 1e-16, and a foil of a tenth of a millimetre over a square kilometre 1e-8.
 const LEAST_VOLUME: f64 = 1e-12;
 
-/// A connected part of a closed mesh.
-#[derive(Debug, Clone, Copy, Default)]
+/// A connected part of a mesh.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
-    /// The volume it encloses, m³; negative where its triangles are turned inward.
+    /// One of its vertices.
+    pub vertex: Point3,
+    /// The volume it encloses, m³, where it is closed; negative where its triangles are turned inward.
     pub volume: f64,
     /// Its surface, m².
     area: f64,
@@ -37,7 +39,8 @@ pub(super) fn parts(mesh: &TriangleMesh) -> Vec<Part> {
         let name = root(&mut parent, first as usize);
         // From a vertex of its own the volume of a part far away is not lost in rounding.
         let [a, b, c] = mesh.corners(t).map(|p| p - mesh.vertices()[name]);
-        let part = parts.entry(name).or_default();
+        let vertex = mesh.vertices()[name];
+        let part = parts.entry(name).or_insert(Part { vertex, volume: 0.0, area: 0.0 });
         part.volume += a.dot(&b.cross(&c)) / 6.0;
         part.area += 0.5 * (b - a).cross(&(c - a)).norm();
     }

@@ -39,6 +39,8 @@ pub struct Mesh {
     pub(super) winding: Winding,
     /// Corners of the triangles that an open mesh lacks.
     pub(super) missing: Vec<[Point3; 3]>,
+    /// One of each connected part.
+    vertices_of_parts: Vec<Point3>,
     watertight: bool,
     closed: bool,
     /// On which side places are, once that is needed.
@@ -67,8 +69,8 @@ impl Mesh {
         let mut merged = TriangleMesh::try_new(vertices, merged.triangles().to_vec())?;
         let closed = merged.border_edges() == 0;
         let mut watertight = false;
+        let parts = parts(&merged);
         if merged.open_edges() == 0 {
-            let parts = parts(&merged);
             watertight = parts.iter().all(Part::has_inside);
             if parts.iter().map(|part| part.volume).sum::<f64>() < 0.0 {
                 // Turned inside out as a whole: a common export slip that leaves no doubt.
@@ -95,6 +97,7 @@ impl Mesh {
             paper_tree: OnceLock::new(),
             winding,
             missing,
+            vertices_of_parts: parts.iter().map(|part| part.vertex).collect(),
             watertight,
             closed,
             cells: OnceLock::new(),
@@ -133,6 +136,11 @@ impl Mesh {
     /// Some hundred places on the surface in the local frame, m, each for the same area.
     pub(crate) fn samples(&self) -> &[Point3] {
         self.samples.get_or_init(|| self.spread(SAMPLES))
+    }
+
+    /// A vertex of each connected part, in the local frame, m.
+    pub(crate) fn vertices_of_parts(&self) -> &[Point3] {
+        &self.vertices_of_parts
     }
 
     /// Corners of the box around the surface, along the axes of the local frame, m.

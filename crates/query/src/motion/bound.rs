@@ -4,6 +4,7 @@ use cloudtouch_geom::{Drift, Pose};
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
+use crate::doubt::unseen::is_image;
 use crate::error::QueryError;
 use crate::judge::{JudgeOfPair, probability};
 use crate::query::{Query, noise_over_spacing};
@@ -20,6 +21,13 @@ pub(super) struct Drifting<'a> {
     /// In the local frame of A.
     pub drift: Drift,
 }
+
+/// Doubts are looked for at the ends and in the middle of a stretch at least, ...
+const LEAST_DOUBTED: usize = 3;
+/// ... and beside an image so often that nothing moves by more than this part of the smaller body, ...
+const DOUBTED_WAY: f64 = 0.05;
+/// ... but no more often than this.
+const MOST_DOUBTED: usize = 201;
 
 /// What sums in another order may differ by, in log odds.
 const ROUNDING: f64 = 1e-9;
@@ -66,6 +74,23 @@ impl Drifting<'_> {
         let settings = query.settings();
         let judge = settings.judge.for_noise(noise_over_spacing(self.bodies));
         upper <= at_most(&judge, settings.prior, CLEAR_DEVIATIONS, 0.0)
+    }
+
+    /// At how many poses, ends included and evenly apart, what lies where the pair is doubted is not passed over:
+    /// of a depth image, which may have seen nothing anywhere, no point of B gets far from one to the next.
+    pub(super) fn poses_to_doubt(&self) -> usize {
+        let (a, b) = (self.bodies.0.shape(), self.bodies.1.shape());
+        if !is_image(a) && !is_image(b) {
+            return LEAST_DOUBTED;
+        }
+        let local = a.local_from(&b, &self.a_from_b);
+        let samples = b.samples();
+        let ways = samples.iter().map(|s| self.drift.in_any_direction(&local.transform_point(s)));
+        let way = 2.0 * ways.fold(0.0, f64::max);
+        let step = DOUBTED_WAY * a.size().min(b.size());
+        // A body without size is doubted anyway.
+        let steps = if step > 0.0 { (way / step).ceil() as usize } else { 0 };
+        (steps + 1).clamp(LEAST_DOUBTED, MOST_DOUBTED)
     }
 
     /// Where two exact surfaces never touch, one is inside the other all the time or never.

@@ -12,11 +12,16 @@ pub(super) struct Interval {
     pub upper: f64,
     /// The upper bound was not looked for beyond this: 1 stands for more.
     pub cut: f64,
-    /// Whether something speaks against believing that its middle is free.
+    /// Whether something speaks against believing that all of it is free.
     pub is_doubtful: bool,
 }
 
 impl Interval {
+    /// A whole segment that was not looked at.
+    pub(super) fn unknown(segment: usize) -> Self {
+        Self { segment, times: [0.0, 1.0], upper: 1.0, cut: 1.0, is_doubtful: false }
+    }
+
     pub(super) fn length(&self) -> f64 {
         self.times[1] - self.times[0]
     }

@@ -59,6 +59,11 @@ impl Tested {
         }
     }
 
+    /// In segments.
+    pub(super) fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// Nothing matters from here on, in segments: the threshold was reached.
     pub(super) fn end(&self) -> f64 {
         self.first.as_ref().map_or(f64::INFINITY, position)

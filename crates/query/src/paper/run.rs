@@ -179,7 +179,7 @@ fn gather_evidence(
     let inside = task.settings.points_inside;
     match (a, b) {
         (Shape::Mesh(a), Shape::Mesh(b)) => {
-            return add_exact((a, b), a_from_b, evidence);
+            return add_exact((a, b), a_from_b, true, evidence);
         }
         (Shape::Cloud(cloud), Shape::Mesh(mesh)) if inside && mesh.is_watertight() => {
             let poses = (&a_from_b.inverse(), &Pose::identity());

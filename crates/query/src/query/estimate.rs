@@ -25,7 +25,7 @@ pub(super) fn estimate(
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
     if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
-        return exact((a, b), a_from_b, evidence);
+        return exact((a, b), a_from_b, task.settings.detail, evidence);
     }
     let weighed = weigh((a, b), a_from_b, task, &mut evidence.stats)?;
     let of_full = (task.settings.detail == Detail::Full).then(|| weighed.spots((a, b), a_from_b));
@@ -113,9 +113,10 @@ impl Weighed<'_> {
 pub(super) fn exact(
     (a, b): (&Mesh, &Mesh),
     a_from_b: &Pose,
+    detail: Detail,
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
-    add_exact((a, b), a_from_b, evidence)?;
+    add_exact((a, b), a_from_b, detail == Detail::Full, evidence)?;
     let probability = evidence.largest();
     let bounds = [probability; 2];
     Ok(Estimate { probability, bounds, evidence: None, log_likelihood_ratio: None, places: None })

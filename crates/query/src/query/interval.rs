@@ -1,10 +1,10 @@
 //! Between what distances two bodies lie, from how likely they are within margins.
 
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Point3, Pose};
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::placement::Placement;
+use crate::placement::boxes;
 use crate::report::Report;
 
 use super::run::Query;
@@ -95,7 +95,7 @@ impl Query {
             return Ok(0.0);
         }
         // Beyond the far corners of both boxes there is no surface: there doubling ends.
-        let most = span(bodies.0.placement(bodies.1, a_from_b));
+        let most = span(boxes(bodies.0.shape(), bodies.1.shape(), a_from_b));
         let mut high = FINEST;
         while !is_likely(high)? {
             if high > most {
@@ -117,12 +117,6 @@ impl Query {
 }
 
 /// The longest way from a corner of the boxes of both bodies to another, m.
-fn span(placement: Placement) -> f64 {
-    let boxes = [placement.scene_box, placement.object_box];
-    let along = |k: usize| {
-        let low = boxes.iter().map(|b| b[0][k]).fold(f64::INFINITY, f64::min);
-        let high = boxes.iter().map(|b| b[1][k]).fold(f64::NEG_INFINITY, f64::max);
-        high - low
-    };
-    along(0).hypot(along(1)).hypot(along(2))
+fn span([[low, high], [low_of_b, high_of_b]]: [[Point3; 2]; 2]) -> f64 {
+    (high.sup(&high_of_b) - low.inf(&low_of_b)).norm()
 }

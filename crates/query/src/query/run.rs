@@ -56,8 +56,9 @@ impl Query {
         Self { settings: QuerySettings { stop_above, detail, ..self.settings }, ..*self }
     }
 
-    /// The same for all that one call asks: their time together is that of a query.
-    pub(super) fn begun_now(&self) -> Self {
+    /// The same, whose deadline counts from now on for all that is asked of it together: for calls that ask many
+    /// pairs or poses. A time that has begun goes on.
+    pub fn begun_now(&self) -> Self {
         Self { begun: self.begun.or_else(|| Some(Instant::now())), ..*self }
     }
 

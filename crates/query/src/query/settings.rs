@@ -15,7 +15,8 @@ use crate::judge::Judge;
 pub enum Detail {
     /// The verdict: a search ends when the probability is surely above `accept`, and no classifier is
     /// asked that cannot change it. The probability is one of those that lead to that verdict, and its
-    /// bounds are as wide as that leaves them. Without contacts, clearance and points.
+    /// bounds are as wide as that leaves them. Without contacts, clearance and points. A
+    /// [sweep](crate::Query::sweep) ends at the first pose that is not free.
     Verdict,
     /// The probability with its bounds, the same bits as in a full report. Without contacts, clearance
     /// and points.

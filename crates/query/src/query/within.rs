@@ -6,7 +6,9 @@ use cloudtouch_geom::Pose;
 use serde::Serialize;
 
 use crate::body::BodyRef;
+use crate::doubt::unseen::{Unseen, unseen_within};
 use crate::error::QueryError;
+use crate::exact::are_within;
 use crate::judge::{ContactEvidence, MOST_DEVIATIONS, log_odds_within, probability};
 use crate::report::Report;
 use crate::search::least_beyond;
@@ -34,7 +36,8 @@ impl Query {
     /// Never less likely than a collision, to the bit as likely without a margin, and never less
     /// likely with a larger one. By geometry alone: the classifier, which is asked about the collision, says
     /// nothing of distances. What [`Self::run`] says of surface that no point stands for holds here
-    /// too.
+    /// too; where the margin reaches into what a depth image did not see, with as much of the body as may not
+    /// lie there, the upper bound is 1.
     ///
     /// ```
     /// use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
@@ -89,9 +92,17 @@ impl Query {
             let bounds = [low.max(least), high.max(least)];
             Within { margin_m: margin, probability: known.max(least), bounds, deviations }
         };
+        let local = a.shape().local_from(&b.shape(), a_from_b);
         let Some(evidence) = report.evidence else {
             // Two meshes are exact.
-            let is_within = report.clearance_m.is_none_or(|gap| gap.mean < margin);
+            let is_within = known == 1.0
+                || match (report.clearance_m, a, b) {
+                    (Some(gap), ..) => gap.mean < margin,
+                    (None, BodyRef::Mesh(a), BodyRef::Mesh(b)) => {
+                        are_within((a, b), &local, margin)?
+                    }
+                    (None, ..) => true,
+                };
             let (least, deviations) =
                 if is_within { (1.0, -MOST_DEVIATIONS) } else { (0.0, MOST_DEVIATIONS) };
             return Ok(at_least(least, high, deviations));
@@ -110,9 +121,12 @@ impl Query {
             probability(log_odds, settings.prior)
         };
         let clock = self.clock(Instant::now());
-        let local = a.shape().local_from(&b.shape(), a_from_b);
         let found = least_beyond((a, b), &local, margin, &clock)?;
-        let high = if found.is_complete { high } else { 1.0 };
+        // Where nothing was seen something may be that is as near.
+        let unseen = || unseen_within(a.shape(), b.shape(), &local, margin);
+        let hides = |unseen: Unseen| unseen.share() > settings.safeguards.max_unseen;
+        let is_known = found.is_complete && (high == 1.0 || !unseen().is_some_and(hides));
+        let high = if is_known { high } else { 1.0 };
         Ok(at_least(of(found.deviations), high, found.deviations.min(deviations)))
     }
 }

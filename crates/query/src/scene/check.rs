@@ -23,8 +23,10 @@ impl Scene {
     /// of another ([`Undecided::Units`](crate::Undecided::Units)), only being far from all of them.
     /// A pair without an answer, and one that is undecided for whatever reason, such as space that a
     /// depth image did not see, is among those returned. Pairs whose boxes do not meet are not looked at,
-    /// the others take a test of two boxes, and those near each other, or in doubt, a query.
+    /// the others take a test of two boxes, and those near each other, or in doubt, a query. A deadline of the
+    /// query counts for all pairs together: those that it leaves no time for are undecided.
     pub fn check(&self, query: &Query) -> Checked {
+        let query = &query.begun_now();
         let broad = BroadPhase::new(query);
         let members = self.members();
         let asked: Vec<PairAnswer> = self

@@ -12,6 +12,7 @@ use crate::query::classify::{MisclassifiedBy, misclassified_by_pose};
 use crate::query::estimate::exact;
 use crate::query::places::spots::{Spot, ToldBy};
 use crate::query::run::Query;
+use crate::query::settings::Detail;
 use crate::query::task::Task;
 use crate::query::weigh::{Weighed, weigh};
 use crate::report::Report;
@@ -81,7 +82,7 @@ impl Query {
                 let of = |wrench: Wrench| in_object_frame(&wrench, &motion, &b.shape().origin());
                 if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
                     gradient.clearance = clearance_of_meshes((a, b), local)?.map(of);
-                    return exact((a, b), local, evidence);
+                    return exact((a, b), local, Detail::Full, evidence);
                 }
                 let task = query.task(start, (a, b));
                 let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;

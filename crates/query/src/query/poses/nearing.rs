@@ -31,7 +31,7 @@ impl Query {
                 };
                 if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
                     set(clearance_of_meshes((a, b), local)?);
-                    return exact((a, b), local, evidence);
+                    return exact((a, b), local, self.settings().detail, evidence);
                 }
                 let task = self.task(start, (a, b));
                 let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;

@@ -2,13 +2,14 @@
 
 use std::time::Instant;
 
-use cloudtouch_geom::{Pose, Vector3};
+use cloudtouch_geom::{Point3, Pose, Vector3};
 use serde::Serialize;
 
 use super::directions::{axes, ring, sphere};
 use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
+use crate::placement::boxes;
 use crate::query::run::Query;
 use crate::report::{Report, vector_as_array};
 
@@ -300,16 +301,13 @@ impl Overlap<'_> {
     /// How far it is until the boxes of both bodies are apart by their size, m.
     fn apart(&self, direction: &Vector3) -> f64 {
         let (a, b) = self.bodies;
-        let placement = a.placement(b, self.a_from_b);
-        let reach = |corners: [[f64; 3]; 2], sign: f64| -> f64 {
-            (0..3)
-                .map(|k| {
-                    let along = sign * direction[k];
-                    (along * corners[0][k]).max(along * corners[1][k])
-                })
-                .sum()
+        let [of_a, of_b] = boxes(a.shape(), b.shape(), self.a_from_b);
+        let reach = |corners: [Point3; 2], sign: f64| -> f64 {
+            let along = sign * direction;
+            let [low, high] = corners.map(|corner| along.component_mul(&corner.coords));
+            low.sup(&high).sum()
         };
-        let until = reach(placement.scene_box, 1.0) + reach(placement.object_box, -1.0);
+        let until = reach(of_a, 1.0) + reach(of_b, -1.0);
         until.max(0.0) + b.shape().size()
     }
 }
