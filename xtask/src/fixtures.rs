@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
+use cloudtouch_evaluation::SEED;
 use cloudtouch_geom::{Point3, Pose, TriangleMesh, seed};
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
@@ -18,7 +19,6 @@ use serde::Serialize;
 
 use crate::tidy;
 
-const SEED: u64 = 2011;
 const COMMAND: &str = "cargo xtask fixtures";
 /// Standard deviation of the clouds' noise, m; the cases state it as the sensor.
 const NOISE: f64 = 0.002;
@@ -215,26 +215,23 @@ fn pcd(points: &[Point3]) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::OnceLock;
+    use std::sync::LazyLock;
 
     use super::*;
 
     /// Made once for all tests.
-    fn files() -> &'static Files {
-        static FILES: OnceLock<Files> = OnceLock::new();
-        FILES.get_or_init(|| generate().unwrap())
-    }
+    static FILES: LazyLock<Files> = LazyLock::new(|| generate().unwrap());
 
     #[test]
     fn fixtures_are_small_closed_and_run_from_free_to_deep() {
-        let once = files().iter().filter(|(path, _)| path.starts_with("fixtures/"));
+        let once = FILES.iter().filter(|(path, _)| path.starts_with("fixtures/"));
         let total: usize = once.map(|(_, bytes)| bytes.len()).sum();
         assert!(total < 600_000, "{total} bytes");
         for mesh in [scene::room(), scene::piano()] {
             assert_eq!(rounded_mesh(&mesh).unwrap().merged().open_edges(), 0);
         }
         let cases: serde_json::Value =
-            serde_json::from_slice(&files()["fixtures/piano-room/cases.json"]).unwrap();
+            serde_json::from_slice(&FILES["fixtures/piano-room/cases.json"]).unwrap();
         let cases = cases["cases"].as_array().unwrap();
         assert_eq!(cases.len(), WANTED.len());
         for (case, wanted) in cases.iter().zip(WANTED) {
@@ -247,13 +244,13 @@ mod tests {
     #[test]
     fn a_changed_missing_or_stray_file_is_named() {
         let root = std::env::temp_dir().join(format!("xtask-fixtures-{}", std::process::id()));
-        store(&root, files()).unwrap();
-        compare(&root, files()).unwrap();
+        store(&root, &FILES).unwrap();
+        compare(&root, &FILES).unwrap();
         fs::write(root.join("fixtures/piano-room/room.obj"), "v 0 0 0\n").unwrap();
         fs::remove_file(root.join("fixtures/piano-room/cases.json")).unwrap();
         fs::write(root.join("fixtures/piano-room/notes.txt"), "").unwrap();
         fs::write(root.join("crates/cli/demo/room.pcd"), "").unwrap();
-        let error = compare(&root, files()).unwrap_err().to_string();
+        let error = compare(&root, &FILES).unwrap_err().to_string();
         fs::remove_dir_all(&root).unwrap();
         for part in [
             "room.obj differs",

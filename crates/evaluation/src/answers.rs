@@ -1,5 +1,6 @@
 //! What was asked, what is true, and what each method said: one table for every sweep.
 
+use std::fmt;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
@@ -19,12 +20,19 @@ impl Pair {
     /// Both kinds.
     pub const ALL: [Self; 2] = [Self::CloudCloud, Self::CloudMesh];
 
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
+    /// What belongs to this kind: the first to two clouds, the second to a cloud and a mesh.
+    pub fn pick<T>(self, of_clouds: T, of_mesh: T) -> T {
         match self {
-            Self::CloudCloud => "cloud–cloud",
-            Self::CloudMesh => "cloud–mesh",
+            Self::CloudCloud => of_clouds,
+            Self::CloudMesh => of_mesh,
         }
+    }
+}
+
+/// Its name in tables.
+impl fmt::Display for Pair {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.pad(self.pick("cloud–cloud", "cloud–mesh"))
     }
 }
 

@@ -13,7 +13,9 @@ use cloudtouch::{
 use cloudtouch_testkit::family::Kind;
 
 use crate::answers::Answers;
-use crate::measures::{Axis, Sample, SurfaceSample, border, calibration_error, fit_surface};
+use crate::measures::{
+    Axis, Bin, Sample, SurfaceSample, border, calibration_error, fit_surface, observed_within,
+};
 use crate::methods::{Fitted, Ours};
 use crate::sweep::{Asked, ORACLE, OURS, Plan, ask};
 
@@ -61,14 +63,14 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
 }
 
 fn ordinary(answers: &Answers, command: String) -> Result<Fitted> {
+    let fit = |method: &str, without| fit_judge(&records(answers, method, without)?);
     let without_each = |method: &str| -> Result<BTreeMap<String, Judge>> {
-        let without =
-            |family: &'static str| Ok((family.to_owned(), fit(answers, method, Some(family))?));
-        answers.families().into_iter().map(without).collect()
+        let families = answers.families().into_iter();
+        families.map(|family| Ok((family.to_owned(), fit(method, Some(family))?))).collect()
     };
     Ok(Fitted {
         command,
-        all: fit(answers, OURS, None)?,
+        all: fit(OURS, None)?,
         without: without_each(OURS)?,
         oracle_without: without_each(ORACLE)?,
     })
@@ -93,10 +95,9 @@ fn beyond(mut fitted: Fitted, answers: &Answers, command: &str) -> Result<Fitted
                 let is_here = (from..to).contains(&evidence.noise_over_spacing);
                 is_here.then_some((1.0 / (1.0 + (-odds).exp()), of.collides))
             });
-            let said: Vec<(f64, bool)> = said.collect();
-            let bias = said.iter().map(|&(p, came)| p - f64::from(u8::from(came))).sum::<f64>();
-            let (count, sample) = (said.len(), Sample::of_probabilities(said));
-            let (bias, error) = (bias / count as f64, calibration_error(&sample, &sample.ones()));
+            let sample = Sample::of_probabilities(said);
+            let Bin { mean, observed, count } = observed_within(&sample, 0.0..1.1);
+            let (bias, error) = (mean - observed, calibration_error(&sample, &sample.ones()));
             println!("// {from} to {to}, {count} poses, {name}: off by {bias:+.3}, ECE {error:.3}");
         }
     }
@@ -116,11 +117,7 @@ impl Record {
     }
 }
 
-/// Fitted on all families but one, on clouds and on meshes alike.
-fn fit(answers: &Answers, method: &str, without: Option<&str>) -> Result<Judge> {
-    fit_judge(&records(answers, method, without)?)
-}
-
+/// Answers about all families but one, of clouds and of meshes alike.
 fn records(answers: &Answers, method: &str, without: Option<&str>) -> Result<Vec<Record>> {
     let method = answers.index(method).with_context(|| format!("{method} did not answer"))?;
     let mut records: Vec<Record> = Vec::new();
@@ -244,14 +241,8 @@ mod tests {
     use super::*;
 
     fn evidence(deviations: f64, crossing: f64, count: f64, noise: f64) -> ContactEvidence {
-        let misclassified = Some(count);
-        ContactEvidence {
-            deviations,
-            crossing,
-            misclassified,
-            extent: None,
-            noise_over_spacing: noise,
-        }
+        let (misclassified, extent, noise_over_spacing) = (Some(count), None, noise);
+        ContactEvidence { deviations, crossing, misclassified, extent, noise_over_spacing }
     }
 
     #[test]

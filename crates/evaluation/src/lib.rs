@@ -16,3 +16,6 @@ pub mod real_scans;
 pub mod report;
 pub mod statistics;
 pub mod sweep;
+
+/// All randomness of the lab comes from this.
+pub const SEED: u64 = 2011;

@@ -1,4 +1,4 @@
-//! Ranks of measured values.
+//! Ranks of measured values, and shares.
 
 use statrs::statistics::{Data, OrderStatistics};
 
@@ -11,6 +11,16 @@ pub fn quantile(values: &[f64], q: f64) -> f64 {
 /// The value in the middle; NaN of nothing.
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
+}
+
+/// The share of what holds, 0 to 1; NaN of nothing.
+pub fn share(holds: impl IntoIterator<Item = bool>) -> f64 {
+    let (mut held, mut all) = (0.0, 0.0);
+    for holds in holds {
+        held += f64::from(u8::from(holds));
+        all += 1.0;
+    }
+    held / all
 }
 
 #[cfg(test)]

@@ -67,21 +67,15 @@ pub(super) fn check(manifests: &[Manifest]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tidy::manifest::tests::manifest;
 
     /// The faults of a project whose crates are given as name, published and dependency lines.
     fn faults(crates: &[(&str, bool, &str)]) -> Vec<String> {
-        let manifests: Vec<_> = crates
-            .iter()
-            .map(|(name, published, dependencies)| Manifest {
-                folder: format!("crates/{name}"),
-                table: format!(
-                    "package = {{ name = '{name}', publish = {published} }}\n{dependencies}"
-                )
-                .parse()
-                .unwrap(),
-            })
-            .collect();
-        check(&manifests)
+        let of = |(name, published, dependencies): &(&str, bool, &str)| {
+            let package = format!("package = {{ name = '{name}', publish = {published} }}");
+            manifest(&format!("{package}\n{dependencies}"))
+        };
+        check(&crates.iter().map(of).collect::<Vec<_>>())
     }
 
     #[test]

@@ -87,10 +87,10 @@ pub(super) fn check(manifest: &Manifest) -> Vec<String> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn manifest(text: &str) -> Manifest {
+    pub(in crate::tidy) fn manifest(text: &str) -> Manifest {
         Manifest { folder: "crates/x".into(), table: text.parse().unwrap() }
     }
 

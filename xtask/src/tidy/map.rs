@@ -2,11 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use super::modules::ITEMS;
+
 /// The page this is about.
 pub(super) const PAGE: &str = "docs/paper-map.md";
-
-/// Words before the name of an item.
-const ITEMS: [&str; 8] = ["const", "enum", "fn", "mod", "static", "struct", "trait", "type"];
 
 /// Notes what a file declares, by its last name: items, fields, variants, and modules by its path.
 pub(super) fn note(path: &str, text: &str, names: &mut BTreeSet<String>) {
@@ -16,7 +15,8 @@ pub(super) fn note(path: &str, text: &str, names: &mut BTreeSet<String>) {
             .split(|c: char| !c.is_alphanumeric() && c != '_')
             .filter(|w| !w.is_empty())
             .collect();
-        let after = |pair: &[&str]| ITEMS.contains(&pair[0]).then(|| pair[1].to_owned());
+        let is_item = |word: &str| word == "mod" || ITEMS.contains(&word);
+        let after = |pair: &[&str]| is_item(pair[0]).then(|| pair[1].to_owned());
         names.extend(words.windows(2).filter_map(after));
         // A field, or a variant on a line of its own.
         let line = line.trim_start();

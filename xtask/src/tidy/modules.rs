@@ -82,7 +82,8 @@ pub(super) fn read(name: &[String], file: &str, text: TokenStream, all: &mut Mod
 }
 
 /// Words before the name of an item.
-const ITEMS: [&str; 8] = ["const", "enum", "fn", "static", "struct", "trait", "type", "union"];
+pub(super) const ITEMS: [&str; 8] =
+    ["const", "enum", "fn", "static", "struct", "trait", "type", "union"];
 
 fn braces(token: &TokenTree) -> Option<TokenStream> {
     match token {

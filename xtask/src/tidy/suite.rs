@@ -40,11 +40,11 @@ fn lost<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tidy::manifest::tests::manifest;
 
     #[test]
     fn a_file_that_no_program_has_is_named() {
-        let table = "[[test]]\nname = 'suite'\n[[test]]\nname = 'e'\n".parse().unwrap();
-        let manifest = Manifest { folder: "a".into(), table };
+        let manifest = manifest("[[test]]\nname = 'suite'\n[[test]]\nname = 'e'\n");
         let files = ["suite", "b", "c", "d/mod", "e"];
         assert_eq!(lost(&manifest, "mod b;\n", files.into_iter()), ["c"]);
     }

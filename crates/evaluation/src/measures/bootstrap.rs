@@ -7,6 +7,8 @@ use cloudtouch_geom::seed;
 use rand::RngExt;
 use rayon::prelude::*;
 
+use crate::SEED;
+
 /// Resamples behind an interval.
 const RESAMPLES: u64 = 300;
 
@@ -89,9 +91,6 @@ fn number<K: Ord>(known: &mut BTreeMap<K, u32>, key: K) -> u32 {
     let next = known.len() as u32;
     *known.entry(key).or_insert(next)
 }
-
-/// All resampling follows from this.
-const SEED: u64 = 2011;
 
 /// A value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]

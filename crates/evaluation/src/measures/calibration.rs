@@ -4,6 +4,7 @@ use cloudtouch_geom::seed;
 use rand::RngExt;
 
 use super::{Clusters, Sample};
+use crate::statistics::share;
 
 /// Bins of equal width over [0, 1]; the last one contains 1.
 const BINS: usize = 15;
@@ -13,7 +14,7 @@ const SIMULATIONS: u64 = 100;
 /// Mean squared difference of probability and truth; NaN without probabilities.
 pub fn brier(sample: &Sample, weights: &[f64]) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
-    for ((p, &collides), weight) in sample.probabilities.iter().zip(&sample.collides).zip(weights) {
+    for (p, collides, weight) in answers(sample, weights) {
         sum += weight * (p - f64::from(u8::from(collides))).powi(2);
         total += weight;
     }
@@ -25,8 +26,7 @@ pub fn brier(sample: &Sample, weights: &[f64]) -> f64 {
 ///
 /// Chance alone makes it positive: compare with [`chance_error`].
 pub fn calibration_error(sample: &Sample, weights: &[f64]) -> f64 {
-    let answers = sample.probabilities.iter().zip(&sample.collides).zip(weights);
-    error_of(answers.map(|((&p, &collides), &weight)| (p, collides, weight)))
+    error_of(answers(sample, weights))
 }
 
 /// The mean calibration error of a perfect forecaster who says the same probabilities, by
@@ -68,17 +68,18 @@ pub fn observed_within(sample: &Sample, range: std::ops::Range<f64>) -> Bin {
 
 fn bin(sample: &Sample, is_within: impl Fn(f64) -> bool) -> Bin {
     let within = sample.probabilities.iter().zip(&sample.collides);
-    let within: Vec<(f64, bool)> =
-        within.filter(|(p, _)| is_within(**p)).map(|(p, c)| (*p, *c)).collect();
-    let count = within.len();
-    Bin {
-        mean: within.iter().map(|(p, _)| p).sum::<f64>() / count as f64,
-        observed: within.iter().filter(|(_, c)| *c).count() as f64 / count as f64,
-        count,
-    }
+    let (stated, came): (Vec<f64>, Vec<bool>) = within.filter(|(p, _)| is_within(**p)).unzip();
+    let count = stated.len();
+    Bin { mean: stated.iter().sum::<f64>() / count as f64, observed: share(came), count }
 }
 
-/// Probability, truth and weight of each answer to the calibration error.
+/// Probability, truth and weight of each answer.
+fn answers(sample: &Sample, weights: &[f64]) -> impl Iterator<Item = (f64, bool, f64)> {
+    let all = sample.probabilities.iter().zip(&sample.collides).zip(weights);
+    all.map(|((&p, &collides), &weight)| (p, collides, weight))
+}
+
+/// The calibration error of answers by probability, truth and weight.
 fn error_of(answers: impl Iterator<Item = (f64, bool, f64)>) -> f64 {
     let (mut excess, mut total) = ([0.0_f64; BINS], 0.0);
     for (p, collides, weight) in answers {

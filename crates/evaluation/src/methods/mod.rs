@@ -10,9 +10,11 @@ mod shapes;
 
 use anyhow::Result;
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{FilterSettings, filter};
+use cloudtouch::{Cloud, CloudSettings, FilterSettings, filter};
 use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 use cloudtouch_testkit::family::Observation;
+use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::surface::{positions, sample_surface};
 
 pub use distance::Distance;
 pub use fitted::Fitted;
@@ -51,9 +53,17 @@ pub trait Method: Sync {
 /// it does not answer for such a pair. It fails where it should not, which a sweep does not excuse.
 pub type Prepared = Box<dyn Fn(Pair, &Pose) -> Result<Option<Said>>>;
 
-/// A cloud with noise of this standard deviation, m, of which nothing else is known.
-pub fn observed(cloud: PointCloud, std: f64) -> Observation {
-    Observation { cloud, truth: Vec::new(), std }
+/// So many points of a surface with noise of this standard deviation (m), of which nothing else is known;
+/// the places and the errors follow from a seed each.
+pub fn sampled(mesh: &TriangleMesh, points: usize, std: f64, seeds: [u64; 2]) -> Observation {
+    let exact = positions(&sample_surface(mesh, points, seeds[0]));
+    let noisy = add_noise(&exact, NoiseKind::Gaussian, std, seeds[1]);
+    Observation { cloud: PointCloud::from_points(noisy), truth: Vec::new(), std }
+}
+
+/// An observation prepared as the noise that it says it has wants it.
+pub fn prepared(observation: &Observation) -> Result<Cloud> {
+    Ok(Cloud::prepare(&observation.cloud, &CloudSettings::new(sensor_of(observation)))?)
 }
 
 /// How noisy an observation says it is.

@@ -3,16 +3,14 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    BodyRef, Cloud, CloudSettings, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query,
-    QuerySettings,
+    BodyRef, Cloud, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query, QuerySettings,
 };
 use cloudtouch_geom::{PointCloud, UnitVector3};
 use cloudtouch_testkit::family::Observation;
 
-use super::{Draw, Fitted, Method, Prepared, sensor_of};
-use crate::answers::{Pair, Said};
+use super::{Draw, Fitted, Method, Prepared, prepared};
+use crate::answers::Said;
 
 /// The query with some settings.
 pub struct Ours {
@@ -73,26 +71,21 @@ impl Ours {
     }
 
     fn cloud(&self, observation: &Observation) -> Result<Cloud> {
-        let exact;
-        let (cloud, sensor) = if self.sees_truth {
-            exact = true_points(observation);
-            (&exact, SensorModel::Isotropic { std: 0.0 })
-        } else {
-            (&observation.cloud, sensor_of(observation))
-        };
-        let cloud = Cloud::prepare(cloud, &CloudSettings::new(sensor))?;
+        let cloud =
+            if self.sees_truth { prepared(&exact(observation)) } else { prepared(observation) }?;
         if self.is_refined { Ok(cloud.refined()?) } else { Ok(cloud) }
     }
 }
 
 /// The sampled points where they truly are, with the normals of the surface there; points that no
 /// surface made are left out.
-fn true_points(observation: &Observation) -> PointCloud {
+fn exact(observation: &Observation) -> Observation {
     let samples = || observation.truth.iter().flatten();
-    PointCloud {
+    let cloud = PointCloud {
         normals: Some(samples().map(|s| UnitVector3::new_normalize(s.normal)).collect()),
         ..PointCloud::from_points(samples().map(|s| s.position).collect())
-    }
+    };
+    Observation { cloud, truth: Vec::new(), std: 0.0 }
 }
 
 /// A judge that geometry leaves in doubt of everything, so that the classifier is asked everywhere.
@@ -118,10 +111,7 @@ impl Method for Ours {
         let mesh = Mesh::prepare(draw.mesh)?;
         let margin = self.margin;
         Ok(Box::new(move |pair, a_from_b| {
-            let moving = match pair {
-                Pair::CloudCloud => BodyRef::from(&b),
-                Pair::CloudMesh => BodyRef::from(&mesh),
-            };
+            let moving = pair.pick(BodyRef::from(&b), BodyRef::from(&mesh));
             if margin == 0.0 {
                 return Ok(Some(Said::from(&query.run(&a, moving, a_from_b)?)));
             }

@@ -7,7 +7,7 @@ use cloudtouch::{
 use cloudtouch_testkit::family::Observation;
 
 use super::{Draw, Method, Prepared, sensor_of};
-use crate::answers::{Pair, Said};
+use crate::answers::Said;
 
 /// The query by the paper.
 pub struct Paper {
@@ -44,10 +44,7 @@ impl Method for Paper {
         let query = PaperQuery::new(self.query)?;
         let (a, b, mesh) = (cloud(draw.a)?, cloud(draw.b)?, Mesh::prepare(draw.mesh)?);
         Ok(Box::new(move |pair, a_from_b| {
-            let moving = match pair {
-                Pair::CloudCloud => PaperBodyRef::from(&b),
-                Pair::CloudMesh => PaperBodyRef::from(&mesh),
-            };
+            let moving = pair.pick(PaperBodyRef::from(&b), PaperBodyRef::from(&mesh));
             Ok(Some(Said::from(&query.run(&a, moving, a_from_b)?)))
         }))
     }

@@ -3,15 +3,15 @@
 
 use std::time::Instant;
 
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use cloudtouch_geom::{Point3, TriangleMesh};
-use cloudtouch_testkit::exact::parry_pose;
+use cloudtouch_testkit::exact::{parry_pose, parry_vector, trimesh};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::intersection_test;
-use parry3d_f64::shape::{Shape, TriMesh, Voxels};
+use parry3d_f64::shape::{Shape, Voxels};
 
 use super::{Draw, Method, Prepared, cleaned};
-use crate::answers::{Pair, Said};
+use crate::answers::Said;
 
 /// Boxes of 1 cm around the points.
 pub struct Boxes;
@@ -29,7 +29,7 @@ impl Method for Boxes {
 
     fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let around = |points: &[Point3]| -> Box<dyn Shape> {
-            let points: Vec<Vector> = points.iter().map(vector).collect();
+            let points: Vec<Vector> = points.iter().map(|p| parry_vector(&p.coords)).collect();
             Box::new(Voxels::from_points(Vector::splat(SIDE), &points))
         };
         let [a, b] = [draw.a, draw.b].map(cleaned);
@@ -43,31 +43,19 @@ impl Method for ExactMeshes {
     }
 
     fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
-        let [a, b] = self.0.each_ref().map(trimesh);
-        shapes(Box::new(a?), Box::new(b?), draw.mesh)
+        let [a, b] = self.0.each_ref().map(|mesh| -> Box<dyn Shape> { Box::new(trimesh(mesh)) });
+        shapes(a, b, draw.mesh)
     }
 }
 
 /// Whether they intersect, with the second or with the mesh.
 fn shapes(a: Box<dyn Shape>, b: Box<dyn Shape>, mesh: &TriangleMesh) -> Result<Prepared> {
-    let mesh = trimesh(mesh)?;
+    let mesh = trimesh(mesh);
     Ok(Box::new(move |pair, a_from_b| {
         let start = Instant::now();
-        let moving: &dyn Shape = match pair {
-            Pair::CloudCloud => &*b,
-            Pair::CloudMesh => &mesh,
-        };
+        let moving: &dyn Shape = pair.pick(&*b, &mesh);
         let pose = parry_pose(a_from_b);
         let touch = intersection_test(&Pose::IDENTITY, &*a, &pose, moving)?.intersecting;
         Ok(Some(Said::score(f64::from(u8::from(touch)), start)))
     }))
-}
-
-fn trimesh(mesh: &TriangleMesh) -> Result<TriMesh> {
-    let vertices = mesh.vertices().iter().map(vector).collect();
-    TriMesh::new(vertices, mesh.triangles().to_vec()).map_err(|error| anyhow!("{error}"))
-}
-
-fn vector(point: &Point3) -> Vector {
-    Vector::new(point.x, point.y, point.z)
 }

@@ -29,50 +29,36 @@ the ways out. *Smooth*: poses where both differences agree to 0.2 % and are not 
 these where the gradient is within 1 % of the difference.";
 
 /// Of what a gradient is asked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Of {
-    LogOdds,
-    Clearance,
-}
-
-impl Of {
-    fn name(self) -> &'static str {
-        match self {
-            Self::LogOdds => "log odds",
-            Self::Clearance => "clearance",
-        }
-    }
-
+#[derive(Clone, Copy)]
+struct Of {
+    name: &'static str,
     /// A smaller slope, per metre, is none.
-    fn flat(self) -> f64 {
-        match self {
-            Self::LogOdds => 1e-2,
-            Self::Clearance => 1e-3,
-        }
-    }
-
-    fn value(self, report: &Report) -> Option<f64> {
-        match self {
-            Self::LogOdds => report.log_likelihood_ratio,
-            Self::Clearance => report.clearance_m.filter(|gap| !gap.is_bound).map(|gap| gap.mean),
-        }
-    }
-
-    fn gradient(self, gradient: &PoseGradient) -> Option<Vector6<f64>> {
-        let of = match self {
-            Self::LogOdds => Some(gradient.log_odds),
-            Self::Clearance => gradient.clearance,
-        };
-        of.map(|of| Vector6::from_fn(|k, _| if k < 3 { of[k] } else { of[k] / ARM }))
-    }
+    flat: f64,
+    value: fn(&Report) -> Option<f64>,
+    gradient: fn(&PoseGradient) -> Option<[f64; 6]>,
 }
+
+const ALL: [Of; 2] = [
+    Of {
+        name: "log odds",
+        flat: 1e-2,
+        value: |report| report.log_likelihood_ratio,
+        gradient: |gradient| Some(gradient.log_odds),
+    },
+    Of {
+        name: "clearance",
+        flat: 1e-3,
+        value: |report| report.clearance_m.filter(|gap| !gap.is_bound).map(|gap| gap.mean),
+        gradient: |gradient| gradient.clearance,
+    },
+];
 
 /// Tells how far gradients are off.
 struct Compared(Of);
 
 impl Method for Compared {
     fn name(&self) -> String {
-        self.0.name().to_owned()
+        self.0.name.to_owned()
     }
 
     fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
@@ -85,9 +71,10 @@ impl Method for Compared {
             let start = Instant::now();
             let bodies = bodies.pair(pair);
             let (_, gradient) = query.gradient(bodies.0, bodies.1, a_from_b)?;
-            let Some(found) = of.gradient(&gradient) else { return Ok(None) };
+            let Some(found) = (of.gradient)(&gradient) else { return Ok(None) };
+            let found = Vector6::from_fn(|k, _| if k < 3 { found[k] } else { found[k] / ARM });
             let difference = difference(&query, bodies, a_from_b, of)?;
-            let known = difference.filter(|known| known.norm() > of.flat());
+            let known = difference.filter(|known| known.norm() > of.flat);
             Ok(known.map(|known| Said::score((found - known).norm() / known.norm(), start)))
         }))
     }
@@ -104,7 +91,7 @@ fn difference(
     for (difference, step) in both.iter_mut().zip(STEPS) {
         for axis in 0..6 {
             let at = |step: f64| -> Result<Option<f64>> {
-                Ok(of.value(&query.run(a, b, &moved(pose, axis, step))?))
+                Ok((of.value)(&query.run(a, b, &moved(pose, axis, step))?))
             };
             let (Some(above), Some(below)) = (at(step)?, at(-step)?) else { return Ok(None) };
             difference[axis] = (above - below) / (2.0 * step);
@@ -129,14 +116,14 @@ fn moved(pose: &Pose, axis: usize, step: f64) -> Pose {
 pub(super) fn measure(draws: u32, poses: usize) -> Findings {
     let mut table = Table::new(["of", "pair", "poses", "smooth", "right"]);
     let mut targets = Vec::new();
-    for of in [Of::LogOdds, Of::Clearance] {
+    for of in ALL {
         let answers = answers(draws, poses, Compared(of))?;
         for pair in Pair::ALL {
             let (poses, smooth, right) = count(&answers, pair);
             let share = right as f64 / smooth as f64;
-            let (name, pair) = (of.name(), pair.name());
             let [poses, smooth] = [poses, smooth].map(|count| count.to_string());
-            table.row([name, pair, &poses, &smooth, &format!("{share:.3}")]);
+            table.row([of.name, &pair.to_string(), &poses, &smooth, &format!("{share:.3}")]);
+            let name = of.name;
             let what = format!("{pair}: gradient of {name} within 1 % at ≥ 95 % of smooth poses");
             targets.push(Target::new(what, format!("{:.1} %", 100.0 * share), share >= RIGHT));
         }

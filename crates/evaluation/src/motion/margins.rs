@@ -2,14 +2,13 @@
 
 use anyhow::{Context, Result, anyhow};
 use cloudtouch::WITHIN_KNOTS;
-use cloudtouch_testkit::family::Kind;
 
-use crate::answers::{Answers, Pair, Question};
-use crate::measures::{Axis, Clusters, Sample, SurfaceSample};
-use crate::measures::{calibration_error, chance_error, fit_surface};
+use crate::answers::{Answers, Pair, Question, Row};
+use crate::measures::{Axis, SurfaceSample, fit_surface};
 use crate::methods::Ours;
 use crate::report::{Findings, Section, Table, Target};
-use crate::sweep::{Asked, Plan, SEED, ask};
+use crate::statistics::share;
+use crate::sweep::{Asked, Judged, Plan, ask, ordinary};
 
 /// Margins asked about, m.
 const MARGINS: [f64; 3] = [0.01, 0.03, 0.1];
@@ -70,54 +69,34 @@ fn margins(answers: &Answers) -> Findings {
     let mut targets = Vec::new();
     for pair in Pair::ALL {
         for margin in MARGINS {
-            let of = |family: Option<&str>| judged(answers, pair, margin, family);
-            let (count, nearer, error) = of(None)?;
-            let mut worst = ("", f64::NEG_INFINITY);
-            for family in answers.families() {
-                let (count, _, error) = of(Some(family))?;
-                if count > 0 && error > worst.1 {
-                    worst = (family, error);
-                }
-            }
+            let (name, nearer) = (name(margin), within(answers, margin));
+            let judged = Judged::pick(&nearer, &[&name], ordinary(pair));
+            let error = judged.error_above_chance(&name).clamp(0.0, 1.0);
+            let (family, worst) = nearer.worst_calibrated(pair, &name);
+            let of = judged.questions();
             table.row([
-                pair.name().to_owned(),
-                name(margin),
-                count.to_string(),
-                format!("{nearer:.2}"),
+                pair.to_string(),
+                name.clone(),
+                of.len().to_string(),
+                format!("{:.2}", share(of.iter().map(|q| q.collides))),
                 format!("{error:.3}"),
-                worst.0.to_owned(),
-                format!("{:.3}", worst.1),
+                family.to_owned(),
+                format!("{:.3}", worst.clamp(0.0, 1.0)),
             ]);
-            let what = format!("{}, {}: ECE ≤ {MOST_ERROR}", pair.name(), name(margin));
+            let what = format!("{pair}, {name}: ECE ≤ {MOST_ERROR}");
             targets.push(Target::new(what, format!("{error:.3}"), error <= MOST_ERROR));
         }
     }
     Ok((Section::new("Margins").text(MARGIN).text(table), targets))
 }
 
-/// How many answers of ordinary scenes there are, the share of poses that are within the margin, and the
-/// calibration error without chance.
-fn judged(
-    answers: &Answers,
-    pair: Pair,
-    margin: f64,
-    family: Option<&str>,
-) -> Result<(usize, f64, f64)> {
-    let method = answers.index(&name(margin)).context("a margin that was asked about")?;
-    let is_asked = |question: &Question| {
-        question.pair == pair
-            && question.kind == Kind::Ordinary
-            && family.is_none_or(|family| family == question.family)
+/// The same, where being nearer than a margin counts as the collision.
+fn within(answers: &Answers, margin: f64) -> Answers {
+    let row = |(question, said): &Row| {
+        let collides = question.signed_distance < margin;
+        (Question { collides, ..question.clone() }, said.clone())
     };
-    let rows: Vec<_> = answers.rows.iter().filter(|(question, _)| is_asked(question)).collect();
-    let said = rows.iter().filter_map(|(question, said)| {
-        Some((said[method]?.probability?, question.signed_distance < margin))
-    });
-    let sample = Sample::of_probabilities(said);
-    let clusters = Clusters::of(rows.iter().map(|(q, _)| (q.family, q.draw, q.pose)));
-    let nearer = rows.iter().filter(|(q, _)| q.signed_distance < margin).count();
-    let error = calibration_error(&sample, &sample.ones()) - chance_error(&sample, &clusters, SEED);
-    Ok((rows.len(), nearer as f64 / rows.len() as f64, error.max(0.0)))
+    Answers { methods: answers.methods.clone(), rows: answers.rows.iter().map(row).collect() }
 }
 
 #[cfg(test)]
@@ -146,9 +125,13 @@ mod tests {
 
     #[test]
     fn what_is_stated_as_often_as_it_comes_has_no_error_and_else_the_difference() {
-        let error = |stated| judged(&answers(stated), Pair::CloudCloud, 0.03, None).unwrap();
-        assert_eq!((error(0.1).0, error(0.1).1), (200, 0.1));
-        assert!(error(0.1).2 < 0.01 && (error(0.6).2 - 0.5).abs() < 0.05);
+        let error = |stated| {
+            let answers = within(&answers(stated), 0.03);
+            let judged = Judged::pick(&answers, &["3 cm"], ordinary(Pair::CloudCloud));
+            assert_eq!(judged.questions().iter().filter(|q| q.collides).count(), 20);
+            judged.error_above_chance("3 cm")
+        };
+        assert!(error(0.1) < 0.01 && (error(0.6) - 0.5).abs() < 0.05);
     }
 
     #[test]

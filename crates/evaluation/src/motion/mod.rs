@@ -11,8 +11,8 @@ use std::path::Path;
 use anyhow::Result;
 use clap::Args;
 
-use crate::report::{Page, page, targets};
-use crate::sweep::SEED;
+use crate::SEED;
+use crate::report::{Page, Part, page, targets};
 
 /// What `cargo xtask motion` is given.
 #[derive(Debug, Args)]
@@ -46,21 +46,11 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let command = format!("--draws {draws} --poses {poses} --update-docs");
     let title = "Margins, contacts, penetration, gradients";
     let page = Page::new(("motion", title), ("motion", &command), INTRODUCTION, root, SEED);
-    let margins = || margins::measure(draws, poses);
-    let normals = || normals::measure(draws, poses);
-    let penetration = || penetration::measure(draws, poses);
-    let gradient = || gradient::measure(draws, poses);
-    let folder = page::folder(root, update_docs);
-    targets::report(
-        page,
-        &folder,
-        "",
-        &[
-            ("margins", &margins),
-            ("normals", &normals),
-            ("penetration", &penetration),
-            ("gradients", &gradient),
-        ],
-    )?;
-    Ok(())
+    let parts: [Part<'_>; 4] = [
+        ("margins", &|| margins::measure(draws, poses)),
+        ("normals", &|| normals::measure(draws, poses)),
+        ("penetration", &|| penetration::measure(draws, poses)),
+        ("gradients", &|| gradient::measure(draws, poses)),
+    ];
+    targets::report(page, &page::folder(root, update_docs), "", &parts).map(drop)
 }

@@ -1,11 +1,11 @@
 //! Ordinary scenes with moderate noise, and the two bodies of a draw as queries take them.
 
 use anyhow::Result;
-use cloudtouch::{BodyRef, Cloud, CloudSettings, Mesh};
-use cloudtouch_testkit::family::{Kind, Observation};
+use cloudtouch::{BodyRef, Cloud, Mesh};
+use cloudtouch_testkit::family::Kind;
 
 use crate::answers::{Answers, Pair};
-use crate::methods::{Draw, Method, sensor_of};
+use crate::methods::{Draw, Method, prepared};
 use crate::sweep::{Asked, Plan, ask};
 
 /// Standard deviations of the noise in these scenes, m.
@@ -28,18 +28,13 @@ pub(super) struct Bodies {
 
 impl Bodies {
     pub(super) fn prepare(draw: &Draw<'_>) -> Result<Self> {
-        let cloud =
-            |seen: &Observation| Cloud::prepare(&seen.cloud, &CloudSettings::new(sensor_of(seen)));
-        let (scene, object) = (cloud(draw.a)?, cloud(draw.b)?);
+        let (scene, object) = (prepared(draw.a)?, prepared(draw.b)?);
         Ok(Self { scene, object, mesh: Mesh::prepare(draw.mesh)? })
     }
 
     /// The scene, and the object as it is given.
     pub(super) fn pair(&self, pair: Pair) -> (BodyRef<'_>, BodyRef<'_>) {
-        let object = match pair {
-            Pair::CloudCloud => BodyRef::from(&self.object),
-            Pair::CloudMesh => BodyRef::from(&self.mesh),
-        };
+        let object = pair.pick(BodyRef::from(&self.object), BodyRef::from(&self.mesh));
         (BodyRef::from(&self.scene), object)
     }
 }

@@ -10,11 +10,12 @@ use cloudtouch_testkit::poses::LabelledPose;
 use rayon::prelude::*;
 
 use super::near_contact::{Bodies, STDS};
+use crate::SEED;
 use crate::answers::Pair;
 use crate::methods::Draw;
 use crate::report::{Findings, Section, Table, Target};
-use crate::statistics::median;
-use crate::sweep::{SEED, Scenes};
+use crate::statistics::{median, share};
+use crate::sweep::Scenes;
 
 /// Classes of poses by their signed distance, from and to, m.
 const CLASSES: [(&str, f64, f64); 3] = [
@@ -61,32 +62,31 @@ pub(super) fn measure(draws: u32, poses: usize) -> Findings {
             for (class, from, to) in CLASSES {
                 let of: Vec<&Told> = of_class(from, to).filter(|t| t.std == std).collect();
                 let angles: Vec<f64> = of.iter().map(|told| told.angle).collect();
-                let freed = if to > 0.0 { "-".into() } else { format!("{:.2}", share(&of)) };
+                let freed =
+                    if to > 0.0 { "-".into() } else { format!("{:.2}", freed(of.iter().copied())) };
                 let (noise, count) = (format!("{:.0} mm", 1e3 * std), of.len().to_string());
                 let angle = format!("{:.0}°", median(&angles));
-                table.row([pair.name(), &noise, class, &count, &angle, &freed]);
+                table.row([pair.to_string().as_str(), &noise, class, &count, &angle, &freed]);
             }
         }
         for ((class, from, to), least) in CLASSES.into_iter().skip(1).zip(FREED) {
-            let (share, percent) = (share(&of_class(from, to).collect::<Vec<_>>()), 100.0 * least);
-            let what =
-                format!("{}, {class}: freed along the normal in ≥ {percent:.0} %", pair.name());
+            let (share, percent) = (freed(of_class(from, to)), 100.0 * least);
+            let what = format!("{pair}, {class}: freed along the normal in ≥ {percent:.0} %");
             targets.push(Target::new(what, format!("{:.0} %", 100.0 * share), share >= least));
         }
     }
     Ok((Section::new("Normals of contacts").text(TEXT).text(table), targets))
 }
 
-fn share(of: &[&Told]) -> f64 {
-    of.iter().filter(|told| told.is_freed).count() as f64 / of.len() as f64
+fn freed<'a>(of: impl IntoIterator<Item = &'a Told>) -> f64 {
+    share(of.into_iter().map(|told| told.is_freed))
 }
 
 fn of_draw(family: &Scenes, draw: u64, poses: usize) -> Result<Vec<Told>> {
     let from = seed::derive(SEED, family.number(), draw);
     let scene = family.scene(from);
     let poses = scene.poses(poses, seed::derive(from, 1, 0));
-    let ways = poses.iter().map(|pose| way_apart(&scene, pose));
-    let ways: Vec<Option<Vector3>> = ways.collect();
+    let ways: Vec<_> = poses.iter().map(|pose| way_apart(&scene, pose)).collect();
     let query = Query::new(QuerySettings::default())?;
     let mut told = Vec::new();
     for std in STDS {

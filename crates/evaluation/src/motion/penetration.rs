@@ -9,7 +9,7 @@ use super::near_contact::{Bodies, STDS, answers};
 use crate::answers::{Answers, Pair, Question, Said};
 use crate::methods::{Draw, Method, Prepared};
 use crate::report::{Findings, Section, Table, Target};
-use crate::statistics::median;
+use crate::statistics::{median, share};
 
 /// After the translation a collision is less likely than this.
 const PROBABILITY: f64 = 0.1;
@@ -62,23 +62,21 @@ pub(super) fn measure(draws: u32, poses: usize) -> Findings {
 /// One overlap: its exact depth, and what is told of it, if anything is.
 struct Overlap {
     exact: f64,
-    told: Option<Told>,
-}
-
-struct Told {
-    depth: f64,
-    distance: f64,
-    micros: f64,
+    told: Option<Said>,
 }
 
 impl Overlap {
+    /// How much deeper than it is it is told to be, m.
+    fn off(&self) -> Option<f64> {
+        Some(-self.told?.clearance?.mean - self.exact)
+    }
+
     fn is_good(&self) -> bool {
-        let allowed = MOST_OFF.max(MOST_SHARE * self.exact);
-        self.told.as_ref().is_some_and(|out| (out.depth - self.exact).abs() <= allowed)
+        self.off().is_some_and(|off| off.abs() <= MOST_OFF.max(MOST_SHARE * self.exact))
     }
 
     fn is_enough(&self) -> bool {
-        self.told.as_ref().is_some_and(|out| out.distance >= self.exact)
+        self.told.is_some_and(|out| out.score >= self.exact)
     }
 }
 
@@ -91,21 +89,13 @@ fn overlaps(answers: &Answers, pair: Pair, has_noise: impl Fn(f64) -> bool) -> V
             && question.signed_distance >= -DEEPEST
     };
     let rows = answers.rows.iter().filter(|(question, _)| is_asked(question));
-    rows.map(|(question, said)| {
-        let said = said.first().copied().flatten();
-        let told = said.and_then(|said| {
-            let depth = -said.clearance?.mean;
-            Some(Told { depth, distance: said.score, micros: said.micros })
-        });
-        Overlap { exact: -question.signed_distance, told }
-    })
-    .collect()
+    rows.map(|(question, said)| Overlap { exact: -question.signed_distance, told: said[0] })
+        .collect()
 }
 
 fn judge(answers: &Answers) -> (Section, Vec<Target>) {
-    const HEADER: [&str; 8] =
-        ["pair", "noise", "overlaps", "depth good", "off", "enough", "none", "time"];
-    let mut table = Table::new(HEADER);
+    const HEADER: &str = "pair, noise, overlaps, depth good, off, enough, none, time";
+    let mut table = Table::new(HEADER.split(", "));
     let mut targets = Vec::new();
     for pair in Pair::ALL {
         for std in STDS {
@@ -115,9 +105,8 @@ fn judge(answers: &Answers) -> (Section, Vec<Target>) {
         let overlaps = overlaps(answers, pair, |_| true);
         let good = ("depth within 25 % or 1 cm", GOOD, Overlap::is_good as fn(&_) -> _);
         for (what, least, is_met) in [good, ("distance enough", ENOUGH, Overlap::is_enough)] {
-            let share = share(&overlaps, is_met);
-            let (pair, least_percent) = (pair.name(), 100.0 * least);
-            let what = format!("{pair}: {what} in ≥ {least_percent:.0} % of overlaps up to 10 cm");
+            let (share, percent) = (share(overlaps.iter().map(is_met)), 100.0 * least);
+            let what = format!("{pair}: {what} in ≥ {percent:.0} % of overlaps up to 10 cm");
             targets.push(Target::new(what, format!("{:.0} %", 100.0 * share), share >= least));
         }
     }
@@ -125,24 +114,20 @@ fn judge(answers: &Answers) -> (Section, Vec<Target>) {
 }
 
 fn row(pair: Pair, std: f64, overlaps: &[Overlap]) -> [String; 8] {
-    let told = || overlaps.iter().filter_map(|o| Some((o.exact, o.told.as_ref()?)));
-    let off: Vec<f64> = told().map(|(exact, told)| told.depth - exact).collect();
-    let seconds: Vec<f64> = told().map(|(_, told)| 1e-6 * told.micros).collect();
-    let part = |is_met: fn(&Overlap) -> bool| format!("{:.2}", share(overlaps, is_met));
+    let off: Vec<f64> = overlaps.iter().filter_map(Overlap::off).collect();
+    let told = overlaps.iter().filter_map(|overlap| overlap.told);
+    let seconds: Vec<f64> = told.map(|told| 1e-6 * told.micros).collect();
+    let part = |is_met| format!("{:.2}", share(overlaps.iter().map(is_met)));
     [
-        pair.name().to_owned(),
+        pair.to_string(),
         format!("{:.0} mm", 1e3 * std),
         overlaps.len().to_string(),
-        part(Overlap::is_good),
+        part(Overlap::is_good as fn(&_) -> _),
         format!("{:+.1} mm", 1e3 * median(&off)),
         part(Overlap::is_enough),
-        (overlaps.len() - told().count()).to_string(),
+        (overlaps.len() - off.len()).to_string(),
         format!("{:.2} s", median(&seconds)),
     ]
-}
-
-fn share(overlaps: &[Overlap], is_met: fn(&Overlap) -> bool) -> f64 {
-    overlaps.iter().filter(|overlap| is_met(overlap)).count() as f64 / overlaps.len() as f64
 }
 
 #[cfg(test)]

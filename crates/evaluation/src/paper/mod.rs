@@ -8,8 +8,8 @@ use std::path::Path;
 use anyhow::Result;
 use clap::Args;
 
+use crate::SEED;
 use crate::report::{Page, page};
-use piano::SEED;
 
 /// What `cargo xtask paper` is given.
 #[derive(Debug, Args)]

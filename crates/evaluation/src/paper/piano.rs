@@ -3,23 +3,18 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use cloudtouch_geom::PointCloud;
 use cloudtouch_geom::seed::derive;
 use cloudtouch_testkit::exact::ExactMesh;
-use cloudtouch_testkit::family::Observation;
-use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::poses::poses_near_contact;
 use cloudtouch_testkit::scene;
-use cloudtouch_testkit::surface::{positions, sample_surface};
 
+use crate::SEED;
 use crate::answers::{Pair, Said};
 use crate::measures::{Sample, brier};
-use crate::methods::{Draw, Method, Ours, Paper, observed};
+use crate::methods::{Draw, Method, Ours, Paper, sampled};
 use crate::report::{Axis, Figure, Panel, Section, Series, Table};
 use crate::statistics::quantile;
 
-/// Everything random comes from this.
-pub(super) const SEED: u64 = 2011;
 /// Standard deviations of the noise, m.
 const STDS: [f64; 2] = [0.002, 0.01];
 /// Distances beyond this are drawn at the edge, mm.
@@ -37,12 +32,9 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
     let mut table = Table::new(HEADER.split(", "));
     let mut panels = Vec::new();
     for (number, std) in (0..).zip(STDS) {
-        let [room, piano] = [0, 1].map(|body| -> Observation {
-            let stream = 20 + 2 * number + body as u64;
-            let samples = sample_surface(&meshes[body], points, derive(SEED, 1, stream));
-            let (exact, seed) = (positions(&samples), derive(SEED, 2, stream));
-            let noisy = add_noise(&exact, NoiseKind::Gaussian, std, seed);
-            observed(PointCloud::from_points(noisy), std)
+        let [room, piano] = [0, 1].map(|body| {
+            let seeds = [1, 2].map(|part| derive(SEED, part, 20 + 2 * number + body as u64));
+            sampled(&meshes[body], points, std, seeds)
         });
         let draw = Draw { family: "", a: &room, b: &piano, mesh: &meshes[1] };
         for method in methods {
@@ -64,8 +56,7 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
             let mean =
                 |all: &[(f64, f64)]| all.iter().map(|(_, p)| p).sum::<f64>() / all.len() as f64;
             let mut row = vec![format!("{:.0}", 1e3 * std), method.name()];
-            row.push(free.iter().filter(|(_, p)| *p >= 0.5).count().to_string());
-            row.push(hit.iter().filter(|(_, p)| *p < 0.5).count().to_string());
+            row.extend(sample.wrong().map(|count| count.to_string()));
             let errors = [brier(&sample, &sample.ones()), mean(&free), mean(&hit)];
             row.extend(errors.map(|value| format!("{value:.3}")));
             let times: Vec<f64> = said.iter().map(|said| 1e-3 * said.micros).collect();

@@ -8,7 +8,7 @@ use cloudtouch::{
 };
 use cloudtouch_geom::{Point3, PointCloud, Pose, seed};
 
-use super::piano::SEED;
+use crate::SEED;
 use crate::report::{Axis, Figure, Panel, Place, Section, Series};
 
 /// Points of each cloud: one leaf.

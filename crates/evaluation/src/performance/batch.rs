@@ -5,9 +5,9 @@ use cloudtouch::{Detail, Query, QuerySettings};
 use cloudtouch_geom::Pose;
 use rayon::ThreadPoolBuilder;
 
-use super::fresh::prepare;
 use super::scene::{POINTS, STD, Scene};
 use super::timing::{ratio, timed};
+use crate::methods::prepared;
 use crate::report::{Findings, Section, Target};
 
 /// Poses of the batch, and its parts; one and two threads take turns at each.
@@ -16,8 +16,8 @@ const PARTS: usize = 10;
 
 /// Asks all poses of the batch three times: untimed, on one thread, on two.
 pub(super) fn measure(scene: &Scene) -> Findings {
-    let room = prepare(&scene.room(POINTS, STD).cloud, STD)?.refined()?;
-    let piano = prepare(&scene.piano(STD).cloud, STD)?.refined()?;
+    let room = prepared(&scene.room(POINTS, STD))?.refined()?;
+    let piano = prepared(&scene.piano(STD))?.refined()?;
     let settings = QuerySettings { detail: Detail::Probability, ..QuerySettings::default() };
     let query = Query::new(settings)?;
     let poses: Vec<Pose> =

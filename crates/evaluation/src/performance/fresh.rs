@@ -9,14 +9,15 @@ use cloudtouch_geom::seed::derive;
 use cloudtouch_geom::{PointCloud, Pose};
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
 use cloudtouch_testkit::exact::ExactMesh;
-use cloudtouch_testkit::family::{Family, Side};
+use cloudtouch_testkit::family::{Family, Observation, Side};
 use cloudtouch_testkit::noise::NoiseKind;
 use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
 use cloudtouch_testkit::scene::cuboid;
 use rayon::ThreadPoolBuilder;
 
-use super::scene::{Class, POINTS, STD, Scene, sampled};
+use super::scene::{Class, POINTS, STD, Scene, seeds};
 use super::timing::{p95, time, timed};
+use crate::methods::{prepared, sampled};
 use crate::real_scans::cases;
 use crate::report::{Findings, Section, Table, Target};
 use crate::statistics::median;
@@ -36,12 +37,6 @@ const BOX_POSES: usize = 30;
 
 /// A pose, and whether it collides where that is known.
 type Labelled = (Pose, Option<bool>);
-
-/// A cloud prepared with a noise of this standard deviation.
-pub(super) fn prepare(cloud: &PointCloud, std: f64) -> Result<Cloud> {
-    let sensor = SensorModel::Isotropic { std };
-    Ok(Cloud::prepare(cloud, &CloudSettings::new(sensor))?)
-}
 
 /// Two clouds for every near pose, and depth frames for ten poses of a gripper.
 pub(super) fn measure(scene: &Scene, data: Option<&Path>) -> Findings {
@@ -125,6 +120,12 @@ impl Fresh {
         Ok(())
     }
 
+    fn add_pair(&mut self, [a, b]: [&Observation; 2], poses: &[Labelled]) -> Result<()> {
+        let query = Query::new(QuerySettings::default())?;
+        let both = || Ok((prepared(a)?, prepared(b)?));
+        self.add(both, |(a, b), pose| Ok(query.run(a, b, pose)?), poses)
+    }
+
     fn add_frame(
         &mut self,
         frame: &PointCloud,
@@ -143,12 +144,10 @@ impl Fresh {
 
 fn clouds(scene: &Scene) -> Result<Fresh> {
     let (room, piano) = (scene.room(POINTS, STD), scene.piano(STD));
-    let query = Query::new(QuerySettings::default())?;
     let mut fresh = Fresh::default();
-    for pose in scene.of(Class::Near) {
-        let both = || Ok((prepare(&room.cloud, STD)?, prepare(&piano.cloud, STD)?));
-        let asked = [(pose.scene_from_object, Some(pose.in_collision))];
-        fresh.add(both, |(a, b), pose| Ok(query.run(a, b, pose)?), &asked)?;
+    let near = scene.poses.iter().filter(|pose| Class::of(pose) == Some(Class::Near));
+    for pose in near.copied() {
+        fresh.add_pair([&room, &piano], &known(&[pose]))?;
     }
     Ok(fresh)
 }
@@ -157,12 +156,11 @@ fn boxes(from: u64, std: f64) -> Result<Fresh> {
     let cube = cuboid([0.12; 3]);
     let exact = ExactMesh::new(&cube);
     let poses = known(&poses_near_contact(&exact, &exact, BOX_POSES, derive(from, 5, 0)));
-    let query = Query::new(QuerySettings::default())?;
     let mut fresh = Fresh::default();
     for draw in 0..3 {
-        let [a, b] = [0, 1].map(|side| sampled(&cube, POINTS, std, derive(from, 6 + side, draw)));
-        let both = || Ok((prepare(&a.cloud, std)?, prepare(&b.cloud, std)?));
-        fresh.add(both, |(a, b), pose| Ok(query.run(a, b, pose)?), &poses)?;
+        let [a, b] =
+            [0, 1].map(|side| sampled(&cube, POINTS, std, seeds(derive(from, 6 + side, draw))));
+        fresh.add_pair([&a, &b], &poses)?;
     }
     Ok(fresh)
 }

@@ -7,12 +7,11 @@ use cloudtouch::bvh::{Primitive, Tree, TreeSettings};
 use cloudtouch::noise::SensorModel;
 use cloudtouch_geom::{PointCloud, UncertainPoint};
 
-use super::fresh::prepare;
 use super::scene::{POINTS, STD, Scene};
 use super::timing::{least_of, ratio, three_digits, time};
 use super::turns::take_turns;
 use crate::answers::Pair;
-use crate::methods::{Draw, ExactMeshes, Ours};
+use crate::methods::{Draw, ExactMeshes, Ours, prepared};
 use crate::report::{Findings, Section, Table, Target};
 use crate::statistics::median;
 
@@ -32,10 +31,10 @@ pub(super) fn measure(scene: &Scene) -> Findings {
     for points in SIZES {
         let (room, piano) = (scene.room(points, STD), scene.piano(STD));
         let before = resident()?;
-        let kept = prepare(&room.cloud, STD)?;
+        let kept = prepared(&room)?;
         held = (resident()? - before) / kept.len() as f64;
         drop(kept);
-        let (_, preparing) = least_of(BUILDS, || prepare(&room.cloud, STD))?;
+        let (_, preparing) = least_of(BUILDS, || prepared(&room))?;
         let rates = [tree_time(&room.cloud)?, preparing].map(|seconds| points as f64 / seconds);
         slowest = [0, 1].map(|k| slowest[k].min(rates[k]));
         let draw = Draw { family: "", a: &room, b: &piano, mesh: &scene.piano };

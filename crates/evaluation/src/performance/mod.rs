@@ -16,6 +16,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use rayon::ThreadPoolBuilder;
 
+use crate::SEED;
 use crate::real_scans::cases;
 use crate::report::{Page, Part, page, targets};
 use scene::Scene;
@@ -33,9 +34,6 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "../shared/data")]
     data: PathBuf,
 }
-
-/// Everything random comes from this.
-const SEED: u64 = 2011;
 
 const INTRODUCTION: &str = "How long queries, preparation and the solver take, beside other \
 libraries on the same scenes in the same run. Times are wall times of single calls on one thread, \

@@ -1,17 +1,15 @@
 //! The piano and the room: meshes, noisy clouds, and poses far from contact, near and deep.
 
 use anyhow::{Context, Result};
+use cloudtouch_geom::TriangleMesh;
 use cloudtouch_geom::seed::derive;
-use cloudtouch_geom::{PointCloud, TriangleMesh};
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::family::Observation;
-use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
 use cloudtouch_testkit::scene;
-use cloudtouch_testkit::surface::{positions, sample_surface};
 use rayon::prelude::*;
 
-use crate::methods::observed;
+use crate::methods::sampled;
 
 /// Points of a cloud where nothing else is said.
 pub(super) const POINTS: usize = 10_000;
@@ -93,19 +91,14 @@ impl Scene {
         Ok(Self { room, piano, poses, seed })
     }
 
-    /// The poses of one class.
-    pub(super) fn of(&self, class: Class) -> impl Iterator<Item = &LabelledPose> {
-        self.poses.iter().filter(move |pose| Class::of(pose) == Some(class))
-    }
-
     /// The room in so many points, with noise of this standard deviation (m).
     pub(super) fn room(&self, points: usize, std: f64) -> Observation {
-        sampled(&self.room, points, std, derive(self.seed, 2, 0))
+        sampled(&self.room, points, std, seeds(derive(self.seed, 2, 0)))
     }
 
     /// The piano in [`POINTS`] points.
     pub(super) fn piano(&self, std: f64) -> Observation {
-        sampled(&self.piano, POINTS, std, derive(self.seed, 2, 1))
+        sampled(&self.piano, POINTS, std, seeds(derive(self.seed, 2, 1)))
     }
 
     /// The room's surface in about so many triangles, and the piano's in ten thousand.
@@ -116,11 +109,9 @@ impl Scene {
     }
 }
 
-/// So many points of a surface, with noise of this standard deviation (m).
-pub(super) fn sampled(mesh: &TriangleMesh, points: usize, std: f64, stream: u64) -> Observation {
-    let exact = positions(&sample_surface(mesh, points, stream));
-    let noisy = add_noise(&exact, NoiseKind::Gaussian, std, derive(stream, 1, 0));
-    observed(PointCloud::from_points(noisy), std)
+/// Those of places and of errors.
+pub(super) fn seeds(stream: u64) -> [u64; 2] {
+    [stream, derive(stream, 1, 0)]
 }
 
 #[cfg(test)]

@@ -72,19 +72,15 @@ impl Timed {
         self.of(class).map(|answer| answer.seconds).collect()
     }
 
-    /// Chance that a collision has the higher score.
-    pub(super) fn auc(&self, class: Option<Class>) -> f64 {
-        let sample =
-            Sample::of_probabilities(self.of(class).map(|a| (a.score, a.pose.in_collision)));
-        auc(&sample, &sample.ones())
+    /// What it says beside what is true.
+    fn sample(&self, class: Option<Class>) -> Sample {
+        Sample::of_probabilities(self.of(class).map(|a| (a.score, a.pose.in_collision)))
     }
 
-    /// Free poses it calls collisions and collisions it calls free, from a score of ½ on.
-    fn wrong(&self) -> [usize; 2] {
-        [false, true].map(|collides| {
-            let of = self.answers.iter().filter(|a| a.pose.in_collision == collides);
-            of.filter(|a| (a.score >= 0.5) != collides).count()
-        })
+    /// Chance that a collision has the higher score.
+    fn auc(&self, class: Option<Class>) -> f64 {
+        let sample = self.sample(class);
+        auc(&sample, &sample.ones())
     }
 }
 
@@ -104,7 +100,9 @@ pub(super) fn table(all: &[Timed]) -> Table {
         row.extend([middle(Some(Class::Deep)), middle(None)]);
         row.push(ratio(first / median(&timed.seconds(None))));
         row.extend([None, near].map(|class| format!("{:.3}", timed.auc(class))));
-        row.extend(timed.wrong().map(|n| if is_verdict { n.to_string() } else { "-".into() }));
+        row.extend(
+            timed.sample(None).wrong().map(|n| if is_verdict { n.to_string() } else { "-".into() }),
+        );
         table.row(row);
     }
     table
@@ -125,7 +123,7 @@ mod tests {
         };
         let answers = [(0.9, false), (0.2, false), (0.6, false), (0.4, true)].map(answer);
         let timed = Timed { name: "t".into(), prepare: 0.0, answers: answers.into() };
-        assert_eq!(timed.wrong(), [2, 1]);
+        assert_eq!(timed.sample(None).wrong(), [2, 1]);
         assert!((timed.auc(None) - 1.0 / 3.0).abs() < 1e-12);
         assert!(timed.auc(Some(Class::Far)).is_nan());
     }

@@ -6,11 +6,12 @@ use std::path::Path;
 use anyhow::Result;
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings, Query,
-    QuerySettings, Report,
+    Cloud, CloudSettings, Contact, Mesh, PaperCloud, PaperCloudSettings, PaperQuery, PaperSettings,
+    Query, QuerySettings, Report,
 };
-use cloudtouch_geom::{Point3, Pose};
+use cloudtouch_geom::Pose;
 use cloudtouch_io::{LengthUnit, read_cloud, read_mesh};
+use cloudtouch_testkit::brute::minimum_distance;
 
 use super::{cases, side_view};
 use crate::report::{Axis, Figure, Findings, Panel, Place, Section, Series, Target};
@@ -55,7 +56,9 @@ pub(super) fn evaluate(data: &Path) -> Findings {
     let picture = side_view::figure(&clouds[0], &object, &shown)?;
 
     let contacts = || answers[0].iter().flat_map(|report| &report.contacts);
-    let distances: Vec<f64> = contacts().map(|c| nearest(&scan.points, &c.point)).collect();
+    // Missing returns do not count.
+    let to_scan = |contact: &Contact| minimum_distance(&scan.points, &[contact.point]);
+    let distances: Vec<f64> = contacts().map(to_scan).collect();
     let drops = RUNS.iter().zip(&answers).map(|((_, name), run)| (largest_drop(run), name));
     let drops: Vec<String> = drops.map(|(drop, name)| format!("{drop:.3} ({name})")).collect();
     let text = format!(
@@ -87,12 +90,6 @@ fn targets(drop: f64, distances: &[f64]) -> Vec<Target> {
         Target::new(what, format!("{drop:.3}"), drop <= limit),
         Target::new(reach, measured, farthest <= CONTACT_REACH),
     ]
-}
-
-/// Distance to the nearest point, m; missing returns do not count.
-fn nearest(points: &[Point3], to: &Point3) -> f64 {
-    let squares = points.iter().map(|p| (p - to).norm_squared()).filter(|d| d.is_finite());
-    squares.fold(f64::INFINITY, f64::min).sqrt()
 }
 
 /// How far the probability falls below its own running maximum, at most.
@@ -142,6 +139,8 @@ fn figure(advances: &[f64], answers: &[Vec<Report>]) -> Figure {
 
 #[cfg(test)]
 mod tests {
+    use cloudtouch_geom::Point3;
+
     use super::*;
     use crate::report::targets::require;
 
@@ -152,7 +151,7 @@ mod tests {
         assert!(!met(0.06, &[0.0]) && !met(f64::NAN, &[0.0]));
         assert!(!met(0.0, &[0.0, f64::NAN, 0.0]) && !met(0.0, &[0.016]) && !met(0.0, &[]));
         let points = [Point3::new(f64::NAN, 0.0, 0.0), Point3::new(3.0, 4.0, 0.0)];
-        assert_eq!(nearest(&points, &Point3::origin()), 5.0);
-        assert_eq!(nearest(&points[..1], &Point3::origin()), f64::INFINITY);
+        assert_eq!(minimum_distance(&points, &[Point3::origin()]), 5.0);
+        assert_eq!(minimum_distance(&points[..1], &[Point3::origin()]), f64::INFINITY);
     }
 }

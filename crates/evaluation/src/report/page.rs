@@ -1,6 +1,6 @@
 //! Pages of `docs/lab/`, each wholly made by one command.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,6 @@ use super::machine;
 #[derive(Debug)]
 pub struct Page {
     name: String,
-    task: String,
     head: String,
     sections: Vec<Section>,
 }
@@ -53,7 +52,7 @@ impl Page {
             "# {title}\n\n<!-- Made by `cargo xtask {task}`; edit crates/evaluation/, not this. -->\n\n\
              {introduction}\n\n```text\n{command}\n```\n{debug}\n{provenance}"
         );
-        Self { name: name.to_owned(), task: task.to_owned(), head, sections: Vec::new() }
+        Self { name: name.to_owned(), head, sections: Vec::new() }
     }
 
     /// Adds a section.
@@ -75,7 +74,7 @@ impl Page {
         let sections = self.sections.iter().map(|section| section.text.trim_end());
         let parts: Vec<&str> = std::iter::once(self.head.trim_end()).chain(sections).collect();
         write_atomically(&path, |out| writeln!(out, "{}", parts.join("\n\n")))?;
-        println!("{}: wrote {}", self.task, path.display());
+        println!("wrote {}", path.display());
         Ok(())
     }
 }
@@ -89,11 +88,7 @@ impl Section {
     /// Adds a paragraph, a list, a table or a heading of a lower level.
     #[must_use]
     pub fn text(mut self, text: impl fmt::Display) -> Self {
-        let start = self.text.len();
-        // Writing to a string cannot fail.
-        let _ = write!(self.text, "{text}");
-        let end = start + self.text[start..].trim_end().len();
-        self.text.truncate(end);
+        self.text += text.to_string().trim_end();
         self.text += "\n\n";
         self
     }

@@ -7,8 +7,9 @@ use cloudtouch_testkit::noise::NoiseKind;
 use cloudtouch_testkit::poses::LabelledPose;
 use rayon::prelude::*;
 
-use super::plan::{Plan, SEED};
+use super::plan::Plan;
 use super::scenes::Scenes;
+use crate::SEED;
 use crate::answers::{Answers, Condition, Pair, Question, Row};
 use crate::methods::{Draw, Method};
 
@@ -85,7 +86,7 @@ fn of_draw(
     let mut rows: Vec<Row> = Vec::new();
     let [of_a, of_b] = [Side::A, Side::B].map(|side| scene.spacing(side, points));
     for pair in Pair::ALL {
-        let spacing = if pair == Pair::CloudCloud { of_a.max(of_b) } else { of_a };
+        let spacing = pair.pick(of_a.max(of_b), of_a);
         rows.extend(poses.iter().zip(0..).map(|(pose, number_of_pose)| {
             let question = Question {
                 family: family.name,

@@ -1,8 +1,8 @@
 //! A part of the answers, as the measures take it.
 
-use super::plan::SEED;
+use crate::SEED;
 use crate::answers::{Answers, Question, Row, Said};
-use crate::measures::{Clusters, Estimate, Measure, Sample, chance_error};
+use crate::measures::{Clusters, Estimate, Measure, Sample, calibration_error, chance_error};
 use crate::statistics::median;
 
 /// Questions picked from the table, with what several methods say of them.
@@ -75,6 +75,12 @@ impl<'a> Judged<'a> {
         chance_error(self.sample(method), &self.clusters, SEED)
     }
 
+    /// How far the ECE of a method is above what chance alone gives.
+    pub fn error_above_chance(&self, method: &str) -> f64 {
+        let sample = self.sample(method);
+        calibration_error(sample, &sample.ones()) - self.chance_error(method)
+    }
+
     /// Median of the query times, ms.
     pub fn query_ms(&self, method: &str) -> f64 {
         median(&self.said(method).iter().map(|s| 1e-3 * s.micros).collect::<Vec<_>>())
@@ -98,11 +104,8 @@ impl<'a> Judged<'a> {
             return "–".into();
         }
         let difference = self.difference(method, with, measure);
-        if difference.excludes_zero() {
-            format!("**{difference:+}**")
-        } else {
-            format!("{difference:+}")
-        }
+        let bold = if difference.excludes_zero() { "**" } else { "" };
+        format!("{bold}{difference:+}{bold}")
     }
 }
 

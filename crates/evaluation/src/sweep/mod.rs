@@ -18,9 +18,10 @@ use clap::Args;
 
 pub use ask::{Asked, ask};
 pub use judged::Judged;
-pub use plan::{GEOMETRY, ORACLE, OURS, Plan, SEED};
+pub use plan::{GEOMETRY, ORACLE, OURS, Plan};
 pub use scenes::Scenes;
 pub use short::run as check;
+pub use tables::ordinary;
 
 use crate::methods::{Boxes, Distance, Ours, Paper};
 use crate::report::page;
@@ -57,11 +58,8 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let folder = page::folder(root, update_docs);
     let arguments = format!("--draws {draws} --poses {poses} --update-docs");
     pages::in_full(root, &arguments, &answers).write(&folder)?;
-    pages::for_users(root, &arguments, &answers).write(&if update_docs {
-        root.join("docs")
-    } else {
-        folder.join("user")
-    })
+    let for_users = if update_docs { root.join("docs") } else { folder.join("user") };
+    pages::for_users(root, &arguments, &answers).write(&for_users)
 }
 
 /// Ours, the oracle, the paper's mode and the alternatives. What takes long answers less: the paper's

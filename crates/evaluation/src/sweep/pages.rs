@@ -5,9 +5,9 @@ use std::path::Path;
 use cloudtouch_testkit::family::Kind;
 
 use super::judged::Judged;
-use super::plan::SEED;
 use super::tables::is_of;
 use super::{OURS, stated, targets};
+use crate::SEED;
 use crate::answers::{Answers, Pair};
 use crate::report::{Page, Section};
 
@@ -84,26 +84,20 @@ pub(super) fn in_full(root: &Path, arguments: &str, answers: &Answers) -> Page {
     let mut page = Page::new(title, ("sweep", arguments), IN_FULL, root, SEED);
     page.section(targets::section(answers));
     for pair in Pair::ALL {
-        let mut section = Section::new(&format!("{}: methods", capitalised(pair)));
-        for (name, kind) in [("Ordinary", Kind::Ordinary), ("Adversarial", Kind::Adversarial)] {
+        let name = pair.pick("Two clouds", "Cloud and mesh");
+        let mut section = Section::new(&format!("{name}: methods"));
+        for (scenes, kind) in [("Ordinary", Kind::Ordinary), ("Adversarial", Kind::Adversarial)] {
             let keep = is_of(pair, kind);
             let count = Judged::pick(answers, &[OURS], keep).questions().len();
             section = section
                 .text(format_args!(
-                    "{name} scenes, {count} answers; bold: the interval excludes zero."
+                    "{scenes} scenes, {count} answers; bold: the interval excludes zero."
                 ))
                 .text(answers.by_method(keep));
         }
         page.section(section);
-        let section = Section::new(&format!("{}: families", capitalised(pair)));
+        let section = Section::new(&format!("{name}: families"));
         page.section(section.text(answers.by_family(pair)));
     }
     page
-}
-
-fn capitalised(pair: Pair) -> &'static str {
-    match pair {
-        Pair::CloudCloud => "Two clouds",
-        Pair::CloudMesh => "Cloud and mesh",
-    }
 }

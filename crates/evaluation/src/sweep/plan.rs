@@ -7,12 +7,8 @@ use crate::answers::Condition;
 pub const OURS: &str = "calibrated";
 /// ... and ours given every sampled point as it truly is.
 pub const ORACLE: &str = "oracle";
-
 /// ... and ours without the classifier.
 pub const GEOMETRY: &str = "geometry alone";
-
-/// All randomness of the sweeps comes from this.
-pub const SEED: u64 = 2011;
 
 /// Standard deviations of the noise, m.
 pub(super) const STDS: [f64; 4] = [0.0, 0.002, 0.01, 0.02];
@@ -57,10 +53,5 @@ impl Plan {
         let of_points = |points| Condition { points, std: 0.02 };
         let conditions = [10_000, 40_000, 120_000].map(of_points).to_vec();
         Self { stream: 2, conditions, ..Self::full(draws, poses) }
-    }
-
-    /// One condition of some families.
-    pub fn of(families: Vec<Scenes>, draws: u32, poses: usize, points: usize, std: f64) -> Self {
-        Self { families, conditions: vec![Condition { points, std }], ..Self::full(draws, poses) }
     }
 }

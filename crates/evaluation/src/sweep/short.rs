@@ -7,7 +7,7 @@ use super::OURS;
 use super::ask::{Asked, ask};
 use super::judged::Judged;
 use super::plan::Plan;
-use crate::answers::{Pair, Question};
+use crate::answers::{Condition, Pair, Question};
 use crate::measures::Measure;
 use crate::methods::Ours;
 
@@ -45,7 +45,8 @@ const RECORDED: [(Family, [[f64; 2]; 2]); 18] = [
 pub fn run() -> Result<()> {
     let families = RECORDED.map(|(family, _)| family.into()).to_vec();
     let methods = [Asked::always(Ours::new(OURS)?)];
-    let answers = ask(&Plan::of(families, DRAWS, POSES, POINTS, STD), &methods)?;
+    let conditions = vec![Condition { points: POINTS, std: STD }];
+    let answers = ask(&Plan { families, conditions, ..Plan::full(DRAWS, POSES) }, &methods)?;
     let mut worse = Vec::new();
     for (family, recorded) in RECORDED {
         for (pair, [least_auc, largest_brier]) in Pair::ALL.into_iter().zip(recorded) {
@@ -53,7 +54,7 @@ pub fn run() -> Result<()> {
             let judged = Judged::pick(&answers, &[OURS], keep);
             let [auc, brier] =
                 [Measure::Auc, Measure::Brier].map(|measure| judged.estimate(OURS, measure).value);
-            let name = format!("{}, {}", family.name(), pair.name());
+            let name = format!("{}, {pair}", family.name());
             println!(
                 "{name}: AUC {auc:.3} (least {least_auc}), Brier {brier:.3} (most {largest_brier})"
             );

@@ -25,7 +25,7 @@ pub(super) fn table(answers: &Answers) -> Table {
             }
             format!("{observed:.2} (mean stated {mean:.2}, {count} answers)")
         };
-        table.row(std::iter::once(format!("{}: collide", pair.name())).chain(STATED.map(cell)));
+        table.row(std::iter::once(format!("{pair}: collide")).chain(STATED.map(cell)));
     }
     table
 }
@@ -45,7 +45,7 @@ pub(super) fn figure(answers: &Answers) -> Figure {
             series.push(curve.named_at(x, y));
         }
         let (x, y) = (Axis::unit("stated probability"), Axis::unit("share that collides"));
-        Panel { title: pair.name().into(), x, y, series }
+        Panel { title: pair.to_string(), x, y, series }
     };
     Figure::new(
         "Does 0.7 mean seven in ten? On the grey line it does; above it more poses collide than stated",

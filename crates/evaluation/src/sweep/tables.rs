@@ -21,7 +21,7 @@ pub(super) fn is_of(pair: Pair, kind: Kind) -> impl Fn(&Question) -> bool + Copy
 }
 
 /// The same about ordinary scenes.
-pub(super) fn ordinary(pair: Pair) -> impl Fn(&Question) -> bool + Copy {
+pub fn ordinary(pair: Pair) -> impl Fn(&Question) -> bool + Copy {
     is_of(pair, Kind::Ordinary)
 }
 
@@ -111,6 +111,17 @@ impl Answers {
             of(Measure::FalseStops(0.01)),
             of(Measure::FalseStops(0.05)),
         ]
+    }
+
+    /// The ordinary family whose probabilities are worst, and how far its ECE is above chance.
+    pub fn worst_calibrated(&self, pair: Pair, method: &str) -> (&'static str, f64) {
+        let error = |family: &'static str| {
+            let keep = |q: &Question| q.family == family && ordinary(pair)(q);
+            (family, Judged::pick(self, &[method], keep).error_above_chance(method))
+        };
+        let all = self.families().into_iter().map(error).filter(|(_, error)| !error.is_nan());
+        let worst = all.max_by(|(_, a), (_, b)| a.total_cmp(b));
+        worst.unwrap_or(("no family", f64::NAN))
     }
 
     /// The AUC of a method on the questions it answers.

@@ -7,6 +7,7 @@ use super::{ORACLE, OURS};
 use crate::answers::{Answers, Pair, Question, Said};
 use crate::measures::{Bin, Measure, observed_within};
 use crate::report::{Section, Target, targets};
+use crate::statistics::share;
 
 /// What should be reached on the ordinary families together: of which pair, whether only near
 /// contact, the measure, its limit, and up to which noise, m.
@@ -66,25 +67,15 @@ fn limited(answers: &Answers, (pair, near, measure, limit, up_to): Limit) -> Tar
         Measure::Auc => ("at least", ours.value >= limit),
         _ => ("at most", ours.value <= limit),
     };
-    let which = if near { ", near" } else { "" };
-    let noise = 1e3 * up_to;
-    let name =
-        format!("{}{which}, up to {noise} mm: {} {relation} {limit}", pair.name(), measure.name());
+    let (which, noise, of) = (if near { ", near" } else { "" }, 1e3 * up_to, measure.name());
+    let name = format!("{pair}{which}, up to {noise} mm: {of} {relation} {limit}");
     Target::new(name, format!("{ours}; oracle {oracle}"), met)
 }
 
 /// The family that is calibrated worst.
 fn families(answers: &Answers, pair: Pair) -> Target {
-    let error = |family: &'static str| {
-        let keep = |q: &Question| q.family == family && ordinary(pair)(q);
-        let judged = Judged::pick(answers, &[OURS], keep);
-        let error = judged.estimate(OURS, Measure::CalibrationError).value;
-        (family, error - judged.chance_error(OURS))
-    };
-    let all = answers.families().into_iter().map(error).filter(|(_, e)| !e.is_nan());
-    let worst = all.max_by(|a, b| a.1.total_cmp(&b.1));
-    let (family, worst) = worst.unwrap_or(("no family", f64::NAN));
-    let what = format!("{}: ECE of every family at most {FAMILY_ERROR} above chance", pair.name());
+    let (family, worst) = answers.worst_calibrated(pair, OURS);
+    let what = format!("{pair}: ECE of every family at most {FAMILY_ERROR} above chance");
     Target::new(what, format!("{worst:.3} ({family})"), worst <= FAMILY_ERROR)
 }
 
@@ -95,11 +86,11 @@ fn stated(answers: &Answers, pair: Pair) -> [Target; 2] {
         [OURS, ORACLE].map(|method| of(observed_within(judged.sample(method), low..high)))
     };
     let [free, of_oracle] = within(0.0, 0.1, |bin| 100.0 * bin.observed);
-    let what = format!("{}: stated below .1, at most {STATED_FREE} % collide", pair.name());
+    let what = format!("{pair}: stated below .1, at most {STATED_FREE} % collide");
     let measured = format!("{free:.1} %; oracle {of_oracle:.1} %");
     let free = Target::new(what, measured, free <= STATED_FREE);
     let [off, of_oracle] = within(0.6, 0.95, |bin| bin.observed - bin.mean);
-    let what = format!("{}: stated .6 to .95, observed within .07", pair.name());
+    let what = format!("{pair}: stated .6 to .95, observed within .07");
     [free, Target::new(what, format!("{off:+.3}; oracle {of_oracle:+.3}"), off.abs() <= 0.07)]
 }
 
@@ -112,11 +103,9 @@ fn deep(answers: &Answers, pair: Pair) -> Target {
     };
     let judged = Judged::pick(answers, &[OURS], keep);
     let said = judged.said(OURS);
-    let certain = said.iter().filter(|s| s.probability.is_some_and(|p| p >= 0.99)).count();
-    let share = 100.0 * certain as f64 / said.len() as f64;
+    let share = 100.0 * share(said.iter().map(|s| s.probability.is_some_and(|p| p >= 0.99)));
     let what = format!(
-        "{}: overlaps beyond 5 cm and 3 spacings, up to 10 mm: P ≥ .99 in {DEEP_CERTAIN} %",
-        pair.name()
+        "{pair}: overlaps beyond 5 cm and 3 spacings, up to 10 mm: P ≥ .99 in {DEEP_CERTAIN} %"
     );
     Target::new(what, format!("{share:.0} % of {}", said.len()), share >= DEEP_CERTAIN)
 }
@@ -129,14 +118,12 @@ fn clearances(answers: &Answers, pair: Pair) -> [Target; 2] {
     let truths = judged.questions().iter().map(|q| q.signed_distance);
     let all: Vec<(&Said, f64)> = judged.said(OURS).iter().zip(truths).collect();
     let told: Vec<bool> = all.iter().filter_map(|(said, truth)| is_right(said, *truth)).collect();
-    let percent = |count: usize, of: usize| 100.0 * count as f64 / of as f64;
-    let right = percent(told.iter().filter(|right| **right).count(), told.len());
+    let right = 100.0 * share(told.iter().copied());
     let what = format!(
-        "{}: within 5 cm of contact, clearance within {DEVIATIONS} deviations in {RIGHT} %",
-        pair.name()
+        "{pair}: within 5 cm of contact, clearance within {DEVIATIONS} deviations in {RIGHT} %"
     );
-    let shown =
-        format!("{right:.0} % of {}; told in {:.0} %", told.len(), percent(told.len(), all.len()));
+    let (count, of_all) = (told.len(), 100.0 * told.len() as f64 / all.len() as f64);
+    let shown = format!("{right:.0} % of {count}; told in {of_all:.0} %");
     [Target::new(what, shown, right >= RIGHT), lower_bounds(answers, pair)]
 }
 
@@ -149,7 +136,7 @@ fn lower_bounds(answers: &Answers, pair: Pair) -> Target {
     };
     let told: Vec<bool> = all.filter_map(is_above).collect();
     let above = told.iter().filter(|is_above| **is_above).count();
-    let what = format!("{}: no lower bound on the clearance above the truth", pair.name());
+    let what = format!("{pair}: no lower bound on the clearance above the truth");
     Target::new(what, format!("{above} of {}", told.len()), above == 0 && !told.is_empty())
 }
 
@@ -171,6 +158,6 @@ fn alternatives(answers: &Answers, pair: Pair, std: f64) -> Target {
     let (best, auc) = answers.best_alternative(keep);
     let ours = answers.auc(OURS, keep);
     let reached = format!("{ours}; best alternative {best}: {auc}");
-    let what = format!("{}, {} mm: no alternative ranks better", pair.name(), 1e3 * std);
+    let what = format!("{pair}, {} mm: no alternative ranks better", 1e3 * std);
     Target::new(what, reached, !answers.alternatives().any(is_better))
 }

@@ -31,10 +31,7 @@ pub struct ExactMesh {
 impl ExactMesh {
     /// Builds the search tree and finds the connected components.
     pub fn new(mesh: &TriangleMesh) -> Self {
-        let vertices = mesh.vertices().iter().map(|p| parry_vector(&p.coords)).collect();
-        let shape = TriMesh::new(vertices, mesh.triangles().to_vec())
-            .expect("a triangle mesh has triangles");
-        Self { mesh: mesh.clone(), shape, components: components(mesh) }
+        Self { mesh: mesh.clone(), shape: trimesh(mesh), components: components(mesh) }
     }
 
     /// The mesh it was made of.
@@ -71,8 +68,14 @@ impl ExactMesh {
     }
 }
 
-/// The bridge from nalgebra to parry.
-pub(crate) fn parry_vector(v: &Vector3) -> Vector {
+/// The mesh as parry has it.
+pub fn trimesh(mesh: &TriangleMesh) -> TriMesh {
+    let vertices = mesh.vertices().iter().map(|p| parry_vector(&p.coords)).collect();
+    TriMesh::new(vertices, mesh.triangles().to_vec()).expect("a triangle mesh has triangles")
+}
+
+/// A vector as parry has it.
+pub fn parry_vector(v: &Vector3) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
 

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use anyhow::Result;
 use plotters::coord::Shift;
-use plotters::element::PointCollection;
 use plotters::prelude::*;
 
 use super::{Axis, Figure, GREY, Panel, Place};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Marker<'a> = DynElement<'static, SVGBackend<'a>, Place>;
 
 const TITLE_HEIGHT: u32 = 34;
 const FONT: (&str, u32) = ("sans-serif", 16);
@@ -116,17 +116,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
 }
 
 /// The marker of the series with this number.
-fn marker<'a, C: Clone + 'static>(
-    number: usize,
-    at: C,
-    size: u32,
-    style: ShapeStyle,
-) -> DynElement<'static, SVGBackend<'a>, C>
-where
-    for<'b> &'b Circle<C, u32>: PointCollection<'b, C>,
-    for<'b> &'b TriangleMarker<C, u32>: PointCollection<'b, C>,
-    for<'b> &'b Cross<C, u32>: PointCollection<'b, C>,
-{
+fn marker<'a>(number: usize, at: Place, size: u32, style: ShapeStyle) -> Marker<'a> {
     match number % 3 {
         0 => Circle::new(at, size, style).into_dyn(),
         1 => TriangleMarker::new(at, size + 1, style).into_dyn(),

@@ -49,7 +49,7 @@ pub struct Axis {
 }
 
 /// Marks of one look.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Series {
     pub(crate) name: String,
     /// Whether a line goes through the places of a mark.
@@ -92,16 +92,7 @@ impl Series {
     /// Marks that nothing shows yet.
     fn new(name: &str, marks: impl IntoIterator<Item = Vec<Place>>) -> Self {
         let (name, marks) = (name.to_owned(), marks.into_iter().collect());
-        Self {
-            name,
-            line: false,
-            points: false,
-            fill: None,
-            marks,
-            color: None,
-            size: 4,
-            name_at: None,
-        }
+        Self { name, marks, size: 4, ..Self::default() }
     }
 
     /// The same with its name written from this place on, in the units of the axes.
