@@ -1,13 +1,15 @@
 //! The command line.
 
 mod answer;
+mod bodies;
 mod caution;
 mod commas;
 mod common;
 mod limits;
+mod mode;
+mod others;
 mod parse;
 mod pose;
-mod refused;
 mod robot;
 
 use std::path::PathBuf;
@@ -18,9 +20,11 @@ use cloudtouch_io::LengthUnit;
 use crate::sensor::SensorChoice;
 
 pub(crate) use answer::{AnswerArguments, exit_code};
+pub(crate) use bodies::{BodyOptions, PairArguments, ScanArguments};
 pub(crate) use caution::Refine;
-pub(crate) use common::{CommonArguments, ModeName};
+pub(crate) use common::CommonArguments;
 use limits::LimitArguments;
+pub(crate) use mode::{ModeArguments, ModeName};
 use parse::{parse_fraction, parse_sensor_for};
 pub(crate) use pose::PoseArguments;
 pub(crate) use robot::RobotOptions;
@@ -74,8 +78,8 @@ pub(crate) struct Arguments {
 impl Arguments {
     /// Reads the command line, or ends with what is wrong with it.
     pub(crate) fn read() -> Self {
-        let command = refused::hidden(Self::command());
-        let matches = command.try_get_matches().unwrap_or_else(|error| commas::told(error).exit());
+        let end = |error| others::told(commas::told(error), &Self::command()).exit();
+        let matches = Self::command().try_get_matches().unwrap_or_else(end);
         Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
     }
 
@@ -83,11 +87,8 @@ impl Arguments {
     pub(crate) fn check(&self) -> Result<(), String> {
         match &self.command {
             Command::Query(arguments) => arguments.check(),
-            Command::Path(arguments) => arguments.check(),
-            Command::Scene(arguments) => arguments.check(),
-            Command::Robot(arguments) => arguments.check(),
-            Command::Batch(arguments) => arguments.common.check(&[]),
-            Command::Info(_) | Command::Demo(_) | Command::Settings => Ok(()),
+            Command::Batch(arguments) => arguments.mode.check(&arguments.common, &[], &[]),
+            _ => Ok(()),
         }
     }
 
@@ -173,10 +174,19 @@ pub(crate) struct QueryArguments {
     #[arg(long, help_heading = "Output")]
     pub force: bool,
     #[command(flatten)]
+    pub mode: ModeArguments,
+    #[command(flatten)]
     pub common: CommonArguments,
+    #[command(flatten)]
+    pub pair: PairArguments,
 }
 
 impl QueryArguments {
+    pub(crate) fn bodies(&self) -> BodyOptions<'_> {
+        let settings = self.mode.settings.as_ref();
+        BodyOptions { settings, ..self.pair.bodies(&self.common) }
+    }
+
     fn check(&self) -> Result<(), String> {
         let of_the_paper = [("--explain", self.explain), ("--kappas", self.kappas.is_some())];
         let of_the_default = [
@@ -184,11 +194,7 @@ impl QueryArguments {
             ("--gradient", self.gradient),
             ("--penetration", self.penetration.is_some()),
         ];
-        let given = of_the_default.iter().find(|(_, is_given)| *is_given);
-        if let (ModeName::Paper, Some((name, _))) = (self.common.mode, given) {
-            return Err(format!("{name} has no effect in the paper's mode: leave it out"));
-        }
-        self.common.check(&of_the_paper)
+        self.mode.check(&self.common, &of_the_paper, &of_the_default)
     }
 }
 
@@ -219,16 +225,8 @@ pub(crate) struct PathArguments {
     pub force: bool,
     #[command(flatten)]
     pub common: CommonArguments,
-}
-
-impl PathArguments {
-    fn check(&self) -> Result<(), String> {
-        self.common.check_calibrated("path")?;
-        if self.common.margin.is_some() {
-            return Err("--margin has no effect on a path: leave it out".to_owned());
-        }
-        self.common.check(&[])
-    }
+    #[command(flatten)]
+    pub pair: PairArguments,
 }
 
 #[derive(Debug, Args)]
@@ -242,24 +240,6 @@ pub(crate) struct SceneArguments {
     pub common: CommonArguments,
 }
 
-impl SceneArguments {
-    fn check(&self) -> Result<(), String> {
-        let common = &self.common;
-        common.check_calibrated("scene")?;
-        let of_pairs = [
-            ("--object-sensor", common.object_sensor.is_some()),
-            ("--sensor-pose", common.sensor_pose.is_some()),
-            ("--margin", common.margin.is_some()),
-            ("--collision-map", common.collision_map.is_some()),
-            ("--robot", !common.robot.is_empty()),
-        ];
-        if let Some((option, _)) = of_pairs.iter().find(|(_, is_given)| *is_given) {
-            return Err(format!("{option} is of one scene and one object: leave it out"));
-        }
-        common.check(&[])
-    }
-}
-
 #[derive(Debug, Args)]
 #[command(after_help = SENSORS)]
 pub(crate) struct RobotArguments {
@@ -271,24 +251,8 @@ pub(crate) struct RobotArguments {
     pub answer: AnswerArguments,
     #[command(flatten)]
     pub common: CommonArguments,
-}
-
-impl RobotArguments {
-    fn check(&self) -> Result<(), String> {
-        let common = &self.common;
-        common.check_calibrated("robot")?;
-        let of_objects = [
-            ("--object-sensor", common.object_sensor.is_some()),
-            ("--margin", common.margin.is_some()),
-        ];
-        if let Some((option, _)) = of_objects.iter().find(|(_, is_given)| *is_given) {
-            return Err(format!("{option} is of one object: leave it out"));
-        }
-        if !common.robot.is_empty() {
-            return Err("--robot is of a scan without a URDF: give --scan-joints".to_owned());
-        }
-        common.check(&[])
-    }
+    #[command(flatten)]
+    pub of_scan: ScanArguments,
 }
 
 #[derive(Debug, Args)]
@@ -313,7 +277,18 @@ pub(crate) struct BatchArguments {
           help_heading = "Files")]
     pub sensor_for: Vec<(String, SensorChoice)>,
     #[command(flatten)]
+    pub mode: ModeArguments,
+    #[command(flatten)]
     pub common: CommonArguments,
+    #[command(flatten)]
+    pub pair: PairArguments,
+}
+
+impl BatchArguments {
+    pub(crate) fn bodies(&self) -> BodyOptions<'_> {
+        let settings = self.mode.settings.as_ref();
+        BodyOptions { settings, ..self.pair.bodies(&self.common) }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -2,23 +2,24 @@
 
 use anyhow::{Result, bail};
 
-use crate::args::CommonArguments;
+use crate::args::BodyOptions;
 use crate::load::Role;
 use crate::usage::WrongUsage;
 
 /// Refuses options about clouds where no file is one, and about meshes where none is. `files` are all
 /// that were read, each with whether it is a mesh.
-pub(crate) fn check(common: &CommonArguments, files: &[(Role, bool)]) -> Result<()> {
+pub(crate) fn check(options: &BodyOptions<'_>, files: &[(Role, bool)]) -> Result<()> {
+    let common = options.common;
     let any_mesh = files.iter().any(|(_, is_mesh)| *is_mesh);
     let any_cloud = files.iter().any(|(_, is_mesh)| !is_mesh);
-    if common.unit.is_some() && !any_mesh && common.robot.is_empty() {
+    if common.unit.is_some() && !any_mesh && options.robot.is_empty() {
         let message = "--unit is for meshes, and no file is one: give --cloud-unit for clouds";
         bail!(WrongUsage(message.to_owned()));
     }
     let for_clouds = [
         ("--cloud-unit", common.cloud_unit.is_some()),
         ("--sensor", common.sensor.is_some()),
-        ("--object-sensor", common.object_sensor.is_some()),
+        ("--object-sensor", options.object_sensor.is_some()),
         ("--min-range", common.min_range.is_some()),
         ("--max-range", common.max_range.is_some()),
         ("--outliers", common.outliers.is_some()),
@@ -33,7 +34,7 @@ pub(crate) fn check(common: &CommonArguments, files: &[(Role, bool)]) -> Result<
         bail!(of_clouds(option, "file"));
     }
     // Of clouds of one role only; the sensor of scenes is that of objects where these have none.
-    if common.object_sensor.is_some() {
+    if options.object_sensor.is_some() {
         if !files.contains(&(Role::Object, false)) {
             bail!(of_clouds("--object-sensor", "object"));
         }

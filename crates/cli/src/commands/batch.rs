@@ -34,9 +34,11 @@ type Answer<'a, C> = Result<Answered<'a, C>, String>;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     let common = &arguments.common;
-    match common.mode {
+    match arguments.mode.mode {
         ModeName::Calibrated => run_by(&Query::new(common.query_settings())?, arguments),
-        ModeName::Paper => run_by(&PaperQuery::new(common.paper_settings())?, arguments),
+        ModeName::Paper => {
+            run_by(&PaperQuery::new(arguments.mode.paper_settings(common))?, arguments)
+        }
     }
 }
 
@@ -44,8 +46,9 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     let file = case::read(&arguments.cases, arguments.common.limits.read_limits().bytes)?;
     let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
     let files = good().flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
-    let settings = arguments.common.settings.as_ref().map(|file| &file.path);
-    let others = arguments.common.robot.iter().chain([&arguments.cases]).chain(settings);
+    let options = arguments.bodies();
+    let settings = options.settings.map(|file| &file.path);
+    let others = options.robot.iter().chain([&arguments.cases]).chain(settings);
     let inputs = files.chain(others.map(PathBuf::as_path));
     let outputs = [Output::table(&arguments.jsonl), Output::of("html", &arguments.html)];
     output::check(&outputs, inputs, arguments.force)?;
@@ -54,7 +57,7 @@ fn run_by<P: body::Path>(query: &P, arguments: &BatchArguments) -> Result<ExitCo
     let bodies = prepare_all::<P::Cloud>(arguments, good())?;
     warn_of_sensors_of_meshes(arguments, good(), &bodies);
     let progress = progress_bar(file.cases.len(), "queries");
-    let mut table = Table::new(&file.cases, arguments.common.margin);
+    let mut table = Table::new(&file.cases, arguments.mode.margin);
     let mut failed = false;
     let mut shown = Shown::new();
     let mut write = |jsonl: &mut dyn Write| -> io::Result<()> {
@@ -171,7 +174,7 @@ fn answer<'a, P: body::Path>(
     });
     let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
     let (report, nearness) = query
-        .ask_within(&scene.body, &object.body, pose, arguments.common.margin)
+        .ask_within(&scene.body, &object.body, pose, arguments.mode.margin)
         .map_err(|error| error.to_string())?;
     let bodies = [(case.scene.as_path(), scene), (case.object.as_path(), object)];
     let placement = query.place(&scene.body, &object.body, pose);
@@ -191,7 +194,7 @@ fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
     };
     [
         key(&case.scene, Role::Scene, case.scene_sensor, common.scene_sensor()),
-        key(&case.object, Role::Object, case.object_sensor, common.object_sensor()),
+        key(&case.object, Role::Object, case.object_sensor, arguments.bodies().object_sensor()),
     ]
 }
 
@@ -199,7 +202,7 @@ fn prepare_all<'a, C: body::PreparedCloud>(
     arguments: &BatchArguments,
     cases: impl Iterator<Item = &'a Case>,
 ) -> Result<Bodies<C>> {
-    let common = &arguments.common;
+    let options = &arguments.bodies();
     // How many poses are asked of each.
     let mut wanted: BTreeMap<BodyKey, usize> = BTreeMap::new();
     for key in cases.flat_map(|case| keys(arguments, case)) {
@@ -214,8 +217,8 @@ fn prepare_all<'a, C: body::PreparedCloud>(
             let body = spec
                 .parse::<SensorChoice>()
                 .map_err(|error| anyhow!("{error}"))
-                .and_then(|sensor| load::body(path, *role, sensor, common))
-                .and_then(|loaded| loaded.refined_for(poses, common.effort.refine()))
+                .and_then(|sensor| load::body(path, *role, sensor, options))
+                .and_then(|loaded| loaded.refined_for(poses, options.common.effort.refine()))
                 .map_err(|error| format!("{error:#}"));
             progress.inc(1);
             (key, body)
@@ -230,7 +233,7 @@ fn prepare_all<'a, C: body::PreparedCloud>(
         && !are.is_empty()
     {
         let roles: Vec<_> = are.iter().map(|(_, role, is_mesh)| (*role, *is_mesh)).collect();
-        unused::check(common, &roles)?;
+        unused::check(options, &roles)?;
         let files: Vec<_> = are.iter().map(|(path, _, is_mesh)| (*path, *is_mesh)).collect();
         sensors_for(arguments).check_meshes(&files)?;
     }

@@ -16,22 +16,23 @@ use crate::{answers, output, pages, unused};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let common = &arguments.common;
+    let options = &arguments.pair.bodies(common);
     let query = Query::new(common.query_settings())?;
-    let inputs = [&arguments.scene, &arguments.object].into_iter().chain(&common.robot);
+    let inputs = [&arguments.scene, &arguments.object].into_iter().chain(options.robot);
     inputs.into_iter().try_for_each(|path| load::check(path))?;
     let files = [&arguments.scene, &arguments.object, &arguments.poses];
-    let inputs = files.into_iter().chain(&common.robot).map(PathBuf::as_path);
+    let inputs = files.into_iter().chain(options.robot).map(PathBuf::as_path);
     output::check(&[Output::of("html", &arguments.html)], inputs, arguments.force)?;
     let (path, doubt) = load::path::read(&arguments.poses, arguments.screw)?;
     let scene = load::bodies::<Cloud>(
         &[arguments.scene.as_path()],
         Role::Scene,
         common.scene_sensor(),
-        common,
+        options,
     )?;
     let object =
-        load::body::<Cloud>(&arguments.object, Role::Object, common.object_sensor(), common)?;
-    unused::check(common, &[(Role::Scene, scene.is_mesh()), (Role::Object, object.is_mesh())])?;
+        load::body::<Cloud>(&arguments.object, Role::Object, options.object_sensor(), options)?;
+    unused::check(options, &[(Role::Scene, scene.is_mesh()), (Role::Object, object.is_mesh())])?;
     let scene = scene.refined_for(POSES, common.effort.refine())?;
     let object = object.refined_for(POSES, common.effort.refine())?;
     let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;

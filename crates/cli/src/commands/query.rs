@@ -24,12 +24,12 @@ use crate::{answers, output, pages, picture, unused};
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
-    match common.mode {
+    match arguments.mode.mode {
         ModeName::Calibrated => {
             run_by(&Query::new(common.query_settings())?, arguments, shows_work)
         }
         ModeName::Paper => {
-            run_by(&PaperQuery::new(common.paper_settings())?, arguments, shows_work)
+            run_by(&PaperQuery::new(arguments.mode.paper_settings(common))?, arguments, shows_work)
         }
     }
 }
@@ -39,20 +39,20 @@ fn run_by<P: body::Path>(
     arguments: &QueryArguments,
     shows_work: bool,
 ) -> Result<ExitCode> {
-    let common = &arguments.common;
+    let (common, options) = (&arguments.common, &arguments.bodies());
     // What can be told without work comes first.
     let inputs = [&arguments.scene, &arguments.object]
         .into_iter()
         .chain(&arguments.also)
         .chain(&arguments.kappas)
-        .chain(&common.robot);
+        .chain(options.robot);
     inputs.clone().try_for_each(|path| load::check(path))?;
     let outputs = [
         Output::of("ply", &arguments.ply),
         Output::table(&arguments.csv),
         Output::of("html", &arguments.html),
     ];
-    let settings = common.settings.as_ref().map(|file| &file.path);
+    let settings = options.settings.map(|file| &file.path);
     let inputs = inputs.chain(&arguments.pose.pose).chain(settings).map(PathBuf::as_path);
     output::check(&outputs, inputs, arguments.force)?;
     let pose = pose(&arguments.pose)?;
@@ -62,11 +62,11 @@ fn run_by<P: body::Path>(
     }
     let scans: Vec<&Path> =
         std::iter::once(&arguments.scene).chain(&arguments.also).map(PathBuf::as_path).collect();
-    let scene = load::bodies::<P::Cloud>(&scans, Role::Scene, common.scene_sensor(), common)?;
+    let scene = load::bodies::<P::Cloud>(&scans, Role::Scene, common.scene_sensor(), options)?;
     let scene = with_kappas(scene, arguments)?;
     let object =
-        load::body::<P::Cloud>(&arguments.object, Role::Object, common.object_sensor(), common)?;
-    unused::check(common, &[(Role::Scene, scene.is_mesh()), (Role::Object, object.is_mesh())])?;
+        load::body::<P::Cloud>(&arguments.object, Role::Object, options.object_sensor(), options)?;
+    unused::check(options, &[(Role::Scene, scene.is_mesh()), (Role::Object, object.is_mesh())])?;
     let scene = scene.refined_for(1, common.effort.refine())?;
     let object = object.refined_for(1, common.effort.refine())?;
     let (report, classifiers, nearness) = if arguments.explain {
@@ -74,7 +74,7 @@ fn run_by<P: body::Path>(
         (report, classifiers, None)
     } else {
         let (report, nearness) =
-            query.ask_within(&scene.body, &object.body, &pose, common.margin)?;
+            query.ask_within(&scene.body, &object.body, &pose, arguments.mode.margin)?;
         (report, Vec::new(), nearness)
     };
     let placement = query.place(&scene.body, &object.body, &pose);
@@ -184,7 +184,7 @@ fn with_kappas<C: PreparedCloud>(
     let Body::Cloud(cloud) = scene.body else { bail!("{}: the scene is a mesh, exact", named()) };
     let text = std::fs::read_to_string(path).with_context(named)?;
     let kappas: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
-    let rule = arguments.common.paper_settings().radius_rule;
+    let rule = arguments.mode.paper_settings(&arguments.common).radius_rule;
     let cloud = cloud.with_kappas(&kappas.with_context(named)?, rule).with_context(named)?;
     Ok(Loaded { body: Body::Cloud(cloud), ..scene })
 }

@@ -19,6 +19,7 @@ use crate::{answers, unused};
 
 pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let common = &arguments.common;
+    let options = &arguments.of_scan.bodies(common);
     let limits = common.limits.read_limits();
     let query = Query::new(common.query_settings())?;
     load::check(&arguments.scan)?;
@@ -39,8 +40,8 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         placed.with_context(named)?;
     }
     let links = seen(arguments, &robot, &base)?;
-    let scan = load::surroundings(&arguments.scan, links, common)?;
-    unused::check(common, &[(Role::Scene, scan.is_mesh())])?;
+    let scan = load::surroundings(&arguments.scan, links, options)?;
+    unused::check(options, &[(Role::Scene, scan.is_mesh())])?;
     let scan = scan.refined_for(path.len(), common.effort.refine())?;
     let unchecked = robot.unchecked_links().to_vec();
     let removed = match &scan.body {

@@ -169,14 +169,14 @@ fn prepare(
     let loaded = wanted.into_par_iter().map(|(key, bodies)| {
         let (path, unit, sensor) = key;
         let sensor = sensor.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))?;
-        let loaded = load::body_in::<Cloud>(path, *unit, sensor, common);
+        let loaded = load::body_in::<Cloud>(path, *unit, sensor, &common.bodies());
         let loaded = loaded.with_context(|| first(key))?;
         Ok((key, loaded.refined_for(bodies, common.effort.refine())?))
     });
     let loaded: Vec<(&BodyKey, Loaded<Cloud>)> = loaded.collect::<Result<_>>()?;
     let are: Vec<(Role, bool)> =
         loaded.iter().map(|(_, loaded)| (Role::Scene, loaded.is_mesh())).collect();
-    unused::check(common, &are)?;
+    unused::check(&common.bodies(), &are)?;
     let prepared = loaded.into_iter().map(|(key, loaded)| {
         let words = print::about(&loaded);
         let body = Arc::new(match loaded.body {

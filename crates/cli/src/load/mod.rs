@@ -18,7 +18,7 @@ use cloudtouch_io::{
 };
 use serde::Serialize;
 
-use crate::args::{CommonArguments, Refine};
+use crate::args::{BodyOptions, CommonArguments, Refine};
 use crate::body::{Body, PreparedCloud};
 use crate::sensor::{Chosen, SensorChoice};
 use crate::usage::WrongUsage;
@@ -75,9 +75,9 @@ pub(crate) fn body<C: PreparedCloud>(
     path: &Path,
     role: Role,
     sensor: SensorChoice,
-    common: &CommonArguments,
+    options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
-    bodies(&[path], role, sensor, common)
+    bodies(&[path], role, sensor, options)
 }
 
 /// Reads a file that says its unit, and prepares it as an object.
@@ -85,11 +85,11 @@ pub(crate) fn body_in<C: PreparedCloud>(
     path: &Path,
     unit: Option<LengthUnit>,
     sensor: SensorChoice,
-    common: &CommonArguments,
+    options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
-    let usual = Units::of(common);
+    let usual = Units::of(options.common);
     let units = unit.map_or(usual, |unit| Units { meshes: unit, clouds: unit });
-    bodies_in(&[path], units, Role::Object, sensor, common)
+    bodies_in(&[path], units, Role::Object, sensor, options)
 }
 
 /// Reads files and prepares them as one body: several scans of one frame, or one mesh.
@@ -97,9 +97,9 @@ pub(crate) fn bodies<C: PreparedCloud>(
     paths: &[&Path],
     role: Role,
     sensor: SensorChoice,
-    common: &CommonArguments,
+    options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
-    bodies_in(paths, Units::of(common), role, sensor, common)
+    bodies_in(paths, Units::of(options.common), role, sensor, options)
 }
 
 fn bodies_in<C: PreparedCloud>(
@@ -107,35 +107,36 @@ fn bodies_in<C: PreparedCloud>(
     units: Units,
     role: Role,
     sensor: SensorChoice,
-    common: &CommonArguments,
+    options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
     let mut scans = Vec::new();
     for path in paths {
-        match geometry(path, units, &common.limits.read_limits())? {
+        match geometry(path, units, &options.common.limits.read_limits())? {
             Geometry::Mesh(mesh) if paths.len() == 1 => {
-                return of_mesh(path, units.meshes, role, &mesh, common);
+                return of_mesh(path, units.meshes, role, &mesh, options);
             }
             Geometry::Mesh(_) => bail!("{}: is a mesh: only scans make one scene", named(path)),
             Geometry::Cloud(cloud) => scans.push(cloud),
         }
     }
     let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
-    let robot = if role == Role::Scene { robot(common)? } else { Vec::new() };
-    of_clouds(&names.join(", "), (units.clouds, role), scans, sensor, common, robot)
+    let robot = if role == Role::Scene { robot(options)? } else { Vec::new() };
+    of_clouds(&names.join(", "), (units.clouds, role), scans, sensor, options, robot)
 }
 
 /// Reads the surroundings of a robot, of which a scan may show these links.
 pub(crate) fn surroundings(
     path: &Path,
     robot: Vec<SelfMesh>,
-    common: &CommonArguments,
+    options: &BodyOptions<'_>,
 ) -> Result<Loaded<Cloud>> {
+    let common = options.common;
     let units = Units::of(common);
     match geometry(path, units, &common.limits.read_limits())? {
-        Geometry::Mesh(mesh) => of_mesh(path, units.meshes, Role::Scene, &mesh, common),
+        Geometry::Mesh(mesh) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
         Geometry::Cloud(cloud) => {
             let scene = (units.clouds, Role::Scene);
-            of_clouds(&named(path), scene, vec![cloud], common.scene_sensor(), common, robot)
+            of_clouds(&named(path), scene, vec![cloud], common.scene_sensor(), options, robot)
         }
     }
 }
@@ -145,12 +146,12 @@ fn of_mesh<C>(
     unit: LengthUnit,
     role: Role,
     mesh: &TriangleMesh,
-    common: &CommonArguments,
+    options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
     let of_clouds = [
-        ("--robot", !common.robot.is_empty()),
-        ("--collision-map", common.collision_map.is_some()),
-        ("--sensor-pose", common.sensor_pose.is_some()),
+        ("--robot", !options.robot.is_empty()),
+        ("--collision-map", options.collision_map.is_some()),
+        ("--sensor-pose", options.sensor_pose.is_some()),
     ];
     if role == Role::Scene
         && let Some((option, _)) = of_clouds.iter().find(|(_, is_given)| *is_given)
@@ -190,11 +191,11 @@ fn of_clouds<C: PreparedCloud>(
     (unit, role): (LengthUnit, Role),
     mut scans: Vec<PointCloud>,
     sensor: SensorChoice,
-    common: &CommonArguments,
+    options: &BodyOptions<'_>,
     robot: Vec<SelfMesh>,
 ) -> Result<Loaded<C>> {
     if role == Role::Scene
-        && let Some(Rigid(pose)) = common.sensor_pose
+        && let Some(Rigid(pose)) = options.sensor_pose
     {
         let several = "--sensor-pose is for one scan, and these are several";
         ensure!(scans.len() == 1, WrongUsage(format!("{name}: {several}")));
@@ -208,13 +209,13 @@ fn of_clouds<C: PreparedCloud>(
              --sensor per-point to use them"
         );
     }
-    let settings = common.settings.as_ref().map(|file| &file.settings);
+    let settings = options.settings.map(|file| &file.settings);
     let prepared = C::prepare(&scans, sensor, settings, |filter, sensor| {
-        common.change(filter);
+        options.common.change(filter);
         if role == Role::Scene {
             filter.robot = robot;
-            filter.collision_map = common.collision_map;
-            if let Some(resolution) = common.collision_map {
+            filter.collision_map = options.collision_map;
+            if let Some(resolution) = options.collision_map {
                 *sensor = SensorModel::Grid { resolution };
             }
         }
@@ -268,8 +269,9 @@ pub(crate) fn geometry(path: &Path, units: Units, limits: &ReadLimits) -> Result
     })
 }
 
-fn robot(common: &CommonArguments) -> Result<Vec<SelfMesh>> {
-    common
+fn robot(options: &BodyOptions<'_>) -> Result<Vec<SelfMesh>> {
+    let common = options.common;
+    options
         .robot
         .iter()
         .map(|path| {
@@ -279,7 +281,7 @@ fn robot(common: &CommonArguments) -> Result<Vec<SelfMesh>> {
             Ok(SelfMesh {
                 mesh: Arc::new(mesh),
                 cloud_from_link: Pose::identity(),
-                padding: common.robot_padding,
+                padding: options.robot_padding,
             })
         })
         .collect()
