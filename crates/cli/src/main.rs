@@ -14,6 +14,7 @@ mod output;
 mod pages;
 mod paper_settings;
 mod picture;
+mod remedies;
 mod unused;
 mod usage;
 
@@ -56,7 +57,7 @@ fn main() -> ExitCode {
     };
     outcome.unwrap_or_else(|error| {
         // When standard error is gone too, the exit code still tells.
-        let _ = writeln!(std::io::stderr(), "error: {error:#}");
+        let _ = writeln!(std::io::stderr(), "error: {}", remedies::error(&error));
         if error.is::<WrongUsage>() { ExitCode::from(usage::EXIT_CODE) } else { ExitCode::FAILURE }
     })
 }

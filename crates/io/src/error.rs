@@ -26,7 +26,7 @@ pub enum ReadError {
     /// It has more bytes than are read.
     #[error(
         "{}: has more than {limit} bytes, the most that is read: split or thin the file, or raise \
-         the limit on bytes (--max-bytes)",
+         the limit on bytes",
         path.display()
     )]
     TooLarge {
@@ -58,8 +58,7 @@ pub enum ReadError {
     },
     /// It is a recording, which only a build with the feature `mcap` reads.
     #[error(
-        "{}: is a recording, and this build reads none: build it with `--features mcap`, as in \
-         `cargo install --locked --path crates/cli --features mcap`",
+        "{}: is a recording, and this build reads none: build it with the feature `mcap`",
         path.display()
     )]
     NoRecordings {

@@ -106,8 +106,7 @@ pub enum Fault {
     /// There is more than is read, or the header promises more.
     #[error(
         "there are {found} {what} or more, and at most {limit} are read: split or thin the file, \
-         or raise the limit on {what} (--max-{})",
-        what.rsplit(' ').next().unwrap_or(what)
+         or raise the limit on {what}"
     )]
     TooMany {
         /// What there are too many of.

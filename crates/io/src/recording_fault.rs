@@ -36,7 +36,7 @@ pub enum RecordingFault {
     /// A part of it is larger than the limit on bytes.
     #[error(
         "byte {byte}: {what} takes {found} bytes, and at most {limit} are read: record with \
-         smaller chunks, or raise the limit on bytes (--max-bytes)"
+         smaller chunks, or raise the limit on bytes"
     )]
     TooLarge {
         /// Where it begins.

@@ -68,7 +68,7 @@ fn an_image_in_another_frame_read_free_where_nobody_had_looked() {
                 check(&ask(mode, &said, &ball, &pose), seen, (place, mode));
                 let report = ask(mode, &unsaid, &ball, &pose);
                 assert_ne!(report.verdict, Verdict::Free, "{place} {mode:?}: {report:?}");
-                let names_it = |warning: &Warning| warning.to_string().contains("--sensor-pose");
+                let names_it = |warning: &Warning| warning.to_string().contains("`sensor_pose`");
                 assert!(report.warnings.iter().any(names_it), "{:?}", report.warnings);
             }
         }

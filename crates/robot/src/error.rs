@@ -148,8 +148,7 @@ pub enum RobotFault {
     },
     /// A package whose folder is not known.
     #[error(
-        "link `{link}`: {uri}: the folder of package `{package}` is not known: say where it is \
-         (--package {package}=FOLDER)"
+        "link `{link}`: {uri}: the folder of package `{package}` is not known: name it in `packages`"
     )]
     UnknownPackage {
         /// The link.

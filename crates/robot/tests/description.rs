@@ -36,7 +36,7 @@ fn what_is_wrong_is_named_with_file_value_and_remedy() {
     let limits = "<limit lower='1' upper='-1' effort='0' velocity='0'/>";
     for (urdf, parts) in [
         (mesh("gone.stl", ""), vec!["link `a`", "gone.stl", "no file", "correct the path"]),
-        (mesh("package://mine/cube.obj", ""), vec!["`a`", "`mine`", "--package mine=FOLDER"]),
+        (mesh("package://mine/cube.obj", ""), vec!["`a`", "`mine`", "name it in `packages`"]),
         (mesh("http://x.org/cube.obj", ""), vec!["`a`", "http://x.org/cube.obj", "package://"]),
         (mesh("old.dae", ""), vec!["`a`", "old.dae", "COLLADA", "convert it to STL or OBJ"]),
         (mesh("GONE.DAE", ""), vec!["`a`", "GONE.DAE", "convert it"]),

@@ -6,11 +6,12 @@ use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Undecided, Verdict, Warn
 use cloudtouch_page::Fact;
 use serde::Serialize;
 
-use crate::answers::print::{probability, undecided};
+use crate::answers::print::probability;
 use crate::answers::query::matrix;
 use crate::answers::text::labelled;
 use crate::doubt::Doubt;
 use crate::load::Input;
+use crate::remedies::{self, undecided};
 
 #[derive(Serialize)]
 struct Line<'a> {
@@ -87,7 +88,7 @@ pub(crate) fn json_line(
         scene,
         object,
     };
-    Ok(serde_json::to_string(&line)?)
+    Ok(remedies::in_json(serde_json::to_string(&line)?, &swept.warnings))
 }
 
 /// The same in a few lines.
@@ -114,7 +115,7 @@ pub(crate) fn text(swept: &Swept) -> String {
             lines.push(format!("first contact          {:.3} {:.3} {:.3} m", p.x, p.y, p.z));
         }
     }
-    lines.extend(swept.warnings.iter().map(|warning| labelled("warning", &warning.to_string())));
+    lines.extend(swept.warnings.iter().map(|of| labelled("warning", &remedies::warning(of))));
     let SweepStats { poses, stretches, query_us, .. } = swept.stats;
     lines.push(format!(
         "work                   {poses} poses and {stretches} stretches in {:.1} ms",
@@ -142,7 +143,7 @@ pub(crate) fn facts(swept: &Swept) -> Vec<Fact> {
         let text = format!("{}; not before {before} of the path", place(&first.at));
         facts.push(Fact::new("In collision from", text));
     }
-    facts.extend(swept.warnings.iter().map(|w| Fact::new("Warning", w.to_string())));
+    facts.extend(swept.warnings.iter().map(|of| Fact::new("Warning", remedies::warning(of))));
     facts
 }
 

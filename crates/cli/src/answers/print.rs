@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Write as _};
 
 use anyhow::{Context, Result};
-use cloudtouch::{Clearance, StageReport, Undecided};
+use cloudtouch::{Clearance, StageReport};
 pub(crate) use cloudtouch_page::words::probability;
 
 use crate::body::{Body, PreparedCloud};
@@ -18,14 +18,6 @@ pub(crate) fn to_stdout(text: &str) -> Result<()> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         outcome => outcome.context("standard output: cannot be written"),
-    }
-}
-
-/// Why there is no decision, and which option tells what is missing.
-pub(crate) fn undecided(by: Undecided) -> String {
-    match by {
-        Undecided::Enclosed => format!("{by} (--sensor-pose)"),
-        _ => by.to_string(),
     }
 }
 

@@ -9,6 +9,7 @@ use crate::answers::per_point::Details;
 use crate::doubt::Doubt;
 use crate::load::Input;
 use crate::margin::Nearness;
+use crate::remedies;
 
 /// A report with where the object was.
 pub(crate) struct Answer<'a> {
@@ -60,7 +61,7 @@ impl Answer<'_> {
         let Self { report, placement, details, nearness, doubt, .. } = self;
         let line = Line { id, report, details, placement, pose, scene, object };
         if nearness.is_none() && doubt.is_none() {
-            return Ok(serde_json::to_string(&line)?);
+            return Ok(remedies::in_json(serde_json::to_string(&line)?, &report.warnings));
         }
         let mut line = serde_json::to_value(&line)?;
         if let Some(nearness) = nearness {
@@ -69,6 +70,6 @@ impl Answer<'_> {
         if let (Some(doubt), Some(warnings)) = (doubt, line["warnings"].as_array_mut()) {
             warnings.push(serde_json::to_value(doubt)?);
         }
-        Ok(line.to_string())
+        Ok(remedies::in_json(line.to_string(), &report.warnings))
     }
 }

@@ -12,6 +12,7 @@ use serde_json::value::RawValue;
 use crate::answers::print::{one_line, probability};
 use crate::answers::scene::{self, Pair};
 use crate::load::Input;
+use crate::remedies;
 
 #[derive(Serialize)]
 struct Line<'a> {
@@ -78,7 +79,7 @@ pub(crate) fn json_line(
     asked: Asked<'_>,
 ) -> Result<String> {
     let scene = scene::line(checked, threshold, bodies);
-    Ok(serde_json::to_string(&Position { scene, asked })?)
+    scene::told(&Position { scene, asked }, &checked.pairs)
 }
 
 #[derive(Serialize)]
@@ -128,7 +129,9 @@ pub(crate) fn path_line(
         given: given.collect::<Result<_>>()?,
         asked,
     };
-    Ok(serde_json::to_string(&line)?)
+    // Those of the positions have theirs.
+    let others = [&checked.stopped, &checked.later].into_iter().flatten();
+    scene::told(&line, others.filter_map(|at| at.pair.as_ref()))
 }
 
 /// The worst pair in a few lines, above the table of all.
@@ -183,7 +186,7 @@ fn described(label: &str, pair: &PairAnswer) -> String {
         let _ = writeln!(text, "contact                {:.3} {:.3} {:.3} m", p.x, p.y, p.z);
     }
     for warning in &report.warnings {
-        let _ = writeln!(text, "warning                {warning}");
+        let _ = writeln!(text, "warning                {}", remedies::warning(warning));
     }
     text
 }

@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::answers::print::{self, one_line, probability};
 use crate::answers::text::labelled;
 use crate::load::Input;
+use crate::remedies;
 
 /// Of many bodies far from all others no more are named.
 const OUTSIDE_TOLD: usize = 3;
@@ -58,7 +59,17 @@ pub(crate) fn json_line(
     threshold: f64,
     bodies: BTreeMap<&str, &Input>,
 ) -> Result<String> {
-    Ok(serde_json::to_string(&line(checked, threshold, bodies))?)
+    told(&line(checked, threshold, bodies), &checked.pairs)
+}
+
+/// A line of JSON, whose warnings are those of these pairs, with the options that mend them.
+pub(crate) fn told<'a>(
+    line: &impl Serialize,
+    pairs: impl IntoIterator<Item = &'a PairAnswer>,
+) -> Result<String> {
+    let reports = pairs.into_iter().filter_map(|pair| pair.answer.as_ref().ok());
+    let warnings = reports.flat_map(|report| &report.warnings);
+    Ok(remedies::in_json(serde_json::to_string(line)?, warnings))
 }
 
 pub(crate) fn line<'a>(
@@ -127,7 +138,7 @@ fn row(pair: &PairAnswer) -> String {
     };
     let [low, high] = report.bounds.map(probability);
     let reason =
-        report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
+        report.undecided_by.map_or(String::new(), |by| format!("  ({})", remedies::undecided(by)));
     format!(
         "{:>5}  {:<14}  {:<12}  {:>14}{reason}",
         probability(report.collision_probability),

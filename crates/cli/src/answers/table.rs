@@ -8,6 +8,7 @@ use cloudtouch::{Report, Warning};
 
 use crate::answers::print;
 use crate::margin::Nearness;
+use crate::remedies;
 use cloudtouch_cli::files::case::Case;
 
 /// Widths of the columns, and what the last line is made of.
@@ -73,8 +74,9 @@ impl Table {
             let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
             format!("{} / {}", name(&c.scene), name(&c.object))
         });
-        let reason =
-            report.undecided_by.map_or(String::new(), |by| format!("  ({})", print::undecided(by)));
+        let reason = report
+            .undecided_by
+            .map_or(String::new(), |by| format!("  ({})", remedies::undecided(by)));
         let margin = self.margin.as_ref().map_or(String::new(), |head| {
             let likely =
                 nearness.map_or("-".to_owned(), |of| print::probability(of.within.probability));
@@ -110,8 +112,8 @@ impl Table {
         text += "\n";
         for Warned { id, first, count } in &self.warned {
             let cases = if *count == 1 { "case" } else { "cases" };
-            text +=
-                &format!("warning in {count} {cases}, first {}: {first}\n", print::one_line(id));
+            let (id, first) = (print::one_line(id), remedies::warning(first));
+            text += &format!("warning in {count} {cases}, first {id}: {first}\n");
         }
         text
     }

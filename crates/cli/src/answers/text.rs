@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use cloudtouch::{Placement, Report, Stats, UnderPoses, Within};
 use cloudtouch_page::{Fact, words};
 
-use crate::answers::print::{probability, undecided};
+use crate::answers::print::probability;
 use crate::margin::{Nearness, SHARE};
+use crate::remedies::{self, undecided};
 
 /// A report for people shows this many contacts; JSON has them all.
 const CONTACTS_SHOWN: usize = 5;
@@ -16,7 +17,7 @@ pub(crate) fn text(report: &Report, placement: &Placement, shows_work: bool) -> 
     let mut text = found(report);
     text.push_str(&place(placement));
     for warning in &report.warnings {
-        let _ = writeln!(text, "{}", labelled("warning", &warning.to_string()));
+        let _ = writeln!(text, "{}", labelled("warning", &remedies::warning(warning)));
     }
     if shows_work {
         text.push_str(&work(&report.stats));

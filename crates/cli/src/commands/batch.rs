@@ -22,7 +22,7 @@ use crate::load::{self, Input, Loaded, Role};
 use crate::output::Output;
 use crate::pages::batch::{Answered, Shown};
 use crate::sensor::SensorChoice;
-use crate::{ordered, output, unused};
+use crate::{ordered, output, remedies, unused};
 use cloudtouch_cli::files::case::{self, Case, CaseFile};
 
 /// A file in a role seen by a sensor (by its spec, which names it fully).
@@ -219,7 +219,7 @@ fn prepare_all<'a, C: body::PreparedCloud>(
                 .map_err(|error| anyhow!("{error}"))
                 .and_then(|sensor| load::body(path, *role, sensor, options))
                 .and_then(|loaded| loaded.refined_for(poses, options.common.effort.refine()))
-                .map_err(|error| format!("{error:#}"));
+                .map_err(|error| remedies::error(&error));
             progress.inc(1);
             (key, body)
         })

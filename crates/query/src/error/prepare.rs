@@ -43,7 +43,7 @@ pub enum PrepareError {
     /// The noise is so large beside the cloud that its points say nothing.
     #[error(
         "the noise is {} m (standard deviation) and the cloud {} m across: give the sensor's noise in \
-         metres, such as iso:0.005 for 5 mm, and the unit of the cloud (--cloud-unit mm)",
+         metres, such as iso:0.005 for 5 mm, and the unit of the cloud",
         number(*std), number(*size)
     )]
     NoiseBeyondSize {

@@ -20,8 +20,8 @@ impl fmt::Display for Warning {
             ),
             Self::Units { body, size_m, other_size_m } => write!(
                 f,
-                "the {body} is {} across and the other body {}: is a file in another unit? (--unit mm \
-                 for meshes, --cloud-unit mm for clouds; neither where it is in metres)",
+                "the {body} is {} across and the other body {}: is one of them in another unit than \
+                 metres?",
                 length(size_m),
                 length(other_size_m)
             ),
@@ -35,7 +35,7 @@ impl fmt::Display for Warning {
             Self::Sparse { body, spacing_m, other_size_m } => write!(
                 f,
                 "points of the {body} are {} apart and the other body is {} across: it fits between \
-                 them; is a file in millimetres? (--cloud-unit mm, --unit mm)",
+                 them; is a file in millimetres?",
                 length(spacing_m),
                 length(other_size_m)
             ),
@@ -64,28 +64,28 @@ impl fmt::Display for Warning {
             Self::SensorPose { body, share } => write!(
                 f,
                 "{:.0} % of the points of the {body} are beside or behind the camera stated for it: \
-                 it looks along z of the file; say where it stood (VIEWPOINT, --sensor-pose) if the \
-                 points are in another frame",
+                 it looks along z of the file; if the points are in another frame, say where it stood \
+                 (`sensor_pose`, VIEWPOINT of a PCD)",
                 (100.0 * share).ceil()
             ),
             Self::SensorTurn { body, share } => write!(
                 f,
                 "{:.0} % of the points of the {body} are behind the camera by the turn stated for it, which is \
-                 not believed: it counts as looking along z of the file; correct the turn (VIEWPOINT, \
-                 --sensor-pose) or leave it out",
+                 not believed: it counts as looking along z of the file; leave the turn out, or correct it \
+                 (`sensor_pose`, VIEWPOINT of a PCD)",
                 100.0 * share
             ),
             Self::SensorRange { body, range_m, limit_m } => write!(
                 f,
                 "points of the {body} are {} away and its sensor sees no farther than {}: another \
-                 sensor (--sensor auto), or another unit (--cloud-unit)?",
+                 sensor, or another unit?",
                 length(range_m),
                 length(limit_m)
             ),
             Self::SensorLayout { body } => write!(
                 f,
                 "the {body} is laid out as the image of a camera and its sensor is stated as a laser \
-                 scanner: kinect or stereo? (--sensor auto)"
+                 scanner: kinect or stereo?"
             ),
             Self::NoImage { body } => write!(
                 f,
@@ -95,8 +95,8 @@ impl fmt::Display for Warning {
             Self::ImagePlace { body } => write!(
                 f,
                 "the {body} has rows and columns as an image, which no camera at the place stated for it \
-                 has: say where it stood (VIEWPOINT, --sensor-pose) if the points are in another \
-                 frame, or give them without the layout"
+                 has: give the points without the layout, or, if they are in another frame, say where it \
+                 stood (`sensor_pose`, VIEWPOINT of a PCD)"
             ),
             Self::SelfFilter { body, share } => write!(
                 f,
@@ -133,7 +133,7 @@ impl fmt::Display for Warning {
             Self::Unseen { body, share, limit } => write!(
                 f,
                 "{:.0} % of the surface of the {body} lies where the camera saw nothing (allowed: \
-                 {:.0} %): look from elsewhere, or raise --max-unseen",
+                 {:.0} %): look from elsewhere, or raise `max_unseen`",
                 (100.0 * share).ceil(),
                 100.0 * limit
             ),

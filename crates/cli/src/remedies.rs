@@ -1,0 +1,124 @@
+//! Which option of this tool does what the messages of the libraries ask for: they know no options.
+
+use cloudtouch::{PrepareError, Undecided, Warning};
+use cloudtouch_io::recording::RecordingFault;
+use cloudtouch_io::{Fault, ReadError};
+use cloudtouch_robot::{RobotError, RobotFault};
+use serde_json::Value;
+
+/// A warning with the option that mends it.
+pub(crate) fn warning(warning: &Warning) -> String {
+    with(warning.to_string(), of_warning(warning))
+}
+
+/// Why there is no decision, and which option tells what is missing.
+pub(crate) fn undecided(by: Undecided) -> String {
+    with(by.to_string(), (by == Undecided::Enclosed).then_some("--sensor-pose"))
+}
+
+/// An error with its causes, and the option that mends it.
+pub(crate) fn error(error: &anyhow::Error) -> String {
+    let option = error.chain().find_map(|cause| {
+        if let Some(RobotError { fault, .. }) = cause.downcast_ref() {
+            of_robot(fault)
+        } else if let Some(PrepareError::NoiseBeyondSize { .. }) = cause.downcast_ref() {
+            Some("--cloud-unit mm".to_owned())
+        } else {
+            of_file(cause.downcast_ref()?)
+        }
+    });
+    with(format!("{error:#}"), option.as_deref())
+}
+
+/// A line of JSON with the options of these warnings in its words. Reports write their warnings
+/// themselves, and made of a value the line would have its keys in another order.
+pub(crate) fn in_json<'a>(line: String, warnings: impl IntoIterator<Item = &'a Warning>) -> String {
+    let words = |text: String| format!("\"words\":{}", Value::from(text));
+    warnings
+        .into_iter()
+        .fold(line, |line, of| line.replace(&words(of.to_string()), &words(warning(of))))
+}
+
+fn with(message: String, option: Option<&str>) -> String {
+    option.map_or(message.clone(), |option| format!("{message} ({option})"))
+}
+
+fn of_warning(warning: &Warning) -> Option<&'static str> {
+    Some(match warning {
+        Warning::Units { .. } => "--unit mm for meshes, --cloud-unit mm for clouds",
+        Warning::Sparse { .. } => "--cloud-unit mm, --unit mm",
+        Warning::SensorPose { .. } | Warning::SensorTurn { .. } | Warning::ImagePlace { .. } => {
+            "--sensor-pose"
+        }
+        Warning::SensorRange { .. } => "--sensor auto, --cloud-unit",
+        Warning::SensorLayout { .. } => "--sensor auto",
+        Warning::Unseen { .. } => "--max-unseen",
+        _ => return None,
+    })
+}
+
+fn of_file(error: &ReadError) -> Option<String> {
+    match error {
+        ReadError::TooLarge { .. } => Some("--max-bytes".to_owned()),
+        ReadError::NoRecordings { .. } => {
+            Some("cargo install --locked --path crates/cli --features mcap".to_owned())
+        }
+        ReadError::Format { problem, .. } => match problem.fault {
+            // Such as `points` or `declared points`.
+            Fault::TooMany { what, .. } => Some(format!("--max-{}", what.rsplit(' ').next()?)),
+            _ => None,
+        },
+        ReadError::Recording { problem, .. } => match **problem {
+            RecordingFault::TooLarge { .. } => Some("--max-bytes".to_owned()),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn of_robot(fault: &RobotFault) -> Option<String> {
+    match fault {
+        RobotFault::UnknownPackage { package, .. } => Some(format!("--package {package}=FOLDER")),
+        RobotFault::Mesh { error, .. } => of_file(error),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
+mod tests {
+    use anyhow::Context as _;
+    use cloudtouch::Which;
+
+    use super::*;
+
+    #[test]
+    fn what_a_library_says_is_told_with_the_option_that_does_it() {
+        let link = || "arm".to_owned();
+        let large = || ReadError::TooLarge { path: "a.stl".into(), limit: 9 };
+        let of_robot = |fault| RobotError { file: "arm.urdf".into(), fault: Box::new(fault) };
+        let (uri, package) = ("package://mine/a.stl".to_owned(), "mine".to_owned());
+        let unknown = RobotFault::UnknownPackage { link: link(), uri, package };
+        let noise = PrepareError::NoiseBeyondSize { std: 5.0, size: 1.0 };
+        for (told, option) in [
+            (anyhow::Error::from(large()), " (--max-bytes)"),
+            (of_robot(RobotFault::Mesh { link: link(), error: large() }).into(), " (--max-bytes)"),
+            (of_robot(unknown).into(), "`packages` (--package mine=FOLDER)"),
+            (noise.into(), " (--cloud-unit mm)"),
+            (anyhow::anyhow!("a slip"), "a slip"),
+        ] {
+            let told = error(&Err::<(), _>(told).context("scan.pcd").unwrap_err());
+            assert!(told.starts_with("scan.pcd: ") && told.ends_with(option), "{told}");
+        }
+    }
+
+    #[test]
+    fn warnings_in_a_line_of_json_have_their_options_once() {
+        let unseen = Warning::Unseen { body: Which::B, share: 0.5, limit: 0.05 };
+        let far = Warning::FarAway { gap_m: 9.0, size_m: 1.0 };
+        let line = serde_json::to_string(&[unseen, far, unseen]).unwrap();
+        let told = in_json(line.clone(), &[unseen, far, unseen]);
+        assert_eq!(told.matches("raise `max_unseen` (--max-unseen)\"").count(), 2, "{told}");
+        assert_eq!(told.replace(" (--max-unseen)", ""), line);
+    }
+}
