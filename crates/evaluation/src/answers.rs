@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Instant;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use cloudtouch::{Clearance, ContactEvidence, Report};
 use cloudtouch_testkit::family::Kind;
 
@@ -107,13 +107,11 @@ impl Said {
         Self { score, micros: 1e6 * start.elapsed().as_secs_f64(), ..Self::default() }
     }
 
-    fn check(&self) -> Result<()> {
+    fn is_sound(&self) -> bool {
         let is_unit = |p: f64| (0.0..=1.0).contains(&p);
-        let sound = !self.score.is_nan()
+        !self.score.is_nan()
             && self.probability.is_none_or(is_unit)
-            && self.bounds.is_none_or(|[low, high]| is_unit(low) && is_unit(high) && low <= high);
-        ensure!(sound, "{self:?} is no answer");
-        Ok(())
+            && self.bounds.is_none_or(|[low, high]| is_unit(low) && is_unit(high) && low <= high)
     }
 }
 
@@ -137,8 +135,8 @@ impl Answers {
     /// When an answer is none: a NaN, a probability outside of [0, 1], bounds in the wrong order.
     pub fn push(&mut self, (question, said): Row) -> Result<()> {
         for (name, said) in self.methods.iter().zip(&said) {
-            let sound = said.as_ref().map_or(Ok(()), Said::check);
-            sound.with_context(|| format!("{name} on {question:?}"))?;
+            let is_sound = said.as_ref().is_none_or(Said::is_sound);
+            ensure!(is_sound, "{name} on {question:?}: {said:?} is no answer");
         }
         self.rows.push((question, said));
         Ok(())

@@ -55,14 +55,14 @@ point method, though it starts beside what SMO found, every step is cubic in the
 /// Measures and writes the page.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let Arguments { poses, update_docs, ref data } = *arguments;
-    let scene = Scene::draw(poses, SEED)?;
+    let scene = Scene::draw(poses)?;
     let data = cases::folder(root, data);
     // Whatever uses rayon gets one thread; the batch brings pools of its own.
     let alone = ThreadPoolBuilder::new().num_threads(1).build().context("start a thread")?;
     let parts: [Part<'_>; 5] = [
         ("prepared queries", &|| room::measure(&scene)),
         ("fresh bodies", &|| fresh::measure(&scene, data.as_deref())),
-        ("leaf problems", &|| solvers::measure(scene.seed)),
+        ("leaf problems", &solvers::measure),
         ("larger scenes", &|| growth::measure(&scene)),
         ("batch", &|| batch::measure(&scene)),
     ];

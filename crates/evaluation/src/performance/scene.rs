@@ -9,6 +9,7 @@ use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
 use cloudtouch_testkit::scene;
 use rayon::prelude::*;
 
+use crate::SEED;
 use crate::methods::sampled;
 
 /// Points of a cloud where nothing else is said.
@@ -37,8 +38,6 @@ pub(super) struct Scene {
     pub(super) piano: TriangleMesh,
     /// The kinds of [`TURN`] in turn.
     pub(super) poses: Vec<LabelledPose>,
-    /// Everything random comes from this.
-    pub(super) seed: u64,
 }
 
 /// What the poses are, in turn: their class, and whether they collide.
@@ -65,12 +64,12 @@ impl Class {
 
 impl Scene {
     /// Draws so many poses; fails when a class of them cannot be had.
-    pub(super) fn draw(count: usize, seed: u64) -> Result<Self> {
+    pub(super) fn draw(count: usize) -> Result<Self> {
         let (room, piano) = (scene::room(), scene::piano());
         let exact = [&room, &piano].map(ExactMesh::new);
         let batch = |number: u64| {
             let drawn =
-                |part| poses_near_contact(&exact[0], &exact[1], BATCH, derive(seed, 1, part));
+                |part| poses_near_contact(&exact[0], &exact[1], BATCH, derive(SEED, 1, part));
             (4 * number..4 * number + 4).into_par_iter().flat_map_iter(drawn).collect::<Vec<_>>()
         };
         let mut drawn = (0..2000).flat_map(batch).filter(|pose| Class::of(pose).is_some());
@@ -88,17 +87,17 @@ impl Scene {
         };
         let poses: Option<Vec<_>> = (0..count).map(|i| next(TURN[i % TURN.len()])).collect();
         let poses = poses.context("too few far, near or deep poses")?;
-        Ok(Self { room, piano, poses, seed })
+        Ok(Self { room, piano, poses })
     }
 
     /// The room in so many points, with noise of this standard deviation (m).
     pub(super) fn room(&self, points: usize, std: f64) -> Observation {
-        sampled(&self.room, points, std, seeds(derive(self.seed, 2, 0)))
+        sampled(&self.room, points, std, seeds(derive(SEED, 2, 0)))
     }
 
     /// The piano in [`POINTS`] points.
     pub(super) fn piano(&self, std: f64) -> Observation {
-        sampled(&self.piano, POINTS, std, seeds(derive(self.seed, 2, 1)))
+        sampled(&self.piano, POINTS, std, seeds(derive(SEED, 2, 1)))
     }
 
     /// The room's surface in about so many triangles, and the piano's in ten thousand.
@@ -120,7 +119,7 @@ mod tests {
 
     #[test]
     fn poses_are_what_they_are_drawn_for() {
-        let scene = Scene::draw(7, 3).unwrap();
+        let scene = Scene::draw(7).unwrap();
         let exact = [&scene.room, &scene.piano].map(ExactMesh::new);
         for (pose, (class, collides)) in scene.poses.iter().zip(TURN.into_iter().cycle()) {
             assert_eq!((Class::of(pose), pose.in_collision), (Some(class), collides));

@@ -7,6 +7,7 @@ use cloudtouch_svm::{Class, Kernel, Problem, Rung, Sample, Settings, Solution, S
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 
 use super::timing::{least_of, ratio, three_digits, times};
+use crate::SEED;
 use crate::report::{Findings, Section, Table, Target};
 use crate::statistics::median;
 
@@ -56,10 +57,10 @@ solvers take turns problem by problem, three times up to 2 × 40 points. *Ratio*
 time over ours.";
 
 /// Measures every cell at every size.
-pub(super) fn measure(seed: u64) -> Findings {
+pub(super) fn measure() -> Findings {
     let all = CELLS.iter().flat_map(|cell| SIZES.iter().map(move |size| (cell, size)));
     let all: Vec<Compared> =
-        all.map(|(cell, size)| Compared::measure(cell, *size, seed)).collect::<Result<_>>()?;
+        all.map(|(cell, size)| Compared::measure(cell, *size)).collect::<Result<_>>()?;
     const HEADER: &str = "cell, points, problems, at the gap, past SMO, ours median, ours p95, \
                           Clarabel median, Clarabel p95, ratio";
     let mut table = Table::new(HEADER.split(", "));
@@ -85,15 +86,11 @@ pub(super) fn measure(seed: u64) -> Findings {
 }
 
 impl Compared {
-    fn measure(
-        cell: &Cell,
-        (per_side, count, repeats): (usize, usize, usize),
-        seed: u64,
-    ) -> Result<Self> {
+    fn measure(cell: &Cell, (per_side, count, repeats): (usize, usize, usize)) -> Result<Self> {
         let seconds = Default::default();
         let mut all = Self { cell: cell.name, per_side, seconds, at_the_gap: [0; 2], past_smo: 0 };
         for number in 0..count {
-            let from = derive(derive(seed, 6, per_side as u64), number as u64, 0);
+            let from = derive(derive(SEED, 6, per_side as u64), number as u64, 0);
             for (which, with) in
                 [Solver::solve, Solver::solve_with_clarabel].into_iter().enumerate()
             {

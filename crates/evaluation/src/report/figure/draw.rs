@@ -18,13 +18,8 @@ const FONT: (&str, u32) = ("sans-serif", 16);
 const PALETTE: [RGBColor; 4] =
     [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(230, 159, 0)];
 
-/// How what has a name looks in every panel.
-struct Look<'a> {
-    name: &'a str,
-    /// Which marker its points get.
-    number: usize,
-    color: RGBColor,
-}
+/// A name with its colour in every panel. Which of them it is decides on its marker.
+type Look<'a> = (&'a str, RGBColor);
 
 impl Figure {
     /// Draws it as SVG.
@@ -54,10 +49,9 @@ fn looks(figure: &Figure) -> Vec<Look<'_>> {
     let mut looks: Vec<Look<'_>> = Vec::new();
     let series = figure.panels.iter().flat_map(|panel| &panel.series);
     for series in series.filter(|series| !series.name.is_empty()) {
-        let (name, number) = (series.name.as_str(), looks.len());
-        if looks.iter().all(|look| look.name != name) {
-            let color = series.color.unwrap_or(PALETTE[number % PALETTE.len()]);
-            looks.push(Look { name, number, color });
+        if looks.iter().all(|(name, _)| *name != series.name) {
+            let color = series.color.unwrap_or(PALETTE[looks.len() % PALETTE.len()]);
+            looks.push((&series.name, color));
         }
     }
     looks
@@ -87,9 +81,8 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
         .label_style(FONT)
         .draw()?;
     for series in &panel.series {
-        let look = looks.iter().find(|look| look.name == series.name);
-        let color = series.color.or(look.map(|look| look.color)).unwrap_or(GREY);
-        let number = look.map_or(0, |look| look.number);
+        let number = looks.iter().position(|(name, _)| *name == series.name);
+        let color = series.color.or(number.map(|number| looks[number].1)).unwrap_or(GREY);
         let has_marks = series.marks.iter().any(|mark| !mark.is_empty());
         if let Some(place) = series.name_at.filter(|_| has_marks) {
             let style = FONT.into_font().color(&color);
@@ -107,6 +100,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, looks: &[Look<'_>]) -> Result<()> 
                 chart.draw_series([line])?;
             }
             if series.points {
+                let number = number.unwrap_or(0);
                 let marker = |at| marker(number, at, series.size, color.mix(0.8).filled());
                 chart.draw_series(places.into_iter().map(marker))?;
             }
@@ -173,8 +167,8 @@ mod tests {
             [panel(vec![of("a").named_at(1.0, 2.5), band, of("")]), panel(vec![of("b"), of("a")])];
         let figure = Figure::new("Two", panels);
         let looks = looks(&figure);
-        assert_eq!(looks.iter().map(|look| look.name).collect::<Vec<_>>(), ["a", "b"]);
-        assert!(looks[0].color != looks[1].color);
+        assert_eq!(looks.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["a", "b"]);
+        assert!(looks[0].1 != looks[1].1);
         let svg = figure.svg().unwrap();
         assert_eq!([">\na\n<", ">\nb\n<"].map(|name| svg.matches(name).count()), [1, 0]);
     }
