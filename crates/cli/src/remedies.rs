@@ -43,7 +43,7 @@ fn with(message: String, option: Option<&str>) -> String {
     option.map_or(message.clone(), |option| format!("{message} ({option})"))
 }
 
-fn of_warning(warning: &Warning) -> Option<&'static str> {
+pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
     Some(match warning {
         Warning::Units { .. } => "--unit mm for meshes, --cloud-unit mm for clouds",
         Warning::Sparse { .. } => "--cloud-unit mm, --unit mm",

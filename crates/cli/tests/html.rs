@@ -216,6 +216,15 @@ fn a_path_shows_its_poses_and_where_it_first_collides() {
 }
 
 #[test]
+fn a_page_names_the_option_that_a_warning_asks_for() {
+    let inputs = Inputs::new();
+    let query = ["query", "floor.pcd", "box.obj", "--unit=mm", "--translate=0,0,0.005"];
+    inputs.run(&[&query[..], &["--html=o.html"]].concat()).quiet(0);
+    let text = page(&inputs, "o.html");
+    assert!(text.contains("is a file in millimetres? (--cloud-unit mm, --unit mm)</p>"), "{text}");
+}
+
+#[test]
 fn no_input_is_replaced_and_another_file_only_with_force() {
     let inputs = Inputs::new();
     let refused = inputs.query_at(0.5, &["--html", "box.obj", "--force"]);

@@ -2,11 +2,11 @@
 
 use cloudtouch::{Contact, Report, Verdict};
 
-use crate::body::Body;
 use crate::data;
 use crate::escape::html;
 use crate::fact::Fact;
 use crate::facts;
+use crate::page::Page;
 use crate::view::View;
 use crate::words;
 
@@ -14,14 +14,15 @@ use crate::words;
 const CONTACTS_LISTED: usize = 8;
 
 /// The section of a view, of which only one is shown at a time.
-pub(crate) fn section(number: usize, view: &View<'_>, bodies: &[Body], is_shown: bool) -> String {
-    let hidden = if is_shown { "" } else { " hidden" };
+pub(crate) fn section(number: usize, view: &View<'_>, page: &Page<'_>) -> String {
+    let bodies = &page.bodies;
+    let hidden = if number == page.start { "" } else { " hidden" };
     let about =
         [view.scene, view.object].map(|body| bodies.get(body).map_or("", |body| &body.about));
     let about = ["Scene", "Object"].into_iter().zip(about).filter(|(_, about)| !about.is_empty());
     let about: Vec<Fact> = about.map(|(label, about)| Fact::new(label, about)).collect();
     let facts = list(&facts::of_view(view));
-    let body = head(view.report) + &facts + &contacts(&view.report.contacts);
+    let body = head(view.report, page) + &facts + &contacts(&view.report.contacts);
     format!(
         "<section class=\"answer\" id=\"answer-{number}\"{hidden}>\n<h2>{}</h2>\n{body}{}{}</section>\n",
         html(&view.name),
@@ -40,7 +41,7 @@ pub(crate) fn list(facts: &[Fact]) -> String {
     format!("<dl>\n{}</dl>\n", facts.iter().map(each).collect::<String>())
 }
 
-fn head(report: &Report) -> String {
+fn head(report: &Report, page: &Page<'_>) -> String {
     let Report { verdict, undecided_by, collision_probability, warnings, .. } = report;
     // A mark beside the colour: not everybody tells colours apart.
     let (class, mark) = match verdict {
@@ -52,7 +53,9 @@ fn head(report: &Report) -> String {
     let warnings: String = warnings
         .iter()
         .map(|warning| {
-            format!("<p class=\"warning\">Warning: {}</p>\n", html(&warning.to_string()))
+            let by = page.remedy.and_then(|of| of(warning)).map(|by| format!(" ({by})"));
+            let words = warning.to_string() + &by.unwrap_or_default();
+            format!("<p class=\"warning\">Warning: {}</p>\n", html(&words))
         })
         .collect();
     format!(

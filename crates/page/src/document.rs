@@ -23,9 +23,7 @@ impl Page<'_> {
         let notes = self.notes.iter().chain(&more_notes);
         let notes: String = notes.map(|note| format!("<p>{}</p>\n", escape::html(note))).collect();
         let views = self.views.iter().enumerate();
-        let answers: String = views
-            .map(|(number, view)| section(number, view, &self.bodies, number == self.start))
-            .collect();
+        let answers: String = views.map(|(number, view)| section(number, view, self)).collect();
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\

@@ -1,5 +1,7 @@
 //! What a page shows.
 
+use cloudtouch::Warning;
+
 use crate::body::Body;
 use crate::fact::Fact;
 use crate::view::View;
@@ -19,4 +21,6 @@ pub struct Page<'a> {
     pub views: Vec<View<'a>>,
     /// Which of them is shown first.
     pub start: usize,
+    /// By what those who read the page do what a warning asks for, such as an option: told behind it.
+    pub remedy: Option<fn(&Warning) -> Option<&'static str>>,
 }

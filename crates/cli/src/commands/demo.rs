@@ -101,7 +101,7 @@ fn write_page<C: PreparedCloud>(
         start: most_open(poses).map_or(0, |(number, _)| number - 1),
         ..Page::default()
     };
-    pages::write(path, &page)
+    pages::write(path, page)
 }
 
 /// A pose with what is true of it and what was answered.

@@ -171,7 +171,7 @@ fn write_page<C: PreparedCloud>(
     };
     let title = format!("{} in {}", bodies[1].name, bodies[0].name);
     let page = Page { title, bodies: bodies.into(), views: vec![view], ..Page::default() };
-    pages::write(path, &page)
+    pages::write(path, page)
 }
 
 /// Gives each row of the scene its own κ, where a file says so.

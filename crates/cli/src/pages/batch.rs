@@ -84,7 +84,7 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
         }
         let title = format!("{} poses of {cases}", views.len());
         let notes = note.into_iter().collect();
-        pages::write(path, &Page { title, summary, notes, bodies, views, start: 0 })
+        pages::write(path, Page { title, summary, notes, bodies, views, ..Page::default() })
     }
 }
 

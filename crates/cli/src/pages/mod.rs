@@ -12,9 +12,11 @@ use cloudtouch_page::{Body as Drawn, Page, Shape};
 use crate::answers::print;
 use crate::body::{Body, PreparedCloud};
 use crate::load::Loaded;
+use crate::remedies;
 
-/// Writes a page whole or not at all.
-pub(crate) fn write(path: &Path, page: &Page<'_>) -> Result<()> {
+/// Writes a page whole or not at all, which tells this tool's options.
+pub(crate) fn write(path: &Path, page: Page<'_>) -> Result<()> {
+    let page = Page { remedy: Some(remedies::of_warning), ..page };
     Ok(write_atomically(path, |out| out.write_all(page.html().as_bytes()))?)
 }
 

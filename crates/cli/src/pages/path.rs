@@ -82,6 +82,7 @@ pub(crate) fn write(
         views: views.collect(),
         bodies: vec![scene, object],
         start,
+        ..Page::default()
     };
-    pages::write(output, &page)
+    pages::write(output, page)
 }
