@@ -149,7 +149,7 @@ fn keys_of_a_scene_and_of_a_robot_are_documented() {
     let mut one = robot(json!({"shoulder": 0.6}));
     assert_eq!(one["verdict"], "in_collision");
     // What is told of one position beside its scene.
-    for key in ["unchecked_links", "self_filter", "self_collision"] {
+    for key in ["unchecked_links", "may_touch", "self_filter", "self_collision"] {
         assert!(one.as_object_mut().unwrap().remove(key).is_some(), "{key}: {one}");
     }
     check("scene", &[scene, far, one]);

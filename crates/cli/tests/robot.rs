@@ -41,6 +41,22 @@ fn robot(inputs: &Inputs, joints: &Value, more: &[&str]) -> Run {
     inputs.run(&[&arguments, more].concat())
 }
 
+/// A base that is bolted to what was scanned touches it at any positions.
+#[test]
+fn a_link_may_touch_the_scan() {
+    let inputs = inputs();
+    let down = json!({"shoulder": 0.7});
+    let free = robot(&inputs, &down, &["--may-touch=arm", "--json", "--exit-code"]).quiet(0);
+    let answer = free.json_lines().remove(0);
+    assert_eq!([&answer["verdict"], &answer["may_touch"]], [&json!("free"), &json!(["arm"])]);
+    let text = robot(&inputs, &down, &["--may-touch", "arm"]).quiet(0).stdout();
+    assert!(text.contains("may touch the scan     arm\n"), "{text}");
+    let slip = robot(&inputs, &down, &["--may-touch=am"]);
+    assert_eq!(slip.code(), 2);
+    let slip = slip.stderr();
+    assert!(slip.contains("--may-touch am") && slip.contains("post, arm"), "{slip}");
+}
+
 /// The lower edge of its end is at the floor where sin + 0.05 cos = 0.5, at 0.47 rad.
 #[test]
 fn an_arm_that_bends_down_touches_the_floor() {

@@ -26,8 +26,10 @@ const ADVERSARIAL: f64 = 0.25;
 /// Values of a surface over geometry.
 const GEOMETRY_VALUES: usize = DEVIATION_KNOTS.len() * CROSSING_KNOTS.len();
 /// Knots of the noise up to which ordinary scenes are observed. Those beyond are fitted to denser ones, with
-/// the last of these as it is.
+/// the last of these as it is, ...
 const ORDINARY: usize = 3;
+/// ... and up to this one as that.
+const HELD: usize = 4;
 
 /// What `cargo xtask calibrate` is given.
 #[derive(Args)]
@@ -85,8 +87,8 @@ fn beyond(mut fitted: Fitted, answers: &Answers, command: &str) -> Result<Fitted
     for (family, judge) in &mut fitted.without {
         *judge = fit_beyond(*judge, &records(answers, OURS, Some(family))?)?;
     }
-    let [.., from, more, most] = NOISE_KNOTS;
-    for [from, to] in [[from, more], [more, most]] {
+    let [.., more, most] = NOISE_KNOTS;
+    for [from, to] in [[NOISE_KNOTS[ORDINARY - 1], more], [more, most]] {
         for (name, fit) in [("before", &before), ("after", &fitted)] {
             let asked = answers.rows.iter().filter(|(of, _)| of.kind != Kind::Adversarial);
             let said = asked.filter_map(|(of, said)| {
@@ -160,7 +162,7 @@ fn fit_judge(records: &[Record]) -> Result<Judge> {
 
 /// The same beyond the noise of ordinary scenes, where no classifier is asked.
 fn fit_beyond(mut judge: Judge, records: &[Record]) -> Result<Judge> {
-    fit_knots(&mut judge, records, ORDINARY - 1..NOISE_KNOTS.len());
+    fit_knots(&mut judge, records, HELD - 1..NOISE_KNOTS.len());
     judge.validate()?;
     Ok(judge)
 }

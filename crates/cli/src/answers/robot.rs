@@ -42,6 +42,8 @@ struct Position<'a> {
 pub(crate) struct Asked<'a> {
     /// Links that can be seen and have no `<collision>`.
     pub unchecked_links: &'a [String],
+    /// Links that may touch the scan.
+    pub may_touch: &'a [String],
     /// Whether the robot was removed from the scan.
     pub self_filter: bool,
     /// How many points of the scan were removed as the robot's: among the stages of the scan in JSON.
@@ -55,11 +57,14 @@ impl Asked<'_> {
     /// What is not asked about, in words.
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
-        if !self.unchecked_links.is_empty() {
-            let links: Vec<String> = self.unchecked_links.iter().map(|l| one_line(l)).collect();
-            let links = links.join(", ");
-            let _ = writeln!(text, "not checked            {links} (no <collision> in the URDF)");
-        }
+        let mut add = |label: &str, links: &[String], why: &str| {
+            let links: Vec<String> = links.iter().map(|link| one_line(link)).collect();
+            if !links.is_empty() {
+                let _ = writeln!(text, "{label:<22} {}{why}", links.join(", "));
+            }
+        };
+        add("not checked", self.unchecked_links, " (no <collision> in the URDF)");
+        add("may touch the scan", self.may_touch, "");
         if !self.self_filter {
             text += "self filter            none: give --scan-joints if the scan shows the robot\n";
         } else if self.self_filter_removed == 0 {

@@ -27,6 +27,9 @@ pub(crate) struct RobotOptions {
     #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length, allow_negative_numbers = true,
           requires = "scan_joints")]
     pub padding: f64,
+    /// Links that may touch the scan, such as a bolted base
+    #[arg(long, value_name = "LINK", value_delimiter = ',')]
+    pub may_touch: Vec<String>,
     /// Also ask whether links touch one another, but neighbours
     #[arg(long)]
     pub self_collision: bool,

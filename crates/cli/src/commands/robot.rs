@@ -39,6 +39,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         let placed = if path.len() > 1 { posed.context(joints::place(index)) } else { posed };
         placed.with_context(named)?;
     }
+    check_links(arguments, &robot)?;
     let links = seen(arguments, &robot, &base)?;
     let scan = load::surroundings(&arguments.scan, links, options)?;
     unused::check(options, &[(Role::Scene, scan.is_mesh())])?;
@@ -53,6 +54,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     };
     let asked = Asked {
         unchecked_links: &unchecked,
+        may_touch: &arguments.robot.may_touch,
         self_filter: arguments.robot.scan_joints.is_some(),
         self_filter_removed: removed,
         self_collision: arguments.robot.self_collision,
@@ -64,7 +66,10 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     };
     let touching =
         if arguments.robot.self_collision { Touching::AndItself } else { Touching::Surroundings };
-    let checker = RobotChecker::new(robot, body, base, touching)?;
+    let mut checker = RobotChecker::new(robot, body, base, touching)?;
+    for link in &arguments.robot.may_touch {
+        checker.allow(link, SURROUNDINGS).with_context(|| "--may-touch")?;
+    }
     let threshold = query.settings().reject;
     let bodies = BTreeMap::from([(SURROUNDINGS, &scan.input)]);
     let (text, verdict, failed) = if let [joints] = &path[..] {
@@ -92,6 +97,20 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
 }
 
 /// Refuses the folder of a package that no link needs: its name is misspelt, and another may have been read.
+/// A link that may touch the scan is one of the robot's.
+fn check_links(arguments: &RobotArguments, robot: &Robot) -> Result<()> {
+    let links = robot.links();
+    match arguments.robot.may_touch.iter().find(|link| !links.contains(link)) {
+        None => Ok(()),
+        Some(link) => {
+            bail!(WrongUsage(format!(
+                "--may-touch {link}: no link of that name, of {}",
+                links.join(", ")
+            )))
+        }
+    }
+}
+
 fn check_packages(arguments: &RobotArguments, robot: &Robot) -> Result<()> {
     let used = robot.packages();
     let options = &arguments.robot;

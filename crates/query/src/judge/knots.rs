@@ -6,8 +6,8 @@ pub(crate) const MOST_DEVIATIONS: f64 = 6.0;
 pub(super) const MISCLASSIFIED_FLOOR: f64 = 0.02;
 
 /// For which noise over spacing of two bodies there is a surface over geometry: the last two for clouds far
-/// denser than they are sharp, of whose many pieces the nearest is near by chance.
-pub const NOISE_KNOTS: [f64; 5] = [0.0, 0.5, 2.0, 5.0, 12.0];
+/// denser than they are sharp, of whose many pieces the nearest is near by chance, and that before as at 2.
+pub const NOISE_KNOTS: [f64; 6] = [0.0, 0.5, 2.0, 3.0, 5.0, 12.0];
 /// Where each of these has its values: deviations by rows, crossing by columns.
 pub const DEVIATION_KNOTS: [f64; 13] =
     [-6.0, -4.0, -2.5, -1.2, 0.0, 0.4, 0.8, 1.2, 1.7, 2.3, 3.0, 4.0, MOST_DEVIATIONS];
