@@ -77,6 +77,12 @@ impl<'a> From<&'a Body> for BodyRef<'a> {
     }
 }
 
+impl<'a> From<&'a Arc<Body>> for BodyRef<'a> {
+    fn from(body: &'a Arc<Body>) -> Self {
+        Self::from(&**body)
+    }
+}
+
 impl<'a> BodyRef<'a> {
     /// How long preparation took.
     pub fn prepare_time(&self) -> Duration {

@@ -19,7 +19,12 @@ pub(crate) fn add_exact(
     evidence.stats.leaf_pairs = 1;
     if collide((a, b), a_from_b)? {
         evidence.add_certain_collision();
-    } else if is_distance_wanted && let Some([on_a, on_b]) = nearest((a, b), a_from_b, f64::MAX)? {
+        return Ok(());
+    }
+    if !is_distance_wanted {
+        return Ok(());
+    }
+    if let Some([on_a, on_b]) = nearest((a, b), a_from_b)? {
         let clearance = Clearance { mean: (on_b - on_a).norm(), std: 0.0, is_bound: false };
         // Known for certain, however improbable a collision is.
         evidence.add_clearance(1.0, clearance);
@@ -33,7 +38,7 @@ pub(crate) fn nearest_places(
     bodies: (&Mesh, &Mesh),
     a_from_b: &Pose,
 ) -> Result<Option<[Point3; 2]>, QueryError> {
-    if collide(bodies, a_from_b)? { Ok(None) } else { nearest(bodies, a_from_b, f64::MAX) }
+    if collide(bodies, a_from_b)? { Ok(None) } else { nearest(bodies, a_from_b) }
 }
 
 /// Whether two meshes are within a distance (m) of each other, which costs less than to tell how far they are.
@@ -42,35 +47,73 @@ pub(crate) fn are_within(
     a_from_b: &Pose,
     distance: f64,
 ) -> Result<bool, QueryError> {
-    Ok(collide(bodies, a_from_b)?
-        || nearest(bodies, a_from_b, distance)?
-            .is_some_and(|[on_a, on_b]| (on_b - on_a).norm() < distance))
+    if collide(bodies, a_from_b)? {
+        return Ok(true);
+    }
+    Ok(match nearest_within(bodies, a_from_b, distance)? {
+        ClosestPoints::WithinMargin(on_a, on_b) => (on_b - on_a).length() < distance,
+        ClosestPoints::Intersecting => true,
+        ClosestPoints::Disjoint => false,
+    })
 }
 
-/// Whether the surfaces of two meshes cross, or one is inside the other.
+/// Whether the surfaces of two meshes cross or touch, or one is inside the other.
 fn collide((a, b): (&Mesh, &Mesh), a_from_b: &Pose) -> Result<bool, QueryError> {
     let (pose_a, pose_b) = (math::Pose::IDENTITY, parry_pose(a_from_b));
     let crossing = intersection_test(&pose_a, a.surface(), &pose_b, b.surface())
         .map_err(|_| QueryError::Unsupported)?
         .intersecting;
-    Ok(crossing || holds_a_part(a, b, a_from_b) || holds_a_part(b, a, &a_from_b.inverse()))
+    if crossing || holds_a_part(a, b, a_from_b) || holds_a_part(b, a, &a_from_b.inverse()) {
+        return Ok(true);
+    }
+    Ok(matches!(nearest_within((a, b), a_from_b, 0.0)?, ClosestPoints::Intersecting))
 }
 
-/// The nearest places of two meshes that do not collide, as long as these are no farther apart than `most` (m).
-fn nearest(
+/// The nearest places of two meshes that do not collide.
+fn nearest(bodies: (&Mesh, &Mesh), a_from_b: &Pose) -> Result<Option<[Point3; 2]>, QueryError> {
+    let point = |v: math::Vector| Point3::new(v.x, v.y, v.z);
+    for most in [ROOM * apart_at_most(bodies, a_from_b), f64::MAX] {
+        if let ClosestPoints::WithinMargin(on_a, on_b) = nearest_within(bodies, a_from_b, most)? {
+            return Ok(Some([point(on_a), point(on_b)]));
+        }
+    }
+    Ok(None)
+}
+
+/// One sample in so many is measured for a first guess of a distance, ...
+const MEASURED: usize = 10;
+/// ... and so often a place goes to the nearest of the other surface and back.
+const TURNS: usize = 3;
+/// Of a guess, for rounding.
+const ROOM: f64 = 1.0 + 1e-6;
+
+/// The distance of two meshes is no more than this, m.
+///
+/// PERF: parry looks for the nearest places of every triangle within the distance it is given, not within the
+/// least so far.
+fn apart_at_most((a, b): (&Mesh, &Mesh), a_from_b: &Pose) -> f64 {
+    let b_from_a = a_from_b.inverse();
+    let on_a = |on_b: &Point3| a.nearest(&a_from_b.transform_point(on_b)).0;
+    let gap = |on_b: &Point3| (on_a(on_b) - a_from_b.transform_point(on_b)).norm();
+    let measured = b.samples().iter().step_by(MEASURED).map(|sample| (gap(sample), *sample));
+    let Some((_, mut place)) = measured.min_by(|(p, _), (q, _)| p.total_cmp(q)) else {
+        return f64::MAX;
+    };
+    for _ in 0..TURNS {
+        place = b.nearest(&b_from_a.transform_point(&on_a(&place))).0;
+    }
+    gap(&place)
+}
+
+/// The nearest places of two meshes, as long as these are no farther apart than `most` (m).
+fn nearest_within(
     (a, b): (&Mesh, &Mesh),
     a_from_b: &Pose,
     most: f64,
-) -> Result<Option<[Point3; 2]>, QueryError> {
+) -> Result<ClosestPoints, QueryError> {
     let (pose_a, pose_b) = (math::Pose::IDENTITY, parry_pose(a_from_b));
-    let point = |v: math::Vector| Point3::new(v.x, v.y, v.z);
-    match closest_points(&pose_a, a.surface(), &pose_b, b.surface(), most)
-        .map_err(|_| QueryError::Unsupported)?
-    {
-        ClosestPoints::WithinMargin(on_a, on_b) => Ok(Some([point(on_a), point(on_b)])),
-        // They touch but for rounding, or are farther apart.
-        ClosestPoints::Intersecting | ClosestPoints::Disjoint => Ok(None),
-    }
+    closest_points(&pose_a, a.surface(), &pose_b, b.surface(), most)
+        .map_err(|_| QueryError::Unsupported)
 }
 
 /// Whether a part of `inner` lies inside `outer`, given that their surfaces do not cross: then one vertex of each

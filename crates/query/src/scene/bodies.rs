@@ -123,7 +123,7 @@ impl Scene {
     ///
     /// # Errors
     /// When there is none of this name.
-    pub fn body(&self, name: &str) -> Result<&Body, SceneError> {
+    pub fn body(&self, name: &str) -> Result<&Arc<Body>, SceneError> {
         Ok(&self.placed(name)?.body)
     }
 

@@ -27,6 +27,9 @@ const SHORTER: f64 = 0.97;
 /// Of directions that nothing speaks for, a place this much nearer is tried too: on the way there may be
 /// something else.
 const NEARER: f64 = 0.6;
+/// The shortest of many ways is also the luckiest: at its end a collision has to be less likely than asked for by
+/// this factor, for it to be as likely as that.
+const LUCKIEST: f64 = 0.5;
 /// How often a direction is turned to the normal of the surfaces at the end of the way.
 const TURNS: usize = 4;
 /// Then others at these angles from it are tried, rad.
@@ -40,7 +43,8 @@ pub struct Penetration {
     /// Where to, as a unit vector in the frame of the scene; nothing where the object need not move.
     #[serde(serialize_with = "vector_as_array")]
     pub direction: Vector3,
-    /// How far until a collision is less likely than asked for, m.
+    /// How far until a collision is less likely than asked for, m: than half of that by the bound of the query,
+    /// for the shortest of many ways is also the luckiest.
     pub distance_m: f64,
     /// How far until it is as likely as not, whichever way that is shortest, m: how deep the object is in, as
     /// far as is known. Of the probability, not of its upper bound.
@@ -118,7 +122,7 @@ impl Query {
             };
             return Ok((report, Some(here)));
         }
-        let query = this.deciding(probability);
+        let query = this.deciding(LUCKIEST * probability);
         let overlap = Overlap { query, clock, told: |report| report.bounds[1], bodies, a_from_b };
         let mut likely: Vec<Vector3> = report.contacts.iter().map(|c| c.normal_a_to_b).collect();
         let climb = |gradient: &[f64; 6]| a_from_b.transform_vector(&first(gradient));
