@@ -1,6 +1,7 @@
 //! Less detail comes sooner and says nothing else.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test helper fails")]
 
+use crate::common::{at, mesh};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, CloudSettings, Detail, Mesh, Query, QuerySettings, Verdict};
@@ -45,5 +46,29 @@ proptest! {
         prop_assert!(low <= full.collision_probability && full.collision_probability <= high);
         // What is in collision for sure is not free for less.
         prop_assert!(full.verdict != Verdict::InCollision || verdict.collision_probability > accept);
+    }
+}
+
+/// A distance is not looked for where it is not wanted; what hangs on it is.
+#[test]
+fn two_meshes_say_the_same_at_any_detail() {
+    let cube = scene::cuboid([0.1; 3]);
+    // Its second part is what may be inside.
+    let far = scene::moved(&cube, &at(3.0, 0.0, 0.0));
+    let two = mesh(&scene::assemble([far, scene::cuboid([0.02; 3])]));
+    let cube = mesh(&cube);
+    for detail in [Detail::Verdict, Detail::Probability, Detail::Full] {
+        let query = Query::new(QuerySettings { detail, ..QuerySettings::default() }).unwrap();
+        let within = |z: f64, margin| query.within(&cube, &cube, &at(0.0, 0.0, z), margin).unwrap();
+        for (z, probability) in [(0.0999, 1.0), (0.1, 1.0), (0.1001, 0.0), (0.15, 0.0)] {
+            let (report, _) = within(z, 0.0);
+            assert_eq!(report.collision_probability, probability, "{detail:?} {z}");
+            let is_told = detail == Detail::Full && probability == 0.0;
+            assert_eq!(report.clearance_m.is_some(), is_told, "{detail:?} {z}");
+        }
+        let [nearer, farther] = [0.03, 0.07].map(|margin| within(0.15, margin).1.probability);
+        assert_eq!([nearer, farther], [0.0, 1.0], "{detail:?}");
+        let swallowed = query.run(&cube, &two, &at(0.01, 0.0, 0.0)).unwrap();
+        assert_eq!(swallowed.verdict, Verdict::InCollision, "{detail:?}");
     }
 }
