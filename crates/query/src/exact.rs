@@ -41,15 +41,13 @@ pub(crate) fn nearest_places(
     if collide(bodies, a_from_b)? { Ok(None) } else { nearest(bodies, a_from_b) }
 }
 
-/// Whether two meshes are within a distance (m) of each other, which costs less than to tell how far they are.
+/// Whether two meshes that do not collide are within a distance (m) of each other, which costs less than to tell
+/// how far they are.
 pub(crate) fn are_within(
     bodies: (&Mesh, &Mesh),
     a_from_b: &Pose,
     distance: f64,
 ) -> Result<bool, QueryError> {
-    if collide(bodies, a_from_b)? {
-        return Ok(true);
-    }
     Ok(match nearest_within(bodies, a_from_b, distance)? {
         ClosestPoints::WithinMargin(on_a, on_b) => (on_b - on_a).length() < distance,
         ClosestPoints::Intersecting => true,
@@ -58,7 +56,7 @@ pub(crate) fn are_within(
 }
 
 /// Whether the surfaces of two meshes cross or touch, or one is inside the other.
-fn collide((a, b): (&Mesh, &Mesh), a_from_b: &Pose) -> Result<bool, QueryError> {
+pub(crate) fn collide((a, b): (&Mesh, &Mesh), a_from_b: &Pose) -> Result<bool, QueryError> {
     let (pose_a, pose_b) = (math::Pose::IDENTITY, parry_pose(a_from_b));
     let crossing = intersection_test(&pose_a, a.surface(), &pose_b, b.surface())
         .map_err(|_| QueryError::Unsupported)?

@@ -128,7 +128,8 @@ mod tests {
         let error = |stated| {
             let answers = within(&answers(stated), 0.03);
             let judged = Judged::pick(&answers, &["3 cm"], ordinary(Pair::CloudCloud));
-            assert_eq!(judged.questions().iter().filter(|q| q.collides).count(), 20);
+            let collide = judged.questions().iter().filter(|q| q.collides).count();
+            assert_eq!((judged.questions().len(), collide), (200, 20));
             judged.error_above_chance("3 cm")
         };
         assert!(error(0.1) < 0.01 && (error(0.6) - 0.5).abs() < 0.05);

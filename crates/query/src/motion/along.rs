@@ -82,7 +82,7 @@ impl Sweep<'_> {
     }
 
     /// Whether no more is wanted than that the path is not free, which is known.
-    fn knows_enough(&self) -> bool {
+    pub(super) fn knows_enough(&self) -> bool {
         self.query.settings().detail == Detail::Verdict && self.tested.not_free_from.is_finite()
     }
 
