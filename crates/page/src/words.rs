@@ -14,6 +14,7 @@ pub fn unseen(unseen: &Unseen) -> String {
         ("behind the camera", unseen.behind_camera),
         ("outside of its view", unseen.outside_view),
         ("in holes of the image", unseen.hole),
+        ("beyond the range kept", unseen.out_of_range),
         ("behind what it saw", unseen.behind_returns),
     ];
     let shares: Vec<String> = all

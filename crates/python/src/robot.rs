@@ -16,7 +16,7 @@ use crate::body::{Body, corners, rows};
 use crate::error::refused;
 use crate::pool::on_all_threads;
 use crate::query::{Query, rigid};
-use crate::scene::{Found, Pair, found, nobody, pair};
+use crate::scene::{Found, Pair, box_of, found, nobody, pair};
 
 type Joints = BTreeMap<String, f64>;
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
@@ -174,6 +174,12 @@ impl RobotChecker {
     #[pyo3(signature = (name, /))]
     fn release(&self, name: &str) -> PyResult<()> {
         self.lock().release(name).map(|_| ()).map_err(refused)
+    }
+
+    #[pyo3(signature = (joints, /))]
+    fn boxes(&self, py: Python<'_>, joints: Joints) -> PyResult<Vec<(String, [[f64; 3]; 2])>> {
+        let boxes = self.now(py)?.boxes(&joints).map_err(refused)?;
+        Ok(boxes.into_iter().map(|(name, of)| (name, box_of(of))).collect())
     }
 
     #[pyo3(signature = (query, joints, /))]

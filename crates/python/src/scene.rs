@@ -34,7 +34,8 @@ struct Named {
 pub(crate) type Pair<'py> = (String, String, Option<Bound<'py, PyDict>>, Option<String>);
 
 /// Pairs that are not free; pairs there are, allowed, ruled out and asked.
-pub(crate) type Found<'py> = (Vec<Pair<'py>>, [usize; 4], Vec<(String, f64, f64)>);
+pub(crate) type Found<'py> =
+    (Vec<Pair<'py>>, [usize; 4], Vec<(String, f64, f64)>, Vec<(String, String)>);
 
 impl Scene {
     /// What a thread that panicked left is whole: each change is made at once or not at all.
@@ -129,6 +130,11 @@ impl Scene {
         self.lock().places.names().map(str::to_owned).collect()
     }
 
+    fn boxes(&self, py: Python<'_>) -> PyResult<Vec<(String, [[f64; 3]; 2])>> {
+        let bodies = self.now(py)?;
+        Ok(bodies.boxes().into_iter().map(|(name, of)| (name.to_owned(), box_of(of))).collect())
+    }
+
     #[pyo3(signature = (query, /))]
     fn check<'py>(&self, py: Python<'py>, query: &Bound<'py, Query>) -> PyResult<Found<'py>> {
         let (bodies, query) = (self.now(py)?, query.get().checked());
@@ -147,12 +153,18 @@ impl Scene {
     }
 }
 
+/// Lowest and highest corner of a box.
+pub(crate) fn box_of(of: [Point3; 2]) -> [[f64; 3]; 2] {
+    of.map(|corner| corner.coords.into())
+}
+
 /// All pairs that are not free, the worst first.
 pub(crate) fn found(py: Python<'_>, checked: Checked) -> PyResult<Found<'_>> {
-    let Checked { pairs, count, allowed, ruled_out, asked, outside } = checked;
+    let Checked { pairs, count, allowed, ruled_out, asked, outside, warnings } = checked;
     let pairs: PyResult<_> = pairs.into_iter().map(|found| pair(py, found)).collect();
     let outside = outside.into_iter().map(|of| (of.name, of.gap_m, of.size_m)).collect();
-    Ok((pairs?, [count, allowed, ruled_out, asked], outside))
+    let warnings = warnings.into_iter().map(|of| (of.name, of.warning.to_string())).collect();
+    Ok((pairs?, [count, allowed, ruled_out, asked], outside, warnings))
 }
 
 pub(crate) fn pair(py: Python<'_>, found: PairAnswer) -> PyResult<Pair<'_>> {

@@ -53,7 +53,7 @@ pub use query::{
     Within,
 };
 pub use report::{Clearance, Contact, PointProbabilities, Report, Verdict};
-pub use scene::{Checked, Outside, PairAnswer, Scene};
+pub use scene::{BodyWarning, Checked, Outside, PairAnswer, Scene};
 pub use stats::Stats;
 
 /// The crates below, for users who need their types: a query takes a [`geom::Pose`], a cloud a

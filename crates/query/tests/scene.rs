@@ -6,11 +6,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::common::{at, measured, timeless, uniform};
-use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Body, Checked, Cloud, CloudSettings, Detail, Mesh, PairAnswer, Query, QueryError,
-    QuerySettings, Safeguards, Scene, SceneError, Undecided, Verdict,
+    QuerySettings, Safeguards, Scene, SceneError, Undecided, Verdict, Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -37,6 +37,43 @@ fn image() -> Body {
 
 fn query() -> Query {
     Query::new(QuerySettings::default()).unwrap()
+}
+
+/// A scan without the rows and columns of its camera: what that did not see counts as empty.
+fn without_layout() -> Cloud {
+    let points =
+        measured(&scene::moved(&scene::plane_patch(1.0), &at(0.0, 0.0, 2.0)), 0.02, 0.004, 1);
+    Cloud::prepare(&PointCloud::from_points(points), &CloudSettings::new(SensorModel::Kinect))
+        .unwrap()
+}
+
+/// A query of the pair warned of it, whatever its verdict; of a scene only pairs that are not free were told.
+#[test]
+fn what_is_to_be_said_of_a_scan_was_left_out_where_all_is_free() {
+    let mut scene = Scene::default();
+    scene.add("scan", without_layout(), Pose::identity()).unwrap();
+    scene.add("ball", mesh(&scene::sphere(0.05, 2)), at(0.0, 0.0, 1.5)).unwrap();
+    let checked = scene.check(&query());
+    assert_eq!(checked.verdict(), Verdict::Free, "{checked:?}");
+    let [told] = &checked.warnings[..] else { panic!("{checked:?}") };
+    assert!(told.name == "scan" && matches!(told.warning, Warning::NoImage { .. }), "{told}");
+    assert!(told.to_string().starts_with("`scan`: the scene is of a camera"), "{told}");
+}
+
+#[test]
+fn boxes_are_where_the_poses_put_the_bodies() {
+    let mut scene = Scene::default();
+    scene.add("hand", mesh(&scene::cuboid([0.2, 0.1, 0.4])), at(1.0, 0.0, 0.0)).unwrap();
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let turned = Pose::from_translation_rpy(Vector3::new(0.0, 0.0, 1.0), [0.0, 0.0, quarter]);
+    scene.add("cup", mesh(&scene::cuboid([0.2, 0.1, 0.4])), turned).unwrap();
+    scene.attach("cup", "hand", turned).unwrap();
+    let [low, high] = scene.boxes()["cup"];
+    let expected = [Point3::new(0.95, -0.1, 0.8), Point3::new(1.05, 0.1, 1.2)];
+    assert!(
+        (low - expected[0]).norm() < 1e-9 && (high - expected[1]).norm() < 1e-9,
+        "{low} {high}"
+    );
 }
 
 fn names(checked: &Checked) -> Vec<[&str; 2]> {

@@ -257,6 +257,77 @@ fn what_the_camera_did_not_see_read_free() {
     assert_eq!(before.unseen.expect("an image").share(), 0.0);
 }
 
+/// The base of the robot was wrong: nothing of the image lies on it, and space behind the block counted as seen
+/// for being within it.
+#[test]
+fn a_robot_that_no_return_came_from_made_space_known() {
+    let pose = at(-0.65, 0.0, 1.7);
+    let with = |link: TriangleMesh, cloud_from_link| {
+        let robot = vec![SelfMesh { mesh: Arc::new(mesh(&link)), cloud_from_link, padding: 0.0 }];
+        let filter = FilterSettings { robot, ..FilterSettings::for_sensor(&SensorModel::Kinect) };
+        let settings = CloudSettings { filter, ..CloudSettings::new(SensorModel::Kinect) };
+        let cloud = Scan::Calibrated(Cloud::prepare(&image(), &settings).expect("a good image"));
+        ask(Mode::Calibrated, &cloud, &mesh(&scene::sphere(0.06, 2)), &pose)
+    };
+    let behind = with(scene::sphere(0.1, 2), pose);
+    assert_eq!(behind.undecided_by, Some(Undecided::Unseen), "{behind:?}");
+    assert!(behind.warnings.iter().any(|w| matches!(w, Warning::NoRobot { .. })), "{behind:?}");
+    // One that the image shows, and that reaches behind what it shows.
+    let shown = with(scene::cuboid([0.3, 0.3, 1.5]), pose);
+    assert_eq!(shown.unseen.expect("an image").share(), 0.0, "{shown:?}");
+}
+
+/// The table was left out as too far away, and nothing was in the way any more.
+#[test]
+fn what_lies_beyond_the_range_kept_read_free() {
+    let filter = FilterSettings { max_range: 0.25, ..FilterSettings::default() };
+    let kept = |mode| match mode {
+        Mode::Calibrated => {
+            let settings = CloudSettings { filter: filter.clone(), ..CloudSettings::new(NOISE) };
+            Scan::Calibrated(Cloud::prepare(&table(), &settings).expect("points are left"))
+        }
+        Mode::Paper => {
+            let settings =
+                PaperCloudSettings { filter: filter.clone(), ..PaperCloudSettings::amended(NOISE) };
+            Scan::Paper(PaperCloud::prepare(&table(), &settings).expect("points are left"))
+        }
+    };
+    let told = |w: &Warning| matches!(w, Warning::Unseen { share, .. } if *share > 0.9);
+    check(kept, &mesh(&tool()), &at(0.4, 0.2, 0.0), Undecided::Unseen, told);
+    let unseen = |pose| {
+        let small = mesh(&scene::sphere(0.02, 2));
+        ask(Mode::Calibrated, &kept(Mode::Calibrated), &small, &pose).unseen.expect("a range")
+    };
+    assert!(unseen(at(0.4, 0.2, 0.1)).out_of_range > 0.9);
+    assert_eq!(unseen(at(0.1, 0.1, 0.1)).share(), 0.0);
+}
+
+/// In the coordinates of a map half of the points fell on others, and the rest was up to 25 cm off.
+#[test]
+fn coordinates_of_a_map_in_single_precision_read_free() {
+    let map = Vector3::new(512_345.0, 5_403_210.0, 300.0);
+    let single = |p: &Point3| p.map(|x| f64::from(x as f32));
+    let in_map = |p: &Point3| p + map;
+    let moved = |of: &dyn Fn(&Point3) -> Point3| {
+        PointCloud::from_points(table().points.iter().map(of).collect())
+    };
+    let rounded = moved(&|p| single(&in_map(p)));
+    let pose = Pose::from_translation(map + Vector3::new(0.1, 0.2, 0.3));
+    let told = |w: &Warning| matches!(w, Warning::Rounded { step_m, .. } if *step_m == 0.5);
+    check(|mode| scan(&rounded, mode), &mesh(&tool()), &pose, Undecided::Rounded, told);
+    let as_measured = scan(&moved(&in_map), Mode::Calibrated);
+    let free = ask(Mode::Calibrated, &as_measured, &mesh(&tool()), &pose);
+    assert_eq!((free.verdict, free.warnings.len()), (Verdict::Free, 0), "{free:?}");
+    // A mesh too, unless so little does not matter for its size.
+    let in_file = |mesh: &TriangleMesh| {
+        let vertices = mesh.vertices().iter().map(|p| single(&in_map(p))).collect();
+        Mesh::prepare(&TriangleMesh::try_new(vertices, mesh.triangles().to_vec()).unwrap()).unwrap()
+    };
+    let ball = in_file(&scene::sphere(2.0, 3));
+    let report = ask(Mode::Calibrated, &as_measured, &ball, &at(0.0, 0.0, 5.0));
+    assert_eq!(report.undecided_by, Some(Undecided::Rounded), "{report:?}");
+}
+
 /// Whatever frame the points are in: the camera is where the file says, its turn is seen from them.
 #[test]
 fn a_turned_image_sees_the_same() {

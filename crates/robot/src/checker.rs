@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use cloudtouch::geom::Pose;
+use cloudtouch::geom::{Point3, Pose};
 use cloudtouch::{Body, Checked, Query, Scene, SceneError};
 
 use crate::carried::Carried;
@@ -111,6 +111,20 @@ impl RobotChecker {
         joints: &BTreeMap<String, f64>,
     ) -> Result<Checked, JointsError> {
         Ok(self.placed(&self.robot.tree.positions(joints)?)?.check(query))
+    }
+
+    /// Lowest and highest corner of the surroundings, of each link and of what is held, along the axes of the frame
+    /// of the surroundings, m, by their names, never too small. For people to see whether the base is where they
+    /// meant.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
+    pub fn boxes(
+        &self,
+        joints: &BTreeMap<String, f64>,
+    ) -> Result<BTreeMap<String, [Point3; 2]>, JointsError> {
+        let scene = self.placed(&self.robot.tree.positions(joints)?)?;
+        Ok(scene.boxes().into_iter().map(|(name, corners)| (name.to_owned(), corners)).collect())
     }
 
     /// The scene with the joints at these positions.

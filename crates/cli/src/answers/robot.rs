@@ -1,17 +1,17 @@
 //! Which link of a robot touches what, for programs and for people.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use cloudtouch::{Checked, PairAnswer, Verdict};
-use cloudtouch_robot::PathChecked;
+use cloudtouch::geom::Point3;
+use cloudtouch::{Checked, PairAnswer, Verdict, Warning};
+use cloudtouch_robot::{PathChecked, SURROUNDINGS};
 use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::answers::print::{one_line, probability};
-use crate::answers::scene::{self, Pair};
-use crate::load::Input;
+use crate::answers::scene::{self, Bodies, Pair};
+use crate::answers::text::{between, labelled};
 use crate::remedies;
 
 #[derive(Serialize)]
@@ -46,9 +46,6 @@ pub(crate) struct Asked<'a> {
     pub may_touch: &'a [String],
     /// Whether the robot was removed from the scan.
     pub self_filter: bool,
-    /// How many points of the scan were removed as the robot's: among the stages of the scan in JSON.
-    #[serde(skip)]
-    pub self_filter_removed: usize,
     /// Whether links were asked about one another.
     pub self_collision: bool,
 }
@@ -67,8 +64,6 @@ impl Asked<'_> {
         add("may touch the scan", self.may_touch, "");
         if !self.self_filter {
             text += "self filter            none: give --scan-joints if the scan shows the robot\n";
-        } else if self.self_filter_removed == 0 {
-            text += "self filter            removed nothing: are the joints and the base those of the scan?\n";
         }
         if !self.self_collision {
             text += "self collision         not asked: give --self-collision\n";
@@ -80,11 +75,11 @@ impl Asked<'_> {
 pub(crate) fn json_line(
     checked: &Checked,
     threshold: f64,
-    bodies: BTreeMap<&str, &Input>,
+    bodies: Bodies<'_>,
     asked: Asked<'_>,
 ) -> Result<String> {
     let scene = scene::line(checked, threshold, bodies);
-    scene::told(&Position { scene, asked }, &checked.pairs)
+    scene::told(&Position { scene, asked }, &checked.pairs, &checked.warnings)
 }
 
 #[derive(Serialize)]
@@ -117,11 +112,11 @@ impl<'a> From<&'a cloudtouch_robot::Stopped> for Stopped<'a> {
 pub(crate) fn path_line(
     checked: &PathChecked,
     threshold: f64,
-    bodies: BTreeMap<&str, &Input>,
+    bodies: Vec<Bodies<'_>>,
     asked: Asked<'_>,
 ) -> Result<String> {
-    let given = checked.given.iter().map(|at| {
-        let line = scene::json_line(at, threshold, bodies.clone())?;
+    let given = checked.given.iter().zip(bodies).map(|(at, bodies)| {
+        let line = scene::json_line(at, threshold, bodies)?;
         Ok(RawValue::from_string(line)?)
     });
     let line = Line {
@@ -136,12 +131,25 @@ pub(crate) fn path_line(
     };
     // Those of the positions have theirs.
     let others = [&checked.stopped, &checked.later].into_iter().flatten();
-    scene::told(&line, others.filter_map(|at| at.pair.as_ref()))
+    scene::told(&line, others.filter_map(|at| at.pair.as_ref()), &[])
 }
 
 /// The worst pair in a few lines, above the table of all.
 pub(crate) fn worst(checked: &Checked) -> String {
-    checked.pairs.first().map_or(String::new(), |pair| described("worst pair", pair))
+    let told = |pair| described("worst pair", pair, Some(checked));
+    checked.pairs.first().map_or(String::new(), told)
+}
+
+/// Where the robot is beside what was scanned.
+pub(crate) fn place(Bodies { boxes, .. }: &Bodies<'_>) -> String {
+    let corners = |of: &[Point3; 2]| of.map(|corner| corner.coords.into());
+    let links = boxes.iter().filter(|(name, _)| **name != SURROUNDINGS);
+    let all = links.map(|(_, corners)| *corners).reduce(|[low, high], [other_low, other_high]| {
+        [low.inf(&other_low), high.sup(&other_high)]
+    });
+    let (Some(robot), Some(scan)) = (all, boxes.get(SURROUNDINGS)) else { return String::new() };
+    let (robot, scan) = (between(corners(&robot)), between(corners(scan)));
+    labelled("where", &format!("robot in {robot}, scan in {scan}")) + "\n"
 }
 
 pub(crate) fn path_text(checked: &PathChecked) -> String {
@@ -152,7 +160,7 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
     if let Some(at) = &checked.stopped {
         let _ = writeln!(text, "then                   segment {}, t = {:.3}", at.segment, at.t);
         if let Some(pair) = &at.pair {
-            text += &described("worst pair there", pair);
+            text += &described("worst pair there", pair, checked.given.first());
         } else if let Some(near) = &at.nearest {
             let (a, b) = (one_line(&near.a), one_line(&near.b));
             let at_most = probability(near.at_most);
@@ -164,10 +172,11 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
     }
     if let Some(at) = &checked.later {
         let _ = writeln!(text, "later                  segment {}, t = {:.3}", at.segment, at.t);
-        text += &at.pair.as_ref().map_or(String::new(), |pair| described("worst pair there", pair));
+        let told = |pair| described("worst pair there", pair, checked.given.first());
+        text += &at.pair.as_ref().map_or(String::new(), told);
     }
     let far = checked.given.iter().find(|at| !at.outside.is_empty());
-    text += &far.map(scene::outside).unwrap_or_default();
+    text += &far.or(checked.given.first()).map(scene::doubts).unwrap_or_default();
     for (index, at) in checked.given.iter().enumerate() {
         let pairs =
             at.pairs.iter().map(|pair| format!("{} / {}", one_line(&pair.a), one_line(&pair.b)));
@@ -179,7 +188,8 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
     text
 }
 
-fn described(label: &str, pair: &PairAnswer) -> String {
+/// A pair, without what is told of its bodies by themselves.
+fn described(label: &str, pair: &PairAnswer, told: Option<&Checked>) -> String {
     let mut text =
         format!("{label:<22} {} / {}: {}\n", one_line(&pair.a), one_line(&pair.b), pair.verdict());
     let Ok(report) = &pair.answer else { return text };
@@ -190,8 +200,12 @@ fn described(label: &str, pair: &PairAnswer) -> String {
         let p = contact.point;
         let _ = writeln!(text, "contact                {:.3} {:.3} {:.3} m", p.x, p.y, p.z);
     }
-    for warning in &report.warnings {
-        let _ = writeln!(text, "warning                {}", remedies::warning(warning));
+    let known = |warning: &Warning| {
+        told.is_some_and(|told| told.warnings.iter().any(|of| of.warning == *warning))
+    };
+    for warning in report.warnings.iter().filter(|warning| !known(warning)) {
+        text += &labelled("warning", &remedies::warning(warning));
+        text += "\n";
     }
     text
 }

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use anyhow::Result;
-use cloudtouch::{Checked, Outside, PairAnswer, Report, Verdict};
+use cloudtouch::geom::Point3;
+use cloudtouch::{BodyWarning, Checked, Outside, PairAnswer, Report, Verdict};
 use serde::Serialize;
 
 use crate::answers::print::{self, one_line, probability};
-use crate::answers::text::labelled;
+use crate::answers::text::{between, labelled};
 use crate::load::Input;
 use crate::remedies;
 
@@ -23,6 +24,8 @@ pub(crate) struct Line<'a> {
     pairs: Vec<Pair<'a>>,
     counts: Counts,
     outside: &'a [Outside],
+    warnings: &'a [BodyWarning],
+    boxes: BTreeMap<&'a str, [Point3; 2]>,
     bodies: BTreeMap<&'a str, &'a Input>,
 }
 
@@ -54,29 +57,30 @@ impl<'a> From<&'a PairAnswer> for Pair<'a> {
     }
 }
 
-pub(crate) fn json_line(
-    checked: &Checked,
-    threshold: f64,
-    bodies: BTreeMap<&str, &Input>,
-) -> Result<String> {
-    told(&line(checked, threshold, bodies), &checked.pairs)
+/// The bodies of a scene: what each was read from, and the box around it in the frame of the scene.
+#[derive(Debug, Clone)]
+pub(crate) struct Bodies<'a> {
+    pub inputs: BTreeMap<&'a str, &'a Input>,
+    pub boxes: BTreeMap<&'a str, [Point3; 2]>,
 }
 
-/// A line of JSON, whose warnings are those of these pairs, with the options that mend them.
+pub(crate) fn json_line(checked: &Checked, threshold: f64, bodies: Bodies<'_>) -> Result<String> {
+    told(&line(checked, threshold, bodies), &checked.pairs, &checked.warnings)
+}
+
+/// A line of JSON, whose warnings are those of these pairs and bodies, with the options that mend them.
 pub(crate) fn told<'a>(
     line: &impl Serialize,
     pairs: impl IntoIterator<Item = &'a PairAnswer>,
+    of_bodies: &'a [BodyWarning],
 ) -> Result<String> {
     let reports = pairs.into_iter().filter_map(|pair| pair.answer.as_ref().ok());
     let warnings = reports.flat_map(|report| &report.warnings);
+    let warnings = warnings.chain(of_bodies.iter().map(|of| &of.warning));
     Ok(remedies::in_json(serde_json::to_string(line)?, warnings))
 }
 
-pub(crate) fn line<'a>(
-    checked: &'a Checked,
-    threshold: f64,
-    bodies: BTreeMap<&'a str, &'a Input>,
-) -> Line<'a> {
+pub(crate) fn line<'a>(checked: &'a Checked, threshold: f64, bodies: Bodies<'a>) -> Line<'a> {
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
     Line {
         verdict: checked.verdict(),
@@ -84,14 +88,16 @@ pub(crate) fn line<'a>(
         pairs: checked.pairs.iter().map(Pair::from).collect(),
         counts: Counts { pairs: count, allowed, ruled_out, asked },
         outside: &checked.outside,
-        bodies,
+        warnings: &checked.warnings,
+        boxes: bodies.boxes,
+        bodies: bodies.inputs,
     }
 }
 
 /// The same as a table.
 pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
-    let mut text = outside(checked);
+    let mut text = doubts(checked);
     if !checked.pairs.is_empty() {
         let names: Vec<String> = checked.pairs.iter().map(names).collect();
         let width = names.iter().map(|name| name.chars().count()).fold(4, usize::max);
@@ -115,11 +121,21 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
     text
 }
 
-/// A line for each body far from all others: that is free for certain, and seldom meant.
-pub(crate) fn outside(checked: &Checked) -> String {
-    let told = checked.outside.iter().take(OUTSIDE_TOLD);
-    let mut text: String =
-        told.map(|outside| labelled("warning", &one_line(&outside.to_string())) + "\n").collect();
+/// Where a body lies in the frame of the scene.
+pub(crate) fn place(corners: &[Point3; 2]) -> String {
+    format!("in {}", between(corners.map(|corner| corner.coords.into())))
+}
+
+/// A line for each body that something is to be said of by itself, and for each far from all others: that is
+/// free for certain, and seldom meant.
+pub(crate) fn doubts(checked: &Checked) -> String {
+    let warned = |BodyWarning { name, warning }: &BodyWarning| {
+        format!("{}: {}", one_line(name), remedies::warning(warning))
+    };
+    let far = checked.outside.iter().take(OUTSIDE_TOLD);
+    let far = far.map(|outside| one_line(&outside.to_string()));
+    let all = checked.warnings.iter().map(warned).chain(far);
+    let mut text: String = all.map(|words| labelled("warning", &words) + "\n").collect();
     if let Some(more) = checked.outside.len().checked_sub(OUTSIDE_TOLD).filter(|more| *more > 0) {
         text += &labelled("", &format!("{more} more bodies are as far from the rest"));
         text += "\n";

@@ -141,10 +141,8 @@ pub(crate) fn labelled(label: &str, words: &str) -> String {
     text
 }
 
-fn place(placement: &Placement) -> String {
-    let corner = |p: [f64; 3]| format!("({:.3}, {:.3}, {:.3})", p[0], p[1], p[2]);
-    let [low, high] = placement.object_box.map(corner);
-    let [scene_low, scene_high] = placement.scene_box.map(corner);
+pub(crate) fn place(placement: &Placement) -> String {
+    let (object, scene) = (between(placement.object_box), between(placement.scene_box));
     let gap = if placement.box_gap_m > 0.0 {
         format!(", {:.3} m outside of it", placement.box_gap_m)
     } else {
@@ -153,10 +151,13 @@ fn place(placement: &Placement) -> String {
     let nearest = placement.nearest_m.map_or(String::new(), |nearest| {
         format!("; nearest point about {:.1} mm away", 1e3 * nearest)
     });
-    let words = format!(
-        "object in {low} to {high} m, scene in {scene_low} to {scene_high} m{gap}{nearest}"
-    );
-    labelled("where", &words) + "\n"
+    labelled("where", &format!("object in {object}, scene in {scene}{gap}{nearest}")) + "\n"
+}
+
+/// A box by its lowest and highest corner, m.
+pub(crate) fn between(corners: [[f64; 3]; 2]) -> String {
+    let [low, high] = corners.map(|p| format!("({:.3}, {:.3}, {:.3})", p[0], p[1], p[2]));
+    format!("{low} to {high} m")
 }
 
 fn work(stats: &Stats) -> String {

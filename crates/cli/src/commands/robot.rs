@@ -11,6 +11,7 @@ use cloudtouch_robot::{Robot, RobotChecker, SURROUNDINGS, Touching};
 
 use crate::answers::print;
 use crate::answers::robot::Asked;
+use crate::answers::scene::Bodies;
 use crate::args::RobotArguments;
 use crate::body::{Body, PreparedCloud as _};
 use crate::load::{self, Role};
@@ -45,18 +46,10 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     unused::check(options, &[(Role::Scene, scan.is_mesh())])?;
     let scan = scan.refined_for(path.len(), common.effort.refine())?;
     let unchecked = robot.unchecked_links().to_vec();
-    let removed = match &scan.body {
-        Body::Cloud(cloud) => {
-            let of_robot = cloud.stages().iter().filter(|stage| stage.stage == "robot");
-            of_robot.map(|stage| stage.removed).sum()
-        }
-        Body::Mesh(_) => 0,
-    };
     let asked = Asked {
         unchecked_links: &unchecked,
         may_touch: &arguments.robot.may_touch,
         self_filter: arguments.robot.scan_joints.is_some(),
-        self_filter_removed: removed,
         self_collision: arguments.robot.self_collision,
     };
     let words = format!("{}\n{}", print::body("scan", &scan), asked.text());
@@ -71,11 +64,17 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         checker.allow(link, SURROUNDINGS).with_context(|| "--may-touch")?;
     }
     let threshold = query.settings().reject;
-    let bodies = BTreeMap::from([(SURROUNDINGS, &scan.input)]);
-    let (text, verdict, failed) = if let [joints] = &path[..] {
+    let bodies = path.iter().map(|joints| checker.boxes(joints)).collect::<Result<Vec<_>, _>>()?;
+    let bodies = bodies.iter().map(|boxes| Bodies {
+        inputs: BTreeMap::from([(SURROUNDINGS, &scan.input)]),
+        boxes: boxes.iter().map(|(name, corners)| (name.as_str(), *corners)).collect(),
+    });
+    let bodies: Vec<Bodies<'_>> = bodies.collect();
+    let words = words + &bodies.first().map_or(String::new(), answers::robot::place);
+    let (text, verdict, failed) = if let ([joints], [bodies]) = (&path[..], &bodies[..]) {
         let checked = checker.check(&query, joints)?;
         let text = if arguments.answer.json {
-            answers::robot::json_line(&checked, threshold, bodies, asked)?
+            answers::robot::json_line(&checked, threshold, bodies.clone(), asked)?
         } else {
             [words, answers::robot::worst(&checked), answers::scene::text(&checked, threshold)]
                 .concat()

@@ -13,6 +13,7 @@ use cloudtouch_io::LengthUnit;
 use rayon::prelude::*;
 
 use crate::answers::print;
+use crate::answers::scene::{Bodies, place};
 use crate::args::{CommonArguments, SceneArguments};
 use crate::body::Body;
 use crate::load::{self, Input, Loaded, Role};
@@ -50,10 +51,15 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     let threshold = query.settings().reject;
     let text = if arguments.answer.json {
         let inputs = bodies.iter().map(|(name, prepared)| (*name, &prepared.input)).collect();
-        answers::scene::json_line(&checked, threshold, inputs)?
+        let bodies = Bodies { inputs, boxes: scene.boxes() };
+        answers::scene::json_line(&checked, threshold, bodies)?
     } else {
-        let lines =
-            file.bodies.iter().map(|of| format!("{}\n", bodies[of.name.as_str()].words_of(of)));
+        let boxes = scene.boxes();
+        let line = |of: &BodyEntry| {
+            let name = of.name.as_str();
+            format!("{}, {}\n", bodies[name].words_of(of), place(&boxes[name]))
+        };
+        let lines = file.bodies.iter().map(line);
         lines.collect::<String>() + &answers::scene::text(&checked, threshold)
     };
     print::to_stdout(&format!("{text}\n"))?;

@@ -17,11 +17,12 @@ from cloudtouch.page import Page
 from cloudtouch.query import Query
 from cloudtouch.report import Batch, Contact, Evidence, PointProbabilities, Report, Within
 from cloudtouch.robot import Joint, PathChecked, Robot, RobotChecker, Stopped
-from cloudtouch.scene import Checked, Outside, PairAnswer, Scene
+from cloudtouch.scene import BodyWarning, Checked, Outside, PairAnswer, Scene
 
 __all__ = [
     "AlongPath",
     "Batch",
+    "BodyWarning",
     "Change",
     "Checked",
     "Cloud",

@@ -11,6 +11,11 @@ import numpy.typing as npt
 FREE = -1
 
 
+def boxes(told: list[tuple[str, list[list[float]]]]) -> dict[str, npt.NDArray[np.float64]]:
+    """(2, 3) for each name."""
+    return {name: np.array(corners) for name, corners in told}
+
+
 def by_name(value: Any) -> Any:
     """A row of a pandas table as a mapping, for its numbers are in whatever order its columns are."""
     row = value.to_dict() if hasattr(value, "to_dict") else None

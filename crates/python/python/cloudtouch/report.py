@@ -66,8 +66,8 @@ class Report:
     between the thresholds. ``"in_collision"``: above ``accept``. ``"undecided"``: cannot be told; treat it as not
     free."""
     undecided_by: Optional[str]
-    """Why it is undecided: ``"unseen"``, ``"enclosed"``, ``"units"``, ``"sparse"``, ``"noise"``, ``"no_surface"``,
-    ``"missing"``, ``"sensor"``, ``"unsolved"`` or ``"bounds"``; ``None`` for every other verdict."""
+    """Why it is undecided: ``"unseen"``, ``"enclosed"``, ``"units"``, ``"sparse"``, ``"noise"``, ``"rounded"``,
+    ``"no_surface"``, ``"missing"``, ``"sensor"``, ``"unsolved"`` or ``"bounds"``; ``None`` for every other verdict."""
     log_likelihood_ratio: Optional[float]
     """How many times as probable the evidence is in a collision as without one, as a logarithm; ``None`` between
     meshes."""

@@ -274,6 +274,18 @@ class RobotChecker:
         """
         self._checker.release(name)
 
+    def boxes(self, joints: Positions) -> dict[str, Floats]:
+        """Where the surroundings, each link and what is held are, to see whether the base is where you meant.
+
+        (2, 3) for each name: lowest and highest corner along the axes of the surroundings, m, never too small.
+
+        Raises
+        ------
+        ValueError, CloudtouchError
+            As :meth:`check`.
+        """
+        return _arrays.boxes(self._checker.boxes(self._robot._named(joints, "joints")))
+
     def check(self, query: Query, joints: Positions) -> Checked:
         """All pairs that do not read as free, the worst first; the scan is called ``"surroundings"``.
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from cloudtouch import _arrays, _native
 from cloudtouch.bodies import native_body
 from cloudtouch.query import Body, Query
-from cloudtouch.report import Report, Verdict
+from cloudtouch.report import Floats, Report, Verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +52,15 @@ class Outside(NamedTuple):
     """Diagonal of the larger of the two, m."""
 
 
+class BodyWarning(NamedTuple):
+    """What is to be said of a body of a scene by itself."""
+
+    name: str
+    """Its name."""
+    words: str
+    """A sentence, with a remedy; "the scene" in it is this body."""
+
+
 @dataclass(frozen=True, eq=False)
 class Checked:
     """What is found of all pairs of bodies of a scene."""
@@ -68,6 +77,8 @@ class Checked:
     """Pairs that were asked about."""
     outside: tuple[Outside, ...]
     """Bodies farther from the rest than either is large: free, but perhaps by a pose in another unit."""
+    warnings: tuple[BodyWarning, ...]
+    """What is to be said of bodies by themselves, whatever the verdict, such as a scan that does not show its robot."""
 
     @property
     def verdict(self) -> Verdict:
@@ -80,10 +91,12 @@ class Checked:
         pairs: list[tuple[str, str, dict[str, Any] | None, str | None]],
         counts: list[int],
         outside: list[tuple[str, float, float]],
+        warnings: list[tuple[str, str]],
     ) -> Checked:
         count, allowed, ruled_out, asked = counts
         far = tuple(Outside(*of) for of in outside)
-        return cls(tuple(map(PairAnswer._of, pairs)), count, allowed, ruled_out, asked, far)
+        told = tuple(BodyWarning(*of) for of in warnings)
+        return cls(tuple(map(PairAnswer._of, pairs)), count, allowed, ruled_out, asked, far, told)
 
 
 class Scene:
@@ -132,6 +145,14 @@ class Scene:
     def names(self) -> list[str]:
         """Of all bodies, in order."""
         return self._scene.names()
+
+    def boxes(self) -> dict[str, Floats]:
+        """Where bodies are, to see whether the poses are those you meant.
+
+        (2, 3) for each name: lowest and highest corner along the axes of the scene, m, of its own box turned by the
+        pose, and so never too small.
+        """
+        return _arrays.boxes(self._scene.boxes())
 
     def check(self, query: Query) -> Checked:
         """All pairs that do not read as free, the worst first, on all cores."""

@@ -247,10 +247,6 @@ impl Prepared {
         self.scans.origins.drain(..oldest(self.scans.origins.len()));
         self.scans.stages = stages;
     }
-
-    pub(crate) fn views(&self) -> &[SingleView] {
-        &self.views
-    }
 }
 
 /// Corners of the box around the points of scans, in the file's frame.
@@ -271,7 +267,8 @@ pub(super) fn makeup_of(
     let (low, high) = corners_of(all)?;
     let corners = [low - origin, high - origin];
     let doubts = all.sensor_doubts.clone();
-    let makeup = Makeup::new(corners, (points, &all.noise, sample), all.missing, doubts);
+    let makeup =
+        Makeup::new(corners, (points, &all.noise, sample), (all.missing, all.step), doubts);
     if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
         return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
     }

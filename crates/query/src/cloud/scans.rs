@@ -5,12 +5,14 @@ use cloudtouch_geom::{Covariance, Point3, PointCloud, UnitVector3};
 use cloudtouch_noise::{Combination, MotionNoise, Places, SensorNoise};
 
 use crate::check::coordinates::check_points;
+use crate::check::rounded::single_step;
 use crate::error::PrepareError;
 use crate::filter::{StageReport, beyond_noise, filter_and_tell};
 
 use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
 use super::preparation::Preparation;
 use super::view::Image;
+use super::view::range::{self, Range};
 
 /// Scans in one frame.
 #[derive(Debug, Clone)]
@@ -29,10 +31,14 @@ pub(super) struct Scans {
     pub origins: Vec<Point3>,
     /// The largest share of rows without return of a scan whose layout does not tell where.
     pub missing: f64,
+    /// How far apart coordinates are, m, of a scan where that is more than its noise.
+    pub step: Option<f64>,
     /// Signs that a sensor did not see its scan.
     pub sensor_doubts: Vec<SensorDoubt>,
     /// Scans that are depth images and were not looked through yet.
     pub images: Vec<Image>,
+    /// How far the others tell.
+    pub ranges: Vec<Range>,
 }
 
 impl Scans {
@@ -46,8 +52,10 @@ impl Scans {
             stages: Vec::new(),
             origins: Vec::new(),
             missing: 0.0,
+            step: None,
             sensor_doubts: Vec::new(),
             images: Vec::new(),
+            ranges: Vec::new(),
         };
         let mut normals = Some(Vec::new());
         let mut noise = Vec::new();
@@ -64,7 +72,9 @@ impl Scans {
             let first_row = all.row_count;
             let row = |i: usize| first_row + filtered.rows.get(i).copied().unwrap_or(i);
             check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
-            noise.push(moved(by.sensor.covariances(&kept)?, &by.motion, &kept.points));
+            let of_scan = moved(by.sensor.covariances(&kept)?, &by.motion, &kept.points);
+            all.step = most(all.step, step(&kept.points, &of_scan));
+            noise.push(of_scan);
             match (&kept.normals, by.noise.combination) {
                 (Some(of_scan), Combination::SurfacePosterior) => {
                     let of_scan = checked(of_scan)?;
@@ -81,8 +91,12 @@ impl Scans {
                 let points = all.points.len()..all.points.len() + kept.len();
                 let pixels = pixels_about(scan, &filtered.rows).unwrap_or(kept.len());
                 let (sensor_origin, turn) = (kept.sensor_origin(), *kept.from_sensor().rotation());
-                let robot = by.filter.robot.clone();
+                // A robot that no return came from is elsewhere, and makes nothing known.
+                let robot = if of_robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
                 all.images.push(Image { sensor_origin, turn, points, pixels, robot });
+            } else {
+                let (sensor_origin, most) = (scan.sensor_origin(), by.filter.max_range);
+                range::add(&mut all.ranges, Range { sensor_origin, most });
             }
             all.origins.extend(kept.sensor_pose.map(|pose| Point3::from(pose.translation())));
             have_rows &= !filtered.rows.is_empty();
@@ -112,6 +126,7 @@ impl Scans {
             ..image
         };
         self.images.extend(others.images.into_iter().map(shifted));
+        others.ranges.into_iter().for_each(|other| range::add(&mut self.ranges, other));
         self.noise = joined(&[&self.noise, &noise]);
         self.normals = match (self.normals.take(), normals) {
             (Some(own), Some(others)) => Some(own.into_iter().chain(others).collect()),
@@ -126,6 +141,7 @@ impl Scans {
         self.stages.extend(stages);
         self.origins.extend(origins);
         self.missing = self.missing.max(missing);
+        self.step = most(self.step, others.step);
         // One sign of each kind is enough, the last: a camera delivers frames for hours.
         let kind = std::mem::discriminant::<SensorDoubt>;
         let later = &others.sensor_doubts;
@@ -161,6 +177,7 @@ impl Scans {
             origins: self.origins.clone(),
             sensor_doubts: self.sensor_doubts.clone(),
             images: self.images.clone(),
+            ranges: self.ranges.clone(),
             ..*self
         }
     }
@@ -197,6 +214,17 @@ fn padded(of_robot: &PointCloud, by: Preparation<'_>) -> Result<Option<SensorDou
     let points = of_robot.points.iter().zip(noise.iter().map(Covariance::max_std_at_most));
     let share = beyond_noise(points, &by.filter.robot);
     Ok((share > MOST).then_some(SensorDoubt::Padding { share }))
+}
+
+fn most(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    one.into_iter().chain(other).max_by(f64::total_cmp)
+}
+
+/// How far apart coordinates kept in single precision are, m, where that is more than any noise.
+fn step(points: &[Point3], noise: &SensorNoise) -> Option<f64> {
+    let step = single_step(points)?;
+    let most = noise.iter().map(Covariance::max_std_at_most).fold(0.0, f64::max);
+    (step > most).then_some(step)
 }
 
 /// Pixels of the part of an image that these of its rows, in order, are in, with and without return.

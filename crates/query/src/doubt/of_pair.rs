@@ -31,6 +31,8 @@ const EXCHANGED_MESHES_RATIO: f64 = 20.0;
 /// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
 /// a twenty-fifth of that size off.
 const FARTHEST_SIZES: f64 = 40.0;
+/// Coordinates of a mesh are not this part of either body apart.
+const COARSE: f64 = 0.02;
 /// Noise beyond this part of the other body had better be there: its fingers are a tenth of it.
 const LARGE_NOISE: f64 = 0.05;
 
@@ -43,37 +45,17 @@ pub(crate) fn doubts(
     are_alone: bool,
     limits: &Safeguards,
 ) -> Vec<Warning> {
-    let mut warnings = Vec::new();
     let bodies = [(Which::A, a, b), (Which::B, b, a)];
-    let clouds = || {
-        bodies.into_iter().filter_map(|(body, shape, other)| match shape {
-            Shape::Cloud(cloud) => Some((body, cloud, other.size())),
-            Shape::Mesh(_) => None,
-        })
-    };
-    for (body, shape, _) in bodies {
-        if let Shape::Mesh(mesh) = shape
-            && !mesh.has_area()
-        {
-            warnings.push(Warning::NoSurface { body, points: 3 * mesh.triangle_count() });
-        }
-    }
-    for (body, cloud, _) in clouds() {
-        let cloud = cloud.makeup();
-        if cloud.is_line {
-            warnings.push(Warning::NoSurface { body, points: cloud.distinct });
-        }
-        if cloud.missing > limits.max_missing {
-            warnings.push(Warning::Missing { body, share: cloud.missing });
-        }
-    }
+    let mut warnings: Vec<Warning> =
+        bodies.into_iter().flat_map(|(body, shape, _)| of_surface(body, shape, limits)).collect();
+    let smaller = a.size().min(b.size());
+    warnings.extend(bodies.into_iter().filter_map(|(body, shape, _)| coarse(body, shape, smaller)));
     warnings.extend(units((a, b), are_alone));
-    warnings.extend(clouds().filter_map(|(body, cloud, size)| scale(body, cloud, size)));
-    warnings.extend(clouds().filter_map(|(body, cloud, _)| {
-        let Clumps { across, apart } = cloud.makeup().clumps?;
-        Some(Warning::Clumps { body, across_m: across, apart_m: apart })
+    warnings.extend(bodies.into_iter().filter_map(|(body, shape, other)| match shape {
+        Shape::Cloud(cloud) => scale(body, cloud, other.size()),
+        Shape::Mesh(_) => None,
     }));
-    warnings.extend(clouds().flat_map(|(body, cloud, _)| sensors(body, cloud.makeup())));
+    warnings.extend(bodies.into_iter().flat_map(|(body, shape, _)| of_sensor(body, shape)));
     warnings.extend(exchanged(a, b).filter(|_| are_alone));
     warnings.extend(apart((a, b), a_from_b));
     let share = unseen.map_or(0.0, Unseen::share);
@@ -81,6 +63,50 @@ pub(crate) fn doubts(
         warnings.push(Warning::Unseen { body: *body, share, limit: limits.max_unseen });
     }
     warnings
+}
+
+/// A mesh whose corners are farther apart than they should be, beside a body of such a size, m.
+fn coarse(body: Which, shape: Shape<'_>, smaller: f64) -> Option<Warning> {
+    let Shape::Mesh(mesh) = shape else { return None };
+    let step_m = mesh.rounded_to().filter(|step| *step > COARSE * smaller)?;
+    Some(Warning::Rounded { body, step_m })
+}
+
+/// What is to be said of a body by itself, whatever it is asked with; `body` is what it may be among others.
+pub(crate) fn of_body(body: Which, shape: Shape<'_>, limits: &Safeguards) -> Vec<Warning> {
+    of_surface(body, shape, limits).chain(of_sensor(body, shape)).collect()
+}
+
+/// Whether its points or triangles span a surface, are all there, and where they were measured.
+fn of_surface(body: Which, shape: Shape<'_>, limits: &Safeguards) -> impl Iterator<Item = Warning> {
+    let (points, missing, step) = match shape {
+        Shape::Mesh(mesh) => ((!mesh.has_area()).then(|| 3 * mesh.triangle_count()), 0.0, None),
+        Shape::Cloud(cloud) => {
+            let Makeup { is_line, distinct, missing, step, .. } = *cloud.makeup();
+            (is_line.then_some(distinct), missing, step)
+        }
+    };
+    let none = points.map(|points| Warning::NoSurface { body, points });
+    let missed =
+        (missing > limits.max_missing).then_some(Warning::Missing { body, share: missing });
+    let rounded = step.map(|step_m| Warning::Rounded { body, step_m });
+    none.into_iter().chain(missed).chain(rounded)
+}
+
+/// How its points lie, and whether its sensor can have seen them; nothing of a mesh.
+fn of_sensor(body: Which, shape: Shape<'_>) -> impl Iterator<Item = Warning> {
+    let cloud = match shape {
+        Shape::Cloud(cloud) => Some(cloud.makeup()),
+        Shape::Mesh(_) => None,
+    };
+    cloud.into_iter().flat_map(move |cloud| {
+        let clumps = cloud.clumps.map(|Clumps { across, apart }| Warning::Clumps {
+            body,
+            across_m: across,
+            apart_m: apart,
+        });
+        clumps.into_iter().chain(sensors(body, cloud))
+    })
 }
 
 fn units((a, b): (Shape<'_>, Shape<'_>), are_alone: bool) -> Option<Warning> {

@@ -22,6 +22,9 @@ pub enum Undecided {
     /// The noise stated for a cloud is larger than the other body, or far larger than its points have and
     /// not small beside the other body.
     Noise,
+    /// Coordinates were kept in single precision far from the origin of their frame: finer than that nothing is
+    /// known.
+    Rounded,
     /// The points of a cloud span no surface: they are on a line, or are one.
     NoSurface,
     /// Too many rows of a cloud without image layout have no return, or were taken for the robot itself: what
@@ -44,6 +47,7 @@ impl Undecided {
             Self::Units => "units",
             Self::Sparse => "sparse",
             Self::Noise => "noise",
+            Self::Rounded => "rounded",
             Self::NoSurface => "no_surface",
             Self::Missing => "missing",
             Self::Sensor => "sensor",
@@ -57,7 +61,7 @@ impl Undecided {
 impl fmt::Display for Undecided {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Unseen => "the camera saw too little of where the object is",
+            Self::Unseen => "the sensor saw too little of where the object is",
             Self::Enclosed => {
                 "one surface is all around the other: hollow or solid? Say where the sensor stood, or \
                  close the mesh"
@@ -65,6 +69,7 @@ impl fmt::Display for Undecided {
             Self::Units => "sizes or distance are implausible",
             Self::Sparse => "a body fits between points of the other, or between clumps of them",
             Self::Noise => "the noise is larger than a body, or than points scatter",
+            Self::Rounded => "coordinates are known too coarsely",
             Self::NoSurface => "a cloud spans no surface",
             Self::Missing => "too many rows have no return, or were taken for the robot",
             Self::Sensor => "the sensor cannot have seen this cloud",

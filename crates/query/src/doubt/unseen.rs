@@ -1,7 +1,7 @@
 //! Space that was never seen: an object where a single depth image saw nothing may be inside
 //! something, and no search of what was measured can tell.
 
-use cloudtouch_geom::{Point3, Pose, Vector3};
+use cloudtouch_geom::{Pose, Vector3};
 use serde::Serialize;
 
 use crate::cloud::{Prepared, Sight};
@@ -20,6 +20,9 @@ pub struct Unseen {
     pub outside_view: f64,
     /// Where no return came from.
     pub hole: f64,
+    /// Farther than returns were kept ([`FilterSettings::max_range`](crate::FilterSettings::max_range)); of a
+    /// depth image that is a hole.
+    pub out_of_range: f64,
     /// Behind a surface that it met.
     pub behind_returns: f64,
 }
@@ -27,7 +30,7 @@ pub struct Unseen {
 impl Unseen {
     /// The share that was not seen, for whatever reason.
     pub fn share(&self) -> f64 {
-        self.behind_camera + self.outside_view + self.hole + self.behind_returns
+        self.behind_camera + self.outside_view + self.hole + self.out_of_range + self.behind_returns
     }
 }
 
@@ -78,17 +81,21 @@ fn unseen_around(
 ) -> Option<Unseen> {
     let of_b = || look(image(a)?, (b, Which::B), a_from_b, step, around);
     let of_a = || look(image(b)?, (a, Which::A), &a_from_b.inverse(), step, around);
-    if is_image(a) && is_image(b) && a.size() < b.size() { of_a() } else { of_b().or_else(of_a) }
+    if knows_unseen(a) && knows_unseen(b) && a.size() < b.size() {
+        of_a()
+    } else {
+        of_b().or_else(of_a)
+    }
 }
 
-/// Whether a body is a depth image, which knows what it did not see.
-pub(crate) fn is_image(body: Shape<'_>) -> bool {
+/// Whether a body knows what it did not see, as a depth image does.
+pub(crate) fn knows_unseen(body: Shape<'_>) -> bool {
     image(body).is_some()
 }
 
 fn image(body: Shape<'_>) -> Option<&Prepared> {
     match body {
-        Shape::Cloud(cloud) if !cloud.views().is_empty() => Some(cloud),
+        Shape::Cloud(cloud) if cloud.knows_unseen() => Some(cloud),
         _ => None,
     }
 }
@@ -101,26 +108,21 @@ fn look(
     step: usize,
     around: &[Vector3],
 ) -> Option<Unseen> {
-    let measured = (image.points(), image.sensor());
-    let sights: Vec<_> = image.views().iter().filter_map(|view| view.sight(measured)).collect();
-    if sights.is_empty() {
-        return None;
-    }
+    let sight = image.sight()?;
     let samples: Vec<_> = other.samples().into_iter().step_by(step).collect();
-    let mut counts = [0_usize; 4];
+    let mut counts = [0_usize; 5];
     for sample in &samples {
         let place = image_from_other.transform_point(sample);
-        // Of several images, the one that knows most of a place tells.
-        let most = |place: Point3| sights.iter().map(|sight| sight(&place)).min();
-        match around.iter().filter_map(|offset| most(place + offset)).max() {
+        match around.iter().map(|offset| sight(&(place + offset))).max() {
             None | Some(Sight::Seen) => {}
             Some(Sight::BehindCamera) => counts[0] += 1,
             Some(Sight::OutsideView) => counts[1] += 1,
             Some(Sight::Hole) => counts[2] += 1,
             Some(Sight::BehindReturns) => counts[3] += 1,
+            Some(Sight::OutOfRange) => counts[4] += 1,
         }
     }
-    let [behind_camera, outside_view, hole, behind_returns] =
+    let [behind_camera, outside_view, hole, behind_returns, out_of_range] =
         counts.map(|count| count as f64 / samples.len().max(1) as f64);
-    Some(Unseen { body, behind_camera, outside_view, hole, behind_returns })
+    Some(Unseen { body, behind_camera, outside_view, hole, out_of_range, behind_returns })
 }

@@ -9,6 +9,13 @@ use super::prepare::Mesh;
 const STRIDES: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
 impl Mesh {
+    /// How far apart the coordinates of its file are, m, where these are in single precision far from the origin
+    /// and the mesh is no larger than some thousand of these steps: a ground of a few triangles may be.
+    pub(crate) fn rounded_to(&self) -> Option<f64> {
+        const STEPS: f64 = 1e4;
+        self.step.filter(|step| self.size() < STEPS * step)
+    }
+
     /// Whether any triangle is more than a line.
     pub(crate) fn has_area(&self) -> bool {
         let normal = |[a, b, c]: [Point3; 3]| (b - a).cross(&(c - a));

@@ -9,6 +9,7 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::shape::TriMesh;
 
 use crate::check::coordinates::check_points;
+use crate::check::rounded::single_step;
 use crate::error::PrepareError;
 
 use super::cells::Cells;
@@ -43,6 +44,8 @@ pub struct Mesh {
     vertices_of_parts: Vec<Point3>,
     watertight: bool,
     closed: bool,
+    /// How far apart coordinates of the file are, m, where that may matter.
+    pub(super) step: Option<f64>,
     /// On which side places are, once that is needed.
     pub(super) cells: OnceLock<Cells>,
     /// Places that stand for the surface, once they are needed.
@@ -64,6 +67,7 @@ impl Mesh {
         };
         // Before merging, for an error to name the vertex as the file does.
         check_points(mesh.used_vertices())?;
+        let used: Vec<Point3> = mesh.used_vertices().map(|(_, vertex)| *vertex).collect();
         let origin = nalgebra::center(&low, &high).coords;
         let vertices = merged.vertices().iter().map(|p| p - origin).collect();
         let mut merged = TriangleMesh::try_new(vertices, merged.triangles().to_vec())?;
@@ -100,6 +104,7 @@ impl Mesh {
             vertices_of_parts: parts.iter().map(|part| part.vertex).collect(),
             watertight,
             closed,
+            step: single_step(&used),
             cells: OnceLock::new(),
             samples: OnceLock::new(),
             prepare_time,

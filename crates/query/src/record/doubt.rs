@@ -6,7 +6,7 @@ use crate::doubt::enclosed::is_enclosed;
 use crate::doubt::of_pair::doubts;
 use crate::doubt::undecided::Undecided;
 use crate::doubt::unseen::Unseen;
-use crate::doubt::unseen::{is_image, unseen};
+use crate::doubt::unseen::{knows_unseen, unseen};
 use crate::doubt::warning::{Warning, Which};
 use crate::shape::Shape;
 
@@ -71,7 +71,7 @@ impl Terms {
         let warnings = doubts((a, b), &Pose::identity(), None, self.are_alone, &self.safeguards);
         // Pairs that nobody looks at are clear of each other.
         let mut of_a = warnings.iter().filter(is_of_a).filter(|warning| counts(warning, true));
-        is_image(a) || of_a.any(|warning| self.reason(warning).is_some())
+        knows_unseen(a) || of_a.any(|warning| self.reason(warning).is_some())
     }
 
     /// Why a pair with this warning does not read as free; `None` where it may.

@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::doubt::warning::length;
+use crate::doubt::warning::{Warning, length};
 use crate::error::QueryError;
 use crate::report::{Report, Verdict};
 
@@ -38,6 +38,26 @@ pub struct Checked {
     /// Bodies that alone or together are farther from the rest than either is large, by their names: free,
     /// but perhaps by a pose in another unit or the wrong way round.
     pub outside: Vec<Outside>,
+    /// What is to be said of bodies by themselves, whatever the verdict: of how a cloud was measured or
+    /// filtered, in the order of their names.
+    pub warnings: Vec<BodyWarning>,
+}
+
+/// A warning about a body of a scene. Displays as a sentence with a remedy, and serialises as `{"name"}` with
+/// what the [`Warning`] has, whose `scene` is this body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BodyWarning {
+    /// Its name.
+    pub name: String,
+    /// What is to be said.
+    #[serde(flatten)]
+    pub warning: Warning,
+}
+
+impl fmt::Display for BodyWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`: {}", self.name, self.warning)
+    }
 }
 
 /// A body of a scene that is far from the rest. Displays as a sentence with a remedy.

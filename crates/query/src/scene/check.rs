@@ -1,18 +1,20 @@
 //! Which bodies of a scene may touch.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Point3, Pose};
 use rayon::prelude::*;
 
 use crate::body::BodyRef;
+use crate::doubt::of_pair::of_body;
+use crate::doubt::warning::Which;
 use crate::query::Query;
 
-use super::answer::{Checked, Outside, PairAnswer};
+use super::answer::{BodyWarning, Checked, Outside, PairAnswer};
 use super::bodies::Scene;
 use super::broad::BroadPhase;
 use super::near::{Corners, everywhere, meeting};
-use super::stray::{Beside, beside_others};
+use super::stray::{Beside, beside_others, in_scene};
 
 impl Scene {
     /// All pairs of bodies that do not read as free at the thresholds of the query, the worst first, on
@@ -43,11 +45,20 @@ impl Scene {
             Outside { name: name.to_owned(), gap_m, size_m }
         });
         let outside = outside.collect();
-        let mut checked =
-            Checked { count, allowed, ruled_out, asked: asked.len(), pairs: asked, outside };
+        let warnings = warnings(&members, query);
+        let mut checked = Checked {
+            count,
+            allowed,
+            ruled_out,
+            asked: asked.len(),
+            pairs: asked,
+            outside,
+            warnings,
+        };
         checked.pairs.retain(|pair| !pair.is_free());
         checked.pairs.sort_by(PairAnswer::by_gravity);
         checked.outside.sort_by(|p, q| p.name.cmp(&q.name));
+        checked.warnings.sort_by(|p, q| p.name.cmp(&q.name));
         checked
     }
 
@@ -66,6 +77,13 @@ impl Scene {
             candidates.par_iter().filter_map(|pair| Some((urgency(pair)?, pair))).collect();
         open.sort_by(|(p, _), (q, _)| p.total_cmp(q));
         open.into_iter().map(|(_, pair)| pair.ask(query)).find(|pair| !pair.is_free())
+    }
+
+    /// Lowest and highest corner of each body along the axes of the scene, m, by its name: of its own box turned
+    /// by the pose, and so never too small. For people to see whether the poses are those they meant.
+    pub fn boxes(&self) -> BTreeMap<&str, [Point3; 2]> {
+        let boxed = |of: Member<'_>| in_scene(of.body.shape(), &of.pose);
+        self.members().into_iter().map(|member| (member.name, boxed(member))).collect()
     }
 
     /// The bodies, the largest first: of a pair the query takes the larger, A, for the surroundings.
@@ -102,6 +120,19 @@ impl Scene {
             .map(|[a, b]| Candidate::new(a, b))
             .collect()
     }
+}
+
+/// Of the smallest body it is taken for granted, as of an object, that it may have a back.
+fn warnings(members: &[Member<'_>], query: &Query) -> Vec<BodyWarning> {
+    let limits = &query.settings().safeguards;
+    let last = members.len().saturating_sub(1);
+    let of = |(place, member): (usize, &Member<'_>)| {
+        let which = if place == last && place > 0 { Which::B } else { Which::A };
+        let found = of_body(which, member.body.shape(), limits);
+        let name = member.name.to_owned();
+        found.into_iter().map(move |warning| BodyWarning { name: name.clone(), warning })
+    };
+    members.iter().enumerate().flat_map(of).collect()
 }
 
 /// A body of the scene, and where it is.

@@ -9,5 +9,5 @@ mod check;
 mod near;
 mod stray;
 
-pub use answer::{Checked, Outside, PairAnswer};
+pub use answer::{BodyWarning, Checked, Outside, PairAnswer};
 pub use bodies::Scene;

@@ -86,7 +86,8 @@ fn diagonal([low, high]: &Corners) -> f64 {
     (high - low).norm()
 }
 
-fn in_scene(shape: Shape<'_>, pose: &Pose) -> Corners {
+/// The box of a body along the axes of the scene, m; never too small.
+pub(super) fn in_scene(shape: Shape<'_>, pose: &Pose) -> Corners {
     moved(shape.corners(), &pose.after(&Pose::from_translation(shape.origin())))
 }
 

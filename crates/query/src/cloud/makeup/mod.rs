@@ -72,6 +72,8 @@ pub(crate) struct Makeup {
     pub is_line: bool,
     /// Share of the rows without return, of a cloud whose layout does not tell where.
     pub missing: f64,
+    /// How far apart coordinates are, m, where that is more than the noise.
+    pub step: Option<f64>,
     pub sensor_doubts: Vec<SensorDoubt>,
     /// What points scatter by; told when first asked for.
     pub scatter: OnceLock<Option<Flattest>>,
@@ -83,7 +85,7 @@ impl Makeup {
     pub(super) fn new(
         corners: [Point3; 2],
         (kept, noise, sample): (&Neighborhoods, &SensorNoise, &[usize]),
-        missing: f64,
+        (missing, step): (f64, Option<f64>),
         sensor_doubts: Vec<SensorDoubt>,
     ) -> Self {
         let points = kept.points();
@@ -96,6 +98,7 @@ impl Makeup {
             distinct: kept.distinct(),
             is_line: !has_area(points, (corners[1] - corners[0]).norm()) && is_line(points),
             missing,
+            step,
             sensor_doubts,
             scatter: OnceLock::new(),
         }

@@ -1,5 +1,6 @@
 //! A single depth image: what its camera did not look at, or not see, was never seen to be empty.
 
+pub(super) mod range;
 pub(super) mod raster;
 
 use std::ops::Range;
@@ -9,6 +10,7 @@ use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::SensorNoise;
 use nalgebra::UnitQuaternion;
 
+use crate::cloud::prepared::Prepared;
 use crate::cloud::view::raster::{Raster, Sight};
 use crate::filter::SelfMesh;
 
@@ -92,6 +94,29 @@ impl SingleView {
     }
 }
 
+impl Prepared {
+    /// What its scans know of places in the local frame: of depth images the one that knows most tells, and
+    /// without any how far returns were kept. `None` where nothing says what was not seen.
+    pub(crate) fn sight(&self) -> Option<impl Fn(&Point3) -> Sight + '_> {
+        let measured = (self.points(), self.sensor());
+        let images: Vec<_> = self.views.iter().filter_map(|view| view.sight(measured)).collect();
+        let by_range = self.views.is_empty() && self.knows_unseen();
+        (by_range || !images.is_empty()).then(|| {
+            move |place: &Point3| {
+                let by_image = images.iter().map(|sight| sight(place)).min();
+                by_image.unwrap_or_else(|| range::sight(&self.scans.ranges, &(place + self.origin)))
+            }
+        })
+    }
+
+    /// Whether it may know that places were not seen.
+    pub(crate) fn knows_unseen(&self) -> bool {
+        let ranges = &self.scans.ranges;
+        let all_end = !ranges.is_empty() && ranges.iter().all(|range| range.most.is_finite());
+        !self.views.is_empty() || all_end
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::{Covariance, Pose, seed};
@@ -171,7 +196,7 @@ mod tests {
                     Sight::Seen => 0,
                     Sight::BehindCamera => 1,
                     Sight::BehindReturns => 2,
-                    Sight::Hole | Sight::OutsideView => 3,
+                    Sight::Hole | Sight::OutsideView | Sight::OutOfRange => 3,
                 }] += 1;
             }
         }

@@ -30,6 +30,8 @@ pub(crate) enum Sight {
     BehindReturns,
     /// No return came from there.
     Hole,
+    /// Returns from so far were left out.
+    OutOfRange,
     /// The place is beside what it looked at.
     OutsideView,
     /// The place is behind the camera's back.

@@ -102,6 +102,13 @@ pub enum Warning {
         /// Typical standard deviation of its points from planes, m.
         seen_m: f64,
     },
+    /// Coordinates were kept in single precision, far from the origin of their frame.
+    Rounded {
+        /// Whose.
+        body: Which,
+        /// How far apart they are there, m: more than the noise of a cloud.
+        step_m: f64,
+    },
     /// So many points are beside or behind the camera that is said to have seen them.
     SensorPose {
         /// Whose.
@@ -195,6 +202,7 @@ impl Warning {
             | Self::Clumps { body, .. }
             | Self::Noise { body, .. }
             | Self::NoiseOverstated { body, .. }
+            | Self::Rounded { body, .. }
             | Self::SensorPose { body, .. }
             | Self::SensorTurn { body, .. }
             | Self::SensorRange { body, .. }
@@ -217,6 +225,7 @@ impl Warning {
             Self::Units { .. } | Self::FarAway { .. } => Some(Undecided::Units),
             Self::Sparse { .. } | Self::Clumps { .. } => Some(Undecided::Sparse),
             Self::Noise { .. } | Self::NoiseOverstated { .. } => Some(Undecided::Noise),
+            Self::Rounded { .. } => Some(Undecided::Rounded),
             Self::SensorPose { .. } | Self::SensorRange { .. } | Self::ImagePlace { .. } => {
                 Some(Undecided::Sensor)
             }

@@ -61,6 +61,12 @@ impl fmt::Display for Warning {
                 length(std_m),
                 length(seen_m)
             ),
+            Self::Rounded { body, step_m } => write!(
+                f,
+                "coordinates of the {body} were kept in single precision, and where they are that tells places \
+                 no finer than {}: keep them in double precision, or about an origin nearby",
+                length(step_m)
+            ),
             Self::SensorPose { body, share } => write!(
                 f,
                 "{:.0} % of the points of the {body} are beside or behind the camera stated for it: \
@@ -132,7 +138,7 @@ impl fmt::Display for Warning {
             ),
             Self::Unseen { body, share, limit } => write!(
                 f,
-                "{:.0} % of the surface of the {body} lies where the camera saw nothing (allowed: \
+                "{:.0} % of the surface of the {body} lies where the sensor saw nothing (allowed: \
                  {:.0} %): look from elsewhere, or raise `max_unseen`",
                 (100.0 * share).ceil(),
                 100.0 * limit
