@@ -7,8 +7,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use clap::Args;
 use cloudtouch::{
-    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, Judge,
-    MISCLASSIFIED_KNOTS, NOISE_KNOTS, ODDS_KNOTS,
+    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, EXTENT_NOISES,
+    Judge, MISCLASSIFIED_KNOTS, NOISE_KNOTS, ODDS_KNOTS, sharp_extent,
 };
 use cloudtouch_testkit::family::Kind;
 
@@ -139,9 +139,9 @@ fn records(answers: &Answers, method: &str, without: Option<&str>) -> Result<Vec
 fn fit_judge(records: &[Record]) -> Result<Judge> {
     let mut judge = Judge::default().without_extent();
     fit_knots(&mut judge, records, 0..ORDINARY);
+    fit_extent(&mut judge, records);
     for knot in ORDINARY..NOISE_KNOTS.len() {
         judge.by_geometry[knot] = judge.by_geometry[ORDINARY - 1];
-        judge.over_extent[knot] = judge.over_extent[ORDINARY - 1];
     }
     let doubtful = |record: &Record| -> Option<SurfaceSample<2>> {
         let e = &record.evidence;
@@ -195,25 +195,34 @@ fn fit_knots(judge: &mut Judge, records: &[Record], knots: Range<usize>) {
         surface.as_flattened_mut().copy_from_slice(values);
         surface.reverse();
     }
-    let changeable = |record: &&Record| -> Option<SurfaceSample<3>> {
+}
+
+/// What the extent makes of it, up to the noise from which on it changes nothing.
+fn fit_extent(judge: &mut Judge, records: &[Record]) {
+    let changeable = |record: &Record| -> Option<SurfaceSample<3>> {
         let e = &record.evidence;
         let by_place = judge.log_odds_by_place(e);
-        let at = [by_place, e.noise_over_spacing, -e.extent?.ln_1p()];
+        let extent = sharp_extent(e.extent?, e.noise_over_spacing);
+        let at = [by_place, e.noise_over_spacing, -extent.ln_1p()];
         is_within(&ODDS_KNOTS, by_place).then_some(record.at(at))
     };
     let open: Vec<_> = records.iter().filter_map(changeable).collect();
+    let noises = &NOISE_KNOTS[..=EXTENT_NOISES];
+    let noise = Axis { knots: noises, usual: None };
     let odds = Axis { knots: &ODDS_KNOTS, usual: Some(1.0) };
     let extent = Axis { knots: &EXTENT_KNOTS, usual: Some(0.0) };
-    let mut pins = border(&ODDS_KNOTS, knots.len() * EXTENT_KNOTS.len());
-    let given = judge.over_extent[knots.start].iter().enumerate().filter(|_| is_given);
-    pins.extend(given.flat_map(|(row, values)| {
-        let start = row * knots.len() * EXTENT_KNOTS.len();
-        values.iter().enumerate().map(move |(k, &value)| (start + k, value))
-    }));
-    let over_extent = fit_surface(&open, [odds, noise, extent], &pins);
-    for (row, values) in over_extent.chunks(knots.len() * EXTENT_KNOTS.len()).enumerate() {
-        for (of_noise, values) in knots.clone().zip(values.chunks(EXTENT_KNOTS.len())) {
-            judge.over_extent[of_noise][row].copy_from_slice(values);
+    let row = noises.len() * EXTENT_KNOTS.len();
+    let mut pins = border(&ODDS_KNOTS, row);
+    for (knot, odds) in ODDS_KNOTS.into_iter().enumerate() {
+        let last = (knot + 1) * row - EXTENT_KNOTS.len();
+        pins.extend((0..EXTENT_KNOTS.len()).map(|column| (last + column, odds)));
+    }
+    let fitted = fit_surface(&open, [odds, noise, extent], &pins);
+    for (row, values) in fitted.chunks(row).enumerate() {
+        for (of_noise, values) in
+            judge.over_extent.iter_mut().zip(values.chunks(EXTENT_KNOTS.len()))
+        {
+            of_noise[row].copy_from_slice(values);
         }
     }
 }

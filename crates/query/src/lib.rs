@@ -36,9 +36,9 @@ pub use filter::{
     FilterSettings, Filtered, OutlierSettings, SelfMesh, StageReport, VeilSettings, filter,
 };
 pub use judge::{
-    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, Judge,
-    MISCLASSIFIED_KNOTS, NOISE_KNOTS, ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
-    WITHIN_KNOTS, between_knots,
+    CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, EXTENT_NOISES,
+    Judge, MISCLASSIFIED_KNOTS, NOISE_KNOTS, ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
+    WITHIN_KNOTS, between_knots, sharp_extent,
 };
 pub use mesh::Mesh;
 pub use mode::Mode;

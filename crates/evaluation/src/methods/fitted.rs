@@ -55,9 +55,9 @@ impl Fitted {
         format!(
             "//! Made by `{} --update`.\n\n\
              #![allow(clippy::approx_constant, reason = \"what is fitted may look like π\")]\n\n\
-             use super::knots::{{NOISE_KNOTS, OverDoubt, OverExtent, OverGeometry}};\n\n\
+             use super::knots::{{EXTENT_NOISES, NOISE_KNOTS, OverDoubt, OverExtent, OverGeometry}};\n\n\
              pub(super) const BY_GEOMETRY: [OverGeometry; NOISE_KNOTS.len()] = {};\n\n\
-             pub(super) const OVER_EXTENT: [OverExtent; NOISE_KNOTS.len()] = {};\n\n\
+             pub(super) const OVER_EXTENT: [OverExtent; EXTENT_NOISES] = {};\n\n\
              pub(super) const REVISED: OverDoubt = {};\n",
             self.command,
             rows(by_geometry),

@@ -13,8 +13,11 @@ pub const DEVIATION_KNOTS: [f64; 13] =
     [-6.0, -4.0, -2.5, -1.2, 0.0, 0.4, 0.8, 1.2, 1.7, 2.3, 3.0, 4.0, MOST_DEVIATIONS];
 /// See [`DEVIATION_KNOTS`].
 pub const CROSSING_KNOTS: [f64; 9] = [0.0, 0.5, 1.2, 1.8, 2.4, 3.0, 3.6, 4.2, 5.0];
+/// Knots of the noise for which the extent changes log odds; from the next on it changes nothing.
+pub const EXTENT_NOISES: usize = 2;
 /// Where what the extent makes of log odds has its values: log odds by the place of contact by rows,
-/// −ln(1 + pieces about as near) by columns. At the first and the last row nothing is changed.
+/// −ln(1 + what [`sharp_extent`](super::sharp_extent) makes of the pieces about as near) by columns. At the first
+/// and the last row nothing is changed.
 pub const ODDS_KNOTS: [f64; 9] = [-5.0, -3.0, -1.8, -0.8, 0.2, 1.2, 2.2, 3.3, 4.6];
 /// See [`ODDS_KNOTS`].
 pub const EXTENT_KNOTS: [f64; 7] = [-6.0, -5.0, -4.0, -3.0, -2.2, -1.4, -0.7];

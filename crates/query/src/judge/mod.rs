@@ -20,9 +20,10 @@ use crate::error::SettingsError;
 pub use grid::between_knots;
 pub(crate) use knots::MOST_DEVIATIONS;
 pub use knots::{
-    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, MISCLASSIFIED_KNOTS, NOISE_KNOTS,
-    ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
+    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, EXTENT_NOISES, MISCLASSIFIED_KNOTS,
+    NOISE_KNOTS, ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
 };
+pub use of_pair::sharp_extent;
 pub(crate) use of_pair::{JudgeOfPair, probability};
 pub use within::WITHIN_KNOTS;
 pub(crate) use within::log_odds_within;
@@ -72,9 +73,10 @@ pub struct Judge {
     /// At [`NOISE_KNOTS`], [`DEVIATION_KNOTS`] and [`CROSSING_KNOTS`]: rising with crossing, falling with
     /// deviations.
     pub by_geometry: [OverGeometry; NOISE_KNOTS.len()],
-    /// At [`NOISE_KNOTS`], [`ODDS_KNOTS`] and [`EXTENT_KNOTS`]: rising with the log odds by the place of
+    /// At the first [`EXTENT_NOISES`] of [`NOISE_KNOTS`], [`ODDS_KNOTS`] and [`EXTENT_KNOTS`], less and less from the
+    /// last of these to the next, from which on nothing is changed: rising with the log odds by the place of
     /// contact, and where fewer pieces are as near. The outermost rows have the log odds of their knots.
-    pub over_extent: [OverExtent; NOISE_KNOTS.len()],
+    pub over_extent: [OverExtent; EXTENT_NOISES],
     /// At [`DOUBT_KNOTS`] and [`MISCLASSIFIED_KNOTS`]: rising with both. The outermost rows have the
     /// log odds of their knots.
     pub revised: OverDoubt,
@@ -216,7 +218,7 @@ mod tests {
         falls.over_extent[1][4].fill(-5.0);
         assert_eq!(falls.validate(), Err(SettingsError::Slope { name: "contact" }));
         let mut ends = good;
-        ends.over_extent[2][0][0] = -6.0;
+        ends.over_extent[1][0][0] = -6.0;
         assert_eq!(ends.validate(), Err(SettingsError::Revision { at: -5.0 }));
         let mut unknown = good;
         unknown.revised[2][2] = f64::NAN;

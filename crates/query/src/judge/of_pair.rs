@@ -2,7 +2,7 @@
 
 use super::grid::{Grid, between_knots};
 use super::knots::{
-    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, MISCLASSIFIED_FLOOR,
+    CROSSING_KNOTS, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, EXTENT_NOISES, MISCLASSIFIED_FLOOR,
     MISCLASSIFIED_KNOTS, NOISE_KNOTS, ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
 };
 
@@ -11,11 +11,27 @@ const CLEAR: f64 = 0.5;
 /// ... and from which on it is not asked.
 const BLURRED: f64 = 1.0;
 
+/// A contact of one shape counts over so many times the squared noise over spacing more pieces, for the noise
+/// makes those about it as near; ...
+const BLUR: f64 = 4.0;
+
+/// The extent that a contact would have without noise: what the judge goes by.
+pub fn sharp_extent(extent: f64, noise_over_spacing: f64) -> f64 {
+    extent * sharpness(noise_over_spacing)
+}
+
+/// ... up to where the extent counts no more.
+fn sharpness(noise_over_spacing: f64) -> f64 {
+    1.0 / (1.0 + BLUR * noise_over_spacing.min(NOISE_KNOTS[EXTENT_NOISES]).powi(2))
+}
+
 /// What a [`Judge`](super::Judge) makes of the evidence of two bodies: noise over spacing keeps along a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct JudgeOfPair {
     by_geometry: OverGeometry,
-    over_extent: OverExtent,
+    /// `None` where the noise is so large that it changes nothing.
+    over_extent: Option<OverExtent>,
+    sharpness: f64,
     /// As far as the classifier is believed of these bodies.
     revised: OverDoubt,
 }
@@ -24,13 +40,15 @@ impl JudgeOfPair {
     /// Linear between the knots, as at the border beyond them.
     pub(super) fn new(
         over_geometry: &[OverGeometry; NOISE_KNOTS.len()],
-        over_extent: &[OverExtent; NOISE_KNOTS.len()],
+        over_extent: &[OverExtent; EXTENT_NOISES],
         over_doubt: &OverDoubt,
         noise_over_spacing: f64,
     ) -> Self {
         let (knot, part) = between_knots(&NOISE_KNOTS, noise_over_spacing);
         let by_geometry = between([&over_geometry[knot], &over_geometry[knot + 1]], part);
-        let over_extent = between([&over_extent[knot], &over_extent[knot + 1]], part);
+        let of_extent = |knot: usize| over_extent.get(knot).copied().unwrap_or_else(unchanged);
+        let over_extent =
+            (knot < EXTENT_NOISES).then(|| between([&of_extent(knot), &of_extent(knot + 1)], part));
         let believed = believed(noise_over_spacing);
         let mut revised = *over_doubt;
         for (row, knot) in revised.iter_mut().zip(DOUBT_KNOTS) {
@@ -38,7 +56,8 @@ impl JudgeOfPair {
                 *value = believed * *value + (1.0 - believed) * knot;
             }
         }
-        Self { by_geometry, over_extent, revised }
+        let sharpness = sharpness(noise_over_spacing);
+        Self { by_geometry, over_extent, sharpness, revised }
     }
 
     /// Whether a classifier can change log odds by geometry.
@@ -59,10 +78,8 @@ impl JudgeOfPair {
     /// Log odds given the geometry alone: by the place of contact, and over how many pieces of surface
     /// the bodies are about as near.
     pub(crate) fn with_extent(&self, by_place: f64, extent: Option<f64>) -> f64 {
-        match extent {
-            Some(extent) if Self::is_open_to_extent(by_place) => {
-                self.extent().at(by_place, -extent.ln_1p())
-            }
+        match (extent, self.open_to_extent(by_place)) {
+            (Some(extent), Some(grid)) => grid.at(by_place, -(extent * self.sharpness).ln_1p()),
             _ => by_place,
         }
     }
@@ -74,10 +91,11 @@ impl JudgeOfPair {
 
     /// What log odds by geometry change by with those by the place of contact and with the extent.
     pub(crate) fn slopes_with_extent(&self, by_place: f64, extent: Option<f64>) -> [f64; 2] {
-        match extent {
-            Some(extent) if Self::is_open_to_extent(by_place) => {
-                let [by_place, by_column] = self.extent().slopes(by_place, -extent.ln_1p());
-                [by_place, -by_column / (1.0 + extent)]
+        match (extent, self.open_to_extent(by_place)) {
+            (Some(extent), Some(grid)) => {
+                let sharp = extent * self.sharpness;
+                let [by_place, by_column] = grid.slopes(by_place, -sharp.ln_1p());
+                [by_place, -by_column * self.sharpness / (1.0 + sharp)]
             }
             _ => [1.0, 0.0],
         }
@@ -86,17 +104,17 @@ impl JudgeOfPair {
     /// Whether the extent has a say at such log odds by the place of contact, or at lower ones.
     pub(crate) fn may_change_with_extent(&self, by_place: f64) -> bool {
         let [.., most] = ODDS_KNOTS;
-        by_place < most
+        self.over_extent.is_some() && by_place < most
     }
 
-    /// Whether the extent may change log odds by the place of contact.
-    fn is_open_to_extent(by_place: f64) -> bool {
+    /// What the extent makes of such log odds by the place of contact, where it may change them.
+    fn open_to_extent(
+        &self,
+        by_place: f64,
+    ) -> Option<Grid<'_, { ODDS_KNOTS.len() }, { EXTENT_KNOTS.len() }>> {
         let [least, .., most] = ODDS_KNOTS;
-        least < by_place && by_place < most
-    }
-
-    fn extent(&self) -> Grid<'_, { ODDS_KNOTS.len() }, { EXTENT_KNOTS.len() }> {
-        Grid { rows: &ODDS_KNOTS, columns: &EXTENT_KNOTS, values: &self.over_extent }
+        let values = self.over_extent.as_ref().filter(|_| least < by_place && by_place < most)?;
+        Some(Grid { rows: &ODDS_KNOTS, columns: &EXTENT_KNOTS, values })
     }
 
     fn geometry(&self) -> Grid<'_, { DEVIATION_KNOTS.len() }, { CROSSING_KNOTS.len() }> {
@@ -128,6 +146,11 @@ impl JudgeOfPair {
     fn revision(&self) -> Grid<'_, { DOUBT_KNOTS.len() }, { MISCLASSIFIED_KNOTS.len() }> {
         Grid { rows: &DOUBT_KNOTS, columns: &MISCLASSIFIED_KNOTS, values: &self.revised }
     }
+}
+
+/// What changes no log odds, whatever the extent.
+fn unchanged() -> OverExtent {
+    ODDS_KNOTS.map(|odds| [odds; EXTENT_KNOTS.len()])
 }
 
 /// Two tables, weighed by how far from the first to the second.
