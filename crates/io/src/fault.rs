@@ -168,6 +168,23 @@ pub enum Fault {
         /// Values found.
         found: usize,
     },
+    /// The first column of a table without names grows by equal steps, as times and row numbers do.
+    #[error(
+        "the first column grows by {} in each of {rows} rows, from {}, as a time or a row number does, \
+         and without names it is read as x: begin the file with a line that names its columns, such as \
+         `{}`, or `{}` if it is x",
+        number(*step), number(*first), headers[0], headers[1]
+    )]
+    CountedRows {
+        /// How many rows there are.
+        rows: usize,
+        /// The first value.
+        first: f64,
+        /// How much it grows from row to row.
+        step: f64,
+        /// Names to begin the file with, as its rows are separated: those of a count, and of x.
+        headers: [String; 2],
+    },
     /// A value that has to be a number is none.
     #[error("{found:?} is not a number: write it like -0.25, 1e-3 or nan")]
     NotANumber {

@@ -1,6 +1,6 @@
 //! Tables of coordinates as text: `.xyz`, `.txt`, `.csv`.
 
-use cloudtouch_geom::PointCloud;
+use cloudtouch_geom::{Point3, PointCloud};
 
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
@@ -24,7 +24,7 @@ const MOST_COLUMNS: usize = 20;
 /// # Errors
 /// When there is nothing but comments, a column is missing or named twice, a row is too short, a
 /// value is no number, a covariance is none, a row
-/// without column names seems to hold several points, or there are more points than the default [`ReadLimits`] allow.
+/// without column names seems to hold several points, the first of four or more such columns counts the rows, or there are more points than the default [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
     parse_within(bytes, &ReadLimits::default())
 }
@@ -37,6 +37,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
     let mut lines = Lines::new(bytes);
     let (comment, first) = first_row(&mut lines);
     let first = first.ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
+    let first_place = lines.place();
     let separator = [b';', b','].into_iter().find(|separator| first.contains(separator));
 
     let mut pending = None;
@@ -85,7 +86,38 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
     if !is_named && are_points {
         return Err(place.error(Fault::ManyColumns { found: columns }));
     }
-    Ok(cloud.finish())
+    let cloud = cloud.finish();
+    if !is_named && columns > 3 {
+        refuse_a_count(&cloud.points, separator).map_err(|fault| first_place.error(fault))?;
+    }
+    Ok(cloud)
+}
+
+/// Fewer rows in equal steps may be chance, or a few points set by hand.
+const FEWEST_COUNTED: usize = 10;
+
+/// A share of a step: times are rounded as they are written, such as .033, .067, .100.
+const STEP_TOLERANCE: f64 = 0.05;
+
+/// A time or a row number taken for x puts the cloud where nothing is, which reads free. Points in rows
+/// and columns go back to their first x, so only a single line of them along x is taken for a count.
+fn refuse_a_count(points: &[Point3], separator: Option<u8>) -> Result<(), Fault> {
+    let [first, .., last] = points else { return Ok(()) };
+    let step = (last.x - first.x) / (points.len() - 1) as f64;
+    let is_counted = |(row, point): (usize, &Point3)| {
+        (point.x - (first.x + row as f64 * step)).abs() <= STEP_TOLERANCE * step
+    };
+    if points.len() < FEWEST_COUNTED || step <= 0.0 || !points.iter().enumerate().all(is_counted) {
+        return Ok(());
+    }
+    let between = char::from(separator.unwrap_or(b' '));
+    let header = |names: [&str; 4]| names.join(&between.to_string());
+    Err(Fault::CountedRows {
+        rows: points.len(),
+        first: first.x,
+        step,
+        headers: [header(["t", "x", "y", "z"]), header(["x", "y", "z", "intensity"])],
+    })
 }
 
 /// The first line with something in it, and the last comment before it.

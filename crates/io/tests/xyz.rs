@@ -72,6 +72,37 @@ fn a_comment_that_names_every_column_is_a_header() {
     }
 }
 
+/// The cloud lay along its times, tens of metres from where it was, and all was free there.
+#[test]
+fn a_first_column_of_times_or_row_numbers_was_taken_for_x() {
+    let rows = |between: char, first: fn(usize) -> String| -> String {
+        let row = |i| format!("{}{between}0.{}{between}1{between}2\n", first(i), i % 3);
+        (0..12).map(row).collect()
+    };
+    let rounded = rows(' ', |i| format!("{:.3}", 1e9 + i as f64 / 30.0));
+    for (text, header) in [
+        (rows(',', |i| format!("{}", i + 1)), "t,x,y,z"),
+        (rows(';', |i| format!("{}", 0.1 * i as f64)), "t;x;y;z"),
+        ("# a scan\n".to_owned() + &rounded, "t x y z"),
+    ] {
+        let (place, fault) = error(&text);
+        assert_eq!(place, Place::Line(1 + usize::from(text.starts_with('#'))));
+        assert!(fault.to_string().contains(&format!("such as `{header}`")), "{fault}");
+        assert_eq!(points(&format!("{header}\n{text}")).len(), 12);
+    }
+    let (_, fault) = error(&rows(',', |i| format!("{}", 0.5 * i as f64)));
+    let told = "grows by 0.5 in each of 12 rows, from 0, as a time or a row number does";
+    assert!(fault.to_string().contains(told), "{fault}");
+    // A grid goes back to its first x, few rows may be chance, and three columns leave none for z.
+    assert_eq!(points(&rows(',', |i| format!("{}", i % 6))).len(), 12);
+    assert_eq!(points("1 0 0 9\n2 0 0 9\n3 0 0 9\n").len(), 3);
+    assert_eq!(points(&rows(' ', |i| format!("{i}")).replace(" 2\n", "\n")).len(), 12);
+    assert_eq!(
+        points(&rows(',', |i| format!("{}", 0.1 * i as f64 + 0.02 * (i % 2) as f64))).len(),
+        12
+    );
+}
+
 #[test]
 fn faults_are_named_by_line_and_column() {
     let not_a_number = |found: &str| Fault::NotANumber { found: found.into() };
