@@ -182,7 +182,10 @@ fn a_batch_has_a_view_a_case_and_names_those_without_an_answer() {
 #[test]
 fn a_path_shows_its_poses_and_where_it_first_collides() {
     let inputs = Inputs::new();
-    inputs.write("path.csv", "0,0,0.5,1,0,0,0\n0,0,0.3,1,0,0,0\n0,0,0.05,1,0,0,0\n");
+    inputs.write(
+        "path.csv",
+        "x,y,z,qw,qx,qy,qz\n0,0,0.5,1,0,0,0\n0,0,0.3,1,0,0,0\n0,0,0.05,1,0,0,0\n",
+    );
     let arguments = [
         "path",
         "floor.pcd",
@@ -249,7 +252,7 @@ fn no_input_is_replaced_and_another_file_only_with_force() {
         assert!(refused.stderr().contains(part), "{more:?}: {}", refused.stderr());
     }
     assert!(!inputs.path("both").exists() && page(&inputs, "set.toml").is_empty());
-    inputs.write("path.csv", "0,0,0.5,1,0,0,0\n0,0,0.3,1,0,0,0\n");
+    inputs.write("path.csv", "x,y,z,qw,qx,qy,qz\n0,0,0.5,1,0,0,0\n0,0,0.3,1,0,0,0\n");
     let path = ["path", "floor.pcd", "box.obj", "--poses=path.csv", "--html=path.csv", "--force"];
     assert!(inputs.run(&path).stderr().contains("is an input"));
     inputs.write("cases.json", &case_file(&[case_at("a", 0.5)]));

@@ -113,7 +113,8 @@ fn keys_of_a_path_are_documented() {
     let inputs = Inputs::new();
     let run = |heights: [f64; 2]| {
         let line = |z: f64| format!("0.01,0.02,{z},1,0,0,0\n");
-        inputs.write("poses.csv", &heights.map(line).concat());
+        inputs
+            .write("poses.csv", &("x,y,z,qw,qx,qy,qz\n".to_owned() + &heights.map(line).concat()));
         let arguments =
             ["path", "floor.pcd", "box.obj", "--sensor=iso:0.002", "--poses=poses.csv", "--json"];
         inputs.run(&arguments).quiet(0).json_lines().remove(0)

@@ -129,17 +129,40 @@ fn poses_of_ros_without_a_header_were_half_turns_in_silence() {
         let run = path(&inputs, name, &["--json"]);
         assert!(of_json(&run).is_some() && run.stderr().contains(name), "{}", run.stderr());
     }
-    // Said by a header, or with another turn among them, they are meant.
+    // Said by a header they are meant.
     for (name, text) in [
         ("said.csv", "x,y,z,qw,qx,qy,qz\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
         ("ros_said.csv", "x,y,z,qx,qy,qz,qw\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
         ("commented.csv", "# x,y,z,qx,qy,qz,qw\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,0,0,0,1\n"),
-        ("turned.csv", "0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,1,0,0,0\n"),
+        (
+            "tum.csv",
+            "# time tx ty tz qx qy qz qw\n1 0.01 0.02 0.6 0 0 0 1\n2 0.01 0.02 0.4 0 0 0 1\n",
+        ),
         ("about_x.csv", "x,y,z,qw,qx,qy,qz\n0,0.02,0.6,0,1,0,0\n0,0.02,0.4,0,1,0,0\n"),
     ] {
         inputs.write(name, text);
         path(&inputs, name, &[]).quiet(0);
     }
+}
+
+/// Only half turns were told; any other order of the columns was taken for the usual one in silence.
+#[test]
+fn an_answer_about_columns_without_names_says_how_they_were_read() {
+    let inputs = Inputs::new();
+    inputs.write("turned.csv", "# a hand\n0.01,0.02,0.6,0,0,0,1\n0.01,0.02,0.4,1,0,0,0\n");
+    let run = path(&inputs, "turned.csv", &["--json"]);
+    let answer = run.json_lines().remove(0);
+    let warnings = answer["warnings"].as_array().unwrap();
+    let of_file = warnings.iter().find(|warning| warning["code"] == "unnamed_columns").unwrap();
+    assert_eq!(of_file["values"], serde_json::json!({ "line": 2, "row": "0.01,0.02,0.6,0,0,0,1" }));
+    let words = of_file["words"].as_str().unwrap();
+    for part in ["line 2: ", "is read as x,y,z,qw,qx,qy,qz", "begin", "with x,y,z,qx,qy,qz,qw"] {
+        assert!(words.contains(part), "{words}");
+    }
+    assert!(run.stderr().contains(&format!("turned.csv: {words}")), "{}", run.stderr());
+    let text = path(&inputs, "turned.csv", &[]).stdout();
+    let told = "\ncolumns                read as x,y,z,qw,qx,qy,qz, for the file names none\n";
+    assert!(text.contains(told), "{text}");
 }
 
 #[test]

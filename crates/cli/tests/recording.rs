@@ -137,7 +137,7 @@ mod with_feature {
         assert_eq!(lines[1]["verdict"], "free");
         let error = lines[2]["error"].as_str().unwrap();
         assert!(error.contains("there is no topic /none: PointCloud2 is on /b, /floor"), "{error}");
-        inputs.write("path.csv", "0,0,0.5,1,0,0,0\n0,0,0.4,1,0,0,0\n");
+        inputs.write("path.csv", "x,y,z,qw,qx,qy,qz\n0,0,0.5,1,0,0,0\n0,0,0.4,1,0,0,0\n");
         let arguments = ["path", "run.mcap#/floor@1", "box.obj", "--poses=path.csv", "--json"];
         assert_eq!(inputs.run(&arguments).quiet(0).json_lines()[0]["verdict"], "free");
     }

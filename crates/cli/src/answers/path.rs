@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::answers::print::probability;
 use crate::answers::query::matrix;
 use crate::answers::text::labelled;
-use crate::doubt::Doubt;
+use crate::doubt::{Doubt, READ_AS};
 use crate::load::Input;
 use crate::remedies::{self, undecided};
 
@@ -92,7 +92,7 @@ pub(crate) fn json_line(
 }
 
 /// The same in a few lines.
-pub(crate) fn text(swept: &Swept) -> String {
+pub(crate) fn text(swept: &Swept, doubt: Option<&Doubt>) -> String {
     let [low, high] = swept.bounds.map(probability);
     let best = &swept.most_probable;
     let mut lines = vec![
@@ -116,6 +116,7 @@ pub(crate) fn text(swept: &Swept) -> String {
         }
     }
     lines.extend(swept.warnings.iter().map(|of| labelled("warning", &remedies::warning(of))));
+    lines.extend(doubt.map(|_| labelled("columns", &columns())));
     let SweepStats { poses, stretches, query_us, .. } = swept.stats;
     lines.push(format!(
         "work                   {poses} poses and {stretches} stretches in {:.1} ms",
@@ -125,7 +126,7 @@ pub(crate) fn text(swept: &Swept) -> String {
 }
 
 /// What holds of the whole path, for a page.
-pub(crate) fn facts(swept: &Swept) -> Vec<Fact> {
+pub(crate) fn facts(swept: &Swept, doubt: Option<&Doubt>) -> Vec<Fact> {
     let [low, high] = swept.bounds.map(probability);
     let best = &swept.most_probable;
     let likely = probability(best.report.collision_probability);
@@ -144,7 +145,13 @@ pub(crate) fn facts(swept: &Swept) -> Vec<Fact> {
         facts.push(Fact::new("In collision from", text));
     }
     facts.extend(swept.warnings.iter().map(|of| Fact::new("Warning", remedies::warning(of))));
+    facts.extend(doubt.map(|_| Fact::new("Columns", columns())));
     facts
+}
+
+/// Of a file that does not name its columns, which is warned of on standard error at length.
+fn columns() -> String {
+    format!("read as {READ_AS}, for the file names none")
 }
 
 fn verdict(swept: &Swept) -> String {

@@ -45,13 +45,13 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
         let (scene, object) = (&scene.body, &object.body);
         let ask = |pose: &Pose| query.run(scene, object, pose);
         let colored = |report, pose: &Pose| with_points_inside(report, (scene, object), pose);
-        pages::path::write(output, bodies, &swept, &path, ask, colored)?;
+        pages::path::write(output, bodies, (&swept, doubt.as_ref()), &path, ask, colored)?;
     }
     let text = if arguments.answer.json {
         answers::path::json_line(&swept, doubt.as_ref(), [&scene.input, &object.input])?
     } else {
         let bodies = [print::body("scene", &scene), print::body("object", &object)];
-        format!("{}\n{}", bodies.join("\n"), answers::path::text(&swept))
+        format!("{}\n{}", bodies.join("\n"), answers::path::text(&swept, doubt.as_ref()))
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(arguments.answer.exit_code(swept.verdict, false))

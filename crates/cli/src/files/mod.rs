@@ -7,4 +7,5 @@ mod json;
 mod near_name;
 pub mod path;
 pub mod pose;
+pub mod pose_table;
 pub mod scene;

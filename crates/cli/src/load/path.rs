@@ -12,8 +12,8 @@ pub(crate) fn read(file: &std::path::Path, is_screw: bool) -> Result<(Path, Opti
     let named = || file.display().to_string();
     let text = std::fs::read_to_string(file)
         .with_context(|| format!("{}: cannot read the path", file.display()))?;
-    let PathText { poses, half_turns } = path::parse(&text).with_context(named)?;
-    let doubt = half_turns.map(|(line, row)| Doubt::half_turns(line, &row));
+    let PathText { poses, unnamed } = path::parse(&text).with_context(named)?;
+    let doubt = unnamed.as_ref().map(Doubt::of_unnamed);
     if let Some(doubt) = &doubt {
         tracing::warn!("{}: {}", file.display(), doubt.words);
     }

@@ -7,6 +7,7 @@ use cloudtouch::geom::Pose;
 use cloudtouch::{AlongPath, QueryError, Report, Swept};
 use cloudtouch_page::{Body, MOST_VIEWS, Page, View};
 
+use crate::doubt::Doubt;
 use crate::{answers, pages};
 
 /// A pose of the path that is shown.
@@ -35,7 +36,7 @@ fn insert(shown: &mut Vec<Shown>, at: &AlongPath, what: &str) {
 pub(crate) fn write(
     output: &Path,
     [scene, object]: [Body; 2],
-    swept: &Swept,
+    (swept, doubt): (&Swept, Option<&Doubt>),
     path: &cloudtouch::Path,
     ask: impl Fn(&Pose) -> Result<Report, QueryError>,
     colored: impl Fn(Report, &Pose) -> Report,
@@ -77,7 +78,7 @@ pub(crate) fn write(
     });
     let page = Page {
         title: format!("{} along a path in {}", object.name, scene.name),
-        summary: answers::path::facts(swept),
+        summary: answers::path::facts(swept, doubt),
         notes: notes.into_iter().collect(),
         views: views.collect(),
         bodies: vec![scene, object],
