@@ -167,3 +167,21 @@ fn no_turn_with_w_first_was_half_a_turn_in_silence() {
         inputs.query_at(0.5, &[turn, "--json"]).quiet(0);
     }
 }
+
+/// A cloud without layout had no line about it, as if all had been seen.
+#[test]
+fn what_was_not_seen_is_said_to_be_unknown_without_a_depth_image() {
+    let inputs = Inputs::new();
+    let told = "\nunseen                 not known (no rows and columns): ";
+    let text = inputs.query_at(0.5, &[]).quiet(0).stdout();
+    assert!(text.contains(told), "{text}");
+    assert!(!inputs.query_at(0.5, &["--mode=paper"]).stdout().contains("\nunseen"));
+    let mut wall = support::floor();
+    wall.points.iter_mut().for_each(|point| point.z = 1.0);
+    wall.image_size = Some((21, 21));
+    cloudtouch_io::write_cloud_pcd(inputs.path("wall.pcd"), &wall).unwrap();
+    for arguments in [["wall.pcd", "box.obj"], ["box.obj", "box.obj"]] {
+        let text = inputs.run(&[&["query"], &arguments[..]].concat()).stdout();
+        assert!(text.contains("verdict") && !text.contains(told), "{text}");
+    }
+}

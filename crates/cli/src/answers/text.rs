@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use cloudtouch::{Placement, Report, Stats, UnderPoses, Within};
+use cloudtouch::{Mode, Placement, Report, Stats, UnderPoses, Within};
 use cloudtouch_page::{Fact, words};
 
 use crate::answers::print::probability;
@@ -12,9 +12,20 @@ use crate::remedies::{self, undecided};
 /// A report for people shows this many contacts; JSON has them all.
 const CONTACTS_SHOWN: usize = 5;
 
-/// All that a person wants to know; with what it cost if `shows_work`.
-pub(crate) fn text(report: &Report, placement: &Placement, shows_work: bool) -> String {
+/// All that a person wants to know, of a scene that is a cloud with what it cannot tell; with what it
+/// cost if `shows_work`.
+pub(crate) fn text(
+    report: &Report,
+    placement: &Placement,
+    scene_is_cloud: bool,
+    shows_work: bool,
+) -> String {
     let mut text = found(report);
+    // The paper's mode looks at no image either.
+    if scene_is_cloud && report.unseen.is_none() && report.mode == Mode::Calibrated {
+        let words = "not known (no rows and columns): what the sensor did not see counts as empty";
+        let _ = writeln!(text, "{}", labelled("unseen", words));
+    }
     text.push_str(&place(placement));
     for warning in &report.warnings {
         let _ = writeln!(text, "{}", labelled("warning", &remedies::warning(warning)));

@@ -129,7 +129,7 @@ fn run_by<P: body::Path>(
         let mut parts = vec![
             print::body("scene", &scene),
             print::body("object", &object),
-            answers::text::text(&report, &placement, shows_work),
+            answers::text::text(&report, &placement, !scene.is_mesh(), shows_work),
         ];
         parts.extend(more.iter().map(answers::text::line));
         parts.extend(slopes.as_ref().map(answers::gradient::text));
