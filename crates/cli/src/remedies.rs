@@ -2,7 +2,7 @@
 
 use cloudtouch::{PrepareError, Undecided, Warning};
 use cloudtouch_io::recording::RecordingFault;
-use cloudtouch_io::{Fault, ReadError};
+use cloudtouch_io::{Fault, LengthUnit, ReadError};
 use cloudtouch_robot::{RobotError, RobotFault};
 use serde_json::Value;
 
@@ -66,6 +66,15 @@ fn of_file(error: &ReadError) -> Option<String> {
         ReadError::Format { problem, .. } => match problem.fault {
             // Such as `points` or `declared points`.
             Fault::TooMany { what, .. } => Some(format!("--max-{}", what.rsplit(' ').next()?)),
+            Fault::ColumnUnit { ref unit, .. } => {
+                let unit = unit.parse::<LengthUnit>().ok()?;
+                Some(format!("--cloud-unit {unit}"))
+            }
+            _ => None,
+        },
+        ReadError::Extension { found, .. } => match found.as_str() {
+            "json" => Some("cloudtouch scene FILE, cloudtouch batch FILE".to_owned()),
+            "urdf" => Some("cloudtouch robot SCAN URDF".to_owned()),
             _ => None,
         },
         ReadError::Recording { problem, .. } => match **problem {
@@ -99,12 +108,19 @@ mod tests {
         let of_robot = |fault| RobotError { file: "arm.urdf".into(), fault: Box::new(fault) };
         let (uri, package) = ("package://mine/a.stl".to_owned(), "mine".to_owned());
         let unknown = RobotFault::UnknownPackage { link: link(), uri, package };
+        let other = |name: &str| cloudtouch_io::check_extension(name).unwrap_err();
+        let millimetres = cloudtouch_io::xyz::parse(b"x (mm),y (mm),z (mm)").unwrap_err();
+        let millimetres = ReadError::Format { path: "a.csv".into(), problem: millimetres.into() };
         let noise = PrepareError::NoiseBeyondSize { std: 5.0, size: 1.0 };
         for (told, option) in [
             (anyhow::Error::from(large()), " (--max-bytes)"),
             (of_robot(RobotFault::Mesh { link: link(), error: large() }).into(), " (--max-bytes)"),
             (of_robot(unknown).into(), "`packages` (--package mine=FOLDER)"),
             (noise.into(), " (--cloud-unit mm)"),
+            (other("cases.json").into(), " (cloudtouch scene FILE, cloudtouch batch FILE)"),
+            (other("arm.urdf").into(), " (cloudtouch robot SCAN URDF)"),
+            (other("scan.las").into(), " with CloudCompare or PDAL"),
+            (millimetres.into(), " (--cloud-unit mm)"),
             (anyhow::anyhow!("a slip"), "a slip"),
         ] {
             let told = error(&Err::<(), _>(told).context("scan.pcd").unwrap_err());

@@ -13,6 +13,11 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// The same in four digits, of what is known no better: `2298`, `0.001234`.
+pub fn rounded(value: f64) -> String {
+    number(format!("{value:.3e}").parse().unwrap_or(value))
+}
+
 /// A position, m: `(0.5, -1e300, NaN)`.
 pub fn position(point: &Point3) -> String {
     format!("({}, {}, {})", number(point.x), number(point.y), number(point.z))
@@ -39,6 +44,21 @@ mod tests {
             assert_eq!(number(value), spelled);
         }
         assert_eq!(position(&Point3::new(0.5, -1e300, f64::NAN)), "(0.5, -1e300, NaN)");
+    }
+
+    #[test]
+    fn what_is_computed_has_four_digits() {
+        for (value, spelled) in [
+            (2_298.424_103_337_972_6, "2298"),
+            (1.0 / 3.0, "0.3333"),
+            (-0.000_123_45, "-0.0001234"),
+            (0.5, "0.5"),
+            (123_456.0, "123500"),
+            (f64::NAN, "NaN"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(rounded(value), spelled);
+        }
     }
 
     #[test]

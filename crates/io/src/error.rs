@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{fault::FormatError, recording_fault::RecordingFault};
+use crate::{conversion::remedy, fault::FormatError, recording_fault::RecordingFault};
 
 /// Why a file could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -37,8 +37,8 @@ pub enum ReadError {
     },
     /// The extension is not one of a format that holds what was asked for.
     #[error(
-        "{}: the extension {found:?} is not one of {supported}: convert or rename the file",
-        path.display()
+        "{}: the extension {found:?} is not one of {supported}: {}",
+        path.display(), remedy(found)
     )]
     Extension {
         /// The file.

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use cloudtouch_geom::{CovarianceError, message::number};
+use cloudtouch_geom::{
+    CovarianceError,
+    message::{number, rounded},
+};
 
 /// Why some bytes are not a file of their format.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -168,12 +171,35 @@ pub enum Fault {
         /// Values found.
         found: usize,
     },
+    /// A column is named with a unit that is not metres.
+    #[error(
+        "the column {column} is named with the unit {unit:?}: name it {column} alone, and state that unit \
+         for the whole file"
+    )]
+    ColumnUnit {
+        /// Its name.
+        column: String,
+        /// The unit beside it.
+        unit: String,
+    },
+    /// A number stands alone before the points.
+    #[error(
+        "the first line is {found} alone, as the count that a .pts begins with: remove it, and what is no \
+         point after it"
+    )]
+    CountLine {
+        /// The number.
+        found: String,
+    },
     /// The first column of a table without names grows by equal steps, as times and row numbers do.
     #[error(
         "the first column grows by {} in each of {rows} rows, from {}, as a time or a row number does, \
          and without names it is read as x: begin the file with a line that names its columns, such as \
          `{}`, or `{}` if it is x",
-        number(*step), number(*first), headers[0], headers[1]
+        rounded(*step),
+        number(*first),
+        header(["t", "x", "y", "z"], *separator),
+        header(["x", "y", "z", "intensity"], *separator)
     )]
     CountedRows {
         /// How many rows there are.
@@ -182,8 +208,8 @@ pub enum Fault {
         first: f64,
         /// How much it grows from row to row.
         step: f64,
-        /// Names to begin the file with, as its rows are separated: those of a count, and of x.
-        headers: [String; 2],
+        /// What is between the values of a row.
+        separator: char,
     },
     /// A value that has to be a number is none.
     #[error("{found:?} is not a number: write it like -0.25, 1e-3 or nan")]
@@ -263,4 +289,9 @@ pub enum Fault {
         /// How many there are.
         found: usize,
     },
+}
+
+/// A line of names that is separated as the rows below it are.
+fn header(names: [&str; 4], separator: char) -> String {
+    names.join(&separator.to_string())
 }

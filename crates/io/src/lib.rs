@@ -3,6 +3,8 @@
 
 mod atomic;
 mod builder;
+mod column_names;
+mod conversion;
 mod error;
 mod fault;
 mod geometry;

@@ -3,10 +3,11 @@
 use cloudtouch_geom::{Point3, PointCloud};
 
 use crate::{
-    builder::{CloudBuilder, Row, find_columns},
+    builder::{CloudBuilder, Row},
+    column_names::{self, values},
     fault::{Fault, FormatError, Place},
     limits::ReadLimits,
-    text::{Lines, excerpt, number, parse as parse_number, words},
+    text::{Lines, excerpt, number, parse as parse_number},
 };
 
 /// A row without column names has no more numbers than this.
@@ -18,7 +19,8 @@ const MOST_COLUMNS: usize = 20;
 /// line that is neither blank nor a comment (from `#`) shows. When the first value of that line is
 /// not a number it names the columns: x, y, z and perhaps cov_xx, cov_xy, cov_xz, cov_yy, cov_yz,
 /// cov_zz (m², all six or none), in any order and case; so does the last comment before it, when it has x, y
-/// and z among as many words as the line has numbers. Without names the first three columns are x, y, z.
+/// and z among as many words as the line has numbers. `x (m)` and `x [m]` are x, and so is `Points:0` of
+/// ParaView; another unit there is refused. Without names the first three columns are x, y, z.
 /// Other columns are passed over. `nan` is a missing return.
 ///
 /// # Errors
@@ -38,18 +40,22 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
     let (comment, first) = first_row(&mut lines);
     let first = first.ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
     let first_place = lines.place();
-    let separator = [b';', b','].into_iter().find(|separator| first.contains(separator));
+    let separator = column_names::separator(first);
 
     let mut pending = None;
     let mut is_named = true;
     let columns =
         if values(first, separator).next().is_none_or(|v| parse_number::<f64>(v).is_some()) {
             pending = Some(first);
-            let by_comment = comment.and_then(|it| commented_columns(it, first, separator));
+            let by_comment = match comment {
+                Some(comment) => column_names::of_comment(comment, first, separator)
+                    .map_err(|fault| first_place.error(fault))?,
+                None => None,
+            };
             is_named = by_comment.is_some();
             by_comment.unwrap_or_else(|| vec![0, 1, 2])
         } else {
-            named_columns(first, separator, lines.place())?
+            column_names::of_header(first, separator, lines.place())?
         };
     let mut wanted: Vec<(usize, usize)> = columns.iter().copied().zip(0..).collect();
     wanted.sort_unstable();
@@ -73,6 +79,9 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
             found += 1;
         }
         if targets.peek().is_some() {
+            if !is_named && cloud.len() == 0 && found == 1 {
+                return Err(lines.place().error(Fault::CountLine { found: excerpt(line) }));
+            }
             return Err(lines.place().error(Fault::RowLength { expected, found }));
         }
         cloud.push(&row, lines.place())?;
@@ -110,13 +119,11 @@ fn refuse_a_count(points: &[Point3], separator: Option<u8>) -> Result<(), Fault>
     if points.len() < FEWEST_COUNTED || step <= 0.0 || !points.iter().enumerate().all(is_counted) {
         return Ok(());
     }
-    let between = char::from(separator.unwrap_or(b' '));
-    let header = |names: [&str; 4]| names.join(&between.to_string());
     Err(Fault::CountedRows {
         rows: points.len(),
         first: first.x,
         step,
-        headers: [header(["t", "x", "y", "z"]), header(["x", "y", "z", "intensity"])],
+        separator: char::from(separator.unwrap_or(b' ')),
     })
 }
 
@@ -137,52 +144,10 @@ fn first_row<'a>(lines: &mut Lines<'a>) -> (Option<&'a [u8]>, Option<&'a [u8]>) 
     (comment, None)
 }
 
-/// The columns that a comment names, as numpy writes a header: one for each number of the first row.
-fn commented_columns(comment: &[u8], row: &[u8], separator: Option<u8>) -> Option<Vec<usize>> {
-    let of_comment = [b';', b','].into_iter().find(|separator| comment.contains(separator));
-    let names: Vec<String> = values(comment.trim_ascii(), of_comment)
-        .map(|name| String::from_utf8_lossy(name).into_owned())
-        .collect();
-    let is_whole = names.len() == values(row, separator).count();
-    is_whole.then(|| find_columns(names.iter().map(String::as_str)).ok()).flatten()
-}
-
 /// The next line with something in it, without its comment.
 fn next_row<'a>(lines: &mut Lines<'a>) -> Option<&'a [u8]> {
     lines
         .by_ref()
         .map(|line| line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii())
         .find(|line| !line.is_empty())
-}
-
-/// The values of a row, without the white space and quotes around them.
-fn values(line: &[u8], separator: Option<u8>) -> Box<dyn Iterator<Item = &[u8]> + '_> {
-    match separator {
-        Some(separator) => Box::new(line.split(move |&b| b == separator).map(|value| {
-            let value = value.trim_ascii();
-            value.strip_prefix(b"\"").and_then(|v| v.strip_suffix(b"\"")).unwrap_or(value)
-        })),
-        None => Box::new(words(line)),
-    }
-}
-
-fn named_columns(
-    line: &[u8],
-    separator: Option<u8>,
-    place: Place,
-) -> Result<Vec<usize>, FormatError> {
-    // CloudCompare puts two slashes before its column names.
-    let line = line.strip_prefix(b"//").unwrap_or(line).trim_ascii_start();
-    let names: Vec<String> =
-        values(line, separator).map(|v| String::from_utf8_lossy(v).into_owned()).collect();
-    find_columns(names.iter().map(String::as_str)).map_err(|fault| match fault {
-        // Whoever meant a row of numbers is helped more by seeing what was taken for names.
-        Fault::MissingColumn { .. } if !names.iter().any(|n| n.eq_ignore_ascii_case("x")) => place
-            .error(Fault::BadEntry {
-                entry: "the first row",
-                found: excerpt(line),
-                expected: "three numbers, or column names with x, y and z",
-            }),
-        fault => place.error(fault),
-    })
 }

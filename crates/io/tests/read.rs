@@ -87,8 +87,8 @@ fn messages_name_file_place_finding_and_remedy() {
     assert_eq!(message("a.pcd", ""), "byte 0: the file is empty: was it written completely?");
     assert_eq!(
         message("a.las", ""),
-        "the extension \"las\" is not one of .pcd, .ply, .xyz, .txt, .csv, .stl, .obj: convert or \
-         rename the file"
+        "the extension \"las\" is not one of .pcd, .ply, .xyz, .txt, .csv, .stl, .obj: convert it to \
+         .ply or .pcd with CloudCompare or PDAL"
     );
 }
 

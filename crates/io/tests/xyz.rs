@@ -104,6 +104,34 @@ fn a_first_column_of_times_or_row_numbers_was_taken_for_x() {
 }
 
 #[test]
+fn names_may_have_a_unit_or_be_those_of_paraview() {
+    let expected = [Point3::new(1.0, 2.0, 3.0)];
+    for text in [
+        "x (m),y (m),z (m)\n1,2,3\n",
+        "t [s];X [m];Y[m];Z(m)\n9;1;2;3\n",
+        "x (m) y (m) z (m)\n1 2 3\n",
+        "# z [m] y [m] x [m]\n3 2 1\n",
+        "\"Normals:0\",\"Points:0\",\"Points:1\",\"Points:2\"\n9,1,2,3\n",
+    ] {
+        assert_eq!(points(text), expected, "{text}");
+    }
+    let unit = |unit: &str| Fault::ColumnUnit { column: "x".into(), unit: unit.into() };
+    assert_eq!(error("x [mm],y [mm],z [mm]\n1,2,3\n"), (Place::Line(1), unit("mm")));
+    assert_eq!(error("# x (ft) y (ft) z (ft)\n1 2 3\n"), (Place::Line(2), unit("ft")));
+    assert!(unit("mm").to_string().contains("name it x alone, and state that unit"));
+    // No name of a column, though it has a bracket.
+    assert_eq!(points("# a scan at x (see the log) of today\n1 2 3\n"), expected);
+}
+
+/// As a `.pts` begins; it was told to have a value too few.
+#[test]
+fn a_count_before_the_points_is_told_as_such() {
+    let (place, fault) = error("18300\n1 2 3\n");
+    assert_eq!((place, &fault), (Place::Line(1), &Fault::CountLine { found: "18300".into() }));
+    assert!(fault.to_string().contains(".pts begins with: remove it"), "{fault}");
+}
+
+#[test]
 fn faults_are_named_by_line_and_column() {
     let not_a_number = |found: &str| Fault::NotANumber { found: found.into() };
     let column = |line, column| Place::Column { line, column };

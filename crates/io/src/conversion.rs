@@ -1,0 +1,45 @@
+//! What to do with a file that is not read.
+
+/// By the extension, in lower case, as the end of a sentence.
+pub(crate) fn remedy(extension: &str) -> &'static str {
+    match extension {
+        "npy" | "npz" => {
+            "write its points as text (`numpy.savetxt(\"scan.xyz\", points)`), or give the array in Python"
+        }
+        "las" | "laz" | "e57" => "convert it to .ply or .pcd with CloudCompare or PDAL",
+        "glb" | "gltf" | "dae" | "3mf" => {
+            "convert it to .stl, .obj or .ply with MeshLab, assimp or trimesh"
+        }
+        "step" | "stp" | "iges" | "igs" => "export it as .stl from a CAD program such as FreeCAD",
+        "png" | "tif" | "tiff" | "exr" => {
+            "make an organised .pcd of a depth image, or in Python points of rows x columns x 3"
+        }
+        "db3" | "bag" => "convert it to .mcap, and name a scan of it, such as run.mcap#/points@1.5",
+        "json" | "toml" | "yaml" => {
+            "it is neither a cloud nor a mesh: give the files that it names"
+        }
+        "urdf" | "srdf" | "xacro" => {
+            "it is a whole robot: give a mesh of one link, or ask about the robot"
+        }
+        "asc" | "pts" | "xyzn" | "xyzrgb" | "tsv" | "dat" => {
+            "rename it to .xyz if each of its lines is a point, and convert it otherwise"
+        }
+        "vtk" | "vtp" | "vtu" => "export it as .ply or .csv from ParaView",
+        "" => "give it the extension of its format",
+        _ => "convert it",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_binary_file_is_not_told_to_be_renamed() {
+        for extension in ["npy", "las", "e57", "glb", "step", "png", "db3", "json", "urdf", "dae"] {
+            let remedy = remedy(extension);
+            assert!(!remedy.contains("rename") && remedy != "convert it", "{extension}: {remedy}");
+        }
+        assert!(remedy("asc").contains("rename it to .xyz"));
+    }
+}
