@@ -16,6 +16,16 @@ pub(crate) fn undecided(by: Undecided) -> String {
     with(by.to_string(), (by == Undecided::Enclosed).then_some("--sensor-pose"))
 }
 
+/// The same where `--sensor-pose` may have been given, which need not be said twice.
+pub(crate) fn undecided_from(by: Undecided, sensor_is_placed: bool) -> String {
+    if by == Undecided::Enclosed && sensor_is_placed {
+        return "one surface is all around the other, and where the sensor stood does not tell whether it is \
+                hollow or solid: look from elsewhere, or close the mesh"
+            .to_owned();
+    }
+    undecided(by)
+}
+
 /// An error with its causes, and the option that mends it.
 pub(crate) fn error(error: &anyhow::Error) -> String {
     let option = error.chain().find_map(|cause| {

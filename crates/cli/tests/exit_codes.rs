@@ -63,6 +63,7 @@ fn wrong_usage_is_2() {
         &["query", "floor.pcd", "box.obj", "--pose", "p.txt", "--translate", "1,2,3"],
         &["query", "floor.pcd", "box.obj", "--unit", "furlong"],
         &["query", "floor.pcd", "box.obj", "--outliers", "0,3"],
+        &["query", "floor.pcd", "box.obj", "--outliers", "8,-3"],
         &["query", "floor.pcd", "box.obj", "--min-range=-1"],
         &["query", "floor.pcd", "box.obj", "--collision-map", "0"],
         &["query", "floor.pcd", "box.obj", "--seed", "3"],

@@ -45,6 +45,29 @@ fn says_whether_a_mesh_is_closed_and_which_unit_it_may_have() {
     assert!(text.contains("open: 3 edges"), "{text}");
 }
 
+/// Only meshes were told that they may be in millimetres.
+#[test]
+fn a_cloud_in_millimetres_was_laser_scanned_from_afar() {
+    let inputs = Inputs::new();
+    let mut cloud = support::floor();
+    cloud.points.iter_mut().for_each(|point| point.coords *= 1000.0);
+    cloudtouch_io::write_cloud_pcd(inputs.path("mm.pcd"), &cloud).unwrap();
+    let text = inputs.run(&["info", "mm.pcd"]).quiet(0).stdout();
+    assert!(text.contains("\nunit        1414 m across and 51.2 m from point to point"), "{text}");
+    assert!(
+        text.contains("--cloud-unit mm, or cm?") && text.contains("spacing     51.17 m"),
+        "{text}"
+    );
+    for (file, options) in [("mm.pcd", &["--cloud-unit", "mm"][..]), ("floor.pcd", &[])] {
+        let text = inputs.run(&[&["info", file], options].concat()).quiet(0).stdout();
+        assert!(!text.contains("unit  "), "{text}");
+    }
+    // An airborne scan, in the coordinates of its map.
+    cloud.points.iter_mut().for_each(|point| point.coords.x += 4e5);
+    cloudtouch_io::write_cloud_pcd(inputs.path("map.pcd"), &cloud).unwrap();
+    assert!(!inputs.run(&["info", "map.pcd"]).quiet(0).stdout().contains("unit  "));
+}
+
 #[test]
 fn a_mesh_of_one_collapsed_face_was_watertight() {
     let inputs = Inputs::new();

@@ -17,6 +17,10 @@ fn a_margin_is_answered_in_json_and_in_words() {
     assert!(of("q05") <= of("q95") && line["clearance_m"].get("at_least").is_some(), "{line}");
     let words = inputs.query_at(0.1, &["--margin", "0.2"]).quiet(0).stdout();
     assert!(words.contains("P(nearer than 200 mm)"), "{words}");
+    for (margin, told) in [("30", "P(nearer than 30 m)"), ("0.0005", "P(nearer than 0.5 mm)")] {
+        let words = inputs.query_at(0.1, &["--margin", margin]).quiet(0).stdout();
+        assert!(words.contains(told), "{words}");
+    }
     // Nothing more than was asked for.
     let plain = inputs.query_at(0.1, &["--json"]).quiet(0).json_lines().remove(0);
     assert!(plain.get("margin").is_none() && plain["clearance_m"].get("q05").is_none(), "{plain}");

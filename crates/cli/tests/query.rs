@@ -51,6 +51,28 @@ fn an_object_in_a_room_that_was_scanned_from_its_origin_was_undecided() {
     assert!(unsaid.lines().all(|line| line.chars().count() <= 100), "{unsaid}");
     let said = ask(&["--sensor-pose", "0,0,0"]);
     assert!(said.contains("verdict                free"), "{said}");
+    // What was given is not asked for again.
+    let from_outside = ask(&["--sensor-pose", "0,0,3"]);
+    let words = from_outside.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("undecided: one surface is all around the other"), "{from_outside}");
+    assert!(!words.contains("(--sensor-pose)") && words.contains("look from elsewhere"), "{words}");
+}
+
+/// An array as numpy saves it was told by what reading it said of UTF-8.
+#[test]
+fn a_pose_that_is_no_text_is_told_as_such() {
+    let inputs = Inputs::new();
+    std::fs::write(inputs.path("pose.npy"), b"\x93NUMPY\x01\x00v\x00\xf0\x3f").unwrap();
+    for arguments in [["query", "--pose"], ["path", "--poses"]] {
+        let [command, option] = arguments;
+        let run = inputs.run(&[command, "floor.pcd", "box.obj", option, "pose.npy"]);
+        assert_eq!(run.code(), 1);
+        let told = run.stderr();
+        assert!(
+            told.contains("pose.npy: cannot read the p") && told.contains("it is no text"),
+            "{told}"
+        );
+    }
 }
 
 #[test]

@@ -132,6 +132,11 @@ mod with_feature {
                 &["#/floor@1", "#/floor@0", "#/none"].map(|scan| case(&format!("run.mcap{scan}"))),
             ),
         );
+        // Scans of two topics of one recording, told apart.
+        let table = inputs.run(&["batch", "cases.json"]).stdout();
+        for file in ["run.mcap#/floor@1 / box.obj", "run.mcap#/floor@0 / box.obj"] {
+            assert!(table.contains(file), "{table}");
+        }
         let lines = inputs.run(&["batch", "cases.json", "--json"]).json_lines();
         assert_eq!(lines[0]["verdict"], "uncertain");
         assert_eq!(lines[1]["verdict"], "free");

@@ -57,6 +57,35 @@ fn a_link_may_touch_the_scan() {
     assert!(slip.contains("--may-touch am") && slip.contains("post, arm"), "{slip}");
 }
 
+/// A pair with a misspelt link was passed over in silence, and so checked.
+#[test]
+fn a_link_of_the_srdf_that_is_not_there_is_warned_of() {
+    let inputs = inputs();
+    let srdf = |link: &str| {
+        let pair = format!("<disable_collisions link1='post' link2='{link}' reason='Never'/>");
+        inputs.write("arm.srdf", &format!("<robot name='arm'>{pair}</robot>"));
+        robot(&inputs, &json!({"shoulder": 0.0}), &["--self-collision", "--srdf=arm.srdf"])
+    };
+    srdf("arm").quiet(0);
+    let run = srdf("amr");
+    assert_eq!(run.code(), 0);
+    let told = run.stderr();
+    let part = "arm.srdf: disable_collisions names amr, no link of arm.urdf (post, arm): correct";
+    assert!(told.contains(part), "{told}");
+}
+
+/// It was told that no file is a mesh, with a robot full of them.
+#[test]
+fn the_unit_of_meshes_is_not_that_of_links() {
+    let inputs = inputs();
+    let run = robot(&inputs, &json!({"shoulder": 0.0}), &["--unit=mm"]);
+    let told = run.stderr();
+    assert_eq!(run.code(), 2);
+    for part in ["floor.pcd is a cloud", "--cloud-unit", "times the `scale` that the URDF gives"] {
+        assert!(told.contains(part), "{told}");
+    }
+}
+
 /// The lower edge of its end is at the floor where sin + 0.05 cos = 0.5, at 0.47 rad.
 #[test]
 fn an_arm_that_bends_down_touches_the_floor() {

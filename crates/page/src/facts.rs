@@ -38,7 +38,7 @@ fn place(placement: &Placement) -> Fact {
         text += &format!("; the object is {:.3} m outside of the scene", placement.box_gap_m);
     }
     if let Some(nearest) = placement.nearest_m {
-        text += &format!("; nearest point about {:.1} mm away", 1e3 * nearest);
+        text += &format!("; nearest point about {} away", words::length(nearest));
     }
     Fact::new("Sizes", text)
 }

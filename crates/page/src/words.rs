@@ -7,6 +7,11 @@ pub fn probability(p: f64) -> String {
     if p == 0.0 || p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}") }
 }
 
+/// A distance in millimetres, from a metre on in metres.
+pub fn length(metres: f64) -> String {
+    if metres.abs() < 1.0 { format!("{:.1} mm", 1e3 * metres) } else { format!("{metres:.2} m") }
+}
+
 /// How much of a body a depth image did not see, and why.
 pub fn unseen(unseen: &Unseen) -> String {
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
@@ -62,7 +67,7 @@ pub fn clearance(measured: Option<Clearance>, at_least: Option<f64>) -> String {
             )
         }
         None => match at_least.filter(|least| *least > 0.0) {
-            Some(least) => format!("at least {:.1} mm", 1e3 * least),
+            Some(least) => format!("at least {}", length(least)),
             None => "not computed".to_owned(),
         },
     }
@@ -79,6 +84,7 @@ mod tests {
         assert_eq!(of(-0.0092, true), "overlap of 9.2 mm or deeper, standard deviation 10.0 mm");
         assert_eq!(clearance(None, Some(0.0512)), "at least 51.2 mm");
         assert_eq!(clearance(None, Some(-0.1)), "not computed");
+        assert_eq!(clearance(None, Some(43.8512)), "at least 43.85 m");
         assert_eq!(clearance(None, None), "not computed");
     }
 }

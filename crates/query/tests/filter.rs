@@ -323,7 +323,7 @@ fn bad_settings_are_refused_before_any_point_is_looked_at() {
         let error = refuse(FilterSettings { veil: Some(VeilSettings { max_angle }), ..off() });
         assert!(matches!(error, FilterError::VeilAngle { .. }), "{error}");
     }
-    for (neighbors, deviations) in [(0, 3.0), (8, f64::NAN)] {
+    for (neighbors, deviations) in [(0, 3.0), (8, f64::NAN), (8, 0.0), (8, -3.0)] {
         let outliers = Some(OutlierSettings { neighbors, deviations });
         let error = refuse(FilterSettings { outliers, ..off() });
         assert!(matches!(error, FilterError::Outliers { .. }), "{error}");

@@ -54,12 +54,16 @@ fn is_passed_over(start: &BytesStart<'_>) -> Result<bool, RobotFault> {
     }
 }
 
-/// Without attributes of other namespaces, such as a comment of xacro.
+/// Without attributes of other namespaces, such as a comment of xacro. How fast a joint may move, which
+/// the schema asks for and many leave out, is not asked about.
 fn plain(start: &BytesStart<'_>) -> BytesStart<'static> {
     let mut kept = start.to_owned();
     kept.clear_attributes();
     let own = start.attributes().flatten().filter(|attribute| attribute.key.prefix().is_none());
     kept.extend_attributes(own);
+    if kept.name().as_ref() == b"limit" && matches!(kept.try_get_attribute("velocity"), Ok(None)) {
+        kept.push_attribute(("velocity", "0"));
+    }
     kept.into_owned()
 }
 

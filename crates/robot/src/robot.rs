@@ -26,6 +26,7 @@ pub struct Robot {
     pub(crate) tree: Tree,
     pub(crate) shapes: Vec<Shape>,
     unchecked: Vec<String>,
+    unknown: Vec<String>,
     /// Pairs of links that may touch, by their names in order.
     may_touch: BTreeSet<[String; 2]>,
 }
@@ -85,13 +86,15 @@ impl Robot {
         let unchecked =
             urdf.links.iter().filter(|of| of.collision.is_empty() && !of.visual.is_empty());
         let unchecked = unchecked.map(|link| link.name.clone()).collect();
-        let mut robot = Self { tree, shapes, unchecked, may_touch: BTreeSet::new() };
+        let unknown = Vec::new();
+        let mut robot = Self { tree, shapes, unchecked, unknown, may_touch: BTreeSet::new() };
         robot.allow_neighbors();
         Ok(robot)
     }
 
     /// Adds the pairs of links that an SRDF says not to check (`disable_collisions`). Links that
-    /// the robot does not have are passed over: many an SRDF is for several variants.
+    /// the robot does not have are passed over, for many an SRDF is for several variants, and are named by
+    /// [`Self::unknown_links`].
     ///
     /// # Errors
     /// When the file is missing or malformed.
@@ -99,6 +102,11 @@ impl Robot {
         let path = path.as_ref();
         let pairs = read_text(path).and_then(|text| disabled_pairs(&text));
         for [a, b] in pairs.map_err(|fault| fault.of(path))? {
+            for link in [&a, &b] {
+                if !self.tree.links.contains(link) && !self.unknown.contains(link) {
+                    self.unknown.push(link.clone());
+                }
+            }
             self.allow(a, b);
         }
         Ok(self)
@@ -117,6 +125,12 @@ impl Robot {
     /// Links that have `<visual>` geometry and no `<collision>`: no query sees them.
     pub fn unchecked_links(&self) -> &[String] {
         &self.unchecked
+    }
+
+    /// Links that an SRDF says not to check and that are not there: of another variant, or misspelt, so
+    /// that the pair that was meant is checked.
+    pub fn unknown_links(&self) -> &[String] {
+        &self.unknown
     }
 
     /// The packages that meshes of links are in, by the names in their `package://`.

@@ -105,6 +105,34 @@ fn meshes_are_found_by_package_file_and_path_and_scaled() {
     Robot::from_urdf(&urdf, &[]).unwrap();
 }
 
+/// Its schema asks for a velocity, which places nothing; the message named neither joint nor remedy.
+#[test]
+fn a_limit_without_velocity_was_no_urdf() {
+    let arm = Arm::default();
+    let limited = |more: &str| two_links(BOX, &format!("type='revolute'><limit {more}/>"));
+    let robot = arm.of(&limited("lower='-1' upper='2'")).unwrap();
+    assert_eq!(robot.joints()[0].limits, Some([-1.0, 2.0]));
+    let error = arm.of(&limited("")).unwrap_err().to_string();
+    assert!(error.contains("joint `j` has no <limit> with a range"), "{error}");
+}
+
+/// What an SRDF of MoveIt says beside its pairs names joints and frames that are no links.
+#[test]
+fn links_of_an_srdf_that_are_not_there_are_named() {
+    let arm = Arm::default();
+    let of = |pairs: &str| {
+        let more = "<virtual_joint name='v' type='fixed' parent_frame='world' child_link='a'/>\
+                    <passive_joint name='j'/><group name='g'><joint name='k'/></group>";
+        let srdf = arm.path("two.srdf");
+        std::fs::write(&srdf, format!("<robot name='two'>{more}{pairs}</robot>")).unwrap();
+        arm.of(&two_links(BOX, FIXED)).unwrap().with_srdf(srdf).unwrap()
+    };
+    let pair =
+        |link: &str| format!("<disable_collisions link1='a' link2='{link}' reason='Never'/>");
+    assert!(of(&pair("b")).unknown_links().is_empty());
+    assert_eq!(of(&(pair("c") + &pair("b") + &pair("c"))).unknown_links(), ["c"]);
+}
+
 #[test]
 fn positions_that_place_no_robot_are_refused() {
     let robot = Arm::default().robot();

@@ -11,7 +11,7 @@ use crate::answers::query::matrix;
 use crate::answers::text::labelled;
 use crate::doubt::{Doubt, READ_AS};
 use crate::load::Input;
-use crate::remedies::{self, undecided};
+use crate::remedies::{self, undecided_from};
 
 #[derive(Serialize)]
 struct Line<'a> {
@@ -91,8 +91,8 @@ pub(crate) fn json_line(
     Ok(remedies::in_json(serde_json::to_string(&line)?, &swept.warnings))
 }
 
-/// The same in a few lines.
-pub(crate) fn text(swept: &Swept, doubt: Option<&Doubt>) -> String {
+/// The same in a few lines; whether an option said where the sensor of the scene stood is known beside it.
+pub(crate) fn text(swept: &Swept, doubt: Option<&Doubt>, is_placed: bool) -> String {
     let [low, high] = swept.bounds.map(probability);
     let best = &swept.most_probable;
     let mut lines = vec![
@@ -101,7 +101,7 @@ pub(crate) fn text(swept: &Swept, doubt: Option<&Doubt>) -> String {
             probability(best.report.collision_probability)
         ),
         format!("                       at {}", place(best)),
-        labelled("verdict", &verdict(swept)),
+        labelled("verdict", &verdict(swept, is_placed)),
         format!("free for certain       until {} of the path", percent(swept.certified_free_until)),
     ];
     if let Some(first) = &swept.first {
@@ -126,12 +126,12 @@ pub(crate) fn text(swept: &Swept, doubt: Option<&Doubt>) -> String {
 }
 
 /// What holds of the whole path, for a page.
-pub(crate) fn facts(swept: &Swept, doubt: Option<&Doubt>) -> Vec<Fact> {
+pub(crate) fn facts(swept: &Swept, doubt: Option<&Doubt>, is_placed: bool) -> Vec<Fact> {
     let [low, high] = swept.bounds.map(probability);
     let best = &swept.most_probable;
     let likely = probability(best.report.collision_probability);
     let mut facts = vec![
-        Fact::new("Verdict on the whole path", verdict(swept)),
+        Fact::new("Verdict on the whole path", verdict(swept, is_placed)),
         Fact::new("Largest probability", format!("{likely} (within {low} .. {high})")),
         Fact::new("Where", place(best)),
         Fact::new(
@@ -154,8 +154,9 @@ fn columns() -> String {
     format!("read as {READ_AS}, for the file names none")
 }
 
-fn verdict(swept: &Swept) -> String {
-    let reason = swept.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
+fn verdict(swept: &Swept, is_placed: bool) -> String {
+    let reason = swept.undecided_by;
+    let reason = reason.map_or(String::new(), |by| format!(": {}", undecided_from(by, is_placed)));
     format!("{}{reason}", swept.verdict)
 }
 

@@ -3,6 +3,7 @@
 use std::io::{ErrorKind, Write as _};
 
 use anyhow::{Context, Result};
+use cloudtouch::geom::message::rounded;
 use cloudtouch::{Clearance, StageReport};
 pub(crate) use cloudtouch_page::words::probability;
 
@@ -19,6 +20,12 @@ pub(crate) fn to_stdout(text: &str) -> Result<()> {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         outcome => outcome.context("standard output: cannot be written"),
     }
+}
+
+/// A margin as it was asked for.
+pub(crate) fn margin(metres: f64) -> String {
+    let (value, unit) = if metres < 1.0 { (1e3 * metres, "mm") } else { (metres, "m") };
+    format!("{} {unit}", rounded(value))
 }
 
 /// A gap in millimetres with its standard deviation, or a dash when none was computed.

@@ -10,6 +10,7 @@ use crate::answers::print;
 use crate::margin::Nearness;
 use crate::remedies;
 use cloudtouch_cli::files::case::Case;
+use cloudtouch_io::recording::file_of;
 
 /// Widths of the columns, and what the last line is made of.
 pub(crate) struct Table {
@@ -33,7 +34,7 @@ impl Table {
         Self {
             id_width: width(&mut cases.iter().map(|(id, _)| print::one_line(id)), 4),
             label_width: width(&mut cases.iter().map(|(_, case)| label(case)), 5),
-            margin: margin.map(|margin| format!("P(<{:.0} mm)", 1e3 * margin)),
+            margin: margin.map(|margin| format!("P(<{})", print::margin(margin))),
             answers: 0,
             errors: 0,
             query_us: Vec::new(),
@@ -70,10 +71,9 @@ impl Table {
         self.query_us.push(report.stats.query_us);
         self.prepare_us.push(report.stats.prepare_us);
         let [low, high] = report.bounds.map(print::probability);
-        let files = case.as_ref().map_or(String::new(), |c| {
-            let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            format!("{} / {}", name(&c.scene), name(&c.object))
-        });
+        let files = case
+            .as_ref()
+            .map_or(String::new(), |c| format!("{} / {}", name(&c.scene), name(&c.object)));
         let reason = report
             .undecided_by
             .map_or(String::new(), |by| format!("  ({})", remedies::undecided(by)));
@@ -124,6 +124,13 @@ struct Warned {
     id: String,
     first: Warning,
     count: usize,
+}
+
+/// A file without its folder; a scan of a recording with its topic, in which slashes may be too.
+fn name(path: &Path) -> String {
+    let file = file_of(path);
+    let folder = file.parent().unwrap_or(Path::new(""));
+    path.strip_prefix(folder).unwrap_or(path).display().to_string()
 }
 
 fn label(case: &Result<Case>) -> String {

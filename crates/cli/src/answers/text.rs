@@ -3,26 +3,34 @@
 use std::fmt::Write as _;
 
 use cloudtouch::{Mode, Placement, Report, Stats, UnderPoses, Within};
-use cloudtouch_page::{Fact, words};
+use cloudtouch_page::{Fact, words, words::length};
 
-use crate::answers::print::probability;
+use crate::answers::print::{self, probability};
 use crate::margin::{Nearness, SHARE};
-use crate::remedies::{self, undecided};
+use crate::remedies::{self, undecided_from};
 
 /// A report for people shows this many contacts; JSON has them all.
 const CONTACTS_SHOWN: usize = 5;
 
-/// All that a person wants to know, of a scene that is a cloud with what it cannot tell; with what it
-/// cost if `shows_work`.
+/// What a report does not tell of its scene.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Scene {
+    /// It may not know what its sensor did not see.
+    pub is_cloud: bool,
+    /// Whether an option said where its sensor stood.
+    pub is_placed: bool,
+}
+
+/// All that a person wants to know, with what it cost if `shows_work`.
 pub(crate) fn text(
     report: &Report,
     placement: &Placement,
-    scene_is_cloud: bool,
+    scene: Scene,
     shows_work: bool,
 ) -> String {
-    let mut text = found(report);
+    let mut text = found(report, scene);
     // The paper's mode looks at no image either.
-    if scene_is_cloud && report.unseen.is_none() && report.mode == Mode::Calibrated {
+    if scene.is_cloud && report.unseen.is_none() && report.mode == Mode::Calibrated {
         let words = "not known (no rows and columns): what the sensor did not see counts as empty";
         let _ = writeln!(text, "{}", labelled("unseen", words));
     }
@@ -41,13 +49,11 @@ pub(crate) fn text(
 pub(crate) fn nearness(nearness: &Nearness) -> Fact {
     let Within { margin_m, bounds, probability: likely, .. } = nearness.within;
     let [low, high] = bounds.map(probability);
-    let [q05, q95] = nearness.interval.map(|m| 1e3 * m);
-    let label = format!("P(nearer than {:.0} mm)", 1e3 * margin_m);
+    let [q05, q95] = nearness.interval.map(length);
+    let label = format!("P(nearer than {})", print::margin(margin_m));
     let likely = probability(likely);
     let share = 100.0 * SHARE;
-    let text = format!(
-        "{likely}   (within {low} .. {high}); {share:.0} % between {q05:.1} and {q95:.1} mm"
-    );
+    let text = format!("{likely}   (within {low} .. {high}); {share:.0} % between {q05} and {q95}");
     Fact::new(label, text)
 }
 
@@ -70,13 +76,13 @@ pub(crate) fn line(Fact { label, text }: &Fact) -> String {
 /// What is known of surfaces too far apart to be measured.
 fn too_far(at_least_m: Option<f64>) -> String {
     match at_least_m.filter(|least| *least > 0.0) {
-        Some(least) => format!("clearance              at least {:.1} mm\n", 1e3 * least),
+        Some(least) => format!("clearance              at least {}\n", length(least)),
         None => "clearance              not computed\n".to_owned(),
     }
 }
 
 /// What was found, in a few lines.
-fn found(report: &Report) -> String {
+fn found(report: &Report, scene: Scene) -> String {
     let mut text = String::new();
     let [low, high] = report.bounds.map(probability);
     // Writing to a string cannot fail.
@@ -85,7 +91,9 @@ fn found(report: &Report) -> String {
         "collision probability  {}   (within {low} .. {high})",
         probability(report.collision_probability)
     );
-    let reason = report.undecided_by.map_or(String::new(), |by| format!(": {}", undecided(by)));
+    let reason = report
+        .undecided_by
+        .map_or(String::new(), |by| format!(": {}", undecided_from(by, scene.is_placed)));
     let _ = writeln!(text, "{}", labelled("verdict", &format!("{}{reason}", report.verdict)));
     match report.clearance_m {
         Some(c) => {
@@ -159,9 +167,9 @@ pub(crate) fn place(placement: &Placement) -> String {
     } else {
         String::new()
     };
-    let nearest = placement.nearest_m.map_or(String::new(), |nearest| {
-        format!("; nearest point about {:.1} mm away", 1e3 * nearest)
-    });
+    let nearest = placement
+        .nearest_m
+        .map_or(String::new(), |nearest| format!("; nearest point about {} away", length(nearest)));
     labelled("where", &format!("object in {object}, scene in {scene}{gap}{nearest}")) + "\n"
 }
 

@@ -49,7 +49,14 @@ pub(super) fn parse_outliers(text: &str) -> Result<OutlierSettings, String> {
             "{neighbors} neighbours are too many: 8 are usual, {MOST_NEIGHBORS} the most"
         )),
         Ok(neighbors) if neighbors > 0 => {
-            Ok(OutlierSettings { neighbors, deviations: numbers::finite(deviations)? })
+            let deviations = numbers::finite(deviations)?;
+            if deviations <= 0.0 {
+                return Err(format!(
+                    "{deviations} standard deviations would leave out much of every surface: give \
+                     them above 0; 3 are usual"
+                ));
+            }
+            Ok(OutlierSettings { neighbors, deviations })
         }
         _ => Err(format!("`{neighbors}` is not a number of neighbours: {form}")),
     }

@@ -63,7 +63,7 @@ fn run_by<P: body::Path>(
         let _ = write!(
             text,
             "\nPose {number} in full:\n{}\n",
-            answers::text::text(report, placement, false, shows_work)
+            answers::text::text(report, placement, Default::default(), shows_work)
         );
         if let Some(path) = &arguments.ply {
             picture::write(path, (&room.body, None), (&piano.body, None), pose, report)?;

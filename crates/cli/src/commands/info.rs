@@ -7,6 +7,7 @@ use cloudtouch::geom::{Point3, PointCloud, TriangleMesh};
 use cloudtouch::noise::{Neighborhoods, typical_spacing};
 use cloudtouch::{FilterSettings, Mesh, filter};
 use cloudtouch_io::Geometry;
+use cloudtouch_page::words;
 
 use crate::answers::print;
 use crate::args::InfoArguments;
@@ -15,6 +16,13 @@ use crate::sensor::{Chosen, suggestion};
 
 /// Points whose neighbours tell the spacing.
 const SPACING_SAMPLE: usize = 500;
+
+/// Of a sensor in a room or on a car neither: points that far apart over so much, m.
+const SUSPICIOUS_CLOUD_SIZE: f64 = 50.0;
+const SUSPICIOUS_SPACING: f64 = 0.5;
+
+/// Coordinates of maps are far larger than what is in them, m.
+const MAP_COORDINATE: f64 = 1e4;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
     let units = Units {
@@ -64,7 +72,15 @@ fn describe_cloud(cloud: &PointCloud) -> Result<String> {
             .filter(|p| (**p + center.coords - cloud.sensor_origin()).norm() < 0.1)
             .count();
         let spacing = typical_spacing(&Neighborhoods::try_new(local)?, SPACING_SAMPLE);
-        lines.push(format!("spacing     {:.1} mm (median)", 1e3 * spacing));
+        lines.push(format!("spacing     {} (median)", words::length(spacing)));
+        let size = (high - low).norm();
+        // A map in metres has its points as far apart, far from its origin.
+        let is_map = low.coords.amax().min(high.coords.amax()) > MAP_COORDINATE;
+        if size > SUSPICIOUS_CLOUD_SIZE && spacing > SUSPICIOUS_SPACING && !is_map {
+            lines.push(format!(
+                "unit        {size:.0} m across and {spacing:.1} m from point to point: --cloud-unit mm, or cm?"
+            ));
+        }
         if near > 0 {
             lines.push(match cloud.is_image() || cloud.sensor_pose.is_some() {
                 true => format!(

@@ -36,22 +36,24 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let scene = scene.refined_for(POSES, common.effort.refine())?;
     let object = object.refined_for(POSES, common.effort.refine())?;
     let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;
+    let is_placed = options.sensor_pose.is_some();
     if let Some(output) = &arguments.html {
         let limits = common.limits.read_limits();
         let bodies = [
             pages::body(&scene, Some(&arguments.scene), &limits)?,
             pages::body(&object, Some(&arguments.object), &limits)?,
         ];
+        let facts = answers::path::facts(&swept, doubt.as_ref(), is_placed);
         let (scene, object) = (&scene.body, &object.body);
         let ask = |pose: &Pose| query.run(scene, object, pose);
         let colored = |report, pose: &Pose| with_points_inside(report, (scene, object), pose);
-        pages::path::write(output, bodies, (&swept, doubt.as_ref()), &path, ask, colored)?;
+        pages::path::write(output, bodies, (&swept, facts), &path, ask, colored)?;
     }
     let text = if arguments.answer.json {
         answers::path::json_line(&swept, doubt.as_ref(), [&scene.input, &object.input])?
     } else {
         let bodies = [print::body("scene", &scene), print::body("object", &object)];
-        format!("{}\n{}", bodies.join("\n"), answers::path::text(&swept, doubt.as_ref()))
+        format!("{}\n{}", bodies.join("\n"), answers::path::text(&swept, doubt.as_ref(), is_placed))
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(arguments.answer.exit_code(swept.verdict, false))

@@ -126,10 +126,14 @@ fn run_by<P: body::Path>(
         let answer = Answer { report, placement, pose, details, nearness, doubt };
         answer.json_line("query", [&scene.input, &object.input])?
     } else {
+        let of_scene = answers::text::Scene {
+            is_cloud: !scene.is_mesh(),
+            is_placed: options.sensor_pose.is_some(),
+        };
         let mut parts = vec![
             print::body("scene", &scene),
             print::body("object", &object),
-            answers::text::text(&report, &placement, !scene.is_mesh(), shows_work),
+            answers::text::text(&report, &placement, of_scene, shows_work),
         ];
         parts.extend(more.iter().map(answers::text::line));
         parts.extend(slopes.as_ref().map(answers::gradient::text));

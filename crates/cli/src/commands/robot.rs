@@ -32,6 +32,16 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     check_packages(arguments, &robot)?;
     if let Some(srdf) = &arguments.robot.srdf {
         robot = robot.with_srdf(srdf)?;
+        if !robot.unknown_links().is_empty() {
+            tracing::warn!(
+                "{}: disable_collisions names {}, no link of {} ({}): correct the name, unless it is of \
+                 another variant of the robot",
+                srdf.display(),
+                robot.unknown_links().join(", "),
+                arguments.robot.urdf.display(),
+                robot.links().join(", ")
+            );
+        }
     }
     // Wrong positions are told before a large scan is read.
     let named = || arguments.robot.joints.display().to_string();
@@ -43,6 +53,13 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     check_links(arguments, &robot)?;
     let links = seen(arguments, &robot, &base)?;
     let scan = load::surroundings(&arguments.scan, links, options)?;
+    if common.unit.is_some() && !scan.is_mesh() {
+        let of_links = "meshes of links are in metres times the `scale` that the URDF gives them";
+        bail!(WrongUsage(format!(
+            "--unit is for a scan that is a mesh, and {} is a cloud: give --cloud-unit for it; {of_links}",
+            arguments.scan.display()
+        )));
+    }
     unused::check(options, &[(Role::Scene, scan.is_mesh())])?;
     let scan = scan.refined_for(path.len(), common.effort.refine())?;
     let unchecked = robot.unchecked_links().to_vec();

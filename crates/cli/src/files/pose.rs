@@ -8,7 +8,7 @@ use nalgebra::Matrix4;
 const EXCERPT: usize = 40;
 
 /// Numbers row by row; brackets, commas and line breaks only separate them, so that a JSON or
-/// numpy matrix can be pasted.
+/// numpy matrix can be pasted; what follows a `#` is a comment.
 ///
 /// # Errors
 /// When there are not sixteen numbers, or they are no rigid motion.
@@ -16,6 +16,7 @@ pub fn parse(text: &str) -> Result<Pose> {
     let separator = |c: char| c.is_whitespace() || "[](),;".contains(c);
     let mut numbers = Vec::new();
     for (line, content) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        let content = content.split('#').next().unwrap_or_default();
         for word in content.split(separator).filter(|w| !w.is_empty()) {
             let number: f64 = word.parse().with_context(|| {
                 let found: String = word.chars().take(EXCERPT).collect();
@@ -44,6 +45,8 @@ mod tests {
         let json = "[[1,0,0,0.5],[0,1,0,0],[0,0,1,-2],[0,0,0,1]]";
         assert_eq!(parse(plain).unwrap(), parse(json).unwrap());
         assert_eq!(parse(plain).unwrap().translation().z, -2.0);
+        let commented = format!("# camera to base, 2026\n{plain}# end");
+        assert_eq!(parse(plain).unwrap(), parse(&commented).unwrap());
     }
 
     #[test]

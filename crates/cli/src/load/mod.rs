@@ -3,6 +3,7 @@
 pub(crate) mod path;
 pub(crate) mod pose;
 pub(crate) mod sensor_for;
+mod text;
 
 use std::path::Path;
 use std::sync::Arc;

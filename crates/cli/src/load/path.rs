@@ -4,14 +4,14 @@ use anyhow::{Context, Result};
 use cloudtouch::Path;
 use cloudtouch_cli::files::path::{self, PathText};
 
+use super::text;
 use crate::doubt::Doubt;
 
 /// The poses of a file, each joined to the next by a screw or by a straight way and slerp; and what is
 /// to be doubted of them, which has been warned of.
 pub(crate) fn read(file: &std::path::Path, is_screw: bool) -> Result<(Path, Option<Doubt>)> {
     let named = || file.display().to_string();
-    let text = std::fs::read_to_string(file)
-        .with_context(|| format!("{}: cannot read the path", file.display()))?;
+    let text = text::read(file, "path")?;
     let PathText { poses, unnamed } = path::parse(&text).with_context(named)?;
     let doubt = unnamed.as_ref().map(Doubt::of_unnamed);
     if let Some(doubt) = &doubt {

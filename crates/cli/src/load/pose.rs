@@ -6,8 +6,9 @@ use anyhow::{Context, Result};
 use cloudtouch::geom::Pose;
 use cloudtouch_cli::files::pose;
 
+use super::text;
+
 pub(crate) fn read(path: &Path) -> Result<Pose> {
-    let text = std::fs::read_to_string(path)
-        .with_context(|| format!("{}: cannot read the pose", path.display()))?;
+    let text = text::read(path, "pose")?;
     pose::parse(&text).with_context(|| format!("{}", path.display()))
 }

@@ -5,9 +5,8 @@ use std::path::Path;
 use anyhow::Result;
 use cloudtouch::geom::Pose;
 use cloudtouch::{AlongPath, QueryError, Report, Swept};
-use cloudtouch_page::{Body, MOST_VIEWS, Page, View};
+use cloudtouch_page::{Body, Fact, MOST_VIEWS, Page, View};
 
-use crate::doubt::Doubt;
 use crate::{answers, pages};
 
 /// A pose of the path that is shown.
@@ -32,11 +31,11 @@ fn insert(shown: &mut Vec<Shown>, at: &AlongPath, what: &str) {
 }
 
 /// Writes a page of the given poses of a path, which `ask` answers, and of the two places between
-/// them that the sweep found; `colored` tells which points of a report are to be seen.
+/// them that the sweep found, with what holds of the whole path; `colored` tells which points of a report are to be seen.
 pub(crate) fn write(
     output: &Path,
     [scene, object]: [Body; 2],
-    (swept, doubt): (&Swept, Option<&Doubt>),
+    (swept, summary): (&Swept, Vec<Fact>),
     path: &cloudtouch::Path,
     ask: impl Fn(&Pose) -> Result<Report, QueryError>,
     colored: impl Fn(Report, &Pose) -> Report,
@@ -78,7 +77,7 @@ pub(crate) fn write(
     });
     let page = Page {
         title: format!("{} along a path in {}", object.name, scene.name),
-        summary: answers::path::facts(swept, doubt),
+        summary,
         notes: notes.into_iter().collect(),
         views: views.collect(),
         bodies: vec![scene, object],

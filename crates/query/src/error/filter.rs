@@ -39,7 +39,8 @@ pub enum FilterError {
     },
     /// The outlier settings make no sense.
     #[error(
-        "outliers by {neighbors} neighbours and {} deviations: need at least one neighbour and a number",
+        "outliers by {neighbors} neighbours and {} deviations: need at least one neighbour, and deviations \
+         above 0",
         number(*deviations)
     )]
     Outliers {

@@ -1,7 +1,7 @@
 //! Why a body could not be prepared.
 
 use cloudtouch_bvh::TreeError;
-use cloudtouch_geom::message::number;
+use cloudtouch_geom::message::{number, rounded};
 use cloudtouch_geom::{MeshError, Vector3};
 use cloudtouch_noise::NoiseError;
 
@@ -44,7 +44,7 @@ pub enum PrepareError {
     #[error(
         "the noise is {} m (standard deviation) and the cloud {} m across: give the sensor's noise in \
          metres, such as iso:0.005 for 5 mm, and the unit of the cloud",
-        number(*std), number(*size)
+        rounded(*std), rounded(*size)
     )]
     NoiseBeyondSize {
         /// Median of the standard deviations, each the largest of its point, m.

@@ -75,7 +75,7 @@ impl FilterSettings {
             return Err(FilterError::VeilAngle { value });
         }
         if let Some(OutlierSettings { neighbors, deviations }) = self.outliers
-            && (neighbors == 0 || deviations.is_nan())
+            && (neighbors == 0 || deviations.is_nan() || deviations <= 0.0)
         {
             return Err(FilterError::Outliers { neighbors, deviations });
         }
@@ -108,7 +108,7 @@ impl Default for VeilSettings {
 pub struct OutlierSettings {
     /// How many neighbours the mean distance is taken over.
     pub neighbors: usize,
-    /// How many standard deviations above the mean of all points that distance may lie.
+    /// How many standard deviations above the mean of all points that distance may lie, above 0.
     pub deviations: f64,
 }
 
