@@ -1,5 +1,6 @@
 """Whatever layout and type an array has, it is taken for its numbers, or refused by name."""
 
+import pathlib
 import types
 
 import hypothesis.extra.numpy as arrays
@@ -38,6 +39,25 @@ def test_layouts_change_nothing(layout, dtype, plate):
     cloud = ct.Cloud(LAYOUTS[layout](points), sensor="iso:0.001")
     np.testing.assert_array_equal(cloud.points, plain.points)
     assert_same_report(answer(cloud, plate), answer(plain, plate))
+
+
+def test_files_meshes_and_half_precision_are_refused_with_what_to_give():
+    points = sheet(seed=3)
+    faces = np.arange(len(points) // 3 * 3).reshape(-1, 3)
+    of_trimesh = types.SimpleNamespace(vertices=points)
+    for source, error, says in [
+        ("scan.pcd", TypeError, "points is 'scan.pcd', the name of a file: give arrays, or call Cloud.read('scan.pcd'"),
+        (pathlib.Path("scan.pcd"), TypeError, "call Cloud.read('scan.pcd', sensor=...)"),
+        (of_trimesh, TypeError, "points is of the type SimpleNamespace: give its .vertices"),
+        (points.astype(np.float16), ValueError, "points has the type float16, of three digits"),
+    ]:
+        with pytest.raises(error) as refused:
+            ct.Cloud(source, sensor="iso:0.001")
+        assert says in str(refused.value)
+    with pytest.raises(TypeError, match=r"vertices is 'a.stl', the name of a file.* Mesh.read\('a.stl'\)"):
+        ct.Mesh("a.stl")
+    with pytest.raises(ValueError, match="vertices has the type float16"):
+        ct.Mesh(points.astype(np.float16), faces)
 
 
 def test_read_only_arrays_are_read_and_arrays_are_not_kept(plate):

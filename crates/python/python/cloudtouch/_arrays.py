@@ -106,6 +106,9 @@ def places(value: Any, name: str, count: int) -> list[int]:
 def _readable(array: npt.NDArray[Any], name: str) -> npt.NDArray[Any]:
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{name} has the type {array.dtype}: give numbers, float32 or float64")
+    if array.dtype.kind == "f" and array.dtype.itemsize < 4:
+        # A metre to half a millimetre, and four to two: a grid that no sensor has.
+        raise ValueError(f"{name} has the type {array.dtype}, of three digits: give float32 or float64")
     single = array.dtype.itemsize == 4 and array.dtype.kind == "f"
     # Aligned, and in the byte order of the machine.
     return np.require(array, dtype=np.float32 if single else np.float64, requirements="A")

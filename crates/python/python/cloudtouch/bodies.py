@@ -336,6 +336,7 @@ class Mesh:
     _body: _native.Body
 
     def __init__(self, vertices: Any, triangles: npt.ArrayLike | None = None) -> None:
+        _refuse_file(vertices, "vertices", "Mesh.read({})")
         if triangles is None:
             vertices, triangles = _faces(vertices)
         rows, image_size = _arrays.points(vertices, "vertices")
@@ -432,8 +433,13 @@ def _scan(
     refined: bool = False,
 ) -> tuple[npt.NDArray[Any], dict[str, Any]]:
     """Rows of points, and everything else that a cloud is made of, by its name."""
+    _refuse_file(points, "points", "Cloud.read({}, sensor=...)")
     if not isinstance(points, np.ndarray) and hasattr(points, "points"):
         points = points.points
+    elif hasattr(points, "vertices"):
+        # Of a mesh they would be few of its points, and nothing between them.
+        kind = type(points).__name__
+        raise TypeError(f"points is of the type {kind}: give its .vertices for a cloud, or Mesh({kind}) for a mesh")
     check_sensor(sensor, "sensor")
     rows, image_size = _arrays.points(points, "points")
     count = len(rows)
@@ -460,6 +466,12 @@ def _scan(
 def _told(arguments: dict[str, Any]) -> dict[str, Any]:
     """As the compiled half takes them."""
     return {**arguments, "robot": [(link.mesh._body, link.pose, link.padding) for link in arguments["robot"]]}
+
+
+def _refuse_file(value: Any, name: str, instead: str) -> None:
+    if isinstance(value, (str, bytes, os.PathLike)):
+        path = os.fspath(value)
+        raise TypeError(f"{name} is {path!r}, the name of a file: give arrays, or call {instead.format(repr(path))}")
 
 
 def _faces(source: Any) -> tuple[Any, Any]:
