@@ -44,7 +44,7 @@ fn a_box_through_the_floor_is_found_between_two_free_poses() {
     let other = path(&inputs, "through.json", &["--json"]).quiet(0).json_lines().remove(0);
     assert_eq!((&other["first"], &other["bounds"]), (first, &found["bounds"]));
     let text = path(&inputs, "through.json", &[]).quiet(0).stdout();
-    assert!(text.contains("in collision from      segment 1, t = 0.4"), "{text}");
+    assert!(text.contains("in collision from      segment 2, t = 0.4"), "{text}");
 }
 
 #[test]

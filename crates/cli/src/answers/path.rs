@@ -164,7 +164,8 @@ fn place(at: &AlongPath) -> String {
     let origin = origin(&at.pose);
     format!(
         "segment {}, t = {:.3} ({} of the path), origin {origin}",
-        at.segment,
+        // People count poses from 1, and a segment by the pose before it.
+        at.segment + 1,
         at.t,
         percent(at.share)
     )
