@@ -81,6 +81,10 @@ impl Robot {
         self.described.unchecked_links().to_vec()
     }
 
+    fn unknown_links(&self) -> Vec<String> {
+        self.described.unknown_links().to_vec()
+    }
+
     #[pyo3(signature = (a, b, /))]
     fn may_touch(&self, a: &str, b: &str) -> bool {
         self.described.may_touch(a, b)

@@ -97,6 +97,9 @@ def test_links_touch_one_another_where_that_is_asked(robot, folder, floor_under)
     (folder / "arm.srdf").write_text("<robot name='arm'><disable_collisions link1='left' link2='right'/></robot>")
     parts = {"parts": folder / "elsewhere"}
     tolerant = ct.Robot(folder / "arm.urdf", packages=parts, srdf=folder / "arm.srdf")
+    assert tolerant.unknown_links == ()
+    (folder / "slip.srdf").write_text("<robot name='arm'><disable_collisions link1='left' link2='rigth'/></robot>")
+    assert ct.Robot(folder / "arm.urdf", packages=parts, srdf=folder / "slip.srdf").unknown_links == ("rigth",)
     assert ct.RobotChecker(tolerant, floor_under, self_collision=True).check(ct.Query(), closed).verdict == "free"
 
 

@@ -94,6 +94,12 @@ class Robot:
         """Links that can be seen and have no ``<collision>`` geometry: no query knows of them."""
         return tuple(self._robot.unchecked_links())
 
+    @property
+    def unknown_links(self) -> tuple[str, ...]:
+        """Links that the SRDF disables and the robot lacks: of another variant, or misspelt, so that what was meant is
+        checked."""
+        return tuple(self._robot.unknown_links())
+
     def may_touch(self, a: str, b: str) -> bool:
         """Whether two links may touch: neighbours, those that never move against one another, and those of the SRDF."""
         return self._robot.may_touch(a, b)
