@@ -2,13 +2,13 @@
 
 use anyhow::Result;
 use cloudtouch::geom::Pose;
-use cloudtouch::{AlongPath, Contact, SweepStats, Swept, Undecided, Verdict, Warning};
+use cloudtouch::{AlongPath, Contact, Placement, SweepStats, Swept, Undecided, Verdict, Warning};
 use cloudtouch_page::Fact;
 use serde::Serialize;
 
 use crate::answers::print::probability;
 use crate::answers::query::matrix;
-use crate::answers::text::labelled;
+use crate::answers::text::{self, labelled};
 use crate::doubt::{Doubt, READ_AS};
 use crate::load::Input;
 use crate::remedies::{self, undecided_from};
@@ -24,6 +24,7 @@ struct Line<'a> {
     first: Option<First<'a>>,
     certified_free_until: f64,
     stats: SweepStats,
+    placement: Placement,
     scene: &'a Input,
     object: &'a Input,
 }
@@ -67,7 +68,7 @@ impl<'a> From<&'a AlongPath> for Place<'a> {
 }
 
 pub(crate) fn json_line(
-    swept: &Swept,
+    (swept, placement): (&Swept, Placement),
     doubt: Option<&Doubt>,
     [scene, object]: [&Input; 2],
 ) -> Result<String> {
@@ -85,6 +86,7 @@ pub(crate) fn json_line(
             .map(|first| First { at: (&first.at).into(), not_before: first.not_before }),
         certified_free_until: swept.certified_free_until,
         stats: swept.stats,
+        placement,
         scene,
         object,
     };
@@ -92,7 +94,11 @@ pub(crate) fn json_line(
 }
 
 /// The same in a few lines; whether an option said where the sensor of the scene stood is known beside it.
-pub(crate) fn text(swept: &Swept, doubt: Option<&Doubt>, is_placed: bool) -> String {
+pub(crate) fn text(
+    (swept, placement): (&Swept, &Placement),
+    doubt: Option<&Doubt>,
+    is_placed: bool,
+) -> String {
     let [low, high] = swept.bounds.map(probability);
     let best = &swept.most_probable;
     let mut lines = vec![
@@ -101,6 +107,7 @@ pub(crate) fn text(swept: &Swept, doubt: Option<&Doubt>, is_placed: bool) -> Str
             probability(best.report.collision_probability)
         ),
         format!("                       at {}", place(best)),
+        text::place(placement).trim_end().to_owned(),
         labelled("verdict", &verdict(swept, is_placed)),
         format!("free for certain       until {} of the path", percent(swept.certified_free_until)),
     ];

@@ -158,7 +158,8 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
         100.0 * checked.certified_free_until
     );
     if let Some(at) = &checked.stopped {
-        let _ = writeln!(text, "then                   segment {}, t = {:.3}", at.segment, at.t);
+        let _ =
+            writeln!(text, "then                   segment {}, t = {:.3}", at.segment + 1, at.t);
         if let Some(pair) = &at.pair {
             text += &described("worst pair there", pair, checked.given.first());
         } else if let Some(near) = &at.nearest {
@@ -171,7 +172,8 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
         }
     }
     if let Some(at) = &checked.later {
-        let _ = writeln!(text, "later                  segment {}, t = {:.3}", at.segment, at.t);
+        let _ =
+            writeln!(text, "later                  segment {}, t = {:.3}", at.segment + 1, at.t);
         let told = |pair| described("worst pair there", pair, checked.given.first());
         text += &at.pair.as_ref().map_or(String::new(), told);
     }

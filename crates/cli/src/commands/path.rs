@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use cloudtouch::geom::Pose;
-use cloudtouch::{Cloud, Query};
+use cloudtouch::{BodyRef, Cloud, Query};
 
 use crate::answers::print;
 use crate::args::PathArguments;
@@ -49,11 +49,21 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
         let colored = |report, pose: &Pose| with_points_inside(report, (scene, object), pose);
         pages::path::write(output, bodies, (&swept, facts), &path, ask, colored)?;
     }
+    let placement =
+        BodyRef::from(&scene.body).placement((&object.body).into(), &swept.most_probable.pose);
     let text = if arguments.answer.json {
-        answers::path::json_line(&swept, doubt.as_ref(), [&scene.input, &object.input])?
+        answers::path::json_line(
+            (&swept, placement),
+            doubt.as_ref(),
+            [&scene.input, &object.input],
+        )?
     } else {
         let bodies = [print::body("scene", &scene), print::body("object", &object)];
-        format!("{}\n{}", bodies.join("\n"), answers::path::text(&swept, doubt.as_ref(), is_placed))
+        format!(
+            "{}\n{}",
+            bodies.join("\n"),
+            answers::path::text((&swept, &placement), doubt.as_ref(), is_placed)
+        )
     };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(arguments.answer.exit_code(swept.verdict, false))

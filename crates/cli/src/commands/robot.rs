@@ -13,7 +13,7 @@ use crate::answers::print;
 use crate::answers::robot::Asked;
 use crate::answers::scene::Bodies;
 use crate::args::RobotArguments;
-use crate::body::{Body, PreparedCloud as _};
+use crate::body::Body;
 use crate::load::{self, Role};
 use crate::usage::WrongUsage;
 use crate::{answers, unused};
@@ -87,7 +87,11 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         boxes: boxes.iter().map(|(name, corners)| (name.as_str(), *corners)).collect(),
     });
     let bodies: Vec<Bodies<'_>> = bodies.collect();
-    let words = words + &bodies.first().map_or(String::new(), answers::robot::place);
+    let base = match arguments.robot.base_pose {
+        Some(_) => "",
+        None => "base                   not given: at the origin of the scan (--base-pose)\n",
+    };
+    let words = words + base + &bodies.first().map_or(String::new(), answers::robot::place);
     let (text, verdict, failed) = if let ([joints], [bodies]) = (&path[..], &bodies[..]) {
         let checked = checker.check(&query, joints)?;
         let text = if arguments.answer.json {
