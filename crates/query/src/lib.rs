@@ -38,7 +38,7 @@ pub use filter::{
 pub use judge::{
     CROSSING_KNOTS, ContactEvidence, DEVIATION_KNOTS, DOUBT_KNOTS, EXTENT_KNOTS, EXTENT_NOISES,
     Judge, MISCLASSIFIED_KNOTS, NOISE_KNOTS, ODDS_KNOTS, OverDoubt, OverExtent, OverGeometry,
-    WITHIN_KNOTS, between_knots, sharp_extent,
+    WITHIN_KNOTS, WITHIN_NOISES, between_knots, sharp_extent,
 };
 pub use mesh::Mesh;
 pub use mode::Mode;

@@ -116,9 +116,15 @@ impl Method for Ours {
                 return Ok(Some(Said::from(&query.run(&a, moving, a_from_b)?)));
             }
             let start = Instant::now();
-            let (_, within) = query.within(&a, moving, a_from_b, margin)?;
+            let (report, within) = query.within(&a, moving, a_from_b, margin)?;
             let (probability, bounds) = (Some(within.probability), Some(within.bounds));
-            Ok(Some(Said { probability, bounds, ..Said::score(within.deviations, start) }))
+            let evidence = report.evidence;
+            Ok(Some(Said {
+                probability,
+                bounds,
+                evidence,
+                ..Said::score(within.deviations, start)
+            }))
         }))
     }
 }

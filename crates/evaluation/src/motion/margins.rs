@@ -1,9 +1,9 @@
 //! How likely bodies are within a margin of each other, against how often they are.
 
-use anyhow::{Context, Result, anyhow};
-use cloudtouch::WITHIN_KNOTS;
+use anyhow::{Context, Result};
+use cloudtouch::{WITHIN_KNOTS, WITHIN_NOISES};
 
-use crate::answers::{Answers, Pair, Question, Row};
+use crate::answers::{Answers, Pair, Question, Row, Said};
 use crate::measures::{Axis, SurfaceSample, fit_surface};
 use crate::methods::Ours;
 use crate::report::{Findings, Section, Table, Target};
@@ -19,7 +19,7 @@ const MARGIN: &str = "The bodies of the sweep's scenes, at its poses and noises,
 are nearer to one another than a margin. *Nearer*: share of the poses where the exact surfaces are. \
 *ECE*: expected calibration error with what chance alone makes of it taken off, as for collisions; \
 *worst family*: the same of the ordinary family where it is largest. The log odds of margins were \
-fitted on other draws of the same families, at 3 and 10 cm.";
+fitted on other draws of the same families.";
 
 /// Log odds at the knots fitted to some draws, printed.
 pub(super) fn fit(draws: u32, poses: usize) -> Result<()> {
@@ -44,23 +44,25 @@ fn name(margin: f64) -> String {
     format!("{:.0} cm", 100.0 * margin)
 }
 
-/// Log odds at the knots, by answers about the wider margins.
-fn fit_margins(answers: &Answers) -> Result<[f64; WITHIN_KNOTS.len()]> {
-    let mut samples: Vec<SurfaceSample<1>> = Vec::new();
-    for margin in MARGINS.into_iter().skip(1) {
+/// Log odds at the knots, for each noise.
+fn fit_margins(answers: &Answers) -> Result<Vec<Vec<f64>>> {
+    let mut samples: Vec<SurfaceSample<2>> = Vec::new();
+    for margin in MARGINS {
         let method = answers.index(&name(margin)).context("a margin that was asked about")?;
         for (question, said) in &answers.rows {
-            let deviations = said[method].context("an answer")?.score;
+            let Said { score, evidence, .. } = said[method].context("an answer")?;
+            let noise = evidence.context("an answer with evidence")?.noise_over_spacing;
             let came = question.signed_distance < margin;
-            samples.push(SurfaceSample { at: [-deviations], came, weight: 1.0 });
+            samples.push(SurfaceSample { at: [noise, -score], came, weight: 1.0 });
         }
     }
     let mut nearness = WITHIN_KNOTS.map(|z| -z);
     nearness.reverse();
-    let axis = Axis { knots: &nearness, usual: Some(2.0) };
-    let mut fitted = fit_surface(&samples, [axis], &[]);
-    fitted.reverse();
-    fitted.try_into().map_err(|_| anyhow!("a value for each knot"))
+    let noise = Axis { knots: &WITHIN_NOISES, usual: None };
+    let nearness = Axis { knots: &nearness, usual: Some(2.0) };
+    let fitted = fit_surface(&samples, [noise, nearness], &[]);
+    let of_noise = |values: &[f64]| values.iter().rev().copied().collect();
+    Ok(fitted.chunks(WITHIN_KNOTS.len()).map(of_noise).collect())
 }
 
 fn margins(answers: &Answers) -> Findings {
@@ -103,8 +105,18 @@ fn within(answers: &Answers, margin: f64) -> Answers {
 mod tests {
     use std::time::Instant;
 
+    use cloudtouch::ContactEvidence;
+
     use super::*;
-    use crate::answers::{Said, tests::question};
+    use crate::answers::tests::question;
+
+    const EVIDENCE: ContactEvidence = ContactEvidence {
+        deviations: 2.0,
+        crossing: 0.0,
+        extent: None,
+        misclassified: None,
+        noise_over_spacing: 0.3,
+    };
 
     fn answers(stated: f64) -> Answers {
         let mut answers = Answers { methods: MARGINS.map(name).to_vec(), rows: Vec::new() };
@@ -115,7 +127,9 @@ mod tests {
                 let score = (distance - margin) / 0.01;
                 let probability =
                     if margin == 0.03 { stated } else { f64::from(distance < margin) };
-                Some(Said { probability: Some(probability), ..Said::score(score, Instant::now()) })
+                let evidence = Some(EVIDENCE);
+                let score = Said::score(score, Instant::now());
+                Some(Said { probability: Some(probability), evidence, ..score })
             };
             let question = Question { signed_distance: distance, ..question("a", 0, pose, false) };
             answers.push((question, MARGINS.map(said).to_vec())).unwrap();
@@ -137,10 +151,9 @@ mod tests {
 
     #[test]
     fn fitted_log_odds_fall_with_deviations() {
-        let fitted = fit_margins(&answers(0.1)).unwrap();
-        assert!(
-            fitted.is_sorted_by(|a, b| a >= b) && fitted[0] > 2.0 && fitted[8] < -2.0,
-            "{fitted:?}"
-        );
+        for fitted in fit_margins(&answers(0.1)).unwrap() {
+            let falls = fitted.is_sorted_by(|a, b| a >= b);
+            assert!(falls && fitted[0] > 2.0 && fitted[8] < -2.0, "{fitted:?}");
+        }
     }
 }

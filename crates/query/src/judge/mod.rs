@@ -25,8 +25,8 @@ pub use knots::{
 };
 pub use of_pair::sharp_extent;
 pub(crate) use of_pair::{JudgeOfPair, probability};
-pub use within::WITHIN_KNOTS;
 pub(crate) use within::log_odds_within;
+pub use within::{WITHIN_KNOTS, WITHIN_NOISES};
 
 /// What a probability rests on. Each number is comparable between scenes: none has a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

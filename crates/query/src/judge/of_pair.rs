@@ -101,10 +101,15 @@ impl JudgeOfPair {
         }
     }
 
+    /// Whether the extent has a say at any log odds.
+    pub(crate) fn counts_extent(&self) -> bool {
+        self.over_extent.is_some()
+    }
+
     /// Whether the extent has a say at such log odds by the place of contact, or at lower ones.
     pub(crate) fn may_change_with_extent(&self, by_place: f64) -> bool {
         let [.., most] = ODDS_KNOTS;
-        self.over_extent.is_some() && by_place < most
+        self.counts_extent() && by_place < most
     }
 
     /// What the extent makes of such log odds by the place of contact, where it may change them.

@@ -7,7 +7,7 @@ use cloudtouch_geom::Pose;
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::{ContactEvidence, probability};
-use crate::search::{Found, Looked, look_inside, search};
+use crate::search::{Found, Looked, WITH_EXTENT, WITHOUT_EXTENT, look_inside, search};
 use crate::stats::Stats;
 
 use super::classify::{Misclassified, ask_classifier};
@@ -60,7 +60,8 @@ pub(super) fn weigh<'a>(
         }
         decides(looked.deviations_given(deviations), clearness)
     };
-    let found = search((a, b), a_from_b, is_enough, stats)?;
+    let further = if judge.counts_extent() { WITH_EXTENT } else { WITHOUT_EXTENT };
+    let found = search((a, b), a_from_b, further, is_enough, stats)?;
     let deviations = looked.deviations_given(found.deviations);
     let crossing = found.crossings.clearness().ln_1p();
     let mut of_geometry = ContactEvidence {

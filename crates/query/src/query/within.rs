@@ -117,7 +117,8 @@ impl Query {
         let of = |beyond: f64| {
             let beyond = beyond.min(deviations);
             let collision = judge.with_extent(judge.log_odds_by_place(beyond, crossing), extent);
-            let log_odds = log_odds_within(beyond, margin, spacing, collision);
+            let blur = (noise_over_spacing, spacing);
+            let log_odds = log_odds_within(beyond, margin, blur, collision);
             probability(log_odds, settings.prior)
         };
         let clock = self.clock(Instant::now());

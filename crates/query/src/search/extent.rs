@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 
 use super::compare::facet::Whitening;
 use super::compare::meeting::{deviations_by_pose, squared_deviations};
-use super::run::{FURTHER_DEVIATIONS, Found};
+use super::run::Found;
 use super::visit::leaf::{Leaf, NoisyLeaf};
 use super::visit::leaves::Leaves;
 use super::wrench::Wrench;
@@ -90,7 +90,7 @@ impl Found<'_> {
         let least = self.deviations_by_pose();
         let window = self.window();
         // Where less is looked at than usual, that ends at the same deviations whatever the least are.
-        let of_window = if window < FURTHER_DEVIATIONS { -least } else { Wrench::zeros() };
+        let of_window = if window < self.further { -least } else { Wrench::zeros() };
         let mut all = Wrench::zeros();
         self.visit(facing, |piece| {
             let Counted { leaf, place, deviations, near, side } = piece;

@@ -21,8 +21,11 @@ use super::visit::leaves::Leaves;
 use super::visit::trees::Trees;
 use super::wrench::Wrench;
 
-/// Places that are more than this many deviations above the least are not looked at ...
-pub(super) const FURTHER_DEVIATIONS: f64 = 2.5;
+/// Places that are more than this many deviations above the least are not looked at, where it counts over how many
+/// pieces of surface the bodies are as near, ...
+pub(crate) const WITH_EXTENT: f64 = 2.5;
+/// ... and where it does not, ...
+pub(crate) const WITHOUT_EXTENT: f64 = 1.5;
 /// ... nor those beyond this, which have no contact that is reported.
 const CLEARLY_FREE: f64 = 4.5;
 
@@ -53,22 +56,26 @@ pub(crate) struct Found<'a> {
     around: Around,
     /// Memory for places of pieces in a leaf, to use again.
     places: Vec<usize>,
+    /// How many deviations above the least is looked.
+    pub(super) further: f64,
     /// Whether what was left out can change neither of these.
     pub is_complete: bool,
     /// No two pieces are nearer than this, m; negative where surfaces may cross.
     pub at_least: f64,
 }
 
-/// Looks at the pairs of leaves where the surfaces may touch until `is_enough` of the deviations
+/// Looks at the pairs of leaves where the surfaces may touch, up to so many deviations `further` than the least,
+/// until `is_enough` of the deviations
 /// and of the clearness of crossings, as far as found.
 pub(crate) fn search<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
+    further: f64,
     is_enough: impl Fn(f64, f64) -> bool,
     stats: &mut Stats,
 ) -> Result<Found<'a>, QueryError> {
-    let mut found =
-        Found { deviations: MOST_DEVIATIONS, at_least: f64::INFINITY, ..Found::default() };
+    let (deviations, at_least) = (MOST_DEVIATIONS, f64::INFINITY);
+    let mut found = Found { deviations, further, at_least, ..Found::default() };
     let motion = Motion::from(a_from_b);
     let mut trees = Trees::of(a, b);
     let outcome = visit_surfaces(trees.both(), a_from_b, SOUGHT, |pair| {
@@ -92,7 +99,7 @@ impl<'a> Found<'a> {
     /// Places with more deviations than this change nothing: where all are as good as free, only the
     /// least counts.
     pub(crate) fn deviations_of_interest(&self) -> f64 {
-        self.deviations_up_to(FURTHER_DEVIATIONS, CLEARLY_FREE)
+        self.deviations_up_to(self.further, CLEARLY_FREE)
     }
 
     /// So many more than the least, but no more than `most` where the least are not.
@@ -262,7 +269,7 @@ mod tests {
             let offset = Vector3::new(0.0, 0.3 * offset, offset);
             let pose = Pose::from_translation_rpy(offset, [turn, 0.3, 0.0]);
             let found =
-                search((BodyRef::Cloud(&a), BodyRef::Cloud(&b)), &pose, |_, _| false, &mut Stats::default()).unwrap();
+                search((BodyRef::Cloud(&a), BodyRef::Cloud(&b)), &pose, WITH_EXTENT, |_, _| false, &mut Stats::default()).unwrap();
             prop_assert!(found.is_complete);
             let (deviations, clearness) = brute_force(&a, &b, &pose);
             prop_assert!((found.deviations - deviations).abs() < 1e-9);

@@ -222,6 +222,7 @@ mod tests {
     use crate::classifier::Clock;
     use crate::cloud::{Cloud, CloudSettings};
     use crate::mesh::Mesh;
+    use crate::search::WITH_EXTENT;
     use crate::search::swept::greatest_depth;
     use crate::search::{look_inside, search};
 
@@ -275,7 +276,7 @@ mod tests {
                 let turned = UnitQuaternion::new(angular * s);
                 let about = pivot.coords + linear * s - turned * pivot.coords;
                 let there = Pose::from_translation_rotation(about, turned).after(&local);
-                let found = search(pair, &there, |_, _| false, &mut stats).unwrap();
+                let found = search(pair, &there, WITH_EXTENT, |_, _| false, &mut stats).unwrap();
                 prop_assert!(found.deviations >= reach.deviations * (1.0 - 1e-9), "{s}");
                 let clearness = found.crossings.clearness();
                 prop_assert!(clearness <= reach.clearness * (1.0 + 1e-9) + 1e-9,
