@@ -9,8 +9,11 @@ pub const WITHIN_KNOTS: [f64; 9] = [-6.0, -2.5, -1.2, -0.4, 0.4, 1.2, 2.3, 4.0, 
 pub const WITHIN_NOISES: [f64; 3] = [0.0, 0.5, 2.0];
 
 /// Made by `cargo xtask motion --draws 3 --poses 20 --fit`, on generated scenes at margins of 1, 3 and 10 cm.
-const WITHIN: [[f64; 9]; WITHIN_NOISES.len()] =
-    [[16.223, 8.26, 5.241, 3.227, 0.862, -0.963, -2.855, -4.788, -7.129]; 3];
+const WITHIN: [[f64; 9]; WITHIN_NOISES.len()] = [
+    [14.137, 7.23, 4.726, 3.895, 1.676, -0.998, -3.089, -6.65, -10.95],
+    [13.187, 6.429, 3.632, 2.148, 0.028, -2.098, -4.158, -7.43, -11.366],
+    [10.287, 4.22, 2.693, 1.689, -2.854, -5.445, -7.394, -9.79, -12.602],
+];
 
 /// A margin of this share of a spacing counts half: one much narrower is as good as none, and what
 /// tells of a collision, surfaces that cross, tells of it.
