@@ -100,13 +100,13 @@ impl Prepared {
     pub(crate) fn sight(&self) -> Option<impl Fn(&Point3) -> Sight + '_> {
         let measured = (self.points(), self.sensor());
         let images: Vec<_> = self.views.iter().filter_map(|view| view.sight(measured)).collect();
+        let is_seen = !images.is_empty();
         let by_range = self.views.is_empty() && self.knows_unseen();
-        (by_range || !images.is_empty()).then(|| {
-            move |place: &Point3| {
-                let by_image = images.iter().map(|sight| sight(place)).min();
-                by_image.unwrap_or_else(|| range::sight(&self.scans.ranges, &(place + self.origin)))
-            }
-        })
+        let sight = move |place: &Point3| {
+            let by_image = images.iter().map(|sight| sight(place)).min();
+            by_image.unwrap_or_else(|| range::sight(&self.scans.ranges, &(place + self.origin)))
+        };
+        (by_range || is_seen).then_some(sight)
     }
 
     /// Whether it may know that places were not seen.
