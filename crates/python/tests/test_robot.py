@@ -89,6 +89,12 @@ def test_the_link_that_touches_is_told(robot, floor_under):
     assert ct.RobotChecker(robot, floor_under, lifted(0.4)).check(ct.Query(), at(0.6)).verdict == "free"
 
 
+def test_boxes_show_where_the_base_is(robot, floor_under):
+    boxes = ct.RobotChecker(robot, floor_under, base_pose=lifted(1.0)).boxes(at(0.0))
+    np.testing.assert_allclose(boxes["bar"], [[0, -0.02, 1.48], [1, 0.02, 1.52]], atol=1e-9)
+    assert boxes["surroundings"].shape == (2, 3)
+
+
 def test_links_touch_one_another_where_that_is_asked(robot, folder, floor_under):
     closed = at(0.0, 0.005)
     assert ct.RobotChecker(robot, floor_under).check(ct.Query(), closed).verdict == "free"

@@ -29,6 +29,19 @@ def test_pairs_that_may_touch_are_told_with_their_report(scene, floor, plate):
     assert min(abs(report.probability - pair.report.probability) for report in alone) < 1e-3
 
 
+def test_where_bodies_are_and_what_is_to_be_said_of_them_is_told_where_all_is_free(scene, plate):
+    low, high = scene.boxes()["plate"]
+    scene.set_pose("plate", lifted(0.6))
+    moved = scene.boxes()["plate"] - [low, high]
+    np.testing.assert_allclose(moved, [[0, 0, 0.5]] * 2, atol=1e-9)
+    assert scene.check(ct.Query()).warnings == ()
+    ahead = np.random.default_rng(5).uniform([-0.5, -0.5, 1.0], [0.5, 0.5, 1.001], size=(2000, 3))
+    scene.add("scan", ct.Cloud(ahead, sensor="kinect"), lifted(3.0))
+    found = scene.check(ct.Query())
+    assert [warning.name for warning in found.warnings] == ["scan"] and found.verdict == "free"
+    assert "no image layout" in found.warnings[0].words
+
+
 def test_what_is_attached_moves_along(scene):
     scene.attach("plate", "table")
     scene.set_pose("table", lifted(0.9))

@@ -16,11 +16,11 @@ use std::sync::Arc;
 const NOISE: SensorModel = SensorModel::Isotropic { std: 0.002 };
 
 /// A table of 1 m, its top at z = 0, one point in each square of 2 cm.
-fn table() -> PointCloud {
+pub(crate) fn table() -> PointCloud {
     PointCloud::from_points(measured(&scene::plane_patch(1.0), 0.02, 0.002, 1))
 }
 
-fn tool() -> TriangleMesh {
+pub(crate) fn tool() -> TriangleMesh {
     scene::cuboid([0.1, 0.1, 0.2])
 }
 
@@ -29,12 +29,12 @@ fn scaled(cloud: &PointCloud, factor: f64) -> PointCloud {
     PointCloud { points, ..cloud.clone() }
 }
 
-fn scan(cloud: &PointCloud, mode: Mode) -> Scan {
+pub(crate) fn scan(cloud: &PointCloud, mode: Mode) -> Scan {
     Scan::of(cloud, NOISE, mode).expect("a good cloud")
 }
 
 /// Both paths say that they cannot tell, for this reason and with a warning of it.
-fn check(
+pub(crate) fn check(
     cloud: impl Fn(Mode) -> Scan,
     object: &Mesh,
     pose: &Pose,
@@ -300,32 +300,6 @@ fn what_lies_beyond_the_range_kept_read_free() {
     };
     assert!(unseen(at(0.4, 0.2, 0.1)).out_of_range > 0.9);
     assert_eq!(unseen(at(0.1, 0.1, 0.1)).share(), 0.0);
-}
-
-/// In the coordinates of a map half of the points fell on others, and the rest was up to 25 cm off.
-#[test]
-fn coordinates_of_a_map_in_single_precision_read_free() {
-    let map = Vector3::new(512_345.0, 5_403_210.0, 300.0);
-    let single = |p: &Point3| p.map(|x| f64::from(x as f32));
-    let in_map = |p: &Point3| p + map;
-    let moved = |of: &dyn Fn(&Point3) -> Point3| {
-        PointCloud::from_points(table().points.iter().map(of).collect())
-    };
-    let rounded = moved(&|p| single(&in_map(p)));
-    let pose = Pose::from_translation(map + Vector3::new(0.1, 0.2, 0.3));
-    let told = |w: &Warning| matches!(w, Warning::Rounded { step_m, .. } if *step_m == 0.5);
-    check(|mode| scan(&rounded, mode), &mesh(&tool()), &pose, Undecided::Rounded, told);
-    let as_measured = scan(&moved(&in_map), Mode::Calibrated);
-    let free = ask(Mode::Calibrated, &as_measured, &mesh(&tool()), &pose);
-    assert_eq!((free.verdict, free.warnings.len()), (Verdict::Free, 0), "{free:?}");
-    // A mesh too, unless so little does not matter for its size.
-    let in_file = |mesh: &TriangleMesh| {
-        let vertices = mesh.vertices().iter().map(|p| single(&in_map(p))).collect();
-        Mesh::prepare(&TriangleMesh::try_new(vertices, mesh.triangles().to_vec()).unwrap()).unwrap()
-    };
-    let ball = in_file(&scene::sphere(2.0, 3));
-    let report = ask(Mode::Calibrated, &as_measured, &ball, &at(0.0, 0.0, 5.0));
-    assert_eq!(report.undecided_by, Some(Undecided::Rounded), "{report:?}");
 }
 
 /// Whatever frame the points are in: the camera is where the file says, its turn is seen from them.

@@ -1,8 +1,9 @@
 //! Clouds in map coordinates (metres east and north, in the millions) keep their millimetres.
 
-use crate::common::{AnyQuery, Asked, MODES, Scan, assert_sound, measured, mesh, prepare};
-use cloudtouch::geom::{Point3, Pose, Vector3};
-use cloudtouch::{Contact, Mode, Report};
+use crate::common::{AnyQuery, Asked, MODES, Scan, assert_sound, at, measured, mesh, prepare};
+use crate::slips::{check, scan, table, tool};
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::{Contact, Mesh, Mode, Report, Undecided, Verdict, Warning};
 use cloudtouch_testkit::scene;
 
 fn offset() -> Vector3 {
@@ -83,4 +84,30 @@ fn a_map_and_an_object_of_its_own() {
             assert!((p - q).abs() < 1e-6, "{mode:?}, gap {gap}: {p} and {q}");
         }
     }
+}
+
+/// In the coordinates of a map half of the points fell on others, and the rest was up to 25 cm off.
+#[test]
+fn coordinates_of_a_map_in_single_precision_read_free() {
+    let map = Vector3::new(512_345.0, 5_403_210.0, 300.0);
+    let single = |p: &Point3| p.map(|x| f64::from(x as f32));
+    let in_map = |p: &Point3| p + map;
+    let moved = |of: &dyn Fn(&Point3) -> Point3| {
+        PointCloud::from_points(table().points.iter().map(of).collect())
+    };
+    let rounded = moved(&|p| single(&in_map(p)));
+    let pose = Pose::from_translation(map + Vector3::new(0.1, 0.2, 0.3));
+    let told = |w: &Warning| matches!(w, Warning::Rounded { step_m, .. } if *step_m == 0.5);
+    check(|mode| scan(&rounded, mode), &mesh(&tool()), &pose, Undecided::Rounded, told);
+    let as_measured = scan(&moved(&in_map), Mode::Calibrated);
+    let free = ask(Mode::Calibrated, &as_measured, &mesh(&tool()), &pose);
+    assert_eq!((free.verdict, free.warnings.len()), (Verdict::Free, 0), "{free:?}");
+    // A mesh too, unless so little does not matter for its size.
+    let in_file = |mesh: &TriangleMesh| {
+        let vertices = mesh.vertices().iter().map(|p| single(&in_map(p))).collect();
+        Mesh::prepare(&TriangleMesh::try_new(vertices, mesh.triangles().to_vec()).unwrap()).unwrap()
+    };
+    let ball = in_file(&scene::sphere(2.0, 3));
+    let report = ask(Mode::Calibrated, &as_measured, &ball, &at(0.0, 0.0, 5.0));
+    assert_eq!(report.undecided_by, Some(Undecided::Rounded), "{report:?}");
 }

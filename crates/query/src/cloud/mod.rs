@@ -13,6 +13,7 @@ mod prepare;
 mod prepared;
 mod scans;
 mod settings;
+mod sight;
 mod surface;
 mod view;
 

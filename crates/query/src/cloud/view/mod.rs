@@ -10,7 +10,6 @@ use cloudtouch_geom::{Point3, Vector3};
 use cloudtouch_noise::SensorNoise;
 use nalgebra::UnitQuaternion;
 
-use crate::cloud::prepared::Prepared;
 use crate::cloud::view::raster::{Raster, Sight};
 use crate::filter::SelfMesh;
 
@@ -91,29 +90,6 @@ impl SingleView {
         let _looked = self.sight(measured)?;
         let settled = Self::new(Image { points: 0..0, ..self.image.clone() }, shift);
         Some(Self { raster: self.raster.clone(), ..settled })
-    }
-}
-
-impl Prepared {
-    /// What its scans know of places in the local frame: of depth images the one that knows most tells, and
-    /// without any how far returns were kept. `None` where nothing says what was not seen.
-    pub(crate) fn sight(&self) -> Option<impl Fn(&Point3) -> Sight + '_> {
-        let measured = (self.points(), self.sensor());
-        let images: Vec<_> = self.views.iter().filter_map(|view| view.sight(measured)).collect();
-        let is_seen = !images.is_empty();
-        let by_range = self.views.is_empty() && self.knows_unseen();
-        let sight = move |place: &Point3| {
-            let by_image = images.iter().map(|sight| sight(place)).min();
-            by_image.unwrap_or_else(|| range::sight(&self.scans.ranges, &(place + self.origin)))
-        };
-        (by_range || is_seen).then_some(sight)
-    }
-
-    /// Whether it may know that places were not seen.
-    pub(crate) fn knows_unseen(&self) -> bool {
-        let ranges = &self.scans.ranges;
-        let all_end = !ranges.is_empty() && ranges.iter().all(|range| range.most.is_finite());
-        !self.views.is_empty() || all_end
     }
 }
 

@@ -20,7 +20,7 @@ impl Range {
 }
 
 /// What scans know of a place in the frame of their file.
-pub(super) fn sight(scans: &[Range], place: &Point3) -> Sight {
+pub(in crate::cloud) fn sight(scans: &[Range], place: &Point3) -> Sight {
     if scans.iter().any(|scan| scan.holds(place)) { Sight::Seen } else { Sight::OutOfRange }
 }
 
