@@ -91,7 +91,7 @@ def test_a_depth_image_is_an_organised_cloud():
     ball = 0.05 * points / np.linalg.norm(points, axis=1, keepdims=True)
     hidden = ct.Query().run(seen, ct.Cloud(ball, sensor="iso:0.001"), lifted(1.5))
     assert (hidden.verdict, hidden.undecided_by) == ("undecided", "unseen")
-    assert hidden.unseen == 1.0 and any("camera saw nothing" in warning for warning in hidden.warnings)
+    assert hidden.unseen == 1.0 and any("sensor saw nothing" in warning for warning in hidden.warnings)
     fields = np.zeros((30, 40), dtype=[("x", "f4"), ("y", "f4"), ("z", "f4"), ("rgb", "u4")])
     for axis, name in enumerate("xyz"):
         fields[name] = image[..., axis]
