@@ -31,8 +31,10 @@ const EXCHANGED_MESHES_RATIO: f64 = 20.0;
 /// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
 /// a twenty-fifth of that size off.
 const FARTHEST_SIZES: f64 = 40.0;
-/// Coordinates of a mesh are not this part of either body apart.
+/// Coordinates of a mesh are not this part of either body apart, ...
 const COARSE: f64 = 0.02;
+/// ... nor those of a cloud, whose points scatter anyway.
+const COARSE_CLOUD: f64 = 0.1;
 /// Noise beyond this part of the other body had better be there: its fingers are a tenth of it.
 const LARGE_NOISE: f64 = 0.05;
 
@@ -65,10 +67,13 @@ pub(crate) fn doubts(
     warnings
 }
 
-/// A mesh whose corners are farther apart than they should be, beside a body of such a size, m.
+/// Coordinates that are farther apart than they should be, beside a body of such a size, m.
 fn coarse(body: Which, shape: Shape<'_>, smaller: f64) -> Option<Warning> {
-    let Shape::Mesh(mesh) = shape else { return None };
-    let step_m = mesh.rounded_to().filter(|step| *step > COARSE * smaller)?;
+    let (step, part) = match shape {
+        Shape::Mesh(mesh) => (mesh.rounded_to(), COARSE),
+        Shape::Cloud(cloud) => (cloud.makeup().step, COARSE_CLOUD),
+    };
+    let step_m = step.filter(|step| *step > part * smaller)?;
     Some(Warning::Rounded { body, step_m })
 }
 
@@ -77,20 +82,19 @@ pub(crate) fn of_body(body: Which, shape: Shape<'_>, limits: &Safeguards) -> Vec
     of_surface(body, shape, limits).chain(of_sensor(body, shape)).collect()
 }
 
-/// Whether its points or triangles span a surface, are all there, and where they were measured.
+/// Whether its points or triangles span a surface and are all there.
 fn of_surface(body: Which, shape: Shape<'_>, limits: &Safeguards) -> impl Iterator<Item = Warning> {
-    let (points, missing, step) = match shape {
-        Shape::Mesh(mesh) => ((!mesh.has_area()).then(|| 3 * mesh.triangle_count()), 0.0, None),
+    let (points, missing) = match shape {
+        Shape::Mesh(mesh) => ((!mesh.has_area()).then(|| 3 * mesh.triangle_count()), 0.0),
         Shape::Cloud(cloud) => {
-            let Makeup { is_line, distinct, missing, step, .. } = *cloud.makeup();
-            (is_line.then_some(distinct), missing, step)
+            let Makeup { is_line, distinct, missing, .. } = *cloud.makeup();
+            (is_line.then_some(distinct), missing)
         }
     };
     let none = points.map(|points| Warning::NoSurface { body, points });
     let missed =
         (missing > limits.max_missing).then_some(Warning::Missing { body, share: missing });
-    let rounded = step.map(|step_m| Warning::Rounded { body, step_m });
-    none.into_iter().chain(missed).chain(rounded)
+    none.into_iter().chain(missed)
 }
 
 /// How its points lie, and whether its sensor can have seen them; nothing of a mesh.
