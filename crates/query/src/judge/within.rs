@@ -47,7 +47,7 @@ mod tests {
         for of_noise in WITHIN {
             assert!(of_noise.is_sorted_by(|a, b| a >= b));
         }
-        assert!(log_odds_within(-0.4, 0.02, (0.2, 0.0), -1.5) > 0.0);
+        assert!(log_odds_within(0.4, 0.02, (0.2, 0.0), -1.5) > 0.0);
         let blurred = [0.0, 0.5, 2.0].map(|noise| log_odds_within(0.8, 0.03, (noise, 0.0), -9.0));
         assert!(blurred.is_sorted_by(|a, b| a > b), "{blurred:?}");
     }

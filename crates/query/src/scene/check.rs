@@ -58,7 +58,6 @@ impl Scene {
         checked.pairs.retain(|pair| !pair.is_free());
         checked.pairs.sort_by(PairAnswer::by_gravity);
         checked.outside.sort_by(|p, q| p.name.cmp(&q.name));
-        checked.warnings.sort_by(|p, q| p.name.cmp(&q.name));
         checked
     }
 
@@ -126,13 +125,14 @@ impl Scene {
 fn warnings(members: &[Member<'_>], query: &Query) -> Vec<BodyWarning> {
     let limits = &query.settings().safeguards;
     let last = members.len().saturating_sub(1);
-    let of = |(place, member): (usize, &Member<'_>)| {
+    let mut all = Vec::new();
+    for (place, member) in members.iter().enumerate() {
         let which = if place == last && place > 0 { Which::B } else { Which::A };
-        let found = of_body(which, member.body.shape(), limits);
-        let name = member.name.to_owned();
-        found.into_iter().map(move |warning| BodyWarning { name: name.clone(), warning })
-    };
-    members.iter().enumerate().flat_map(of).collect()
+        let found = of_body(which, member.body.shape(), limits).into_iter();
+        all.extend(found.map(|warning| BodyWarning { name: member.name.to_owned(), warning }));
+    }
+    all.sort_by(|p, q| p.name.cmp(&q.name));
+    all
 }
 
 /// A body of the scene, and where it is.

@@ -24,9 +24,32 @@ pub(in crate::cloud) fn sight(scans: &[Range], place: &Point3) -> Sight {
     if scans.iter().any(|scan| scan.holds(place)) { Sight::Seen } else { Sight::OutOfRange }
 }
 
-/// Adds one, unless another says the same.
+/// Adds one, unless another says as much; beside one that tells of any place no other is kept, however many come.
 pub(in crate::cloud) fn add(scans: &mut Vec<Range>, other: Range) {
-    if !scans.contains(&other) {
-        scans.push(other);
+    let is_whole = |range: &Range| range.most.is_infinite();
+    if scans.contains(&other) || scans.iter().any(is_whole) {
+        return;
+    }
+    if is_whole(&other) {
+        scans.clear();
+    }
+    scans.push(other);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scans_of_a_sensor_that_moves_are_kept_only_where_they_end() {
+        let kept = |most: [f64; 4]| {
+            let mut scans = Vec::new();
+            for (x, most) in (0..).zip(most) {
+                add(&mut scans, Range { sensor_origin: Point3::new(f64::from(x), 0.0, 0.0), most });
+            }
+            scans.len()
+        };
+        let all = f64::INFINITY;
+        assert_eq!([kept([all; 4]), kept([2.0, 2.0, all, 2.0]), kept([2.0; 4])], [1, 1, 4]);
     }
 }
