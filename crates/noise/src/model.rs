@@ -128,8 +128,12 @@ impl NoiseModel {
         let points = neighborhoods.points();
         assert_eq!(sensor.len(), points.len(), "one sensor covariance for each point");
         let count = self.neighbors();
-        let Scratch { block, neighbors, .. } = scratch;
-        block.nearest_into(neighborhoods.positions(), &points[index], count, true, neighbors);
+        scratch.near_representatives.clear();
+        match representatives {
+            None => scratch.look_around(index, neighborhoods, count),
+            // Mostly the nearest of all points tell no more than how dense they are.
+            Some(_) => scratch.look_around_for_few(index, neighborhoods, SPACING_NEIGHBORS),
+        }
         scratch.reach = reach(&scratch.neighbors, count);
         let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
         let unfitted = |covariance| Refined {

@@ -119,9 +119,8 @@ impl Neighborhoods {
         k: usize,
         scratch: &'a mut Scratch,
     ) -> &'a [Neighbor] {
-        let Scratch { few_block, neighbors, .. } = scratch;
-        few_block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
-        neighbors
+        scratch.look_around_for_few(index, self, k);
+        &scratch.neighbors
     }
 
     /// Makes buffers ready for [`Self::nearest_with`] of some points near one another.

@@ -4,6 +4,7 @@ use cloudtouch_geom::Point3;
 
 use crate::index::block::Block;
 use crate::index::positions::Neighbor;
+use crate::neighborhoods::Neighborhoods;
 use crate::sensor::noise::SensorNoise;
 use crate::surface::patch::{NoiseLanes, Offsets, Patch, PatchNoise};
 
@@ -23,7 +24,9 @@ pub struct Scratch {
     pub(crate) wide_blocks: [Block; 2],
     /// Of the representatives.
     pub(crate) kept_block: Block,
-    /// The same of a wider neighbourhood.
+    /// What was found there, by their places among them.
+    pub(crate) near_representatives: Vec<Neighbor>,
+    /// Neighbours and patch of a wider neighbourhood.
     pub(crate) wide_neighbors: Vec<Neighbor>,
     pub(crate) wide_patch: Buffers,
     /// See [`Self::reach`].
@@ -44,6 +47,32 @@ impl Scratch {
     pub fn neighbors(&self) -> &[Neighbor] {
         &self.neighbors
     }
+
+    /// The representatives nearest to the one that was refined last, as [`Neighborhoods::nearest`] of
+    /// [`Representatives::neighborhoods`] has them: some dozens, or none where no surface was found.
+    ///
+    /// [`Representatives::neighborhoods`]: crate::Representatives::neighborhoods
+    /// [`Neighborhoods::nearest`]: crate::Neighborhoods::nearest
+    pub fn near_representatives(&self) -> &[Neighbor] {
+        &self.near_representatives
+    }
+
+    /// Finds the neighbours of a point by the block of the last one.
+    pub(crate) fn look_around(&mut self, index: usize, cloud: &Neighborhoods, count: usize) {
+        let place = &cloud.points()[index];
+        self.block.nearest_into(cloud.positions(), place, count, true, &mut self.neighbors);
+    }
+
+    /// The same of so few that another block is better.
+    pub(crate) fn look_around_for_few(
+        &mut self,
+        index: usize,
+        cloud: &Neighborhoods,
+        count: usize,
+    ) {
+        let place = &cloud.points()[index];
+        self.few_block.nearest_into(cloud.positions(), place, count, true, &mut self.neighbors);
+    }
 }
 
 #[derive(Debug, Default)]
@@ -58,16 +87,16 @@ impl Buffers {
     pub(crate) fn patch<'a>(
         &'a mut self,
         index: usize,
-        neighbors: impl Iterator<Item = &'a Neighbor> + Clone,
+        neighbors: impl Iterator<Item = usize> + Clone,
         points: &[Point3],
         sensor: &'a SensorNoise,
         spacing: f64,
     ) -> Patch<'a> {
-        self.offsets.set(neighbors.clone().map(|n| points[n.index] - points[index]));
+        self.offsets.set(neighbors.clone().map(|n| points[n] - points[index]));
         let noise = if let Some(covariance) = sensor.as_uniform() {
             PatchNoise::Uniform(covariance)
         } else {
-            self.noise.set(neighbors.map(|n| &sensor[n.index]));
+            self.noise.set(neighbors.map(|n| &sensor[n]));
             PatchNoise::Each(&self.noise)
         };
         Patch::new(&self.offsets, noise, &sensor[index], spacing)

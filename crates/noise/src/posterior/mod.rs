@@ -52,19 +52,21 @@ pub(crate) fn posterior(
     }
     let wide =
         is_wide.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
-    let Scratch { neighbors, patch, kept_block, wide_neighbors, wide_patch, .. } = scratch;
-    let patch = patch.patch(index, neighbors.iter(), points, sensor, around);
+    if wide.is_none() && representatives.is_some() {
+        scratch.look_around(index, neighborhoods, MOST_NEIGHBORS);
+    }
+    let Scratch { neighbors, patch, kept_block, near_representatives, wide_patch, .. } = scratch;
+    let nearest = neighbors.iter().map(|near| near.index);
+    let patch = patch.patch(index, nearest, points, sensor, around);
     let surface = wide.or_else(|| fit_surface(&patch))?;
     let spacing = match representatives {
         None => tangential_spacing(&patch, &surface)?,
         Some(kept) => {
             let (positions, in_cloud) = kept.positions();
-            let found = &mut *wide_neighbors;
+            let found = near_representatives;
             kept_block.nearest_into(positions, &points[index], MOST_NEIGHBORS, true, found);
-            for near in found.iter_mut() {
-                near.index = in_cloud(near.index);
-            }
-            let others = wide_patch.patch(index, found.iter(), points, sensor, around);
+            let nearest = found.iter().map(|near| in_cloud(near.index));
+            let others = wide_patch.patch(index, nearest, points, sensor, around);
             // One alone stands for no more than its noise.
             let alone = sensor[index].max_std();
             tangential_spacing(&others, &surface).unwrap_or(alone)

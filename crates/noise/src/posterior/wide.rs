@@ -43,7 +43,7 @@ pub(crate) fn wide_surface(
             let others = wide_neighbors.iter().filter(|near| points[near.index] != points[index]);
             fit_surface(&wide_patch.patch(
                 index,
-                others.take(MOST_NEIGHBORS),
+                others.take(MOST_NEIGHBORS).map(|near| near.index),
                 points,
                 sensor,
                 spacing,

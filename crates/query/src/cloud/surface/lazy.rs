@@ -153,9 +153,12 @@ impl Prepared {
         let normal = refined.normal.map(UnitVector3::into_inner);
         let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
         let surfel = Surfel { index: index as u32, point, spacing, most_variance, normal };
-        let is_each = self.pieces.is_each() && self.scans.normals.is_none();
-        let nearest = scratch.neighbors().first_chunk::<NEIGHBORS>().filter(|_| is_each);
-        let nearest = nearest.map(|all| all.map(|near| near.index as u32));
+        let found = match (self.pieces.is_each(), &self.scans.normals) {
+            (true, None) => scratch.neighbors(),
+            (false, None) => scratch.near_representatives(),
+            (_, Some(_)) => &[],
+        };
+        let nearest = found.first_chunk::<NEIGHBORS>().map(|all| all.map(|near| near.index as u32));
         Fitted { surfel, basis: Basis { reach: scratch.reach(), nearest } }
     }
 }
