@@ -2,6 +2,7 @@
 
 use cloudtouch_bvh::{NodeId, Tree};
 use cloudtouch_geom::{Point3, PointCloud};
+use cloudtouch_noise::Scratch;
 
 use crate::error::PrepareError;
 
@@ -68,6 +69,16 @@ impl Cloud {
 
     pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
         self.prepared.leaf(id)
+    }
+
+    pub(crate) fn visit_some_of_leaf(
+        &self,
+        id: NodeId,
+        is_wanted: impl FnMut(&Point3) -> bool,
+        scratch: &mut Scratch,
+        visit: impl FnMut(&Surfel),
+    ) -> bool {
+        self.prepared.visit_some_of_leaf(id, is_wanted, scratch, visit)
     }
 
     pub(crate) fn leaf_surface(&self, id: NodeId) -> (&LeafSurface, bool) {

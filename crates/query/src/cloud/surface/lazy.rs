@@ -46,6 +46,29 @@ impl Prepared {
         (leaf, computed)
     }
 
+    /// Visits the surface at those points of a leaf that are asked for by where they were measured, in the
+    /// local frame; whether any of it was computed for that.
+    pub(crate) fn visit_some_of_leaf(
+        &self,
+        id: NodeId,
+        mut is_wanted: impl FnMut(&Point3) -> bool,
+        scratch: &mut Scratch,
+        visit: impl FnMut(&Surfel),
+    ) -> bool {
+        if let Some(leaf) = self.surface.leaves[id.index()].get() {
+            leaf.surfels.iter().for_each(visit);
+            return false;
+        }
+        let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
+        let places = self.near_pieces().points();
+        let wanted: Vec<u32> =
+            pieces.iter().copied().filter(|&piece| is_wanted(&places[piece as usize])).collect();
+        let known = pieces.iter().find_map(|&piece| self.known_reach(piece));
+        self.gather(&wanted, known, scratch);
+        wanted.iter().map(|&piece| self.surfel(piece, scratch)).for_each(visit);
+        !wanted.is_empty()
+    }
+
     /// The surface at the points measured nearest to a place in the local frame.
     pub(crate) fn surfels_near(&self, place: &Point3, count: usize) -> Vec<Surfel> {
         let mut scratch = Scratch::default();

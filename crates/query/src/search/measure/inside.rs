@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 
 use cloudtouch_bvh::{NodeId, Visit};
 use cloudtouch_geom::{Point3, Pose, Vector3, normal};
+use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
@@ -99,6 +100,9 @@ fn deepest(
     let mut sides = Sides::of(mesh);
     let mut leaves = looked.leaves_within(cloud, (mesh, &mut sides), mesh_from_cloud, clock);
     leaves.sort_by(|(p, _), (q, _)| q.total_cmp(p));
+    // PERF: of a leaf that may hold a point inside, most hold none: these need no fit.
+    let mut clear = Sides::of(mesh);
+    let mut scratch = Scratch::default();
     for (_, leaf) in leaves {
         if looked.deviations() >= MOST_DEVIATIONS {
             break;
@@ -108,11 +112,14 @@ fn deepest(
         if looked.is_cut_short {
             break;
         }
-        let (surfels, computed) = cloud.leaf(leaf);
+        let shift = cloud.tree().node(leaf).map_or(0.0, |node| node.shift());
+        let computed = cloud.visit_some_of_leaf(
+            leaf,
+            |place| !clear.are_clear_around(&mesh_from_cloud.transform_point(place), shift),
+            &mut scratch,
+            |surfel| looked.look_at(surfel, (mesh, &mut sides), mesh_from_cloud, &cloud_from_mesh),
+        );
         looked.leaves_prepared += usize::from(computed);
-        for surfel in surfels {
-            looked.look_at(surfel, (mesh, &mut sides), mesh_from_cloud, &cloud_from_mesh);
-        }
     }
     looked.deepest = looked.deepest.map(|inside| Inside {
         place: a_from_mesh.transform_point(&inside.place),
