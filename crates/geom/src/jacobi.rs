@@ -14,31 +14,39 @@ pub(crate) fn jacobi(mut m: Matrix3) -> (Vector3, Matrix3) {
         if [(0, 1), (0, 2), (1, 2)].iter().all(|&at| m[at] == 0.0) {
             break;
         }
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            let off = m[(p, q)];
-            // What rounds away beside both of its diagonal entries is done with.
-            if m[(p, p)] + off == m[(p, p)] && m[(q, q)] + off == m[(q, q)] {
-                (m[(p, q)], m[(q, p)]) = (0.0, 0.0);
-                continue;
-            }
-            let ratio = (m[(q, q)] - m[(p, p)]) / (2.0 * off);
-            let tangent = ratio.signum() / (ratio.abs() + (1.0 + ratio * ratio).sqrt());
-            let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
-            let sine = tangent * cosine;
-            let r = 3 - p - q;
-            let (rp, rq) = (m[(r, p)], m[(r, q)]);
-            m[(p, p)] -= tangent * off;
-            m[(q, q)] += tangent * off;
-            (m[(p, q)], m[(q, p)]) = (0.0, 0.0);
-            m[(r, p)] = cosine * rp - sine * rq;
-            m[(r, q)] = sine * rp + cosine * rq;
-            (m[(p, r)], m[(q, r)]) = (m[(r, p)], m[(r, q)]);
-            let (of_p, of_q) = (axes.column(p).into_owned(), axes.column(q).into_owned());
-            axes.set_column(p, &(of_p * cosine - of_q * sine));
-            axes.set_column(q, &(of_p * sine + of_q * cosine));
-        }
+        // PERF: one after the other, for a loop would not know its rows when it is compiled.
+        rotate::<0, 1, 2>(&mut m, &mut axes);
+        rotate::<0, 2, 1>(&mut m, &mut axes);
+        rotate::<1, 2, 0>(&mut m, &mut axes);
     }
     (m.diagonal(), axes)
+}
+
+/// Turns two axes until the entry of both is zero; R is the third.
+#[inline(always)]
+fn rotate<const P: usize, const Q: usize, const R: usize>(m: &mut Matrix3, axes: &mut Matrix3) {
+    let off = m[(P, Q)];
+    // What rounds away beside both of its diagonal entries is done with.
+    if m[(P, P)] + off == m[(P, P)] && m[(Q, Q)] + off == m[(Q, Q)] {
+        (m[(P, Q)], m[(Q, P)]) = (0.0, 0.0);
+        return;
+    }
+    let ratio = (m[(Q, Q)] - m[(P, P)]) / (2.0 * off);
+    let tangent = ratio.signum() / (ratio.abs() + (1.0 + ratio * ratio).sqrt());
+    let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
+    let sine = tangent * cosine;
+    let (rp, rq) = (m[(R, P)], m[(R, Q)]);
+    m[(P, P)] -= tangent * off;
+    m[(Q, Q)] += tangent * off;
+    (m[(P, Q)], m[(Q, P)]) = (0.0, 0.0);
+    m[(R, P)] = cosine * rp - sine * rq;
+    m[(R, Q)] = sine * rp + cosine * rq;
+    (m[(P, R)], m[(Q, R)]) = (m[(R, P)], m[(R, Q)]);
+    for k in 0..3 {
+        let (of_p, of_q) = (axes[(k, P)], axes[(k, Q)]);
+        axes[(k, P)] = of_p * cosine - of_q * sine;
+        axes[(k, Q)] = of_p * sine + of_q * cosine;
+    }
 }
 
 #[cfg(test)]
