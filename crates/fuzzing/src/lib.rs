@@ -11,7 +11,7 @@ mod recordings;
 pub use cases::case_file;
 pub use options::options;
 pub use query::query;
-pub use readers::{read_obj, read_pcd, read_ply, read_pointcloud2, read_stl, read_xyz};
+pub use readers::{read_depth, read_obj, read_pcd, read_ply, read_pointcloud2, read_stl, read_xyz};
 
 #[cfg(feature = "mcap")]
 pub use recordings::read_mcap;
@@ -23,6 +23,7 @@ pub type Target = fn(&[u8]);
 pub const TARGETS: &[(&str, Target)] = &[
     #[cfg(feature = "mcap")]
     ("read_mcap", read_mcap),
+    ("read_depth", read_depth),
     ("read_pcd", read_pcd),
     ("read_ply", read_ply),
     ("read_pointcloud2", read_pointcloud2),

@@ -2,10 +2,13 @@
 
 use cloudtouch::geom::PointCloud;
 use cloudtouch_io::pointcloud2::{self, Encoding};
-use cloudtouch_io::{FormatError, Geometry, obj, pcd, ply, stl, xyz};
+use cloudtouch_io::{DepthCamera, FormatError, Geometry, depth, obj, pcd, ply, stl, xyz};
 
 /// What LZF makes of a byte at most; a compressed PCD may hold a point in every unpacked byte.
 const LARGEST_EXPANSION: usize = 88;
+
+/// What deflate makes of a byte at most, two bytes a pixel.
+const PIXELS_PER_BYTE: usize = 516;
 
 /// No message is longer: it holds an excerpt of the file, never the file.
 pub(crate) const LONGEST_MESSAGE: usize = 500;
@@ -32,6 +35,15 @@ pub fn read_ply(bytes: &[u8]) {
 /// As [`read_pcd`].
 pub fn read_xyz(bytes: &[u8]) {
     check(bytes, 1, xyz::parse(bytes).map(Geometry::Cloud));
+}
+
+/// Bytes as a depth image.
+///
+/// # Panics
+/// As [`read_pcd`].
+pub fn read_depth(bytes: &[u8]) {
+    let camera = DepthCamera::new(8.0, 8.0, 3.0, 3.0);
+    check(bytes, PIXELS_PER_BYTE, depth::parse(bytes, &camera).map(Geometry::Cloud));
 }
 
 /// Bytes as a message of either version of ROS.

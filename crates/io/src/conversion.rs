@@ -11,8 +11,11 @@ pub(crate) fn remedy(extension: &str) -> &'static str {
             "convert it to .stl, .obj or .ply with MeshLab, assimp or trimesh"
         }
         "step" | "stp" | "iges" | "igs" => "export it as .stl from a CAD program such as FreeCAD",
-        "png" | "tif" | "tiff" | "exr" => {
-            "make an organised .pcd of a depth image, or in Python points of rows x columns x 3"
+        "png" => {
+            "a depth image is read with the intrinsics of its camera; in Python give points of rows x columns x 3"
+        }
+        "tif" | "tiff" | "exr" | "pgm" => {
+            "save a depth image as a 16-bit greyscale .png, which is read with the intrinsics of its camera"
         }
         "db3" | "bag" => "convert it to .mcap, and name a scan of it, such as run.mcap#/points@1.5",
         "json" | "toml" | "yaml" => {
@@ -36,7 +39,9 @@ mod tests {
 
     #[test]
     fn a_binary_file_is_not_told_to_be_renamed() {
-        for extension in ["npy", "las", "e57", "glb", "step", "png", "db3", "json", "urdf", "dae"] {
+        for extension in
+            ["npy", "las", "e57", "glb", "step", "png", "tiff", "db3", "json", "urdf", "dae"]
+        {
             let remedy = remedy(extension);
             assert!(!remedy.contains("rename") && remedy != "convert it", "{extension}: {remedy}");
         }

@@ -7,6 +7,8 @@ use cloudtouch_geom::{
     message::{number, rounded},
 };
 
+use crate::depth_camera::CameraError;
+
 /// Why some bytes are not a file of their format.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{place}: {fault}")]
@@ -269,6 +271,43 @@ pub enum Fault {
         /// How many there are.
         found: usize,
     },
+    /// A PNG is not one that holds depths.
+    #[error(
+        "the image is {found}, expected 16-bit grey: give the depth image itself, as the camera or data set \
+         has it, neither the colour image nor a picture of the depths"
+    )]
+    NoDepthImage {
+        /// What its pixels are.
+        found: String,
+    },
+    /// An image of one row or column does not tell what lies between its pixels.
+    #[error(
+        "the image has {width} x {height} pixels: a depth image has two rows and columns at least"
+    )]
+    NoRowsAndColumns {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// A depth image without depths.
+    #[error(
+        "none of {pixels} pixels has a depth (0 and 65535 stand for none): give an image in which the \
+         camera saw something, not a mask"
+    )]
+    NoReturns {
+        /// How many there are.
+        pixels: usize,
+    },
+    /// The contents of an image cannot be unpacked.
+    #[error("the image is damaged ({problem}): write or copy it again")]
+    DamagedImage {
+        /// What the decoder says.
+        problem: String,
+    },
+    /// The camera given for a depth image cannot have taken it.
+    #[error(transparent)]
+    Camera(CameraError),
     /// There are no triangles in what should be a mesh.
     #[error("there are no faces: read it as a point cloud, or export it as a mesh")]
     NoTriangles,

@@ -5,6 +5,8 @@ mod atomic;
 mod builder;
 mod column_names;
 mod conversion;
+pub mod depth;
+mod depth_camera;
 mod error;
 mod fault;
 mod geometry;
@@ -23,6 +25,8 @@ mod unit;
 pub mod xyz;
 
 pub use atomic::{abandon_unfinished, write_atomically};
+pub use depth::is_depth_image;
+pub use depth_camera::{CameraError, DepthCamera};
 pub use error::{ReadError, WriteError};
 pub use fault::{Fault, FormatError, Place};
 pub use geometry::Geometry;
@@ -31,7 +35,8 @@ pub use obj::write_mesh_obj;
 pub use pcd::write_cloud_pcd;
 pub use ply::{write_cloud_ply, write_colored_ply};
 pub use read::{
-    check_extension, read_bytes, read_cloud, read_cloud_within, read_colors_within, read_geometry,
-    read_geometry_within, read_mesh, read_mesh_within, read_scan_within, scaled_cloud,
+    check_extension, read_bytes, read_cloud, read_cloud_within, read_colors_within,
+    read_depth_image, read_depth_image_within, read_geometry, read_geometry_within, read_mesh,
+    read_mesh_within, read_scan_within, scaled_cloud,
 };
 pub use unit::{LengthUnit, UnknownUnit};

@@ -11,6 +11,8 @@ use cloudtouch_geom::{PointCloud, Pose, TriangleMesh};
 #[cfg(feature = "mcap")]
 use crate::recording::Recording;
 use crate::{
+    depth,
+    depth_camera::DepthCamera,
     error::ReadError,
     fault::{Fault, FormatError, Place},
     geometry::Geometry,
@@ -55,6 +57,34 @@ pub fn read_cloud_within(
         _ => return Err(unsupported(path, ".pcd, .ply, .xyz, .txt, .csv (point clouds)")),
     };
     read(path, parse, limits)
+}
+
+/// Reads a depth image, a 16-bit greyscale PNG (`.png`), as an organised cloud in metres in the optical
+/// frame of its camera: see [`depth::parse`].
+///
+/// # Errors
+/// When the file cannot be opened, has another extension, is no depth image, or is none of this camera.
+pub fn read_depth_image(
+    path: impl AsRef<Path>,
+    camera: &DepthCamera,
+) -> Result<PointCloud, ReadError> {
+    read_depth_image_within(path, camera, &ReadLimits::default())
+}
+
+/// As [`read_depth_image`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`read_depth_image`].
+pub fn read_depth_image_within(
+    path: impl AsRef<Path>,
+    camera: &DepthCamera,
+    limits: &ReadLimits,
+) -> Result<PointCloud, ReadError> {
+    let path = path.as_ref();
+    if !depth::is_depth_image(path) {
+        return Err(unsupported(path, ".png (depth images)"));
+    }
+    read(path, |bytes, limits| depth::parse_within(bytes, camera, limits), limits)
 }
 
 /// Reads a triangle mesh and converts it from `unit` to metres: `.stl`, `.obj` or `.ply`.
@@ -190,7 +220,7 @@ pub fn read_colors_within(
 }
 
 /// Whether the extension of a file is one that is read, without a look at the file; the name of a
-/// scan in a recording has to be well formed.
+/// scan in a recording has to be well formed. Depth images count, which only [`read_depth_image`] reads.
 ///
 /// # Errors
 /// When it is not.
@@ -201,17 +231,23 @@ pub fn check_extension(path: impl AsRef<Path>) -> Result<(), ReadError> {
             Err(ReadError::NoRecordings { path: name.file })
         }
         (_, Some(name)) => name.map(|_| ()),
-        ("pcd" | "xyz" | "txt" | "csv" | "stl" | "obj" | "ply", None) => Ok(()),
-        _ => Err(unsupported(path, EVERYTHING)),
+        ("pcd" | "xyz" | "txt" | "csv" | "stl" | "obj" | "ply" | "png", None) => Ok(()),
+        _ => Err(unsupported(path, WITH_IMAGES)),
     }
 }
 
 /// What [`read_geometry`] reads.
 const EVERYTHING: &str = ".pcd, .ply, .xyz, .txt, .csv, .stl, .obj";
+/// The same with what [`read_depth_image`] reads.
+const WITH_IMAGES: &str = ".pcd, .ply, .xyz, .txt, .csv, .png (depth images), .stl, .obj";
 
 type Parser<T> = fn(&[u8], &ReadLimits) -> Result<T, FormatError>;
 
-fn read<T>(path: &Path, parse: Parser<T>, limits: &ReadLimits) -> Result<T, ReadError> {
+fn read<T>(
+    path: &Path,
+    parse: impl FnOnce(&[u8], &ReadLimits) -> Result<T, FormatError>,
+    limits: &ReadLimits,
+) -> Result<T, ReadError> {
     let bytes = read_bytes(path, limits.bytes)?;
     parse(&bytes, limits)
         .map_err(|problem| ReadError::Format { path: path.to_owned(), problem: Box::new(problem) })

@@ -2,8 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
-use cloudtouch_io::{Geometry, obj, pcd, ply, stl, xyz};
+use cloudtouch_io::{DepthCamera, Geometry, depth, obj, pcd, ply, stl, xyz};
 use proptest::prelude::*;
+
+use crate::depth::png;
+
+/// Of images of some pixels.
+fn camera() -> DepthCamera {
+    DepthCamera::new(4.0, 4.0, 1.0, 1.0)
+}
 
 /// Points or vertices, and triangles.
 fn sizes(geometry: Geometry) -> (usize, usize) {
@@ -21,13 +28,16 @@ fn survives(bytes: &[u8]) {
         xyz::parse(bytes).map(Geometry::Cloud),
         stl::parse(bytes).map(Geometry::Mesh),
         obj::parse(bytes).map(Geometry::Mesh),
+        depth::parse(bytes, &camera()).map(Geometry::Cloud),
     ];
     for (format, result) in results.into_iter().enumerate() {
         match result {
             Ok(geometry) => {
                 let (points, triangles) = sizes(geometry);
-                // What LZF can make of a byte; other formats need three bytes for a point.
-                let most = if format == 0 { 88 * bytes.len() } else { bytes.len() };
+                // What LZF can make of a byte, and deflate, with two bytes a pixel; other formats need
+                // three bytes for a point.
+                let expansion = [88, 1, 1, 1, 1, 516][format];
+                let most = expansion * bytes.len();
                 assert!(points <= most && triangles <= bytes.len());
             }
             // The message must never hold more than an excerpt of the file.
@@ -77,6 +87,7 @@ fn seeds() -> Vec<Vec<u8>> {
           endloop\nendfacet\nendsolid\n"
             .to_vec(),
         b"4 2\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\nf -1//2 -2 -3/1/1\n".to_vec(),
+        png(3, &[1000, 0, 1001, 65535, 999, 998]),
     ];
     for seed in &seeds {
         let read = [
@@ -85,6 +96,7 @@ fn seeds() -> Vec<Vec<u8>> {
             xyz::parse(seed).is_ok(),
             stl::parse(seed).is_ok(),
             obj::parse(seed).is_ok(),
+            depth::parse(seed, &camera()).is_ok(),
         ];
         assert!(read.contains(&true), "{}", String::from_utf8_lossy(seed));
     }
