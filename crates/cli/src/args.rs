@@ -5,6 +5,7 @@ mod bodies;
 mod caution;
 mod commas;
 mod common;
+mod depth;
 mod limits;
 mod mode;
 mod others;
@@ -23,6 +24,7 @@ pub(crate) use answer::{AnswerArguments, exit_code};
 pub(crate) use bodies::{BodyOptions, PairArguments, ScanArguments};
 pub(crate) use caution::Refine;
 pub(crate) use common::CommonArguments;
+use depth::DepthArguments;
 use limits::LimitArguments;
 pub(crate) use mode::{ModeArguments, ModeName};
 use parse::{parse_fraction, parse_sensor_for};
@@ -47,6 +49,7 @@ Examples:
   cloudtouch demo
   cloudtouch info scan.pcd
   cloudtouch query scan.pcd gripper.stl --sensor kinect --translate 0.4,0,0.9
+  cloudtouch query depth.png gripper.stl --intrinsics 525,525,319.5,239.5 --sensor kinect
   cloudtouch path scan.pcd gripper.stl --poses approach.csv
   cloudtouch scene workcell.json
   cloudtouch robot scan.pcd arm.urdf --joints home.json
@@ -130,7 +133,7 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 #[command(after_help = SENSORS)]
 pub(crate) struct QueryArguments {
-    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .stl .obj)
+    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .png .stl .obj)
     pub scene: PathBuf,
     /// Cloud or mesh of the object
     pub object: PathBuf,
@@ -201,7 +204,7 @@ impl QueryArguments {
 #[derive(Debug, Args)]
 #[command(after_help = SENSORS)]
 pub(crate) struct PathArguments {
-    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .stl .obj)
+    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .png .stl .obj)
     pub scene: PathBuf,
     /// Cloud or mesh of the object
     pub object: PathBuf,
@@ -243,7 +246,7 @@ pub(crate) struct SceneArguments {
 #[derive(Debug, Args)]
 #[command(after_help = SENSORS)]
 pub(crate) struct RobotArguments {
-    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .stl .obj)
+    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .png .stl .obj)
     pub scan: PathBuf,
     #[command(flatten)]
     pub robot: RobotOptions,
@@ -293,7 +296,7 @@ impl BatchArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArguments {
-    /// Cloud or mesh file (.pcd .ply .xyz .txt .csv .stl .obj), or a recording (.mcap)
+    /// Cloud or mesh file (.pcd .ply .xyz .txt .csv .png .stl .obj), or a recording (.mcap)
     pub file: PathBuf,
     /// Length unit of a mesh file: m, cm, mm or in [m]
     #[arg(long)]
@@ -301,6 +304,8 @@ pub(crate) struct InfoArguments {
     /// Length unit of a cloud file: m, cm, mm or in [m]
     #[arg(long, value_name = "UNIT")]
     pub cloud_unit: Option<LengthUnit>,
+    #[command(flatten)]
+    pub depth: DepthArguments,
     #[command(flatten)]
     pub limits: LimitArguments,
 }

@@ -93,6 +93,14 @@ pub fn rigid(text: &str) -> Result<Rigid, String> {
     Ok(Rigid(Pose::from_translation_rotation(at.into(), turn)))
 }
 
+/// `FX,FY,CX,CY`, pixels.
+///
+/// # Errors
+/// When there are not four finite numbers.
+pub fn intrinsics(text: &str) -> Result<[f64; 4], String> {
+    numbers(text, "four, fx,fy,cx,cy, as in 525,525,319.5,239.5")
+}
+
 /// A finite number.
 ///
 /// # Errors

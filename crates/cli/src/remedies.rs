@@ -55,7 +55,9 @@ fn with(message: String, option: Option<&str>) -> String {
 
 pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
     Some(match warning {
-        Warning::Units { .. } => "--unit mm for meshes, --cloud-unit mm for clouds",
+        Warning::Units { .. } => {
+            "--unit mm for meshes, --cloud-unit mm for clouds, --depth-scale for depth images"
+        }
         Warning::Sparse { .. } => "--cloud-unit mm, --unit mm",
         Warning::SensorPose { .. } | Warning::SensorTurn { .. } | Warning::ImagePlace { .. } => {
             "--sensor-pose"

@@ -2,6 +2,7 @@
 
 mod batch;
 mod demo;
+mod depth;
 mod documented;
 mod effort;
 mod errors;

@@ -1,14 +1,15 @@
-//! Options of the command line: any text gives a pose, a sensor or an error that says something.
+//! Options of the command line: any text gives a pose, a sensor, a camera or an error that says something.
 
 use cloudtouch::geom::Pose;
 use cloudtouch::noise::SensorModel;
-use cloudtouch_cli::files::pose;
+use cloudtouch_cli::files::{intrinsics, pose};
+use cloudtouch_cli::intrinsics::Intrinsics;
 use cloudtouch_cli::numbers::{self, Rigid, Triple, Turn};
 
 /// The longest message beside what it quotes, which is no more than a few times the text itself.
 const LONGEST_BESIDE: usize = 500;
 
-/// Bytes as the text of a pose, a turn, a place and a sensor.
+/// Bytes as the text of a pose, a turn, a place, a sensor and a camera.
 ///
 /// # Panics
 /// When what is taken is not finite or not rigid, or an error says nothing or quotes far too much.
@@ -21,6 +22,9 @@ pub fn options(bytes: &[u8]) {
         check(text, turn(text), |Turn(turn)| (turn.norm() - 1.0).abs() < 1e-9);
     }
     check(text, numbers::share(text), |share| (0.0..=1.0).contains(share));
+    check(text, Intrinsics::parse(text), |_| true);
+    let camera = intrinsics::parse(bytes, "7").map_err(|error| format!("{error:#}"));
+    check(text, camera, |file| file.camera.validate().is_ok());
     let sensor = text.parse::<SensorModel>().map_err(|error| error.to_string());
     check(text, sensor, |sensor| {
         sensor.validate().is_ok() && sensor.to_string().parse() == Ok(*sensor)

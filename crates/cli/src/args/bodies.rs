@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use cloudtouch_cli::intrinsics::DepthImages;
 use cloudtouch_cli::numbers::{self, Rigid};
 
 use crate::paper_settings::SettingsFile;
@@ -41,9 +42,11 @@ pub(crate) struct PairArguments {
 }
 
 /// All that the options say of the bodies; what a command does not take is not given.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct BodyOptions<'a> {
     pub common: &'a CommonArguments,
+    /// Of bodies that are depth images.
+    pub depth: DepthImages,
     pub object_sensor: Option<SensorChoice>,
     pub sensor_pose: Option<Rigid>,
     pub collision_map: Option<f64>,
@@ -59,6 +62,7 @@ impl CommonArguments {
     pub(crate) fn bodies(&self) -> BodyOptions<'_> {
         BodyOptions {
             common: self,
+            depth: self.depth.images(),
             object_sensor: None,
             sensor_pose: None,
             collision_map: None,

@@ -8,6 +8,7 @@ use cloudtouch_io::LengthUnit;
 use crate::sensor::SensorChoice;
 
 use super::caution::{CautionArguments, EffortArguments};
+use super::depth::DepthArguments;
 use super::limits::LimitArguments;
 use super::parse::{parse_accept, parse_fraction, parse_length, parse_outliers, parse_reject};
 
@@ -23,6 +24,8 @@ pub(crate) struct CommonArguments {
     /// Unit of clouds: m, cm, mm or in [m]
     #[arg(long, value_name = "UNIT", help_heading = "Files")]
     pub cloud_unit: Option<LengthUnit>,
+    #[command(flatten)]
+    pub depth: DepthArguments,
     /// In collision above this probability, 0.5 to 1 [0.9]
     #[arg(long, value_name = "A", value_parser = parse_accept, allow_negative_numbers = true, help_heading = "Estimate")]
     pub accept: Option<f64>,

@@ -227,14 +227,13 @@ fn prepare_all<'a, C: body::PreparedCloud>(
     progress.finish_and_clear();
     // What cannot be read may be what an option is for.
     let are = bodies.iter().map(|((path, role, _), body)| {
-        body.as_ref().ok().map(|loaded| (path.as_path(), *role, loaded.is_mesh()))
+        body.as_ref().ok().map(|loaded| (path.as_path(), *role, loaded))
     });
     if let Some(are) = are.collect::<Option<Vec<_>>>()
         && !are.is_empty()
     {
-        let roles: Vec<_> = are.iter().map(|(_, role, is_mesh)| (*role, *is_mesh)).collect();
-        unused::check(options, &roles)?;
-        let files: Vec<_> = are.iter().map(|(path, _, is_mesh)| (*path, *is_mesh)).collect();
+        unused::check(options, are.iter().flat_map(|(_, role, loaded)| loaded.files(*role)))?;
+        let files: Vec<_> = are.iter().map(|(path, _, loaded)| (*path, loaded.is_mesh())).collect();
         sensors_for(arguments).check_meshes(&files)?;
     }
     Ok(bodies)

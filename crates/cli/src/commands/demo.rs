@@ -16,7 +16,7 @@ use cloudtouch_page::{Fact, Page, View};
 use crate::answers::print;
 use crate::args::{DemoArguments, ModeName};
 use crate::body::{self, Body, PreparedCloud};
-use crate::load::{Input, Loaded};
+use crate::load::{Input, Kind, Loaded};
 use crate::output::Output;
 use crate::{answers, output, pages, picture};
 
@@ -133,9 +133,10 @@ fn body<C: PreparedCloud>(name: &str, pcd: &[u8]) -> Result<Loaded<C>> {
     let cloud = pcd::parse(pcd)?;
     let sensor = SensorModel::Isotropic { std: NOISE };
     let body = Body::Cloud(C::prepare(&[cloud], sensor, None, |_, _| {})?);
-    let (file, unit) = (name.to_owned(), LengthUnit::Metres.to_string());
+    let kind = Kind::Cloud(LengthUnit::Metres);
+    let (file, unit) = (name.to_owned(), kind.unit());
     let input = Input { file, unit, sensor: Some(sensor.to_string()), sensor_because: None };
-    Ok(Loaded { body, input })
+    Ok(Loaded { body, input, kinds: vec![kind] })
 }
 
 /// One after the other, so that the times are those of a single thread.

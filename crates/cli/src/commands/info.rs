@@ -6,13 +6,15 @@ use anyhow::{Result, bail};
 use cloudtouch::geom::{Point3, PointCloud, TriangleMesh};
 use cloudtouch::noise::{Neighborhoods, typical_spacing};
 use cloudtouch::{FilterSettings, Mesh, filter};
-use cloudtouch_io::Geometry;
+use cloudtouch_io::{DepthCamera, Geometry, is_depth_image};
 use cloudtouch_page::words;
 
 use crate::answers::print;
 use crate::args::InfoArguments;
-use crate::load::{self, SUSPICIOUS_MESH_SIZE, Units};
+use crate::load::{self, Kind, SUSPICIOUS_MESH_SIZE, Units};
 use crate::sensor::{Chosen, suggestion};
+use crate::unused;
+use crate::usage::WrongUsage;
 
 /// Points whose neighbours tell the spacing.
 const SPACING_SAMPLE: usize = 500;
@@ -28,22 +30,35 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
     let units = Units {
         meshes: arguments.unit.unwrap_or_default(),
         clouds: arguments.cloud_unit.unwrap_or_default(),
+        images: arguments.depth.images(),
     };
+    if let Some(option) = arguments.depth.given().filter(|_| !is_depth_image(&arguments.file)) {
+        bail!(unused::of_images(option));
+    }
     #[cfg(feature = "mcap")]
     if let Some(name) = cloudtouch_io::recording::ScanName::of(&arguments.file) {
         load::check(&arguments.file)?;
         let text = super::recording::describe(&name?, arguments, describe_cloud)?;
         return answer(arguments, &text);
     }
-    let text = match load::geometry(&arguments.file, units, &arguments.limits.read_limits())? {
-        Geometry::Cloud(_) if arguments.unit.is_some() => {
+    let text = match load::geometry(&arguments.file, &units, &arguments.limits.read_limits())? {
+        (Geometry::Cloud(_), _) if arguments.unit.is_some() => {
             bail!("--unit is for meshes, and this is a cloud: give --cloud-unit")
         }
-        Geometry::Mesh(_) if arguments.cloud_unit.is_some() => {
+        (_, Kind::DepthImage(_)) if arguments.cloud_unit.is_some() => {
+            bail!(WrongUsage(unused::CLOUD_UNIT.to_owned()))
+        }
+        (Geometry::Mesh(_), _) if arguments.cloud_unit.is_some() => {
             bail!("--cloud-unit is for clouds, and this is a mesh: give --unit")
         }
-        Geometry::Cloud(cloud) => describe_cloud(&cloud)?,
-        Geometry::Mesh(mesh) => describe_mesh(&mesh),
+        (Geometry::Cloud(cloud), Kind::DepthImage(camera)) => {
+            // What is too large is so by its steps.
+            let cloud_text =
+                describe_cloud(&cloud)?.replace("--cloud-unit mm, or cm?", "--depth-scale?");
+            format!("{}\n{cloud_text}", describe_camera(&camera, &cloud))
+        }
+        (Geometry::Cloud(cloud), _) => describe_cloud(&cloud)?,
+        (Geometry::Mesh(mesh), _) => describe_mesh(&mesh),
     };
     answer(arguments, &text)
 }
@@ -97,6 +112,22 @@ fn describe_cloud(cloud: &PointCloud) -> Result<String> {
         lines.push(format!("sensor      {sensor} ({})", because.unwrap_or_default()));
     }
     Ok(lines.join("\n"))
+}
+
+/// The camera of a depth image, and how wide it sees.
+fn describe_camera(camera: &DepthCamera, cloud: &PointCloud) -> String {
+    let DepthCamera { fx, fy, cx, cy, depth_scale, .. } = camera;
+    let (width, height) = cloud.image_size.unwrap_or_default();
+    let seen = |focal_length: f64, middle: f64, pixels: usize| {
+        let edges = [-0.5 - middle, pixels as f64 - 0.5 - middle];
+        let [from, to] = edges.map(|edge| (edge / focal_length).atan().to_degrees());
+        to - from
+    };
+    let (across, down) = (seen(*fx, *cx, width), seen(*fy, *cy, height));
+    format!(
+        "camera      fx {fx}, fy {fy}, cx {cx}, cy {cy} pixels, {depth_scale} m a step: sees {across:.1} x \
+         {down:.1} degrees"
+    )
 }
 
 fn image(cloud: &PointCloud) -> String {

@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     )?;
     let object =
         load::body::<Cloud>(&arguments.object, Role::Object, options.object_sensor(), options)?;
-    unused::check(options, &[(Role::Scene, scene.is_mesh()), (Role::Object, object.is_mesh())])?;
+    unused::check(options, scene.files(Role::Scene).chain(object.files(Role::Object)))?;
     let scene = scene.refined_for(POSES, common.effort.refine())?;
     let object = object.refined_for(POSES, common.effort.refine())?;
     let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;

@@ -66,7 +66,7 @@ fn run_by<P: body::Path>(
     let scene = with_kappas(scene, arguments)?;
     let object =
         load::body::<P::Cloud>(&arguments.object, Role::Object, options.object_sensor(), options)?;
-    unused::check(options, &[(Role::Scene, scene.is_mesh()), (Role::Object, object.is_mesh())])?;
+    unused::check(options, scene.files(Role::Scene).chain(object.files(Role::Object)))?;
     let scene = scene.refined_for(1, common.effort.refine())?;
     let object = object.refined_for(1, common.effort.refine())?;
     let (report, classifiers, nearness) = if arguments.explain {

@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
             arguments.scan.display()
         )));
     }
-    unused::check(options, &[(Role::Scene, scan.is_mesh())])?;
+    unused::check(options, scan.files(Role::Scene))?;
     let scan = scan.refined_for(path.len(), common.effort.refine())?;
     let unchecked = robot.unchecked_links().to_vec();
     let asked = Asked {

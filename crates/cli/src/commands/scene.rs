@@ -9,20 +9,21 @@ use anyhow::{Context as _, Result, anyhow, ensure};
 use cloudtouch::geom::{Point3, TriangleMesh};
 use cloudtouch::{Cloud, Mesh, Query, QuerySettings, Scene, SceneError};
 use cloudtouch_cli::files::scene::{self, BodyEntry, SceneFile};
-use cloudtouch_io::LengthUnit;
+use cloudtouch_io::{LengthUnit, is_depth_image};
 use rayon::prelude::*;
 
 use crate::answers::print;
 use crate::answers::scene::{Bodies, place};
-use crate::args::{CommonArguments, SceneArguments};
+use crate::args::{BodyOptions, CommonArguments, SceneArguments};
 use crate::body::Body;
 use crate::load::{self, Input, Loaded, Role};
 use crate::sensor::SensorChoice;
 use crate::usage::WrongUsage;
 use crate::{answers, unused};
 
-/// A file, the unit it is said to be in and the sensor that saw it, by its spec.
-type BodyKey = (PathBuf, Option<LengthUnit>, String);
+/// A file, the unit it is said to be in, the sensor that saw it, by its spec, and what is said of it as a
+/// depth image, spelt out.
+type BodyKey = (PathBuf, Option<LengthUnit>, String, String);
 
 /// What several bodies of a scene may share.
 struct Prepared {
@@ -120,15 +121,31 @@ fn of_a_file(error: SceneError) -> anyhow::Error {
 fn keys(common: &CommonArguments, file: &SceneFile) -> Result<Vec<BodyKey>> {
     let key = |(index, entry): (usize, &BodyEntry)| {
         let place = || format!("body {} `{}`", index + 1, entry.name);
-        let BodyEntry { file, sensor, unit, .. } = entry;
+        let BodyEntry { file, sensor, unit, depth, .. } = entry;
         load::check(file).with_context(place)?;
+        check_image(entry).with_context(place)?;
         let sensor = match sensor {
             Some(spec) => spec.parse::<SensorChoice>().map_err(|error| anyhow!("{error}")),
             None => Ok(common.scene_sensor()),
         };
-        Ok((file.clone(), *unit, sensor.with_context(place)?.to_string()))
+        Ok((file.clone(), *unit, sensor.with_context(place)?.to_string(), format!("{depth:?}")))
     };
     file.bodies.iter().enumerate().map(key).collect()
+}
+
+/// Refuses what is said of a depth image where the file is none, and a unit where it is one.
+fn check_image(entry: &BodyEntry) -> Result<()> {
+    let file = entry.file.display();
+    let is_image = is_depth_image(&entry.file);
+    ensure!(
+        is_image || entry.depth.is_empty(),
+        "`intrinsics` and `depth_scale` are of a depth image (.png), and {file} is none: leave them out"
+    );
+    ensure!(
+        !is_image || entry.unit.is_none(),
+        "`unit` is not for a depth image, and {file} is one: give `depth_scale`, metres a step"
+    );
+    Ok(())
 }
 
 /// Refuses a sensor of a mesh, and one of all clouds where each has its own.
@@ -163,8 +180,9 @@ fn prepare(
     keys: &[BodyKey],
 ) -> Result<BTreeMap<BodyKey, Prepared>> {
     // Of several bodies of one file the first.
+    let place = |key: &BodyKey| keys.iter().position(|other| other == key).unwrap_or_default();
     let first = |key: &BodyKey| {
-        let index = keys.iter().position(|other| other == key).unwrap_or_default();
+        let index = place(key);
         format!("body {} `{}`", index + 1, file.bodies[index].name)
     };
     let wanted: BTreeMap<&BodyKey, usize> = keys.iter().fold(BTreeMap::new(), |mut wanted, key| {
@@ -173,16 +191,18 @@ fn prepare(
     });
     let wanted: Vec<(&BodyKey, usize)> = wanted.into_iter().collect();
     let loaded = wanted.into_par_iter().map(|(key, bodies)| {
-        let (path, unit, sensor) = key;
+        let (path, unit, sensor, _) = key;
         let sensor = sensor.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))?;
-        let loaded = load::body_in::<Cloud>(path, *unit, sensor, &common.bodies());
+        let usual = common.bodies();
+        let depth = file.bodies[place(key)].depth.or(&usual.depth);
+        let options = BodyOptions { depth, ..usual };
+        let loaded = load::body_in::<Cloud>(path, *unit, sensor, &options);
         let loaded = loaded.with_context(|| first(key))?;
         Ok((key, loaded.refined_for(bodies, common.effort.refine())?))
     });
     let loaded: Vec<(&BodyKey, Loaded<Cloud>)> = loaded.collect::<Result<_>>()?;
-    let are: Vec<(Role, bool)> =
-        loaded.iter().map(|(_, loaded)| (Role::Scene, loaded.is_mesh())).collect();
-    unused::check(&common.bodies(), &are)?;
+    let are = loaded.iter().flat_map(|(_, loaded)| loaded.files(Role::Scene));
+    unused::check(&common.bodies(), are)?;
     let prepared = loaded.into_iter().map(|(key, loaded)| {
         let words = print::about(&loaded);
         let body = Arc::new(match loaded.body {

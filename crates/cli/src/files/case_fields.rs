@@ -9,7 +9,7 @@ use crate::files::near_name;
 const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];
 
 /// Fields of scene files, and options spelt as fields, that no case has, and what says the same of a case.
-const OF_OTHERS: [(&str, &str); 25] = [
+const OF_OTHERS: [(&str, &str); 27] = [
     ("sensor", SENSORS),
     ("unit", UNITS),
     ("mesh_unit", UNITS),
@@ -24,6 +24,8 @@ const OF_OTHERS: [(&str, &str); 25] = [
     ("prior", OPTION),
     ("margin", OPTION),
     ("sensor_pose", OPTION),
+    ("intrinsics", OPTION),
+    ("depth_scale", OPTION),
     ("min_range", OPTION),
     ("max_range", OPTION),
     ("robot_padding", OPTION),

@@ -1,7 +1,8 @@
-//! What the files of the tool say: the cases of a batch, a scene, a path, a pose, positions of joints.
+//! What the files of the tool say: the cases of a batch, a scene, a path, a pose, positions of joints, a camera.
 
 pub mod case;
 mod case_fields;
+pub mod intrinsics;
 pub mod joints;
 mod json;
 mod near_name;

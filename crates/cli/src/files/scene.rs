@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch_io::LengthUnit;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::files::json::{matrix, shortened, without_bare_words};
+use crate::files::json::{as_written, matrix, shortened, without_bare_words};
+use crate::intrinsics::{self, DepthImages, Intrinsics};
 
 /// A scene as its file says.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +33,8 @@ pub struct BodyEntry {
     pub sensor: Option<String>,
     /// In which its coordinates are.
     pub unit: Option<LengthUnit>,
+    /// What is said of it as a depth image.
+    pub depth: DepthImages,
     /// Into the frame of what it is attached to, or else of the scene, m; the identity where none is
     /// given.
     pub pose: Pose,
@@ -58,6 +61,8 @@ struct RawBody {
     file: PathBuf,
     sensor: Option<String>,
     unit: Option<String>,
+    intrinsics: Option<Value>,
+    depth_scale: Option<Value>,
     pose: Option<Value>,
     attached_to: Option<String>,
 }
@@ -123,13 +128,41 @@ fn body(value: Value, folder: &Path) -> Result<BodyEntry> {
     if raw.name.trim().is_empty() {
         bail!("its `name` is empty: give it one, by which answers call it");
     }
+    let depth = DepthImages {
+        intrinsics: raw.intrinsics.map(|value| stated(value, folder)).transpose()?,
+        depth_scale: raw.depth_scale.map(depth_scale).transpose()?,
+    };
     let unit = raw.unit.map(|unit| unit.parse::<LengthUnit>()).transpose();
     Ok(BodyEntry {
         name: raw.name,
         file: folder.join(raw.file),
         sensor: raw.sensor,
         unit: unit?,
+        depth,
         pose: raw.pose.map(matrix).transpose()?.unwrap_or_default(),
         attached_to: raw.attached_to,
     })
+}
+
+/// Four numbers, or the name of a file in the folder of the scene file.
+fn stated(value: Value, folder: &Path) -> Result<Intrinsics> {
+    let read = match &value {
+        Value::String(text) => Intrinsics::parse(text),
+        _ => match serde_json::from_value::<[f64; 4]>(value.clone()) {
+            Ok(numbers) => Intrinsics::of_numbers(numbers),
+            Err(_) => Err("give [fx, fy, cx, cy] in pixels, or the name of a file".to_owned()),
+        },
+    };
+    match read {
+        Ok(Intrinsics::File(file)) => Ok(Intrinsics::File(folder.join(file))),
+        Ok(numbers) => Ok(numbers),
+        Err(why) => bail!("`intrinsics` is {}: {why}", as_written(&value)),
+    }
+}
+
+fn depth_scale(value: Value) -> Result<f64> {
+    let Some(scale) = value.as_f64() else {
+        bail!("`depth_scale` is {}: give metres a step, such as 0.001", as_written(&value))
+    };
+    intrinsics::depth_scale(scale).map_err(|why| anyhow!("`depth_scale`: {why}"))
 }

@@ -1,5 +1,6 @@
 //! From files to bodies ready for queries.
 
+mod geometry;
 pub(crate) mod path;
 pub(crate) mod pose;
 pub(crate) mod sensor_for;
@@ -13,16 +14,15 @@ use cloudtouch::geom::{MeshError, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, Mesh, PrepareError, SelfMesh};
 use cloudtouch_cli::numbers::Rigid;
-use cloudtouch_io::{
-    Geometry, LengthUnit, ReadLimits, check_extension, read_geometry_within, read_mesh_within,
-    recording::file_of, scaled_cloud,
-};
+use cloudtouch_io::{Geometry, LengthUnit, read_mesh_within};
 use serde::Serialize;
 
-use crate::args::{BodyOptions, CommonArguments, Refine};
+use crate::args::{BodyOptions, Refine};
 use crate::body::{Body, PreparedCloud};
 use crate::sensor::{Chosen, SensorChoice};
 use crate::usage::WrongUsage;
+
+pub(crate) use geometry::{Kind, Units, check, geometry};
 
 /// What a body is used as: only scenes are cleaned of the robot and turned into collision maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,11 +38,18 @@ pub(crate) const SUSPICIOUS_MESH_SIZE: f64 = 100.0;
 pub(crate) struct Loaded<C> {
     pub body: Body<C>,
     pub input: Input,
+    /// What its files were taken for: of a body made of several scans, each of them.
+    pub kinds: Vec<Kind>,
 }
 
 impl<C> Loaded<C> {
     pub(crate) fn is_mesh(&self) -> bool {
         matches!(self.body, Body::Mesh(_))
+    }
+
+    /// What its files are, each with what the body is used as.
+    pub(crate) fn files(&self, role: Role) -> impl Iterator<Item = (Role, Kind)> {
+        self.kinds.iter().map(move |kind| (role, *kind))
     }
 }
 
@@ -88,9 +95,12 @@ pub(crate) fn body_in<C: PreparedCloud>(
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
-    let usual = Units::of(options.common);
-    let units = unit.map_or(usual, |unit| Units { meshes: unit, clouds: unit });
-    bodies_in(&[path], units, Role::Object, sensor, options)
+    let usual = Units::of(options);
+    let units = match unit {
+        Some(unit) => Units { meshes: unit, clouds: unit, ..usual },
+        None => usual,
+    };
+    bodies_in(&[path], &units, Role::Object, sensor, options)
 }
 
 /// Reads files and prepares them as one body: several scans of one frame, or one mesh.
@@ -100,12 +110,12 @@ pub(crate) fn bodies<C: PreparedCloud>(
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
-    bodies_in(paths, Units::of(options.common), role, sensor, options)
+    bodies_in(paths, &Units::of(options), role, sensor, options)
 }
 
 fn bodies_in<C: PreparedCloud>(
     paths: &[&Path],
-    units: Units,
+    units: &Units,
     role: Role,
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
@@ -113,16 +123,18 @@ fn bodies_in<C: PreparedCloud>(
     let mut scans = Vec::new();
     for path in paths {
         match geometry(path, units, &options.common.limits.read_limits())? {
-            Geometry::Mesh(mesh) if paths.len() == 1 => {
+            (Geometry::Mesh(mesh), _) if paths.len() == 1 => {
                 return of_mesh(path, units.meshes, role, &mesh, options);
             }
-            Geometry::Mesh(_) => bail!("{}: is a mesh: only scans make one scene", named(path)),
-            Geometry::Cloud(cloud) => scans.push(cloud),
+            (Geometry::Mesh(_), _) => {
+                bail!("{}: is a mesh: only scans make one scene", named(path))
+            }
+            (Geometry::Cloud(cloud), kind) => scans.push((cloud, kind)),
         }
     }
     let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
     let robot = if role == Role::Scene { robot(options)? } else { Vec::new() };
-    of_clouds(&names.join(", "), (units.clouds, role), scans, sensor, options, robot)
+    of_clouds(&names.join(", "), role, scans, sensor, options, robot)
 }
 
 /// Reads the surroundings of a robot, of which a scan may show these links.
@@ -132,12 +144,12 @@ pub(crate) fn surroundings(
     options: &BodyOptions<'_>,
 ) -> Result<Loaded<Cloud>> {
     let common = options.common;
-    let units = Units::of(common);
-    match geometry(path, units, &common.limits.read_limits())? {
-        Geometry::Mesh(mesh) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
-        Geometry::Cloud(cloud) => {
-            let scene = (units.clouds, Role::Scene);
-            of_clouds(&named(path), scene, vec![cloud], common.scene_sensor(), options, robot)
+    let units = Units::of(options);
+    match geometry(path, &units, &common.limits.read_limits())? {
+        (Geometry::Mesh(mesh), _) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
+        (Geometry::Cloud(cloud), kind) => {
+            let (scans, sensor) = (vec![(cloud, kind)], common.scene_sensor());
+            of_clouds(&named(path), Role::Scene, scans, sensor, options, robot)
         }
     }
 }
@@ -170,9 +182,9 @@ fn of_mesh<C>(
             mesh.size()
         );
     }
-    let unit = unit.to_string();
-    let input = Input { file: named(path), unit, sensor: None, sensor_because: None };
-    Ok(Loaded { body: Body::Mesh(mesh), input })
+    let kind = Kind::Mesh(unit);
+    let input = Input { file: named(path), unit: kind.unit(), sensor: None, sensor_because: None };
+    Ok(Loaded { body: Body::Mesh(mesh), input, kinds: vec![kind] })
 }
 
 fn prepared(mesh: &TriangleMesh) -> Result<Mesh> {
@@ -189,18 +201,25 @@ fn prepared(mesh: &TriangleMesh) -> Result<Mesh> {
 /// The sensor of several scans is that chosen for the first.
 fn of_clouds<C: PreparedCloud>(
     name: &str,
-    (unit, role): (LengthUnit, Role),
-    mut scans: Vec<PointCloud>,
+    role: Role,
+    scans: Vec<(PointCloud, Kind)>,
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
     robot: Vec<SelfMesh>,
 ) -> Result<Loaded<C>> {
+    let (mut scans, kinds): (Vec<PointCloud>, Vec<Kind>) = scans.into_iter().unzip();
     if role == Role::Scene
         && let Some(Rigid(pose)) = options.sensor_pose
     {
         let several = "--sensor-pose is for one scan, and these are several";
         ensure!(scans.len() == 1, WrongUsage(format!("{name}: {several}")));
-        scans.iter_mut().for_each(|scan| scan.sensor_pose = Some(pose));
+        for (scan, kind) in scans.iter_mut().zip(&kinds) {
+            // Other files have their points in some frame, and a depth image only where its camera stood.
+            if kind.is_depth_image() {
+                *scan = scan.transformed(&pose);
+            }
+            scan.sensor_pose = Some(pose);
+        }
     }
     let first = scans.first().with_context(|| format!("{name}: no scan"))?;
     let Chosen { sensor, because } = sensor.of(first);
@@ -221,53 +240,16 @@ fn of_clouds<C: PreparedCloud>(
             }
         }
     });
+    let mut units: Vec<String> = kinds.iter().map(|kind| kind.unit()).collect();
+    units.dedup();
     let input = Input {
         file: name.to_owned(),
-        unit: unit.to_string(),
+        unit: units.join(", "),
         sensor: Some(sensor.to_string()),
         sensor_because: because,
     };
-    Ok(Loaded { body: Body::Cloud(prepared.with_context(|| name.to_owned())?), input })
-}
-
-/// What the coordinates of files are in.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Units {
-    pub meshes: LengthUnit,
-    pub clouds: LengthUnit,
-}
-
-impl Units {
-    fn of(common: &CommonArguments) -> Self {
-        Self {
-            meshes: common.unit.unwrap_or_default(),
-            clouds: common.cloud_unit.unwrap_or_default(),
-        }
-    }
-}
-
-/// Whether a file is there and has an extension that is read: asked of all files before any is read.
-pub(crate) fn check(path: &Path) -> Result<()> {
-    // Said before the extension is looked at: `cloudtouch query folder …` is not about extensions.
-    let found = std::fs::metadata(file_of(path))
-        .with_context(|| format!("{}: cannot be read", path.display()))?;
-    ensure!(!found.is_dir(), "{}: is a folder: give a cloud or mesh file", path.display());
-    ensure!(
-        found.is_file() || path.extension().is_some(),
-        "{}: is no file, and its name does not tell the format: save it to one, such as scan.pcd",
-        path.display()
-    );
-    Ok(check_extension(path)?)
-}
-
-/// Reads a cloud or a mesh in its own unit: scans mostly know theirs and exported meshes do not, so
-/// that the two are often mixed.
-pub(crate) fn geometry(path: &Path, units: Units, limits: &ReadLimits) -> Result<Geometry> {
-    check(path)?;
-    Ok(match read_geometry_within(path, LengthUnit::Metres, limits)? {
-        Geometry::Mesh(mesh) => Geometry::Mesh(mesh.scaled(units.meshes.in_metres())),
-        Geometry::Cloud(cloud) => Geometry::Cloud(scaled_cloud(cloud, units.clouds.in_metres())),
-    })
+    let body = Body::Cloud(prepared.with_context(|| name.to_owned())?);
+    Ok(Loaded { body, input, kinds })
 }
 
 fn robot(options: &BodyOptions<'_>) -> Result<Vec<SelfMesh>> {
