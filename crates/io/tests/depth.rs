@@ -123,7 +123,7 @@ fn what_is_no_depth_image_is_told_with_what_to_do() {
     assert!(depth::parse(&[&whole[..], b"\n\0"].concat(), &CAMERA).is_ok());
 }
 
-/// The checksum of the first 13 bytes of a header and its name.
+/// The checksum of the name and the contents of a chunk.
 fn checksum(bytes: &[u8]) -> u32 {
     let bit = |sum: u32| if sum & 1 == 1 { 0xedb8_8320 ^ (sum >> 1) } else { sum >> 1 };
     let byte = |sum: u32, byte: &u8| (0..8).fold(sum ^ u32::from(*byte), |sum, _| bit(sum));
@@ -186,6 +186,36 @@ fn files_are_named_in_every_error() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
+
+    /// Checksums that agree let damage through to what unpacks the image.
+    #[test]
+    fn damage_with_checksums_that_agree_is_survived(
+        damages in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let mut bytes = png(4, &PIXELS);
+        let mut chunks = vec![];
+        let mut at = 8;
+        while at < bytes.len() {
+            let size = u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+            chunks.push(at + 4..at + 8 + size);
+            at += 12 + size;
+        }
+        for (index, byte) in damages {
+            // What the header and the packed image hold, not how long they are.
+            let places: Vec<usize> = chunks.iter().flat_map(|c| c.start + 4..c.end).collect();
+            bytes[places[index.index(places.len())]] = byte;
+        }
+        for chunk in chunks {
+            let sum = checksum(&bytes[chunk.clone()]);
+            bytes[chunk.end..chunk.end + 4].copy_from_slice(&sum.to_be_bytes());
+        }
+        match depth::parse(&bytes, &CAMERA) {
+            Ok(cloud) => prop_assert!(cloud.len() <= 516 * bytes.len()),
+            Err(error) => prop_assert!(error.to_string().len() < 500),
+        }
+    }
+
     /// A plane, rounded to steps along z, comes back within half a step of itself along z, and every point on
     /// the ray of its pixel.
     #[test]
