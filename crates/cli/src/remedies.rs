@@ -32,7 +32,7 @@ pub(crate) fn error(error: &anyhow::Error) -> String {
         if let Some(RobotError { fault, .. }) = cause.downcast_ref() {
             of_robot(fault)
         } else if let Some(PrepareError::NoiseBeyondSize { .. }) = cause.downcast_ref() {
-            Some("--cloud-unit mm".to_owned())
+            Some("--cloud-unit mm, --depth-scale".to_owned())
         } else {
             of_file(cause.downcast_ref()?)
         }
@@ -58,11 +58,11 @@ pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
         Warning::Units { .. } => {
             "--unit mm for meshes, --cloud-unit mm for clouds, --depth-scale for depth images"
         }
-        Warning::Sparse { .. } => "--cloud-unit mm, --unit mm",
+        Warning::Sparse { .. } => "--cloud-unit mm, --unit mm, --depth-scale",
         Warning::SensorPose { .. } | Warning::SensorTurn { .. } | Warning::ImagePlace { .. } => {
             "--sensor-pose"
         }
-        Warning::SensorRange { .. } => "--sensor auto, --cloud-unit",
+        Warning::SensorRange { .. } => "--sensor auto, --cloud-unit, --depth-scale",
         Warning::SensorLayout { .. } => "--sensor auto",
         Warning::Unseen { .. } => "--max-unseen",
         _ => return None,
@@ -128,7 +128,7 @@ mod tests {
             (anyhow::Error::from(large()), " (--max-bytes)"),
             (of_robot(RobotFault::Mesh { link: link(), error: large() }).into(), " (--max-bytes)"),
             (of_robot(unknown).into(), "`packages` (--package mine=FOLDER)"),
-            (noise.into(), " (--cloud-unit mm)"),
+            (noise.into(), " (--cloud-unit mm, --depth-scale)"),
             (other("cases.json").into(), " (cloudtouch scene FILE, cloudtouch batch FILE)"),
             (other("arm.urdf").into(), " (cloudtouch robot SCAN URDF)"),
             (other("scan.las").into(), " with CloudCompare or PDAL"),

@@ -255,6 +255,13 @@ fn slips_are_told_with_what_to_do() {
         let run = inputs.run(&["info", "depth.png", "--intrinsics", numbers]);
         assert!(run.code() == 0 && run.stderr().contains("in this order"), "{}", run.stderr());
     }
+    // Steps that make all too large, and images that need not be in one frame.
+    let large = inputs.run(&["info", "depth.png", NUMBERS, "--depth-scale=0.1"]).quiet(0).stdout();
+    assert!(large.contains("from point to point: --depth-scale?"), "{large}");
+    let several =
+        ["query", "depth.png", "cube.obj", "--also=depth.pcd", NUMBERS, "--sensor=kinect"];
+    let error = inputs.run(&several).stderr();
+    assert!(error.contains("of a camera that stood still"), "{error}");
     // In a case file they would change nothing.
     let case = r#"{"scene":"depth.png","object":"cube.obj","pose":[],"intrinsics":[1,1,1,1]}"#;
     inputs.write("cases.json", &case_file(&[case.to_owned()]));

@@ -224,7 +224,10 @@ fn a_page_names_the_option_that_a_warning_asks_for() {
     let query = ["query", "floor.pcd", "box.obj", "--unit=mm", "--translate=0,0,0.005"];
     inputs.run(&[&query[..], &["--html=o.html"]].concat()).quiet(0);
     let text = page(&inputs, "o.html");
-    assert!(text.contains("is a file in millimetres? (--cloud-unit mm, --unit mm)</p>"), "{text}");
+    assert!(
+        text.contains("is a file in millimetres? (--cloud-unit mm, --unit mm, --depth-scale)</p>"),
+        "{text}"
+    );
 }
 
 #[test]

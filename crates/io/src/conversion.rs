@@ -17,6 +17,9 @@ pub(crate) fn remedy(extension: &str) -> &'static str {
         "tif" | "tiff" | "exr" | "pgm" => {
             "save a depth image as a 16-bit greyscale .png, which is read with the intrinsics of its camera"
         }
+        "jpg" | "jpeg" | "bmp" | "webp" => {
+            "a picture has no depths: give the depth image itself, a 16-bit greyscale .png"
+        }
         "db3" | "bag" => "convert it to .mcap, and name a scan of it, such as run.mcap#/points@1.5",
         "json" | "toml" | "yaml" => {
             "it is neither a cloud nor a mesh: give the files that it names"
@@ -40,7 +43,7 @@ mod tests {
     #[test]
     fn a_binary_file_is_not_told_to_be_renamed() {
         for extension in
-            ["npy", "las", "e57", "glb", "step", "png", "tiff", "db3", "json", "urdf", "dae"]
+            ["npy", "las", "e57", "glb", "step", "png", "tiff", "jpg", "db3", "json", "urdf", "dae"]
         {
             let remedy = remedy(extension);
             assert!(!remedy.contains("rename") && remedy != "convert it", "{extension}: {remedy}");

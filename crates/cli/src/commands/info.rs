@@ -53,8 +53,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
         }
         (Geometry::Cloud(cloud), Kind::DepthImage(camera)) => {
             // What is too large is so by its steps.
-            let cloud_text =
-                describe_cloud(&cloud)?.replace("--cloud-unit mm, or cm?", "--depth-scale?");
+            let cloud_text = describe_scan(&cloud, "--depth-scale?")?;
             format!("{}\n{cloud_text}", describe_camera(&camera, &cloud))
         }
         (Geometry::Cloud(cloud), _) => describe_cloud(&cloud)?,
@@ -69,6 +68,11 @@ fn answer(arguments: &InfoArguments, text: &str) -> Result<ExitCode> {
 }
 
 fn describe_cloud(cloud: &PointCloud) -> Result<String> {
+    describe_scan(cloud, "--cloud-unit mm, or cm?")
+}
+
+/// `remedy` is for what is too large to be in metres.
+fn describe_scan(cloud: &PointCloud, remedy: &str) -> Result<String> {
     let cleaned = filter(cloud, &FilterSettings::default())?;
     let removed =
         |stage: &str| cleaned.stages.iter().find(|s| s.stage == stage).map_or(0, |s| s.removed);
@@ -93,7 +97,7 @@ fn describe_cloud(cloud: &PointCloud) -> Result<String> {
         let is_map = low.coords.amax().min(high.coords.amax()) > MAP_COORDINATE;
         if size > SUSPICIOUS_CLOUD_SIZE && spacing > SUSPICIOUS_SPACING && !is_map {
             lines.push(format!(
-                "unit        {size:.0} m across and {spacing:.1} m from point to point: --cloud-unit mm, or cm?"
+                "unit        {size:.0} m across and {spacing:.1} m from point to point: {remedy}"
             ));
         }
         if near > 0 {

@@ -132,11 +132,10 @@ fn of_object(fields: &Map<String, Value>) -> Result<CameraFile> {
     }
     undistorted(fields)?;
     let CameraFile { mut camera, .. } = of_numbers(*numbers);
-    let sizes = [["width", "height"], ["image_width", "image_height"]];
-    camera.image_size = sizes.iter().find_map(|names| {
-        let [width, height] = names.map(|name| fields.get(name).and_then(Value::as_u64));
-        Some((usize::try_from(width?).ok()?, usize::try_from(height?).ok()?))
-    });
+    camera.image_size = match size(fields, ["width", "height"])? {
+        None => size(fields, ["image_width", "image_height"])?,
+        stated => stated,
+    };
     let mut unclear_scale = None;
     if fields.contains_key("depth_scale") {
         let scale = number(fields, "depth_scale")?;
@@ -148,6 +147,23 @@ fn of_object(fields: &Map<String, Value>) -> Result<CameraFile> {
         }
     }
     Ok(CameraFile { camera, unclear_scale })
+}
+
+/// Columns and rows, where both are stated; 0 is what drivers write that do not know them.
+fn size(fields: &Map<String, Value>, names: [&str; 2]) -> Result<Option<(usize, usize)>> {
+    let mut pixels = [0; 2];
+    for (pixels, name) in pixels.iter_mut().zip(names) {
+        let Some(value) = fields.get(name).filter(|value| !value.is_null()) else {
+            return Ok(None);
+        };
+        // `640.0` is what some programs write.
+        let whole = value.as_f64().filter(|size| size.fract() == 0.0 && (0.0..1e9).contains(size));
+        *pixels = whole.map(|size| size as usize).with_context(|| {
+            format!("`{name}` is {}: give a whole number of pixels", as_written(value))
+        })?;
+    }
+    let [width, height] = pixels;
+    Ok((pixels != [0, 0]).then_some((width, height)))
 }
 
 fn of_numbers([fx, fy, cx, cy]: [f64; 4]) -> CameraFile {
@@ -237,6 +253,10 @@ mod tests {
         let real = r#"{"width": 640, "height": 480, "fx": 525, "fy": 526, "ppx": 319.5, "ppy": 239.25,
             "model": "distortion.brown_conrady", "coeffs": [0.0, 0.0, 0.0, 0.0, 0.0]}"#;
         assert_eq!(read(real).camera.image_size, Some((640, 480)));
+        let of_floats = real.replace("640", "640.0");
+        assert_eq!(read(&of_floats).camera.image_size, Some((640, 480)));
+        let unknown = real.replace("640", "0").replace("480", "0");
+        assert_eq!(read(&unknown).camera.image_size, None);
         // CameraInfo of ROS 1 and 2.
         let matrix = "[525, 0, 319.5, 0, 526, 239.25, 0, 0, 1]";
         read(&format!(r#"{{"height": 480, "width": 640, "D": [0, 0], "K": {matrix}, "P": [1]}}"#));
@@ -273,6 +293,10 @@ mod tests {
             (r#"{"fx": NaN, "fy": 525, "cx": 319.5, "cy": 1}"#, &["`fx` is NaN", "number"]),
             (r#"{"fx": 0, "fy": 525, "cx": 319.5, "cy": 1}"#, &["fx is 0", "above 0"]),
             (r#"{"fx": 1e999, "fy": 525, "cx": 319.5, "cy": 1}"#, &["not the intrinsics"]),
+            (
+                r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 3, "width": "640", "height": 480}"#,
+                &["`width` is", "whole number of pixels"],
+            ),
             (r#"{"K": [1, 2, 3]}"#, &["`K` is no list of nine"]),
             (r#"{"K": [525, 3, 319, 0, 525, 239, 0, 0, 1]}"#, &["`K` has 3", "without skew"]),
             (r#"{"K": [525, 0, 319, 0, 525, 239, 0, 0, 2]}"#, &["has 2 in row 3 and column 3"]),

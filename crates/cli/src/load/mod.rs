@@ -221,6 +221,13 @@ fn of_clouds<C: PreparedCloud>(
             scan.sensor_pose = Some(pose);
         }
     }
+    if scans.len() > 1 && kinds.iter().any(|kind| kind.is_depth_image()) {
+        tracing::warn!(
+            "{name}: a depth image is in the frame of its camera, and several scans are taken to be in one: \
+             that is so of a camera that stood still; if it moved, make each a body of a scene file, with \
+             its pose"
+        );
+    }
     let first = scans.first().with_context(|| format!("{name}: no scan"))?;
     let Chosen { sensor, because } = sensor.of(first);
     if scans.iter().any(|scan| scan.covariances.is_some()) && sensor != SensorModel::PerPoint {
