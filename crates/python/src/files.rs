@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use cloudtouch::geom::{Covariance, PointCloud};
-use cloudtouch_io::{LengthUnit, ReadLimits, read_cloud_within, read_mesh, scaled_cloud};
+use cloudtouch_io::{
+    DepthCamera, LengthUnit, ReadLimits, read_cloud_within, read_mesh, scaled_cloud,
+};
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray2, PyArray3};
 use pyo3::prelude::*;
@@ -37,6 +39,20 @@ pub(crate) fn read_cloud<'py>(
 fn matrices(covariances: &[Covariance]) -> Array3<f64> {
     let all: Vec<_> = covariances.iter().map(Covariance::matrix).collect();
     Array3::from_shape_fn((all.len(), 3, 3), |(i, row, column)| all[i][(row, column)])
+}
+
+/// Refuses what is no camera of an image of so many columns and rows.
+#[pyfunction]
+#[pyo3(signature = (intrinsics, depth_scale, image_size, /))]
+pub(crate) fn check_camera(
+    intrinsics: [f64; 4],
+    depth_scale: f64,
+    image_size: (usize, usize),
+) -> PyResult<()> {
+    let [fx, fy, cx, cy] = intrinsics;
+    let camera = DepthCamera { depth_scale, ..DepthCamera::new(fx, fy, cx, cy) };
+    let (width, height) = image_size;
+    camera.validate_for(width, height).map_err(refused)
 }
 
 /// Vertices and triangles of a file, in metres.

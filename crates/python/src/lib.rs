@@ -26,7 +26,7 @@ mod _native {
     #[pymodule_export]
     use crate::error::CloudtouchError;
     #[pymodule_export]
-    use crate::files::{read_cloud, read_faces};
+    use crate::files::{check_camera, read_cloud, read_faces};
     #[pymodule_export]
     use crate::query::Query;
     #[pymodule_export]

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cloudtouch import _arrays, _native
+from cloudtouch import _arrays, _depth, _native
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +156,11 @@ class Cloud:
             The file cannot be read, is malformed or has another extension, with place and remedy; and what
             :class:`Cloud` raises.
         """
+        if os.fspath(path).lower().endswith(".png"):
+            raise _native.CloudtouchError(
+                f"{os.fspath(path)}: a depth image is read with the intrinsics of its camera: give its array to "
+                "Cloud.from_depth, such as cv2.imread(path, cv2.IMREAD_UNCHANGED)"
+            )
         rows, image_size, pose, covariances = _native.read_cloud(path, unit)
         if image_size is not None:
             width, height = image_size
@@ -163,6 +168,56 @@ class Cloud:
         if sensor == "per-point":
             others.setdefault("covariances", covariances)
         return cls(rows, sensor=sensor, sensor_pose=pose if sensor_pose is None else sensor_pose, **others)
+
+    @classmethod
+    def from_depth(
+        cls,
+        depth: npt.ArrayLike,
+        intrinsics: npt.ArrayLike,
+        *,
+        sensor: str,
+        depth_scale: float | None = None,
+        sensor_pose: npt.ArrayLike | None = None,
+        **others: Any,
+    ) -> Cloud:
+        """A cloud from a depth image as cameras and data sets store it, of which it is known what was not seen.
+
+        Its points are in the optical frame of the camera (x right, y down, z forward), or where ``sensor_pose`` puts
+        them.
+
+        Parameters
+        ----------
+        depth
+            (height, width): depths along the axis of the camera, not along the ray. Whole numbers (uint16) are steps, of
+            which 0 and 65535 stand for no return; floats are metres, of which 0, negative ones, NaN and infinity do.
+        intrinsics
+            (fx, fy, cx, cy) or (3, 3), pixels, of this image. Lens distortion is not corrected: rectify first.
+        sensor
+            As for :class:`Cloud`.
+        depth_scale
+            Metres a step; 0.001 where it is not given. TUM's images have 0.0002.
+        sensor_pose
+            (4, 4): from the camera into the frame that poses will be given in. The camera's own frame where it is not
+            given.
+        others
+            Every other argument of :class:`Cloud`, by name.
+
+        Raises
+        ------
+        ValueError
+            An array has the wrong shape or type.
+        CloudtouchError
+            No camera has such intrinsics for an image of this size; and what :class:`Cloud` raises.
+
+        Examples
+        --------
+        >>> depth = numpy.full((48, 64), 800, dtype=numpy.uint16)
+        >>> cloudtouch.Cloud.from_depth(depth, (60, 60, 31.5, 23.5), sensor="iso:0.002")
+        <Cloud: 3072 points, sensor 'iso:0.002', 0.84 x 0.63 x 0 m around (0, 0, 0.8)>
+        """
+        image = _depth.points(depth, intrinsics, depth_scale)
+        pose = np.eye(4) if sensor_pose is None else sensor_pose
+        return cls(_depth.placed(image, pose), sensor=sensor, sensor_pose=pose, **others)
 
     def _prepare(self, rows: npt.NDArray[Any], arguments: dict[str, Any]) -> None:
         self._arguments = arguments
