@@ -1,0 +1,88 @@
+//! From the command line to two bodies and a pose.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, bail};
+use cloudtouch::geom::{Pose, Vector3};
+use cloudtouch_cli::numbers::{Triple, Turn};
+use nalgebra::UnitQuaternion;
+
+use crate::args::{PoseArguments, QueryArguments};
+use crate::body::{Body, PreparedCloud};
+use crate::doubt::Doubt;
+use crate::load::{self, Loaded, Role};
+use crate::output::{self, Output};
+use crate::unused;
+
+/// What is asked about.
+pub(super) struct Question<'a, C> {
+    pub arguments: &'a QueryArguments,
+    pub scene: Loaded<C>,
+    pub object: Loaded<C>,
+    /// Object to scene.
+    pub pose: Pose,
+    /// About the pose as it was given.
+    pub doubt: Option<Doubt>,
+}
+
+/// Whether all files that are read are there, and none that is written.
+pub(super) fn check_files(arguments: &QueryArguments) -> Result<()> {
+    let options = &arguments.bodies();
+    let inputs = [&arguments.scene, &arguments.object]
+        .into_iter()
+        .chain(&arguments.also)
+        .chain(&arguments.kappas)
+        .chain(options.robot);
+    inputs.clone().try_for_each(|path| load::check(path))?;
+    let outputs = [
+        Output::of("ply", &arguments.ply),
+        Output::table(&arguments.csv),
+        Output::of("html", &arguments.html),
+    ];
+    let settings = options.settings.map(|file| &file.path);
+    let inputs = inputs.chain(&arguments.pose.pose).chain(settings).map(PathBuf::as_path);
+    output::check(&outputs, inputs, arguments.force)
+}
+
+/// Reads the pose and both bodies, and prepares these.
+pub(super) fn load<C: PreparedCloud>(arguments: &QueryArguments) -> Result<Question<'_, C>> {
+    let (common, options) = (&arguments.common, &arguments.bodies());
+    let pose = pose(&arguments.pose)?;
+    let doubt = arguments.pose.quaternion.and_then(|Turn(turn)| Doubt::of_option(&turn));
+    if let Some(doubt) = &doubt {
+        tracing::warn!("{}", doubt.words);
+    }
+    let scans: Vec<&Path> =
+        std::iter::once(&arguments.scene).chain(&arguments.also).map(PathBuf::as_path).collect();
+    let scene = load::bodies(&scans, Role::Scene, common.scene_sensor(), options)?;
+    let scene = with_kappas(scene, arguments)?;
+    let object = load::body(&arguments.object, Role::Object, options.object_sensor(), options)?;
+    unused::check(options, scene.files(Role::Scene).chain(object.files(Role::Object)))?;
+    let scene = scene.refined_for(1, common.effort.refine())?;
+    let object = object.refined_for(1, common.effort.refine())?;
+    Ok(Question { arguments, scene, object, pose, doubt })
+}
+
+fn pose(arguments: &PoseArguments) -> Result<Pose> {
+    if let Some(path) = &arguments.pose {
+        return load::pose::read(path);
+    }
+    let offset = arguments.translate.map_or(Vector3::zeros(), |Triple(offset)| offset.into());
+    let turn = arguments.turn().map_or(UnitQuaternion::identity(), |turn| turn.0);
+    Ok(Pose::from_translation_rotation(offset, turn))
+}
+
+/// Gives each row of the scene its own κ, where a file says so.
+fn with_kappas<C: PreparedCloud>(
+    scene: Loaded<C>,
+    arguments: &QueryArguments,
+) -> Result<Loaded<C>> {
+    let Some(path) = &arguments.kappas else { return Ok(scene) };
+    let named = || path.display().to_string();
+    let Body::Cloud(cloud) = scene.body else { bail!("{}: the scene is a mesh, exact", named()) };
+    let text = std::fs::read_to_string(path).with_context(named)?;
+    let kappas: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
+    let rule = arguments.mode.paper_settings(&arguments.common).radius_rule;
+    let cloud = cloud.with_kappas(&kappas.with_context(named)?, rule).with_context(named)?;
+    Ok(Loaded { body: Body::Cloud(cloud), ..scene })
+}
