@@ -3,6 +3,8 @@
 use cloudtouch_geom::{Pose, Vector3};
 use nalgebra::UnitQuaternion;
 
+use super::gradient::PoseGradient;
+
 /// How many directions stand for all.
 const ALL: usize = 48;
 /// Directions around another.
@@ -26,6 +28,18 @@ pub(super) fn axes(scene_from_object: &Pose) -> impl Iterator<Item = Vector3> {
         let of_object = scene_from_object.transform_vector(&axis);
         [axis, -axis, of_object, -of_object]
     })
+}
+
+/// Where a gradient at a pose leads out of a collision, in the frame of the scene: by the probability, and by the
+/// clearance where there is one. No unit vectors, and nothing where it is flat.
+pub(super) fn downhill(
+    gradient: &PoseGradient,
+    scene_from_object: &Pose,
+) -> impl Iterator<Item = Vector3> {
+    let climb =
+        |&[x, y, z, ..]: &[f64; 6]| scene_from_object.transform_vector(&Vector3::new(x, y, z));
+    let clearance = gradient.clearance.as_ref().map(climb);
+    std::iter::once(-climb(&gradient.log_odds)).chain(clearance)
 }
 
 /// Unit vectors at an angle from a unit vector, evenly around it.

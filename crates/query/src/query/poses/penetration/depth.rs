@@ -1,0 +1,43 @@
+//! How deep the object is in, and how well that is known.
+
+use cloudtouch_geom::Vector3;
+
+use super::along::{FINEST, PRECISION, Way};
+use super::overlap::Overlap;
+use super::shortest::SHORTER;
+use crate::error::QueryError;
+use crate::query::run::Query;
+use crate::report::Report;
+
+/// How likely a number is above a standard deviation below its mean, above that, and above one more.
+const LIKELY: [f64; 3] = [0.841_344_746, 0.5, 0.158_655_254];
+
+impl Overlap<'_> {
+    /// How far until a collision is as likely as not, the shortest way, and the standard deviation of that, m:
+    /// from the report `here`, along the way out or another of the directions that were looked along.
+    pub(super) fn depth(
+        &self,
+        query: &Query,
+        here: &Report,
+        out: &Way,
+        looked_along: &[Vector3],
+    ) -> Result<(f64, f64), QueryError> {
+        // No guarantees but expectations: bounds, which are wider the less is known, would only add to them.
+        let [nearer, even, farther] = LIKELY.map(|likely| Overlap {
+            query: query.deciding(likely),
+            told: |report| report.collision_probability,
+            ..*self
+        });
+        // The way that is shortest until then may be another.
+        let mut depth = even.way_out(here, out.direction, out.free)?;
+        if depth.free > FINEST {
+            for direction in looked_along {
+                depth = even.shortened(depth, *direction, &[SHORTER])?;
+            }
+            depth = even.between(even.turned_aside(depth)?, PRECISION)?;
+        }
+        let [near, far] = [nearer, farther]
+            .map(|until| until.way_out(here, depth.direction, depth.free).map(|way| way.free));
+        Ok((depth.free, 0.5 * (far? - near?)))
+    }
+}
