@@ -1,7 +1,5 @@
 //! Continuous collision: nothing between the poses of a path is missed, and bounds hold.
 
-use std::time::Instant;
-
 use crate::common::{at, measured};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
@@ -313,57 +311,4 @@ fn answers_are_the_same_bits_on_any_number_of_threads() {
         (swept.bounds.map(f64::to_bits), first.at.share.to_bits(), swept.stats.leaf_pairs)
     };
     assert_eq!(of(1), of(4));
-}
-
-/// Run it for the figures: `cargo test -p cloudtouch --test suite what_a_sweep -- --ignored --nocapture`.
-#[test]
-#[ignore = "it only measures"]
-fn what_a_sweep_costs_beside_a_query() {
-    let table = scene::cuboid([0.6, 0.6, 0.02]);
-    let object = scene::cuboid([0.1, 0.08, 0.12]);
-    let turned = |x: f64, z: f64, yaw: f64| {
-        Pose::from_translation_rpy(Vector3::new(x, 0.0, z), [0.0, 0.0, yaw])
-    };
-    let moves = [
-        ("far away", [at(0.0, 0.0, 0.5), at(0.1, 0.0, 0.5)]),
-        ("2 cm above, along", [at(0.0, 0.0, 0.09), at(0.1, 0.0, 0.09)]),
-        ("1 cm above, along", [at(0.0, 0.0, 0.08), at(0.1, 0.0, 0.08)]),
-        ("1 cm above, turning", [turned(0.0, 0.08, 0.0), turned(0.1, 0.08, 0.5)]),
-        ("down to 1 cm", [at(0.0, 0.0, 0.18), at(0.0, 0.0, 0.08)]),
-        ("down to contact", [at(0.0, 0.0, 0.17), at(0.0, 0.0, 0.07)]),
-        ("down into it", [at(0.0, 0.0, 0.12), at(0.0, 0.0, 0.02)]),
-    ];
-    for kinds in KINDS {
-        let a = body(kinds[0], &table, 0.005, 0.001, 14);
-        let b = body(kinds[1], &object, 0.005, 0.001, 15);
-        for (name, [from, to]) in &moves {
-            let path = Path::linear(from, to).expect("two poses");
-            let all = least_time(|| drop(query().sweep(&a, &b, &path, 0.01)));
-            let swept = sweep(&a, &b, &path, 0.01);
-            let of_one = |i: u32| {
-                let pose = path.pose(0.05 * f64::from(i));
-                least_time(|| drop(query().run(&a, &b, &pose)))
-            };
-            let costliest = (0..=20).map(of_one).fold(0.0, f64::max);
-            println!(
-                "{kinds:?} {name}: {all:.0} us, {:.1} times the costliest query ({costliest:.0} us); \
-                 {} poses, {} stretches, bounds {:.3?}, free until {:.3}",
-                all / costliest,
-                swept.stats.poses,
-                swept.stats.stretches,
-                swept.bounds,
-                swept.certified_free_until,
-            );
-        }
-    }
-}
-
-/// The least of some runs, µs.
-fn least_time(run: impl Fn()) -> f64 {
-    let time = || {
-        let start = Instant::now();
-        run();
-        1e6 * start.elapsed().as_secs_f64()
-    };
-    (0..5).map(|_| time()).fold(f64::INFINITY, f64::min)
 }

@@ -3,14 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use crate::common::{at, measured, timeless, uniform};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Body, Checked, Cloud, CloudSettings, Detail, Mesh, PairAnswer, Query, QueryError,
-    QuerySettings, Safeguards, Scene, SceneError, Undecided, Verdict, Warning,
+    Body, Checked, Cloud, CloudSettings, Mesh, PairAnswer, Query, QueryError, QuerySettings,
+    Safeguards, Scene, SceneError, Undecided, Verdict, Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -447,48 +446,4 @@ fn of_a_hundred_bodies_and_an_arm_few_pairs_are_asked() {
     assert_eq!((checked.count, checked.allowed), (112 * 111 / 2, 11));
     // The arm of 2.4 m passes 1 cm above nine balls of the first row, each below one or two links.
     assert!((9..=20).contains(&checked.asked), "{checked:?}");
-}
-
-/// Prints what a check costs beside the pairs that are near: `cargo test --release -p cloudtouch --test
-/// suite scene:: -- --ignored --nocapture`.
-#[test]
-#[ignore = "measures time"]
-fn cost_of_a_scene_beside_its_near_pairs() {
-    let scene = workshop();
-    let names: Vec<&str> = scene.names().collect();
-    let pairs =
-        names.iter().enumerate().flat_map(|(k, a)| names[k + 1..].iter().map(move |b| [*a, *b]));
-    let is_near = |[a, b]: &[&str; 2]| {
-        let bodies = [a, b].map(|name| scene.body(name).unwrap());
-        let pose = scene.between(a, b).unwrap();
-        query().run(bodies[0], bodies[1], &pose).unwrap().stats.leaf_pairs > 0
-    };
-    let may_not_touch = |[a, b]: &[&str; 2]| !scene.is_allowed(a, b).unwrap();
-    let near: Vec<[&str; 2]> = pairs.filter(may_not_touch).filter(is_near).collect();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    for detail in [Detail::Full, Detail::Verdict] {
-        let query = Query::new(QuerySettings { detail, ..QuerySettings::default() }).unwrap();
-        let best =
-            |work: &(dyn Fn() + Sync)| (0..30).map(|_| pool.install(|| timed(work))).min().unwrap();
-        let whole = best(&|| drop(scene.check(&query)));
-        let alone = best(&|| {
-            for [a, b] in &near {
-                let bodies = [a, b].map(|name| scene.body(name).unwrap());
-                query.run(bodies[0], bodies[1], &scene.between(a, b).unwrap()).unwrap();
-            }
-        });
-        println!(
-            "{detail:?}: {:.2} ms for the scene, {:.2} ms for its {} near pairs alone: {:.2} times",
-            1e3 * whole.as_secs_f64(),
-            1e3 * alone.as_secs_f64(),
-            near.len(),
-            whole.as_secs_f64() / alone.as_secs_f64(),
-        );
-    }
-}
-
-fn timed(work: impl FnOnce()) -> Duration {
-    let start = Instant::now();
-    work();
-    start.elapsed()
 }

@@ -6,6 +6,7 @@ pub mod camera;
 pub mod exact;
 pub mod family;
 pub mod hard_cases;
+pub mod measured;
 pub mod noise;
 pub mod poses;
 mod random;

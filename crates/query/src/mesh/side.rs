@@ -115,10 +115,7 @@ impl Mesh {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Write;
-    use std::time::{Duration, Instant};
-
-    use cloudtouch_geom::{TriangleMesh, seed};
+    use cloudtouch_geom::TriangleMesh;
     use cloudtouch_testkit::scene;
 
     use super::*;
@@ -188,36 +185,5 @@ mod tests {
         assert_eq!(at(&open, place(1.0)).1, Side::Unknown);
         assert_eq!(at(&open, place(3.0)).1, Side::Outside);
         assert_eq!(at(&open, [f64::NAN; 3]).1, Side::Unknown);
-    }
-
-    /// Run it for the figures:
-    /// `cargo test -p cloudtouch --lib ten_thousand_sides -- --ignored --nocapture`.
-    #[test]
-    #[ignore = "it only measures"]
-    fn how_long_ten_thousand_sides_take_beside_ten_thousand_distances() {
-        let shapes = [("torus", scene::torus(0.3, 0.1, 71)), ("ball", scene::sphere(0.4, 5))];
-        for (name, shape) in shapes {
-            let mesh = Mesh::prepare(&shape).unwrap();
-            for reach in [0.4, 1.0] {
-                let draw = |i, axis| reach * (2.0 * seed::unit(seed::derive(1, i, axis)) - 1.0);
-                let points: Vec<Point3> =
-                    (0..10_000).map(|i| Point3::new(draw(i, 0), draw(i, 1), draw(i, 2))).collect();
-                let mut best = [Duration::MAX; 2];
-                for _ in 0..9 {
-                    let start = Instant::now();
-                    let sides = points.iter().filter(|p| mesh.side(p) == Side::Inside).count();
-                    let middle = Instant::now();
-                    let signed = points.iter().filter(|p| mesh.project(p).signed_distance < 0.0);
-                    assert_eq!(signed.count(), sides);
-                    best[0] = best[0].min(middle - start);
-                    best[1] = best[1].min(middle.elapsed());
-                }
-                let triangles = mesh.triangle_count();
-                let [sides, both] = best;
-                let line =
-                    format!("{name}, {triangles} triangles, {reach} m: {sides:?} of {both:?}");
-                writeln!(std::io::stderr(), "{line}").unwrap();
-            }
-        }
     }
 }

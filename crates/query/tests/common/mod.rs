@@ -3,11 +3,10 @@
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Mesh, Mode, Report, Stats};
-use cloudtouch_testkit::noise::{NoiseKind, add_noise};
-use cloudtouch_testkit::{scene, surface};
 
 mod paths;
 
+pub(crate) use cloudtouch_testkit::measured::measured;
 pub(crate) use paths::{AnyQuery, Asked, MODES, Scan};
 
 /// A pose that only moves.
@@ -18,17 +17,6 @@ pub(crate) fn at(x: f64, y: f64, z: f64) -> Pose {
 /// A number in [0, 1) that depends on `stream` and `index` alone.
 pub(crate) fn uniform(stream: u64, index: u64) -> f64 {
     seed::unit(seed::derive(stream, index, 0))
-}
-
-/// A noisy cloud of a surface, one point for each square of side `spacing`, all metres.
-///
-/// The mesh is refined first: samples are spread evenly over triangles, so that small triangles
-/// leave no holes.
-pub(crate) fn measured(mesh: &TriangleMesh, spacing: f64, std: f64, seed: u64) -> Vec<Point3> {
-    let fine = scene::subdivide_to_max_edge(mesh, spacing);
-    let count = (surface::area(mesh) / (spacing * spacing)).round() as usize;
-    let samples = surface::sample_surface(&fine, count, seed);
-    add_noise(&surface::positions(&samples), NoiseKind::Gaussian, std, seed)
 }
 
 /// Prepares points with the same noise in every direction.

@@ -1,0 +1,92 @@
+//! What a check of a scene takes beside its pairs that are near, on one thread: a hundred clouds of a thousand points
+//! and an arm of twelve links among them.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Body, Cloud, CloudSettings, Detail, Mesh, Query, QuerySettings, Scene};
+use cloudtouch_geom::{PointCloud, Pose, Vector3};
+use cloudtouch_testkit::measured::measured;
+use cloudtouch_testkit::scene;
+
+/// Each time is the least of so many.
+const RUNS: usize = 30;
+const STD: f64 = 0.001;
+
+fn main() {
+    let scene = workshop();
+    let near = near_pairs(&scene);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    for detail in [Detail::Full, Detail::Verdict] {
+        let query = query(detail);
+        let whole = pool.install(|| least(|| drop(scene.check(&query))));
+        let ask_near = || near.iter().for_each(|pair| drop(asked(&scene, &query, pair)));
+        let alone = pool.install(|| least(ask_near));
+        println!(
+            "{detail:?}: {:.2} ms for the scene, {:.2} ms for its {} near pairs alone: {:.2} times",
+            1e3 * whole,
+            1e3 * alone,
+            near.len(),
+            whole / alone,
+        );
+    }
+}
+
+fn workshop() -> Scene {
+    let mut all = Scene::default();
+    let spacing = (4.0 * std::f64::consts::PI * 0.05_f64.powi(2) / 1000.0).sqrt();
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: STD });
+    for k in 0..100_u32 {
+        let points = measured(&scene::sphere(0.05, 3), spacing, STD, u64::from(k));
+        let ball = Cloud::prepare(&PointCloud::from_points(points), &settings);
+        let place = at(0.3 * f64::from(k % 10), 0.3 * f64::from(k / 10), 0.0);
+        all.add(format!("ball {k}"), ball.expect("a usable cloud"), place).expect("a new name");
+    }
+    let link = Mesh::prepare(&scene::cuboid([0.2, 0.04, 0.04])).expect("a box");
+    let link = Arc::new(Body::from(link));
+    for k in 0..12 {
+        let place = at(0.15 + 0.2 * f64::from(k), 0.0, 0.08);
+        all.add(format!("link {k}"), Arc::clone(&link), place).expect("a new name");
+        if k > 0 {
+            let [a, b] = [k - 1, k].map(|k| format!("link {k}"));
+            all.allow(&a, &b).expect("two of the scene");
+        }
+    }
+    all
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(Vector3::new(x, y, z))
+}
+
+fn query(detail: Detail) -> Query {
+    Query::new(QuerySettings { detail, ..QuerySettings::default() }).expect("default settings")
+}
+
+/// Pairs that may not touch and of which a query looks at points.
+fn near_pairs(scene: &Scene) -> Vec<[&str; 2]> {
+    let query = query(Detail::Full);
+    let names: Vec<&str> = scene.names().collect();
+    let pairs =
+        names.iter().enumerate().flat_map(|(k, a)| names[k + 1..].iter().map(move |b| [*a, *b]));
+    let may_touch = |[a, b]: &[&str; 2]| scene.is_allowed(a, b).expect("two of the scene");
+    let is_near = |pair: &[&str; 2]| asked(scene, &query, pair).stats.leaf_pairs > 0;
+    pairs.filter(|pair| !may_touch(pair) && is_near(pair)).collect()
+}
+
+fn asked(scene: &Scene, query: &Query, [a, b]: &[&str; 2]) -> cloudtouch::Report {
+    let pose = scene.between(a, b).expect("two of the scene");
+    let [a, b] = [a, b].map(|name| scene.body(name).expect("one of the scene"));
+    query.run(a, b, &pose).expect("a finite pose")
+}
+
+/// Seconds.
+fn least(work: impl Fn()) -> f64 {
+    let times = (0..RUNS).map(|_| {
+        let start = Instant::now();
+        work();
+        start.elapsed().as_secs_f64()
+    });
+    times.fold(f64::INFINITY, f64::min)
+}
