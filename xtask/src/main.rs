@@ -30,7 +30,7 @@ enum Task {
     BenchReport(performance::Arguments),
     /// The figures of the paper with our data, by its method as printed and by ours.
     Paper(paper::Arguments),
-    /// How well stated margins are.
+    /// How right margins, normals of contacts, ways out and gradients are, against exact truth.
     Motion(motion::Arguments),
     /// Makes the files of fixtures/ anew.
     Fixtures {

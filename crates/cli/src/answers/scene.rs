@@ -113,7 +113,7 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
     let _ = write!(
         text,
         "{}: {} of {count} pairs may be at or above {}; {asked} asked, {ruled_out} ruled out by their \
-         boxes, {allowed} allowed",
+         boxes, {allowed} left out",
         checked.verdict(),
         checked.pairs.len(),
         probability(threshold),
