@@ -97,14 +97,16 @@ impl RobotChecker {
     }
 
     /// All pairs that do not read as free with the joints at these positions, rad and m, the worst
-    /// first, each with its report: contacts are in the frame of the surroundings.
+    /// first, each with its report: contacts are in the frame of the surroundings. `joints` has every joint
+    /// that moves and mimics no other, by its name.
     ///
-    /// It is [`Scene::check`], with the same bits on any number of threads.
+    /// The two of a pair are named [`SURROUNDINGS`], by the link, with a number from 0 where it has several
+    /// `<collision>` shapes (`finger/2`), and by what is held. It is [`Scene::check`], with the same bits on any
+    /// number of threads.
     ///
     /// # Errors
-    /// When a joint is unknown, left out, not finite or beyond its limits, or a link 1e10 m
-    /// away. A pair that cannot be asked
-    /// is among those returned.
+    /// When a joint is unknown, left out, not finite or beyond its limits, or a link 1e10 m away. A pair that
+    /// cannot be asked is among those returned.
     pub fn check(
         &self,
         query: &Query,
@@ -114,7 +116,7 @@ impl RobotChecker {
     }
 
     /// Lowest and highest corner of the surroundings, of each link and of what is held, along the axes of the frame
-    /// of the surroundings, m, by their names, never too small. For people to see whether the base is where they
+    /// of the surroundings, m, by their names as in [`Self::check`], never too small. For people to see whether the base is where they
     /// meant.
     ///
     /// # Errors

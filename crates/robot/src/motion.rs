@@ -43,9 +43,9 @@ pub struct Stopped {
 /// A pair that may meet around a position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nearest {
-    /// The surroundings, or a link.
+    /// The [`SURROUNDINGS`], a shape of a link or what a link holds, named as in [`RobotChecker::check`].
     pub a: String,
-    /// A link.
+    /// A shape of a link, or what one holds.
     pub b: String,
     /// With at most this probability, which is not below the reject threshold.
     pub at_most: f64,
@@ -81,8 +81,8 @@ impl RobotChecker {
     /// [`Detail::Full`](cloudtouch::Detail::Full) for contacts and clearances of what is found.
     ///
     /// # Errors
-    /// With fewer than two positions, a tolerance that is not above 0 and at most 1, and when a joint
-    /// is unknown, left out, not finite or beyond its limits.
+    /// With fewer than two positions, a tolerance that is not above 0 and at most 1, and where
+    /// [`Self::check`] has one at any position.
     pub fn check_path(
         &self,
         query: &Query,
@@ -243,9 +243,9 @@ fn between(from: &[f64], to: &[f64], time: f64) -> Vec<f64> {
     from.iter().zip(to).map(|(from, to)| from + (to - from) * time).collect()
 }
 
-/// No point of what a link carries within a radius (m) is farther than this from where it is in the middle of a motion, m, seen from the outermost
-/// joint that `is_common` with what it is seen from: every joint that carries it on takes it along by no more than
-/// half its turn times its longest lever.
+/// No point of what a link carries within a radius (m) is farther than this from where it is in the middle of a
+/// motion, m, seen from the outermost joint that `is_common` with what it is seen from: every joint that carries it
+/// on takes it along by no more than half its turn times its longest lever.
 fn farthest(
     tree: &Tree,
     (link, radius): (usize, f64),

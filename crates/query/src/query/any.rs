@@ -22,7 +22,8 @@ impl Query {
     /// probability may be [`reject`](crate::QuerySettings::reject) or more, that is undecided, or that
     /// cannot be asked. Those after it are not looked at; `None` where all are free.
     ///
-    /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest.
+    /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest. A deadline is that of each pair;
+    /// [`Self::begun_now`] makes it that of all.
     ///
     /// ```
     /// use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};

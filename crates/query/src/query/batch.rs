@@ -10,10 +10,11 @@ use crate::report::Report;
 use super::run::Query;
 
 impl Query {
-    /// Answers every pose, on all threads of the current rayon pool, in the order of the poses.
+    /// [`Self::run`] for every pose of `b`, from its file frame into that of `a`, on all threads of the current
+    /// rayon pool, in the order of the poses. An error is that of one pose, and leaves the others alone.
     ///
     /// Apart from times and `leaves_prepared` in the statistics, the reports are the same bits
-    /// whatever the number of threads.
+    /// whatever the number of threads. A deadline is that of each pose; [`Self::begun_now`] makes it that of all.
     pub fn run_batch<'a>(
         &self,
         a: impl Into<BodyRef<'a>>,

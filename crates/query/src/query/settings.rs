@@ -39,7 +39,8 @@ pub struct QuerySettings {
     /// and 1. The fit is for one half; a planner whose poses mostly collide, or hardly ever, knows
     /// better.
     pub prior: f64,
-    /// Kernel width γ for a leaf pair scaled to the unit box.
+    /// γ of the Gaussian kernel exp(−γ‖x − y‖²) that a contact patch, scaled to the unit box, is separated with:
+    /// the larger, the narrower it is.
     pub gamma: f64,
     /// C: what a misclassified point costs, before balancing by class size.
     pub penalty: f64,

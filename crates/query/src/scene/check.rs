@@ -65,7 +65,8 @@ impl Scene {
     /// after the other, those whose boxes overlap most first, and those after it are not. Which one is
     /// found depends on nothing but the scene.
     ///
-    /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest.
+    /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest. A deadline is that of each pair;
+    /// [`Query::begun_now`] makes it that of all.
     pub fn check_first(&self, query: &Query) -> Option<PairAnswer> {
         let broad = BroadPhase::new(query);
         let members = self.members();
