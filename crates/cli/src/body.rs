@@ -52,8 +52,8 @@ pub(crate) trait PreparedCloud: Sized + Send + Sync {
     fn stages(&self) -> &[StageReport];
 }
 
-/// One of the paths: it asks only about bodies that were prepared for it.
-pub(crate) trait Path: Sync {
+/// The default path or the paper's: it asks only about bodies that were prepared for it.
+pub(crate) trait Estimator: Sync {
     type Cloud: PreparedCloud;
 
     /// How likely it is that two bodies collide.
@@ -212,7 +212,7 @@ impl<'a> From<&'a Body<PaperCloud>> for PaperBodyRef<'a> {
     }
 }
 
-impl Path for Query {
+impl Estimator for Query {
     type Cloud = Cloud;
 
     fn ask(
@@ -277,7 +277,7 @@ impl Path for Query {
     }
 }
 
-impl Path for PaperQuery {
+impl Estimator for PaperQuery {
     type Cloud = PaperCloud;
 
     fn ask(

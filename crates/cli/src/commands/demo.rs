@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &DemoArguments, shows_work: bool) -> Result<ExitCod
     }
 }
 
-fn run_by<P: body::Path>(
+fn run_by<P: body::Estimator>(
     query: &P,
     arguments: &DemoArguments,
     shows_work: bool,
@@ -140,7 +140,7 @@ fn body<C: PreparedCloud>(name: &str, pcd: &[u8]) -> Result<Loaded<C>> {
 }
 
 /// One after the other, so that the times are those of a single thread.
-fn poses<P: body::Path>(
+fn poses<P: body::Estimator>(
     query: &P,
     room: &Body<P::Cloud>,
     piano: &Body<P::Cloud>,

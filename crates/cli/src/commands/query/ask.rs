@@ -21,7 +21,7 @@ pub(super) struct Found {
     pub penetration: Option<Option<Penetration>>,
 }
 
-pub(super) fn ask<P: body::Path>(
+pub(super) fn ask<P: body::Estimator>(
     query: &P,
     question: &Question<'_, P::Cloud>,
 ) -> Result<Found> {

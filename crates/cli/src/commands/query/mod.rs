@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCo
     }
 }
 
-fn run_by<P: body::Path>(
+fn run_by<P: body::Estimator>(
     query: &P,
     arguments: &QueryArguments,
     shows_work: bool,

@@ -1,0 +1,83 @@
+//! `cloudtouch batch`: many poses; scenes and objects are prepared once.
+
+mod answers;
+mod bodies;
+mod progress;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use cloudtouch::{PaperQuery, Query};
+use cloudtouch_cli::files::case::{self, CaseFile};
+use cloudtouch_io::write_atomically;
+
+use self::answers::{Batch, Done};
+use crate::answers::print;
+use crate::args::{BatchArguments, ModeName};
+use crate::body;
+use crate::output::{self, Output};
+use crate::pages::batch::Shown;
+
+pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
+    let common = &arguments.common;
+    match arguments.mode.mode {
+        ModeName::Calibrated => run_by(&Query::new(common.query_settings())?, arguments),
+        ModeName::Paper => {
+            run_by(&PaperQuery::new(arguments.mode.paper_settings(common))?, arguments)
+        }
+    }
+}
+
+fn run_by<P: body::Estimator>(query: &P, arguments: &BatchArguments) -> Result<ExitCode> {
+    let limits = arguments.common.limits.read_limits();
+    let file = case::read(&arguments.cases, limits.bytes)?;
+    let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
+    check_files(arguments, &file)?;
+    bodies::sensors_for(arguments).check(&file)?;
+    warn_of_same_names(arguments, &file);
+    let bodies = bodies::prepare::<P::Cloud>(arguments, good())?;
+    bodies::warn_of_sensors_of_meshes(arguments, good(), &bodies);
+    let batch = Batch { query, arguments, file: &file, bodies: &bodies };
+    let mut done = Done { has_failed: false, shown: Shown::new() };
+    let mut write = |jsonl: &mut dyn Write| batch.write(jsonl, &mut done);
+    match &arguments.jsonl {
+        Some(path) => write_atomically(path, write)?,
+        None => write(&mut io::sink())?,
+    }
+    if let Some(path) = &arguments.html {
+        let cases = arguments.cases.file_name().unwrap_or_default().to_string_lossy();
+        done.shown.write(path, &cases, &limits)?;
+    }
+    Ok(if done.has_failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// Whether no file would be written that is there, or is read.
+fn check_files(arguments: &BatchArguments, file: &CaseFile) -> Result<()> {
+    let cases = file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
+    let files = cases.flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
+    let options = arguments.bodies();
+    let settings = options.settings.map(|file| &file.path);
+    let others = options.robot.iter().chain([&arguments.cases]).chain(settings);
+    let inputs = files.chain(others.map(PathBuf::as_path));
+    let outputs = [Output::table(&arguments.jsonl), Output::of("html", &arguments.html)];
+    output::check(&outputs, inputs, arguments.force)
+}
+
+/// Names that more than one case has; of many such names no more are told.
+const SAME_NAMES_TOLD: usize = 3;
+
+fn warn_of_same_names(arguments: &BatchArguments, file: &CaseFile) {
+    let same = file.same_names();
+    for (name, [first, second]) in same.iter().take(SAME_NAMES_TOLD) {
+        tracing::warn!(
+            "{}: cases {first} and {second} are both `{}`: only the order tells their answers apart",
+            arguments.cases.display(),
+            print::one_line(name)
+        );
+    }
+    if let Some(more) = same.len().checked_sub(SAME_NAMES_TOLD).filter(|more| *more > 0) {
+        tracing::warn!("{}: {more} more names are of several cases", arguments.cases.display());
+    }
+}

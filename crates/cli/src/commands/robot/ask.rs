@@ -1,0 +1,87 @@
+//! One position or a path of them, asked about.
+
+use std::collections::BTreeMap;
+
+use anyhow::Result;
+use cloudtouch::geom::Point3;
+use cloudtouch::{PairAnswer, Query, Verdict};
+use cloudtouch_cli::files::joints::Joints;
+use cloudtouch_robot::{RobotChecker, SURROUNDINGS};
+
+use crate::answers;
+use crate::answers::robot::Asked;
+use crate::answers::scene::Bodies;
+use crate::load::Input;
+
+/// How finely a path is looked at, as a share of it.
+const TOLERANCE: f64 = 0.001;
+
+/// Who is asked, and how it is told.
+pub(super) struct Ask<'a> {
+    pub checker: &'a RobotChecker,
+    pub query: &'a Query,
+    pub scan: &'a Input,
+    pub asked: Asked<'a>,
+    pub in_json: bool,
+}
+
+pub(super) struct Answer {
+    pub text: String,
+    pub verdict: Verdict,
+    /// Whether a pair has no answer.
+    pub has_failed: bool,
+}
+
+impl Ask<'_> {
+    /// Asks about one position, or about a path where there are several.
+    pub(super) fn about(&self, path: &[Joints]) -> Result<Answer> {
+        let boxes = path.iter().map(|joints| self.checker.boxes(joints));
+        let boxes = boxes.collect::<Result<Vec<_>, _>>()?;
+        match path {
+            [joints] => self.position(joints, self.bodies(&boxes[0])),
+            _ => self.path(path, boxes.iter().map(|boxes| self.bodies(boxes)).collect()),
+        }
+    }
+
+    fn bodies<'a>(&'a self, boxes: &'a BTreeMap<String, [Point3; 2]>) -> Bodies<'a> {
+        Bodies {
+            inputs: BTreeMap::from([(SURROUNDINGS, self.scan)]),
+            boxes: boxes.iter().map(|(name, corners)| (name.as_str(), *corners)).collect(),
+        }
+    }
+
+    fn position(&self, joints: &Joints, bodies: Bodies<'_>) -> Result<Answer> {
+        let checked = self.checker.check(self.query, joints)?;
+        let threshold = self.query.settings().reject;
+        let text = if self.in_json {
+            answers::robot::json_line(&checked, threshold, bodies, self.asked)?
+        } else {
+            [
+                answers::robot::place(&bodies),
+                answers::robot::worst(&checked),
+                answers::scene::text(&checked, threshold),
+            ]
+            .concat()
+        };
+        let has_failed = checked.pairs.iter().any(is_without_answer);
+        Ok(Answer { text, verdict: checked.verdict(), has_failed })
+    }
+
+    fn path(&self, path: &[Joints], bodies: Vec<Bodies<'_>>) -> Result<Answer> {
+        let checked = self.checker.check_path(self.query, path, TOLERANCE)?;
+        let text = if self.in_json {
+            let threshold = self.query.settings().reject;
+            answers::robot::path_line(&checked, threshold, bodies, self.asked)?
+        } else {
+            let place = bodies.first().map_or(String::new(), answers::robot::place);
+            place + &answers::robot::path_text(&checked)
+        };
+        let pairs = checked.given.iter().flat_map(|at| &at.pairs);
+        let mut pairs = pairs.chain(checked.stopped.as_ref().and_then(|at| at.pair.as_ref()));
+        Ok(Answer { text, verdict: checked.verdict(), has_failed: pairs.any(is_without_answer) })
+    }
+}
+
+fn is_without_answer(pair: &PairAnswer) -> bool {
+    pair.answer.is_err()
+}
