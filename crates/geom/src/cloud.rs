@@ -56,6 +56,7 @@ impl PointCloud {
     ///
     /// # Panics
     /// When an index is out of range.
+    #[must_use]
     pub fn select(&self, indices: &[usize]) -> Self {
         Self {
             points: pick(&self.points, indices),

@@ -253,6 +253,7 @@ impl Covariance {
     }
 
     /// R Σ Rᵀ.
+    #[must_use]
     pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Self {
         match &self.0 {
             // Else the matrix of the rotation is formed for nothing.
@@ -272,6 +273,7 @@ impl Covariance {
     }
 
     /// The covariance of `factor`·x.
+    #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let squared = factor * factor;
         Self(match &self.0 {
@@ -283,6 +285,7 @@ impl Covariance {
 
     /// Σ + Ψ: the covariance of a sum of independent errors.
     #[inline]
+    #[must_use]
     pub fn sum(&self, other: &Self) -> Self {
         match (&self.0, &other.0) {
             (Form::Isotropic(a), Form::Isotropic(b)) => Self(Form::Isotropic(a + b)),

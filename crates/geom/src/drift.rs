@@ -47,6 +47,7 @@ impl Drift {
     /// How what keeps still drifts as the body that moves sees it, in the frame of the middle: at s, to
     /// first order, by −s·u with the u of the motion itself, and farther off that where a turn meets a
     /// shift.
+    #[must_use]
     pub fn inverse(&self) -> Self {
         Self { skew: self.linear.cross(&self.axis).norm() * self.chord, ..*self }
     }

@@ -173,12 +173,14 @@ impl Pose {
     }
 
     /// The motion back.
+    #[must_use]
     pub fn inverse(&self) -> Self {
         Self(self.0.inverse())
     }
 
     /// `self` after `first`: with `a_from_b` and `b_from_c`, `a_from_b.after(&b_from_c)` is
     /// `a_from_c`.
+    #[must_use]
     pub fn after(&self, first: &Self) -> Self {
         Self(self.0 * first.0)
     }

@@ -20,6 +20,7 @@ impl UncertainPoint {
     }
 
     /// The same point seen from another frame.
+    #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
         Self {
             mean: pose.transform_point(&self.mean),

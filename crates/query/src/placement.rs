@@ -7,6 +7,7 @@ use crate::shape::Shape;
 
 /// Boxes of both bodies in the frame of A, and how far apart they and their points are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Placement {
     /// Lowest and highest corner of A along the axes of its frame, m.
     pub scene_box: [[f64; 3]; 2],

@@ -14,6 +14,7 @@ use crate::stats::Stats;
 
 /// The answer to one query. Serialises to the JSON object of the command-line tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Probability that the two underlying surfaces collide.
     pub collision_probability: f64,

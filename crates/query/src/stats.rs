@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// What a query did: the cost that follows from how hard the pair was.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Stats {
     /// Pairs of tree nodes tested, and nodes tested against a mesh.
     pub nodes_visited: usize,

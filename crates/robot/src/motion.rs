@@ -28,6 +28,7 @@ pub struct PathChecked {
 
 /// Where a path is no longer known to be free.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Stopped {
     /// Which segment, from 0.
     pub segment: usize,
@@ -42,6 +43,7 @@ pub struct Stopped {
 
 /// A pair that may meet around a position.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Nearest {
     /// The [`SURROUNDINGS`], a shape of a link or what a link holds, named as in [`RobotChecker::check`].
     pub a: String,

@@ -11,6 +11,7 @@ use crate::shape::Shape;
 /// Where a body's surface lies as the single depth image of the other sees it: shares of the surface,
 /// from 0 to 1. What is in none of them was seen to be empty, or is on a measured surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Unseen {
     /// Whose surface.
     pub body: Which,

@@ -142,6 +142,7 @@ impl Judge {
     }
 
     /// The same without the classifier: it is never asked.
+    #[must_use]
     pub fn without_classifier(mut self) -> Self {
         for (row, knot) in self.revised.iter_mut().zip(DOUBT_KNOTS) {
             row.fill(knot);
@@ -150,6 +151,7 @@ impl Judge {
     }
 
     /// The same without the extent: how many pieces of surface are as near says nothing.
+    #[must_use]
     pub fn without_extent(mut self) -> Self {
         for of_noise in &mut self.over_extent {
             for (row, knot) in of_noise.iter_mut().zip(ODDS_KNOTS) {

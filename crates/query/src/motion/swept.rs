@@ -9,6 +9,7 @@ use crate::report::{Report, Verdict};
 
 /// How likely two bodies collide along a path.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Swept {
     /// Lower and upper bound on the largest collision probability of any pose of the path, under the
     /// same model: the largest of the poses that were asked about, and what no pose exceeds.
@@ -35,6 +36,7 @@ pub struct Swept {
 
 /// A pose of a path that was asked about.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct AlongPath {
     /// Which segment, from 0, and the time within it, from 0 to 1.
     pub segment: usize,
@@ -50,6 +52,7 @@ pub struct AlongPath {
 
 /// Where a threshold is first exceeded.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Reached {
     /// The earliest pose that was found to exceed it.
     pub at: AlongPath,
@@ -60,6 +63,7 @@ pub struct Reached {
 
 /// What a sweep did.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct SweepStats {
     /// Poses that were asked about.
     pub poses: usize,

@@ -44,6 +44,7 @@ impl Query {
     /// assert_ne!(found.answer?.verdict, Verdict::Free);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    #[must_use]
     pub fn any<'a, A: Into<BodyRef<'a>>, B: Into<BodyRef<'a>>>(
         &self,
         pairs: impl IntoIterator<Item = (A, B, Pose)>,

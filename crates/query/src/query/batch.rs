@@ -15,6 +15,7 @@ impl Query {
     ///
     /// Apart from times and `leaves_prepared` in the statistics, the reports are the same bits
     /// whatever the number of threads. A deadline is that of each pose; [`Self::begun_now`] makes it that of all.
+    #[must_use]
     pub fn run_batch<'a>(
         &self,
         a: impl Into<BodyRef<'a>>,

@@ -58,6 +58,7 @@ impl Query {
 
     /// The same, whose deadline counts from now on for all that is asked of it together: for calls that ask many
     /// pairs or poses. A time that has begun goes on.
+    #[must_use]
     pub fn begun_now(&self) -> Self {
         Self { begun: self.begun.or_else(|| Some(Instant::now())), ..*self }
     }

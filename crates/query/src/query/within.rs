@@ -17,6 +17,7 @@ use super::run::Query;
 
 /// How likely two surfaces are within a margin of each other; the collision is the margin of nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Within {
     /// The margin, m.
     pub margin_m: f64,

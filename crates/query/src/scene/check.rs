@@ -27,6 +27,7 @@ impl Scene {
     /// depth image did not see, is among those returned. Pairs whose boxes do not meet are not looked at,
     /// the others take a test of two boxes, and those near each other, or in doubt, a query. A deadline of the
     /// query counts for all pairs together: those that it leaves no time for are undecided.
+    #[must_use]
     pub fn check(&self, query: &Query) -> Checked {
         let query = &query.begun_now();
         let broad = BroadPhase::new(query);
@@ -67,6 +68,7 @@ impl Scene {
     ///
     /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest. A deadline is that of each pair;
     /// [`Query::begun_now`] makes it that of all.
+    #[must_use]
     pub fn check_first(&self, query: &Query) -> Option<PairAnswer> {
         let broad = BroadPhase::new(query);
         let members = self.members();

@@ -2,7 +2,7 @@
 
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Mesh, Mode, Report, Stats};
+use cloudtouch::{Mesh, Mode, Report};
 
 mod paths;
 
@@ -83,6 +83,7 @@ pub(crate) fn assert_sound(report: &Report) {
 
 /// The report without what may differ between equal queries: times, and who prepared a leaf.
 pub(crate) fn timeless(report: &Report) -> Report {
-    let stats = Stats { prepare_us: 0, query_us: 0, leaves_prepared: 0, ..report.stats };
-    Report { stats, ..report.clone() }
+    let mut told = report.clone();
+    (told.stats.prepare_us, told.stats.query_us, told.stats.leaves_prepared) = (0, 0, 0);
+    told
 }

@@ -22,6 +22,7 @@ impl Class {
     }
 
     /// The other class.
+    #[must_use]
     pub fn opposite(self) -> Self {
         match self {
             Self::A => Self::B,

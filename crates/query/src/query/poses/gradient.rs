@@ -23,6 +23,7 @@ use crate::stats::Stats;
 /// as in a [`PoseDistribution`](crate::PoseDistribution): per metre of translation along x, y and z, then
 /// per radian of rotation about x, y and z through the origin of that frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[non_exhaustive]
 pub struct PoseGradient {
     /// Of [`Report::collision_probability`].
     pub probability: [f64; 6],

@@ -11,6 +11,7 @@ pub(super) const TAIL: [(f64, f64); 3] = [(2.1, 0.0233), (2.65, 0.00685), (3.3, 
 
 /// How likely a collision is over all the poses that may be.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct UnderPoses {
     /// Mean collision probability of the poses.
     pub probability: f64,
