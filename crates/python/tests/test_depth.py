@@ -27,18 +27,27 @@ def as_points(depth):
     return np.stack([(columns - 31.5) / 60 * z, (rows - 23.5) / 62 * z, z], axis=-1)
 
 
+def at(z):
+    """In the middle of the view."""
+    pose = lifted(z)
+    pose[:2, 3] = -0.1
+    return pose
+
+
 def ask(cloud, plate, z):
-    return ct.Query().run(cloud, plate, lifted(z))
+    return ct.Query().run(cloud, plate, at(z))
 
 
 def test_steps_and_metres_are_the_cloud_of_their_points(plate):
     given = ct.Cloud(as_points(steps()), sensor="kinect", sensor_pose=np.eye(4))
     metres = 0.001 * steps().astype(float)
     metres[0, 0] = np.inf
+    finer = 5 * steps().astype(np.int32)
+    finer[0, 0] = 65535
     for seen in (
         ct.Cloud.from_depth(steps(), CAMERA, sensor="kinect"),
         ct.Cloud.from_depth(steps().astype(">u2")[:, :, None], MATRIX, sensor="kinect"),
-        ct.Cloud.from_depth(steps().astype(np.int32) * 5, MATRIX, sensor="kinect", depth_scale=0.0002),
+        ct.Cloud.from_depth(finer, MATRIX, sensor="kinect", depth_scale=0.0002),
         ct.Cloud.from_depth(metres, MATRIX, sensor="kinect"),
     ):
         assert len(seen) == HEIGHT * WIDTH - 51
@@ -65,7 +74,7 @@ def test_a_pose_puts_the_camera_and_what_it_saw(plate):
     assert there.points[:, 2].max() == pytest.approx(0.4)
     assert ask(there, plate, 0.6).verdict == "free"
     for z in (0.19, 0.2, 0.05):
-        moved = ct.Query().run(here, plate, np.linalg.inv(world_from_camera) @ lifted(z))
+        moved = ct.Query().run(here, plate, np.linalg.inv(world_from_camera) @ at(z))
         report = ask(there, plate, z)
         assert (report.verdict, report.undecided_by) == (moved.verdict, moved.undecided_by)
         assert report.probability == pytest.approx(moved.probability, abs=1e-3)

@@ -18,6 +18,7 @@ __all__ = [
     "RobotChecker",
     "Scene",
     "__version__",
+    "check_camera",
     "check_sensor",
     "cloud",
     "mesh",

@@ -213,7 +213,7 @@ class Cloud:
         --------
         >>> depth = numpy.full((48, 64), 800, dtype=numpy.uint16)
         >>> cloudtouch.Cloud.from_depth(depth, (60, 60, 31.5, 23.5), sensor="iso:0.002")
-        <Cloud: 3072 points, sensor 'iso:0.002', 0.84 x 0.63 x 0 m around (0, 0, 0.8)>
+        <Cloud: 3072 points, sensor 'iso:0.002', 0.84 x 0.627 x 0 m about (0, 0, 0.8)>
         """
         image = _depth.points(depth, intrinsics, depth_scale)
         pose = np.eye(4) if sensor_pose is None else sensor_pose
