@@ -130,9 +130,9 @@ impl NoiseModel {
         let count = self.neighbors();
         scratch.near_representatives.clear();
         match representatives {
-            None => scratch.look_around(index, neighborhoods, count),
+            None => neighborhoods.look_around(index, count, scratch),
             // Mostly the nearest of all points tell no more than how dense they are.
-            Some(_) => scratch.look_around_for_few(index, neighborhoods, SPACING_NEIGHBORS),
+            Some(_) => neighborhoods.look_around_for_few(index, SPACING_NEIGHBORS, scratch),
         }
         scratch.reach = reach(&scratch.neighbors, count);
         let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);

@@ -119,8 +119,20 @@ impl Neighborhoods {
         k: usize,
         scratch: &'a mut Scratch,
     ) -> &'a [Neighbor] {
-        scratch.look_around_for_few(index, self, k);
+        self.look_around_for_few(index, k, scratch);
         &scratch.neighbors
+    }
+
+    /// Finds the neighbours of a point, by the block that the last one had.
+    pub(crate) fn look_around(&self, index: usize, k: usize, scratch: &mut Scratch) {
+        let Scratch { block, neighbors, .. } = scratch;
+        block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
+    }
+
+    /// The same of so few that another block is better.
+    pub(crate) fn look_around_for_few(&self, index: usize, k: usize, scratch: &mut Scratch) {
+        let Scratch { few_block, neighbors, .. } = scratch;
+        few_block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
     }
 
     /// Makes buffers ready for [`Self::nearest_with`] of some points near one another.

@@ -4,7 +4,6 @@ use cloudtouch_geom::Point3;
 
 use crate::index::block::Block;
 use crate::index::positions::Neighbor;
-use crate::neighborhoods::Neighborhoods;
 use crate::sensor::noise::SensorNoise;
 use crate::surface::patch::{NoiseLanes, Offsets, Patch, PatchNoise};
 
@@ -55,23 +54,6 @@ impl Scratch {
     /// [`Neighborhoods::nearest`]: crate::Neighborhoods::nearest
     pub fn near_representatives(&self) -> &[Neighbor] {
         &self.near_representatives
-    }
-
-    /// Finds the neighbours of a point by the block of the last one.
-    pub(crate) fn look_around(&mut self, index: usize, cloud: &Neighborhoods, count: usize) {
-        let place = &cloud.points()[index];
-        self.block.nearest_into(cloud.positions(), place, count, true, &mut self.neighbors);
-    }
-
-    /// The same of so few that another block is better.
-    pub(crate) fn look_around_for_few(
-        &mut self,
-        index: usize,
-        cloud: &Neighborhoods,
-        count: usize,
-    ) {
-        let place = &cloud.points()[index];
-        self.few_block.nearest_into(cloud.positions(), place, count, true, &mut self.neighbors);
     }
 }
 

@@ -53,7 +53,7 @@ pub(crate) fn posterior(
     let wide =
         is_wide.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
     if wide.is_none() && representatives.is_some() {
-        scratch.look_around(index, neighborhoods, MOST_NEIGHBORS);
+        neighborhoods.look_around(index, MOST_NEIGHBORS, scratch);
     }
     let Scratch { neighbors, patch, kept_block, near_representatives, wide_patch, .. } = scratch;
     let nearest = neighbors.iter().map(|near| near.index);
