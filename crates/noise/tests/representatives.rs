@@ -80,6 +80,9 @@ fn discs_are_as_wide_as_the_spacing_of_what_was_chosen() {
             &mut scratch,
         );
         assert_eq!(alone.point.mean, for_all.point.mean, "the surface is that of all points");
+        let place = chosen.indices().binary_search(&(index as u32)).unwrap();
+        let nearest = chosen.neighborhoods().nearest(place, 60);
+        assert_eq!(scratch.near_representatives(), nearest, "told by the fit, and by the index");
         wider += usize::from(for_all.spacing > 1.2 * alone.spacing);
     }
     let count = chosen.indices().len();
