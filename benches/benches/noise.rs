@@ -18,12 +18,12 @@ fn noise(criterion: &mut Criterion) {
     group.sample_size(10).measurement_time(Duration::from_secs(3));
     for count in [10_000, 100_000] {
         let cloud = room(count);
-        let neighborhoods = Neighborhoods::try_new(cloud.points.clone()).expect("finite points");
+        let neighborhoods = Neighborhoods::new(cloud.points.clone()).expect("finite points");
         assert_eq!(neighborhoods.distinct(), count);
         group.bench_function(BenchmarkId::new("neighborhoods", count), |bencher| {
             bencher.iter_batched(
                 || cloud.points.clone(),
-                Neighborhoods::try_new,
+                Neighborhoods::new,
                 BatchSize::LargeInput,
             );
         });
@@ -37,7 +37,7 @@ fn noise(criterion: &mut Criterion) {
             [Combination::Precision, Combination::Convolution, Combination::SurfacePosterior]
         {
             let settings = NoiseSettings { combination, ..NoiseSettings::default() };
-            let model = NoiseModel::try_new(settings).expect("settings");
+            let model = NoiseModel::new(settings).expect("settings");
             let mut scratch = Scratch::default();
             let mut refine = |index: usize| {
                 model.refine(index, &neighborhoods, &covariances, f64::INFINITY, &mut scratch)

@@ -31,14 +31,14 @@ fn certificate(criterion: &mut Criterion) {
 fn kernel(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("kernel");
     group.sample_size(10).measurement_time(Duration::from_secs(2));
-    let mut solver = Solver::try_new(Settings::default()).expect("valid settings");
+    let mut solver = Solver::new(Settings::default()).expect("valid settings");
     let by_size = [20, 40, 100].map(|per_side| (per_side, 10.0, 0.02));
     let by_width = [2.0, 5.0, 20.0].map(|gamma| (40, gamma, 0.02));
     let by_noise = [0.0, 0.005, 0.05].map(|std| (40, 10.0, std));
     for (per_side, gamma, std) in by_size.into_iter().chain(by_width).chain(by_noise) {
         let samples = samples(per_side, std);
         let kernel = Kernel::Gaussian { gamma };
-        let mut solve = || Problem::try_new(black_box(&samples), kernel).map(|p| solver.solve(&p));
+        let mut solve = || Problem::new(black_box(&samples), kernel).map(|p| solver.solve(&p));
         let solution = solve().expect("a valid problem");
         assert_eq!(solution.status, Status::Converged, "gamma {gamma}, std {std}, 2x{per_side}");
         // The rung is in the id: a change of rung is a change of what is measured.

@@ -141,9 +141,9 @@ fn query(class: usize) -> u64 {
 
 fn refined_points() -> u64 {
     let cloud = room(POINTS);
-    let near = Neighborhoods::try_new(cloud.points.clone()).expect("finite points");
+    let near = Neighborhoods::new(cloud.points.clone()).expect("finite points");
     let sensor = SensorModel::Isotropic { std: NOISE }.covariances(&cloud).expect("a sensor");
-    let model = NoiseModel::try_new(NoiseSettings::default()).expect("settings");
+    let model = NoiseModel::new(NoiseSettings::default()).expect("settings");
     let mut scratch = Scratch::default();
     measured(&mut || {
         let some = (0..POINTS).step_by(10);
@@ -163,9 +163,9 @@ fn leaf_problems() -> u64 {
         let a = a.into_iter().map(|point| sample(point, Class::A));
         let samples: Vec<Sample> =
             a.chain(b.into_iter().map(|point| sample(point, Class::B))).collect();
-        Problem::try_new(&samples, Kernel::Gaussian { gamma: 10.0 }).expect("a valid problem")
+        Problem::new(&samples, Kernel::Gaussian { gamma: 10.0 }).expect("a valid problem")
     });
-    let mut solver = Solver::try_new(Settings::default()).expect("valid settings");
+    let mut solver = Solver::new(Settings::default()).expect("valid settings");
     measured(&mut || {
         for problem in &problems {
             black_box(solver.solve(problem));

@@ -44,7 +44,7 @@ fn measure(name: &str, cloud: &PointCloud, std: f64) {
     let runs = if cloud.len() > 100_000 { 2 } else { RUNS };
     let preparing = least(runs, prepare);
     let refining = least(runs, || prepare().refined().expect("in range"));
-    let near = Neighborhoods::try_new(cloud.points.clone()).expect("finite points");
+    let near = Neighborhoods::new(cloud.points.clone()).expect("finite points");
     let sensor = SensorModel::Isotropic { std }.covariances(cloud).expect("a sensor");
     let (modelling, pieces) = model(&near, &sensor, runs);
     println!(
@@ -60,7 +60,7 @@ fn measure(name: &str, cloud: &PointCloud, std: f64) {
 fn model(near: &Neighborhoods, sensor: &SensorNoise, runs: usize) -> (f64, usize) {
     let settings =
         NoiseSettings { combination: Combination::SurfacePosterior, ..NoiseSettings::default() };
-    let model = NoiseModel::try_new(settings).expect("settings");
+    let model = NoiseModel::new(settings).expect("settings");
     let mut scratch = cloudtouch_noise::Scratch::default();
     let sample: Vec<usize> = (0..near.points().len()).step_by(near.points().len() / 200).collect();
     match Representatives::choose(near, sensor, &sample).expect("an index") {

@@ -182,7 +182,7 @@ fn rounded(value: f64, per_unit: f64) -> f64 {
 /// The mesh with coordinates as the file has them.
 fn rounded_mesh(mesh: &TriangleMesh) -> Result<TriangleMesh> {
     let vertices = mesh.vertices().iter().map(|p| p.map(|v| rounded(v, 1e4))).collect();
-    Ok(TriangleMesh::try_new(vertices, mesh.triangles().to_vec())?)
+    Ok(TriangleMesh::new(vertices, mesh.triangles().to_vec())?)
 }
 
 /// A Wavefront OBJ file.

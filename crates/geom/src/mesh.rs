@@ -53,7 +53,7 @@ impl TriangleMesh {
     /// # Errors
     /// When there are no triangles, an index is out of range, or a coordinate of a vertex that a
     /// triangle uses is not finite.
-    pub fn try_new(vertices: Vec<Point3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+    pub fn new(vertices: Vec<Point3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
         }
@@ -224,7 +224,7 @@ mod tests {
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let vertices = faces.iter().flatten().map(|&i: &usize| corners[i]).collect();
         let triangles = (0..4).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        TriangleMesh::try_new(vertices, triangles).unwrap()
+        TriangleMesh::new(vertices, triangles).unwrap()
     }
 
     #[test]
@@ -234,24 +234,22 @@ mod tests {
         for lost in 0..4 {
             let mut rest = whole.triangles().to_vec();
             let gone = rest.remove(lost);
-            let open = TriangleMesh::try_new(whole.vertices().to_vec(), rest).unwrap();
+            let open = TriangleMesh::new(whole.vertices().to_vec(), rest).unwrap();
             let [missing] = open.missing_triangles()[..] else { panic!("{lost}") };
             assert_closed_by(&open, missing);
             let turns = [0, 1, 2].map(|k| [gone[k], gone[(k + 1) % 3], gone[(k + 2) % 3]]);
             assert!(turns.contains(&missing), "{missing:?} for {gone:?}");
         }
         // A triangle alone lacks nothing, and a face of two is an opening.
-        let alone =
-            TriangleMesh::try_new(whole.vertices().to_vec(), whole.triangles()[..1].to_vec());
+        let alone = TriangleMesh::new(whole.vertices().to_vec(), whole.triangles()[..1].to_vec());
         assert_eq!(alone.unwrap().missing_triangles(), [[0; 3]; 0]);
-        let open =
-            TriangleMesh::try_new(whole.vertices().to_vec(), whole.triangles()[..2].to_vec());
+        let open = TriangleMesh::new(whole.vertices().to_vec(), whole.triangles()[..2].to_vec());
         assert_eq!(open.unwrap().missing_triangles(), [[0; 3]; 0]);
     }
 
     fn assert_closed_by(open: &TriangleMesh, missing: [u32; 3]) {
         let all = open.triangles().iter().copied().chain([missing]).collect();
-        let closed = TriangleMesh::try_new(open.vertices().to_vec(), all).unwrap();
+        let closed = TriangleMesh::new(open.vertices().to_vec(), all).unwrap();
         assert_eq!(closed.open_edges(), 0);
     }
 
@@ -276,21 +274,21 @@ mod tests {
             vertices.push(Point3::new(side, side, 0.5));
             triangles.extend([[0, 1, c], [1, 0, d], [c, 1, d], [0, c, d]]);
         }
-        let touching = TriangleMesh::try_new(vertices, triangles).unwrap();
+        let touching = TriangleMesh::new(vertices, triangles).unwrap();
         assert_eq!((touching.open_edges(), touching.border_edges()), (1, 0));
     }
 
     #[test]
     fn bad_meshes_are_refused_with_their_place() {
         let p = Point3::origin();
-        assert_eq!(TriangleMesh::try_new(vec![p], vec![]), Err(MeshError::Empty));
+        assert_eq!(TriangleMesh::new(vec![p], vec![]), Err(MeshError::Empty));
         assert_eq!(
-            TriangleMesh::try_new(vec![p], vec![[0, 0, 7]]),
+            TriangleMesh::new(vec![p], vec![[0, 0, 7]]),
             Err(MeshError::MissingVertex { triangle: 0, index: 7, vertices: 1 })
         );
         let bad = Point3::new(0.0, f64::INFINITY, 0.0);
         assert!(matches!(
-            TriangleMesh::try_new(vec![p, bad], vec![[0, 0, 1]]),
+            TriangleMesh::new(vec![p, bad], vec![[0, 0, 1]]),
             Err(MeshError::NotFinite { vertex: 1, .. })
         ));
     }
@@ -303,7 +301,7 @@ mod tests {
             let mut vertices = vec![Point3::new(0.0, astray, 0.0)];
             vertices.extend(tetrahedron.vertices());
             let shifted = tetrahedron.triangles().iter().map(|t| t.map(|i| i + 1)).collect();
-            let mesh = TriangleMesh::try_new(vertices, shifted).unwrap();
+            let mesh = TriangleMesh::new(vertices, shifted).unwrap();
             assert_eq!(mesh.bounding_box(), tetrahedron.bounding_box());
             assert_eq!(mesh.merged(), tetrahedron.merged());
         }
@@ -315,7 +313,7 @@ mod tests {
         let mut triangles = tetrahedron_soup().triangles().to_vec();
         triangles.push([0, vertices.len() as u32, vertices.len() as u32]);
         vertices.push(Point3::new(9.0, 0.0, 0.0));
-        let mesh = TriangleMesh::try_new(vertices, triangles).unwrap();
+        let mesh = TriangleMesh::new(vertices, triangles).unwrap();
         assert_eq!(mesh.merged(), tetrahedron_soup().merged());
     }
 }

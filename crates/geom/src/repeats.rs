@@ -71,12 +71,12 @@ mod tests {
         let quads =
             [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        TriangleMesh::try_new(vertices.collect(), triangles).unwrap()
+        TriangleMesh::new(vertices.collect(), triangles).unwrap()
     }
 
     fn with(mesh: &TriangleMesh, more: impl IntoIterator<Item = [u32; 3]>) -> TriangleMesh {
         let all = mesh.triangles().iter().copied().chain(more);
-        TriangleMesh::try_new(mesh.vertices().to_vec(), all.collect()).unwrap()
+        TriangleMesh::new(mesh.vertices().to_vec(), all.collect()).unwrap()
     }
 
     #[test]
@@ -108,18 +108,18 @@ mod tests {
     fn walls_between_solids_stay_where_nothing_has_a_border() {
         let upper = cube();
         let lower = upper.vertices().iter().map(|p| p - crate::Vector3::z()).collect();
-        let lower = TriangleMesh::try_new(lower, upper.triangles().to_vec()).unwrap();
+        let lower = TriangleMesh::new(lower, upper.triangles().to_vec()).unwrap();
         let vertices = [upper.vertices(), lower.vertices()].concat();
         let shifted = lower.triangles().iter().map(|t| t.map(|i| i + 8));
         let triangles = upper.triangles().iter().copied().chain(shifted).collect();
-        let both = TriangleMesh::try_new(vertices, triangles).unwrap().merged();
+        let both = TriangleMesh::new(vertices, triangles).unwrap().merged();
         assert_eq!((both.border_edges(), both.without_repeats()), (0, both.clone()));
     }
 
     #[test]
     fn an_open_mesh_stays_open() {
         let cube = cube();
-        let open = TriangleMesh::try_new(cube.vertices().to_vec(), cube.triangles()[1..].to_vec());
+        let open = TriangleMesh::new(cube.vertices().to_vec(), cube.triangles()[1..].to_vec());
         let open = open.unwrap();
         assert_eq!(open.without_repeats(), open);
         let [a, b, c] = open.triangles()[7];

@@ -97,14 +97,14 @@ mod tests {
             [[0, 2, 3, 1], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6]];
         let kept = if is_open { &quads[..5] } else { &quads[..] };
         let triangles = kept.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        TriangleMesh::try_new((0..8).map(corner).collect(), triangles).unwrap()
+        TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap()
     }
 
     fn with_turned(mesh: &TriangleMesh, is_turned: impl Fn(usize) -> bool) -> TriangleMesh {
         let triangles = mesh.triangles().iter().enumerate();
         let turn =
             |(k, &[a, b, c]): (usize, &[u32; 3])| if is_turned(k) { [a, c, b] } else { [a, b, c] };
-        TriangleMesh::try_new(mesh.vertices().to_vec(), triangles.map(turn).collect()).unwrap()
+        TriangleMesh::new(mesh.vertices().to_vec(), triangles.map(turn).collect()).unwrap()
     }
 
     proptest! {
@@ -143,10 +143,10 @@ mod tests {
             let (c, d) = if k == 7 { (1, 0) } else { (a + 2, b + 2) };
             [[a, b, c], [b, d, c]]
         });
-        let strip = TriangleMesh::try_new(vertices, strip.collect()).unwrap();
+        let strip = TriangleMesh::new(vertices, strip.collect()).unwrap();
         assert_eq!(strip.turned_alike(), strip);
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point3::new(x, y, 0.0));
-        let sheet = TriangleMesh::try_new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 1]]).unwrap();
+        let sheet = TriangleMesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 1]]).unwrap();
         assert_eq!(sheet.turned_alike(), sheet);
     }
 }

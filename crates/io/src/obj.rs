@@ -101,7 +101,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
             }
         }
     }
-    TriangleMesh::try_new(vertices, faces.triangles)
+    TriangleMesh::new(vertices, faces.triangles)
         // Coordinates and indices were checked where they stand; no faces are all that is left.
         .map_err(|_| Place::Line(1).error(Fault::NoTriangles))
 }

@@ -46,7 +46,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
         return Err(Place::Byte(0).error(Fault::TooManyVertices { found: corners.len() }));
     };
     let triangles = (0..count / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    TriangleMesh::try_new(corners, triangles)
+    TriangleMesh::new(corners, triangles)
         // Coordinates were checked where they stand; no triangles are all that is left.
         .map_err(|_| Place::Byte(0).error(Fault::NoTriangles))
 }

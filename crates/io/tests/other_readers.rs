@@ -17,7 +17,7 @@ fn mesh() -> TriangleMesh {
         let t = f64::from(i);
         Point3::new(t.cos() / 3.0, t.sin() * 1e-5, -t)
     });
-    TriangleMesh::try_new(vertices.collect(), vec![[0, 1, 2], [5, 3, 1], [4, 2, 0]]).unwrap()
+    TriangleMesh::new(vertices.collect(), vec![[0, 1, 2], [5, 3, 1], [4, 2, 0]]).unwrap()
 }
 
 #[test]

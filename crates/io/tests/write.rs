@@ -79,7 +79,7 @@ proptest! {
     ) {
         let vertices: Vec<Point3> = corners.iter().map(|c| Point3::from(*c)).collect();
         let triangles = picks.iter().map(|t| t.map(|i| i.index(vertices.len()) as u32)).collect();
-        let mesh = TriangleMesh::try_new(vertices, triangles).unwrap();
+        let mesh = TriangleMesh::new(vertices, triangles).unwrap();
         let folder = TempDir::new().unwrap();
         let path = folder.path().join("a.obj");
         write_mesh_obj(&path, &mesh).unwrap();

@@ -139,7 +139,7 @@ mod tests {
         Discretization { neighbors: 12, width: 2.0, summed: Summed::Neighbors, is_capped: false };
 
     fn line(xs: &[f64]) -> Neighborhoods {
-        Neighborhoods::try_new(xs.iter().map(|&x| Point3::new(x, 0.0, 0.0)).collect()).unwrap()
+        Neighborhoods::new(xs.iter().map(|&x| Point3::new(x, 0.0, 0.0)).collect()).unwrap()
     }
 
     #[test]
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn printed_sums_are_a_ninth_smaller_on_a_square_lattice() {
         let place = |i: i32| Point3::new(f64::from(i % 17), f64::from(i / 17), 0.0);
-        let lattice = Neighborhoods::try_new((0..289).map(place).collect()).unwrap();
+        let lattice = Neighborhoods::new((0..289).map(place).collect()).unwrap();
         let [ours, printed] = [Summed::Neighbors, Summed::AllPoints].map(|summed| {
             let settings = Discretization { summed, ..Discretization::default() };
             discretization(&lattice, 144, &settings).unwrap().unwrap().matrix().trace()

@@ -35,7 +35,7 @@ impl NoiseModel {
     ///
     /// # Errors
     /// When [`NoiseSettings::validate`] objects.
-    pub fn try_new(settings: NoiseSettings) -> Result<Self, NoiseError> {
+    pub fn new(settings: NoiseSettings) -> Result<Self, NoiseError> {
         settings.validate()?;
         Ok(Self { settings })
     }

@@ -31,8 +31,8 @@ impl Neighborhoods {
     /// # Errors
     /// When there are more points than an index can hold (2³² − 1), or a finite coordinate is
     /// beyond 1e150, where squared distances overflow.
-    pub fn try_new(points: Vec<Point3>) -> Result<Self, NoiseError> {
-        Ok(Self::of(Positions::try_new(points)?))
+    pub fn new(points: Vec<Point3>) -> Result<Self, NoiseError> {
+        Ok(Self::of(Positions::new(points)?))
     }
 
     /// The index of what the cloud became, which shares most of this one and finds the same as one that is
@@ -41,7 +41,7 @@ impl Neighborhoods {
     /// the points came or went since an index was built. O(n), many times as fast as building.
     ///
     /// # Errors
-    /// As [`Self::try_new`].
+    /// As [`Self::new`].
     ///
     /// # Panics
     /// When there is not one entry for each point.

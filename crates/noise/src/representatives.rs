@@ -37,7 +37,7 @@ impl Representatives {
     /// by one whose noise is large.
     ///
     /// # Errors
-    /// As for [`Neighborhoods::try_new`], which cannot happen for points out of one.
+    /// As for [`Neighborhoods::new`], which cannot happen for points out of one.
     ///
     /// # Panics
     /// When the length of `sensor` does not belong to the cloud, or an index of `sample`.
@@ -55,7 +55,7 @@ impl Representatives {
             return Ok(None);
         }
         let places: Vec<Point3> = indices.iter().map(|&i| cloud.points()[i as usize]).collect();
-        let near = Neighborhoods::try_new(places)?;
+        let near = Neighborhoods::new(places)?;
         Ok(Some(Self { indices, near }))
     }
 

@@ -48,7 +48,7 @@ proptest! {
     fn refined_points_keep_their_bounds(cloud in any_cloud(), cap in any_cap()) {
         let (points, sensor): (Vec<_>, Vec<_>) = cloud.into_iter().unzip();
         let sensor = SensorNoise::from(sensor);
-        let index = Neighborhoods::try_new(points.clone()).unwrap();
+        let index = Neighborhoods::new(points.clone()).unwrap();
         let mut scratch = Scratch::default();
         for combination in ALL {
             let model = model(combination);
@@ -79,7 +79,7 @@ proptest! {
     fn refinement_depends_on_its_arguments_alone(cloud in any_cloud()) {
         let (points, sensor): (Vec<_>, Vec<_>) = cloud.into_iter().unzip();
         let sensor = SensorNoise::from(sensor);
-        let index = Neighborhoods::try_new(points.clone()).unwrap();
+        let index = Neighborhoods::new(points.clone()).unwrap();
         let mut scratch = Scratch::default();
         for combination in ALL {
             let model = model(combination);

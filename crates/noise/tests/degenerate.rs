@@ -38,7 +38,7 @@ fn a_point_alone_keeps_its_sensor_noise() {
 
 #[test]
 fn a_point_alone_is_uncertain_by_the_cap_under_convolution() {
-    let index = Neighborhoods::try_new(vec![Point3::origin()]).unwrap();
+    let index = Neighborhoods::new(vec![Point3::origin()]).unwrap();
     let sensor = SensorNoise::from(vec![Covariance::isotropic(NOISE * NOISE)]);
     let refine = |combination, cap| {
         let mut scratch = Scratch::default();
@@ -142,7 +142,7 @@ fn settings_out_of_range_are_refused() {
         (disc(f64::NAN), "posterior.disc_std"),
         (NoiseSettings { discretization, ..fine }, "discretization.neighbors"),
     ] {
-        let error = NoiseModel::try_new(settings).unwrap_err();
+        let error = NoiseModel::new(settings).unwrap_err();
         assert!(matches!(error, NoiseError::Setting(found) if found.name == name), "{error}");
     }
 }

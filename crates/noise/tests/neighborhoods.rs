@@ -28,13 +28,13 @@ fn brute_force(
 }
 
 fn check_all(points: &[Point3], k: usize) {
-    check(&Neighborhoods::try_new(points.to_vec()).expect("an index"), points, k);
+    check(&Neighborhoods::new(points.to_vec()).expect("an index"), points, k);
 }
 
 fn check(index: &Neighborhoods, points: &[Point3], k: usize) {
     // Buffers that have seen another cloud, and each point in turn, near or far.
     let moved = points.iter().map(|p| p + Vector3::x()).collect();
-    let other = Neighborhoods::try_new(moved).expect("an index");
+    let other = Neighborhoods::new(moved).expect("an index");
     let mut scratch = Scratch::default();
     for (i, place) in points.iter().enumerate() {
         if place.coords.iter().all(|v| v.is_finite()) {
@@ -84,7 +84,7 @@ proptest! {
         k in 1..20_usize,
     ) {
         let mut points = points;
-        let mut index = Neighborhoods::try_new(points.clone()).expect("an index");
+        let mut index = Neighborhoods::new(points.clone()).expect("an index");
         for (at, count, stream) in changes {
             let place = |i: usize| {
                 let draw = |k| 2.0 * seed::unit(seed::derive(stream, i as u64, k)) - 1.0;
@@ -100,7 +100,7 @@ proptest! {
             }
             match index.changed(points.clone(), &before).expect("an index") {
                 Some(changed) => index = changed,
-                None => index = Neighborhoods::try_new(points.clone()).expect("an index"),
+                None => index = Neighborhoods::new(points.clone()).expect("an index"),
             }
             check(&index, &points, k);
         }
@@ -112,7 +112,7 @@ proptest! {
 fn an_index_is_built_anew_where_that_is_better() {
     let points: Vec<Point3> =
         (0..100).map(|i| Point3::new(f64::from(i % 10), f64::from(i / 10), 0.0)).collect();
-    let index = Neighborhoods::try_new(points.clone()).unwrap();
+    let index = Neighborhoods::new(points.clone()).unwrap();
     let becomes = |place: Option<Point3>, kept: u32| {
         let kept = 0..kept;
         let mut now: Vec<Point3> = kept.clone().map(|i| points[i as usize]).collect();
@@ -130,7 +130,7 @@ fn an_index_is_built_anew_where_that_is_better() {
     (before[0], before[1]) = (None, None);
     let swapped = index.changed(now.clone(), &before).unwrap().unwrap();
     check(&swapped, &now, 7);
-    let twice = Neighborhoods::try_new(vec![points[0]; 30]).unwrap();
+    let twice = Neighborhoods::new(vec![points[0]; 30]).unwrap();
     assert!(twice.changed(vec![points[0]; 29], &before[..29]).unwrap().is_none());
 }
 
@@ -138,7 +138,7 @@ fn an_index_is_built_anew_where_that_is_better() {
 fn twenty_thousand_points_of_a_grid() {
     let points: Vec<Point3> =
         (0..20_000).map(|i| Point3::new(f64::from(i % 200), f64::from(i / 200), 0.0)).collect();
-    let index = Neighborhoods::try_new(points.clone()).unwrap();
+    let index = Neighborhoods::new(points.clone()).unwrap();
     assert_eq!(index.distinct(), 20_000);
     for i in (0..points.len()).step_by(997) {
         assert_eq!(index.nearest(i, 21), brute_force_fast(&points, i, 21), "point {i}");
@@ -171,7 +171,7 @@ fn blocks_find_what_single_searches_find() {
             Point3::new(size * draw(0), size * draw(1), 0.01 * draw(2))
         })
         .collect();
-    let index = Neighborhoods::try_new(points.clone()).unwrap();
+    let index = Neighborhoods::new(points.clone()).unwrap();
     let mut walk: Vec<usize> = (0..points.len()).collect();
     walk.sort_by(|&i, &j| points[i].x.total_cmp(&points[j].x));
     for k in [1, 8, 60, 240] {
@@ -211,9 +211,9 @@ proptest! {
         reach in prop::option::of(0.0..8.0_f64),
     ) {
         let points = tied_or_uneven(is_lattice, seed);
-        let index = Neighborhoods::try_new(points.clone()).unwrap();
+        let index = Neighborhoods::new(points.clone()).unwrap();
         let sensor = SensorNoise::uniform(Covariance::isotropic(1e-6), points.len());
-        let model = NoiseModel::try_new(NoiseSettings {
+        let model = NoiseModel::new(NoiseSettings {
             combination: Combination::SurfacePosterior,
             ..NoiseSettings::default()
         }).unwrap();
@@ -239,7 +239,7 @@ proptest! {
 #[test]
 fn a_heap_of_equal_points_is_one_position() {
     let mut points = vec![Point3::new(1.0, 2.0, 3.0); 500];
-    let alone = Neighborhoods::try_new(points.clone()).unwrap();
+    let alone = Neighborhoods::new(points.clone()).unwrap();
     assert_eq!(alone.distinct(), 1);
     assert!(alone.nearest(250, 10).is_empty());
     assert_eq!(alone.nearest_to(&Point3::origin(), 10).len(), 1);
@@ -251,10 +251,10 @@ fn a_heap_of_equal_points_is_one_position() {
 
 #[test]
 fn nothing_and_one_point_have_no_neighbours() {
-    let empty = Neighborhoods::try_new(Vec::new()).unwrap();
+    let empty = Neighborhoods::new(Vec::new()).unwrap();
     assert!(empty.nearest_to(&Point3::origin(), 5).is_empty());
     assert_eq!(typical_spacing(&empty, 10), 0.0);
-    let one = Neighborhoods::try_new(vec![Point3::origin()]).unwrap();
+    let one = Neighborhoods::new(vec![Point3::origin()]).unwrap();
     assert!(one.nearest(0, 5).is_empty());
     assert!(one.nearest_to(&Point3::new(f64::NAN, 0.0, 0.0), 5).is_empty());
     assert_eq!(typical_spacing(&one, 10), 0.0);
@@ -270,7 +270,7 @@ fn the_index_can_be_shared_between_threads() {
 fn coordinates_out_of_range_are_refused() {
     let points = vec![Point3::origin(), Point3::new(0.0, 1e200, 0.0)];
     assert!(matches!(
-        Neighborhoods::try_new(points),
+        Neighborhoods::new(points),
         Err(NoiseError::CoordinateRange { index: 1, .. })
     ));
 }

@@ -39,7 +39,7 @@ fn refined_points_are_much_closer_to_a_plane_than_measured_ones() {
 fn samples_much_denser_than_the_noise_are_averaged_over_a_wider_neighbourhood() {
     for (spacing, std) in [(0.002, 0.015), (0.004, 0.015)] {
         let measured = noisy(&plane(0.3, spacing, 1).points, std, 7);
-        let hoods = Neighborhoods::try_new(measured.clone()).unwrap();
+        let hoods = Neighborhoods::new(measured.clone()).unwrap();
         let sensor = isotropic(std, &measured);
         let model = model(Combination::SurfacePosterior);
         let mut scratch = Scratch::default();
@@ -220,7 +220,7 @@ fn a_rigid_motion_moves_the_answer() {
 fn the_cap_limits_the_spacing_and_the_disc() {
     let points = plane(0.4, 0.02, 1).points;
     let sensor = isotropic(1e-3, &points);
-    let index = Neighborhoods::try_new(points).unwrap();
+    let index = Neighborhoods::new(points).unwrap();
     let model = model(Combination::SurfacePosterior);
     let refined = model.refine(200, &index, &sensor, 0.005, &mut Scratch::default());
     assert_eq!(refined.spacing, 0.005);
@@ -241,7 +241,7 @@ fn dense_clouds_are_refined_alike_by_one_thread_and_many() {
         assert_eq!(one, by(4));
     }
     // Nor does it matter which are asked for, and in which order.
-    let hoods = Neighborhoods::try_new(measured.clone()).unwrap();
+    let hoods = Neighborhoods::new(measured.clone()).unwrap();
     let model = model(Combination::SurfacePosterior);
     let mut scratch = Scratch::default();
     for index in (0..measured.len()).rev().step_by(41) {

@@ -19,12 +19,12 @@ fn sheet(count: u64) -> Vec<Point3> {
 fn points_beyond_the_reach_of_a_refinement_change_no_bit_of_it() {
     let settings =
         NoiseSettings { combination: Combination::SurfacePosterior, ..NoiseSettings::default() };
-    let model = NoiseModel::try_new(settings).unwrap();
+    let model = NoiseModel::new(settings).unwrap();
     let points = sheet(1000);
     let noise = SensorNoise::uniform(Covariance::isotropic(1e-6), points.len());
     let refined = |points: &[Point3], index: usize| {
         let (near, mut scratch) =
-            (Neighborhoods::try_new(points.to_vec()).unwrap(), Scratch::default());
+            (Neighborhoods::new(points.to_vec()).unwrap(), Scratch::default());
         let refined = model.refine(index, &near, &noise, f64::INFINITY, &mut scratch);
         (refined, scratch.reach())
     };
@@ -39,10 +39,10 @@ fn points_beyond_the_reach_of_a_refinement_change_no_bit_of_it() {
     }
     // Where the noise is far beyond the spacing, or there are too few neighbours, all of them count.
     let noise = SensorNoise::uniform(Covariance::isotropic(1e-2), points.len());
-    let (near, mut scratch) = (Neighborhoods::try_new(points).unwrap(), Scratch::default());
+    let (near, mut scratch) = (Neighborhoods::new(points).unwrap(), Scratch::default());
     model.refine(7, &near, &noise, f64::INFINITY, &mut scratch);
     assert_eq!(scratch.reach(), f64::INFINITY);
-    let few = Neighborhoods::try_new(sheet(40)).unwrap();
+    let few = Neighborhoods::new(sheet(40)).unwrap();
     let noise = SensorNoise::uniform(Covariance::isotropic(1e-6), 40);
     model.refine(7, &few, &noise, f64::INFINITY, &mut scratch);
     assert_eq!(scratch.reach(), f64::INFINITY);
@@ -50,7 +50,7 @@ fn points_beyond_the_reach_of_a_refinement_change_no_bit_of_it() {
 
 #[test]
 fn whether_any_position_is_within_a_distance() {
-    let near = Neighborhoods::try_new(sheet(100)).unwrap();
+    let near = Neighborhoods::new(sheet(100)).unwrap();
     let place = near.points()[5] + Vector3::z();
     assert!(near.is_any_within(&place, 1.01) && !near.is_any_within(&place, 0.9));
     assert!(near.is_any_within(&near.points()[5], 0.0));

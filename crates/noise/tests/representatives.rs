@@ -19,7 +19,7 @@ fn sample(cloud: &Neighborhoods) -> Vec<usize> {
 
 fn chosen(points: &[Point3], std: f64) -> Option<Vec<Point3>> {
     let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
-    let cloud = Neighborhoods::try_new(points.to_vec()).expect("an index");
+    let cloud = Neighborhoods::new(points.to_vec()).expect("an index");
     let chosen =
         Representatives::choose(&cloud, &noise, &sample(&cloud)).expect("an index of some")?;
     Some(chosen.indices().iter().map(|&index| points[index as usize]).collect())
@@ -51,7 +51,7 @@ fn a_sharp_point_is_not_stood_for_by_a_noisy_one() {
     let of = |index| Covariance::isotropic(if sharp(index) { 1e-8 } else { std * std });
     let noise: SensorNoise = (0..points.len()).map(of).collect::<Vec<_>>().into();
     let count = points.len();
-    let cloud = Neighborhoods::try_new(points).unwrap();
+    let cloud = Neighborhoods::new(points).unwrap();
     let chosen = Representatives::choose(&cloud, &noise, &sample(&cloud)).unwrap().unwrap();
     for index in (0..count).filter(|&index| sharp(index)) {
         assert!(chosen.indices().contains(&(index as u32)), "{index}");
@@ -63,9 +63,9 @@ fn discs_are_as_wide_as_the_spacing_of_what_was_chosen() {
     let std = 0.015;
     let points = ball(std, 4);
     let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
-    let cloud = Neighborhoods::try_new(points).unwrap();
+    let cloud = Neighborhoods::new(points).unwrap();
     let chosen = Representatives::choose(&cloud, &noise, &sample(&cloud)).unwrap().unwrap();
-    let model = NoiseModel::try_new(NoiseSettings::default()).unwrap();
+    let model = NoiseModel::new(NoiseSettings::default()).unwrap();
     let mut scratch = Scratch::default();
     let mut wider = 0;
     for &index in chosen.indices() {

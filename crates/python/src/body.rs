@@ -307,7 +307,7 @@ pub(crate) fn mesh(
 ) -> PyResult<Body> {
     let indices = triangles.as_array();
     let triangles = indices.rows().into_iter().map(|t| [t[0], t[1], t[2]]).collect();
-    let given = TriangleMesh::try_new(vertices.points(), triangles).map_err(refused)?;
+    let given = TriangleMesh::new(vertices.points(), triangles).map_err(refused)?;
     let prepared = on_all_threads(py, || Mesh::prepare(&given))?.map_err(|error| match error {
         // There are triangles, or they would not have been taken.
         PrepareError::Mesh(MeshError::Empty) => refused(format_args!(

@@ -60,7 +60,7 @@ impl Scene {
 /// Stands where a body will be, so that its owner may change that.
 pub(crate) fn nobody() -> PyResult<Arc<Prepared>> {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0));
-    let triangle = TriangleMesh::try_new(corners.to_vec(), vec![[0, 1, 2]]).map_err(refused)?;
+    let triangle = TriangleMesh::new(corners.to_vec(), vec![[0, 1, 2]]).map_err(refused)?;
     Ok(Arc::new(Mesh::prepare(&triangle).map_err(refused)?.into()))
 }
 

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The hand as the robot knows it: a flat patch, taken with 2 cm of padding.
     let corners = [[-0.02, 0.05], [0.02, 0.05], [0.02, 0.1], [-0.02, 0.1]];
     let corners = corners.map(|[x, y]| Point3::new(x, y, 0.3)).to_vec();
-    let hand = Mesh::prepare(&TriangleMesh::try_new(corners, vec![[0, 1, 2], [0, 2, 3]])?)?;
+    let hand = Mesh::prepare(&TriangleMesh::new(corners, vec![[0, 1, 2], [0, 2, 3]])?)?;
     let hand = SelfMesh { mesh: Arc::new(hand), cloud_from_link: Pose::identity(), padding: 0.02 };
     // A camera drops returns nearer than 10 cm and veils; the robot is ours to add.
     let settings =

@@ -26,7 +26,7 @@ fn gripper() -> Result<TriangleMesh, MeshError> {
     push_box([-0.065, -0.01, 0.0], [-0.045, 0.01, 0.08], &mut parts);
     push_box([0.045, -0.01, 0.0], [0.065, 0.01, 0.08], &mut parts);
     push_box([-0.08, -0.02, 0.081], [0.08, 0.02, 0.12], &mut parts);
-    TriangleMesh::try_new(parts.0, parts.1)
+    TriangleMesh::new(parts.0, parts.1)
 }
 
 /// The side of a mug 8 cm wide and 10 cm high, standing at the origin.

@@ -62,8 +62,7 @@ fn a_closed_mesh_within_a_closed_cloud_read_free() {
 fn a_body_within_a_mesh_with_a_hole_read_free() {
     let ball = scene::sphere(0.2, 3);
     let faces = |count: usize| ball.triangles()[..count].to_vec();
-    let holed =
-        |count| TriangleMesh::try_new(ball.vertices().to_vec(), faces(count)).expect("a mesh");
+    let holed = |count| TriangleMesh::new(ball.vertices().to_vec(), faces(count)).expect("a mesh");
     let all = ball.triangles().len();
     let outer = Mesh::prepare(&holed(all - 1)).expect("a good mesh");
     let small = cloud(&scene::sphere(0.05, 3), None, 2);
@@ -92,7 +91,7 @@ fn a_body_within_a_box_that_lacks_a_triangle_read_free() {
     let without = |lost: &[usize]| {
         let kept = |(t, of): (usize, &[u32; 3])| (!lost.contains(&t)).then_some(*of);
         let faces = whole.triangles().iter().enumerate().filter_map(kept).collect();
-        let mesh = TriangleMesh::try_new(whole.vertices().to_vec(), faces).expect("a mesh");
+        let mesh = TriangleMesh::new(whole.vertices().to_vec(), faces).expect("a mesh");
         Mesh::prepare(&mesh).expect("a good mesh")
     };
     let small = cloud(&scene::sphere(0.05, 3), None, 2);

@@ -27,7 +27,7 @@ const PLACE: Vector3 = Vector3::new(0.3, -0.2, 0.1);
 fn body(mesh: &TriangleMesh, is_mesh: bool, std: f64, seed: u64) -> Body {
     if is_mesh {
         let faces = &mesh.triangles()[usize::from(seed.is_multiple_of(3))..];
-        let mesh = TriangleMesh::try_new(mesh.vertices().to_vec(), faces.to_vec()).unwrap();
+        let mesh = TriangleMesh::new(mesh.vertices().to_vec(), faces.to_vec()).unwrap();
         return Body::Mesh(Mesh::prepare(&mesh).unwrap());
     }
     let samples = surface::positions(&surface::sample_surface(mesh, 900, seed));

@@ -24,10 +24,10 @@ fn every_hard_leaf_problem_is_solved_as_clarabel_solves_it() {
     let (mut wrong, mut compared, mut most_steps, mut worst) = (Vec::new(), 0, 0.0_f64, 0.0_f64);
     let all: Vec<_> = clouds.chain(problems).collect();
     for (name, samples, gamma) in &all {
-        let problem = Problem::try_new(samples, Kernel::Gaussian { gamma: *gamma }).unwrap();
+        let problem = Problem::new(samples, Kernel::Gaussian { gamma: *gamma }).unwrap();
         let settings = Settings { relative_gap: RELATIVE_GAP, ..Settings::default() };
         let ours = problem.solve(&settings).unwrap();
-        let reference = Solver::try_new(settings).unwrap().solve_with_clarabel(&problem);
+        let reference = Solver::new(settings).unwrap().solve_with_clarabel(&problem);
         // The automatic budget, and twice the polish after an interior point method.
         let (n, steps) = (samples.len(), ours.effort.smo_steps);
         let of_budget = steps as f64 / (n * n / 2 + 50 + 20 * n) as f64;

@@ -21,7 +21,7 @@ fn triangle(size: f64) -> Result<Mesh, PrepareError> {
         Point3::new(size, 0.0, 0.0),
         Point3::new(0.0, size, 0.0),
     ];
-    Mesh::prepare(&TriangleMesh::try_new(corners, vec![[0, 1, 2]]).unwrap())
+    Mesh::prepare(&TriangleMesh::new(corners, vec![[0, 1, 2]]).unwrap())
 }
 
 #[test]

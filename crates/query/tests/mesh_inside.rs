@@ -22,14 +22,14 @@ fn solids() -> Vec<(&'static str, TriangleMesh)> {
 /// The same triangles, each turned round.
 fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
     let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-    TriangleMesh::try_new(mesh.vertices().to_vec(), turned).expect("the same vertices")
+    TriangleMesh::new(mesh.vertices().to_vec(), turned).expect("the same vertices")
 }
 
 /// A box without its last face (two triangles): open.
 fn open_box(side: f64) -> TriangleMesh {
     let whole = scene::cuboid([side; 3]);
     let kept = whole.triangles()[..10].to_vec();
-    TriangleMesh::try_new(whole.vertices().to_vec(), kept).expect("ten triangles")
+    TriangleMesh::new(whole.vertices().to_vec(), kept).expect("ten triangles")
 }
 
 #[test]

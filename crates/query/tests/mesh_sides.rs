@@ -13,7 +13,7 @@ fn two_sided_sheet() -> TriangleMesh {
     let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
     let vertices = corners.iter().map(|&(x, y)| Point3::new(x, y, 0.0)).collect();
     let faces = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
-    TriangleMesh::try_new(vertices, faces).expect("four triangles")
+    TriangleMesh::new(vertices, faces).expect("four triangles")
 }
 
 /// The box from `low` to `high`.
@@ -25,7 +25,7 @@ fn solid(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
 
 fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
     let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-    TriangleMesh::try_new(mesh.vertices().to_vec(), turned).expect("the same vertices")
+    TriangleMesh::new(mesh.vertices().to_vec(), turned).expect("the same vertices")
 }
 
 /// Two boxes that overlap between x = 0.5 and 1.
@@ -39,7 +39,7 @@ fn a_cloud_within_a_box_with_a_turned_triangle_read_free() {
     let good = solid([0.0; 3], [1.0; 3]);
     let turn = |(k, &[a, b, c]): (usize, &[u32; 3])| if k == 4 { [a, c, b] } else { [a, b, c] };
     let turned = good.triangles().iter().enumerate().map(turn).collect();
-    let solid = mesh(&TriangleMesh::try_new(good.vertices().to_vec(), turned).expect("a mesh"));
+    let solid = mesh(&TriangleMesh::new(good.vertices().to_vec(), turned).expect("a mesh"));
     assert!(solid.is_watertight());
     let ball = measured(&scene::sphere(0.1, 3), 0.01, 0.001, 4);
     for mode in [Mode::Calibrated, Mode::Paper] {
@@ -60,7 +60,7 @@ fn a_cloud_within_a_box_with_repeated_triangles_read_free() {
     let ball = measured(&scene::sphere(0.1, 3), 0.01, 0.001, 4);
     for repeated in [one, all, backs] {
         let triangles = [good.triangles(), &repeated].concat();
-        let mesh = TriangleMesh::try_new(good.vertices().to_vec(), triangles).expect("a mesh");
+        let mesh = TriangleMesh::new(good.vertices().to_vec(), triangles).expect("a mesh");
         let solid = common::mesh(&mesh);
         assert!(solid.is_watertight());
         for mode in [Mode::Calibrated, Mode::Paper] {

@@ -10,7 +10,7 @@ use cloudtouch_testkit::scene;
 fn large_triangle() -> TriangleMesh {
     let corners =
         vec![Point3::new(-5.0, -4.0, 0.0), Point3::new(6.0, -4.0, 0.0), Point3::new(0.0, 7.0, 0.0)];
-    TriangleMesh::try_new(corners, vec![[0, 1, 2]]).expect("a triangle")
+    TriangleMesh::new(corners, vec![[0, 1, 2]]).expect("a triangle")
 }
 
 /// Places in the triangle: not a vertex, not the centroid, not the middle of an edge.

@@ -105,7 +105,7 @@ fn coordinates_of_a_map_in_single_precision_read_free() {
     // A mesh too, unless so little does not matter for its size.
     let in_file = |mesh: &TriangleMesh| {
         let vertices = mesh.vertices().iter().map(|p| single(&in_map(p))).collect();
-        Mesh::prepare(&TriangleMesh::try_new(vertices, mesh.triangles().to_vec()).unwrap()).unwrap()
+        Mesh::prepare(&TriangleMesh::new(vertices, mesh.triangles().to_vec()).unwrap()).unwrap()
     };
     let ball = in_file(&scene::sphere(2.0, 3));
     let report = ask(Mode::Calibrated, &as_measured, &ball, &at(0.0, 0.0, 5.0));

@@ -48,7 +48,7 @@ impl Shape {
         let refused = |error| RobotFault::prepare(name, &what, error);
         let at = |p: &Point3| link_from_shape.transform_point(p);
         let vertices: Vec<Point3> = triangles.vertices().iter().map(at).collect();
-        let triangles = TriangleMesh::try_new(vertices, triangles.triangles().to_vec())
+        let triangles = TriangleMesh::new(vertices, triangles.triangles().to_vec())
             .map_err(|e| refused(e.into()))?;
         let radius = triangles.used_vertices().map(|(_, p)| p.coords.norm()).fold(0.0, f64::max);
         let body = Arc::new(Body::from(Mesh::prepare(&triangles).map_err(refused)?));
@@ -109,5 +109,5 @@ fn scaled(mesh: &TriangleMesh, scale: [f64; 3]) -> Result<TriangleMesh, MeshErro
     let vertices = mesh.vertices().iter().map(|p| Point3::from(p.coords.component_mul(&scale)));
     let mirrors = scale.iter().product::<f64>() < 0.0;
     let turned = |&[a, b, c]: &[u32; 3]| if mirrors { [a, c, b] } else { [a, b, c] };
-    TriangleMesh::try_new(vertices.collect(), mesh.triangles().iter().map(turned).collect())
+    TriangleMesh::new(vertices.collect(), mesh.triangles().iter().map(turned).collect())
 }

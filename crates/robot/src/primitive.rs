@@ -23,7 +23,7 @@ pub(crate) fn cuboid(size: [f64; 3]) -> Result<TriangleMesh, MeshError> {
     let faces =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    TriangleMesh::try_new((0..8).map(corner).collect(), triangles)
+    TriangleMesh::new((0..8).map(corner).collect(), triangles)
 }
 
 /// Along z about the origin, m.
@@ -78,7 +78,7 @@ fn revolved(profile: &[[f64; 2]]) -> Result<TriangleMesh, MeshError> {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    TriangleMesh::try_new(vertices, triangles)
+    TriangleMesh::new(vertices, triangles)
 }
 
 #[cfg(test)]

@@ -34,7 +34,7 @@ fn table() -> TriangleMesh {
     let quads =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    TriangleMesh::try_new((0..8).map(corner).collect(), triangles).unwrap()
+    TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap()
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn an_arm_is_taken_out_of_the_scan_that_shows_it_and_the_table_stays() {
             let (vertices, triangles) = link.mesh.faces();
             let place = |p: &Point3| link.cloud_from_link.transform_point(p);
             let vertices = vertices.iter().map(place).collect();
-            ExactMesh::new(&TriangleMesh::try_new(vertices, triangles.to_vec()).unwrap())
+            ExactMesh::new(&TriangleMesh::new(vertices, triangles.to_vec()).unwrap())
         })
         .collect();
     let table = ExactMesh::new(&table());

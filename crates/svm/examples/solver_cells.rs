@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             for seed in 0..count {
                 let (samples, gamma) = cell(difficulty, per_side, seed);
                 let start = Instant::now();
-                let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma })?;
+                let problem = Problem::new(&samples, Kernel::Gaussian { gamma })?;
                 let solution = problem.solve(&settings)?;
                 times.push(start.elapsed().as_secs_f64() * 1e6);
                 let start = Instant::now();

@@ -66,7 +66,7 @@ impl Classifier {
     /// # Errors
     /// When the solution does not belong to the problem, or when it does not
     /// [determine probabilities](Solution::determined), as after a collapse.
-    pub fn try_new(problem: &Problem, solution: &Solution) -> Result<Self, ClassifierError> {
+    pub fn new(problem: &Problem, solution: &Solution) -> Result<Self, ClassifierError> {
         if solution.alpha.len() != problem.len() || solution.displacement.len() != problem.len() {
             return Err(ClassifierError::SizeMismatch {
                 solution: solution.alpha.len(),

@@ -24,7 +24,7 @@ fn the_middle_of_an_open_bias_was_read_as_the_bias() {
     for std in [0.0, 0.01] {
         for gap in [1e-2, 1e-3, 1e-9] {
             let samples = along_x(&OPEN, 1e-3, std);
-            let problem = Problem::try_new(&samples, Kernel::Linear).unwrap();
+            let problem = Problem::new(&samples, Kernel::Linear).unwrap();
             let solution = problem.solve(&settings(gap)).unwrap();
             assert_eq!(solution.status, Status::Converged);
             let [lowest, highest] = solution.bias_interval;
@@ -33,7 +33,7 @@ fn the_middle_of_an_open_bias_was_read_as_the_bias() {
             // Without a covariance there is a side and no probability.
             assert!(std == 0.0 || solution.error.probability > 0.9);
             assert!(matches!(
-                Classifier::try_new(&problem, &solution),
+                Classifier::new(&problem, &solution),
                 Err(ClassifierError::Undetermined(Undetermined::Bias { .. }))
             ));
         }
@@ -44,7 +44,7 @@ fn the_middle_of_an_open_bias_was_read_as_the_bias() {
 fn every_bias_of_the_interval_is_as_good_as_the_gap_can_tell() {
     for (penalty, gap) in [(1e-3, 1e-3), (0.3, 1e-3), (0.3, 1e-2), (30.0, 1e-2), (30.0, 1e-6)] {
         let samples = along_x(&OPEN, penalty, 0.05);
-        let problem = Problem::try_new(&samples, Kernel::Linear).unwrap();
+        let problem = Problem::new(&samples, Kernel::Linear).unwrap();
         let solution = problem.solve(&settings(gap)).unwrap();
         let value = |bias: f64| {
             let centre = problem.centre();
@@ -65,11 +65,11 @@ fn every_bias_of_the_interval_is_as_good_as_the_gap_can_tell() {
 
 #[test]
 fn a_free_multiplier_determines_the_bias() {
-    let problem = Problem::try_new(&along_x(&OPEN, 1e3, 0.01), Kernel::Linear).unwrap();
+    let problem = Problem::new(&along_x(&OPEN, 1e3, 0.01), Kernel::Linear).unwrap();
     let solution = problem.solve(&Settings::default()).unwrap();
     let [lowest, highest] = solution.bias_interval;
     assert!(highest - lowest < 1e-2, "{lowest} {highest}");
-    let f = Classifier::try_new(&problem, &solution).unwrap();
+    let f = Classifier::new(&problem, &solution).unwrap();
     assert_eq!((f.bias(), f.centre()), (solution.bias, problem.centre()));
     // The bias is f at the centre, where the linear kernel adds nothing.
     assert_eq!(f.value(&f.centre()), f.bias());

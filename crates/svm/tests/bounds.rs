@@ -8,10 +8,10 @@ use proptest::prelude::*;
 /// Loose and tight classifiers of one problem, where both are to be had; the tight one stands for the
 /// optimum, and what is left of its own gap is counted.
 fn check(samples: &[Sample], kernel: Kernel, gap: f64) {
-    let problem = Problem::try_new(samples, kernel).unwrap();
+    let problem = Problem::new(samples, kernel).unwrap();
     let loose = problem.solve(&settings(gap)).unwrap();
     let tight = problem.solve(&settings(1e-10)).unwrap();
-    let both = [&loose, &tight].map(|solution| Classifier::try_new(&problem, solution));
+    let both = [&loose, &tight].map(|solution| Classifier::new(&problem, solution));
     let [Ok(f), Ok(g)] = both else { return };
     for (i, s) in samples.iter().enumerate() {
         let at = s.point.mean;
@@ -64,8 +64,7 @@ fn the_error_of_probabilities_was_zero_for_exact_training_and_wide_ranges() {
             let samples: Vec<Sample> =
                 samples.into_iter().map(|s| Sample { radius, ..s }).collect();
             let kernel = Kernel::Gaussian { gamma };
-            let solution =
-                Problem::try_new(&samples, kernel).unwrap().solve(&settings(1e-3)).unwrap();
+            let solution = Problem::new(&samples, kernel).unwrap().solve(&settings(1e-3)).unwrap();
             assert!(solution.error.probability > 0.0);
             check(&samples, kernel, 2e-2);
         }
@@ -76,7 +75,7 @@ fn the_error_of_probabilities_was_zero_for_exact_training_and_wide_ranges() {
 fn bounds_close_as_the_gap_does() {
     for seed in 0..10 {
         let (samples, gamma) = cell(Difficulty::Easy, 12, seed);
-        let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
+        let problem = Problem::new(&samples, Kernel::Gaussian { gamma }).unwrap();
         let error = |gap| problem.solve(&settings(gap)).unwrap().error.probability;
         let [loose, tight] = [error(1e-3), error(1e-10)];
         assert!(tight < 2e-2 && tight <= loose, "seed {seed}: {loose} {tight}");
@@ -88,8 +87,8 @@ fn bounds_of_points_outside_the_unit_box_are_those_inside() {
     let (samples, gamma) = cell(Difficulty::Contact, 12, 4);
     let unit_box = UnitBox::around(samples.iter().map(|s| &s.point)).unwrap();
     let inside: Vec<Sample> = samples.iter().map(|s| unit_box.sample_inside(s)).collect();
-    let problem = Problem::try_new(&inside, Kernel::Gaussian { gamma }).unwrap();
-    let f = Classifier::try_new(&problem, &problem.solve(&settings(1e-6)).unwrap()).unwrap();
+    let problem = Problem::new(&inside, Kernel::Gaussian { gamma }).unwrap();
+    let f = Classifier::new(&problem, &problem.solve(&settings(1e-6)).unwrap()).unwrap();
     let g = f.clone().outside(unit_box);
     for (outer, inner) in samples.iter().zip(&inside) {
         let p = g.probability_bounds(&outer.point, outer.class).unwrap();

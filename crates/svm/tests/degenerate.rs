@@ -22,7 +22,7 @@ fn check(samples: &[Sample], gamma: f64) -> Vec<Solution> {
     [Kernel::Linear, Kernel::Gaussian { gamma }]
         .into_iter()
         .map(|kernel| {
-            let problem = Problem::try_new(samples, kernel).unwrap();
+            let problem = Problem::new(samples, kernel).unwrap();
             let solution = problem.solve(&Settings::default()).unwrap();
             assert_ne!(solution.status, Status::NotFinite, "{kernel:?}");
             assert!(solution.alpha.iter().all(|a| a.is_finite()));
@@ -37,7 +37,7 @@ fn check(samples: &[Sample], gamma: f64) -> Vec<Solution> {
                 assert!(solution.relative_gap <= 1e-3);
             }
             if solution.status == Status::Collapsed {
-                assert!(Classifier::try_new(&problem, &solution).is_err());
+                assert!(Classifier::new(&problem, &solution).is_err());
             }
             solution
         })
@@ -93,7 +93,7 @@ fn one_point_a_side_and_one_against_many() {
     assert!(all_converged(&check(&pair, 5.0)));
     let mut many = grid(3000, |t| [t, (37.0 * t).sin(), 0.0], Class::B, 0.001, 10.0);
     many.push(sample([0.5, 0.0, 0.4], Class::A, 0.01, 1000.0));
-    let problem = Problem::try_new(&many, Kernel::Gaussian { gamma: 5.0 }).unwrap();
+    let problem = Problem::new(&many, Kernel::Gaussian { gamma: 5.0 }).unwrap();
     let solution =
         problem.solve(&Settings { max_steps: Some(2000), ..Settings::default() }).unwrap();
     assert_eq!(solution.status, Status::Converged);
@@ -166,10 +166,10 @@ fn singular_and_badly_conditioned_covariances() {
 fn numbers_out_of_range_never_converge() {
     let huge =
         [sample([1e200; 3], Class::A, 0.0, 1.0), sample([-1e200, 0.0, 0.0], Class::B, 0.0, 1.0)];
-    let problem = Problem::try_new(&huge, Kernel::Linear).unwrap();
+    let problem = Problem::new(&huge, Kernel::Linear).unwrap();
     let solution = problem.solve(&Settings::default()).unwrap();
     assert!(!matches!(solution.status, Status::Converged), "{:?}", solution.status);
-    assert!(Classifier::try_new(&problem, &solution).is_err());
+    assert!(Classifier::new(&problem, &solution).is_err());
 }
 
 /// The relative gap stays near 1 for more than ten iterations while multipliers grow from 10 to 1e7.
@@ -188,7 +188,7 @@ fn the_interior_point_method_gave_up_while_multipliers_grew_to_a_large_penalty()
             (0..30).map(&mut at).collect()
         };
         let both = [sheet(Class::A, 0.4), sheet(Class::B, 0.0)].concat();
-        let problem = Problem::try_new(&both, Kernel::Gaussian { gamma }).unwrap();
+        let problem = Problem::new(&both, Kernel::Gaussian { gamma }).unwrap();
         let solution = problem.solve(&settings(1e-4)).unwrap();
         let place = format!("C {penalty}, gamma {gamma}: {:?}", solution.rung);
         assert_eq!(solution.status, Status::Converged, "{place}");

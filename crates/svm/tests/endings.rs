@@ -10,7 +10,7 @@ use cloudtouch_svm::{
 
 fn problem(difficulty: Difficulty, per_side: usize, seed: u64) -> Problem {
     let (samples, gamma) = cell(difficulty, per_side, seed);
-    Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap()
+    Problem::new(&samples, Kernel::Gaussian { gamma }).unwrap()
 }
 
 /// Nothing separates a cloud from itself, however tightly it is asked.
@@ -24,7 +24,7 @@ fn a_collapse_was_hidden_behind_a_tolerance_out_of_reach() {
         twin.point.mean.x += 1e-7;
         twin
     }));
-    let problem = Problem::try_new(&both, Kernel::Gaussian { gamma }).unwrap();
+    let problem = Problem::new(&both, Kernel::Gaussian { gamma }).unwrap();
     for gap in [1e-3, 1e-8, 1e-12, 1e-16] {
         let solution = problem.solve(&settings(gap)).unwrap();
         assert_eq!(solution.status, Status::Collapsed, "{gap:e}: {}", solution.relative_gap);
@@ -104,7 +104,7 @@ fn a_watch_that_breaks_ends_the_solve_with_what_it_has() {
 
 #[test]
 fn a_solver_used_before_answers_as_a_new_one() {
-    let mut used = Solver::try_new(settings(1e-6)).unwrap();
+    let mut used = Solver::new(settings(1e-6)).unwrap();
     for (difficulty, per_side) in
         [(Difficulty::Hard, 15), (Difficulty::Easy, 20), (Difficulty::Contact, 4)]
     {
@@ -116,6 +116,6 @@ fn a_solver_used_before_answers_as_a_new_one() {
 #[test]
 fn settings_out_of_range_are_refused_before_anything_is_done() {
     let bad = settings(f64::NAN);
-    assert!(matches!(Solver::try_new(bad), Err(SettingsError::RelativeGap { .. })));
+    assert!(matches!(Solver::new(bad), Err(SettingsError::RelativeGap { .. })));
     assert!(problem(Difficulty::Easy, 4, 1).solve(&settings(0.0)).is_err());
 }

@@ -16,7 +16,7 @@ fn kernel(gamma: f64, seed: u64) -> Kernel {
 }
 
 fn solve(samples: &[Sample], kernel: Kernel) -> (Problem, Solution) {
-    let problem = Problem::try_new(samples, kernel).unwrap();
+    let problem = Problem::new(samples, kernel).unwrap();
     let solution = problem.solve(&settings(1e-8)).unwrap();
     (problem, solution)
 }
@@ -26,7 +26,7 @@ fn probabilities(
     samples: &[Sample],
     (problem, solution): &(Problem, Solution),
 ) -> Option<Vec<f64>> {
-    let f = Classifier::try_new(problem, solution).ok()?;
+    let f = Classifier::new(problem, solution).ok()?;
     Some(samples.iter().map(|s| f.probability(&s.point, s.class).unwrap()).collect())
 }
 
@@ -73,7 +73,7 @@ proptest! {
         let kernel = kernel(gamma, seed);
         check_same(&samples, kernel, &swapped, kernel);
         let (first, second) = (solve(&samples, kernel), solve(&swapped, kernel));
-        if let (Ok(f), Ok(g)) = (Classifier::try_new(&first.0, &first.1), Classifier::try_new(&second.0, &second.1)) {
+        if let (Ok(f), Ok(g)) = (Classifier::new(&first.0, &first.1), Classifier::new(&second.0, &second.1)) {
             let at = Point3::new(0.1, 0.2, 0.05);
             prop_assert!((f.value(&at) + g.value(&at)).abs() < 1e-3 * (1.0 + f.value(&at).abs()));
         }
@@ -144,7 +144,7 @@ proptest! {
         let (samples, gamma) = leaf(seed);
         let kernel = kernel(gamma, seed);
         let settings = settings(1e-7);
-        let before = Problem::try_new(&samples, kernel).unwrap().solve(&settings).unwrap();
+        let before = Problem::new(&samples, kernel).unwrap().solve(&settings).unwrap();
         let moved: Vec<Sample> = samples
             .iter()
             .map(|s| {
@@ -154,7 +154,7 @@ proptest! {
                 Sample { point: UncertainPoint { mean, ..s.point }, penalty: 0.7 * s.penalty, ..*s }
             })
             .collect();
-        let problem = Problem::try_new(&moved, kernel).unwrap();
+        let problem = Problem::new(&moved, kernel).unwrap();
         let (cold, warm) = (problem.solve(&settings).unwrap(), solver(&settings).solve_from(&problem, &before));
         prop_assert_eq!(cold.status, warm.status);
         prop_assert!((cold.primal - warm.primal).abs() <= 1e-6 * cold.primal);
@@ -168,7 +168,7 @@ fn a_warm_start_pays_and_a_foreign_one_counts_as_cold() {
     for seed in 0..20 {
         let (samples, gamma) = cell(Difficulty::Easy, 20, seed);
         let kernel = Kernel::Gaussian { gamma };
-        let before = Problem::try_new(&samples, kernel).unwrap().solve(&settings).unwrap();
+        let before = Problem::new(&samples, kernel).unwrap().solve(&settings).unwrap();
         let moved: Vec<Sample> = mapped(&samples, |p| *p)
             .into_iter()
             .map(|mut s| {
@@ -178,13 +178,13 @@ fn a_warm_start_pays_and_a_foreign_one_counts_as_cold() {
                 s
             })
             .collect();
-        let problem = Problem::try_new(&moved, kernel).unwrap();
+        let problem = Problem::new(&moved, kernel).unwrap();
         let (cold, warm) =
             (problem.solve(&settings).unwrap(), solver(&settings).solve_from(&problem, &before));
         assert_eq!(warm.status, Status::Converged);
         cold_steps += cold.effort.smo_steps;
         warm_steps += warm.effort.smo_steps;
-        let foreign = Problem::try_new(&moved[1..], kernel).unwrap();
+        let foreign = Problem::new(&moved[1..], kernel).unwrap();
         assert_eq!(
             solver(&settings).solve_from(&foreign, &before),
             foreign.solve(&settings).unwrap()

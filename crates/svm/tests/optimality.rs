@@ -18,12 +18,12 @@ fn optimality_conditions_hold() {
             seed as u64,
         );
         for kernel in kernels(gamma) {
-            let problem = Problem::try_new(&samples, kernel).unwrap();
+            let problem = Problem::new(&samples, kernel).unwrap();
             let solution = problem.solve(&settings(1e-9)).unwrap();
             if solution.status != Status::Converged {
                 continue;
             }
-            let f = Classifier::try_new(&problem, &solution).unwrap();
+            let f = Classifier::new(&problem, &solution).unwrap();
             let scale = solution.squared_norm.sqrt().max(1.0);
             let balance: f64 =
                 samples.iter().zip(&solution.alpha).map(|(s, a)| s.class.sign() * a).sum();
@@ -70,9 +70,9 @@ fn the_gradient_is_the_derivative_of_the_value() {
     for seed in 0..10 {
         let (samples, gamma) = cell(Difficulty::Contact, 15, seed);
         for kernel in kernels(gamma) {
-            let problem = Problem::try_new(&samples, kernel).unwrap();
+            let problem = Problem::new(&samples, kernel).unwrap();
             let solution = problem.solve(&Settings::default()).unwrap();
-            let Ok(f) = Classifier::try_new(&problem, &solution) else { continue };
+            let Ok(f) = Classifier::new(&problem, &solution) else { continue };
             for s in &samples {
                 let at = s.point.mean + Vector3::new(0.01, -0.02, 0.03);
                 let (_, gradient) = f.value_and_gradient(&at);
@@ -104,9 +104,8 @@ fn all_radii_zero_is_the_plain_svm() {
                 .map(|s| Sample { point: UncertainPoint::exact(s.point.mean), ..*s })
                 .collect();
             let settings = settings(1e-8);
-            let first = Problem::try_new(&exact, kernel).unwrap().solve(&settings).unwrap();
-            let second =
-                Problem::try_new(&no_covariance, kernel).unwrap().solve(&settings).unwrap();
+            let first = Problem::new(&exact, kernel).unwrap().solve(&settings).unwrap();
+            let second = Problem::new(&no_covariance, kernel).unwrap().solve(&settings).unwrap();
             assert!(first.v.iter().all(|v| *v == Vector3::zeros()));
             assert_eq!(first.alpha, second.alpha);
             // The textbook dual: Σα − ½ Σ c_i c_j α_i α_j k(x_i, x_j).
@@ -136,10 +135,9 @@ fn probabilities_are_the_normal_law_of_the_linearised_function() {
         radius: 0.0,
         penalty: 100.0,
     };
-    let problem =
-        Problem::try_new(&[at(-0.5, Class::A), at(0.5, Class::B)], Kernel::Linear).unwrap();
+    let problem = Problem::new(&[at(-0.5, Class::A), at(0.5, Class::B)], Kernel::Linear).unwrap();
     let solution = problem.solve(&settings(1e-9)).unwrap();
-    let f = Classifier::try_new(&problem, &solution).unwrap();
+    let f = Classifier::new(&problem, &solution).unwrap();
     let uncertain = |x: f64| UncertainPoint {
         mean: Point3::new(x, 0.3, -0.2),
         covariance: Covariance::diagonal([0.01, 1.0, 1.0]),

@@ -10,7 +10,7 @@ use cloudtouch_svm::{
 use proptest::prelude::*;
 
 fn solve(samples: &[Sample], kernel: Kernel) -> (Problem, Solution) {
-    let problem = Problem::try_new(samples, kernel).unwrap();
+    let problem = Problem::new(samples, kernel).unwrap();
     let solution = problem.solve(&settings(1e-8)).unwrap();
     (problem, solution)
 }
@@ -21,7 +21,7 @@ fn solved(seed: u64) -> Option<(Vec<Sample>, Kernel, Solution, Classifier)> {
     let (samples, gamma) = cell(difficulty, 8 + (seed % 13) as usize, seed);
     let kernel = if seed.is_multiple_of(5) { Kernel::Linear } else { Kernel::Gaussian { gamma } };
     let (problem, solution) = solve(&samples, kernel);
-    let f = Classifier::try_new(&problem, &solution).ok()?;
+    let f = Classifier::new(&problem, &solution).ok()?;
     Some((samples, kernel, solution, f))
 }
 
@@ -54,10 +54,10 @@ proptest! {
         let (mut samples, _) = cell(difficulty, 4 + (seed % 12) as usize, seed);
         samples.iter_mut().for_each(|s| s.penalty = 10_f64.powf(log_penalty));
         let kernel = Kernel::Gaussian { gamma: 10_f64.powf(log_gamma) };
-        let problem = Problem::try_new(&samples, kernel).unwrap();
+        let problem = Problem::new(&samples, kernel).unwrap();
         let loose = problem.solve(&settings(1e-3)).unwrap();
         let tight = problem.solve(&settings(1e-8)).unwrap();
-        let both = [&loose, &tight].map(|solution| Classifier::try_new(&problem, solution));
+        let both = [&loose, &tight].map(|solution| Classifier::new(&problem, solution));
         let [Ok(loose), Ok(tight)] = both else { return Ok(()) };
         for s in &samples {
             let [p, q] = [&loose, &tight].map(|f| f.probability(&s.point, s.class).unwrap());
@@ -70,7 +70,7 @@ proptest! {
     fn ordinary_problems_determine_probabilities(seed in 0..10_000_u64) {
         let difficulty = if seed.is_multiple_of(2) { Difficulty::Easy } else { Difficulty::Contact };
         let (samples, gamma) = cell(difficulty, 8 + (seed % 13) as usize, seed);
-        let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
+        let problem = Problem::new(&samples, Kernel::Gaussian { gamma }).unwrap();
         let solution = problem.solve(&Settings::default()).unwrap();
         prop_assert_eq!(solution.determined(), Ok(()), "{:?}", solution);
     }
@@ -94,7 +94,7 @@ proptest! {
         let unit_box = UnitBox::around(scaled.iter().map(|s| &s.point)).unwrap();
         let inside: Vec<Sample> = scaled.iter().map(|s| unit_box.sample_inside(s)).collect();
         let (problem, solution) = solve(&inside, Kernel::Gaussian { gamma });
-        let Ok(f) = Classifier::try_new(&problem, &solution) else { return Ok(()) };
+        let Ok(f) = Classifier::new(&problem, &solution) else { return Ok(()) };
         let g = f.clone().outside(unit_box);
         for s in &scaled {
             let at = s.point.mean;
@@ -117,7 +117,7 @@ proptest! {
         let swapped: Vec<Sample> =
             samples.iter().map(|s| Sample { class: s.class.opposite(), ..*s }).collect();
         let (problem, solution) = solve(&swapped, kernel);
-        let g = Classifier::try_new(&problem, &solution).unwrap();
+        let g = Classifier::new(&problem, &solution).unwrap();
         let scale = solution.squared_norm.sqrt().max(1.0);
         for s in &samples {
             let (value, gradient) = f.value_and_gradient(&s.point.mean);
@@ -185,11 +185,11 @@ proptest! {
             .collect();
         // Two gaps of 1e-8 leave planes apart by more than is asked here, in one of 700.
         let settings = settings(1e-9);
-        let problem = Problem::try_new(&moved, kernel).unwrap();
+        let problem = Problem::new(&moved, kernel).unwrap();
         let (cold, warm) = (problem.solve(&settings).unwrap(), solver(&settings).solve_from(&problem, &before));
         prop_assert_eq!(cold.status, warm.status);
         if cold.status == Status::Converged {
-            let [f, g] = [cold, warm].map(|s| Classifier::try_new(&problem, &s).unwrap());
+            let [f, g] = [cold, warm].map(|s| Classifier::new(&problem, &s).unwrap());
             for s in &moved {
                 let p = f.probability(&s.point, s.class).unwrap();
                 let q = g.probability(&s.point, s.class).unwrap();

@@ -92,7 +92,7 @@ fn compare(cases: impl Iterator<Item = Case>) {
     let mut at_reported = [0; 3];
     for (number, case) in cases.enumerate() {
         let n = case.samples.len();
-        let problem = Problem::try_new(&case.samples, case.kernel).unwrap();
+        let problem = Problem::new(&case.samples, case.kernel).unwrap();
         let ours = problem.solve(&tight).unwrap();
         let reference = solver(&tighter).solve_with_clarabel(&problem);
         let name = format!("case {number} (n {n}, {:?} {:?})", case.kernel, case.cell);
@@ -147,8 +147,7 @@ fn compare(cases: impl Iterator<Item = Case>) {
                 failures.push(format!("{name}: SMO's bounds exclude the optimum"));
             }
         }
-        let pair =
-            (Classifier::try_new(&problem, &ours), Classifier::try_new(&problem, &reference));
+        let pair = (Classifier::new(&problem, &ours), Classifier::new(&problem, &reference));
         if let (Ok(f), Ok(g)) = pair {
             let (mut difference, mut scale) = (0.0_f64, 1.0_f64);
             for cell in 0..125 {
@@ -232,7 +231,7 @@ fn a_problem_too_large_for_clarabel_is_said_to_be() {
         penalty: 1.0,
     };
     let samples = scene.samples(&mut Stream::new(1));
-    let problem = Problem::try_new(&samples, Kernel::Linear).unwrap();
+    let problem = Problem::new(&samples, Kernel::Linear).unwrap();
     let solution = solver(&settings(1e-3)).solve_with_clarabel(&problem);
     assert_eq!(
         (solution.status, solution.ends.clarabel),

@@ -18,10 +18,10 @@ fn tight() -> Settings {
 }
 
 fn classifier(samples: &[Sample], kernel: Kernel) -> Classifier {
-    let problem = Problem::try_new(samples, kernel).unwrap();
+    let problem = Problem::new(samples, kernel).unwrap();
     let solution = problem.solve(&tight()).unwrap();
     assert_eq!(solution.status, Status::Converged);
-    Classifier::try_new(&problem, &solution).unwrap()
+    Classifier::new(&problem, &solution).unwrap()
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn a_plain_svm_was_trained_instead_of_a_robust_one() {
     let (samples, gamma) = cell(Difficulty::Contact, 15, 3);
     let plain: Vec<Sample> = samples.iter().map(|s| Sample { radius: 0.0, ..*s }).collect();
     let solve = |samples: &[Sample]| {
-        Problem::try_new(samples, Kernel::Gaussian { gamma }).unwrap().solve(&tight()).unwrap()
+        Problem::new(samples, Kernel::Gaussian { gamma }).unwrap().solve(&tight()).unwrap()
     };
     assert!(solve(&samples).primal > 1.01 * solve(&plain).primal);
     assert!(solve(&samples).v.iter().any(|v| v.norm() > 1e-3));
@@ -110,12 +110,12 @@ fn nan_ended_as_probability_zero() {
         }
     }
     // A solve that has not come near the optimum gives no classifier at all.
-    let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
+    let problem = Problem::new(&samples, Kernel::Gaussian { gamma }).unwrap();
     let unfinished =
         problem.solve(&Settings { max_steps: Some(1), fallback: false, ..tight() }).unwrap();
     assert_eq!(unfinished.status, Status::StepLimit);
     assert!(matches!(
-        Classifier::try_new(&problem, &unfinished),
+        Classifier::new(&problem, &unfinished),
         Err(ClassifierError::Undetermined(Undetermined::Gap { status: Status::StepLimit, .. }))
     ));
 }
@@ -142,7 +142,7 @@ fn through_a_mesh(per_mesh: usize, penalty: f64) -> Vec<Sample> {
 #[test]
 fn the_interior_point_method_crept_up_to_large_penalties() {
     let problem =
-        Problem::try_new(&through_a_mesh(600, 1e7), Kernel::Gaussian { gamma: 27.0 }).unwrap();
+        Problem::new(&through_a_mesh(600, 1e7), Kernel::Gaussian { gamma: 27.0 }).unwrap();
     let solution = problem.solve(&Settings::default()).unwrap();
     assert_eq!((solution.status, solution.rung), (Status::Converged, Rung::InteriorPoint));
     assert_eq!(solution.effort.clarabel_iterations, 0);
@@ -154,7 +154,7 @@ fn the_interior_point_method_crept_up_to_large_penalties() {
 fn a_large_problem_was_worked_on_for_minutes() {
     // Beyond what is worth a dense matrix, and far from what SMO can finish.
     let problem =
-        Problem::try_new(&through_a_mesh(1800, 1e7), Kernel::Gaussian { gamma: 5.0 }).unwrap();
+        Problem::new(&through_a_mesh(1800, 1e7), Kernel::Gaussian { gamma: 5.0 }).unwrap();
     let solution = problem.solve(&tight()).unwrap();
     assert_eq!(solution.status, Status::TooLarge);
     let effort = solution.effort;

@@ -7,12 +7,12 @@ use cloudtouch_svm::{Classifier, Kernel, Problem, Settings, Solution, separate};
 #[test]
 fn what_was_trained_comes_back_bit_for_bit() {
     let (samples, gamma) = cell(Difficulty::Easy, 10, 1);
-    let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
+    let problem = Problem::new(&samples, Kernel::Gaussian { gamma }).unwrap();
     let solution = problem.solve(&settings(1e-4)).unwrap();
     let text = serde_json::to_string(&solution).unwrap();
     assert_eq!(serde_json::from_str::<Solution>(&text).unwrap(), solution);
 
-    let f = Classifier::try_new(&problem, &solution).unwrap();
+    let f = Classifier::new(&problem, &solution).unwrap();
     let g: Classifier = serde_json::from_str(&serde_json::to_string(&f).unwrap()).unwrap();
     assert_eq!(f, g);
     for s in &samples {

@@ -34,10 +34,10 @@ fn a_thin_ellipsoid_was_trained_on_as_another_one() {
         let penalty = if scaled { 1e3 } else { 1e21 };
         let sample = |p, class| Sample { point: place(p), class, radius: 1.0, penalty };
         let samples = [sample(&a, Class::A), sample(&b, Class::B)];
-        let problem = Problem::try_new(&samples, Kernel::Linear).unwrap();
+        let problem = Problem::new(&samples, Kernel::Linear).unwrap();
         let solution = problem.solve(&settings(1e-6)).unwrap();
         assert_eq!(solution.status, Status::Converged, "scaled {scaled}");
-        let f = Classifier::try_new(&problem, &solution).unwrap();
+        let f = Classifier::new(&problem, &solution).unwrap();
         for s in &samples {
             // The margin, f = 1, at one of its standard deviations: f = 3 at 1.5 of them.
             let (value, gradient) = f.value_and_gradient(&s.point.mean);

@@ -25,7 +25,7 @@ fn a_plane_in_other_units_is_found_in_the_same_steps() {
         for seed in 0..6 {
             let (samples, _) = cell(difficulty, 12, seed);
             let solve = |scale: f64| {
-                let problem = Problem::try_new(&in_units(&samples, scale), Kernel::Linear).unwrap();
+                let problem = Problem::new(&in_units(&samples, scale), Kernel::Linear).unwrap();
                 problem.solve(&settings(1e-6)).unwrap()
             };
             // Powers of two: not a bit is rounded differently.
@@ -46,7 +46,7 @@ fn a_wide_gaussian_is_a_plane() {
     for seed in 0..6 {
         let (samples, _) = cell(Difficulty::Easy, 12, seed);
         let settings = settings(1e-6);
-        let linear = Problem::try_new(&samples, Kernel::Linear).unwrap();
+        let linear = Problem::new(&samples, Kernel::Linear).unwrap();
         let plane = linear.solve(&settings).unwrap();
         if plane.status != Status::Converged {
             continue;
@@ -56,7 +56,7 @@ fn a_wide_gaussian_is_a_plane() {
                 .iter()
                 .map(|s| Sample { penalty: s.penalty / (2.0 * gamma), ..*s })
                 .collect();
-            let problem = Problem::try_new(&wide, Kernel::Gaussian { gamma }).unwrap();
+            let problem = Problem::new(&wide, Kernel::Gaussian { gamma }).unwrap();
             let solution = problem.solve(&settings).unwrap();
             assert_eq!(
                 solution.status,
@@ -64,8 +64,8 @@ fn a_wide_gaussian_is_a_plane() {
                 "seed {seed} gamma {gamma}: {}",
                 solution.relative_gap
             );
-            let f = Classifier::try_new(&linear, &plane).unwrap();
-            let g = Classifier::try_new(&problem, &solution).unwrap();
+            let f = Classifier::new(&linear, &plane).unwrap();
+            let g = Classifier::new(&problem, &solution).unwrap();
             for s in &samples {
                 let [p, q] = [&f, &g].map(|f| f.probability(&s.point, s.class).unwrap());
                 assert!((p - q).abs() < 1e-2, "seed {seed} gamma {gamma}: {p} {q}");

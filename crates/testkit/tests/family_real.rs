@@ -12,7 +12,7 @@ fn stl(path: &Path) -> Result<TriangleMesh, Box<dyn Error>> {
     let mesh = stl_io::read_stl(&mut BufReader::new(File::open(path)?))?;
     let vertices = mesh.vertices.iter().map(|v| Point3::from(v.0.map(f64::from))).collect();
     let triangles = mesh.faces.iter().map(|f| f.vertices.map(|i| i as u32)).collect();
-    Ok(TriangleMesh::try_new(vertices, triangles)?)
+    Ok(TriangleMesh::new(vertices, triangles)?)
 }
 
 fn obj(path: &Path) -> Result<TriangleMesh, Box<dyn Error>> {
@@ -21,7 +21,7 @@ fn obj(path: &Path) -> Result<TriangleMesh, Box<dyn Error>> {
     let corners = model.mesh.positions.chunks(3);
     let vertices = corners.map(|v| Point3::from([v[0], v[1], v[2]].map(f64::from))).collect();
     let triangles = model.mesh.indices.chunks(3).map(|t| [t[0], t[1], t[2]]).collect();
-    Ok(TriangleMesh::try_new(vertices, triangles)?.merged())
+    Ok(TriangleMesh::new(vertices, triangles)?.merged())
 }
 
 fn meshes(folder: &Path) -> Result<RealMeshes, Box<dyn Error>> {

@@ -90,7 +90,7 @@ fn describe_scan(cloud: &PointCloud, remedy: &str) -> Result<String> {
             .iter()
             .filter(|p| (**p + center.coords - cloud.sensor_origin()).norm() < 0.1)
             .count();
-        let spacing = typical_spacing(&Neighborhoods::try_new(local)?, SPACING_SAMPLE);
+        let spacing = typical_spacing(&Neighborhoods::new(local)?, SPACING_SAMPLE);
         lines.push(format!("spacing     {} (median)", words::length(spacing)));
         let size = (high - low).norm();
         // A map in metres has its points as far apart, far from its origin.

@@ -87,7 +87,7 @@ fn settings(common: &CommonArguments, file: &SceneFile) -> Result<QuerySettings>
 /// The scene with a triangle in the place of each body, until these are read.
 fn outline(file: &SceneFile) -> Result<Scene> {
     let corners = vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
-    let triangle = Mesh::prepare(&TriangleMesh::try_new(corners, vec![[0, 1, 2]])?)?;
+    let triangle = Mesh::prepare(&TriangleMesh::new(corners, vec![[0, 1, 2]])?)?;
     let stand_in = Arc::new(cloudtouch::Body::from(triangle));
     let mut scene = Scene::default();
     for (index, BodyEntry { name, pose, .. }) in file.bodies.iter().enumerate() {

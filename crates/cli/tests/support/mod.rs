@@ -117,5 +117,5 @@ pub(crate) fn cube(half: f64) -> TriangleMesh {
     let quads =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    TriangleMesh::try_new(vertices, triangles).unwrap()
+    TriangleMesh::new(vertices, triangles).unwrap()
 }

@@ -59,7 +59,7 @@ impl Method for Distance {
 /// The points, and a standard deviation of noise and sampling, m.
 fn points(observation: &Observation, smoothed: bool) -> Result<(Vec<Point3>, f64)> {
     let cloud = cleaned(observation)?;
-    let neighborhoods = Neighborhoods::try_new(cloud.points.clone())?;
+    let neighborhoods = Neighborhoods::new(cloud.points.clone())?;
     let unit = observation.std.hypot(DISC_STD * typical_spacing(&neighborhoods, SPACING_SAMPLE));
     if !smoothed {
         return Ok((cloud.points, unit));

@@ -48,7 +48,7 @@ pub(super) fn measure(scene: &Scene) -> Findings {
             section.text(format_args!("### Noise of {:.0} mm", 1e3 * std)).text(table(&timed));
     }
     let [_, closed] = scene.meshes(POINTS);
-    let open = TriangleMesh::try_new(closed.vertices().to_vec(), closed.triangles()[1..].to_vec())?;
+    let open = TriangleMesh::new(closed.vertices().to_vec(), closed.triangles()[1..].to_vec())?;
     section = section.text("### Against a mesh").text(OF_MESHES);
     for (name, mesh) in [("closed", &closed), ("open", &open)] {
         let (room, piano) = (scene.room(POINTS, STD), scene.piano(STD));

@@ -149,7 +149,7 @@ fn solve(
     with: fn(&mut Solver, &Problem) -> Solution,
 ) -> Result<Solution> {
     let samples = cell.problem(per_side, from);
-    let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma: cell.gamma })?;
+    let problem = Problem::new(&samples, Kernel::Gaussian { gamma: cell.gamma })?;
     let settings = Settings { relative_gap: GAP, ..Settings::default() };
-    Ok(with(&mut Solver::try_new(settings)?, &problem))
+    Ok(with(&mut Solver::new(settings)?, &problem))
 }

@@ -82,7 +82,7 @@ fn patch(u: &mut Unstructured<'_>) -> Result<Vec<Point3>> {
 
 fn mesh(u: &mut Unstructured<'_>) -> Result<std::result::Result<TriangleMesh, String>> {
     let (vertices, triangles) = if u.arbitrary()? { solid(u)? } else { soup(u)? };
-    Ok(TriangleMesh::try_new(vertices, triangles).map_err(|error| error.to_string()))
+    Ok(TriangleMesh::new(vertices, triangles).map_err(|error| error.to_string()))
 }
 
 /// A box, whichever way its sides run: watertight, unless a side is nothing.

@@ -77,7 +77,7 @@ pub(super) fn parse_body(
     if !is_mesh {
         return Ok(Geometry::Cloud(cloud));
     }
-    TriangleMesh::try_new(cloud.points, triangles)
+    TriangleMesh::new(cloud.points, triangles)
         .map(Geometry::Mesh)
         // Coordinates and indices were checked where they stand; no faces are all that is left.
         .map_err(|_| Place::Line(1).error(Fault::NoTriangles))

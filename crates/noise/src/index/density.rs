@@ -168,7 +168,7 @@ mod tests {
     fn densities_are_those_of_neighbours_found_one_by_one() {
         let few = speck().split_off(2395);
         for points in [sheet(), speck(), few, Vec::new()] {
-            let cloud = Positions::try_new(points).unwrap();
+            let cloud = Positions::new(points).unwrap();
             let mut found = Vec::new();
             let mut one_by_one = |place: &Point3| {
                 cloud.search(place, SPACING_NEIGHBORS, true, &mut found);

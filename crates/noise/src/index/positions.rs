@@ -42,7 +42,7 @@ pub(crate) struct Positions {
 }
 
 impl Positions {
-    pub(crate) fn try_new(points: Vec<Point3>) -> Result<Self, NoiseError> {
+    pub(crate) fn new(points: Vec<Point3>) -> Result<Self, NoiseError> {
         Self::built(points, Threads::All)
     }
 

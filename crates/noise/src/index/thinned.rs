@@ -50,7 +50,7 @@ mod tests {
 
     fn cloud(copies: usize) -> Positions {
         let place = |i: u64| Point3::from([0, 1, 2].map(|k| seed::unit(seed::derive(2, i, k))));
-        Positions::try_new((0..1600).map(place).cycle().take(1600 * copies).collect()).unwrap()
+        Positions::new((0..1600).map(place).cycle().take(1600 * copies).collect()).unwrap()
     }
 
     fn places(thinned: &Thinned) -> Vec<Point3> {
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn the_same_are_taken_of_points_in_another_order() {
         let points = cloud(1).points().to_vec();
-        let reversed = Positions::try_new(points.iter().rev().copied().collect()).unwrap();
+        let reversed = Positions::new(points.iter().rev().copied().collect()).unwrap();
         for (a, b) in thin(&cloud(1)).iter().zip(&thin(&reversed)) {
             assert_eq!(places(a), places(b));
             assert_eq!(a.positions().points()[3], cloud(1).points()[a.index(3)]);

@@ -57,7 +57,7 @@ pub(crate) fn model(combination: Combination) -> NoiseModel {
     // Without a cap on Ψ there is no bound to test.
     let discretization = Discretization { is_capped: true, ..Discretization::default() };
     let settings = NoiseSettings { combination, discretization, ..NoiseSettings::default() };
-    NoiseModel::try_new(settings).expect("valid")
+    NoiseModel::new(settings).expect("valid")
 }
 
 /// The same noise in every direction at every point.
@@ -71,7 +71,7 @@ pub(crate) fn refine_all(
     points: &[Point3],
     sensor: &SensorNoise,
 ) -> Vec<Refined> {
-    let index = Neighborhoods::try_new(points.to_vec()).expect("an index");
+    let index = Neighborhoods::new(points.to_vec()).expect("an index");
     model.refine_all(&index, sensor, f64::INFINITY)
 }
 

@@ -59,10 +59,10 @@ pub(crate) fn by_kernel(
     let Some(unit_box) = UnitBox::around(&all) else { return Trained::UNDECIDED };
     let unit_box = settings.scale.map_or(unit_box, |scale| unit_box.with_scale(scale));
     let samples = samples(points, &unit_box, settings);
-    let Ok(problem) = Problem::try_new(&samples, settings.kernel) else {
+    let Ok(problem) = Problem::new(&samples, settings.kernel) else {
         return Trained::UNDECIDED;
     };
-    let solver = |relative_gap| Solver::try_new(Settings { relative_gap, ..Settings::default() });
+    let solver = |relative_gap| Solver::new(Settings { relative_gap, ..Settings::default() });
     let both = [settings.relative_gap, TIGHTER * settings.relative_gap].map(solver);
     let [Ok(mut loose), Ok(mut tight)] = both else { return Trained::UNDECIDED };
     let mut look = |_: &_| {
@@ -120,7 +120,7 @@ fn read(
     if solution.status == Status::Collapsed {
         return sure(PairAnswer::Indistinct);
     }
-    let Ok(classifier) = Classifier::try_new(problem, solution) else {
+    let Ok(classifier) = Classifier::new(problem, solution) else {
         return sure(PairAnswer::Undecided);
     };
     let surface = Surface::Kernel(classifier.outside(unit_box));

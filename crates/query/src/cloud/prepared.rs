@@ -72,8 +72,7 @@ impl Prepared {
             let stages = "no scan was given".to_owned();
             return Err(PrepareError::NothingLeft { before: count, stages });
         };
-        let mut prepared =
-            Self::of_scans(all, NoiseModel::try_new(by.noise)?, by.tree, None, weigh)?;
+        let mut prepared = Self::of_scans(all, NoiseModel::new(by.noise)?, by.tree, None, weigh)?;
         prepared.prepare_time = start.elapsed();
         Ok(prepared)
     }
@@ -90,7 +89,7 @@ impl Prepared {
         let sensor = &all.noise;
         let origin = origin.unwrap_or_else(|| nalgebra::center(&low, &high).coords);
         let points: Vec<Point3> = all.points.iter().map(|p| p - origin).collect();
-        let neighborhoods = Neighborhoods::try_new(points)?;
+        let neighborhoods = Neighborhoods::new(points)?;
         let sample = sample_of(neighborhoods.points());
         // A surface that is known needs no others to be told from, and one point is as good as the next.
         let is_fitted =

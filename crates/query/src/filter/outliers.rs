@@ -10,7 +10,7 @@ use super::OutlierSettings;
 /// than the set number of standard deviations.
 pub(super) fn drop_outliers(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &OutlierSettings) {
     let points: Vec<Point3> = kept.iter().map(|&i| cloud.points[i]).collect();
-    let Ok(neighborhoods) = Neighborhoods::try_new(points) else { return };
+    let Ok(neighborhoods) = Neighborhoods::new(points) else { return };
     let points = neighborhoods.points();
     let distances: Vec<f64> = (0..points.len())
         .into_par_iter()

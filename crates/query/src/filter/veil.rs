@@ -64,7 +64,7 @@ fn along_ray(ray: &Vector3, point: &Point3, other: &Point3, least_cosine: f64) -
 
 fn drop_veil_lines(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
     let points: Vec<Point3> = kept.iter().map(|&i| cloud.points[i]).collect();
-    let Ok(neighborhoods) = Neighborhoods::try_new(points) else { return };
+    let Ok(neighborhoods) = Neighborhoods::new(points) else { return };
     let points = neighborhoods.points();
     let veil: Vec<bool> = (0..points.len())
         .into_par_iter()

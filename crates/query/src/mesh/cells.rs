@@ -215,7 +215,7 @@ mod tests {
         };
         let inward = |mesh: TriangleMesh| {
             let triangles = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-            TriangleMesh::try_new(mesh.vertices().to_vec(), triangles).unwrap()
+            TriangleMesh::new(mesh.vertices().to_vec(), triangles).unwrap()
         };
         let there = Pose::from_translation(Vector3::repeat(0.3));
         let overlapping = [scene::cuboid([0.8; 3]), scene::moved(&scene::cuboid([0.5; 3]), &there)];
@@ -228,8 +228,8 @@ mod tests {
             turned(&scene::cuboid([1.0, 0.2, 0.01])),
             turned(&scene::assemble([scene::cuboid([1.0; 3]), inward(scene::cuboid([0.5; 3]))])),
             turned(&scene::assemble(overlapping)),
-            turned(&TriangleMesh::try_new(vertices.clone(), faces.clone()).unwrap()),
-            TriangleMesh::try_new(vertices, faces).unwrap(),
+            turned(&TriangleMesh::new(vertices.clone(), faces.clone()).unwrap()),
+            TriangleMesh::new(vertices, faces).unwrap(),
             turned(&scene::piano()),
         ]
     }

@@ -70,7 +70,7 @@ impl Mesh {
         let used: Vec<Point3> = mesh.used_vertices().map(|(_, vertex)| *vertex).collect();
         let origin = nalgebra::center(&low, &high).coords;
         let vertices = merged.vertices().iter().map(|p| p - origin).collect();
-        let mut merged = TriangleMesh::try_new(vertices, merged.triangles().to_vec())?;
+        let mut merged = TriangleMesh::new(vertices, merged.triangles().to_vec())?;
         let closed = merged.border_edges() == 0;
         let mut watertight = false;
         let parts = parts(&merged);
@@ -79,7 +79,7 @@ impl Mesh {
             if parts.iter().map(|part| part.volume).sum::<f64>() < 0.0 {
                 // Turned inside out as a whole: a common export slip that leaves no doubt.
                 let turned = merged.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-                merged = TriangleMesh::try_new(merged.vertices().to_vec(), turned)?;
+                merged = TriangleMesh::new(merged.vertices().to_vec(), turned)?;
             }
         }
         let surface = TriMesh::new(

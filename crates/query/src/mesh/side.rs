@@ -128,7 +128,7 @@ mod tests {
             return shell;
         }
         let turned = shell.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-        TriangleMesh::try_new(shell.vertices().to_vec(), turned).unwrap()
+        TriangleMesh::new(shell.vertices().to_vec(), turned).unwrap()
     }
 
     /// Winding number and side at a place in the file frame.
@@ -163,7 +163,7 @@ mod tests {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         let vertices = corners.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
         let faces = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
-        let sheet = TriangleMesh::try_new(vertices, faces).unwrap();
+        let sheet = TriangleMesh::new(vertices, faces).unwrap();
         for z in [-1.0, -1e-6, 1e-6, 1.0] {
             assert_at(&sheet, [0.1, 0.2, z], (0.0, Side::Outside));
         }
@@ -174,9 +174,8 @@ mod tests {
     fn a_place_in_the_opening_of_an_open_mesh_is_on_no_side() {
         let whole = scene::cuboid([1.0; 3]);
         let open =
-            TriangleMesh::try_new(whole.vertices().to_vec(), whole.triangles()[..10].to_vec())
-                .unwrap();
-        let gone = TriangleMesh::try_new(whole.vertices().to_vec(), whole.triangles()[10..].into());
+            TriangleMesh::new(whole.vertices().to_vec(), whole.triangles()[..10].to_vec()).unwrap();
+        let gone = TriangleMesh::new(whole.vertices().to_vec(), whole.triangles()[10..].into());
         let outward = gone.unwrap().corners(0).map(|p| p.coords).iter().sum::<Vector3>();
         let toward: Vector3 = outward.map(|v| if v.abs() > 1.4 { v.signum() } else { 0.0 });
         let place = |share: f64| <[f64; 3]>::from(0.5 * share * toward);

@@ -219,8 +219,7 @@ mod tests {
     fn shapes() -> [TriangleMesh; 6] {
         let ball = scene::sphere(0.4, 4);
         let some = ball.triangles().iter().enumerate().filter(|(i, _)| i % 3 != 0);
-        let holes =
-            TriangleMesh::try_new(ball.vertices().to_vec(), some.map(|(_, &t)| t).collect());
+        let holes = TriangleMesh::new(ball.vertices().to_vec(), some.map(|(_, &t)| t).collect());
         [
             scene::torus(0.3, 0.1, 48),
             holes.unwrap(),

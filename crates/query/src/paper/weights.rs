@@ -19,7 +19,7 @@ mod tests {
     #[test]
     fn the_sphere_reaches_to_the_kth_neighbour() {
         let line = |xs: &[f64]| {
-            Neighborhoods::try_new(xs.iter().map(|&x| Point3::new(x, 0.0, 0.0)).collect()).unwrap()
+            Neighborhoods::new(xs.iter().map(|&x| Point3::new(x, 0.0, 0.0)).collect()).unwrap()
         };
         let cloud = line(&[0.0, 1.0, -2.0, 50.0]);
         assert!((sphere_area(&cloud, 0, 2) - PI * 4.0).abs() < 1e-12);

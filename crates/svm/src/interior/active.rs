@@ -101,7 +101,7 @@ mod tests {
             }
         };
         let samples: Vec<Sample> = places.iter().enumerate().map(sample).collect();
-        Problem::try_new(&samples, Kernel::Gaussian { gamma: 10.0 }).unwrap()
+        Problem::new(&samples, Kernel::Gaussian { gamma: 10.0 }).unwrap()
     }
 
     proptest! {

@@ -145,7 +145,7 @@ mod tests {
         };
         let samples: Vec<Sample> = (0..5).map(sample).collect();
         for kernel in [Kernel::Linear, Kernel::Gaussian { gamma: 0.3 }] {
-            let problem = Problem::try_new(&samples, kernel).unwrap();
+            let problem = Problem::new(&samples, kernel).unwrap();
             let begins = begins(&problem);
             assert_eq!(begins, [0, 4, 8, 9, 12, 16]);
             let matrix = gram(&problem, &begins).unwrap();
@@ -180,7 +180,7 @@ mod tests {
         };
         let samples: Vec<Sample> = (0..5).map(sample).collect();
         for gamma in [1e-18, 1e-9, 1.0] {
-            let problem = Problem::try_new(&samples, Kernel::Gaussian { gamma }).unwrap();
+            let problem = Problem::new(&samples, Kernel::Gaussian { gamma }).unwrap();
             let begins = begins(&problem);
             let matrix = gram(&problem, &begins).unwrap();
             let count = matrix.ncols();

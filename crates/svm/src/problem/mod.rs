@@ -137,7 +137,7 @@ impl Problem {
     /// # Errors
     /// When there are no samples or only one class, when a coordinate, covariance, radius, penalty
     /// or γ is not finite, or when one of the latter three is out of its range.
-    pub fn try_new(samples: &[Sample], kernel: Kernel) -> Result<Self, ProblemError> {
+    pub fn new(samples: &[Sample], kernel: Kernel) -> Result<Self, ProblemError> {
         if let Kernel::Gaussian { gamma } = kernel
             && !(gamma > 0.0 && gamma.is_finite())
         {
@@ -265,8 +265,7 @@ mod tests {
     #[test]
     fn the_radius_is_folded_into_the_factor() {
         let problem =
-            Problem::try_new(&[sample(0.0, Class::A), sample(1.0, Class::B)], Kernel::Linear)
-                .unwrap();
+            Problem::new(&[sample(0.0, Class::A), sample(1.0, Class::B)], Kernel::Linear).unwrap();
         let point = &problem.points[0];
         assert!((point.t - Vector3::new(4.0, 2.0, 0.0)).norm() < 1e-12);
         let squared = point.factor.transpose() * point.factor;
@@ -277,7 +276,7 @@ mod tests {
     #[test]
     fn bad_samples_are_refused_with_their_place() {
         let (a, b) = (sample(0.0, Class::A), sample(1.0, Class::B));
-        let err = |samples: &[Sample]| Problem::try_new(samples, Kernel::Linear).unwrap_err();
+        let err = |samples: &[Sample]| Problem::new(samples, Kernel::Linear).unwrap_err();
         assert_eq!(err(&[]), ProblemError::Empty);
         assert_eq!(err(&[a, a]), ProblemError::OneClass { class: Class::A, count: 2 });
         let mut bad = b;
@@ -294,7 +293,7 @@ mod tests {
         bad.point.covariance = Covariance::isotropic(1e300);
         assert_eq!(err(&[a, bad]), ProblemError::EllipsoidNotFinite { index: 1 });
         for gamma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let result = Problem::try_new(&[a, b], Kernel::Gaussian { gamma });
+            let result = Problem::new(&[a, b], Kernel::Gaussian { gamma });
             assert!(matches!(result, Err(ProblemError::Gamma { .. })), "{gamma}");
         }
     }

@@ -186,7 +186,7 @@ mod tests {
                 penalty: 1.0,
             };
             let samples: Vec<Sample> = places.iter().enumerate().map(sample).collect();
-            let problem = Problem::try_new(&samples, kernel).unwrap();
+            let problem = Problem::new(&samples, kernel).unwrap();
             let (x, s) = (problem.points[0].x, Vector3::from(s));
             let mut row = Lanes::default();
             row.reset(problem.len());

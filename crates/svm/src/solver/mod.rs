@@ -32,7 +32,7 @@ impl Solver {
     ///
     /// # Errors
     /// When a setting is out of its range.
-    pub fn try_new(settings: Settings) -> Result<Self, SettingsError> {
+    pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(Self { settings, numbers: Numbers::default(), rows: KernelRows::default() })
     }
@@ -133,6 +133,6 @@ impl Problem {
     /// # Errors
     /// When a setting is out of its range.
     pub fn solve(&self, settings: &Settings) -> Result<Solution, SettingsError> {
-        Ok(Solver::try_new(*settings)?.solve(self))
+        Ok(Solver::new(*settings)?.solve(self))
     }
 }

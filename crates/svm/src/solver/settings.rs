@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::message::number;
 
-/// Settings of a solve; [`Solver::try_new`](crate::Solver::try_new) checks them.
+/// Settings of a solve; [`Solver::new`](crate::Solver::new) checks them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Settings {

@@ -10,7 +10,7 @@ pub(crate) fn settings(relative_gap: f64) -> Settings {
 }
 
 pub(crate) fn solver(settings: &Settings) -> Solver {
-    Solver::try_new(*settings).unwrap()
+    Solver::new(*settings).unwrap()
 }
 
 /// A stream of seeded random numbers.

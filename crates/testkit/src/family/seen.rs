@@ -27,7 +27,7 @@ pub(super) fn seen_from(body: &ExactMesh, places: &[Point3], max_edge: f64) -> T
         places.iter().any(|p| (p - middle).dot(&normal) > 0.0 && in_sight(body, p, &middle))
     });
     let triangles = seen.map(|t| fine.triangles()[t]).collect();
-    TriangleMesh::try_new(fine.vertices().to_vec(), triangles).expect("some of the surface is seen")
+    TriangleMesh::new(fine.vertices().to_vec(), triangles).expect("some of the surface is seen")
 }
 
 /// Whether nothing of the body is between the two points.

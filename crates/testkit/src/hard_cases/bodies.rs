@@ -73,7 +73,7 @@ pub fn hard_meshes() -> Vec<HardMesh> {
 }
 
 fn mesh(vertices: Vec<Point3>, triangles: Vec<[u32; 3]>) -> TriangleMesh {
-    TriangleMesh::try_new(vertices, triangles).expect("finite vertices and indices in range")
+    TriangleMesh::new(vertices, triangles).expect("finite vertices and indices in range")
 }
 
 /// A square patch of 0.2 m with triangles of no area among its own.

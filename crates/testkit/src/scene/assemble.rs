@@ -23,7 +23,7 @@ pub fn moved(part: &TriangleMesh, pose: &Pose) -> TriangleMesh {
 
 /// A mesh from parts that are valid by construction.
 pub(super) fn mesh(vertices: Vec<Point3>, triangles: Vec<[u32; 3]>) -> TriangleMesh {
-    TriangleMesh::try_new(vertices, triangles).expect("generated meshes are valid")
+    TriangleMesh::new(vertices, triangles).expect("generated meshes are valid")
 }
 
 /// The closed box between two corners.

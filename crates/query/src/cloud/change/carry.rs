@@ -26,7 +26,7 @@ impl Prepared {
         {
             return Ok(0);
         }
-        let changed = Neighborhoods::try_new(changed)?;
+        let changed = Neighborhoods::new(changed)?;
         let after = after(before, of.len());
         let carried = (before.par_iter().enumerate()).filter(|&(piece, &before)| {
             let Some(before) = before else { return false };

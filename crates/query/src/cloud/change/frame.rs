@@ -57,7 +57,7 @@ impl Cloud {
         let Some((looks_past, pixels)) = view.looks_past((&frame.points, &frame.noise)) else {
             return all();
         };
-        let measured = Neighborhoods::try_new(frame.points.clone())?;
+        let measured = Neighborhoods::new(frame.points.clone())?;
         let stays = |&index: &u32| {
             let place = own.points[index as usize];
             let std = own.noise[index as usize].max_std();

@@ -54,7 +54,7 @@ impl Prepared {
         let points: Vec<Point3> = scans.points.iter().map(|point| point - self.origin).collect();
         let near = match self.neighborhoods.changed(points.clone(), before)? {
             Some(near) => near,
-            None => Neighborhoods::try_new(points)?,
+            None => Neighborhoods::new(points)?,
         };
         let sample = sample_of(near.points());
         let chosen = || Pieces::chosen(&near, &scans.noise, &sample);
@@ -81,7 +81,7 @@ impl Prepared {
         before: &[Option<u32>],
         changed: Vec<Point3>,
     ) -> Result<usize, PrepareError> {
-        let changed = Neighborhoods::try_new(changed)?;
+        let changed = Neighborhoods::new(changed)?;
         let new = before.iter().enumerate().filter(|(_, before)| before.is_none());
         let added: Vec<Primitive> =
             new.map(|(index, _)| measured_point(index, &near, &scans.noise, 1.0)).collect();

@@ -64,7 +64,7 @@ mod tests {
 
     fn of(points: Vec<Point3>) -> Option<Clumps> {
         let sample: Vec<usize> = (0..points.len()).step_by(points.len().div_ceil(200)).collect();
-        clumps(&Neighborhoods::try_new(points).unwrap(), &sample)
+        clumps(&Neighborhoods::new(points).unwrap(), &sample)
     }
 
     /// A lattice of 1 cm, each place seen so often, each time off by up to so much along every axis.

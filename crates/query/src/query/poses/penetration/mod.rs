@@ -61,7 +61,7 @@ impl Query {
     ///     [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5],
     /// ];
     /// let vertices = (0..8).map(|i| Point3::from(corner(i))).collect();
-    /// let cube = Mesh::prepare(&TriangleMesh::try_new(vertices, faces.to_vec())?)?;
+    /// let cube = Mesh::prepare(&TriangleMesh::new(vertices, faces.to_vec())?)?;
     /// let query = Query::new(QuerySettings::default())?;
     /// let pose = Pose::from_translation(Vector3::new(0.01, 0.0, 0.08));
     /// let (_, out) = query.penetration(&cube, &cube, &pose, 0.1)?;
