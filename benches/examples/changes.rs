@@ -30,7 +30,8 @@ fn measure(is_refined: bool) {
         lost += change.surfaces_lost;
         if change.is_rebuilt { rebuilt.push(work) } else { single.push(work) }
     }
-    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
+    // Of none 0, which an empty sum is the negative of.
+    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64 + 0.0;
     let share = |work: f64| 100.0 * work / whole;
     let all = single.iter().chain(&rebuilt).sum::<f64>() / CHANGES as f64;
     // How much more a search looks at in the end.

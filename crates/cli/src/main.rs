@@ -14,6 +14,7 @@ mod output;
 mod pages;
 mod paper_settings;
 mod picture;
+mod progress;
 mod remedies;
 mod unused;
 mod usage;

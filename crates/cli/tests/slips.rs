@@ -335,11 +335,6 @@ fn what_is_misused_is_told_before_any_work() {
     });
 }
 
-#[test]
-fn there_are_sixty_slips_and_more() {
-    assert!(DOUBTED.len() + REFUSED.len() + UNUSED.len() + MISUSED.len() >= 60);
-}
-
 /// The same files and poses as they were meant.
 #[test]
 fn what_was_meant_is_free() {

@@ -12,6 +12,7 @@ use crate::args::PathArguments;
 use crate::inside::with_points_inside;
 use crate::load::{self, Role};
 use crate::output::Output;
+use crate::progress::Steps;
 use crate::{answers, output, pages, unused};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
@@ -24,6 +25,8 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let inputs = files.into_iter().chain(options.robot).map(PathBuf::as_path);
     output::check(&[Output::of("html", &arguments.html)], inputs, arguments.force)?;
     let (path, doubt) = load::path::read(&arguments.poses, arguments.screw)?;
+    let steps = Steps::about([arguments.scene.as_path(), arguments.object.as_path()]);
+    steps.tell("reading and preparing");
     let scene = load::bodies::<Cloud>(
         &[arguments.scene.as_path()],
         Role::Scene,
@@ -35,6 +38,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     unused::check(options, scene.files(Role::Scene).chain(object.files(Role::Object)))?;
     let scene = scene.refined_for(POSES, common.effort.refine())?;
     let object = object.refined_for(POSES, common.effort.refine())?;
+    steps.tell("asking");
     let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;
     let is_placed = options.sensor_pose.is_some();
     if let Some(output) = &arguments.html {

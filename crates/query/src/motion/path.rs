@@ -72,7 +72,8 @@ impl Path {
         self.legs.len()
     }
 
-    /// The pose at a share of the path; at the ends beyond them.
+    /// The pose at a share of the path, from 0 to 1; at the ends beyond them. NaN gives a pose of NaN, which every
+    /// query refuses.
     pub fn pose(&self, share: f64) -> Pose {
         let (segment, time) = self.place(share);
         self.legs[segment].at(time)

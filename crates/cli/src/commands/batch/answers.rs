@@ -6,7 +6,6 @@ use anyhow::Result;
 use cloudtouch_cli::files::case::{Case, CaseFile};
 
 use super::bodies::{Bodies, guessed, keys};
-use super::progress::progress_bar;
 use crate::answers::per_point::Details;
 use crate::answers::print;
 use crate::answers::query::{Answer as Line, json_error_line};
@@ -15,6 +14,7 @@ use crate::args::BatchArguments;
 use crate::body;
 use crate::ordered;
 use crate::pages::batch::{Answered, Shown};
+use crate::progress::progress_bar;
 
 /// A batch that is asked about.
 pub(super) struct Batch<'a, P: body::Estimator> {

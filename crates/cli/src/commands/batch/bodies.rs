@@ -7,11 +7,11 @@ use anyhow::{Result, anyhow};
 use cloudtouch_cli::files::case::Case;
 use rayon::prelude::*;
 
-use super::progress::progress_bar;
 use crate::args::BatchArguments;
 use crate::body::PreparedCloud;
 use crate::load::sensor_for::SensorsFor;
 use crate::load::{self, Input, Loaded, Role};
+use crate::progress::progress_bar;
 use crate::sensor::SensorChoice;
 use crate::{remedies, unused};
 

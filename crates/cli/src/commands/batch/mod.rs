@@ -2,7 +2,6 @@
 
 mod answers;
 mod bodies;
-mod progress;
 
 use std::io::{self, Write};
 use std::path::PathBuf;

@@ -13,6 +13,7 @@ use cloudtouch::{PaperQuery, Query};
 use crate::answers::print;
 use crate::args::{ModeName, QueryArguments, exit_code};
 use crate::body;
+use crate::progress::Steps;
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -33,7 +34,10 @@ fn run_by<P: body::Estimator>(
 ) -> Result<ExitCode> {
     // What can be told without work comes first.
     question::check_files(arguments)?;
+    let steps = Steps::about(question::bodies(arguments));
+    steps.tell("reading and preparing");
     let question = question::load(arguments)?;
+    steps.tell("asking");
     let found = ask::ask(query, &question)?;
     write::files(&question, &found)?;
     let text = match arguments.json {

@@ -25,6 +25,12 @@ pub(super) struct Question<'a, C> {
     pub doubt: Option<Doubt>,
 }
 
+/// The files of both bodies.
+pub(super) fn bodies(arguments: &QueryArguments) -> impl Iterator<Item = &Path> {
+    let both = [&arguments.scene, &arguments.object];
+    both.into_iter().chain(&arguments.also).map(PathBuf::as_path)
+}
+
 /// Whether all files that are read are there, and none that is written.
 pub(super) fn check_files(arguments: &QueryArguments) -> Result<()> {
     let options = &arguments.bodies();

@@ -17,12 +17,15 @@ use crate::answers::robot::Asked;
 use crate::args::RobotArguments;
 use crate::body::Body;
 use crate::load;
+use crate::progress::Steps;
 
 pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let query = Query::new(arguments.common.query_settings())?;
     load::check(&arguments.scan)?;
     // Wrong positions are told before a large scan is read.
     let Description { robot, path, base } = description::read(arguments)?;
+    let steps = Steps::about([arguments.scan.as_path()]);
+    steps.tell("reading and preparing");
     let scan = scan::read(arguments, &robot, &base, path.len())?;
     let unchecked = robot.unchecked_links().to_vec();
     let asked = Asked {
@@ -47,6 +50,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     }
     let in_json = arguments.answer.json;
     let ask = Ask { checker: &checker, query: &query, scan: &scan.input, asked, in_json };
+    steps.tell("asking");
     let answer = ask.about(&path)?;
     let text = if in_json { answer.text } else { words + &answer.text };
     print::to_stdout(&format!("{text}\n"))?;
