@@ -129,10 +129,12 @@ impl NoiseModel {
         assert_eq!(sensor.len(), points.len(), "one sensor covariance for each point");
         let count = self.neighbors();
         scratch.near_representatives.clear();
-        match representatives {
-            None => neighborhoods.look_around(index, count, scratch),
+        match (representatives, self.settings.combination) {
             // Mostly the nearest of all points tell no more than how dense they are.
-            Some(_) => neighborhoods.look_around_for_few(index, SPACING_NEIGHBORS, scratch),
+            (Some(_), Combination::SurfacePosterior) => {
+                neighborhoods.look_around_for_few(index, SPACING_NEIGHBORS, scratch);
+            }
+            _ => neighborhoods.look_around(index, count, scratch),
         }
         scratch.reach = reach(&scratch.neighbors, count);
         let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);

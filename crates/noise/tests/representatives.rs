@@ -3,7 +3,7 @@
 use crate::common::{noisy, sphere};
 use cloudtouch_geom::{Covariance, Matrix3, Point3, Vector3};
 use cloudtouch_noise::{
-    Neighborhoods, NoiseModel, NoiseSettings, Representatives, Scratch, SensorNoise,
+    Combination, Neighborhoods, NoiseModel, NoiseSettings, Representatives, Scratch, SensorNoise,
 };
 use proptest::prelude::*;
 
@@ -87,6 +87,27 @@ fn discs_are_as_wide_as_the_spacing_of_what_was_chosen() {
     }
     let count = chosen.indices().len();
     assert!(10 * wider > 9 * count, "{wider} of {count}");
+}
+
+/// Of the sampling error every neighbour tells.
+#[test]
+fn other_combinations_are_those_of_all_points() {
+    let std = 0.015;
+    let points = ball(std, 5);
+    let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
+    let cloud = Neighborhoods::new(points).unwrap();
+    let chosen = Representatives::choose(&cloud, &noise, &sample(&cloud)).unwrap().unwrap();
+    for combination in [Combination::Precision, Combination::Convolution] {
+        let model = NoiseModel::new(NoiseSettings { combination, ..NoiseSettings::default() });
+        let (model, mut scratch) = (model.unwrap(), Scratch::default());
+        for &index in chosen.indices().iter().take(50) {
+            let index = index as usize;
+            let alone = model.refine(index, &cloud, &noise, 1.0, &mut scratch);
+            let one =
+                model.refine_representative(index, &cloud, &chosen, &noise, 1.0, &mut scratch);
+            assert_eq!(alone, one, "{combination:?}");
+        }
+    }
 }
 
 proptest! {
