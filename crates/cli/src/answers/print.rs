@@ -48,13 +48,12 @@ pub(crate) fn about<C: PreparedCloud>(loaded: &Loaded<C>) -> String {
         Body::Cloud(cloud) => {
             let because = sensor_because.map_or(String::new(), |why| format!(" ({why})"));
             let sensor = sensor.as_deref().unwrap_or_default();
-            let kind = match loaded.kinds.iter().all(|kind| kind.is_depth_image()) {
-                true => "depth image",
-                false => "cloud",
+            let (kind, units) = match loaded.kinds.iter().all(|kind| kind.is_depth_image()) {
+                true => ("depth image", "steps of "),
+                false => ("cloud", ""),
             };
-            let steps = if kind == "cloud" { "" } else { "steps of " };
             format!(
-                "{kind} of {} points in {steps}{unit}, sensor {sensor}{because} ({})",
+                "{kind} of {} points in {units}{unit}, sensor {sensor}{because} ({})",
                 cloud.count(),
                 stages(cloud.stages())
             )
