@@ -5,6 +5,8 @@ import { Color } from 'three';
 export const BACKGROUND = '#f5f7fa';
 export const SCENE = '#8b949e';
 export const OBJECT = '#2f7fd0';
+// Of a mesh that was not asked about; clouds are grey whatever they are.
+export const AROUND = '#a7c4e2';
 export const ARROW = '#101418';
 
 const STOPS = ['#ffd34e', '#fd8d3c', '#e31a1c', '#7a0022'];
@@ -22,4 +24,5 @@ export function paintLegend() {
   paint('#legend .scale', `linear-gradient(to right, ${STOPS.join(', ')})`);
   paint('#legend .dot.scene', SCENE);
   paint('#legend .dot.object', OBJECT);
+  paint('#legend .dot.around', AROUND);
 }

@@ -24,7 +24,7 @@ function start() {
     const view = data.views[number];
     if (!picture) return;
     picture.show(view);
-    buttons.contact.disabled = view.contacts.length === 0;
+    buttons.contact.disabled = !view.asked?.contacts.length;
     buttons.tellTurn();
   };
   const poses = new Poses(document.getElementById('poses'), data, show);

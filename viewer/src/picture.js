@@ -1,8 +1,8 @@
-// The picture: two bodies, their contacts, and a camera that goes around them.
-import { AmbientLight, Color, DirectionalLight, Fog, Matrix4, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
+// The picture: two bodies that were asked about, others around them, contacts, and a camera that goes around.
+import { AmbientLight, Box3, Color, DirectionalLight, Fog, Matrix4, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { Body } from './body.js';
-import { BACKGROUND, OBJECT, SCENE } from './colors.js';
+import { AROUND, BACKGROUND, OBJECT, SCENE } from './colors.js';
 import { drawContacts } from './contacts.js';
 import { overlay } from './scalebar.js';
 import { Shade } from './shade.js';
@@ -16,10 +16,17 @@ const LOOKS = {
 // What is framed fills a little less than the picture.
 const MARGIN = 1.2;
 
+// The box around the bodies of known shape.
+function known(around) {
+  const boxes = around.filter(({ isCloud }) => !isCloud).map(({ box }) => box);
+  return boxes.reduce((all, box) => all.union(box), new Box3());
+}
+
 export class Picture {
-  constructor(container, { bodies }) {
+  constructor(container, { bodies, is_one_scene: isOneScene }) {
     this.container = container;
     this.data = bodies;
+    this.isOneScene = isOneScene;
     this.drawn = new Map();
     // Which way is up in each scene that was turned by hand.
     this.turned = new Map();
@@ -55,45 +62,71 @@ export class Picture {
 
   // By hand: it stays so in this scene.
   turnScene(upright) {
-    this.turned.set(this.view.scene, upright);
+    this.turned.set(this.sceneOf(this.view), upright);
     this.turn(upright);
     this.frame('object', true);
   }
 
   show(view) {
     this.view = view;
+    this.middle = new Vector3(...view.middle);
     this.group?.removeFromParent();
     for (const body of this.drawn.values()) body.group.removeFromParent();
-    const scene = this.body(view.scene, SCENE);
-    const object = this.body(view.object, OBJECT);
-    const toScene = new Matrix4().set(...view.pose);
-    const [from, to] = [scene.middle.clone().negate(), object.middle];
-    object.group.matrix
-      .makeTranslation(from.x, from.y, from.z)
-      .multiply(toScene)
-      .multiply(new Matrix4().makeTranslation(to.x, to.y, to.z));
-    object.group.matrixWorldNeedsUpdate = true;
-    scene.color(view.likely[0]);
-    object.color(view.likely[1]);
-    this.group = drawContacts(view.contacts, scene.middle, 0.22 * Math.min(object.radius, scene.radius));
-    this.scene.add(scene.group, object.group);
-    this.above.add(this.group);
-    const box = object.box.clone().applyMatrix4(object.group.matrix);
+    const around = view.around.map((standing) => this.showOther(standing));
+    const pair = view.asked ? this.showPair(view.asked) : { scene: new Box3(), object: known(around) };
+    const whole = around.reduce((all, { box }) => all.union(box), pair.scene);
     this.spheres = {
-      object: box.getBoundingSphere(new Sphere()),
-      scene: scene.box.clone().union(box).getBoundingSphere(new Sphere()),
+      object: (pair.object.isEmpty() ? whole : pair.object).getBoundingSphere(new Sphere()),
+      scene: whole.getBoundingSphere(new Sphere()),
+      contact: pair.contact,
     };
-    const [contact] = view.contacts;
-    if (contact) {
-      const center = new Vector3(...contact.point).sub(scene.middle);
-      this.spheres.contact = new Sphere(center, 0.45 * object.radius);
-    }
-    const upright = this.turned.get(view.scene) ?? view.upright;
+    const upright = this.turned.get(this.sceneOf(view)) ?? view.upright;
     if (upright !== this.upright) {
       this.turn(upright);
       this.frame('object', true);
     }
     this.wish();
+  }
+
+  // Draws what was not asked about; returns the box around it, and whether it is a cloud.
+  showOther(standing) {
+    const isCloud = !this.data[standing.body].triangles;
+    return { isCloud, box: this.stand(standing, isCloud ? SCENE : AROUND) };
+  }
+
+  // Draws the two that were asked about; returns the boxes around both, and around the object.
+  showPair({ scene, object, likely, contacts }) {
+    const boxes = { scene: this.stand(scene, SCENE), object: this.stand(object, OBJECT) };
+    const [inScene, moved] = [this.body(scene.body, SCENE), this.body(object.body, OBJECT)];
+    inScene.color(likely[0]);
+    moved.color(likely[1]);
+    this.group = drawContacts(contacts, this.middle, 0.22 * Math.min(moved.radius, inScene.radius));
+    this.above.add(this.group);
+    const [contact] = contacts;
+    if (contact) {
+      const center = new Vector3(...contact.point).sub(this.middle);
+      boxes.contact = new Sphere(center, 0.45 * moved.radius);
+    }
+    boxes.scene = boxes.scene.clone().union(boxes.object);
+    return boxes;
+  }
+
+  // Draws a body where it stands, and returns the box around it.
+  stand({ body: index, pose }, color) {
+    const body = this.body(index, color);
+    const [from, to] = [this.middle.clone().negate(), body.middle];
+    body.group.matrix
+      .makeTranslation(from.x, from.y, from.z)
+      .multiply(new Matrix4().set(...pose))
+      .multiply(new Matrix4().makeTranslation(to.x, to.y, to.z));
+    body.group.matrixWorldNeedsUpdate = true;
+    this.scene.add(body.group);
+    return body.box.clone().applyMatrix4(body.group.matrix);
+  }
+
+  // Views of one scene are turned together.
+  sceneOf({ asked }) {
+    return this.isOneScene ? 0 : asked?.scene.body ?? 0;
   }
 
   // As an object and as a scene a body has different colours.

@@ -220,12 +220,6 @@ pub(crate) struct PathArguments {
     pub tolerance: f64,
     #[command(flatten)]
     pub answer: AnswerArguments,
-    /// Write a page that shows all of it in any browser
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub html: Option<PathBuf>,
-    /// With --html: replace a file that is there already
-    #[arg(long, requires = "html", help_heading = "Output")]
-    pub force: bool,
     #[command(flatten)]
     pub common: CommonArguments,
     #[command(flatten)]

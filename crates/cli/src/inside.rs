@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use cloudtouch::Report;
 use cloudtouch::geom::Pose;
+use cloudtouch::{PairAnswer, Report, Scene, SceneError};
 
 use crate::body::{Body, PreparedCloud};
 
@@ -25,6 +25,28 @@ pub(crate) fn with_points_inside<C: PreparedCloud>(
         _ => {}
     }
     report
+}
+
+/// The same of a pair of bodies of a scene.
+pub(crate) fn of_a_pair(
+    mut report: Report,
+    pair: &PairAnswer,
+    scene: &Scene,
+) -> Result<Report, SceneError> {
+    use cloudtouch::Body::{Cloud, Mesh};
+
+    let likely = &mut report.point_probabilities;
+    let from = |seen_from, of| scene.between(seen_from, of);
+    match (&**scene.body(&pair.a)?, &**scene.body(&pair.b)?) {
+        (Cloud(cloud), Mesh(mesh)) => {
+            add(&mut likely.a, cloud.points_inside(mesh, &from(&pair.b, &pair.a)?));
+        }
+        (Mesh(mesh), Cloud(cloud)) => {
+            add(&mut likely.b, cloud.points_inside(mesh, &from(&pair.a, &pair.b)?));
+        }
+        _ => {}
+    }
+    Ok(report)
 }
 
 fn add(likely: &mut Vec<(usize, f64)>, inside: Vec<(usize, f64)>) {

@@ -3,16 +3,11 @@
 
 use std::collections::BTreeSet;
 
+use crate::support::pages::{data, page};
 use crate::support::{HEIGHTS, Inputs, case_at, case_file, cube, floor};
 use base64::Engine as _;
 use cloudtouch::geom::{Point3, PointCloud};
 use serde_json::Value;
-
-/// What the script of a page is given.
-fn data(page: &str) -> Value {
-    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
-    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
-}
 
 fn bytes(text: &Value) -> Vec<u8> {
     base64::engine::general_purpose::STANDARD.decode(text.as_str().unwrap()).unwrap()
@@ -29,10 +24,6 @@ fn points(body: &Value) -> Vec<Point3> {
         .chunks_exact(3)
         .map(|p| Point3::new(p[0], p[1], p[2]) + Point3::from(middle).coords)
         .collect()
-}
-
-fn page(inputs: &Inputs, name: &str) -> String {
-    std::fs::read_to_string(inputs.path(name)).unwrap()
 }
 
 /// None of them fetches anything.
@@ -73,7 +64,7 @@ fn the_page_of_a_query_says_what_the_answer_says() {
         let words = verdict.replace('_', " ");
         assert!(page.contains(&format!("</span> {words} <b>")), "{verdict}");
         assert!(page.contains("<title>box.obj in floor.pcd</title>"));
-        let view = &data(&page)["views"][0];
+        let view = &data(&page)["views"][0]["asked"];
         assert_eq!(view["probability"], answer["collision_probability"]);
         assert_eq!(view["bounds"], answer["bounds"]);
         let rows: Vec<Value> = answer["pose"]
@@ -82,7 +73,7 @@ fn the_page_of_a_query_says_what_the_answer_says() {
             .iter()
             .flat_map(|r| r.as_array().unwrap().clone())
             .collect();
-        assert_eq!(view["pose"], Value::from(rows));
+        assert_eq!(view["object"]["pose"], Value::from(rows));
         let drawn = view["contacts"].as_array().unwrap();
         let contacts = answer["contacts"].as_array().unwrap();
         assert_eq!(drawn.len(), contacts.len());
@@ -116,7 +107,7 @@ fn what_is_drawn_are_the_points_and_corners_of_the_files() {
     assert!(cube(0.1).vertices().iter().all(|v| corners.iter().any(|c| near(c, v))));
     assert_eq!(bytes(&data["bodies"][1]["triangles"]).len(), 12 * 3 * 4);
     // Points that are coloured lie under the box.
-    let likely = bytes(&data["views"][0]["likely"][0]["points"]);
+    let likely = bytes(&data["views"][0]["asked"]["likely"][0]["points"]);
     let likely: BTreeSet<u32> =
         likely.chunks_exact(4).map(|b| u32::from_le_bytes(b.try_into().unwrap())).collect();
     assert!(!likely.is_empty());
@@ -173,7 +164,7 @@ fn a_batch_has_a_view_a_case_and_names_those_without_an_answer() {
     let views = data["views"].as_array().unwrap();
     for (view, answer) in views.iter().zip(run.json_lines()) {
         assert_eq!(view["name"], answer["id"]);
-        assert_eq!(view["probability"], answer["collision_probability"]);
+        assert_eq!(view["asked"]["probability"], answer["collision_probability"]);
     }
     assert_eq!(views.len(), 3);
     assert_eq!(text.matches("<section class=\"answer\"").count(), 3);
@@ -202,10 +193,11 @@ fn a_path_shows_its_poses_and_where_it_first_collides() {
     let data = data(&text);
     let views = data["views"].as_array().unwrap();
     let start = &views[data["start"].as_u64().unwrap() as usize];
-    assert_eq!(start["probability"], answer["first"]["probability"]);
-    let likeliest = |view: &&Value| view["probability"] == answer["max_probability"];
+    assert_eq!(start["asked"]["probability"], answer["first"]["probability"]);
+    let likeliest = |view: &&Value| view["asked"]["probability"] == answer["max_probability"];
     assert!(views.iter().any(|view| likeliest(&view)));
-    let heights: Vec<f64> = views.iter().map(|view| view["pose"][11].as_f64().unwrap()).collect();
+    let heights: Vec<f64> =
+        views.iter().map(|view| view["asked"]["object"]["pose"][11].as_f64().unwrap()).collect();
     assert!(heights.is_sorted_by(|a, b| a > b), "{heights:?}");
     for given in [0.5, 0.3, 0.05] {
         assert!(heights.iter().any(|z| (z - given).abs() < 1e-9), "{given}");
@@ -215,7 +207,7 @@ fn a_path_shows_its_poses_and_where_it_first_collides() {
         |view: &&Value| view["name"].as_str().unwrap().contains("in collision from here");
     let shown: Vec<&Value> = views.iter().filter(is_first).collect();
     assert_eq!(shown.len(), 1);
-    assert_eq!(shown[0]["pose"][11].as_f64().unwrap(), first);
+    assert_eq!(shown[0]["asked"]["object"]["pose"][11].as_f64().unwrap(), first);
 }
 
 #[test]
@@ -304,7 +296,7 @@ fn a_large_scan_is_thinned_below_twelve_megabytes_and_says_so() {
     let told = answer["points"]["a"].as_array().unwrap();
     let told = told.iter().filter(|pair| pair[1].as_f64().unwrap() >= 0.01).count();
     assert!(told > 0);
-    assert_eq!(bytes(&data["views"][0]["likely"][0]["points"]).len(), 4 * told);
+    assert_eq!(bytes(&data["views"][0]["asked"]["likely"][0]["points"]).len(), 4 * told);
 }
 
 /// In the page of a batch, points that are deep in a box were as grey as any.
@@ -315,7 +307,7 @@ fn a_batch_drew_no_points_inside_of_a_box() {
     inputs.write("cases.json", &case_file(&[case_at("deep", 0.02)]));
     inputs.run(&["batch", "cases.json", "--html=b.html"]).quiet(0);
     let [one, many] = ["q.html", "b.html"].map(|name| data(&page(&inputs, name)));
-    let likely = &one["views"][0]["likely"];
+    let likely = &one["views"][0]["asked"]["likely"];
     assert!(bytes(&likely[0]["points"]).len() > 5 * 4, "{likely}");
-    assert_eq!(&many["views"][0]["likely"], likely);
+    assert_eq!(&many["views"][0]["asked"]["likely"], likely);
 }

@@ -5,34 +5,9 @@
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
-use std::process::Command;
 
-use crate::support::browser::{chromium, flags};
+use crate::support::browser::{chromium, open};
 use crate::support::{Inputs, case_at, case_file};
-
-/// What a page gave: its elements when its script was through, and what the console said.
-struct Seen {
-    elements: String,
-    console: Vec<String>,
-}
-
-fn open(browser: &str, inputs: &Inputs, address: &str, more: &[&str]) -> Seen {
-    let url = format!("file://{}", inputs.path(address).display());
-    let profile = tempfile::tempdir().unwrap();
-    let output = Command::new(browser)
-        .args(flags(profile.path()))
-        .args(["--enable-logging=stderr", "--virtual-time-budget=5000"])
-        .args(more)
-        .arg(url)
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
-    Seen {
-        elements: String::from_utf8(output.stdout).unwrap(),
-        console: said.lines().filter(|line| line.contains("CONSOLE")).map(str::to_owned).collect(),
-    }
-}
 
 /// Red, green and blue of each pixel of a corner of a picture, at the upper left.
 fn corner(path: &Path, [width, height]: [usize; 2]) -> Vec<[i32; 3]> {

@@ -10,6 +10,7 @@ mod exit_codes;
 mod help;
 mod html;
 mod html_browser;
+mod html_scene;
 mod html_touch;
 mod info;
 mod inside;

@@ -1,5 +1,6 @@
 //! The words of a view.
 
+use cloudtouch::geom::Pose;
 use cloudtouch::{Contact, Report, Verdict};
 
 use crate::data;
@@ -15,20 +16,29 @@ const CONTACTS_LISTED: usize = 8;
 
 /// The section of a view, of which only one is shown at a time.
 pub(crate) fn section(number: usize, view: &View<'_>, page: &Page<'_>) -> String {
-    let bodies = &page.bodies;
     let hidden = if number == page.start { "" } else { " hidden" };
-    let about =
-        [view.scene, view.object].map(|body| bodies.get(body).map_or("", |body| &body.about));
-    let about = ["Scene", "Object"].into_iter().zip(about).filter(|(_, about)| !about.is_empty());
-    let about: Vec<Fact> = about.map(|(label, about)| Fact::new(label, about)).collect();
     let facts = list(&facts::of_view(view));
-    let body = head(view.report, page) + &facts + &contacts(&view.report.contacts);
+    let body = match &view.asked {
+        Some(asked) => {
+            head(asked.report, page)
+                + &facts
+                + &contacts(&asked.report.contacts)
+                + &list(&about([asked.scene.body, asked.object.body], page))
+                + &matrix(&asked.object.pose)
+        }
+        None => facts,
+    };
     format!(
-        "<section class=\"answer\" id=\"answer-{number}\"{hidden}>\n<h2>{}</h2>\n{body}{}{}</section>\n",
-        html(&view.name),
-        list(&about),
-        matrix(view)
+        "<section class=\"answer\" id=\"answer-{number}\"{hidden}>\n<h2>{}</h2>\n{body}</section>\n",
+        html(&view.name)
     )
+}
+
+/// What the two bodies were taken for.
+fn about(of: [usize; 2], page: &Page<'_>) -> Vec<Fact> {
+    let about = of.map(|body| page.bodies.get(body).map_or("", |body| &body.about));
+    let about = ["Scene", "Object"].into_iter().zip(about).filter(|(_, about)| !about.is_empty());
+    about.map(|(label, about)| Fact::new(label, about)).collect()
 }
 
 /// Names and texts as a list.
@@ -92,8 +102,8 @@ fn contacts(contacts: &[Contact]) -> String {
     )
 }
 
-fn matrix(view: &View<'_>) -> String {
-    let rows = data::rows(&view.scene_from_object);
+fn matrix(pose: &Pose) -> String {
+    let rows = data::rows(pose);
     let line = |row: &[f64]| row.iter().map(|x| format!("{x:>10.6}")).collect::<String>();
     let lines: Vec<String> = rows.chunks(4).map(line).collect();
     format!(

@@ -8,19 +8,18 @@ use serde::Serialize;
 
 use crate::body::{Body, Shape};
 use crate::coarse::coarse;
+use crate::likely::{Likely, likely, listed};
 use crate::page::Page;
-use crate::thin::drawn;
+use crate::share::{Share, choose};
 use crate::upright::{Upright, upright};
-use crate::view::View;
-use crate::{MOST_LIKELY, MOST_POINTS, MOST_TRIANGLES, encode};
-
-/// Points that are less likely have no colour.
-const LEAST_LIKELY: f64 = 0.01;
+use crate::view::{Asked, Standing, View};
+use crate::{MOST_LIKELY, MOST_TRIANGLES, encode};
 
 /// All that is drawn.
 #[derive(Serialize)]
 pub(crate) struct Data<'a> {
     start: usize,
+    is_one_scene: bool,
     bodies: Vec<Drawn<'a>>,
     views: Vec<Posed<'a>>,
 }
@@ -38,21 +37,34 @@ struct Drawn<'a> {
     brightness: Option<String>,
 }
 
-/// A pose of an object in a scene.
+/// A view.
 #[derive(Serialize)]
 struct Posed<'a> {
     name: &'a str,
-    scene: usize,
-    object: usize,
-    /// Of its scene.
+    /// The place about which all that is drawn is placed, m.
+    middle: [f64; 3],
     upright: Upright,
-    /// Object to scene, row by row.
-    pose: [f64; 16],
+    around: Vec<Placed>,
+    asked: Option<Answered>,
+}
+
+/// An object in a scene, with the answer.
+#[derive(Serialize)]
+struct Answered {
+    scene: Placed,
+    object: Placed,
     probability: f64,
     bounds: [f64; 2],
     contacts: Vec<Patch>,
     /// Of the scene and of the object.
     likely: [Likely; 2],
+}
+
+#[derive(Serialize)]
+struct Placed {
+    body: usize,
+    /// Body to picture, row by row.
+    pose: [f64; 16],
 }
 
 #[derive(Serialize)]
@@ -62,13 +74,6 @@ struct Patch {
     probability: f64,
     /// Of a disc of the same area, m.
     radius: Option<f64>,
-}
-
-/// Points with a probability: u32 among the points that are drawn, and u8 in parts of 255.
-#[derive(Default, Serialize)]
-struct Likely {
-    points: String,
-    probabilities: String,
 }
 
 /// What is drawn of a page, and what is to be said of what is left out.
@@ -81,86 +86,34 @@ pub(crate) fn of_page<'a>(page: &'a Page<'_>) -> (Data<'a>, Vec<String>) {
     let bodies = page.bodies.iter().zip(&chosen);
     let limits = Share::of(page.bodies.iter().map(|body| triangles(&body.shape)), MOST_TRIANGLES);
     let bodies = bodies.map(|(body, chosen)| draw(body, chosen, &limits, &mut notes)).collect();
-    let mut known: BTreeMap<usize, Upright> = BTreeMap::new();
-    let mut of_scene = |scene: usize| {
-        let found = || page.bodies.get(scene).map_or(Upright::Z, |of| upright(of.shape.points()));
-        *known.entry(scene).or_insert_with(found)
-    };
-    let views = page.views.iter().zip(&listed);
-    let views = views.map(|(view, likely)| posed(view, of_scene(view.scene), likely, &chosen));
-    (Data { start: page.start, bodies, views: views.collect() }, notes)
-}
-
-/// How much of something each body may have, where all together may have no more than a limit.
-struct Share {
-    total: usize,
-    limit: usize,
-}
-
-impl Share {
-    fn of(counts: impl Iterator<Item = usize>, limit: usize) -> Self {
-        Self { total: counts.sum(), limit }
-    }
-
-    fn of_one(&self, count: usize) -> usize {
-        if self.total <= self.limit {
-            return count;
-        }
-        (count as u128 * self.limit as u128 / self.total as u128) as usize
-    }
-}
-
-/// Points of scene and object that have a colour in a view, the likeliest where there are too many.
-fn listed(view: &View<'_>, most: usize, notes: &mut Vec<String>) -> [Vec<(usize, f64)>; 2] {
-    let all = &view.report.point_probabilities;
-    [&all.a, &all.b].map(|points| {
-        let mut points: Vec<(usize, f64)> =
-            points.iter().copied().filter(|(_, p)| *p >= LEAST_LIKELY).collect();
-        if points.len() > most / 2 {
-            points.sort_by(|(i, p), (j, q)| q.total_cmp(p).then(i.cmp(j)));
-            points.truncate(most / 2);
-            points.sort_by_key(|(index, _)| *index);
-            notes.push(format!(
-                "In a pose no more than the {} likeliest points of a cloud are coloured.",
-                most / 2
-            ));
-        }
-        points
-    })
-}
-
-/// For every body the indices of the points that are drawn.
-fn choose(
-    page: &Page<'_>,
-    listed: &[[Vec<(usize, f64)>; 2]],
-    notes: &mut Vec<String>,
-) -> Vec<Vec<usize>> {
-    let mut likely: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); page.bodies.len()];
-    for (view, points) in page.views.iter().zip(listed) {
-        for (body, points) in [view.scene, view.object].into_iter().zip(points) {
-            let Some(likely) = likely.get_mut(body) else { continue };
-            for &(index, p) in points {
-                let most = likely.entry(index).or_insert(p);
-                *most = most.max(p);
-            }
-        }
-    }
-    let count = |body: &Body| match &body.shape {
-        Shape::Cloud { points, .. } => points.len(),
-        Shape::Mesh { .. } => 0,
-    };
-    let share = Share::of(page.bodies.iter().map(count), MOST_POINTS);
-    let chosen = page.bodies.iter().zip(likely).map(|(body, likely)| {
-        let (all, limit) = (count(body), share.of_one(count(body)));
-        if limit < all {
-            notes.push(format!(
-                "{}: {limit} of {all} points are drawn; all were used for the answer.",
-                body.name
-            ));
-        }
-        drawn(all, limit, &likely.into_iter().collect::<Vec<_>>())
+    let mut known: BTreeMap<usize, ([f64; 3], Upright)> = BTreeMap::new();
+    let views = page.views.iter().zip(&listed).map(|(view, likely)| {
+        let still = still(view, page);
+        let body = still.map_or(0, |still| still.body);
+        let (middle, upright) = *known.entry(body).or_insert_with(|| stand(still, page));
+        let around = view.around.iter().map(Placed::from).collect();
+        let asked = view.asked.as_ref().map(|asked| answered(asked, likely, &chosen));
+        Posed { name: &view.name, middle, upright, around, asked }
     });
-    chosen.collect()
+    let views = views.collect();
+    (Data { start: page.start, is_one_scene: page.is_one_scene, bodies, views }, notes)
+}
+
+/// The body that keeps its place in all views it is in: the scene, or the first of one scene.
+fn still(view: &View<'_>, page: &Page<'_>) -> Option<Standing> {
+    let is_first = |standing: &Standing| standing.body == 0;
+    let first = if page.is_one_scene { view.standing().find(is_first) } else { None };
+    first.or_else(|| view.standing().next())
+}
+
+/// Its middle in the picture, and which way is up in what is drawn of it.
+fn stand(still: Option<Standing>, page: &Page<'_>) -> ([f64; 3], Upright) {
+    let body = still.and_then(|still| Some((still.pose, page.bodies.get(still.body)?)));
+    let Some((pose, body)) = body else { return ([0.0; 3], Upright::Z) };
+    let points = body.shape.points();
+    let placed: Vec<Point3> = points.iter().map(|point| pose.transform_point(point)).collect();
+    let middle = pose.transform_point(&encode::middle(points));
+    (middle.coords.into(), upright(&placed))
 }
 
 fn triangles(shape: &Shape) -> usize {
@@ -203,25 +156,24 @@ fn draw<'a>(
     Drawn { name: &body.name, middle: middle.coords.into(), positions, triangles, brightness }
 }
 
-fn posed<'a>(
-    view: &'a View<'_>,
-    upright: Upright,
-    listed: &[Vec<(usize, f64)>; 2],
-    chosen: &[Vec<usize>],
-) -> Posed<'a> {
-    let of = |body: usize, points: &Vec<(usize, f64)>| {
-        chosen.get(body).map_or_else(Likely::default, |chosen| likely(points, chosen))
+fn answered(asked: &Asked<'_>, listed: &[Vec<(usize, f64)>; 2], chosen: &[Vec<usize>]) -> Answered {
+    let of = |standing: &Standing, points: &Vec<(usize, f64)>| {
+        chosen.get(standing.body).map_or_else(Likely::default, |chosen| likely(points, chosen))
     };
-    Posed {
-        name: &view.name,
-        scene: view.scene,
-        object: view.object,
-        upright,
-        pose: rows(&view.scene_from_object),
-        probability: view.report.collision_probability,
-        bounds: view.report.bounds,
-        contacts: view.report.contacts.iter().map(patch).collect(),
-        likely: [of(view.scene, &listed[0]), of(view.object, &listed[1])],
+    let Asked { scene, object, report, .. } = asked;
+    Answered {
+        scene: scene.into(),
+        object: object.into(),
+        probability: report.collision_probability,
+        bounds: report.bounds,
+        contacts: report.contacts.iter().map(patch).collect(),
+        likely: [of(scene, &listed[0]), of(object, &listed[1])],
+    }
+}
+
+impl From<&Standing> for Placed {
+    fn from(standing: &Standing) -> Self {
+        Self { body: standing.body, pose: rows(&standing.pose) }
     }
 }
 
@@ -232,16 +184,6 @@ fn patch(contact: &Contact) -> Patch {
         normal: contact.normal_a_to_b.into(),
         probability: contact.probability,
         radius: contact.area_m2.map(|area| (area / std::f64::consts::PI).sqrt()),
-    }
-}
-
-/// Those of the listed points that are drawn.
-fn likely(listed: &[(usize, f64)], chosen: &[usize]) -> Likely {
-    let among = |&(index, p): &(usize, f64)| Some((chosen.binary_search(&index).ok()? as u32, p));
-    let points: Vec<(u32, f64)> = listed.iter().filter_map(among).collect();
-    Likely {
-        points: encode::indices(points.iter().map(|(index, _)| *index)),
-        probabilities: encode::bytes(points.iter().map(|(_, p)| (255.0 * p).round() as u8)),
     }
 }
 

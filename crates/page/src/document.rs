@@ -24,13 +24,16 @@ impl Page<'_> {
         let notes: String = notes.map(|note| format!("<p>{}</p>\n", escape::html(note))).collect();
         let views = self.views.iter().enumerate();
         let answers: String = views.map(|(number, view)| section(number, view, self)).collect();
+        let has_others = self.views.iter().any(|view| !view.around.is_empty());
+        let others = if has_others { OTHERS } else { "" };
+        let legend = LEGEND.replace("{others}", others);
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
              <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
              <main>\n<div id=\"picture\"><noscript><p>The picture needs JavaScript; the answers \
-             beside it do not.</p></noscript>\n{LEGEND}</div>\n\
+             beside it do not.</p></noscript>\n{legend}</div>\n\
              <aside>\n<h1>{title}</h1>\n<div id=\"poses\"></div>\n{}{answers}{PICTURE}\
              <div class=\"small\">\n{notes}<p>Drawn by cloudtouch {}.</p>\n\
              <details><summary>Licence of three.js, which draws the picture</summary>\
@@ -48,11 +51,14 @@ impl Page<'_> {
 const LEGEND: &str = "\
 <div id=\"legend\">
 <p><span><i class=\"dot scene\"></i> scene</span><span><i class=\"dot object\"></i> object</span>\
-<span>&#10140; contact</span></p>
+{others}<span>&#10140; contact</span></p>
 <div class=\"scale\" aria-hidden=\"true\"></div>
 <p><span>unlikely</span><span>probability</span><span>certain</span></p>
 </div>
 ";
+
+/// Of what else is drawn.
+const OTHERS: &str = "<span><i class=\"dot around\"></i> others</span>";
 
 const PICTURE: &str = "\
 <h3>The picture</h3>

@@ -10,7 +10,9 @@ mod encode;
 mod escape;
 mod fact;
 mod facts;
+mod likely;
 mod page;
+mod share;
 mod shortlist;
 mod thin;
 mod upright;
@@ -22,7 +24,7 @@ pub use document::notebook_frame;
 pub use fact::Fact;
 pub use page::Page;
 pub use shortlist::Shortlist;
-pub use view::View;
+pub use view::{Asked, Standing, View};
 
 /// Points of all clouds of a page together; beyond it every cloud is thinned by the same share.
 pub const MOST_POINTS: usize = 300_000;

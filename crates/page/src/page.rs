@@ -21,6 +21,9 @@ pub struct Page<'a> {
     pub views: Vec<View<'a>>,
     /// Which of them is shown first.
     pub start: usize,
+    /// Whether all views are of one scene in one frame, the first body at one place in each of them: the picture
+    /// stays where it is from view to view. Else that is so of views that have the same scene.
+    pub is_one_scene: bool,
     /// By what those who read the page do what a warning asks for, such as an option: told behind it.
     pub remedy: Option<fn(&Warning) -> Option<&'static str>>,
 }

@@ -25,17 +25,19 @@ fn report(cloud: &Cloud) -> Report {
 fn page<'a>(cloud: &Cloud, reports: impl IntoIterator<Item = &'a Report>) -> Page<'a> {
     let shape = Shape::cloud(cloud.len(), |index| cloud.point(index));
     let body = Body { name: "<floor> & more".to_owned(), about: "a cloud".to_owned(), shape };
-    let view = |report| View {
-        name: "'here'".to_owned(),
-        scene: 0,
-        object: 0,
-        scene_from_object: pose(),
-        report,
-        placement: None,
-        more: vec![Fact::new("Said by", "the <program>")],
+    let view = |report| {
+        let more = vec![Fact::new("Said by", "the <program>")];
+        View::of_pair("'here'", [0, 0], pose(), report).with_more(more)
     };
     let views = reports.into_iter().map(view).collect();
     Page { title: "A \"title\"".to_owned(), bodies: vec![body], views, ..Page::default() }
+}
+
+/// What the script of a page is given.
+fn data(page: &Page<'_>) -> serde_json::Value {
+    let html = page.html();
+    let (_, data) = html.split_once("id=\"data\">").unwrap();
+    serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
 }
 
 #[test]
@@ -86,11 +88,8 @@ fn each_pose_is_turned_as_its_own_scene_is_upright() {
     let shape = Shape::cloud(cloud.len(), |index| cloud.point(index) - middle);
     let wall = Body { name: "wall".to_owned(), about: "a cloud".to_owned(), shape };
     let mut page = Page { bodies: vec![room.bodies[0].clone(), wall], ..room };
-    page.views[1].scene = 1;
-    let html = page.html();
-    let (_, data) = html.split_once("id=\"data\">").unwrap();
-    let data: serde_json::Value =
-        serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    page.views[1].asked.as_mut().unwrap().scene.body = 1;
+    let data = data(&page);
     let upright = data["views"].as_array().unwrap().iter().map(|view| view["upright"].as_str());
     assert_eq!(upright.collect::<Vec<_>>(), [Some("z"), Some("camera"), Some("z")]);
 }

@@ -30,14 +30,8 @@ pub(crate) fn answer(
     let reports: PyResult<Vec<Report>> = reports.into_iter().enumerate().map(failed).collect();
     let reports = reports?;
     let bodies = vec![drawn("a", &a, sensor_a), drawn("b", &b, sensor_b)];
-    let views = poses.iter().zip(&reports).enumerate().map(|(index, (pose, report))| View {
-        name: format!("pose {}", index + 1),
-        scene: 0,
-        object: 1,
-        scene_from_object: *pose,
-        report,
-        placement: None,
-        more: Vec::new(),
+    let views = poses.iter().zip(&reports).enumerate().map(|(index, (pose, report))| {
+        View::of_pair(format!("pose {}", index + 1), [0, 1], *pose, report)
     });
     let views = views.collect();
     let page = Page { title, bodies, views, ..Page::default() };

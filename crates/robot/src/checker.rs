@@ -112,7 +112,16 @@ impl RobotChecker {
         query: &Query,
         joints: &BTreeMap<String, f64>,
     ) -> Result<Checked, JointsError> {
-        Ok(self.placed(&self.robot.tree.positions(joints)?)?.check(query))
+        Ok(self.scene_at(joints)?.check(query))
+    }
+
+    /// The surroundings, the links and what is held as a scene, in the frame of the surroundings and by their names as
+    /// in [`Self::check`], for what else a scene can be asked or to be drawn.
+    ///
+    /// # Errors
+    /// As [`Self::check`].
+    pub fn scene_at(&self, joints: &BTreeMap<String, f64>) -> Result<Scene, JointsError> {
+        Ok(self.placed(&self.robot.tree.positions(joints)?)?)
     }
 
     /// Lowest and highest corner of the surroundings, of each link and of what is held, along the axes of the frame
@@ -125,7 +134,7 @@ impl RobotChecker {
         &self,
         joints: &BTreeMap<String, f64>,
     ) -> Result<BTreeMap<String, [Point3; 2]>, JointsError> {
-        let scene = self.placed(&self.robot.tree.positions(joints)?)?;
+        let scene = self.scene_at(joints)?;
         Ok(scene.boxes().into_iter().map(|(name, corners)| (name.to_owned(), corners)).collect())
     }
 

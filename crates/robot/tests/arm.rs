@@ -62,6 +62,23 @@ proptest! {
     }
 }
 
+/// What is drawn of a robot is what was asked about.
+#[test]
+fn the_robot_in_its_surroundings_is_a_scene_that_answers_alike() {
+    let checker = checker(Arm::default().robot(), scan(Arm::TOP - 0.21), Touching::Surroundings);
+    let at = joints([0.0, FRAC_PI_2, 0.0, 0.0, 0.0, 0.0]);
+    let scene = checker.scene_at(&at).unwrap();
+    let answers = [scene.check(&query()), checker.check(&query(), &at).unwrap()];
+    let [of_scene, of_robot] = answers.map(|checked| {
+        let [pair] = <[_; 1]>::try_from(checked.pairs).unwrap();
+        let report = pair.answer.unwrap();
+        (pair.a, pair.b, report.collision_probability.to_bits(), report.contacts)
+    });
+    assert_eq!(of_scene, of_robot);
+    let hand = checker.robot().link_poses(&at).unwrap()["hand"];
+    assert_eq!(scene.pose("hand").unwrap(), hand);
+}
+
 /// The hand ends at a known place; the wall is put before, at and behind it.
 #[test]
 fn the_hand_and_no_other_link_meets_a_wall_where_it_should() {

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use anyhow::Result;
 use cloudtouch::geom::Point3;
 use cloudtouch::{Checked, PairAnswer, Verdict, Warning};
+use cloudtouch_page::Fact;
 use cloudtouch_robot::{PathChecked, SURROUNDINGS};
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -52,23 +53,22 @@ pub(crate) struct Asked<'a> {
 
 impl Asked<'_> {
     /// What is not asked about, in words.
+    pub(crate) fn facts(&self) -> Vec<Fact> {
+        let named = |links: &[String]| Some(links.join(", ")).filter(|names| !names.is_empty());
+        let unchecked = named(self.unchecked_links)
+            .map(|names| Fact::new("not checked", names + " (no <collision> in the URDF)"));
+        let may_touch = named(self.may_touch).map(|names| Fact::new("may touch the scan", names));
+        let filter = "none: give --scan-joints if the scan shows the robot";
+        let filter = (!self.self_filter).then(|| Fact::new("self filter", filter));
+        let itself = "not asked: give --self-collision";
+        let itself = (!self.self_collision).then(|| Fact::new("self collision", itself));
+        [unchecked, may_touch, filter, itself].into_iter().flatten().collect()
+    }
+
+    /// The same, a line each.
     pub(crate) fn text(&self) -> String {
-        let mut text = String::new();
-        let mut add = |label: &str, links: &[String], why: &str| {
-            let links: Vec<String> = links.iter().map(|link| one_line(link)).collect();
-            if !links.is_empty() {
-                let _ = writeln!(text, "{label:<22} {}{why}", links.join(", "));
-            }
-        };
-        add("not checked", self.unchecked_links, " (no <collision> in the URDF)");
-        add("may touch the scan", self.may_touch, "");
-        if !self.self_filter {
-            text += "self filter            none: give --scan-joints if the scan shows the robot\n";
-        }
-        if !self.self_collision {
-            text += "self collision         not asked: give --self-collision\n";
-        }
-        text
+        let line = |fact: &Fact| format!("{:<22} {}\n", fact.label, one_line(&fact.text));
+        self.facts().iter().map(line).collect()
     }
 }
 

@@ -96,7 +96,6 @@ pub(crate) fn line<'a>(checked: &'a Checked, threshold: f64, bodies: Bodies<'a>)
 
 /// The same as a table.
 pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
-    let Checked { count, allowed, ruled_out, asked, .. } = *checked;
     let mut text = doubts(checked);
     if !checked.pairs.is_empty() {
         let names: Vec<String> = checked.pairs.iter().map(names).collect();
@@ -110,15 +109,18 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
             let _ = writeln!(text, "{name:<width$}  {}", row(pair));
         }
     }
-    let _ = write!(
-        text,
-        "{}: {} of {count} pairs may be at or above {}; {asked} asked, {ruled_out} ruled out by their \
+    text + &format!("{}: {}", checked.verdict(), counts(checked, threshold))
+}
+
+/// How many pairs there are, and what became of them.
+pub(crate) fn counts(checked: &Checked, threshold: f64) -> String {
+    let Checked { count, allowed, ruled_out, asked, .. } = *checked;
+    format!(
+        "{} of {count} pairs may be at or above {}; {asked} asked, {ruled_out} ruled out by their \
          boxes, {allowed} left out",
-        checked.verdict(),
         checked.pairs.len(),
         probability(threshold),
-    );
-    text
+    )
 }
 
 /// Where a body lies in the frame of the scene.
@@ -129,18 +131,22 @@ pub(crate) fn place(corners: &[Point3; 2]) -> String {
 /// A line for each body that something is to be said of by itself, and for each far from all others: that is
 /// free for certain, and seldom meant.
 pub(crate) fn doubts(checked: &Checked) -> String {
-    let warned = |BodyWarning { name, warning }: &BodyWarning| {
-        format!("{}: {}", one_line(name), remedies::warning(warning))
-    };
-    let far = checked.outside.iter().take(OUTSIDE_TOLD);
-    let far = far.map(|outside| one_line(&outside.to_string()));
-    let all = checked.warnings.iter().map(warned).chain(far);
-    let mut text: String = all.map(|words| labelled("warning", &words) + "\n").collect();
+    let all = warnings(checked).map(|words| labelled("warning", &one_line(&words)) + "\n");
+    let mut text: String = all.collect();
     if let Some(more) = checked.outside.len().checked_sub(OUTSIDE_TOLD).filter(|more| *more > 0) {
         text += &labelled("", &format!("{more} more bodies are as far from the rest"));
         text += "\n";
     }
     text
+}
+
+/// The same, a sentence or a few for each.
+pub(crate) fn warnings(checked: &Checked) -> impl Iterator<Item = String> {
+    let warned = |BodyWarning { name, warning }: &BodyWarning| {
+        format!("{name}: {}", remedies::warning(warning))
+    };
+    let far = checked.outside.iter().take(OUTSIDE_TOLD).map(Outside::to_string);
+    checked.warnings.iter().map(warned).chain(far)
 }
 
 fn names(pair: &PairAnswer) -> String {

@@ -85,14 +85,11 @@ fn write_page<C: PreparedCloud>(
     poses: &[Answered],
 ) -> Result<()> {
     let drawn = bodies.map(|body| pages::body(body, None, &ReadLimits::default()));
-    let views = poses.iter().enumerate().map(|(index, pose)| View {
-        name: format!("pose {}", index + 1),
-        scene: 0,
-        object: 1,
-        scene_from_object: pose.room_from_piano,
-        report: &pose.report,
-        placement: Some(&pose.placement),
-        more: vec![Fact::new("True of the meshes", pose.truth())],
+    let views = poses.iter().enumerate().map(|(index, pose)| {
+        let name = format!("pose {}", index + 1);
+        let view = View::of_pair(name, [0, 1], pose.room_from_piano, &pose.report);
+        let more = vec![Fact::new("True of the meshes", pose.truth())];
+        view.with_placement(&pose.placement).with_more(more)
     });
     let page = Page {
         title: "A grand piano in a furnished room".to_owned(),

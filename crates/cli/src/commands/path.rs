@@ -11,9 +11,8 @@ use crate::answers::print;
 use crate::args::PathArguments;
 use crate::inside::with_points_inside;
 use crate::load::{self, Role};
-use crate::output::Output;
 use crate::progress::Steps;
-use crate::{answers, output, pages, unused};
+use crate::{answers, pages, unused};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     let common = &arguments.common;
@@ -23,7 +22,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     inputs.into_iter().try_for_each(|path| load::check(path))?;
     let files = [&arguments.scene, &arguments.object, &arguments.poses];
     let inputs = files.into_iter().chain(options.robot).map(PathBuf::as_path);
-    output::check(&[Output::of("html", &arguments.html)], inputs, arguments.force)?;
+    arguments.answer.check_page(inputs)?;
     let (path, doubt) = load::path::read(&arguments.poses, arguments.screw)?;
     let steps = Steps::about([arguments.scene.as_path(), arguments.object.as_path()]);
     steps.tell("reading and preparing");
@@ -41,7 +40,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     steps.tell("asking");
     let swept = query.sweep(&scene.body, &object.body, &path, arguments.tolerance)?;
     let is_placed = options.sensor_pose.is_some();
-    if let Some(output) = &arguments.html {
+    if let Some(output) = &arguments.answer.html {
         let limits = common.limits.read_limits();
         let bodies = [
             pages::body(&scene, Some(&arguments.scene), &limits)?,

@@ -19,7 +19,7 @@ use crate::body::Body;
 use crate::load::{self, Input, Loaded, Role};
 use crate::sensor::SensorChoice;
 use crate::usage::WrongUsage;
-use crate::{answers, unused};
+use crate::{answers, pages, unused};
 
 /// A file, the unit it is said to be in, the sensor that saw it, by its spec, and what is said of it as a
 /// depth image, spelt out.
@@ -38,6 +38,8 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     let named = || arguments.scene.display().to_string();
     let file = scene::read(&arguments.scene, common.limits.read_limits().bytes)?;
     let query = Query::new(settings(common, &file).with_context(named)?)?;
+    let of_bodies = file.bodies.iter().map(|of| of.file.as_path());
+    arguments.answer.check_page(of_bodies.chain([arguments.scene.as_path()]))?;
     // What can be told without work comes first.
     let mut scene = outline(&file).with_context(named)?;
     let keys = keys(common, &file).with_context(named)?;
@@ -50,6 +52,12 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     }
     let checked = scene.check(&query);
     let threshold = query.settings().reject;
+    if let Some(output) = &arguments.answer.html {
+        let taken_for = |name: &str| bodies[name].words.clone();
+        let title = named();
+        let about = pages::scene::About { title, first: "", threshold, facts: Vec::new() };
+        pages::scene::write(output, (&scene, &checked), about, taken_for)?;
+    }
     let text = if arguments.answer.json {
         let inputs = bodies.iter().map(|(name, prepared)| (*name, &prepared.input)).collect();
         let bodies = Bodies { inputs, boxes: scene.boxes() };

@@ -72,15 +72,10 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
                     bodies.push(pages::body(loaded, Some(file), limits)?);
                 }
             }
-            views.push(View {
-                name: (*id).to_owned(),
-                scene: places[0],
-                object: places[1],
-                scene_from_object: *answered.pose,
-                report: colored,
-                placement: Some(&answered.placement),
-                more: answered.nearness.as_ref().map(answers::text::nearness).into_iter().collect(),
-            });
+            let more = answered.nearness.as_ref().map(answers::text::nearness);
+            let view = View::of_pair(*id, places, *answered.pose, colored);
+            let view = view.with_placement(&answered.placement);
+            views.push(view.with_more(more.into_iter().collect()));
         }
         let title = format!("{} poses of {cases}", views.len());
         let notes = note.into_iter().collect();

@@ -66,14 +66,8 @@ pub(crate) fn write(
     let opening = first.unwrap_or(likeliest).share;
     let start = shown.partition_point(|pose| pose.share < opening);
     let notes = (step > 1).then(|| format!("Of the {given} poses given every {step}th is shown."));
-    let views = shown.iter().map(|shown| View {
-        name: shown.name.clone(),
-        scene: 0,
-        object: 1,
-        scene_from_object: shown.pose,
-        report: &shown.report,
-        placement: None,
-        more: Vec::new(),
+    let views = shown.iter().map(|Shown { name, pose, report, .. }| {
+        View::of_pair(name.as_str(), [0, 1], *pose, report)
     });
     let page = Page {
         title: format!("{} along a path in {}", object.name, scene.name),

@@ -8,6 +8,8 @@ use std::process::{Child, Command, Stdio};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use super::Inputs;
+
 /// Names under which distributions ship it.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
@@ -32,6 +34,31 @@ pub(crate) fn flags(profile: &Path) -> Vec<String> {
     ];
     let own = format!("--user-data-dir={}", profile.display());
     fixed.map(str::to_owned).into_iter().chain([own]).collect()
+}
+
+/// What a page gave: its elements when its script was through, and what the console said.
+pub(crate) struct Seen {
+    pub(crate) elements: String,
+    pub(crate) console: Vec<String>,
+}
+
+/// Opens a page as by its address and tells what it gave.
+pub(crate) fn open(browser: &str, inputs: &Inputs, address: &str, more: &[&str]) -> Seen {
+    let url = format!("file://{}", inputs.path(address).display());
+    let profile = tempfile::tempdir().unwrap();
+    let output = Command::new(browser)
+        .args(flags(profile.path()))
+        .args(["--enable-logging=stderr", "--virtual-time-budget=5000"])
+        .args(more)
+        .arg(url)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    Seen {
+        elements: String::from_utf8(output.stdout).unwrap(),
+        console: said.lines().filter(|line| line.contains("CONSOLE")).map(str::to_owned).collect(),
+    }
 }
 
 /// A page in a browser that is spoken to by the DevTools protocol.

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a failing helper fails the test")]
 
 pub(crate) mod browser;
+pub(crate) mod pages;
 
 use std::path::PathBuf;
 use std::process::Output;

@@ -60,15 +60,9 @@ fn write_page<C: PreparedCloud>(
         pages::body(scene, scan, &limits)?,
         pages::body(object, Some(&arguments.object), &limits)?,
     ];
-    let view = View {
-        name: "The pose asked about".to_owned(),
-        scene: 0,
-        object: 1,
-        scene_from_object: *pose,
-        report: shown,
-        placement: Some(&found.placement),
-        more: tell::facts(found),
-    };
+    let view = View::of_pair("The pose asked about", [0, 1], *pose, shown)
+        .with_placement(&found.placement)
+        .with_more(tell::facts(found));
     let title = format!("{} in {}", bodies[1].name, bodies[0].name);
     let page = Page { title, bodies: bodies.into(), views: vec![view], ..Page::default() };
     pages::write(path, page)

@@ -1,6 +1,7 @@
 //! One position or a path of them, asked about.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use anyhow::Result;
 use cloudtouch::geom::Point3;
@@ -8,10 +9,10 @@ use cloudtouch::{PairAnswer, Query, Verdict};
 use cloudtouch_cli::files::joints::Joints;
 use cloudtouch_robot::{RobotChecker, SURROUNDINGS};
 
-use crate::answers;
 use crate::answers::robot::Asked;
 use crate::answers::scene::Bodies;
 use crate::load::Input;
+use crate::{answers, pages};
 
 /// How finely a path is looked at, as a share of it.
 const TOLERANCE: f64 = 0.001;
@@ -23,6 +24,16 @@ pub(super) struct Ask<'a> {
     pub scan: &'a Input,
     pub asked: Asked<'a>,
     pub in_json: bool,
+    /// Where a page goes, if one is wanted.
+    pub page: Option<Page<'a>>,
+}
+
+/// A page that shows the answer.
+pub(super) struct Page<'a> {
+    pub output: &'a Path,
+    pub title: String,
+    /// What the scan was taken for.
+    pub scan: String,
 }
 
 pub(super) struct Answer {
@@ -53,6 +64,12 @@ impl Ask<'_> {
     fn position(&self, joints: &Joints, bodies: Bodies<'_>) -> Result<Answer> {
         let checked = self.checker.check(self.query, joints)?;
         let threshold = self.query.settings().reject;
+        if let Some(page) = &self.page {
+            let scene = self.checker.scene_at(joints)?;
+            let (title, facts) = (page.title.clone(), self.asked.facts());
+            let about = pages::scene::About { title, first: SURROUNDINGS, threshold, facts };
+            pages::scene::write(page.output, (&scene, &checked), about, |name| page.about(name))?;
+        }
         let text = if self.in_json {
             answers::robot::json_line(&checked, threshold, bodies, self.asked)?
         } else {
@@ -69,6 +86,11 @@ impl Ask<'_> {
 
     fn path(&self, path: &[Joints], bodies: Vec<Bodies<'_>>) -> Result<Answer> {
         let checked = self.checker.check_path(self.query, path, TOLERANCE)?;
+        if let Some(page) = &self.page {
+            let found = (self.checker, path, &checked);
+            let words = (page.title.clone(), self.asked.facts());
+            pages::robot::write(page.output, found, words, |name| page.about(name))?;
+        }
         let text = if self.in_json {
             let threshold = self.query.settings().reject;
             answers::robot::path_line(&checked, threshold, bodies, self.asked)?
@@ -79,6 +101,13 @@ impl Ask<'_> {
         let pairs = checked.given.iter().flat_map(|at| &at.pairs);
         let mut pairs = pairs.chain(checked.stopped.as_ref().and_then(|at| at.pair.as_ref()));
         Ok(Answer { text, verdict: checked.verdict(), has_failed: pairs.any(is_without_answer) })
+    }
+}
+
+impl Page<'_> {
+    /// What a body was taken for; of links that is the URDF's to say.
+    fn about(&self, name: &str) -> String {
+        if name == SURROUNDINGS { self.scan.clone() } else { String::new() }
     }
 }
 
