@@ -20,7 +20,7 @@ pub(crate) fn section(number: usize, view: &View<'_>, page: &Page<'_>) -> String
     let facts = list(&facts::of_view(view));
     let body = match &view.asked {
         Some(asked) => {
-            head(asked.report, page)
+            head(&asked.report, page)
                 + &facts
                 + &contacts(&asked.report.contacts)
                 + &list(&about([asked.scene.body, asked.object.body], page))

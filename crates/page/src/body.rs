@@ -49,6 +49,15 @@ impl Shape {
     }
 }
 
+impl From<&cloudtouch::Body> for Shape {
+    fn from(body: &cloudtouch::Body) -> Self {
+        match body {
+            cloudtouch::Body::Cloud(cloud) => Self::cloud(cloud.len(), |index| cloud.point(index)),
+            cloudtouch::Body::Mesh(mesh) => mesh.into(),
+        }
+    }
+}
+
 impl From<&Mesh> for Shape {
     fn from(mesh: &Mesh) -> Self {
         let (vertices, triangles) = mesh.faces();

@@ -10,7 +10,7 @@ use crate::words;
 /// All that is told of a view beside its verdict, contacts and warnings.
 pub(crate) fn of_view(view: &View<'_>) -> Vec<Fact> {
     let asked = view.asked.as_ref();
-    let mut facts = asked.map_or_else(Vec::new, |asked| of_report(asked.report));
+    let mut facts = asked.map_or_else(Vec::new, |asked| of_report(&asked.report));
     facts.extend(view.more.iter().cloned());
     facts.extend(asked.and_then(|asked| asked.placement).map(place));
     facts.extend(asked.map(|asked| Fact::new("Pose", pose(&asked.object.pose))));

@@ -3,6 +3,7 @@
 
 mod answer;
 mod body;
+mod cast;
 mod coarse;
 mod data;
 mod document;
@@ -10,7 +11,9 @@ mod encode;
 mod escape;
 mod fact;
 mod facts;
+mod inside;
 mod likely;
+mod of_scene;
 mod page;
 mod share;
 mod shortlist;
@@ -20,8 +23,10 @@ mod view;
 pub mod words;
 
 pub use body::{Body, Shape};
+pub use cast::Cast;
 pub use document::notebook_frame;
 pub use fact::Fact;
+pub use inside::larger_of_both;
 pub use page::Page;
 pub use shortlist::Shortlist;
 pub use view::{Asked, Standing, View};

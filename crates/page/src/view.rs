@@ -1,5 +1,7 @@
 //! What is shown at a time.
 
+use std::borrow::Cow;
+
 use cloudtouch::geom::Pose;
 use cloudtouch::{Placement, Report};
 
@@ -26,7 +28,7 @@ pub struct Asked<'a> {
     /// B of the report.
     pub object: Standing,
     /// The answer, of which all but times is told; its contacts are in the frame of the picture.
-    pub report: &'a Report,
+    pub report: Cow<'a, Report>,
     /// Where the object lies in the scene, if that was asked.
     pub placement: Option<&'a Placement>,
 }
@@ -50,7 +52,7 @@ impl<'a> View<'a> {
     ) -> Self {
         let scene = Standing { body: scene, pose: Pose::identity() };
         let object = Standing { body: object, pose: scene_from_object };
-        let asked = Asked { scene, object, report, placement: None };
+        let asked = Asked { scene, object, report: Cow::Borrowed(report), placement: None };
         Self { name: name.into(), asked: Some(asked), around: Vec::new(), more: Vec::new() }
     }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use cloudtouch::geom::Pose;
-use cloudtouch::{Body as Prepared, Query, Report, StageReport};
-use cloudtouch_page::{Body as Drawn, MOST_VIEWS, Page, Shape, View, notebook_frame};
+use cloudtouch::{Body as Prepared, Query, Report, Scene, SceneError, StageReport};
+use cloudtouch_page::{Body as Drawn, Cast, Fact, MOST_VIEWS, Page, View, notebook_frame};
 use pyo3::prelude::*;
 
 use crate::error::{refused, refused_for};
@@ -35,27 +35,54 @@ pub(crate) fn answer(
     });
     let views = views.collect();
     let page = Page { title, bodies, views, ..Page::default() };
-    Ok(py.detach(|| height.map_or_else(|| page.html(), |height| notebook_frame(&page, height))))
+    Ok(written(py, &page, height))
+}
+
+/// The page on a scene, in the same two forms; `first` keeps its place in the picture, else the largest does.
+pub(crate) fn of_scene(
+    py: Python<'_>,
+    query: &Query,
+    scene: &Scene,
+    first: Option<&str>,
+    (title, height): (String, Option<u32>),
+) -> PyResult<String> {
+    let checked = on_all_threads(py, || scene.check(query))?;
+    let page = || -> Result<Page<'_>, SceneError> {
+        let taken_for =
+            |name: &str| scene.body(name).map_or(String::new(), |body| about(body, None));
+        let cast = Cast::of(scene, first, taken_for)?;
+        let mut page = Page { title, ..Page::of_scene(cast, scene, &checked)? };
+        let warnings = checked.warnings.iter().map(ToString::to_string);
+        let outside = checked.outside.iter().map(ToString::to_string);
+        page.summary.extend(warnings.chain(outside).map(|words| Fact::new("Warning", words)));
+        Ok(page)
+    };
+    let page = page().map_err(refused)?;
+    Ok(written(py, &page, height))
+}
+
+fn written(py: Python<'_>, page: &Page<'_>, height: Option<u32>) -> String {
+    py.detach(|| height.map_or_else(|| page.html(), |height| notebook_frame(page, height)))
+}
+
+fn drawn(name: &str, body: &Prepared, sensor: Option<String>) -> Drawn {
+    Drawn { name: name.to_owned(), about: about(body, sensor), shape: body.into() }
 }
 
 /// In the words of the tool's pages.
-fn drawn(name: &str, body: &Prepared, sensor: Option<String>) -> Drawn {
-    let (about, shape) = match body {
+fn about(body: &Prepared, sensor: Option<String>) -> String {
+    match body {
         Prepared::Cloud(cloud) => {
             let removed =
                 |stage: &StageReport| format!("{} removed {}", stage.stage, stage.removed);
             let stages: Vec<String> = cloud.filter_stages().iter().map(removed).collect();
-            let (count, sensor) = (cloud.len(), sensor.unwrap_or_default());
-            (
-                format!("cloud of {count} points in m, sensor {sensor} ({})", stages.join(", ")),
-                Shape::cloud(count, |index| cloud.point(index)),
-            )
+            let sensor = sensor.map_or(String::new(), |sensor| format!(", sensor {sensor}"));
+            format!("cloud of {} points in m{sensor} ({})", cloud.len(), stages.join(", "))
         }
         Prepared::Mesh(mesh) => {
             let kind = if mesh.is_watertight() { "watertight" } else { "open" };
             let (count, size) = (mesh.triangle_count(), mesh.size());
-            (format!("{kind} mesh of {count} triangles in m, {size:.3} m across"), mesh.into())
+            format!("{kind} mesh of {count} triangles in m, {size:.3} m across")
         }
-    };
-    Drawn { name: name.to_owned(), about, shape }
+    }
 }

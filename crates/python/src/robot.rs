@@ -6,7 +6,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use cloudtouch::geom::{Point3, Pose};
 use cloudtouch_robot::{
-    JointKind, PathChecked, Robot as Described, RobotChecker as Checker, Stopped, Touching,
+    JointKind, PathChecked, Robot as Described, RobotChecker as Checker, SURROUNDINGS, Stopped,
+    Touching,
 };
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -14,6 +15,7 @@ use pyo3::prelude::*;
 use crate::arrays::{matrix, of_pose};
 use crate::body::{Body, corners, rows};
 use crate::error::refused;
+use crate::page;
 use crate::pool::on_all_threads;
 use crate::query::{Query, rigid};
 use crate::scene::{Found, Pair, box_of, found, nobody, pair};
@@ -196,6 +198,20 @@ impl RobotChecker {
         let (checker, query) = (self.now(py)?, query.get().checked());
         let checked = on_all_threads(py, || checker.check(query, &joints))?;
         found(py, checked.map_err(refused)?)
+    }
+
+    #[pyo3(signature = (query, joints, title, height, /))]
+    fn page(
+        &self,
+        py: Python<'_>,
+        query: &Bound<'_, Query>,
+        joints: Joints,
+        title: String,
+        height: Option<u32>,
+    ) -> PyResult<String> {
+        let scene = self.now(py)?.scene_at(&joints).map_err(refused)?;
+        let first = Some(SURROUNDINGS);
+        page::of_scene(py, query.get().checked(), &scene, first, (title, height))
     }
 
     #[pyo3(signature = (query, path, tolerance, /))]

@@ -13,6 +13,7 @@ use crate::answer;
 use crate::arrays::matrix;
 use crate::body::Body;
 use crate::error::refused;
+use crate::page;
 use crate::pool::on_all_threads;
 use crate::query::{Query, rigid};
 
@@ -150,6 +151,17 @@ impl Scene {
         let (bodies, query) = (self.now(py)?, query.get().checked());
         let found = py.detach(|| bodies.check_first(query));
         found.map(|found| pair(py, found)).transpose()
+    }
+
+    #[pyo3(signature = (query, title, height, /))]
+    fn page(
+        &self,
+        py: Python<'_>,
+        query: &Bound<'_, Query>,
+        title: String,
+        height: Option<u32>,
+    ) -> PyResult<String> {
+        page::of_scene(py, query.get().checked(), &self.now(py)?, None, (title, height))
     }
 }
 

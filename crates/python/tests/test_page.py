@@ -33,6 +33,19 @@ def test_a_page_did_not_say_what_the_bodies_were_taken_for(floor, table):
     assert f"watertight mesh of {len(table)} triangles in m, " in text and " m across" in text
 
 
+def test_a_page_of_a_scene_shows_the_pair_that_collides(floor, table):
+    scene = ct.Scene()
+    scene.add("floor", floor)
+    scene.add("table", table, lifted(0.01))
+    scene.add("<lamp>", table, lifted(3.0))
+    text = scene.page(ct.Query(), title="a scene").html
+    assert "All in all: in collision" in text and "table / floor" in text
+    assert "&lt;lamp&gt;" in text and "<lamp>" not in text.split("<script")[0]
+    assert "cloud of 400 points in m (missing removed 0" in text
+    scene.set_pose("table", lifted(1.0))
+    assert "All in all: free" in scene.page(ct.Query()).frame(300)
+
+
 def test_poses_of_a_page(floor, table):
     with pytest.raises(ValueError, match="poses has the shape"):
         ct.Query().page(floor, table, np.eye(3))

@@ -89,6 +89,11 @@ def test_the_link_that_touches_is_told(robot, floor_under):
     assert ct.RobotChecker(robot, floor_under, lifted(0.4)).check(ct.Query(), at(0.6)).verdict == "free"
 
 
+def test_a_page_shows_the_robot_in_the_scan(robot, floor_under):
+    text = ct.RobotChecker(robot, floor_under).page(ct.Query(), at(0.6), title="<arm>").html
+    assert "All in all: in collision" in text and "surroundings / bar" in text and "&lt;arm&gt;" in text
+
+
 def test_boxes_show_where_the_base_is(robot, floor_under):
     boxes = ct.RobotChecker(robot, floor_under, base_pose=lifted(1.0)).boxes(at(0.0))
     np.testing.assert_allclose(boxes["bar"], [[0, -0.02, 1.48], [1, 0.02, 1.52]], atol=1e-9)

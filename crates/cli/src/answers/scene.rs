@@ -109,18 +109,16 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
             let _ = writeln!(text, "{name:<width$}  {}", row(pair));
         }
     }
-    text + &format!("{}: {}", checked.verdict(), counts(checked, threshold))
-}
-
-/// How many pairs there are, and what became of them.
-pub(crate) fn counts(checked: &Checked, threshold: f64) -> String {
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
-    format!(
-        "{} of {count} pairs may be at or above {}; {asked} asked, {ruled_out} ruled out by their \
+    let _ = write!(
+        text,
+        "{}: {} of {count} pairs may be at or above {}; {asked} asked, {ruled_out} ruled out by their \
          boxes, {allowed} left out",
+        checked.verdict(),
         checked.pairs.len(),
         probability(threshold),
-    )
+    );
+    text
 }
 
 /// Where a body lies in the frame of the scene.

@@ -54,9 +54,8 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     let threshold = query.settings().reject;
     if let Some(output) = &arguments.answer.html {
         let taken_for = |name: &str| bodies[name].words.clone();
-        let title = named();
-        let about = pages::scene::About { title, first: "", threshold, facts: Vec::new() };
-        pages::scene::write(output, (&scene, &checked), about, taken_for)?;
+        let found = (&scene, &checked);
+        pages::scene::write(output, found, None, (named(), Vec::new()), taken_for)?;
     }
     let text = if arguments.answer.json {
         let inputs = bodies.iter().map(|(name, prepared)| (*name, &prepared.input)).collect();

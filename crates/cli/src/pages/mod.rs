@@ -1,7 +1,6 @@
 //! `--html`: what a command knows, as a report page shows it.
 
 pub(crate) mod batch;
-mod cast;
 pub(crate) mod path;
 pub(crate) mod robot;
 pub(crate) mod scene;

@@ -4,12 +4,12 @@
 use std::path::Path;
 
 use anyhow::Result;
-use cloudtouch::{PairAnswer, Report, Scene};
+use cloudtouch::{PairAnswer, Scene};
 use cloudtouch_cli::files::joints::Joints;
-use cloudtouch_page::{Fact, MOST_VIEWS, Page, View};
+use cloudtouch_page::{Cast, Fact, MOST_VIEWS, Page, View};
 use cloudtouch_robot::{PathChecked, RobotChecker, SURROUNDINGS, Stopped};
 
-use crate::pages::cast::{Cast, colored, doubts, names};
+use crate::pages::scene::{cast, doubts};
 use crate::{answers, pages};
 
 /// A position of the path that is shown.
@@ -19,24 +19,17 @@ struct Shown<'a> {
     name: String,
     scene: Scene,
     worst: Option<&'a PairAnswer>,
-    /// Of the worst pair, if it has one.
-    report: Option<Report>,
 }
 
-impl<'a> Shown<'a> {
-    fn new(at: f64, name: String, scene: Scene, worst: Option<&'a PairAnswer>) -> Self {
-        let report = worst.and_then(|pair| colored(pair, &scene));
-        Self { at, name, scene, worst, report }
-    }
-
-    fn view(&self, cast: &Cast) -> Result<View<'_>> {
-        Ok(match self.worst.zip(self.report.as_ref()) {
-            Some(worst) => {
-                let name = format!("{}, {}", self.name, names(worst.0));
-                cast.view(&self.scene, name, worst)?
+impl Shown<'_> {
+    fn view(&self, cast: &Cast) -> Result<View<'static>> {
+        if let Some(pair) = self.worst {
+            let name = format!("{}, {} / {}", self.name, pair.a, pair.b);
+            if let Some(view) = cast.view(&self.scene, name, pair)? {
+                return Ok(view);
             }
-            None => cast.overview(&self.scene, self.name.as_str())?,
-        })
+        }
+        Ok(cast.overview(&self.scene, self.name.as_str())?)
     }
 }
 
@@ -53,7 +46,8 @@ pub(crate) fn write(
     let mut shown = Vec::new();
     for (index, (joints, found)) in path.iter().zip(&checked.given).enumerate().step_by(step) {
         let name = format!("Position {} of {count}: {}", index + 1, found.verdict());
-        shown.push(Shown::new(index as f64, name, checker.scene_at(joints)?, found.pairs.first()));
+        let (scene, worst) = (checker.scene_at(joints)?, found.pairs.first());
+        shown.push(Shown { at: index as f64, name, scene, worst });
     }
     let ends = [(&checked.stopped, "free for certain no longer"), (&checked.later, "a collision")];
     for (stopped, what) in ends {
@@ -62,7 +56,7 @@ pub(crate) fn write(
         }
     }
     let Some(first) = shown.first() else { return Ok(()) };
-    let cast = Cast::of(&first.scene, SURROUNDINGS, taken_for)?;
+    let cast = cast(&first.scene, Some(SURROUNDINGS), taken_for)?;
     let views = shown.iter().map(|shown| shown.view(&cast)).collect::<Result<Vec<_>>>()?;
     let gravest = |shown: &Shown<'_>| shown.worst.is_some_and(|w| w.verdict() == checked.verdict());
     let until = answers::path::percent(checked.certified_free_until);
@@ -71,7 +65,7 @@ pub(crate) fn write(
         format!("free for certain until {until} of the path"),
     )];
     summary.extend(facts);
-    summary.extend(checked.given.first().map(doubts).unwrap_or_default());
+    summary.extend(checked.given.first().into_iter().flat_map(doubts));
     let notes =
         (step > 1).then(|| format!("Of the {count} positions given every {step}th is shown."));
     let page = Page {
@@ -103,7 +97,7 @@ fn insert<'a>(
     }
     let name = format!("Segment {}, t = {:.3}: {what}", stopped.segment + 1, stopped.t);
     let scene = checker.scene_at(joints)?;
-    shown.insert(index, Shown::new(at, name, scene, stopped.pair.as_ref()));
+    shown.insert(index, Shown { at, name, scene, worst: stopped.pair.as_ref() });
     Ok(())
 }
 

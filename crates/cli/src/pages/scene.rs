@@ -1,61 +1,46 @@
-//! The report page of a scene, or of a robot at one position: all bodies, and each pair that may touch.
+//! The report page of a scene, or of a robot at one position.
 
 use std::path::Path;
 
 use anyhow::Result;
-use cloudtouch::{Checked, PairAnswer, Report, Scene};
-use cloudtouch_page::{Fact, MOST_VIEWS, Page};
+use cloudtouch::{Checked, Scene};
+use cloudtouch_page::{Cast, Fact, Page};
 
-use crate::pages::cast::{Cast, colored, doubts, names};
-use crate::{answers, pages};
+use crate::answers::scene::{place, warnings};
+use crate::pages;
 
-/// What a page of a scene is about.
-pub(crate) struct About<'a> {
-    pub title: String,
-    /// The body that keeps its place, or the largest does.
-    pub first: &'a str,
-    pub threshold: f64,
-    /// What is to be said of the question.
-    pub facts: Vec<Fact>,
-}
-
-/// Writes a page of what was found; `taken_for` tells what each body is.
+/// Writes a page of what was found; `first` keeps its place, else the largest does; `taken_for` says what each body
+/// is.
 pub(crate) fn write(
     output: &Path,
     (scene, checked): (&Scene, &Checked),
-    about: About<'_>,
+    first: Option<&str>,
+    (title, facts): (String, Vec<Fact>),
     taken_for: impl Fn(&str) -> String,
 ) -> Result<()> {
-    let cast = Cast::of(scene, about.first, taken_for)?;
-    let answered = checked.pairs.iter().filter_map(|pair| Some((pair, colored(pair, scene)?)));
-    let answered: Vec<(&PairAnswer, Report)> = answered.take(MOST_VIEWS - 1).collect();
-    let mut views = vec![cast.overview(scene, "All bodies")?.with_more(cast.facts(scene))];
-    for (pair, report) in &answered {
-        views.push(cast.view(scene, names(pair), (pair, report))?);
-    }
-    let mut summary =
-        vec![Fact::new(verdict(checked), answers::scene::counts(checked, about.threshold))];
-    summary.extend(about.facts);
-    summary.extend(doubts(checked));
-    let page = Page {
-        title: about.title,
-        summary,
-        notes: left_out(checked, answered.len()).into_iter().collect(),
-        // The worst pair, if there is one.
-        start: usize::from(!answered.is_empty()),
-        views,
-        bodies: cast.into_bodies(),
-        is_one_scene: true,
-        ..Page::default()
-    };
+    let cast = cast(scene, first, taken_for)?;
+    let mut page = Page { title, ..Page::of_scene(cast, scene, checked)? };
+    page.summary.extend(facts);
+    page.summary.extend(doubts(checked));
     pages::write(output, page)
 }
 
-fn verdict(checked: &Checked) -> String {
-    format!("All in all: {}", checked.verdict())
+/// The bodies of a scene, each with what it was taken for and where it is.
+pub(super) fn cast(
+    scene: &Scene,
+    first: Option<&str>,
+    taken_for: impl Fn(&str) -> String,
+) -> Result<Cast> {
+    let boxes = scene.boxes();
+    let about = |name: &str| {
+        let parts = [Some(taken_for(name)), boxes.get(name).map(place)];
+        let parts: Vec<String> = parts.into_iter().flatten().filter(|of| !of.is_empty()).collect();
+        parts.join(", ")
+    };
+    Ok(Cast::of(scene, first, about)?)
 }
 
-fn left_out(checked: &Checked, shown: usize) -> Option<String> {
-    let answered = checked.pairs.iter().filter(|pair| pair.answer.is_ok()).count();
-    (shown < answered).then(|| format!("Of {answered} pairs the {shown} worst are shown."))
+/// What is to be said of bodies by themselves.
+pub(super) fn doubts(checked: &Checked) -> impl Iterator<Item = Fact> {
+    warnings(checked).map(|words| Fact::new("Warning", words))
 }

@@ -8,9 +8,9 @@ from typing import Callable, Optional
 
 
 class Page:
-    """Two bodies in some poses, as one HTML page: turned with the mouse, coloured by probability, with words.
+    """Bodies and what was answered, as one HTML page: turned with the mouse, coloured by probability, with words.
 
-    Made by :meth:`Query.page`. Shown by a notebook where it is the last value of a cell; a file otherwise.
+    Made by :meth:`Query.page`, :meth:`Scene.page` and :meth:`RobotChecker.page`. Shown by a notebook where it is the last value of a cell; a file otherwise.
     """
 
     __slots__ = ("_render",)

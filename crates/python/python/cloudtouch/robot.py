@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from cloudtouch import _arrays, _native
 from cloudtouch.bodies import Mesh, SeenLink, native_body
+from cloudtouch.page import Page
 from cloudtouch.query import Body, Query
 from cloudtouch.report import Floats, Verdict
 from cloudtouch.scene import Checked, PairAnswer
@@ -310,6 +311,19 @@ class RobotChecker:
             A joint is unknown, left out, not finite or beyond its limits.
         """
         return Checked._of(*self._checker.check(query._query, self._robot._named(joints, "joints")))
+
+    def page(self, query: Query, joints: Positions, *, title: str = "cloudtouch") -> Page:
+        """The robot in its surroundings and what :meth:`check` finds, as by :meth:`Scene.page`.
+
+        Raises
+        ------
+        ValueError
+            ``joints`` has the wrong shape or type.
+        CloudtouchError
+            As :meth:`check`, when the page is shown or written.
+        """
+        named = self._robot._named(joints, "joints")
+        return Page(lambda height: self._checker.page(query._query, named, title, height))
 
     def check_path(self, query: Query, path: Iterable[Positions], *, tolerance: float = 0.001) -> PathChecked:
         """How far along a path every position is free, nothing between those given left out.

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cloudtouch import _arrays, _native
 from cloudtouch.bodies import native_body
+from cloudtouch.page import Page
 from cloudtouch.query import Body, Query
 from cloudtouch.report import Floats, Report, Verdict
 
@@ -162,6 +163,10 @@ class Scene:
         """One pair that does not read as free, or ``None`` where all do: sooner known."""
         found = self._scene.check_first(query._query)
         return None if found is None else PairAnswer._of(found)
+
+    def page(self, query: Query, *, title: str = "cloudtouch") -> Page:
+        """All bodies and what :meth:`check` finds, to look at: a notebook shows it, :meth:`Page.save` writes it."""
+        return Page(lambda height: self._scene.page(query._query, title, height))
 
     def __len__(self) -> int:
         """How many bodies there are."""

@@ -7,6 +7,7 @@ use anyhow::Result;
 use cloudtouch::geom::Point3;
 use cloudtouch::{PairAnswer, Query, Verdict};
 use cloudtouch_cli::files::joints::Joints;
+use cloudtouch_page::Fact;
 use cloudtouch_robot::{RobotChecker, SURROUNDINGS};
 
 use crate::answers::robot::Asked;
@@ -66,9 +67,9 @@ impl Ask<'_> {
         let threshold = self.query.settings().reject;
         if let Some(page) = &self.page {
             let scene = self.checker.scene_at(joints)?;
-            let (title, facts) = (page.title.clone(), self.asked.facts());
-            let about = pages::scene::About { title, first: SURROUNDINGS, threshold, facts };
-            pages::scene::write(page.output, (&scene, &checked), about, |name| page.about(name))?;
+            let (found, words) = ((&scene, &checked), self.words(page));
+            let taken_for = |name: &str| page.about(name);
+            pages::scene::write(page.output, found, Some(SURROUNDINGS), words, taken_for)?;
         }
         let text = if self.in_json {
             answers::robot::json_line(&checked, threshold, bodies, self.asked)?
@@ -84,12 +85,17 @@ impl Ask<'_> {
         Ok(Answer { text, verdict: checked.verdict(), has_failed })
     }
 
+    /// The title of a page, and what is to be said of the question.
+    fn words(&self, page: &Page<'_>) -> (String, Vec<Fact>) {
+        (page.title.clone(), self.asked.facts())
+    }
+
     fn path(&self, path: &[Joints], bodies: Vec<Bodies<'_>>) -> Result<Answer> {
         let checked = self.checker.check_path(self.query, path, TOLERANCE)?;
         if let Some(page) = &self.page {
             let found = (self.checker, path, &checked);
-            let words = (page.title.clone(), self.asked.facts());
-            pages::robot::write(page.output, found, words, |name| page.about(name))?;
+            let taken_for = |name: &str| page.about(name);
+            pages::robot::write(page.output, found, self.words(page), taken_for)?;
         }
         let text = if self.in_json {
             let threshold = self.query.settings().reject;
