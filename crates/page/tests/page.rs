@@ -1,10 +1,14 @@
 //! Pages and frames as a program makes them.
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
+use std::sync::Arc;
+
 use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report};
-use cloudtouch_page::{Body, Fact, MOST_LIKELY, MOST_VIEWS, Page, Shape, View, notebook_frame};
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Report, Scene};
+use cloudtouch_page::{
+    Body, Cast, Fact, MOST_LIKELY, MOST_VIEWS, Page, Shape, View, notebook_frame,
+};
 
 const SIDE: u32 = 30;
 
@@ -15,7 +19,11 @@ fn floor() -> Cloud {
 }
 
 fn pose() -> Pose {
-    Pose::from_translation(Vector3::new(0.0, 0.0, 0.01))
+    Pose::from_translation(up(0.01))
+}
+
+fn up(height: f64) -> Vector3 {
+    Vector3::new(0.0, 0.0, height)
 }
 
 fn report(cloud: &Cloud) -> Report {
@@ -61,6 +69,34 @@ fn a_frame_holds_the_page_and_nothing_of_it_leaves_the_attribute() {
 fn a_page_without_views_is_a_page() {
     let html = page(&floor(), []).html();
     assert!(html.contains("<title>A &quot;title&quot;</title>") && html.ends_with("</html>\n"));
+}
+
+#[test]
+fn a_scene_has_a_view_of_all_and_one_of_each_pair_that_may_touch() {
+    let floor = Arc::new(cloudtouch::Body::from(floor()));
+    let mut scene = Scene::default();
+    scene.add("floor", Arc::clone(&floor), Pose::identity()).unwrap();
+    scene
+        .add("sheet", Arc::clone(&floor), Pose::from_translation_rpy(up(0.0), [0.2, 0.0, 0.0]))
+        .unwrap();
+    scene.add("far", floor, Pose::from_translation(up(3.0))).unwrap();
+    let checked = scene.check(&Query::new(QuerySettings::default()).unwrap());
+    assert_eq!(checked.pairs.len(), 1);
+    let cast = Cast::of(&scene, Some("far"), str::to_uppercase).unwrap();
+    let page = Page::of_scene(cast, &scene, &checked).unwrap();
+    let names: Vec<&str> = page.bodies.iter().map(|body| &*body.name).collect();
+    assert_eq!((names[0], &*page.bodies[0].about), ("far", "FAR"));
+    let [all, pair] = &page.views[..] else { panic!("{} views", page.views.len()) };
+    assert!(all.asked.is_none() && all.around.len() == 3 && page.start == 1);
+    let asked = pair.asked.as_ref().unwrap();
+    assert_eq!(pair.around.iter().map(|of| names[of.body]).collect::<Vec<_>>(), ["far"]);
+    for (standing, name) in
+        [(asked.scene, &checked.pairs[0].a), (asked.object, &checked.pairs[0].b)]
+    {
+        assert_eq!((names[standing.body], standing.pose), (&**name, scene.pose(name).unwrap()));
+    }
+    let data = data(&page);
+    assert_eq!(data["views"][0]["middle"], data["views"][1]["middle"]);
 }
 
 /// However many points every view colours, the page stays small, and says that it leaves some out.
