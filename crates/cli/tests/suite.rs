@@ -26,6 +26,7 @@ mod query;
 mod real_scan;
 mod recording;
 mod robot;
+mod robot_held;
 mod scene;
 mod slips;
 mod support;

@@ -27,6 +27,9 @@ pub(crate) struct RobotOptions {
     #[arg(long, value_name = "METRES", default_value_t = 0.01, value_parser = parse_length, allow_negative_numbers = true,
           requires = "scan_joints")]
     pub padding: f64,
+    /// Scene file whose bodies are `attached_to` links: what the robot holds
+    #[arg(long, value_name = "FILE.json")]
+    pub held: Option<PathBuf>,
     /// Links that may touch the scan, such as a bolted base
     #[arg(long, value_name = "LINK", value_delimiter = ',')]
     pub may_touch: Vec<String>,

@@ -12,7 +12,7 @@ use crate::files::json::{as_written, matrix, shortened, without_bare_words};
 use crate::intrinsics::{self, DepthImages, Intrinsics};
 
 /// A scene as its file says.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneFile {
     /// Pairs with a probability of so much are not free; what the options say where it is not given.
     pub threshold: Option<f64>,
@@ -86,7 +86,40 @@ pub fn parse(text: &[u8], folder: &Path) -> Result<SceneFile> {
     parse_whole(text, folder).map_err(shortened)
 }
 
+/// Reads what a robot holds: a scene file of bodies that are attached to links.
+///
+/// # Errors
+/// As [`read`], and when a body is attached to nothing or there is a threshold.
+pub fn read_held(path: &Path, max_bytes: u64) -> Result<SceneFile> {
+    let named = || path.display().to_string();
+    let text = cloudtouch_io::read_bytes(path, max_bytes)?;
+    parse_held(&text, path.parent().unwrap_or(Path::new(""))).with_context(named)
+}
+
+fn parse_held(text: &[u8], folder: &Path) -> Result<SceneFile> {
+    let file = parse_any(text, folder).map_err(shortened)?;
+    if file.bodies.is_empty() {
+        bail!("no bodies: name what is held, or leave the file out");
+    }
+    if file.threshold.is_some() {
+        bail!("`threshold` is of a scene: leave it out, and give --reject");
+    }
+    let loose = file.bodies.iter().enumerate().find(|(_, body)| body.attached_to.is_none());
+    if let Some((index, body)) = loose {
+        bail!("body {} `{}`: give `attached_to`, the link that holds it", index + 1, body.name);
+    }
+    Ok(file)
+}
+
 fn parse_whole(text: &[u8], folder: &Path) -> Result<SceneFile> {
+    let file = parse_any(text, folder)?;
+    if file.bodies.len() < 2 {
+        bail!("{} bodies: a scene needs at least two to touch", file.bodies.len());
+    }
+    Ok(file)
+}
+
+fn parse_any(text: &[u8], folder: &Path) -> Result<SceneFile> {
     let text = without_bare_words(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text));
     let raw: RawFile = serde_json::from_slice(&text).context(
         "not a scene file, a JSON object with \"format\", \"length_unit\" and \"bodies\"",
@@ -96,9 +129,6 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<SceneFile> {
     }
     if raw.length_unit != "m" {
         bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
-    }
-    if raw.bodies.len() < 2 {
-        bail!("{} bodies: a scene needs at least two to touch", raw.bodies.len());
     }
     let body = |(index, value): (usize, Value)| {
         let name = value.get("name").and_then(Value::as_str).map(|name| format!(" `{name}`"));

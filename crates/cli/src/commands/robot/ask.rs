@@ -22,7 +22,8 @@ const TOLERANCE: f64 = 0.001;
 pub(super) struct Ask<'a> {
     pub checker: &'a RobotChecker,
     pub query: &'a Query,
-    pub scan: &'a Input,
+    /// What the bodies that are no links were read from.
+    pub inputs: BTreeMap<&'a str, &'a Input>,
     pub asked: Asked<'a>,
     pub in_json: bool,
     /// Where a page goes, if one is wanted.
@@ -33,8 +34,8 @@ pub(super) struct Ask<'a> {
 pub(super) struct Page<'a> {
     pub output: &'a Path,
     pub title: String,
-    /// What the scan was taken for.
-    pub scan: String,
+    /// What the bodies that are no links were taken for.
+    pub taken_for: BTreeMap<&'a str, &'a str>,
 }
 
 pub(super) struct Answer {
@@ -57,7 +58,7 @@ impl Ask<'_> {
 
     fn bodies<'a>(&'a self, boxes: &'a BTreeMap<String, [Point3; 2]>) -> Bodies<'a> {
         Bodies {
-            inputs: BTreeMap::from([(SURROUNDINGS, self.scan)]),
+            inputs: self.inputs.clone(),
             boxes: boxes.iter().map(|(name, corners)| (name.as_str(), *corners)).collect(),
         }
     }
@@ -113,7 +114,7 @@ impl Ask<'_> {
 impl Page<'_> {
     /// What a body was taken for; of links that is the URDF's to say.
     fn about(&self, name: &str) -> String {
-        if name == SURROUNDINGS { self.scan.clone() } else { String::new() }
+        self.taken_for.get(name).map_or(String::new(), |words| (*words).to_owned())
     }
 }
 

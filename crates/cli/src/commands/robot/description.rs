@@ -3,8 +3,10 @@
 use anyhow::{Context as _, Error, Result, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch_cli::files::joints::{self, Joints};
+use cloudtouch_cli::files::scene::SceneFile;
 use cloudtouch_robot::Robot;
 
+use super::held;
 use crate::args::RobotArguments;
 use crate::load;
 use crate::usage::WrongUsage;
@@ -15,6 +17,8 @@ pub(super) struct Description {
     pub path: Vec<Joints>,
     /// From the base into the frame of the scan.
     pub base: Pose,
+    /// What it holds.
+    pub held: SceneFile,
 }
 
 pub(super) fn read(arguments: &RobotArguments) -> Result<Description> {
@@ -27,7 +31,8 @@ pub(super) fn read(arguments: &RobotArguments) -> Result<Description> {
     let robot = with_srdf(robot, arguments)?;
     check_positions(arguments, &robot, &path)?;
     check_links(arguments, &robot)?;
-    Ok(Description { robot, path, base })
+    let held = held::read(arguments, &robot)?;
+    Ok(Description { robot, path, base, held })
 }
 
 /// Refuses the folder of a package that no link needs: its name is misspelt, and another may have been read.

@@ -2,6 +2,7 @@
 
 mod ask;
 mod description;
+mod held;
 mod scan;
 
 use std::path::PathBuf;
@@ -9,6 +10,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context as _, Result};
 use cloudtouch::Query;
+use cloudtouch_cli::files::scene::BodyEntry;
 use cloudtouch_robot::{RobotChecker, SURROUNDINGS, Touching};
 
 use self::ask::{Ask, Page};
@@ -17,19 +19,19 @@ use crate::answers::print;
 use crate::answers::robot::Asked;
 use crate::args::RobotArguments;
 use crate::body::Body;
+use crate::commands::scene::bodies::FileBodies;
 use crate::load;
 use crate::progress::Steps;
 
 pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let query = Query::new(arguments.common.query_settings())?;
     load::check(&arguments.scan)?;
-    let options = &arguments.robot;
-    let others = [&options.base_pose, &options.srdf, &options.scan_joints];
-    let inputs = [&arguments.scan, &options.urdf, &options.joints].into_iter();
-    let inputs = inputs.chain(others.into_iter().flatten()).map(PathBuf::as_path);
-    arguments.answer.check_page(inputs)?;
+    check_page(arguments)?;
     // Wrong positions are told before a large scan is read.
-    let Description { robot, path, base } = description::read(arguments)?;
+    let Description { robot, path, base, held } = description::read(arguments)?;
+    let of_held =
+        || arguments.robot.held.as_deref().unwrap_or(&arguments.scan).display().to_string();
+    let bodies = FileBodies::read(&arguments.common, &held.bodies).with_context(of_held)?;
     let steps = Steps::about([arguments.scan.as_path()]);
     steps.tell("reading and preparing");
     let scan = scan::read(arguments, &robot, &base, path.len())?;
@@ -41,10 +43,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         self_collision: arguments.robot.self_collision,
     };
     let taken_for = print::about(&scan);
-    let mut words = format!("scan: {taken_for}\n{}", asked.text());
-    if arguments.robot.base_pose.is_none() {
-        words += "base                   not given: at the origin of the scan (--base-pose)\n";
-    }
+    let words = words(arguments, &taken_for, &bodies, asked);
     let body: cloudtouch::Body = match scan.body {
         Body::Cloud(cloud) => cloud.into(),
         Body::Mesh(mesh) => mesh.into(),
@@ -55,16 +54,44 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     for link in &arguments.robot.may_touch {
         checker.allow(link, SURROUNDINGS).with_context(|| "--may-touch")?;
     }
-    let in_json = arguments.answer.json;
+    held::hold(&mut checker, &held, &bodies).with_context(of_held)?;
+    let of_held = bodies.all().map(|(body, is)| (&*body.name, &is.input));
+    let inputs = of_held.chain([(SURROUNDINGS, &scan.input)]).collect();
     let page = arguments.answer.html.as_deref().map(|output| Page {
         output,
-        title: format!("{} in {}", options.urdf.display(), arguments.scan.display()),
-        scan: taken_for,
+        title: format!("{} in {}", arguments.robot.urdf.display(), arguments.scan.display()),
+        taken_for: {
+            let held = bodies.all().map(|(body, is)| (&*body.name, &*is.words));
+            held.chain([(SURROUNDINGS, &*taken_for)]).collect()
+        },
     });
-    let ask = Ask { checker: &checker, query: &query, scan: &scan.input, asked, in_json, page };
+    let in_json = arguments.answer.json;
+    let ask = Ask { checker: &checker, query: &query, inputs, asked, in_json, page };
     steps.tell("asking");
     let answer = ask.about(&path)?;
     let text = if in_json { answer.text } else { words + &answer.text };
     print::to_stdout(&format!("{text}\n"))?;
     Ok(arguments.answer.exit_code(answer.verdict, answer.has_failed))
+}
+
+fn check_page(arguments: &RobotArguments) -> Result<()> {
+    let options = &arguments.robot;
+    let others = [&options.base_pose, &options.srdf, &options.scan_joints, &options.held];
+    let inputs = [&arguments.scan, &options.urdf, &options.joints].into_iter();
+    arguments.answer.check_page(inputs.chain(others.into_iter().flatten()).map(PathBuf::as_path))
+}
+
+/// What the bodies were taken for, and what is not asked about.
+fn words(
+    arguments: &RobotArguments,
+    scan: &str,
+    held: &FileBodies<'_>,
+    asked: Asked<'_>,
+) -> String {
+    let held = held.all().map(|(body, is): (&BodyEntry, _)| is.words_of(body) + "\n");
+    let base = match &arguments.robot.base_pose {
+        Some(_) => "",
+        None => "base                   not given: at the origin of the scan (--base-pose)\n",
+    };
+    format!("scan: {scan}\n{}{}{base}", held.collect::<String>(), asked.text())
 }
