@@ -1,150 +1,164 @@
-//! The sentence of each warning, with its remedy.
+//! The sentence of each warning: what was seen, and what to do about it.
 
 use std::fmt;
 
-use super::Warning;
+use super::{Warning, Which};
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.sign(), self.remedy())
+    }
+}
+
+impl Warning {
+    /// What was seen, with the colon or semicolon before the remedy.
+    fn sign(&self) -> String {
         match *self {
-            Self::NoSurface { body, points } => write!(
-                f,
-                "the {body} has {points} distinct points or corners, all on a line: they span no \
-                 surface; check the file"
+            Self::NoSurface { body, points } => format!(
+                "the {body} has {points} distinct points or corners, all on a line: they span no surface;"
             ),
-            Self::Missing { body, share } => write!(
-                f,
-                "{:.0} % of the rows of the {body} have no return, and without an image layout it is \
-                 not known where: give the organised cloud, or drop rows that stand for empty space",
-                100.0 * share
+            Self::Missing { body, share } => part(
+                (100.0 * share, "rows", body),
+                "have no return, and without an image layout it is not known where:",
             ),
-            Self::Units { body, size_m, other_size_m } => write!(
-                f,
-                "the {body} is {} across and the other body {}: is one of them in another unit than \
-                 metres?",
-                length(size_m),
-                length(other_size_m)
-            ),
-            Self::FarAway { gap_m, size_m } => write!(
-                f,
-                "the object is {} away from a scene {} across: check the pose, its direction and its \
-                 unit (metres), or the units of the files",
-                length(gap_m),
-                length(size_m)
-            ),
-            Self::Sparse { body, spacing_m, other_size_m } => write!(
-                f,
-                "points of the {body} are {} apart and the other body is {} across: it fits between \
-                 them; is a file in millimetres?",
-                length(spacing_m),
-                length(other_size_m)
-            ),
-            Self::Clumps { body, across_m, apart_m } => write!(
-                f,
-                "points of the {body} lie in clumps some {} across and {} from one another, as many scans \
-                 of the same rays do: nothing is known between them; put fewer scans together, or keep \
-                 one point of each clump",
-                length(across_m),
-                length(apart_m)
-            ),
-            Self::Noise { body, std_m, other_size_m } => write!(
-                f,
-                "the noise of the {body} is {} and the other body {} across: give the sensor's noise \
-                 in metres",
-                length(std_m),
-                length(other_size_m)
-            ),
-            Self::NoiseOverstated { body, std_m, seen_m } => write!(
-                f,
-                "the noise stated for the {body} is {} and its points are {} off planes: give the \
-                 sensor's noise, in metres",
-                length(std_m),
-                length(seen_m)
-            ),
-            Self::Rounded { body, step_m } => write!(
-                f,
+            Self::Units { body, size_m, other_size_m } => {
+                let [size, other] = [size_m, other_size_m].map(length);
+                format!("the {body} is {size} across and the other body {other}:")
+            }
+            Self::FarAway { gap_m, size_m } => {
+                let [gap, size] = [gap_m, size_m].map(length);
+                format!("the object is {gap} away from a scene {size} across:")
+            }
+            Self::Sparse { body, spacing_m, other_size_m } => {
+                let [spacing, other] = [spacing_m, other_size_m].map(length);
+                format!(
+                    "points of the {body} are {spacing} apart and the other body is {other} across: it fits \
+                     between them;"
+                )
+            }
+            Self::Clumps { body, across_m, apart_m } => {
+                let [across, apart] = [across_m, apart_m].map(length);
+                format!(
+                    "points of the {body} lie in clumps some {across} across and {apart} from one another, as many \
+                     scans of the same rays do: nothing is known between them;"
+                )
+            }
+            Self::Noise { body, std_m, other_size_m } => {
+                let [std, other] = [std_m, other_size_m].map(length);
+                format!("the noise of the {body} is {std} and the other body {other} across:")
+            }
+            Self::NoiseOverstated { body, std_m, seen_m } => {
+                let [std, seen] = [std_m, seen_m].map(length);
+                format!(
+                    "the noise stated for the {body} is {std} and its points are {seen} off planes:"
+                )
+            }
+            Self::Rounded { body, step_m } => format!(
                 "coordinates of the {body} were kept in single precision, and where they are that tells places \
-                 no finer than {}: keep them in double precision, or about an origin nearby",
+                 no finer than {}:",
                 length(step_m)
             ),
-            Self::SensorPose { body, share } => write!(
-                f,
-                "{:.0} % of the points of the {body} are beside or behind the camera stated for it: \
-                 it looks along z of the file; if the points are in another frame, say where it stood \
-                 (`sensor_pose`, VIEWPOINT of a PCD)",
-                (100.0 * share).ceil()
+            Self::SensorPose { body, share } => part(
+                ((100.0 * share).ceil(), "points", body),
+                "are beside or behind the camera stated for it:",
             ),
-            Self::SensorTurn { body, share } => write!(
-                f,
-                "{:.0} % of the points of the {body} are behind the camera by the turn stated for it, which is \
-                 not believed: it counts as looking along z of the file; leave the turn out, or correct it \
-                 (`sensor_pose`, VIEWPOINT of a PCD)",
-                100.0 * share
+            Self::SensorTurn { body, share } => part(
+                (100.0 * share, "points", body),
+                "are behind the camera by the turn stated for it, which is not believed:",
             ),
-            Self::SensorRange { body, range_m, limit_m } => write!(
-                f,
-                "points of the {body} are {} away and its sensor sees no farther than {}: another \
-                 sensor, or another unit?",
-                length(range_m),
-                length(limit_m)
+            Self::SensorRange { body, range_m, limit_m } => {
+                let [range, limit] = [range_m, limit_m].map(length);
+                format!(
+                    "points of the {body} are {range} away and its sensor sees no farther than {limit}:"
+                )
+            }
+            Self::SensorLayout { body } => format!(
+                "the {body} is laid out as the image of a camera and its sensor is stated as a laser scanner:"
             ),
-            Self::SensorLayout { body } => write!(
-                f,
-                "the {body} is laid out as the image of a camera and its sensor is stated as a laser \
-                 scanner: kinect or stereo?"
+            Self::NoImage { body } => format!(
+                "the {body} is of a camera and has no image layout: what the camera did not see counts as empty;"
             ),
-            Self::NoImage { body } => write!(
-                f,
-                "the {body} is of a camera and has no image layout: what the camera did not see \
-                 counts as empty; give the organised cloud"
+            Self::ImagePlace { body } => format!(
+                "the {body} has rows and columns as an image, which no camera at the place stated for it has:"
             ),
-            Self::ImagePlace { body } => write!(
-                f,
-                "the {body} has rows and columns as an image, which no camera at the place stated for it \
-                 has: give the points without the layout, or, if they are in another frame, say where it \
-                 stood (`sensor_pose`, VIEWPOINT of a PCD)"
+            Self::SelfFilter { body, share } => {
+                part((100.0 * share, "points", body), "were taken for the robot and left out:")
+            }
+            Self::NoRobot { body } => {
+                format!("no point of the {body} lies on the robot that was to be left out:")
+            }
+            Self::Padding { body, share } => part(
+                (100.0 * share, "points", body),
+                "that were left out as the robot's are farther from it than their noise tells, and may be of \
+                 what is beside it:",
             ),
-            Self::SelfFilter { body, share } => write!(
-                f,
-                "{:.0} % of the points of the {body} were taken for the robot and left out: check its \
-                 pose, its joints, its unit and the padding (metres)",
-                100.0 * share
-            ),
-            Self::NoRobot { body } => write!(
-                f,
-                "no point of the {body} lies on the robot that was to be left out: if the sensor saw it, its \
-                 base, its joints or a unit are wrong"
-            ),
-            Self::Padding { body, share } => write!(
-                f,
-                "{:.0} % of the points of the {body} that were left out as the robot's are farther from it \
-                 than their noise tells, and may be of what is beside it: check its pose, its joints and the \
-                 padding (metres)",
-                100.0 * share
-            ),
-            Self::OutsideScene { gap_m, size_m } => write!(
-                f,
-                "the object is outside of the scene, {} from its box of {}: is the pose object to \
-                 scene, in metres?",
-                length(gap_m),
-                length(size_m)
-            ),
-            Self::Exchanged { size_m, other_size_m } => write!(
-                f,
-                "the object is {} across and the scene {}: are the two exchanged? The scene comes first, and \
-                 the pose leads from the object into it. Or is one in another unit than metres?",
-                length(size_m),
-                length(other_size_m)
-            ),
-            Self::Unseen { body, share, limit } => write!(
-                f,
-                "{:.0} % of the surface of the {body} lies where the sensor saw nothing (allowed: \
-                 {:.0} %): look from elsewhere, or raise `max_unseen`",
-                (100.0 * share).ceil(),
-                100.0 * limit
-            ),
+            Self::OutsideScene { gap_m, size_m } => {
+                let [gap, size] = [gap_m, size_m].map(length);
+                format!("the object is outside of the scene, {gap} from its box of {size}:")
+            }
+            Self::Exchanged { size_m, other_size_m } => {
+                let [size, other] = [size_m, other_size_m].map(length);
+                format!("the object is {size} across and the scene {other}:")
+            }
+            Self::Unseen { body, share, limit } => {
+                let limit = 100.0 * limit;
+                let lies = format!("lies where the sensor saw nothing (allowed: {limit:.0} %):");
+                part(((100.0 * share).ceil(), "surface", body), &lies)
+            }
         }
     }
+
+    /// What to do, or what to ask oneself.
+    fn remedy(&self) -> &'static str {
+        match self {
+            Self::NoSurface { .. } => "check the file",
+            Self::Missing { .. } => {
+                "give the organised cloud, or drop rows that stand for empty space"
+            }
+            Self::Units { .. } => "is one of them in another unit than metres?",
+            Self::FarAway { .. } => {
+                "check the pose, its direction and its unit (metres), or the units of the files"
+            }
+            Self::Sparse { .. } => "is a file in millimetres?",
+            Self::Clumps { .. } => "put fewer scans together, or keep one point of each clump",
+            Self::Noise { .. } => "give the sensor's noise in metres",
+            Self::NoiseOverstated { .. } => "give the sensor's noise, in metres",
+            Self::Rounded { .. } => "keep them in double precision, or about an origin nearby",
+            Self::SensorPose { .. } => {
+                "it looks along z of the file; if the points are in another frame, say where it stood \
+                 (`sensor_pose`, VIEWPOINT of a PCD)"
+            }
+            Self::SensorTurn { .. } => {
+                "it counts as looking along z of the file; leave the turn out, or correct it \
+                 (`sensor_pose`, VIEWPOINT of a PCD)"
+            }
+            Self::SensorRange { .. } => "another sensor, or another unit?",
+            Self::SensorLayout { .. } => "kinect or stereo?",
+            Self::NoImage { .. } => "give the organised cloud",
+            Self::ImagePlace { .. } => {
+                "give the points without the layout, or, if they are in another frame, say where it stood \
+                 (`sensor_pose`, VIEWPOINT of a PCD)"
+            }
+            Self::SelfFilter { .. } => {
+                "check its pose, its joints, its unit and the padding (metres)"
+            }
+            Self::NoRobot { .. } => {
+                "if the sensor saw it, its base, its joints or a unit are wrong"
+            }
+            Self::Padding { .. } => "check its pose, its joints and the padding (metres)",
+            Self::OutsideScene { .. } => "is the pose object to scene, in metres?",
+            Self::Exchanged { .. } => {
+                "are the two exchanged? The scene comes first, and the pose leads from the object into it. \
+                 Or is one in another unit than metres?"
+            }
+            Self::Unseen { .. } => "look from elsewhere, or raise `max_unseen`",
+        }
+    }
+}
+
+/// What so many percent of the points, or the like, of a body do.
+fn part((percent, what, body): (f64, &str, Which), does: &str) -> String {
+    format!("{percent:.0} % of the {what} of the {body} {does}")
 }
 
 /// A length with as many digits as help.
