@@ -6,7 +6,7 @@ pub(super) mod raster;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::SensorNoise;
 use nalgebra::UnitQuaternion;
 
@@ -25,6 +25,34 @@ pub(super) struct Image {
     pub pixels: usize,
     /// The links of the robot that were taken out of it.
     pub robot: Vec<SelfMesh>,
+}
+
+impl Image {
+    /// Of an organised cloud, given what was kept of it, from which rows, and the links that were taken out.
+    pub(super) fn of(
+        scan: &PointCloud,
+        (kept, rows): (&PointCloud, &[usize]),
+        robot: Vec<SelfMesh>,
+    ) -> Self {
+        Self {
+            sensor_origin: kept.sensor_origin(),
+            turn: *kept.from_sensor().rotation(),
+            points: 0..kept.len(),
+            pixels: pixels_about(scan, rows).unwrap_or(kept.len()),
+            robot,
+        }
+    }
+}
+
+/// Pixels of the part of an image that these of its rows, in order, are in, with and without return.
+fn pixels_about(image: &PointCloud, rows: &[usize]) -> Option<usize> {
+    let (width, _) = image.image_size?;
+    let lines = (rows.last()? / width).abs_diff(rows.first()? / width) + 1;
+    let widen = |(least, most): (usize, usize), row: &usize| {
+        (least.min(row % width), most.max(row % width))
+    };
+    let (least, most) = rows.iter().fold((width, 0), widen);
+    Some(lines * (most + 1).saturating_sub(least))
 }
 
 /// Where the sensor stood, and the raster of its view once that is needed.

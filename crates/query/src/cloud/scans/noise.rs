@@ -1,0 +1,51 @@
+//! The noise of the points of scans, and what it says about them.
+
+use cloudtouch_geom::{Covariance, Point3, PointCloud};
+use cloudtouch_noise::{MotionNoise, SensorNoise};
+
+use crate::check::rounded::single_step;
+use crate::cloud::makeup::SensorDoubt;
+use crate::cloud::preparation::Preparation;
+use crate::error::PrepareError;
+use crate::filter::beyond_noise;
+
+/// Σ of points that may have moved since they were seen.
+pub(super) fn moved(noise: SensorNoise, motion: &MotionNoise, points: &[Point3]) -> SensorNoise {
+    if *motion == MotionNoise::default() {
+        return noise;
+    }
+    let sum = |(seen, place): (&Covariance, &Point3)| seen.sum(&motion.covariance(place));
+    SensorNoise::from(noise.iter().zip(points).map(sum).collect::<Vec<_>>())
+}
+
+/// The noise of several lists of points, one after the other; stored once where all have the same.
+pub(super) fn joined(parts: &[&SensorNoise]) -> SensorNoise {
+    let first = parts.first().and_then(|part| part.as_uniform());
+    match first.filter(|first| parts.iter().all(|part| part.as_uniform() == Some(first))) {
+        Some(same) => SensorNoise::uniform(*same, parts.iter().map(|part| part.len()).sum()),
+        None => parts.iter().flat_map(|part| part.iter()).copied().collect::<Vec<_>>().into(),
+    }
+}
+
+/// How far apart coordinates kept in single precision are, m, where that is more than any noise.
+pub(super) fn coarse_step(points: &[Point3], noise: &SensorNoise) -> Option<f64> {
+    let step = single_step(points)?;
+    let most = noise.iter().map(Covariance::max_std_at_most).fold(0.0, f64::max);
+    (step > most).then_some(step)
+}
+
+/// Points taken for the robot of which too many are farther from it than their noise tells.
+pub(super) fn padded(
+    of_robot: &PointCloud,
+    by: Preparation<'_>,
+) -> Result<Option<SensorDoubt>, PrepareError> {
+    /// Cables and joints that are a little off leave fewer.
+    const MOST: f64 = 0.5;
+    if of_robot.is_empty() {
+        return Ok(None);
+    }
+    let noise = moved(by.sensor.covariances(of_robot)?, &by.motion, &of_robot.points);
+    let points = of_robot.points.iter().zip(noise.iter().map(Covariance::max_std_at_most));
+    let share = beyond_noise(points, &by.filter.robot);
+    Ok((share > MOST).then_some(SensorDoubt::Padding { share }))
+}

@@ -1,0 +1,46 @@
+//! Scans that are refused, and what of them is looked at for that.
+
+use cloudtouch_geom::{Point3, UnitVector3};
+use cloudtouch_noise::Places;
+
+use crate::error::PrepareError;
+use crate::filter::StageReport;
+
+pub(super) fn nothing_left(before: usize, stages: &[StageReport]) -> PrepareError {
+    let removed: Vec<String> =
+        stages.iter().map(|s| format!("{} removed {}", s.stage, s.removed)).collect();
+    PrepareError::NothingLeft { before, stages: removed.join(", ") }
+}
+
+/// Normals as they are, after a look at them: a `Unit` can be made without a check.
+pub(super) fn checked(normals: &[UnitVector3]) -> Result<Vec<UnitVector3>, PrepareError> {
+    let checked = |(index, normal): (usize, &UnitVector3)| {
+        let is_unit = (normal.norm() - 1.0).abs() < 1e-6;
+        if is_unit {
+            Ok(*normal)
+        } else {
+            Err(PrepareError::Normal { index, normal: normal.into_inner() })
+        }
+    };
+    normals.iter().enumerate().map(checked).collect()
+}
+
+/// Whether no scan is one that was given before, whose points are as many: given where the points of each end
+/// among those of all. Maps of cells may well hold all of a smaller one.
+pub(super) fn check_for_repeats(points: &[Point3], ends: &[usize]) -> Result<(), PrepareError> {
+    if ends.len() < 2 {
+        return Ok(());
+    }
+    let mut places = Places::of(points);
+    let (mut start, mut counts) = (0, Vec::new());
+    for (scan, &end) in (1..).zip(ends) {
+        // All are to be seen, not the first alone.
+        let own = (start..end).filter(|&index| places.is_first(index)).count();
+        if own == 0 && counts.contains(&(end - start)) {
+            return Err(PrepareError::RepeatedScan { scan });
+        }
+        counts.push(end - start);
+        start = end;
+    }
+    Ok(())
+}
