@@ -1,14 +1,15 @@
 //! The point given its measurement and a surface fitted to its neighbours.
 
 pub(crate) mod settings;
+mod spacing;
 mod wide;
 
-use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3};
 
-use crate::index::spacing::{SPACING_NEIGHBORS, is_noisy, spacing_around, spacing_of_rank};
-use crate::lanes::{Kernel, Lanes, Machine, WIDTH, run};
+use crate::index::spacing::{is_noisy, spacing_around};
 use crate::neighborhoods::Neighborhoods;
-use crate::posterior::settings::PosteriorSettings;
+use crate::posterior::settings::{PosteriorSettings, SurfaceError};
+use crate::posterior::spacing::tangential_spacing;
 use crate::posterior::wide::wide_surface;
 use crate::refined::Refined;
 use crate::representatives::Representatives;
@@ -17,9 +18,6 @@ use crate::sensor::noise::SensorNoise;
 use crate::surface::patch::{MOST_NEIGHBORS, Patch};
 use crate::surface::{Surface, fit_surface};
 
-/// A neighbour so many standard deviations off the surface is not a sample of it.
-const SAMPLE_OFFSET: f64 = 3.5;
-
 /// Noise of so many spacings is no longer small beside them ([`SurfaceError::sharp`]).
 ///
 /// [`SurfaceError::sharp`]: crate::SurfaceError::sharp
@@ -27,13 +25,6 @@ const SHARP: f64 = 0.25;
 
 /// The point given its measurement and the surface of its neighbours, which are in `scratch`; `None`
 /// where there is no surface to be fitted.
-///
-/// With s² the variance of the noise along the normal, V that of the surface, h its height above the
-/// point and d the doubt, the point moves by w h, w = s²/(s² + d V), and has the variance
-/// w² V + u (o + (1 − o) u³) s² along the normal, u = (1 − w)², o the part of its own noise, less of
-/// it where the noise is small beside the spacing, never more than s². Across it the disc of the spacing is
-/// widened by the noise where fits to other neighbourhoods face elsewhere: what is along the normal
-/// of the one is across that of the other.
 pub(crate) fn posterior(
     index: usize,
     neighborhoods: &Neighborhoods,
@@ -73,16 +64,33 @@ pub(crate) fn posterior(
         }
     }
     .min(spacing_cap);
+    let point = given_surface(
+        (&points[index], &sensor[index]),
+        (&surface, &patch),
+        (around, spacing),
+        settings,
+    );
+    Some(Refined { point, spacing, normal: Some(surface.normal) })
+}
 
+/// The point given its measurement, with its covariance, and the surface fitted to a patch about it;
+/// `around` is the spacing of what is measured about it, `spacing` that of samples on the surface.
+///
+/// With s² the variance of the noise along the normal, V that of the surface, h its height above the
+/// point and d the doubt, the point moves by w h, w = s²/(s² + d V), and has the variance
+/// w² V + u (o + (1 − o) u³) s² along the normal, u = (1 − w)², o the part of its own noise, less of
+/// it where the noise is small beside the spacing, never more than s². Across it the disc of the spacing is
+/// widened by the noise where fits to other neighbourhoods face elsewhere: what is along the normal
+/// of the one is across that of the other.
+fn given_surface(
+    (measured, own): (&Point3, &Covariance),
+    (surface, patch): (&Surface, &Patch),
+    (around, spacing): (f64, f64),
+    settings: &PosteriorSettings,
+) -> UncertainPoint {
     let error = &settings.surface_error;
-    let noise = sensor[index].variance_along(&surface.normal);
-    let mut prior = error.leverage * surface.leverage
-        + error.hidden * surface.hidden
-        + error.bend * surface.bend
-        + error.misfit * surface.misfit
-        + error.suspected * surface.suspected
-        + error.disagreement * surface.disagreement
-        + error.tilt * surface.tilt * noise;
+    let noise = own.variance_along(&surface.normal);
+    let mut prior = variance_of(surface, error, noise);
     if surface.height.powi(2)
         > settings.trusted_offset.powi(2) * patch.own_variance(&surface.normal)
     {
@@ -92,17 +100,27 @@ pub(crate) fn posterior(
     let most = settings.most_shift * noise.sqrt();
     let shift = (weight * surface.height).clamp(-most, most);
     let stays = (1.0 - weight).powi(2);
-    let own = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
+    let stays_noisy = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
     let blur = (noise.sqrt() / (SHARP * around)).min(1.0);
     let stated = error.sharp + (1.0 - error.sharp) * blur;
-    let along = (stated * (weight * weight * prior + own)).min(noise);
-    let turned = (error.turn * surface.tilt).min(1.0) * sensor[index].max_std();
+    let along = (stated * (weight * weight * prior + stays_noisy)).min(noise);
+    let turned = (error.turn * surface.tilt).min(1.0) * own.max_std();
     let across = (settings.disc_std * spacing).hypot(turned);
-    let point = UncertainPoint {
-        mean: points[index] + surface.normal.into_inner() * shift,
+    UncertainPoint {
+        mean: measured + surface.normal.into_inner() * shift,
         covariance: disc(&surface.normal, along, across, spacing, settings),
-    };
-    Some(Refined { point, spacing, normal: Some(surface.normal) })
+    }
+}
+
+/// V: how far a surface may be off, given the variance of the noise along its normal.
+fn variance_of(surface: &Surface, error: &SurfaceError, noise: f64) -> f64 {
+    error.leverage * surface.leverage
+        + error.hidden * surface.hidden
+        + error.bend * surface.bend
+        + error.misfit * surface.misfit
+        + error.suspected * surface.suspected
+        + error.disagreement * surface.disagreement
+        + error.tilt * surface.tilt * noise
 }
 
 /// `variance` (m²) and what bends between samples along the normal, the standard deviation `across`
@@ -121,59 +139,4 @@ pub(crate) fn disc(
 /// a/(a + b), and nothing of nothing.
 fn share(a: f64, b: f64) -> f64 {
     if a == 0.0 { 0.0 } else { a / (a + b) }
-}
-
-/// The spacing of the samples on the surface, noise across it left out: the sixth least distance
-/// across the normal among the neighbours near the surface; `None` when there is none.
-fn tangential_spacing(patch: &Patch, surface: &Surface) -> Option<f64> {
-    run(Spacing { patch, surface })
-}
-
-struct Spacing<'a> {
-    patch: &'a Patch<'a>,
-    surface: &'a Surface,
-}
-
-impl Kernel for Spacing<'_> {
-    type Output = Option<f64>;
-
-    #[inline(always)]
-    fn run<S: Machine>(self, machine: S) -> Option<f64> {
-        tangential(machine, self.patch, self.surface)
-    }
-}
-
-#[inline(always)]
-fn tangential<S: Machine>(machine: S, patch: &Patch, surface: &Surface) -> Option<f64> {
-    let mut nearest = [f64::INFINITY; SPACING_NEIGHBORS];
-    let mut count = 0;
-    let precisions = patch.precisions(&surface.normal);
-    let allowance = SAMPLE_OFFSET * SAMPLE_OFFSET * surface.expected_error;
-    for group in 0..patch.groups() {
-        let offsets = patch.group(machine, group);
-        let present = patch.present(machine, group);
-        let [residual, reach] = surface.squared_residual_and_reach(machine, offsets);
-        let precision = precisions.group(machine, group);
-        let excess = (residual - Lanes::splat(machine, allowance)) * precision;
-        let [present, excess, reach] = [present.stored(), excess.stored(), reach.stored()];
-        for lane in 0..WIDTH {
-            if present[lane] > 0.0 && excess[lane] <= SAMPLE_OFFSET * SAMPLE_OFFSET {
-                count += 1;
-                insert(&mut nearest, reach[lane]);
-            }
-        }
-    }
-    let rank = count.min(SPACING_NEIGHBORS);
-    let squared = *nearest.get(rank.checked_sub(1)?)?;
-    Some(spacing_of_rank(squared.sqrt(), rank))
-}
-
-/// Keeps the least values in order.
-#[inline(always)]
-fn insert(least: &mut [f64; SPACING_NEIGHBORS], value: f64) {
-    if value < least[SPACING_NEIGHBORS - 1] {
-        let place = least.partition_point(|&kept| kept <= value);
-        least[place..].rotate_right(1);
-        least[place] = value;
-    }
 }
