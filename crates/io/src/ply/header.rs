@@ -66,14 +66,7 @@ impl Element {
 
 /// Reads up to and including `end_header`; `lines` then stands at the first row.
 pub(super) fn read(lines: &mut Lines<'_>) -> Result<Header, FormatError> {
-    match lines.next() {
-        Some(b"ply") => {}
-        Some(line) => {
-            let (expected, found) = ("a first line of \"ply\"", excerpt(line));
-            return Err(lines.place().error(Fault::WrongMagic { expected, found }));
-        }
-        None => return Err(Place::Byte(0).error(Fault::Empty)),
-    }
+    check_magic(lines)?;
     let mut byte_order = None;
     let mut elements: Vec<Element> = Vec::new();
     let mut names = BTreeSet::new();
@@ -86,15 +79,9 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<Header, FormatError> {
         match line_words.as_slice() {
             [b"comment" | b"obj_info", ..] => {}
             [b"format", encoding, _version] => {
-                byte_order = Some(match *encoding {
-                    b"ascii" => None,
-                    b"binary_little_endian" => Some(ByteOrder::Little),
-                    b"binary_big_endian" => Some(ByteOrder::Big),
-                    _ => {
-                        let expected = "ascii, binary_little_endian or binary_big_endian";
-                        return Err(bad("the format", expected));
-                    }
-                });
+                let expected = "ascii, binary_little_endian or binary_big_endian";
+                let known = encoded(encoding).ok_or_else(|| bad("the format", expected))?;
+                byte_order = Some(known);
             }
             [b"element", name, count] => {
                 if !names.insert(*name) {
@@ -127,6 +114,27 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<Header, FormatError> {
         }
     }
     Err(lines.place().error(Fault::UnexpectedEnd { expected: "end_header" }))
+}
+
+fn check_magic(lines: &mut Lines<'_>) -> Result<(), FormatError> {
+    match lines.next() {
+        Some(b"ply") => Ok(()),
+        Some(line) => {
+            let (expected, found) = ("a first line of \"ply\"", excerpt(line));
+            Err(lines.place().error(Fault::WrongMagic { expected, found }))
+        }
+        None => Err(Place::Byte(0).error(Fault::Empty)),
+    }
+}
+
+/// The byte order of an encoding, which text has none of; `None` for an unknown one.
+fn encoded(encoding: &[u8]) -> Option<Option<ByteOrder>> {
+    match encoding {
+        b"ascii" => Some(None),
+        b"binary_little_endian" => Some(Some(ByteOrder::Little)),
+        b"binary_big_endian" => Some(Some(ByteOrder::Big)),
+        _ => None,
+    }
 }
 
 fn property_kind(words: &[&[u8]]) -> Option<Kind> {

@@ -1,0 +1,66 @@
+//! Which columns of a table are a point, and what a row has in them.
+
+use crate::{
+    builder::Row,
+    column_names::{of_comment, of_header, separator, values},
+    fault::{FormatError, Place},
+    text::{number, parse as parse_number},
+};
+
+/// Which columns are what, as the first row and the last comment before it show.
+#[derive(Debug)]
+pub(super) struct Columns {
+    /// `None` for white space.
+    pub separator: Option<u8>,
+    /// Of each value of a [`Row`] that the table has.
+    pub places: Vec<usize>,
+    /// The same in the order of the columns, each with its place in a [`Row`].
+    wanted: Vec<(usize, usize)>,
+    /// Whether they have names: those without may be anything.
+    pub is_named: bool,
+    /// Whether the first row is the one that names them, and no point.
+    pub is_header: bool,
+}
+
+impl Columns {
+    pub(super) fn of(
+        comment: Option<&[u8]>,
+        first: &[u8],
+        place: Place,
+    ) -> Result<Self, FormatError> {
+        let separator = separator(first);
+        let is_number = |value| parse_number::<f64>(value).is_some();
+        let is_header = !values(first, separator).next().is_none_or(is_number);
+        let named = match comment {
+            _ if is_header => Some(of_header(first, separator, place)?),
+            Some(comment) => {
+                of_comment(comment, first, separator).map_err(|fault| place.error(fault))?
+            }
+            None => None,
+        };
+        let is_named = named.is_some();
+        let places = named.unwrap_or_else(|| vec![0, 1, 2]);
+        let mut wanted: Vec<(usize, usize)> = places.iter().copied().zip(0..).collect();
+        wanted.sort_unstable();
+        Ok(Self { separator, places, wanted, is_named, is_header })
+    }
+
+    /// How many a row has at least.
+    pub(super) fn fewest(&self) -> usize {
+        self.wanted.last().map_or(0, |&(column, _)| column + 1)
+    }
+
+    /// What a row has of these columns, and how many it has in all.
+    pub(super) fn row(&self, line: &[u8], line_number: usize) -> Result<(Row, usize), FormatError> {
+        let mut row: Row = Default::default();
+        let mut wanted = self.wanted.iter().peekable();
+        let mut found = 0;
+        for value in values(line, self.separator) {
+            if let Some((_, slot)) = wanted.next_if(|(column, _)| *column == found) {
+                row[*slot] = number(value, line_number, found + 1)?;
+            }
+            found += 1;
+        }
+        Ok((row, found))
+    }
+}

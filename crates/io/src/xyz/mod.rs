@@ -1,0 +1,98 @@
+//! Tables of coordinates as text: `.xyz`, `.txt`, `.csv`.
+
+mod columns;
+mod unnamed;
+
+use cloudtouch_geom::PointCloud;
+
+use crate::{
+    builder::CloudBuilder,
+    fault::{Fault, FormatError, Place},
+    limits::ReadLimits,
+    text::{Lines, excerpt},
+};
+
+use self::columns::Columns;
+use self::unnamed::{refuse_a_count, refuse_many_columns};
+
+/// Reads a point cloud from a table with one point in each line.
+///
+/// Values are separated by semicolons, or else by commas, or else by white space, as the first
+/// line that is neither blank nor a comment (from `#`) shows. When the first value of that line is
+/// not a number it names the columns: x, y, z and perhaps cov_xx, cov_xy, cov_xz, cov_yy, cov_yz,
+/// cov_zz (m², all six or none), in any order and case; so does the last comment before it, when it has x, y
+/// and z among as many words as the line has numbers. `x (m)` and `x [m]` are x, and so is `Points:0` of
+/// ParaView; another unit there is refused. Without names the first three columns are x, y, z.
+/// Other columns are passed over. `nan` is a missing return.
+///
+/// # Errors
+/// When there is nothing but comments, a column is missing or named twice, a row is too short, a
+/// value is no number, a covariance is none, a row
+/// without column names seems to hold several points, the first of four or more such columns counts the rows, or there are more points than the default [`ReadLimits`] allow.
+pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
+    parse_within(bytes, &ReadLimits::default())
+}
+
+/// As [`parse`], with other limits than the default ones.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, FormatError> {
+    let mut lines = Lines::new(bytes);
+    let (comment, first) = first_row(&mut lines);
+    let first = first.ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
+    let first_place = lines.place();
+    let columns = Columns::of(comment, first, first_place)?;
+
+    let mut pending = (!columns.is_header).then_some(first);
+    let mut cloud = CloudBuilder::new(&columns.places, 0, limits);
+    let mut widest = (0, lines.place());
+    while let Some(line) = pending.take().or_else(|| next_row(&mut lines)) {
+        let (row, found) = columns.row(line, lines.number)?;
+        let expected = columns.fewest();
+        if found < expected {
+            let is_count = !columns.is_named && cloud.len() == 0 && found == 1;
+            return Err(lines.place().error(match is_count {
+                true => Fault::CountLine { found: excerpt(line) },
+                false => Fault::RowLength { expected, found },
+            }));
+        }
+        cloud.push(&row, lines.place())?;
+        if found > widest.0 {
+            widest = (found, lines.place());
+        }
+    }
+    let cloud = cloud.finish();
+    if !columns.is_named {
+        let (found, place) = widest;
+        refuse_many_columns(found, cloud.len()).map_err(|fault| place.error(fault))?;
+        refuse_a_count(&cloud.points, found, columns.separator)
+            .map_err(|fault| first_place.error(fault))?;
+    }
+    Ok(cloud)
+}
+
+/// The first line with something in it, and the last comment before it.
+fn first_row<'a>(lines: &mut Lines<'a>) -> (Option<&'a [u8]>, Option<&'a [u8]>) {
+    let mut comment = None;
+    for line in lines.by_ref() {
+        match line.strip_prefix(b"#") {
+            Some(words) => comment = Some(words),
+            None => {
+                let row = line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii();
+                if !row.is_empty() {
+                    return (comment, Some(row));
+                }
+            }
+        }
+    }
+    (comment, None)
+}
+
+/// The next line with something in it, without its comment.
+fn next_row<'a>(lines: &mut Lines<'a>) -> Option<&'a [u8]> {
+    lines
+        .by_ref()
+        .map(|line| line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii())
+        .find(|line| !line.is_empty())
+}
