@@ -36,21 +36,44 @@ pub(super) fn weigh<'a>(
     task: &Task<'_>,
     stats: &mut Stats,
 ) -> Result<Weighed<'a>, QueryError> {
-    let (settings, judge) = (task.settings, &task.judge);
-    let of = |log_odds| probability(log_odds, settings.prior);
-    let decides = |deviations: f64, clearness: f64| {
-        let log_odds = judge.log_odds_by_place(deviations, clearness.ln_1p());
-        // More evidence only raises the odds; what the extent and a classifier could take off them is taken
-        // off.
-        let [least, _] = judge.with_any_extent(log_odds);
-        let is_decided = || of(judge.revise(least, 0.0)) > settings.accept;
-        of(least) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
-    };
-    let looked = look_inside((a, b), a_from_b, &task.clock, |deviations| decides(deviations, 0.0));
+    let judge = &task.judge;
+    let looked =
+        look_inside((a, b), a_from_b, &task.clock, |deviations| is_enough(deviations, 0.0, task));
     stats.nodes_visited += looked.nodes_visited;
     stats.leaves_prepared += looked.leaves_prepared;
+    let found = search_beyond(&looked, (a, b), a_from_b, task, stats)?;
+    let mut of_geometry = ContactEvidence {
+        deviations: looked.deviations_given(found.deviations),
+        crossing: found.crossings.clearness().ln_1p(),
+        extent: None,
+        misclassified: None,
+        noise_over_spacing: task.noise_over_spacing,
+    };
+    let by_place = judge.log_odds_by_place(of_geometry.deviations, of_geometry.crossing);
+    let is_complete = found.is_complete && !looked.is_cut_short;
+    if is_complete && judge.may_change_with_extent(by_place) {
+        of_geometry.extent = Some(found.extent((a, b), a_from_b));
+    }
+    let by_geometry = judge.with_extent(by_place, of_geometry.extent);
+    let misclassified = if is_complete && is_in_doubt(by_geometry, task) {
+        ask_classifier((a, b), a_from_b, &found, by_geometry, task, stats)?
+            .or_inside(looked.surely_inside())
+    } else {
+        Misclassified::NOT_ASKED
+    };
+    Ok(Weighed { found, looked, of_geometry, by_place, by_geometry, misclassified, is_complete })
+}
+
+/// Searches the surfaces after a look inside, until what both say is enough.
+fn search_beyond<'a>(
+    looked: &Looked,
+    (a, b): (BodyRef<'a>, BodyRef<'a>),
+    a_from_b: &Pose,
+    task: &Task<'_>,
+    stats: &mut Stats,
+) -> Result<Found<'a>, QueryError> {
     let told = Cell::new(None);
-    let is_enough = |deviations: f64, clearness: f64| {
+    let stops = |deviations: f64, clearness: f64| {
         if task.clock.is_over() {
             return true;
         }
@@ -58,38 +81,31 @@ pub(super) fn weigh<'a>(
         if told.replace(Some((deviations, clearness))) == Some((deviations, clearness)) {
             return false;
         }
-        decides(looked.deviations_given(deviations), clearness)
+        is_enough(looked.deviations_given(deviations), clearness, task)
     };
-    let further = if judge.counts_extent() { WITH_EXTENT } else { WITHOUT_EXTENT };
-    let found = search((a, b), a_from_b, further, is_enough, stats)?;
-    let deviations = looked.deviations_given(found.deviations);
-    let crossing = found.crossings.clearness().ln_1p();
-    let mut of_geometry = ContactEvidence {
-        deviations,
-        crossing,
-        extent: None,
-        misclassified: None,
-        noise_over_spacing: task.noise_over_spacing,
-    };
-    let by_place = judge.log_odds_by_place(deviations, crossing);
-    let is_complete = found.is_complete && !looked.is_cut_short;
-    if is_complete && judge.may_change_with_extent(by_place) {
-        of_geometry.extent = Some(found.extent((a, b), a_from_b));
-    }
-    let by_geometry = judge.with_extent(by_place, of_geometry.extent);
+    let further = if task.judge.counts_extent() { WITH_EXTENT } else { WITHOUT_EXTENT };
+    search((a, b), a_from_b, further, stops, stats)
+}
 
+/// Whether further evidence, which only raises the odds, could change nothing that is asked.
+fn is_enough(deviations: f64, clearness: f64, task: &Task<'_>) -> bool {
+    let (settings, judge) = (task.settings, &task.judge);
+    let of = |log_odds| probability(log_odds, settings.prior);
+    let log_odds = judge.log_odds_by_place(deviations, clearness.ln_1p());
+    // What the extent and a classifier could take off the odds is taken off.
+    let [least, _] = judge.with_any_extent(log_odds);
+    let is_decided = || of(judge.revise(least, 0.0)) > settings.accept;
+    of(least) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
+}
+
+/// Whether a classifier is to be asked: it may move the odds by geometry, and what is asked hangs on it.
+fn is_in_doubt(by_geometry: f64, task: &Task<'_>) -> bool {
+    let (settings, judge) = (task.settings, &task.judge);
+    let of = |log_odds| probability(log_odds, settings.prior);
     // Whatever a classifier says, the verdict is the same.
     let is_settled = || {
         of(judge.revise(by_geometry, f64::INFINITY)) < settings.reject
             || of(judge.revise(by_geometry, 0.0)) > settings.accept
     };
-    let is_open = judge.is_open(by_geometry);
-    let is_wanted = is_open && !(settings.detail == Detail::Verdict && is_settled());
-    let misclassified = if is_complete && is_wanted {
-        ask_classifier((a, b), a_from_b, &found, by_geometry, task, stats)?
-            .or_inside(looked.surely_inside())
-    } else {
-        Misclassified::NOT_ASKED
-    };
-    Ok(Weighed { found, looked, of_geometry, by_place, by_geometry, misclassified, is_complete })
+    judge.is_open(by_geometry) && !(settings.detail == Detail::Verdict && is_settled())
 }
