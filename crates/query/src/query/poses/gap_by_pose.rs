@@ -48,59 +48,84 @@ pub(super) fn gap_by_pose(
 ) -> Wrench {
     // Where A is a mesh, it is easier to see it move and B keep: the opposite.
     let a_moves = matches!(a, BodyRef::Mesh(_));
-    let nearest = &finding.nearest;
     let offset = offset((a, b), a_from_b, finding);
-    let turning = |normal: Option<Vector3>, moves: bool| {
-        let changes = |n: &Vector3| if moves { of_direction(n) } else { Changes::zeros() };
-        normal.map(|value| Moved { value, changes: changes(&value) })
-    };
-    let normals = [turning(nearest.normals[0], a_moves), turning(nearest.normals[1], !a_moves)];
-    let axis = match (common_normal(finding), normals) {
-        (Some(_), [Some(of_a), Some(of_b)]) => {
-            of_a.plus(&of_b, of_a.value.dot(&of_b.value).signum()).unit()
-        }
-        (Some(_), [only, None] | [None, only]) => only.unwrap_or(Moved::fixed(spot.normal)),
-        (None, _) => separating((a_moves, finding), &offset),
-    };
+    let normals = normals(finding, a_moves);
+    let axis = axis((a_moves, finding), normals, &offset, spot);
     let of_mesh = if a_moves { normals[0] } else { normals[1] };
-    let known = outward(a, b, nearest.normals).and(of_mesh);
+    let known = outward(a, b, finding.nearest.normals).and(of_mesh);
     let normal = match known {
         Some(known) if known.value.dot(&axis.value).abs() > ONE_PLANE => known,
         _ => axis,
     };
     let turned = normal.value.dot(&spot.normal).signum();
     let normal = Moved { value: normal.value * turned, changes: normal.changes * turned };
+    let footprint = FOOTPRINT_SPACINGS * finding.nearest.spacing;
+    let reach = reach([(a, normals[0]), (b, normals[1])], &axis, footprint);
+    let by_pose = between(&offset, &normal, reach, 2.0 * footprint);
+    if a_moves { -by_pose } else { by_pose }
+}
 
+/// The normals of the two pieces, of which that of the body that moves turns.
+fn normals(finding: &Finding, a_moves: bool) -> [Option<Moved>; 2] {
+    let turning = |normal: Option<Vector3>, moves: bool| {
+        let changes = |n: &Vector3| if moves { of_direction(n) } else { Changes::zeros() };
+        normal.map(|value| Moved { value, changes: changes(&value) })
+    };
+    let [of_a, of_b] = finding.nearest.normals;
+    [turning(of_a, a_moves), turning(of_b, !a_moves)]
+}
+
+/// What the gap is along: the common normal of the pieces, or that of the plane that separates them.
+fn axis(
+    (a_moves, finding): (bool, &Finding),
+    normals: [Option<Moved>; 2],
+    offset: &Moved,
+    spot: &Spot,
+) -> Moved {
+    match (common_normal(finding), normals) {
+        (Some(_), [Some(of_a), Some(of_b)]) => {
+            of_a.plus(&of_b, of_a.value.dot(&of_b.value).signum()).unit()
+        }
+        (Some(_), [only, None] | [None, only]) => only.unwrap_or(Moved::fixed(spot.normal)),
+        (None, _) => separating((a_moves, finding), offset),
+    }
+}
+
+/// What the pieces of clouds reach along the axis to the other, m.
+fn reach(pieces: [(BodyRef<'_>, Option<Moved>); 2], axis: &Moved, footprint: f64) -> (f64, Wrench) {
     let mut reach = (0.0, Wrench::zeros());
-    for (body, of_piece) in [(a, normals[0]), (b, normals[1])] {
+    for (body, normal) in pieces {
         if matches!(body, BodyRef::Cloud(_)) {
-            let (cosine, changes) = of_piece.map_or((0.0, Wrench::zeros()), |n| n.dot(&axis));
+            let (cosine, changes) = normal.map_or((0.0, Wrench::zeros()), |n| n.dot(axis));
             let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-            let footprint = FOOTPRINT_SPACINGS * nearest.spacing;
             reach.0 += footprint * sine;
             if sine > 0.0 {
                 reach.1 -= changes * (footprint * cosine / sine);
             }
         }
     }
-    let across = normal.dot(&offset);
-    let aside = offset.plus(&normal, -across.0);
-    let beyond = (aside.value.norm() - 2.0 * FOOTPRINT_SPACINGS * nearest.spacing).max(0.0);
+    reach
+}
+
+/// Of the distance that an offset leaves between pieces that reach so far along the normal, and so far to
+/// their sides.
+fn between(offset: &Moved, normal: &Moved, reach: (f64, Wrench), to_sides: f64) -> Wrench {
+    let across = normal.dot(offset);
+    let aside = offset.plus(normal, -across.0);
+    let beyond = (aside.value.norm() - to_sides).max(0.0);
     let apart = match across.0 {
         gap if gap <= 0.0 => across,
         gap if gap <= reach.0 => (0.0, Wrench::zeros()),
         gap => (gap - reach.0, across.1 - reach.1),
     };
-    let by_pose = if beyond > 0.0 {
-        let apart = if apart.0 > 0.0 { apart } else { (0.0, Wrench::zeros()) };
-        // What is aside is across the normal: that this turns within the way counts nothing.
-        let away = aside.value.normalize();
-        let of_aside = offset.changes.tr_mul(&away) - normal.changes.tr_mul(&away) * across.0;
-        (apart.1 * apart.0 + of_aside * beyond) / apart.0.hypot(beyond)
-    } else {
-        apart.1
-    };
-    if a_moves { -by_pose } else { by_pose }
+    if beyond <= 0.0 {
+        return apart.1;
+    }
+    let apart = if apart.0 > 0.0 { apart } else { (0.0, Wrench::zeros()) };
+    // What is aside is across the normal: that this turns within the way counts nothing.
+    let away = aside.value.normalize();
+    let of_aside = offset.changes.tr_mul(&away) - normal.changes.tr_mul(&away) * across.0;
+    (apart.1 * apart.0 + of_aside * beyond) / apart.0.hypot(beyond)
 }
 
 /// From the piece of A to that of B.
