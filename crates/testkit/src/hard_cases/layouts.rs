@@ -36,42 +36,24 @@ pub(super) fn few_points() -> Vec<HardCase> {
     ]
 }
 
-pub(super) fn degenerate() -> Vec<HardCase> {
+/// Without extent in some direction, or with far too much.
+pub(super) fn flat() -> Vec<HardCase> {
     let line =
         |y: f64| (0..50).map(|i| Point3::new(0.004 * f64::from(i), y, 0.0)).collect::<Vec<_>>();
-    let grid: Vec<Point3> = (0..4000)
-        .map(|i| {
-            Point3::new(
-                0.01 * f64::from(i % 20),
-                0.01 * f64::from(i / 20 % 20),
-                0.01 * f64::from(i / 400),
-            )
-        })
-        .collect();
-    let above = grid.iter().map(|p| p + Vector3::z() * 0.15).collect();
-    let patch_points = patch(0.0, 100, 1);
-    let mut with_outlier = patch(0.05, 100, 2);
-    with_outlier.push(Point3::new(1e6, 0.0, 0.0));
     let strip = |z: f64| {
         let at = |i: u32| Point3::new(0.5 * f64::from(i), 1e-3 * f64::from(i % 2), z);
         (0..2000).map(at).collect::<Vec<_>>()
     };
+    let patch_points = patch(0.0, 100, 1);
     let beside = patch_points.iter().map(|p| p + Vector3::x() * 0.25).collect();
-    let every_third = patch_points.iter().step_by(3).copied().collect();
-    let tenfold = |z: f64| [patch(z, 20, 1).as_slice()].repeat(10).concat();
+    let mut with_outlier = patch(0.05, 100, 2);
+    with_outlier.push(Point3::new(1e6, 0.0, 0.0));
     vec![
         HardCase::new(
             "all-equal",
             "boxes, spacing and spread are zero; a split never ends",
             vec![Point3::origin(); 50],
             vec![Point3::new(0.0, 0.0, 0.05); 50],
-        )
-        .collides(false),
-        HardCase::new(
-            "duplicates",
-            "every point ten times: k neighbours at distance zero",
-            tenfold(0.0),
-            tenfold(0.05),
         )
         .collides(false),
         HardCase::new(
@@ -91,7 +73,7 @@ pub(super) fn degenerate() -> Vec<HardCase> {
         HardCase::new(
             "far-outlier",
             "one point a thousand kilometres away: a box around it has no room for the rest",
-            patch_points.clone(),
+            patch_points,
             with_outlier,
         )
         .collides(false),
@@ -100,6 +82,32 @@ pub(super) fn degenerate() -> Vec<HardCase> {
             "strips a kilometre long, a millimetre wide, 5 cm apart",
             strip(0.0),
             strip(0.05),
+        )
+        .collides(false),
+    ]
+}
+
+/// The same points, or the same coordinates, again and again.
+pub(super) fn repeated() -> Vec<HardCase> {
+    let tenfold = |z: f64| [patch(z, 20, 1).as_slice()].repeat(10).concat();
+    let patch_points = patch(0.0, 100, 1);
+    let every_third = patch_points.iter().step_by(3).copied().collect();
+    let grid: Vec<Point3> = (0..4000)
+        .map(|i| {
+            Point3::new(
+                0.01 * f64::from(i % 20),
+                0.01 * f64::from(i / 20 % 20),
+                0.01 * f64::from(i / 400),
+            )
+        })
+        .collect();
+    let above = grid.iter().map(|p| p + Vector3::z() * 0.15).collect();
+    vec![
+        HardCase::new(
+            "duplicates",
+            "every point ten times: k neighbours at distance zero",
+            tenfold(0.0),
+            tenfold(0.05),
         )
         .collides(false),
         HardCase::new(

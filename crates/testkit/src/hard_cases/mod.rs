@@ -15,7 +15,8 @@ pub use problems::{HardProblem, hard_problems};
 pub fn hard_cases() -> Vec<HardCase> {
     [
         layouts::few_points(),
-        layouts::degenerate(),
+        layouts::flat(),
+        layouts::repeated(),
         numbers::scales(),
         numbers::covariances(),
         numbers::not_finite(),
