@@ -42,7 +42,6 @@ pub(crate) struct PairArguments {
 }
 
 /// All that the options say of the bodies; what a command does not take is not given.
-#[derive(Clone)]
 pub(crate) struct BodyOptions<'a> {
     pub common: &'a CommonArguments,
     /// Of bodies that are depth images.

@@ -27,10 +27,11 @@ const SUSPICIOUS_SPACING: f64 = 0.5;
 const MAP_COORDINATE: f64 = 1e4;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
+    let images = &arguments.depth.images();
     let units = Units {
         meshes: arguments.unit.unwrap_or_default(),
         clouds: arguments.cloud_unit.unwrap_or_default(),
-        images: arguments.depth.images(),
+        images,
     };
     if let Some(option) = arguments.depth.given().filter(|_| !is_depth_image(&arguments.file)) {
         bail!(unused::of_images(option));
@@ -41,7 +42,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
         let text = super::recording::describe(&name?, arguments, describe_cloud)?;
         return answer(arguments, &text);
     }
-    let text = match load::geometry(&arguments.file, &units, &arguments.limits.read_limits())? {
+    let text = match load::geometry(&arguments.file, units, &arguments.limits.read_limits())? {
         (Geometry::Cloud(_), _) if arguments.unit.is_some() => {
             bail!("--unit is for meshes, and this is a cloud: give --cloud-unit")
         }

@@ -12,11 +12,11 @@ use cloudtouch_io::{
 use crate::args::{BodyOptions, CommonArguments};
 
 /// What the coordinates of files are in, and what takes depth images.
-#[derive(Debug, Clone)]
-pub(crate) struct Units {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Units<'a> {
     pub meshes: LengthUnit,
     pub clouds: LengthUnit,
-    pub images: DepthImages,
+    pub images: &'a DepthImages,
 }
 
 /// What a file was taken for.
@@ -27,13 +27,13 @@ pub(crate) enum Kind {
     DepthImage(DepthCamera),
 }
 
-impl Units {
-    pub(super) fn of(options: &BodyOptions<'_>) -> Self {
+impl<'a> Units<'a> {
+    pub(super) fn of(options: &'a BodyOptions<'_>) -> Self {
         let CommonArguments { unit, cloud_unit, .. } = options.common;
         Self {
             meshes: unit.unwrap_or_default(),
             clouds: cloud_unit.unwrap_or_default(),
-            images: options.depth.clone(),
+            images: &options.depth,
         }
     }
 }
@@ -74,7 +74,7 @@ pub(crate) fn check(path: &Path) -> Result<()> {
 /// that the two are often mixed.
 pub(crate) fn geometry(
     path: &Path,
-    units: &Units,
+    units: Units<'_>,
     limits: &ReadLimits,
 ) -> Result<(Geometry, Kind)> {
     check(path)?;

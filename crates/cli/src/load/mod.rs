@@ -100,7 +100,7 @@ pub(crate) fn body_in<C: PreparedCloud>(
         Some(unit) => Units { meshes: unit, clouds: unit, ..usual },
         None => usual,
     };
-    bodies_in(&[path], &units, Role::Object, sensor, options)
+    bodies_in(&[path], units, Role::Object, sensor, options)
 }
 
 /// Reads files and prepares them as one body: several scans of one frame, or one mesh.
@@ -110,12 +110,12 @@ pub(crate) fn bodies<C: PreparedCloud>(
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
-    bodies_in(paths, &Units::of(options), role, sensor, options)
+    bodies_in(paths, Units::of(options), role, sensor, options)
 }
 
 fn bodies_in<C: PreparedCloud>(
     paths: &[&Path],
-    units: &Units,
+    units: Units<'_>,
     role: Role,
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
@@ -145,7 +145,7 @@ pub(crate) fn surroundings(
 ) -> Result<Loaded<Cloud>> {
     let common = options.common;
     let units = Units::of(options);
-    match geometry(path, &units, &common.limits.read_limits())? {
+    match geometry(path, units, &common.limits.read_limits())? {
         (Geometry::Mesh(mesh), _) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
         (Geometry::Cloud(cloud), kind) => {
             let (scans, sensor) = (vec![(cloud, kind)], common.scene_sensor());

@@ -10,7 +10,7 @@ use crate::answers::per_point::Details;
 use crate::answers::print;
 use crate::answers::query::{Answer as Line, json_error_line};
 use crate::answers::table::Table;
-use crate::args::BatchArguments;
+use crate::args::{BatchArguments, BodyOptions};
 use crate::body;
 use crate::ordered;
 use crate::pages::batch::{Answered, Shown};
@@ -20,6 +20,7 @@ use crate::progress::progress_bar;
 pub(super) struct Batch<'a, P: body::Estimator> {
     pub query: &'a P,
     pub arguments: &'a BatchArguments,
+    pub options: &'a BodyOptions<'a>,
     pub file: &'a CaseFile,
     pub bodies: &'a Bodies<P::Cloud>,
 }
@@ -77,11 +78,12 @@ impl<'a, P: body::Estimator> Batch<'a, P> {
 
     fn answer(&self, case: &'a Result<Case>) -> Answer<'a, P::Cloud> {
         let case = case.as_ref().map_err(|error| format!("{error:#}"))?;
-        let [scene, object] = keys(self.arguments, case).map(|key| match self.bodies.get(&key) {
-            Some(Ok(loaded)) => Ok(loaded),
-            Some(Err(error)) => Err(error.clone()),
-            None => Err(format!("{}: not prepared", key.0.display())),
-        });
+        let [scene, object] =
+            keys(self.arguments, self.options, case).map(|key| match self.bodies.get(&key) {
+                Some(Ok(loaded)) => Ok(loaded),
+                Some(Err(error)) => Err(error.clone()),
+                None => Err(format!("{}: not prepared", key.0.display())),
+            });
         let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
         let (report, nearness) = self
             .query

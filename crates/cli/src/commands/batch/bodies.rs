@@ -7,7 +7,7 @@ use anyhow::{Result, anyhow};
 use cloudtouch_cli::files::case::Case;
 use rayon::prelude::*;
 
-use crate::args::BatchArguments;
+use crate::args::{BatchArguments, BodyOptions};
 use crate::body::PreparedCloud;
 use crate::load::sensor_for::SensorsFor;
 use crate::load::{self, Input, Loaded, Role};
@@ -22,12 +22,12 @@ pub(super) type Bodies<C> = BTreeMap<BodyKey, Result<Loaded<C>, String>>;
 /// Prepares each file once for each role and sensor that the cases have it in.
 pub(super) fn prepare<'a, C: PreparedCloud>(
     arguments: &BatchArguments,
+    options: &BodyOptions<'_>,
     cases: impl Iterator<Item = &'a Case>,
 ) -> Result<Bodies<C>> {
-    let options = &arguments.bodies();
     // How many poses are asked of each.
     let mut wanted: BTreeMap<BodyKey, usize> = BTreeMap::new();
-    for key in cases.flat_map(|case| keys(arguments, case)) {
+    for key in cases.flat_map(|case| keys(arguments, options, case)) {
         *wanted.entry(key).or_default() += 1;
     }
     let progress = progress_bar(wanted.len(), "files");
@@ -61,16 +61,19 @@ pub(super) fn prepare<'a, C: PreparedCloud>(
     Ok(bodies)
 }
 
-pub(super) fn keys(arguments: &BatchArguments, case: &Case) -> [BodyKey; 2] {
-    let common = &arguments.common;
+pub(super) fn keys(
+    arguments: &BatchArguments,
+    options: &BodyOptions<'_>,
+    case: &Case,
+) -> [BodyKey; 2] {
     let named = sensors_for(arguments);
     let key = |path: &Path, role, given: Option<SensorChoice>, default: SensorChoice| {
         let sensor = given.or(named.of(path)).unwrap_or(default);
         (path.to_owned(), role, sensor.to_string())
     };
     [
-        key(&case.scene, Role::Scene, case.scene_sensor, common.scene_sensor()),
-        key(&case.object, Role::Object, case.object_sensor, arguments.bodies().object_sensor()),
+        key(&case.scene, Role::Scene, case.scene_sensor, options.common.scene_sensor()),
+        key(&case.object, Role::Object, case.object_sensor, options.object_sensor()),
     ]
 }
 
@@ -81,13 +84,14 @@ pub(super) fn sensors_for(arguments: &BatchArguments) -> SensorsFor<'_> {
 /// Cases are often written by programs, the same fields for clouds and meshes: one is told, and none refused.
 pub(super) fn warn_of_sensors_of_meshes<'a, C: PreparedCloud>(
     arguments: &BatchArguments,
+    options: &BodyOptions<'_>,
     mut cases: impl Iterator<Item = &'a Case>,
     bodies: &Bodies<C>,
 ) {
     let found = cases.find_map(|case| {
         let given = [case.scene_sensor.is_some(), case.object_sensor.is_some()];
         let fields = ["scene_sensor", "object_sensor"].into_iter().zip(given);
-        fields.zip(keys(arguments, case)).find_map(|((field, is_given), key)| {
+        fields.zip(keys(arguments, options, case)).find_map(|((field, is_given), key)| {
             let body = bodies.get(&key)?.as_ref().ok()?;
             (is_given && body.is_mesh()).then(|| unused::of_a_mesh(field, &body.input.file))
         })

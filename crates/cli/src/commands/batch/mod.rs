@@ -14,7 +14,7 @@ use cloudtouch_io::write_atomically;
 
 use self::answers::{Batch, Done};
 use crate::answers::print;
-use crate::args::{BatchArguments, ModeName};
+use crate::args::{BatchArguments, BodyOptions, ModeName};
 use crate::body;
 use crate::output::{self, Output};
 use crate::pages::batch::Shown;
@@ -33,12 +33,13 @@ fn run_by<P: body::Estimator>(query: &P, arguments: &BatchArguments) -> Result<E
     let limits = arguments.common.limits.read_limits();
     let file = case::read(&arguments.cases, limits.bytes)?;
     let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
-    check_files(arguments, &file)?;
+    let options = &arguments.bodies();
+    check_files(arguments, options, &file)?;
     bodies::sensors_for(arguments).check(&file)?;
     warn_of_same_names(arguments, &file);
-    let bodies = bodies::prepare::<P::Cloud>(arguments, good())?;
-    bodies::warn_of_sensors_of_meshes(arguments, good(), &bodies);
-    let batch = Batch { query, arguments, file: &file, bodies: &bodies };
+    let bodies = bodies::prepare::<P::Cloud>(arguments, options, good())?;
+    bodies::warn_of_sensors_of_meshes(arguments, options, good(), &bodies);
+    let batch = Batch { query, arguments, options, file: &file, bodies: &bodies };
     let mut done = Done { has_failed: false, shown: Shown::new() };
     let mut write = |jsonl: &mut dyn Write| batch.write(jsonl, &mut done);
     match &arguments.jsonl {
@@ -53,10 +54,13 @@ fn run_by<P: body::Estimator>(query: &P, arguments: &BatchArguments) -> Result<E
 }
 
 /// Whether no file would be written that is there, or is read.
-fn check_files(arguments: &BatchArguments, file: &CaseFile) -> Result<()> {
+fn check_files(
+    arguments: &BatchArguments,
+    options: &BodyOptions<'_>,
+    file: &CaseFile,
+) -> Result<()> {
     let cases = file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
     let files = cases.flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
-    let options = arguments.bodies();
     let settings = options.settings.map(|file| &file.path);
     let others = options.robot.iter().chain([&arguments.cases]).chain(settings);
     let inputs = files.chain(others.map(PathBuf::as_path));
