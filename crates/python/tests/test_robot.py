@@ -233,7 +233,7 @@ def test_wrong_positions_and_files_are_told(robot, folder, floor_under):
         ct.RobotChecker(robot, np.zeros((5, 3)))
     with pytest.raises(ct.CloudtouchError, match="path has 1 positions"):
         checker.check_path(ct.Query(), [at(0.0)])
-    with pytest.raises(ct.CloudtouchError, match="position 1 of the path: joint `shoulder`"):
+    with pytest.raises(ct.CloudtouchError, match="position 2 of the path: joint `shoulder`"):
         checker.check_path(ct.Query(), [at(0.0), at(9.0)])
     with pytest.raises(ValueError, match=r"path\[1\] has the shape"):
         checker.check_path(ct.Query(), [[0.0, 0.0], [0.0]])

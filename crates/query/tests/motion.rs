@@ -284,12 +284,14 @@ fn bad_paths_and_tolerances_are_refused_by_value() {
         (Path::through(&[here]).unwrap_err(), "a path through 1 poses"),
         (Path::linear(&here, &here).unwrap_err(), "all 2 poses of the path are the same"),
         (Path::screw(&here, &here).unwrap_err(), "all 2 poses"),
-        (Path::through(&[here, there, unknown]).unwrap_err(), "pose 2 of the path contains NaN"),
-        (Path::linear(&at(0.0, 2e10, 0.0), &here).unwrap_err(), "pose 0 of the path contains 2e10"),
+        (Path::through(&[here, there, unknown]).unwrap_err(), "pose 3 of the path contains NaN"),
+        (Path::linear(&at(0.0, 2e10, 0.0), &here).unwrap_err(), "pose 1 of the path contains 2e10"),
     ];
     for (error, part) in errors {
         assert!(error.to_string().starts_with(part), "{error}");
     }
+    let error = Path::through(&[here, unknown]).unwrap_err();
+    assert!(matches!(error, QueryError::PathPose { index: 1, .. }), "an index from 0: {error:?}");
     let a = body(true, &scene::cuboid([0.1; 3]), 0.0, 0.0, 1);
     let path = Path::linear(&here, &there).expect("two poses");
     for value in [0.0, 1.0, -0.1, f64::NAN, f64::INFINITY] {

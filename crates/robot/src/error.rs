@@ -323,9 +323,9 @@ pub enum PathError {
         value: f64,
     },
     /// A position that places no robot.
-    #[error("position {index} of the path: {error}")]
+    #[error("position {} of the path: {error}", index + 1)]
     Joints {
-        /// Which, from 0.
+        /// Which, from 0; the message counts from 1.
         index: usize,
         /// What is wrong with it.
         error: JointsError,

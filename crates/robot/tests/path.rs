@@ -87,7 +87,10 @@ fn paths_that_are_none_are_refused() {
     for bad in [0.0, -1.0, 1.5, f64::NAN] {
         assert!(matches!(check(&two, bad), PathError::Tolerance { .. }), "{bad}");
     }
-    assert!(matches!(check(&[around(0.0), around(9.0)], 0.1), PathError::Joints { index: 1, .. }));
+    // People count from 1, indexes from 0.
+    let error = check(&[around(0.0), around(9.0)], 0.1);
+    assert!(error.to_string().starts_with("position 2 of the path: joint `"), "{error}");
+    assert!(matches!(error, PathError::Joints { index: 1, .. }), "{error:?}");
 }
 
 /// A camera 3.5 m over the arm, with a plate before it that hides what is 80 cm in front of the arm.

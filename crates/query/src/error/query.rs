@@ -156,11 +156,11 @@ pub enum QueryError {
     },
     /// A pose of a path has an entry as in [`Self::Pose`].
     #[error(
-        "pose {index} of the path contains {}: every entry must be finite, and at most 1e10 m",
-        number(*value)
+        "pose {} of the path contains {}: every entry must be finite, and at most 1e10 m",
+        index + 1, number(*value)
     )]
     PathPose {
-        /// Which, from 0.
+        /// Which, from 0; the message counts from 1.
         index: usize,
         /// What was found.
         value: f64,
