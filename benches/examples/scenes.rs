@@ -6,16 +6,14 @@ use std::time::Instant;
 
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, CloudSettings, Detail, Mesh, Query, QuerySettings, Scene};
-use cloudtouch_geom::{PointCloud, Pose, Vector3};
-use cloudtouch_testkit::measured::measured;
-use cloudtouch_testkit::scene;
+use cloudtouch_geom::PointCloud;
+use cloudtouch_testkit::workshop::{self, Workshop, workshop};
 
 /// Each time is the least of so many.
 const RUNS: usize = 30;
-const STD: f64 = 0.001;
 
 fn main() {
-    let scene = workshop();
+    let scene = of_workshop();
     let near = near_pairs(&scene);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     for detail in [Detail::Full, Detail::Verdict] {
@@ -33,31 +31,22 @@ fn main() {
     }
 }
 
-fn workshop() -> Scene {
+fn of_workshop() -> Scene {
+    let Workshop { balls, link, links } = workshop();
     let mut all = Scene::default();
-    let spacing = (4.0 * std::f64::consts::PI * 0.05_f64.powi(2) / 1000.0).sqrt();
-    let settings = CloudSettings::new(SensorModel::Isotropic { std: STD });
-    for k in 0..100_u32 {
-        let points = measured(&scene::sphere(0.05, 3), spacing, STD, u64::from(k));
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: workshop::STD });
+    for (name, points, place) in balls {
         let ball = Cloud::prepare(&PointCloud::from_points(points), &settings);
-        let place = at(0.3 * f64::from(k % 10), 0.3 * f64::from(k / 10), 0.0);
-        all.add(format!("ball {k}"), ball.expect("a usable cloud"), place).expect("a new name");
+        all.add(name, ball.expect("a usable cloud"), place).expect("a new name");
     }
-    let link = Mesh::prepare(&scene::cuboid([0.2, 0.04, 0.04])).expect("a box");
-    let link = Arc::new(Body::from(link));
-    for k in 0..12 {
-        let place = at(0.15 + 0.2 * f64::from(k), 0.0, 0.08);
-        all.add(format!("link {k}"), Arc::clone(&link), place).expect("a new name");
-        if k > 0 {
-            let [a, b] = [k - 1, k].map(|k| format!("link {k}"));
-            all.allow(&a, &b).expect("two of the scene");
-        }
+    let link = Arc::new(Body::from(Mesh::prepare(&link).expect("a box")));
+    for (name, place) in &links {
+        all.add(name, Arc::clone(&link), *place).expect("a new name");
+    }
+    for ends in links.windows(2) {
+        all.allow(&ends[0].0, &ends[1].0).expect("two of the scene");
     }
     all
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(Vector3::new(x, y, z))
 }
 
 fn query(detail: Detail) -> Query {

@@ -14,6 +14,7 @@ use cloudtouch::{
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
+use cloudtouch_testkit::workshop::{self, Workshop, workshop};
 use proptest::prelude::*;
 
 fn mesh(mesh: &TriangleMesh) -> Body {
@@ -419,31 +420,29 @@ fn a_list_of_pairs_is_asked_up_to_the_first_that_is_not_free() {
     ));
 }
 
-/// A hundred balls of a thousand points and an arm of twelve links among them.
-fn workshop() -> Scene {
+fn of_workshop() -> Scene {
+    let Workshop { balls, link, links } = workshop();
     let mut scene = Scene::default();
-    let spacing = (4.0 * std::f64::consts::PI * 0.05_f64.powi(2) / 1000.0).sqrt();
-    for k in 0..100_u32 {
-        let ball = cloud(&scene::sphere(0.05, 3), spacing, 0.001, u64::from(k));
-        let place = at(0.3 * f64::from(k % 10), 0.3 * f64::from(k / 10), 0.0);
-        scene.add(format!("ball {k}"), ball, place).unwrap();
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: workshop::STD });
+    for (name, points, place) in balls {
+        let ball = Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap();
+        scene.add(name, ball, place).unwrap();
     }
-    let link = Arc::new(mesh(&scene::cuboid([0.2, 0.04, 0.04])));
-    for k in 0..12 {
-        let place = at(0.15 + 0.2 * f64::from(k), 0.0, 0.08);
-        scene.add(format!("link {k}"), Arc::clone(&link), place).unwrap();
-        if k > 0 {
-            scene.allow(&format!("link {}", k - 1), &format!("link {k}")).unwrap();
-        }
+    let link = Arc::new(mesh(&link));
+    for (name, place) in &links {
+        scene.add(name, Arc::clone(&link), *place).unwrap();
+    }
+    for ends in links.windows(2) {
+        scene.allow(&ends[0].0, &ends[1].0).unwrap();
     }
     scene
 }
 
 #[test]
 fn of_a_hundred_bodies_and_an_arm_few_pairs_are_asked() {
-    let scene = workshop();
+    let scene = of_workshop();
     let checked = assert_same(&scene, &query());
     assert_eq!((checked.count, checked.allowed), (112 * 111 / 2, 11));
-    // The arm of 2.4 m passes 1 cm above nine balls of the first row, each below one or two links.
+    // Nine balls are near one or two links each.
     assert!((9..=20).contains(&checked.asked), "{checked:?}");
 }

@@ -12,3 +12,4 @@ pub mod poses;
 mod random;
 pub mod scene;
 pub mod surface;
+pub mod workshop;
