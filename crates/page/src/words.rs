@@ -57,7 +57,7 @@ pub fn verdict(verdict: Verdict, by: Option<Undecided>) -> String {
 /// A measured gap, or what is known where none was measured: `at_least` m, if anything bounds it.
 pub fn clearance(measured: Option<Clearance>, at_least: Option<f64>) -> String {
     match measured {
-        Some(Clearance { mean, std, is_bound }) => {
+        Some(Clearance { mean, std, is_bound, .. }) => {
             let deeper = if is_bound { " or deeper" } else { "" };
             let side = if mean < 0.0 { "overlap of" } else { "gap of" };
             format!(
@@ -79,7 +79,11 @@ mod tests {
 
     #[test]
     fn a_clearance_says_which_side_and_how_sure() {
-        let of = |mean, is_bound| clearance(Some(Clearance { mean, std: 0.01, is_bound }), None);
+        let of = |mean, is_bound| {
+            let mut measured = Clearance::new(mean, 0.01);
+            measured.is_bound = is_bound;
+            clearance(Some(measured), None)
+        };
         assert_eq!(of(0.0299, false), "gap of 29.9 mm, standard deviation 10.0 mm");
         assert_eq!(of(-0.0092, true), "overlap of 9.2 mm or deeper, standard deviation 10.0 mm");
         assert_eq!(clearance(None, Some(0.0512)), "at least 51.2 mm");

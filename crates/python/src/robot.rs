@@ -226,7 +226,7 @@ impl RobotChecker {
         let checked = on_all_threads(py, || checker.check_path(query, &path, tolerance))?;
         let checked = checked.map_err(refused)?;
         let worst = checked.verdict().code();
-        let PathChecked { given, certified_free_until, stopped, later, looked_at } = checked;
+        let PathChecked { given, certified_free_until, stopped, later, looked_at, .. } = checked;
         let given: PyResult<_> = given.into_iter().map(|at| found(py, at)).collect();
         let place = |at: Stopped| {
             let found = at.pair.map(|found| pair(py, found)).transpose()?;

@@ -172,7 +172,7 @@ pub(crate) fn box_of(of: [Point3; 2]) -> [[f64; 3]; 2] {
 
 /// All pairs that are not free, the worst first.
 pub(crate) fn found(py: Python<'_>, checked: Checked) -> PyResult<Found<'_>> {
-    let Checked { pairs, count, allowed, ruled_out, asked, outside, warnings } = checked;
+    let Checked { pairs, count, allowed, ruled_out, asked, outside, warnings, .. } = checked;
     let pairs: PyResult<_> = pairs.into_iter().map(|found| pair(py, found)).collect();
     let outside = outside.into_iter().map(|of| (of.name, of.gap_m, of.size_m)).collect();
     let warnings = warnings.into_iter().map(|of| (of.name, of.warning.to_string())).collect();
@@ -180,7 +180,7 @@ pub(crate) fn found(py: Python<'_>, checked: Checked) -> PyResult<Found<'_>> {
 }
 
 pub(crate) fn pair(py: Python<'_>, found: PairAnswer) -> PyResult<Pair<'_>> {
-    let PairAnswer { a, b, answer } = found;
+    let PairAnswer { a, b, answer, .. } = found;
     Ok(match answer {
         Ok(report) => (a, b, Some(answer::report(py, &report)?), None),
         Err(error) => (a, b, None, Some(error.to_string())),

@@ -25,7 +25,7 @@ pub(crate) fn add_exact(
         return Ok(());
     }
     if let Some([on_a, on_b]) = nearest((a, b), a_from_b)? {
-        let clearance = Clearance { mean: (on_b - on_a).norm(), std: 0.0, is_bound: false };
+        let clearance = Clearance::new((on_b - on_a).norm(), 0.0);
         // Known for certain, however improbable a collision is.
         evidence.add_clearance(1.0, clearance);
     }

@@ -109,6 +109,7 @@ impl fmt::Display for Verdict {
 
 /// A gap between two surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Clearance {
     /// Expected gap along the normal of the contact, m; negative in overlap.
     pub mean: f64,
@@ -120,8 +121,16 @@ pub struct Clearance {
     pub is_bound: bool,
 }
 
+impl Clearance {
+    /// A gap of this mean and standard deviation (m) that is no bound.
+    pub fn new(mean: f64, std: f64) -> Self {
+        Self { mean, std, is_bound: false }
+    }
+}
+
 /// A place where the surfaces touch or may touch, in the frame of A.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Contact {
     /// Where the surfaces meet or would meet, m. On the paper's path a point on the separating
     /// surface; where that passes far from the most probable samples, the middle of these.

@@ -72,10 +72,11 @@ fn check(mode: Mode, a_from_b: &Pose) -> Result<(), TestCaseError> {
         prop_assert!(back.contacts.is_empty());
         return Ok(());
     };
-    let seen_back = |c: &Contact| Contact {
-        point: a_from_b.transform_point(&c.point),
-        normal_a_to_b: -a_from_b.transform_vector(&c.normal_a_to_b),
-        ..*c
+    let seen_back = |c: &Contact| {
+        let mut seen = *c;
+        seen.point = a_from_b.transform_point(&c.point);
+        seen.normal_a_to_b = -a_from_b.transform_vector(&c.normal_a_to_b);
+        seen
     };
     let off = |c: &Contact| (c.point - contact.point).norm();
     let others = back.contacts.iter().map(seen_back);

@@ -11,6 +11,7 @@ use crate::tree::Tree;
 
 /// What is known of a path.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct PathChecked {
     /// What is found at each of the positions given, as [`RobotChecker::check`].
     pub given: Vec<Checked>,

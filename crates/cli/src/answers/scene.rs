@@ -140,7 +140,7 @@ pub(crate) fn doubts(checked: &Checked) -> String {
 
 /// The same, a sentence or a few for each.
 pub(crate) fn warnings(checked: &Checked) -> impl Iterator<Item = String> {
-    let warned = |BodyWarning { name, warning }: &BodyWarning| {
+    let warned = |BodyWarning { name, warning, .. }: &BodyWarning| {
         format!("{name}: {}", remedies::warning(warning))
     };
     let far = checked.outside.iter().take(OUTSIDE_TOLD).map(Outside::to_string);

@@ -47,7 +47,7 @@ impl Method for WayOut {
             let (a, b) = bodies.pair(pair);
             let (_, out) = query.penetration(a, b, a_from_b, PROBABILITY)?;
             Ok(out.map(|out| {
-                let depth = Clearance { mean: -out.depth_m, std: out.std_m, is_bound: false };
+                let depth = Clearance::new(-out.depth_m, out.std_m);
                 Said { clearance: Some(depth), ..Said::score(out.distance_m, start) }
             }))
         }))
@@ -141,7 +141,7 @@ mod tests {
         let told = [Some(0.049), Some(0.02), None, Some(0.031)];
         for (pose, told) in told.into_iter().enumerate() {
             let said = told.map(|depth| {
-                let clearance = Some(Clearance { mean: -depth, std: 0.0, is_bound: false });
+                let clearance = Some(Clearance::new(-depth, 0.0));
                 Said { clearance, ..Said::score(depth + 0.01, Instant::now()) }
             });
             let question =

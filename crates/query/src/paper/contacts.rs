@@ -33,7 +33,7 @@ pub(super) fn most_probable_place(points: &PairPoints, answer: &PairAnswer) -> O
     let deepest = of_a.own_side.min(of_b.own_side);
     let sum = of_a.own_side + of_b.own_side;
     let mean = if deepest < 0.0 { sum.min(deepest) } else { sum };
-    let clearance = Clearance { mean, std: of_a.std.hypot(of_b.std), is_bound: false };
+    let clearance = Clearance::new(mean, of_a.std.hypot(of_b.std));
     let probability = a.iter().chain(b).copied().fold(0.0, f64::max);
     let (point, normal_a_to_b) = foot_of_the_tied(points, (a, b), surface, probability, reach);
     let contact =

@@ -41,7 +41,7 @@ pub(super) fn add_signed_points(
             probability: point.probability,
             spacing: point.spacing,
         });
-        let clearance = Clearance { mean: point.distance, std: point.std, is_bound: false };
+        let clearance = Clearance::new(point.distance, point.std);
         evidence.add_clearance(point.probability, clearance);
         if point.probability >= CONTACT_FLOOR {
             evidence.add_contact(signed_contact(point, side, a_from_cloud));

@@ -10,6 +10,7 @@ use super::run::Query;
 
 /// A pair that does not read as free.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NotFree {
     /// Which of the pairs asked about, from 0.
     pub index: usize,

@@ -11,6 +11,7 @@ use crate::report::{Report, Verdict};
 
 /// Two bodies that do not read as free.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PairAnswer {
     /// Name of the larger of the two, A of the report.
     pub a: String,
@@ -23,6 +24,7 @@ pub struct PairAnswer {
 
 /// What is found of all pairs of bodies of a scene.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Checked {
     /// All pairs that do not read as free, the worst first: in collision by their probability, without
     /// an answer, undecided, uncertain.
@@ -46,6 +48,7 @@ pub struct Checked {
 /// A warning about a body of a scene. Displays as a sentence with a remedy, and serialises as `{"name"}` with
 /// what the [`Warning`] has, whose `scene` is this body.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct BodyWarning {
     /// Its name.
     pub name: String,
@@ -62,6 +65,7 @@ impl fmt::Display for BodyWarning {
 
 /// A body of a scene that is far from the rest. Displays as a sentence with a remedy.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Outside {
     /// Its name.
     pub name: String,

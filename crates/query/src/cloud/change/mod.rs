@@ -19,6 +19,7 @@ use crate::error::ChangeError;
 
 /// What a change did to a cloud.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Change {
     /// Points that came.
     pub inserted: usize,

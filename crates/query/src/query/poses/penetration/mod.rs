@@ -24,6 +24,7 @@ const LUCKIEST: f64 = 0.5;
 
 /// The least translation that was found to end a collision.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Penetration {
     /// Where to, as a unit vector in the frame of the scene; nothing where the object need not move.
     #[serde(serialize_with = "vector_as_array")]
