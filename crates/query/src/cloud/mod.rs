@@ -11,6 +11,7 @@ mod pieces;
 mod preparation;
 mod prepare;
 mod prepared;
+mod primitives;
 mod scans;
 mod settings;
 mod sight;

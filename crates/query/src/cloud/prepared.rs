@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use cloudtouch_bvh::{LeafBounds, Node, NodeId, Obb, Primitive, Primitives, Tree, TreeSettings};
-use cloudtouch_geom::{Covariance, Point3, PointCloud, UncertainPoint, Vector3, bounding_box};
-use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
+use cloudtouch_bvh::{Node, NodeId, Obb, Tree, TreeSettings};
+use cloudtouch_geom::{Point3, PointCloud, Vector3, bounding_box};
+use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, SensorNoise};
 
 use crate::error::PrepareError;
 use crate::filter::StageReport;
@@ -14,18 +14,13 @@ use super::makeup::scatter::{Flattest, Overstated, scatter};
 use super::makeup::spread::sample_of;
 use super::pieces::Pieces;
 use super::preparation::Preparation;
+use super::primitives::{Weight, leaf_bounds, primitives_of};
 use super::scans::Scans;
-use super::surface::edge::DISC_SPACINGS;
 use super::surface::slots::{LazySurface, spacing_cap};
 use super::view::SingleView;
 
 /// Points with more noise than half the size of their cloud say nothing.
 const MOST_NOISE: f64 = 0.5;
-/// Relative rounding of an eigenvalue, generously.
-const ROUNDING: f64 = 1e-9;
-
-/// How much surface a point of a cloud stands for in the coverage of a node.
-pub(crate) type Weight<'a> = &'a dyn Fn(&Neighborhoods, usize) -> f64;
 
 /// A noisy cloud, ready to be queried in any pose, from many threads at once. Each path wraps it in
 /// a type of its own.
@@ -272,67 +267,4 @@ pub(super) fn makeup_of(
         return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
     }
     Ok(makeup)
-}
-
-/// What the tree is to hold of the pieces of a cloud.
-fn primitives_of(
-    points: &Neighborhoods,
-    pieces: &Pieces,
-    sensor: &SensorNoise,
-    weigh: Option<Weight<'_>>,
-) -> Primitives {
-    if let (Some(covariance), None) = (sensor.as_uniform(), weigh) {
-        let means = pieces.neighborhoods(points).shared_points();
-        return Primitives::Alike { means, covariance: *covariance };
-    }
-    let weight = |index| weigh.map_or(1.0, |weigh| weigh(points, index));
-    let indices = pieces.indices(points).into_iter();
-    let primitives = indices.map(|index| measured_point(index, points, sensor, weight(index)));
-    Primitives::Each(primitives.collect())
-}
-
-/// A point as it was measured.
-pub(super) fn measured_point(
-    index: usize,
-    points: &Neighborhoods,
-    sensor: &SensorNoise,
-    weight: f64,
-) -> Primitive {
-    let (mean, covariance) = (points.points()[index], sensor[index]);
-    Primitive::Point { point: UncertainPoint { mean, covariance }, weight }
-}
-
-/// What refinement may do to the points of a leaf, given what the spacing of each is limited to (m), the
-/// index of each piece and all that was measured.
-pub(super) fn leaf_bounds(
-    leaf: Node<'_>,
-    cap: f64,
-    index: impl Fn(u32) -> usize,
-    (noise, points, sensor): (&NoiseModel, &Neighborhoods, &SensorNoise),
-) -> LeafBounds {
-    let indices = || leaf.primitive_indices().iter().map(|&piece| index(piece));
-    let all = noise.bounds(most_std(indices().map(|index| &sensor[index])), cap);
-    let std = if all.std.is_finite() {
-        all.std
-    } else {
-        // What only the neighbours tell, they are asked for.
-        let mut scratch = Scratch::default();
-        let mut refined_std = |index| {
-            let refined = noise.refine(index, points, sensor, cap, &mut scratch);
-            refined.point.covariance.max_std() * (1.0 + ROUNDING)
-        };
-        indices().map(&mut refined_std).fold(0.0, f64::max)
-    };
-    LeafBounds { std, shift: all.shift, reach: DISC_SPACINGS * cap }
-}
-
-/// No standard deviation of these is larger, m, nor this by more than a millionth than the largest.
-fn most_std<'a>(all: impl Iterator<Item = &'a Covariance>) -> f64 {
-    // PERF: those of a leaf are much the same.
-    all.fold(
-        0.0,
-        |most, noise| {
-            if noise.is_within(most) { most } else { most.max(noise.max_std_at_most()) }
-        },
-    )
 }

@@ -7,7 +7,8 @@ use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
 use super::lost::Before;
-use crate::cloud::prepared::{Prepared, leaf_bounds};
+use crate::cloud::prepared::Prepared;
+use crate::cloud::primitives::leaf_bounds;
 use crate::cloud::surface::leaf::LeafSurface;
 use crate::cloud::surface::slots::{Basis, Fitted};
 use crate::cloud::surface::surfel::Surfel;
