@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cloudtouch::{PrepareError, SceneError};
+use cloudtouch::PrepareError;
 use cloudtouch_io::ReadError;
 
 /// Why a file does not describe a robot that can be checked.
@@ -240,94 +240,4 @@ impl RobotFault {
         let (link, geometry) = (link.to_owned(), geometry.to_owned());
         Self::Prepare { link, geometry, error: error.into() }
     }
-}
-
-/// Why positions of joints place no robot.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum JointsError {
-    /// A joint that the robot does not have.
-    #[error(
-        "the robot has no joint `{name}` that moves: leave it out, or correct the name to one of {known}"
-    )]
-    Unknown {
-        /// The name.
-        name: String,
-        /// Those that there are.
-        known: String,
-    },
-    /// Joints without a position; none is assumed.
-    #[error("no position is given for {names}: give one for every joint that moves")]
-    Missing {
-        /// Those without one.
-        names: String,
-    },
-    /// NaN or infinite.
-    #[error("joint `{name}` is at {value}: give a finite number, in rad or m")]
-    NotFinite {
-        /// The joint.
-        name: String,
-        /// What was given.
-        value: f64,
-    },
-    /// Beyond the limits.
-    #[error(
-        "joint `{name}` is at {value}, beyond its limits {lower} .. {upper} (rad or m): move it within \
-         them{hint}"
-    )]
-    Limit {
-        /// The joint.
-        name: String,
-        /// Where it is; of a joint that mimics another, by what that is given.
-        value: f64,
-        /// rad or m.
-        lower: f64,
-        /// rad or m.
-        upper: f64,
-        /// What may have been meant.
-        hint: &'static str,
-    },
-    /// A joint that mimics another is given another position than that implies.
-    #[error(
-        "joint `{name}` mimics `{followed}`, by which it is at {implied}, not {value}: leave it out"
-    )]
-    Mimic {
-        /// The joint.
-        name: String,
-        /// What it follows.
-        followed: String,
-        /// Where that puts it.
-        implied: f64,
-        /// What was given.
-        value: f64,
-    },
-    /// A link is nowhere.
-    #[error(transparent)]
-    Place(#[from] SceneError),
-}
-
-/// Why a path of joints cannot be followed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PathError {
-    /// No motion.
-    #[error("a path has {count} positions: give at least two")]
-    TooFew {
-        /// How many are given.
-        count: usize,
-    },
-    /// No share of the path.
-    #[error("the tolerance is {value}: give a share of the path, above 0 and at most 1")]
-    Tolerance {
-        /// What was given.
-        value: f64,
-    },
-    /// A position that places no robot.
-    #[error("position {} of the path: {error}", index + 1)]
-    Joints {
-        /// Which, from 0; the message counts from 1.
-        index: usize,
-        /// What is wrong with it.
-        error: JointsError,
-    },
 }

@@ -1,0 +1,7 @@
+//! What can be wrong with the input, in words.
+
+mod description;
+mod joints;
+
+pub use description::{RobotError, RobotFault};
+pub use joints::{JointsError, PathError};
