@@ -12,6 +12,7 @@ mod motion;
 mod primitive;
 mod robot;
 mod srdf;
+mod stretch;
 mod tree;
 mod uri;
 
