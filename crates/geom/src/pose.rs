@@ -56,6 +56,8 @@ pub enum PoseError {
 
 /// How far from one the length of a quaternion may be.
 const QUATERNION_ROUNDING: f64 = 1e-3;
+/// How far products of many quaternions of length one may get from it by rounding.
+const DRIFT: f64 = 1e-9;
 /// What counts as rounding in R Rᵀ = I: files often hold six to nine digits.
 const ROUNDING: f64 = 1e-4;
 
@@ -79,8 +81,14 @@ impl Pose {
         ))
     }
 
-    /// Turns by a unit quaternion, then moves by `offset` metres.
+    /// Turns by a unit quaternion, then moves by `offset` metres. Of one that is not of length one, as what
+    /// is not checked or read with serde may be, the direction counts; one without any makes every entry of
+    /// the rotation NaN, which what takes poses refuses.
     pub fn from_translation_rotation(offset: Vector3, rotation: UnitQuaternion<f64>) -> Self {
+        // Products of many keep their bits.
+        let is_unit = (rotation.norm() - 1.0).abs() < DRIFT;
+        let rotation =
+            if is_unit { rotation } else { UnitQuaternion::new_normalize(*rotation.quaternion()) };
         Self(Isometry3::from_parts(Translation3::from(offset), rotation))
     }
 
@@ -104,9 +112,9 @@ impl Pose {
         Ok(Self::from_translation_rotation(offset, rotation))
     }
 
-    /// Wraps an isometry of nalgebra, whose type already says that it is rigid.
+    /// Takes an isometry of nalgebra; its rotation as [`Self::from_translation_rotation`] does.
     pub fn from_isometry(isometry: Isometry3<f64>) -> Self {
-        Self(isometry)
+        Self::from_translation_rotation(isometry.translation.vector, isometry.rotation)
     }
 
     /// Checks a homogeneous matrix and takes the nearest rigid motion.
@@ -232,6 +240,34 @@ mod tests {
             let pose = Pose::try_from_quaternion(Vector3::zeros(), bad);
             assert!(matches!(pose, Err(PoseError::QuaternionLength { .. })), "{bad:?}");
         }
+    }
+
+    /// Points were stretched, and a body that touched read free.
+    #[test]
+    fn rotations_that_are_no_unit_quaternions_are_made_one() {
+        let turn = UnitQuaternion::from_euler_angles(0.3, -0.2, 1.0);
+        let p = Point3::new(0.3, -0.2, 0.9);
+        for length in [0.1, 0.99, 2.0, 1e10] {
+            let stretched = UnitQuaternion::new_unchecked(*turn.quaternion() * length);
+            let isometry = Isometry3::from_parts(Translation3::new(1.0, 0.0, 0.0), stretched);
+            for pose in [
+                Pose::from_isometry(isometry),
+                Pose::from_translation_rotation(Vector3::x(), stretched),
+            ] {
+                let expected = turn.transform_point(&p) + Vector3::x();
+                assert!((pose.transform_point(&p) - expected).norm() < 1e-12, "{length}");
+            }
+        }
+        let nowhere = UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 0.0));
+        let pose = Pose::from_translation_rotation(Vector3::x(), nowhere);
+        assert!(pose.non_finite_entry().is_some());
+        // What is one keeps its bits, rounded or not.
+        let mut product = turn;
+        for _ in 0..1000 {
+            product = turn * product;
+        }
+        let kept = Pose::from_translation_rotation(Vector3::x(), product);
+        assert_eq!(kept.rotation().quaternion().coords, product.quaternion().coords);
     }
 
     #[test]
