@@ -319,6 +319,14 @@ fn bad_settings_are_refused_before_any_point_is_looked_at() {
         let error = refuse(FilterSettings { robot: vec![link], ..off() });
         assert!(matches!(error, FilterError::Padding { .. }), "{error}");
     }
+    // It removed nothing, so that the robot stayed in its scan.
+    let link = SelfMesh {
+        mesh: Arc::new(mesh(&scene::cuboid([0.2; 3]))),
+        cloud_from_link: at(f64::NAN, 0.0, 0.0),
+        padding: 0.01,
+    };
+    let error = refuse(FilterSettings { robot: vec![link], ..off() });
+    assert!(matches!(error, FilterError::LinkPose { .. }), "{error}");
     for max_angle in [0.0, -1.0, 2.0, f64::NAN] {
         let error = refuse(FilterSettings { veil: Some(VeilSettings { max_angle }), ..off() });
         assert!(matches!(error, FilterError::VeilAngle { .. }), "{error}");

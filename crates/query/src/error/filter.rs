@@ -31,6 +31,12 @@ pub enum FilterError {
         /// What was given, m.
         value: f64,
     },
+    /// The pose of a robot link has an entry that is not finite.
+    #[error("the pose of a robot link contains {}: every entry must be finite", number(*value))]
+    LinkPose {
+        /// What was found.
+        value: f64,
+    },
     /// The veil angle is not between 0 and 90 degrees.
     #[error("veil angle {} rad: give one between 0 and pi/2", number(*value))]
     VeilAngle {

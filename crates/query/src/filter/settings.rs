@@ -68,6 +68,9 @@ impl FilterSettings {
             if !(link.padding >= 0.0 && link.padding.is_finite()) {
                 return Err(FilterError::Padding { value: link.padding });
             }
+            if let Some(value) = link.cloud_from_link.non_finite_entry() {
+                return Err(FilterError::LinkPose { value });
+            }
         }
         if let Some(VeilSettings { max_angle: value }) = self.veil
             && !(value > 0.0 && value < std::f64::consts::FRAC_PI_2)
