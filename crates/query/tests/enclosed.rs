@@ -37,6 +37,26 @@ fn a_ball_within_a_ball_read_free() {
     assert_eq!((beside.verdict, beside.undecided_by), (Verdict::Free, None));
 }
 
+/// Of a wall nearby too few of the points that were looked at lay in each direction.
+#[test]
+fn a_body_within_a_wall_read_free() {
+    let inner = Mesh::prepare(&scene::cuboid([0.03; 3])).expect("a good mesh");
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    for sides in [[1.8, 0.15, 1.2], [1.2, 0.8, 0.08], [0.6, 0.4, 1.8]] {
+        let wall = cloud(&scene::cuboid(sides), None, 1);
+        for draw in 0..20 {
+            // The nearest side is no nearer than a corner reaches, and two spacings.
+            let aside = |axis: u64| {
+                let most = 0.5 * sides[axis as usize] - 0.027 - 0.01;
+                2.0 * most * (seed::unit(seed::derive(7, draw, axis)) - 0.5)
+            };
+            let pose = at(aside(0), aside(1), aside(2));
+            let report = query.run(&wall, &inner, &pose).expect("a good pose");
+            assert_eq!(report.undecided_by, Some(Undecided::Enclosed), "{sides:?}: {report:?}");
+        }
+    }
+}
+
 /// Nothing said so: a cloud in its place was undecided.
 #[test]
 fn a_closed_mesh_within_a_closed_cloud_read_free() {

@@ -19,6 +19,17 @@ impl Prepared {
         pieces.visit_within(place, distance, |near| visit(&pieces.points()[near.index]));
     }
 
+    /// Calls `visit` with all places measured at most so far from one, m. Local frame.
+    pub(crate) fn visit_measured_within(
+        &self,
+        place: &Point3,
+        distance: f64,
+        mut visit: impl FnMut(&Point3),
+    ) {
+        let points = self.points();
+        self.neighborhoods.visit_within(place, distance, |near| visit(&points[near.index]));
+    }
+
     /// How far apart samples are about a place in the local frame, m: those of one surface of that density,
     /// whether they lie in clumps or not.
     pub(crate) fn spacing_about(&self, place: &Point3) -> f64 {

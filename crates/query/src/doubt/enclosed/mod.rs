@@ -88,6 +88,14 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
             return !is_seen_into();
         }
     }
+    // Of a wall nearby few of some points fall in each square. With half of the squares empty it is not all around.
+    if step > 1 && 2 * filled.count_ones() as usize >= all {
+        let apart = cloud.makeup().spacing * (step as f64).sqrt();
+        let near = 0.5 * a_side as f64 * POINTS_PER_SQUARE.sqrt() * apart;
+        cloud.visit_measured_within(place, near, |point| {
+            filled |= squares.containing(&(point - place));
+        });
+    }
     // A small square all alone among filled ones has no point by chance, which hangs on the axes of the file.
     let alone = if a_side >= SMALL_SQUARES { squares.alone_among(filled) } else { 0 };
     filled.count_ones() + alone >= enough && !is_seen_into()
