@@ -81,7 +81,8 @@ pub(crate) fn posterior(
 /// w² V + u (o + (1 − o) u³) s² along the normal, u = (1 − w)², o the part of its own noise, less of
 /// it where the noise is small beside the spacing, never more than s². Across it the disc of the spacing is
 /// widened by the noise where fits to other neighbourhoods face elsewhere: what is along the normal
-/// of the one is across that of the other.
+/// of the one is across that of the other. Where the noise has a direction, such as that of a ray, so much of what
+/// it has there more than along the normal comes to that along it.
 fn given_surface(
     (measured, own): (&Point3, &Covariance),
     (surface, patch): (&Surface, &Patch),
@@ -103,12 +104,21 @@ fn given_surface(
     let stays_noisy = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
     let blur = (noise.sqrt() / (SHARP * around)).min(1.0);
     let stated = error.sharp + (1.0 - error.sharp) * blur;
-    let along = (stated * (weight * weight * prior + stays_noisy)).min(noise);
+    let elsewhere = (error.slant * surface.tilt).min(1.0) * beyond(own, noise);
+    let along = (stated * (weight * weight * prior + stays_noisy)).min(noise) + elsewhere;
     let turned = (error.turn * surface.tilt).min(1.0) * own.max_std();
     let across = (settings.disc_std * spacing).hypot(turned);
     UncertainPoint {
         mean: measured + surface.normal.into_inner() * shift,
         covariance: disc(&surface.normal, along, across, spacing, settings),
+    }
+}
+
+/// By how much a variance along some direction is beyond this one, m².
+fn beyond(noise: &Covariance, along: f64) -> f64 {
+    match noise.isotropic_variance() {
+        Some(_) => 0.0,
+        None => (noise.max_std().powi(2) - along).max(0.0),
     }
 }
 
