@@ -60,7 +60,8 @@ impl NoiseModel {
     /// cap unless it is infinite. A point that is not finite has no neighbours.
     ///
     /// # Panics
-    /// When `index` or the length of `sensor` does not belong to the cloud.
+    /// When `index` or the length of `sensor` does not belong to the cloud, or a covariance of `sensor` that it needs is
+    /// not finite.
     pub fn refine(
         &self,
         index: usize,
@@ -76,7 +77,8 @@ impl NoiseModel {
     /// but the spacing, and the disc as wide as it, are those of the representatives.
     ///
     /// # Panics
-    /// When `index`, the representatives or the length of `sensor` do not belong to the cloud.
+    /// When `index`, the representatives or the length of `sensor` do not belong to the cloud, or a covariance of
+    /// `sensor` that it needs is not finite.
     pub fn refine_representative(
         &self,
         index: usize,
@@ -176,7 +178,7 @@ impl NoiseModel {
     /// them.
     ///
     /// # Panics
-    /// When the length of `sensor` does not belong to the cloud.
+    /// When the length of `sensor` does not belong to the cloud, or a covariance of it is not finite.
     pub fn refine_all(
         &self,
         neighborhoods: &Neighborhoods,

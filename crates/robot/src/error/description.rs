@@ -27,7 +27,8 @@ pub enum RobotFault {
     },
     /// Not XML, or not of its schema.
     #[error(
-        "cannot be understood: {reason}; a .xacro is expanded first, with `xacro arm.xacro > arm.urdf`"
+        "cannot be understood: {reason}; numbers of one attribute are separated by spaces, and a .xacro \
+         is expanded first, with `xacro arm.xacro > arm.urdf`"
     )]
     Xml {
         /// What the parser said.
