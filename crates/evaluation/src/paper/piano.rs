@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use cloudtouch_geom::seed::derive;
 use cloudtouch_testkit::exact::ExactMesh;
-use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
+use cloudtouch_testkit::poses::poses_near_contact;
 use cloudtouch_testkit::scene;
 
 use crate::SEED;
@@ -38,9 +38,38 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
         });
         let draw = Draw { family: "", a: &room, b: &piano, mesh: &meshes[1] };
         for method in methods {
-            let asked = Asked::of(method, &draw, &poses)?;
-            table.row(asked.row(std));
-            panels.push(asked.panel(std));
+            let start = Instant::now();
+            let ask = method.prepare(&draw)?;
+            let prepare = start.elapsed().as_secs_f64();
+            let said = poses.iter().map(|pose| {
+                let said = ask(Pair::CloudCloud, &pose.scene_from_object)?;
+                said.context("an answer about two clouds")
+            });
+            let said: Vec<Said> = said.collect::<Result<_>>()?;
+            let both = || poses.iter().zip(&said);
+            let sample = Sample::of_probabilities(both().map(|(q, s)| (s.score, q.in_collision)));
+            let [free, hit] = [false, true].map(|collides| {
+                let of = both().filter(|(pose, _)| pose.in_collision == collides);
+                let in_mm = |d: f64| (1e3 * d).clamp(-WIDEST, WIDEST);
+                of.map(|(pose, said)| (in_mm(pose.signed_distance), said.score)).collect::<Vec<_>>()
+            });
+            let mean =
+                |all: &[(f64, f64)]| all.iter().map(|(_, p)| p).sum::<f64>() / all.len() as f64;
+            let mut row = vec![format!("{:.0}", 1e3 * std), method.name()];
+            row.extend(sample.wrong().map(|count| count.to_string()));
+            let errors = [brier(&sample, &sample.ones()), mean(&free), mean(&hit)];
+            row.extend(errors.map(|value| format!("{value:.3}")));
+            let times: Vec<f64> = said.iter().map(|said| 1e-3 * said.micros).collect();
+            row.push(format!("{:.0}", 1e3 * prepare));
+            row.extend([0.5, 0.95].map(|share| format!("{:.2}", quantile(&times, share))));
+            table.row(row);
+            let (x, y) = (Axis::linear("signed distance (mm)"), Axis::unit("probability"));
+            let series = vec![
+                Series::points("free", free).named_at(35.0, 0.62),
+                Series::points("in collision", hit).named_at(-55.0, 0.25),
+            ];
+            let title = format!("{}, {:.0} mm", method.name(), 1e3 * std);
+            panels.push(Panel { title, x, y, series });
         }
     }
     let mut figure = Figure::new(
@@ -61,60 +90,4 @@ pub(super) fn section(points: usize, poses: usize) -> Result<Section> {
     let shows = "Probability against signed distance at two noise levels in three modes";
     let section = Section::new("Figure 4 and section 6.2: the piano").text(text).text(table);
     Ok(section.figure("paper-distances", shows, figure))
-}
-
-/// What a method said about all poses, and what that took.
-struct Asked<'a> {
-    method: String,
-    answers: Vec<(&'a LabelledPose, Said)>,
-    prepare_s: f64,
-}
-
-impl<'a> Asked<'a> {
-    fn of(method: &dyn Method, draw: &Draw<'_>, poses: &'a [LabelledPose]) -> Result<Self> {
-        let start = Instant::now();
-        let ask = method.prepare(draw)?;
-        let prepare_s = start.elapsed().as_secs_f64();
-        let answers = poses.iter().map(|pose| {
-            let said = ask(Pair::CloudCloud, &pose.scene_from_object)?;
-            Ok((pose, said.context("an answer about two clouds")?))
-        });
-        Ok(Self { method: method.name(), answers: answers.collect::<Result<_>>()?, prepare_s })
-    }
-
-    /// Of the poses that collide, or of the others: the signed distance (mm) and the probability of each.
-    fn said_of(&self, in_collision: bool) -> Vec<(f64, f64)> {
-        let of = self.answers.iter().filter(|(pose, _)| pose.in_collision == in_collision);
-        let in_mm = |d: f64| (1e3 * d).clamp(-WIDEST, WIDEST);
-        of.map(|(pose, said)| (in_mm(pose.signed_distance), said.score)).collect()
-    }
-
-    /// Of the table.
-    fn row(&self, std: f64) -> Vec<String> {
-        let both = self.answers.iter().map(|(pose, said)| (said.score, pose.in_collision));
-        let sample = Sample::of_probabilities(both);
-        let mean = |in_collision| {
-            let all = self.said_of(in_collision);
-            all.iter().map(|(_, p)| p).sum::<f64>() / all.len() as f64
-        };
-        let mut row = vec![format!("{:.0}", 1e3 * std), self.method.clone()];
-        row.extend(sample.wrong().map(|count| count.to_string()));
-        let errors = [brier(&sample, &sample.ones()), mean(false), mean(true)];
-        row.extend(errors.map(|value| format!("{value:.3}")));
-        let times: Vec<f64> = self.answers.iter().map(|(_, said)| 1e-3 * said.micros).collect();
-        row.push(format!("{:.0}", 1e3 * self.prepare_s));
-        row.extend([0.5, 0.95].map(|share| format!("{:.2}", quantile(&times, share))));
-        row
-    }
-
-    /// Of the figure.
-    fn panel(&self, std: f64) -> Panel {
-        let (x, y) = (Axis::linear("signed distance (mm)"), Axis::unit("probability"));
-        let series = vec![
-            Series::points("free", self.said_of(false)).named_at(35.0, 0.62),
-            Series::points("in collision", self.said_of(true)).named_at(-55.0, 0.25),
-        ];
-        let title = format!("{}, {:.0} mm", self.method, 1e3 * std);
-        Panel { title, x, y, series }
-    }
 }
