@@ -21,8 +21,9 @@ pub(super) fn sees(cloud: &Prepared, sensor: &Point3, place: &Point3) -> bool {
     let reach = SURFACE_SPACINGS.max(LOCAL_SPACINGS * MOST_SPARSE) * cloud.makeup().spacing;
     let length = (place - sensor).norm();
     let steps = (0.5 * length / reach).ceil();
-    // Of clumps the spacing is next to nothing.
-    if !(steps < MOST_STEPS) {
+    // Of clumps the spacing is next to nothing, or nothing at all.
+    let are_few = steps < MOST_STEPS;
+    if !are_few {
         return cloud.points().iter().all(|point| is_off(cloud, (sensor, place), point));
     }
     // Balls along the way hold all that is so near to it.
