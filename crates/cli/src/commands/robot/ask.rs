@@ -12,7 +12,7 @@ use cloudtouch_robot::{RobotChecker, SURROUNDINGS};
 
 use crate::answers::robot::Asked;
 use crate::answers::scene::Bodies;
-use crate::load::Input;
+use crate::commands::scene::bodies::Prepared;
 use crate::{answers, pages};
 
 /// How finely a path is looked at, as a share of it.
@@ -22,8 +22,8 @@ const TOLERANCE: f64 = 0.001;
 pub(super) struct Ask<'a> {
     pub checker: &'a RobotChecker,
     pub query: &'a Query,
-    /// What the bodies that are no links were read from.
-    pub inputs: BTreeMap<&'a str, &'a Input>,
+    /// The bodies that are no links.
+    pub prepared: BTreeMap<&'a str, &'a Prepared>,
     pub asked: Asked<'a>,
     pub in_json: bool,
     /// Where a page goes, if one is wanted.
@@ -34,8 +34,6 @@ pub(super) struct Ask<'a> {
 pub(super) struct Page<'a> {
     pub output: &'a Path,
     pub title: String,
-    /// What the bodies that are no links were taken for.
-    pub taken_for: BTreeMap<&'a str, &'a str>,
 }
 
 pub(super) struct Answer {
@@ -58,7 +56,7 @@ impl Ask<'_> {
 
     fn bodies<'a>(&'a self, boxes: &'a BTreeMap<String, [Point3; 2]>) -> Bodies<'a> {
         Bodies {
-            inputs: self.inputs.clone(),
+            inputs: self.prepared.iter().map(|(name, of)| (*name, &of.input)).collect(),
             boxes: boxes.iter().map(|(name, corners)| (name.as_str(), *corners)).collect(),
         }
     }
@@ -69,7 +67,7 @@ impl Ask<'_> {
         if let Some(page) = &self.page {
             let scene = self.checker.scene_at(joints)?;
             let (found, words) = ((&scene, &checked), self.words(page));
-            let taken_for = |name: &str| page.about(name);
+            let taken_for = |name: &str| self.taken_for(name);
             pages::scene::write(page.output, found, Some(SURROUNDINGS), words, taken_for)?;
         }
         let text = if self.in_json {
@@ -86,6 +84,11 @@ impl Ask<'_> {
         Ok(Answer { text, verdict: checked.verdict(), has_failed })
     }
 
+    /// What a body was taken for; of links that is the URDF's to say.
+    fn taken_for(&self, name: &str) -> String {
+        self.prepared.get(name).map_or(String::new(), |of| of.words.clone())
+    }
+
     /// The title of a page, and what is to be said of the question.
     fn words(&self, page: &Page<'_>) -> (String, Vec<Fact>) {
         (page.title.clone(), self.asked.facts())
@@ -95,7 +98,7 @@ impl Ask<'_> {
         let checked = self.checker.check_path(self.query, path, TOLERANCE)?;
         if let Some(page) = &self.page {
             let found = (self.checker, path, &checked);
-            let taken_for = |name: &str| page.about(name);
+            let taken_for = |name: &str| self.taken_for(name);
             pages::robot::write(page.output, found, self.words(page), taken_for)?;
         }
         let text = if self.in_json {
@@ -108,13 +111,6 @@ impl Ask<'_> {
         let pairs = checked.given.iter().flat_map(|at| &at.pairs);
         let mut pairs = pairs.chain(checked.stopped.as_ref().and_then(|at| at.pair.as_ref()));
         Ok(Answer { text, verdict: checked.verdict(), has_failed: pairs.any(is_without_answer) })
-    }
-}
-
-impl Page<'_> {
-    /// What a body was taken for; of links that is the URDF's to say.
-    fn about(&self, name: &str) -> String {
-        self.taken_for.get(name).map_or(String::new(), |words| (*words).to_owned())
     }
 }
 

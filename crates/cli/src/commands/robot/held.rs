@@ -29,11 +29,31 @@ pub(super) fn read(arguments: &RobotArguments, robot: &Robot) -> Result<SceneFil
     Ok(file)
 }
 
+/// The bodies of that file.
+pub(super) fn prepare<'a>(
+    arguments: &RobotArguments,
+    file: &'a SceneFile,
+) -> Result<FileBodies<'a>> {
+    FileBodies::read(&arguments.common, &file.bodies).with_context(|| named(arguments))
+}
+
 /// Has the links hold these bodies, and what may touch touch.
 pub(super) fn hold(
     checker: &mut RobotChecker,
-    file: &SceneFile,
-    bodies: &FileBodies<'_>,
+    arguments: &RobotArguments,
+    of_file: (&SceneFile, &FileBodies<'_>),
+) -> Result<()> {
+    hold_all(checker, of_file).with_context(|| named(arguments))
+}
+
+/// The file, which is there where anything of it can be wrong.
+fn named(arguments: &RobotArguments) -> String {
+    arguments.robot.held.as_deref().map_or(String::new(), |path| path.display().to_string())
+}
+
+fn hold_all(
+    checker: &mut RobotChecker,
+    (file, bodies): (&SceneFile, &FileBodies<'_>),
 ) -> Result<()> {
     for (index, (entry, prepared)) in bodies.all().enumerate() {
         let BodyEntry { name, pose, attached_to, .. } = entry;

@@ -7,6 +7,7 @@ mod scan;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use anyhow::{Context as _, Result};
 use cloudtouch::Query;
@@ -18,8 +19,7 @@ use self::description::Description;
 use crate::answers::print;
 use crate::answers::robot::Asked;
 use crate::args::RobotArguments;
-use crate::body::Body;
-use crate::commands::scene::bodies::FileBodies;
+use crate::commands::scene::bodies::{FileBodies, Prepared};
 use crate::load;
 use crate::progress::Steps;
 
@@ -29,12 +29,10 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     check_page(arguments)?;
     // Wrong positions are told before a large scan is read.
     let Description { robot, path, base, held } = description::read(arguments)?;
-    let of_held =
-        || arguments.robot.held.as_deref().unwrap_or(&arguments.scan).display().to_string();
-    let bodies = FileBodies::read(&arguments.common, &held.bodies).with_context(of_held)?;
+    let bodies = held::prepare(arguments, &held)?;
     let steps = Steps::about([arguments.scan.as_path()]);
     steps.tell("reading and preparing");
-    let scan = scan::read(arguments, &robot, &base, path.len())?;
+    let scan = Prepared::from(scan::read(arguments, &robot, &base, path.len())?);
     let unchecked = robot.unchecked_links().to_vec();
     let asked = Asked {
         unchecked_links: &unchecked,
@@ -42,31 +40,22 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
         self_filter: arguments.robot.scan_joints.is_some(),
         self_collision: arguments.robot.self_collision,
     };
-    let taken_for = print::about(&scan);
-    let words = words(arguments, &taken_for, &bodies, asked);
-    let body: cloudtouch::Body = match scan.body {
-        Body::Cloud(cloud) => cloud.into(),
-        Body::Mesh(mesh) => mesh.into(),
-    };
+    let words = words(arguments, &scan.words, &bodies, asked);
     let touching =
         if arguments.robot.self_collision { Touching::AndItself } else { Touching::Surroundings };
-    let mut checker = RobotChecker::new(robot, body, base, touching)?;
+    let mut checker = RobotChecker::new(robot, Arc::clone(&scan.body), base, touching)?;
     for link in &arguments.robot.may_touch {
         checker.allow(link, SURROUNDINGS).with_context(|| "--may-touch")?;
     }
-    held::hold(&mut checker, &held, &bodies).with_context(of_held)?;
-    let of_held = bodies.all().map(|(body, is)| (&*body.name, &is.input));
-    let inputs = of_held.chain([(SURROUNDINGS, &scan.input)]).collect();
+    held::hold(&mut checker, arguments, (&held, &bodies))?;
+    let of_held = bodies.all().map(|(body, prepared)| (&*body.name, prepared));
+    let prepared = of_held.chain([(SURROUNDINGS, &scan)]).collect();
     let page = arguments.answer.html.as_deref().map(|output| Page {
         output,
         title: format!("{} in {}", arguments.robot.urdf.display(), arguments.scan.display()),
-        taken_for: {
-            let held = bodies.all().map(|(body, is)| (&*body.name, &*is.words));
-            held.chain([(SURROUNDINGS, &*taken_for)]).collect()
-        },
     });
     let in_json = arguments.answer.json;
-    let ask = Ask { checker: &checker, query: &query, inputs, asked, in_json, page };
+    let ask = Ask { checker: &checker, query: &query, prepared, asked, in_json, page };
     steps.tell("asking");
     let answer = ask.about(&path)?;
     let text = if in_json { answer.text } else { words + &answer.text };
