@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use cloudtouch::geom::PointCloud;
+use cloudtouch::geom::{PointCloud, Vector3};
 use cloudtouch::noise::{NoiseError, SensorModel};
 
 /// A sensor as an option states it.
@@ -69,6 +69,20 @@ impl fmt::Display for SensorChoice {
     }
 }
 
+const LASER: SensorModel = SensorModel::Lidar { range_std: 0.02, beam_rad: 0.003 };
+
+/// Whether a sensor at its stated place looked around itself, as no camera does. A laser scanner turns in
+/// equal steps, so that its rays cancel; those to a cloud in another frame hardly do.
+fn is_all_around(cloud: &PointCloud) -> bool {
+    const MOST: f64 = 0.25;
+    let origin = cloud.sensor_origin();
+    let rays = cloud.points.iter().filter_map(|point| (point - origin).try_normalize(0.0));
+    let rays = rays.filter(|ray| ray.iter().all(|x| x.is_finite()));
+    let (sum, count) =
+        rays.fold((Vector3::zeros(), 0_u32), |(sum, count), ray| (sum + ray, count + 1));
+    sum.norm() < MOST * f64::from(count)
+}
+
 /// A file does not say which sensor made it: this is a guess from its layout and extent.
 pub fn suggestion(cloud: &PointCloud) -> Chosen {
     let (far_from_origin, extent) = match cloud.bounding_box() {
@@ -79,12 +93,42 @@ pub fn suggestion(cloud: &PointCloud) -> Chosen {
         (SensorModel::PerPoint, "the file has covariance columns")
     } else if far_from_origin {
         (SensorModel::Axes { stds: [0.3, 0.3, 0.15] }, "map coordinates, as of an airborne scan")
-    } else if cloud.is_image() {
+    } else if cloud.is_image() && !is_all_around(cloud) {
         (SensorModel::Kinect, "a depth image; a stereo camera is noisier: iso:0.005")
+    } else if cloud.is_image() {
+        (LASER, "rows and columns all around the sensor, as of a laser scanner")
     } else if extent > 4.0 {
-        (SensorModel::Lidar { range_std: 0.02, beam_rad: 0.003 }, "metres across, as a laser scan")
+        (LASER, "metres across, as a laser scan")
     } else {
         (SensorModel::Isotropic { std: 0.005 }, "nothing in the file tells")
     };
     Chosen { sensor, because: Some(because) }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch::geom::Point3;
+
+    use super::*;
+
+    /// Sixteen rings of a full turn, 2 m away, and as many of a sixth of a turn.
+    #[test]
+    fn a_scan_all_around_with_rows_and_columns_was_taken_for_a_depth_image() {
+        let scan = |turn: f64, sensor: [f64; 3]| {
+            let at = |i: u32| {
+                let (across, up) =
+                    (turn * f64::from(i % 90) / 90.0, 0.04 * f64::from(i / 90) - 0.3);
+                let far = if i == 7 { f64::NAN } else { 2.0 };
+                Point3::new(far * across.cos(), far * across.sin(), far * up)
+                    - Vector3::from(sensor)
+            };
+            let points = (0..16 * 90).map(at).collect();
+            PointCloud { image_size: Some((90, 16)), ..PointCloud::from_points(points) }
+        };
+        let full = std::f64::consts::TAU;
+        assert_eq!(suggestion(&scan(full, [0.0; 3])).sensor, LASER);
+        assert_eq!(suggestion(&scan(full / 6.0, [0.0; 3])).sensor, SensorModel::Kinect);
+        // In another frame nobody knows: a camera, whose place is then asked for.
+        assert_eq!(suggestion(&scan(full, [0.0, 0.0, 3.0])).sensor, SensorModel::Kinect);
+    }
 }
