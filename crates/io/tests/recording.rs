@@ -118,7 +118,7 @@ fn a_name_finds_its_scan_however_the_recording_is_packed() {
         let topics = Recording::open(&path, &limits()).unwrap().topics().unwrap();
         let told: Vec<_> = topics
             .iter()
-            .map(|t| (t.name.as_str(), t.frame_id.as_str(), t.messages, t.first, t.last))
+            .map(|t| (t.name.as_str(), t.frame_id.as_deref().unwrap(), t.messages, t.first, t.last))
             .collect();
         assert_eq!(told, [("/front", "lidar", 3, 1.0, 3.0), ("/rear", "lidar", 2, 0.5, 3.0)]);
     }
@@ -179,6 +179,21 @@ fn errors_name_file_topic_time_and_remedy() {
     let (_folder, path) = file(&recording(zstd(), &[("/tf", "tf", "cdr", 0, vec![0])]));
     let found = read_scan_within(&path, &limits()).unwrap_err().to_string();
     assert!(found.contains("no topic holds sensor_msgs/PointCloud2"), "{found}");
+}
+
+/// `info` said nothing of any topic.
+#[test]
+fn one_topic_that_cannot_be_read_hid_all_others() {
+    let mut broken = cloud_at("/broken", 0, 0.0);
+    broken.4.truncate(3);
+    let other = ("/json", CLOUD, "json", SECOND, b"{}".to_vec());
+    let good = cloud_at("/good", SECOND, 1.0);
+    let later = cloud_at("/broken", SECOND, 2.0);
+    let (_folder, path) = file(&recording(zstd(), &[broken, other, good, later]));
+    let topics = Recording::open(&path, &limits()).unwrap().topics().unwrap();
+    let told = topics.iter().map(|t| (t.name.as_str(), t.messages, t.frame_id.is_ok()));
+    let expected = [("/broken", 2, false), ("/good", 1, true), ("/json", 1, false)];
+    assert_eq!(told.collect::<Vec<_>>(), expected);
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn what_rosbags_writes_is_read() {
         let topics = Recording::open(&path, &limits).unwrap().topics().unwrap();
         let expected = Topic {
             name: "/lidar/points".to_owned(),
-            frame_id: "lidar_top".to_owned(),
+            frame_id: Ok("lidar_top".to_owned()),
             messages: 5,
             first: 0.25,
             last: 0.65,

@@ -46,8 +46,14 @@ fn list(name: &ScanName, topics: &[Topic]) -> String {
         .iter()
         .map(|Topic { name, frame_id, messages, first, last }| {
             let (first, last) = (milliseconds(*first), milliseconds(*last));
-            let (name, frame) = (one_line(name), one_line(frame_id));
-            format!("{name:longest$}  {messages} scans, {first} to {last} s, frame {frame}")
+            let name = one_line(name);
+            let frame = match frame_id {
+                Ok(frame) => format!("frame {}", one_line(frame)),
+                Err(problem) => {
+                    format!("the first is not read: {}", one_line(&problem.to_string()))
+                }
+            };
+            format!("{name:longest$}  {messages} scans, {first} to {last} s, {frame}")
         })
         .collect();
     lines.push(format!(

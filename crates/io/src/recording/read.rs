@@ -34,8 +34,8 @@ pub struct Recording {
 pub struct Topic {
     /// Its name.
     pub name: String,
-    /// The frame of its first message.
-    pub frame_id: String,
+    /// The frame of its first message, or why that cannot be read; later ones may be whole.
+    pub frame_id: Result<String, RecordingFault>,
     /// How many messages it has, 1 or more.
     pub messages: usize,
     /// When the first was recorded, s from the beginning of the recording.
@@ -58,14 +58,13 @@ impl Recording {
     /// The topics with scans, by name. Reads through all chunks that hold any.
     ///
     /// # Errors
-    /// When a chunk is damaged, or the first message of a topic is no PointCloud2.
+    /// When a chunk is damaged.
     pub fn topics(&mut self) -> Result<Vec<Topic>, ReadError> {
         let ids: BTreeSet<u16> = self.channels(Channel::has_clouds).collect();
         let chunks: Vec<ChunkIndex> = self.chunks_with(&ids).cloned().collect();
         let Index { channels, start, .. } = &self.index;
         let mut topics: BTreeMap<&str, Topic> = BTreeMap::new();
         for chunk in &chunks {
-            let mut wrong = None;
             for_each_message(&mut self.source, chunk, |id, log_time, bytes| {
                 let Some(channel) = channels.get(&id).filter(|_| ids.contains(&id)) else {
                     return Ok(());
@@ -74,7 +73,7 @@ impl Recording {
                 let name = channel.topic.clone();
                 let topic = topics.entry(&channel.topic).or_insert_with(|| Topic {
                     name,
-                    frame_id: String::new(),
+                    frame_id: Ok(String::new()),
                     messages: 0,
                     first: f64::INFINITY,
                     last: time,
@@ -83,16 +82,10 @@ impl Recording {
                 topic.last = topic.last.max(time);
                 if time < topic.first {
                     topic.first = time;
-                    match frame_of(channel, time, bytes) {
-                        Ok(frame) => topic.frame_id = frame,
-                        Err(fault) => wrong = wrong.take().or(Some(fault)),
-                    }
+                    topic.frame_id = frame_of(channel, time, bytes);
                 }
                 Ok(())
             })?;
-            if let Some(fault) = wrong {
-                return Err(self.source.error(fault));
-            }
         }
         Ok(topics.into_values().collect())
     }
