@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use cloudtouch::{PaperModel, PaperSettings};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{PaperCloudSettings, PaperModel, PaperSettings};
 use serde::Deserialize;
 
 /// The defaults with what they mean, as `cloudtouch settings` prints them.
@@ -28,6 +29,10 @@ pub(crate) fn read(path: &str) -> Result<SettingsFile, String> {
     let text = std::fs::read_to_string(Path::new(path)).map_err(|error| error.to_string())?;
     let settings: Settings = toml::from_str(&text).map_err(|error| error.to_string())?;
     settings.query.validate().map_err(|error| error.to_string())?;
+    // Any sensor: a wrong one is told where it is given.
+    let cloud = PaperCloudSettings::new(SensorModel::Exact);
+    let cloud = PaperCloudSettings { model: settings.cloud, ..cloud };
+    cloud.validate().map_err(|error| error.to_string())?;
     Ok(SettingsFile { path: path.into(), settings })
 }
 
@@ -61,6 +66,17 @@ mod tests {
     }
 
     #[test]
+    fn a_file_that_named_one_value_of_the_tree_changed_another() {
+        let read = |text: &str| toml::from_str::<Settings>(text).unwrap();
+        for table in ["query", "query.closeness", "query.safeguards", "cloud", "cloud.tree"] {
+            assert_eq!(read(&format!("[{table}]")), Settings::default(), "{table}");
+        }
+        let mut named = Settings::default();
+        named.cloud.tree.max_leaf_points = 20;
+        assert_eq!(read("[cloud.tree]\nmax_leaf_points = 20"), named);
+    }
+
+    #[test]
     fn a_wrong_name_or_value_is_refused_by_its_name() {
         let refused = |text: &str| {
             let path = tempfile::NamedTempFile::new().unwrap();
@@ -70,5 +86,9 @@ mod tests {
         assert!(refused("[query]\ngama = 3.0").contains("gama"));
         assert!(refused("[query]\nkappa = 0.2").contains("kappa is 0.2"));
         assert!(refused("[cloud.tree]\nmax_variation = true").contains("max_variation"));
+        assert!(refused("[cloud.tree]\nmax_variation = 0.5").contains("max_variation` is 0.5"));
+        assert!(refused("[cloud.discretization]\nwidth = 0.0").contains("discretization.width"));
+        let negative = refused("[cloud.motion]\ndeformation_std = -1.0");
+        assert!(negative.contains("motion.deformation_std` is -1"), "{negative}");
     }
 }

@@ -3,7 +3,8 @@
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, Vector3};
 
-use crate::error::{NoiseError, check_value_not_negative};
+use crate::error::NoiseError;
+use crate::settings_error::check_not_negative;
 
 /// How well the place of a moving or bending body is known, in the frame of its cloud.
 ///
@@ -30,13 +31,14 @@ impl MotionNoise {
     /// When a standard deviation is negative or a value is not finite.
     pub fn validate(&self) -> Result<(), NoiseError> {
         let not_negative = |name, values: &[f64]| {
-            values.iter().try_for_each(|&value| check_value_not_negative(name, value))
+            values.iter().try_for_each(|&value| check_not_negative(name, value))
         };
-        not_negative("translation_std", &self.translation_std)?;
-        not_negative("rotation_std", &self.rotation_std)?;
-        not_negative("deformation_std", &[self.deformation_std])?;
+        not_negative("motion.translation_std", &self.translation_std)?;
+        not_negative("motion.rotation_std", &self.rotation_std)?;
+        not_negative("motion.deformation_std", &[self.deformation_std])?;
         // Of either sign, so long as it is finite.
-        not_negative("about", &self.about.map(f64::abs))
+        not_negative("motion.about", &self.about.map(f64::abs))?;
+        Ok(())
     }
 
     /// What the motion adds to Σ of a point at `place`, m and m².
@@ -84,7 +86,9 @@ mod tests {
             MotionNoise { about: [f64::INFINITY; 3], ..usual },
             MotionNoise { deformation_std: -1.0, ..usual },
         ] {
-            assert!(matches!(bad.validate(), Err(NoiseError::SensorValue { .. })), "{bad:?}");
+            // Not "of the sensor", which has none of these.
+            let Err(NoiseError::Setting(error)) = bad.validate() else { panic!("{bad:?}") };
+            assert!(error.name.starts_with("motion."), "{error}");
         }
     }
 }

@@ -41,6 +41,7 @@ pub struct PaperModel {
     pub discretization: Discretization,
     /// How the tree is split (section 5): its leaves are what the classifier is given. By default
     /// σ_max alone says when a leaf is flat enough, down to leaves of two points.
+    #[serde(deserialize_with = "TreeAsPrinted::deserialize")]
     pub tree: TreeSettings,
     /// How a body moves or bends after it was seen (section 3): added to Σ; by default not at all.
     pub motion: MotionNoise,
@@ -55,6 +56,21 @@ impl Default for PaperModel {
             motion: MotionNoise::default(),
         }
     }
+}
+
+/// What a file leaves out of its tree has the value it has in [`PaperModel`], which is not that of
+/// [`TreeSettings`] in itself.
+#[derive(Deserialize)]
+#[serde(remote = "TreeSettings", default = "as_printed", deny_unknown_fields)]
+struct TreeAsPrinted {
+    max_leaf_points: usize,
+    min_leaf_points: usize,
+    max_variation: f64,
+    sibling_overlap: f64,
+}
+
+fn as_printed() -> TreeSettings {
+    PaperModel::default().tree
 }
 
 impl PaperModel {
