@@ -1,6 +1,7 @@
 //! `cloudtouch batch`: tables, JSON lines, bad cases among good ones.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use crate::support::pages::page;
 use crate::support::{HEIGHTS, Inputs, case_at, case_file};
 
 fn good_cases() -> String {
@@ -366,4 +367,35 @@ fn a_sensor_of_a_mesh_was_passed_over_in_a_case() {
     // Programs write the same fields for all: neither is refused.
     assert_eq!(lines[0]["verdict"], "free");
     assert_eq!(lines[1]["verdict"], "free");
+}
+
+/// Scans of a series often have one name, each in a folder of its own.
+#[test]
+fn files_of_one_name_in_two_folders_looked_the_same_in_the_table_and_on_the_page() {
+    let inputs = Inputs::new();
+    let files = ["a/floor.pcd", "b/floor.pcd"];
+    for (folder, file) in ["a", "b"].into_iter().zip(files) {
+        std::fs::create_dir(inputs.path(folder)).unwrap();
+        std::fs::copy(inputs.path("floor.pcd"), inputs.path(file)).unwrap();
+    }
+    let cases =
+        files.map(|file| case_at(file, 0.5).replacen("\"floor.pcd", &format!("\"{file}"), 1));
+    inputs.write("cases.json", &case_file(&cases));
+    let table = inputs.run(&["batch", "cases.json", "--html=o.html"]).quiet(0).stdout();
+    let page = page(&inputs, "o.html");
+    for file in files {
+        assert!(table.contains(&format!("{file} / box.obj")), "{table}");
+        assert!(page.contains(&format!("<dt>Scene</dt><dd>{file}: cloud of ")), "{file}");
+    }
+    assert!(page.contains("<dt>Object</dt><dd>box.obj: "));
+}
+
+#[test]
+fn one_long_name_made_every_row_of_the_table_as_long() {
+    let inputs = Inputs::new();
+    let cases = ["short", &"long".repeat(500)].map(|id| case_at(id, 0.5));
+    inputs.write("cases.json", &case_file(&cases));
+    let table = inputs.run(&["batch", "cases.json"]).quiet(0).stdout();
+    let row = table.lines().find(|row| row.starts_with("short")).unwrap();
+    assert!(row.chars().count() < 200, "{row}");
 }

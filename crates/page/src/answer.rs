@@ -3,6 +3,7 @@
 use cloudtouch::geom::Pose;
 use cloudtouch::{Contact, Report, Verdict};
 
+use crate::body::Body;
 use crate::data;
 use crate::escape::html;
 use crate::fact::Fact;
@@ -34,11 +35,16 @@ pub(crate) fn section(number: usize, view: &View<'_>, page: &Page<'_>) -> String
     )
 }
 
-/// What the two bodies were taken for.
+/// Which the two bodies are, and what they were taken for.
 fn about(of: [usize; 2], page: &Page<'_>) -> Vec<Fact> {
-    let about = of.map(|body| page.bodies.get(body).map_or("", |body| &body.about));
-    let about = ["Scene", "Object"].into_iter().zip(about).filter(|(_, about)| !about.is_empty());
-    about.map(|(label, about)| Fact::new(label, about)).collect()
+    let about = of.map(|body| page.bodies.get(body).filter(|body| !body.about.is_empty()));
+    let about = ["Scene", "Object"].into_iter().zip(about);
+    let fact = |(label, body): (&str, Option<&Body>)| {
+        let Body { name, about, .. } = body?;
+        let is_told = name.is_empty() || name.eq_ignore_ascii_case(label);
+        Some(Fact::new(label, if is_told { about.clone() } else { format!("{name}: {about}") }))
+    };
+    about.filter_map(fact).collect()
 }
 
 /// Names and texts as a list.

@@ -1,5 +1,6 @@
 //! The table of a batch, a row at a time.
 
+use std::collections::BTreeSet;
 use std::mem::discriminant;
 use std::path::Path;
 
@@ -18,6 +19,8 @@ pub(crate) struct Table {
     label_width: usize,
     /// The head of the column about a margin, where one is asked for.
     margin: Option<String>,
+    /// Names that files of several folders have: those are shown with their folders.
+    shared_names: BTreeSet<String>,
     answers: usize,
     errors: usize,
     query_us: Vec<u64>,
@@ -25,16 +28,25 @@ pub(crate) struct Table {
     warned: Vec<Warned>,
 }
 
+/// No column is wider for the sake of one long text, which then moves its row alone.
+const WIDEST: usize = 48;
+
 impl Table {
     /// For these cases, of which only names and labels are looked at, and the margin asked about, m.
     pub(crate) fn new(cases: &[(String, Result<Case>)], margin: Option<f64>) -> Self {
         let width = |texts: &mut dyn Iterator<Item = String>, least: usize| {
-            texts.map(|text| text.chars().count()).fold(least, usize::max)
+            texts.map(|text| text.chars().count()).fold(least, usize::max).min(WIDEST)
         };
+        let cases_read = cases.iter().filter_map(|(_, case)| case.as_ref().ok());
+        let files: BTreeSet<&Path> =
+            cases_read.flat_map(|case| [case.scene.as_path(), case.object.as_path()]).collect();
+        let mut names = BTreeSet::new();
+        let again = |name: &String| !names.insert(name.clone());
         Self {
             id_width: width(&mut cases.iter().map(|(id, _)| print::one_line(id)), 4),
             label_width: width(&mut cases.iter().map(|(_, case)| label(case)), 5),
             margin: margin.map(|margin| format!("P(<{})", print::margin(margin))),
+            shared_names: files.into_iter().map(name).filter(again).collect(),
             answers: 0,
             errors: 0,
             query_us: Vec::new(),
@@ -71,9 +83,9 @@ impl Table {
         self.query_us.push(report.stats.query_us);
         self.prepare_us.push(report.stats.prepare_us);
         let [low, high] = report.bounds.map(print::probability);
-        let files = case
-            .as_ref()
-            .map_or(String::new(), |c| format!("{} / {}", name(&c.scene), name(&c.object)));
+        let files = case.as_ref().map_or(String::new(), |c| {
+            format!("{} / {}", self.name(&c.scene), self.name(&c.object))
+        });
         let reason = report
             .undecided_by
             .map_or(String::new(), |by| format!("  ({})", remedies::undecided(by)));
@@ -98,6 +110,11 @@ impl Table {
             report.stats.query_us as f64 / 1e3,
             print::one_line(&files),
         )
+    }
+
+    fn name(&self, path: &Path) -> String {
+        let short = name(path);
+        if self.shared_names.contains(&short) { path.display().to_string() } else { short }
     }
 
     pub(crate) fn foot(&self) -> String {

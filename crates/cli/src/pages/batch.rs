@@ -6,7 +6,7 @@ use anyhow::Result;
 use cloudtouch::geom::Pose;
 use cloudtouch::{Placement, Report};
 use cloudtouch_io::ReadLimits;
-use cloudtouch_page::{Fact, Page, Shortlist, View};
+use cloudtouch_page::{Body as Drawn, Fact, Page, Shortlist, View};
 
 use crate::body::PreparedCloud;
 use crate::inside::with_points_inside;
@@ -77,9 +77,20 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
             let view = view.with_placement(&answered.placement);
             views.push(view.with_more(more.into_iter().collect()));
         }
+        tell_apart(&mut bodies, &known);
         let title = format!("{} poses of {cases}", views.len());
         let notes = note.into_iter().collect();
         pages::write(path, Page { title, summary, notes, bodies, views, ..Page::default() })
+    }
+}
+
+/// Names files of one name with their folders.
+fn tell_apart<C>(bodies: &mut [Drawn], loaded: &[&Loaded<C>]) {
+    let names: Vec<String> = bodies.iter().map(|body| body.name.clone()).collect();
+    for (body, loaded) in bodies.iter_mut().zip(loaded) {
+        if names.iter().filter(|name| **name == body.name).count() > 1 {
+            body.name.clone_from(&loaded.input.file);
+        }
     }
 }
 
