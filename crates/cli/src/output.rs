@@ -36,8 +36,7 @@ pub(crate) fn check<'a>(
 ) -> Result<()> {
     let outputs: Vec<&Output<'_>> = outputs.iter().flatten().collect();
     for (number, output) in outputs.iter().enumerate() {
-        let at = |output: &Output<'_>| std::path::absolute(output.path).ok();
-        if outputs[..number].iter().any(|other| at(other) == at(output)) {
+        if outputs[..number].iter().any(|other| place(other.path) == place(output.path)) {
             bail!(
                 "{}: is to be written twice: give each output a file of its own",
                 output.path.display()
@@ -46,6 +45,16 @@ pub(crate) fn check<'a>(
         check_one(output, inputs.clone(), force)?;
     }
     Ok(())
+}
+
+/// Where a file is or will be, by whatever folders or links it is named.
+fn place(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let new = || {
+        let folder = std::fs::canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
+        Some(folder.join(path.file_name()?))
+    };
+    std::fs::canonicalize(path).ok().or_else(new).or_else(|| std::path::absolute(path).ok())
 }
 
 fn check_one<'a>(

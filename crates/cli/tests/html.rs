@@ -237,11 +237,14 @@ fn no_input_is_replaced_and_another_file_only_with_force() {
     // Files of options are inputs too, and no output is another's.
     inputs.write("pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0.5\n0 0 0 1\n");
     inputs.write("set.toml", "");
+    std::fs::create_dir(inputs.path("in")).unwrap();
     let query = ["query", "floor.pcd", "box.obj", "--force"];
     for (more, part) in [
         (["--pose=pose.txt", "--html=pose.txt", "--max-unseen=1"], "is an input"),
         (["--mode=paper", "--settings=set.toml", "--csv=set.toml"], "is an input"),
         (["--ply=both", "--html=./both", "--max-unseen=1"], "is to be written twice"),
+        // By another way: the second took the place of the first, without a word.
+        (["--ply=both", "--html=in/../both", "--max-unseen=1"], "is to be written twice"),
     ] {
         let refused = inputs.run(&[&query[..], &more].concat());
         assert!(refused.stderr().contains(part), "{more:?}: {}", refused.stderr());
