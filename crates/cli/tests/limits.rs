@@ -50,3 +50,15 @@ fn each_limit_can_be_set() {
     check(&inputs, &["batch", "floor.pcd", limits[2]], &["floor.pcd", "more than 30 bytes"]);
     assert_eq!(inputs.run(&["info", "floor.pcd", "--max-points=441"]).code(), 0);
 }
+
+#[test]
+fn a_count_that_is_no_whole_number_was_an_invalid_digit_found_in_string() {
+    let inputs = Inputs::new();
+    for option in
+        ["--max-points=1e6", "--max-bytes=-1", "--seed=1.5", "--seed=18446744073709551616"]
+    {
+        let run = inputs.query_at(0.2, &["--mode=paper", option]);
+        assert_eq!(run.code(), 2, "{option}");
+        assert!(run.stderr().contains("give a whole number"), "{option}: {}", run.stderr());
+    }
+}

@@ -7,7 +7,7 @@ use crate::paper_settings::{self, SettingsFile};
 
 use super::caution::Refine;
 use super::common::CommonArguments;
-use super::parse::parse_length;
+use super::parse::{parse_length, parse_whole};
 
 /// What query and batch take beside what they share with the rest.
 #[derive(Debug, Args)]
@@ -26,7 +26,8 @@ pub(crate) struct ModeArguments {
     #[arg(long, value_enum, hide_possible_values = true, help_heading = "Estimate")]
     pub pooling: Option<PoolingName>,
     /// Paper: seed of the stochastic traversal [0]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Estimate")]
+    #[arg(long, value_name = "N", value_parser = parse_whole::<u64>, allow_negative_numbers = true,
+          help_heading = "Estimate")]
     pub seed: Option<u64>,
 }
 

@@ -1,5 +1,7 @@
 //! Numbers of options, with what they may be.
 
+use std::str::FromStr;
+
 use cloudtouch::OutlierSettings;
 use cloudtouch_cli::numbers;
 
@@ -36,6 +38,12 @@ pub(super) fn parse_milliseconds(text: &str) -> Result<u64, String> {
         Ok(milliseconds) if milliseconds > 0 => Ok(milliseconds),
         _ => Err("give whole milliseconds, 1 or more".to_owned()),
     }
+}
+
+/// A count or a seed; its bound is far beyond what is meant.
+pub(super) fn parse_whole<T: FromStr>(text: &str) -> Result<T, String> {
+    let form = "give a whole number from 0 on in digits, 1000000 and not 1e6";
+    text.trim().parse().map_err(|_| form.to_owned())
 }
 
 /// More neighbours than this take minutes and smooth everything away.
