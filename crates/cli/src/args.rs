@@ -1,6 +1,8 @@
 //! The command line.
 
 mod answer;
+mod asked;
+mod batch;
 mod bodies;
 mod caution;
 mod commas;
@@ -11,6 +13,7 @@ mod mode;
 mod others;
 mod parse;
 mod pose;
+mod query;
 mod robot;
 
 use std::path::PathBuf;
@@ -18,17 +21,17 @@ use std::path::PathBuf;
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use cloudtouch_io::LengthUnit;
 
-use crate::sensor::SensorChoice;
-
 pub(crate) use answer::{AnswerArguments, exit_code};
+pub(crate) use batch::BatchArguments;
 pub(crate) use bodies::{BodyOptions, PairArguments, ScanArguments};
 pub(crate) use caution::Refine;
 pub(crate) use common::CommonArguments;
 use depth::DepthArguments;
 use limits::LimitArguments;
-pub(crate) use mode::{ModeArguments, ModeName};
-use parse::{parse_fraction, parse_sensor_for};
+pub(crate) use mode::ModeName;
+use parse::parse_fraction;
 pub(crate) use pose::PoseArguments;
+pub(crate) use query::QueryArguments;
 pub(crate) use robot::RobotOptions;
 
 /// Sensor specs, for the help of the commands that take them.
@@ -90,7 +93,7 @@ impl Arguments {
     pub(crate) fn check(&self) -> Result<(), String> {
         match &self.command {
             Command::Query(arguments) => arguments.check(),
-            Command::Batch(arguments) => arguments.mode.check(&arguments.common, &[], &[]),
+            Command::Batch(arguments) => arguments.asked.check(&[], &[]),
             _ => Ok(()),
         }
     }
@@ -128,77 +131,6 @@ pub(crate) enum Command {
     Demo(DemoArguments),
     /// All settings of the paper's mode with their defaults, as a file for --settings
     Settings,
-}
-
-#[derive(Debug, Args)]
-#[command(after_help = SENSORS)]
-pub(crate) struct QueryArguments {
-    /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .png .stl .obj)
-    pub scene: PathBuf,
-    /// Cloud or mesh of the object
-    pub object: PathBuf,
-    #[command(flatten)]
-    pub pose: PoseArguments,
-    /// Print the report as one JSON object
-    #[arg(long, help_heading = "Output")]
-    pub json: bool,
-    /// With --json: the probability of each point too, and both ways of pooling them
-    #[arg(long, requires = "json", help_heading = "Output")]
-    pub points: bool,
-    /// Paper, with --json: each classifier trained too, with f, xi, alpha, v and b
-    #[arg(long, requires = "json", help_heading = "Output")]
-    pub explain: bool,
-    /// Write the points of both clouds with their probabilities as a table
-    #[arg(long, value_name = "OUT.csv", help_heading = "Output")]
-    pub csv: Option<PathBuf>,
-    /// Another scan of the same scene, in the same frame; repeatable
-    #[arg(long, value_name = "FILE", help_heading = "Files")]
-    pub also: Vec<PathBuf>,
-    /// Paper, without --also: text file with one kappa for each row of the scene
-    #[arg(long, value_name = "FILE", conflicts_with = "also", help_heading = "Files")]
-    pub kappas: Option<PathBuf>,
-    /// Calibrated: also how P and clearance change along the object's axes
-    #[arg(long, help_heading = "Estimate")]
-    pub gradient: bool,
-    /// Calibrated: also the least translation to a probability below P [0.1]
-    #[arg(long, value_name = "P", num_args = 0..=1, require_equals = true,
-          default_missing_value = "0.1", value_parser = parse_fraction, help_heading = "Estimate")]
-    pub penetration: Option<f64>,
-    /// Exit with 0 free, 10 uncertain, 20 in collision, 30 undecided
-    #[arg(long, help_heading = "Output")]
-    pub exit_code: bool,
-    /// Write both bodies, redder with probability, contacts green; a mesh as a mesh
-    #[arg(long, value_name = "OUT.ply", help_heading = "Output")]
-    pub ply: Option<PathBuf>,
-    /// Write a page that shows all of it in any browser
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub html: Option<PathBuf>,
-    /// Replace an output file that is there already
-    #[arg(long, help_heading = "Output")]
-    pub force: bool,
-    #[command(flatten)]
-    pub mode: ModeArguments,
-    #[command(flatten)]
-    pub common: CommonArguments,
-    #[command(flatten)]
-    pub pair: PairArguments,
-}
-
-impl QueryArguments {
-    pub(crate) fn bodies(&self) -> BodyOptions<'_> {
-        let settings = self.mode.settings.as_ref();
-        BodyOptions { settings, ..self.pair.bodies(&self.common) }
-    }
-
-    fn check(&self) -> Result<(), String> {
-        let of_the_paper = [("--explain", self.explain), ("--kappas", self.kappas.is_some())];
-        let of_the_default = [
-            ("--pose-std", self.pose.pose_std.is_some()),
-            ("--gradient", self.gradient),
-            ("--penetration", self.penetration.is_some()),
-        ];
-        self.mode.check(&self.common, &of_the_paper, &of_the_default)
-    }
 }
 
 #[derive(Debug, Args)]
@@ -250,42 +182,6 @@ pub(crate) struct RobotArguments {
     pub common: CommonArguments,
     #[command(flatten)]
     pub of_scan: ScanArguments,
-}
-
-#[derive(Debug, Args)]
-#[command(after_help = SENSORS)]
-pub(crate) struct BatchArguments {
-    /// Case file (JSON); its paths are relative to it
-    pub cases: PathBuf,
-    /// Print one JSON object per case instead of a table
-    #[arg(long, help_heading = "Output")]
-    pub json: bool,
-    /// Write one JSON object per case to this file
-    #[arg(long, value_name = "OUT.jsonl", help_heading = "Output")]
-    pub jsonl: Option<PathBuf>,
-    /// Write a page that shows the cases in any browser, with a slider
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub html: Option<PathBuf>,
-    /// Replace an output file that is there already
-    #[arg(long, help_heading = "Output")]
-    pub force: bool,
-    /// Sensor of files with NAME in their path in the case file; the first counts
-    #[arg(long, value_name = "NAME=SPEC", value_parser = parse_sensor_for,
-          help_heading = "Files")]
-    pub sensor_for: Vec<(String, SensorChoice)>,
-    #[command(flatten)]
-    pub mode: ModeArguments,
-    #[command(flatten)]
-    pub common: CommonArguments,
-    #[command(flatten)]
-    pub pair: PairArguments,
-}
-
-impl BatchArguments {
-    pub(crate) fn bodies(&self) -> BodyOptions<'_> {
-        let settings = self.mode.settings.as_ref();
-        BodyOptions { settings, ..self.pair.bodies(&self.common) }
-    }
 }
 
 #[derive(Debug, Args)]

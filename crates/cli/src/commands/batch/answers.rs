@@ -46,7 +46,7 @@ impl<'a, P: body::Estimator> Batch<'a, P> {
         let (file, in_json) = (self.file, self.arguments.json);
         let cases = &file.cases;
         let progress = progress_bar(cases.len(), "queries");
-        let mut table = Table::new(cases, self.arguments.mode.margin);
+        let mut table = Table::new(cases, self.arguments.asked.mode.margin);
         if !in_json {
             to_stdout(&guessed(self.bodies))?;
             to_stdout(&table.head())?;
@@ -87,7 +87,7 @@ impl<'a, P: body::Estimator> Batch<'a, P> {
         let (scene, object, pose) = (scene?, object?, &case.scene_from_object);
         let (report, nearness) = self
             .query
-            .ask_within(&scene.body, &object.body, pose, self.arguments.mode.margin)
+            .ask_within(&scene.body, &object.body, pose, self.arguments.asked.mode.margin)
             .map_err(|error| error.to_string())?;
         let bodies = [(case.scene.as_path(), scene), (case.object.as_path(), object)];
         let placement = self.query.place(&scene.body, &object.body, pose);

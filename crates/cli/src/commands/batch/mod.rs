@@ -20,20 +20,20 @@ use crate::output::{self, Output};
 use crate::pages::batch::Shown;
 
 pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
-    let common = &arguments.common;
-    match arguments.mode.mode {
+    let common = &arguments.asked.common;
+    match arguments.asked.mode.mode {
         ModeName::Calibrated => run_by(&Query::new(common.query_settings())?, arguments),
         ModeName::Paper => {
-            run_by(&PaperQuery::new(arguments.mode.paper_settings(common))?, arguments)
+            run_by(&PaperQuery::new(arguments.asked.mode.paper_settings(common))?, arguments)
         }
     }
 }
 
 fn run_by<P: body::Estimator>(query: &P, arguments: &BatchArguments) -> Result<ExitCode> {
-    let limits = arguments.common.limits.read_limits();
+    let limits = arguments.asked.common.limits.read_limits();
     let file = case::read(&arguments.cases, limits.bytes)?;
     let good = || file.cases.iter().filter_map(|(_, case)| case.as_ref().ok());
-    let options = &arguments.bodies();
+    let options = &arguments.asked.bodies();
     check_files(arguments, options, &file)?;
     bodies::sensors_for(arguments).check(&file)?;
     warn_of_same_names(arguments, &file);

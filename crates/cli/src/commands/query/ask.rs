@@ -31,7 +31,8 @@ pub(super) fn ask<P: body::Estimator>(
         let (report, classifiers) = query.explain(scene, object, pose)?;
         (report, classifiers, None)
     } else {
-        let (report, nearness) = query.ask_within(scene, object, pose, arguments.mode.margin)?;
+        let (report, nearness) =
+            query.ask_within(scene, object, pose, arguments.asked.mode.margin)?;
         (report, Vec::new(), nearness)
     };
     let placement = query.place(scene, object, pose);

@@ -16,14 +16,16 @@ use crate::body;
 use crate::progress::Steps;
 
 pub(crate) fn run(arguments: &QueryArguments, shows_work: bool) -> Result<ExitCode> {
-    let common = &arguments.common;
-    match arguments.mode.mode {
+    let common = &arguments.asked.common;
+    match arguments.asked.mode.mode {
         ModeName::Calibrated => {
             run_by(&Query::new(common.query_settings())?, arguments, shows_work)
         }
-        ModeName::Paper => {
-            run_by(&PaperQuery::new(arguments.mode.paper_settings(common))?, arguments, shows_work)
-        }
+        ModeName::Paper => run_by(
+            &PaperQuery::new(arguments.asked.mode.paper_settings(common))?,
+            arguments,
+            shows_work,
+        ),
     }
 }
 

@@ -33,7 +33,7 @@ pub(super) fn bodies(arguments: &QueryArguments) -> impl Iterator<Item = &Path> 
 
 /// Whether all files that are read are there, and none that is written.
 pub(super) fn check_files(arguments: &QueryArguments) -> Result<()> {
-    let options = &arguments.bodies();
+    let options = &arguments.asked.bodies();
     let inputs = [&arguments.scene, &arguments.object]
         .into_iter()
         .chain(&arguments.also)
@@ -52,7 +52,7 @@ pub(super) fn check_files(arguments: &QueryArguments) -> Result<()> {
 
 /// Reads the pose and both bodies, and prepares these.
 pub(super) fn load<C: PreparedCloud>(arguments: &QueryArguments) -> Result<Question<'_, C>> {
-    let (common, options) = (&arguments.common, &arguments.bodies());
+    let (common, options) = (&arguments.asked.common, &arguments.asked.bodies());
     let pose = pose(&arguments.pose)?;
     let doubt = arguments.pose.quaternion.and_then(|Turn(turn)| Doubt::of_option(&turn));
     if let Some(doubt) = &doubt {
@@ -88,7 +88,7 @@ fn with_kappas<C: PreparedCloud>(
     let Body::Cloud(cloud) = scene.body else { bail!("{}: the scene is a mesh, exact", named()) };
     let text = std::fs::read_to_string(path).with_context(named)?;
     let kappas: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
-    let rule = arguments.mode.paper_settings(&arguments.common).radius_rule;
+    let rule = arguments.asked.mode.paper_settings(&arguments.asked.common).radius_rule;
     let cloud = cloud.with_kappas(&kappas.with_context(named)?, rule).with_context(named)?;
     Ok(Loaded { body: Body::Cloud(cloud), ..scene })
 }

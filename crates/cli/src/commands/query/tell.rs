@@ -46,7 +46,7 @@ pub(super) fn text<C: PreparedCloud>(
     let Question { arguments, scene, object, .. } = question;
     let of_scene = answers::text::Scene {
         is_cloud: !scene.is_mesh(),
-        is_placed: arguments.bodies().sensor_pose.is_some(),
+        is_placed: arguments.asked.bodies().sensor_pose.is_some(),
     };
     let mut parts = vec![
         print::body("scene", scene),

@@ -37,7 +37,7 @@ fn write_picture<C: PreparedCloud>(
     Question { arguments, scene, object, pose, .. }: &Question<'_, C>,
     shown: &Report,
 ) -> Result<()> {
-    let limits = arguments.common.limits.read_limits();
+    let limits = arguments.asked.common.limits.read_limits();
     let files = [&arguments.scene, &arguments.object];
     let [of_scene, of_object] = files.map(|file| read_colors_within(file, &limits));
     let (of_scene, of_object) = (of_scene?, of_object?);
@@ -53,7 +53,7 @@ fn write_page<C: PreparedCloud>(
     found: &Found,
     shown: &Report,
 ) -> Result<()> {
-    let limits = arguments.common.limits.read_limits();
+    let limits = arguments.asked.common.limits.read_limits();
     // Rows of several scans are not those of the first file.
     let scan = Some(arguments.scene.as_path()).filter(|_| arguments.also.is_empty());
     let bodies = [
