@@ -55,7 +55,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let command = format!("cargo xtask calibrate --draws {draws} --poses {poses}");
     let fitted = if dense {
         let answers = ask(&Plan::dense(draws, poses), &[gathering(Ours::new(OURS)?)])?;
-        beyond(Fitted::stored()?, &answers, &command)?
+        beyond(Fitted::read(root)?, &answers, &command)?
     } else {
         let methods = [gathering(Ours::new(OURS)?), gathering(Ours::oracle(ORACLE)?)];
         ordinary(&ask(&Plan::evidence(draws, poses), &methods)?, command)?

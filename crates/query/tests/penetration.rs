@@ -27,8 +27,13 @@ fn query() -> Query {
 }
 
 fn out_of(kinds: [bool; 2], pose: &Pose, probability: f64) -> Penetration {
+    out_of_draw(0, kinds, pose, probability)
+}
+
+fn out_of_draw(draw: u64, kinds: [bool; 2], pose: &Pose, probability: f64) -> Penetration {
     let cube = scene::cuboid([SIZE; 3]);
-    let (a, b) = (body(&cube, kinds[0], 0.002, 1), body(&cube, kinds[1], 0.002, 2));
+    let seeds = [2 * draw + 1, 2 * draw + 2];
+    let (a, b) = (body(&cube, kinds[0], 0.002, seeds[0]), body(&cube, kinds[1], 0.002, seeds[1]));
     let (report, out) = query().penetration(&a, &b, pose, probability).unwrap();
     assert!(report.collision_probability > 0.5);
     let out = out.unwrap();
@@ -46,16 +51,23 @@ fn a_box_in_a_box_leaves_across_the_nearest_face_and_is_free_there() {
     let turned = |offset| Pose::from_translation_rpy(offset, [0.0, 0.0, 0.4]);
     for kinds in KINDS {
         for depth in [0.02, 0.05] {
-            let out = out_of(kinds, &turned(Vector3::new(0.02, -0.01, depth - SIZE)), 0.1);
-            // Within 20 degrees: near an edge of the boxes a way aside of the normal is likely enough out a
+            let pose = turned(Vector3::new(0.02, -0.01, depth - SIZE));
+            let mut upward: Vec<f64> = (0..5)
+                .map(|draw| {
+                    let out = out_of_draw(draw, kinds, &pose, 0.1);
+                    let error = out.distance_m - depth;
+                    let most = if kinds == [true, true] { 0.001 } else { SPACINGS };
+                    assert!((-0.001..most).contains(&error), "{kinds:?} {depth} {out:?}");
+                    assert!((out.depth_m - depth).abs() < 0.5 * most, "{kinds:?} {depth} {out:?}");
+                    assert!((0.0..0.01).contains(&out.std_m), "{kinds:?} {out:?}");
+                    assert_eq!(out.std_m == 0.0, kinds == [true, true], "{kinds:?} {out:?}");
+                    -out.direction.z
+                })
+                .collect();
+            upward.sort_by(f64::total_cmp);
+            // Mostly within 20 degrees: near an edge of the boxes a way aside of the normal is likely enough out a
             // little sooner, by less than the samples tell.
-            assert!(out.direction.z < -0.94, "{kinds:?} {depth} {out:?}");
-            let error = out.distance_m - depth;
-            let most = if kinds == [true, true] { 0.001 } else { SPACINGS };
-            assert!((-0.001..most).contains(&error), "{kinds:?} {depth} {out:?}");
-            assert!((out.depth_m - depth).abs() < 0.5 * most, "{kinds:?} {depth} {out:?}");
-            assert!((0.0..0.01).contains(&out.std_m), "{kinds:?} {out:?}");
-            assert_eq!(out.std_m == 0.0, kinds == [true, true], "{kinds:?} {out:?}");
+            assert!(upward[2] > 0.94 && upward[0] > 0.77, "{kinds:?} {depth} {upward:?}");
         }
     }
 }

@@ -33,6 +33,11 @@ impl Fitted {
         serde_json::from_str(include_str!("../../judges.json")).context(PLACE)
     }
 
+    /// The fit in the repository as it is now: one just made is not compiled in yet.
+    pub fn read(root: &Path) -> Result<Self> {
+        serde_json::from_slice(&std::fs::read(root.join(PLACE)).context(PLACE)?).context(PLACE)
+    }
+
     /// A judge that does not know a family, for answers about it: ours, or the oracle's.
     pub fn to_judge(&self, family: &str, is_oracle: bool) -> Judge {
         let without = if is_oracle { &self.oracle_without } else { &self.without };

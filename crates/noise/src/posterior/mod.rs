@@ -92,9 +92,9 @@ fn given_surface(
     let error = &settings.surface_error;
     let noise = own.variance_along(&surface.normal);
     let mut prior = variance_of(surface, error, noise);
-    if surface.height.powi(2)
-        > settings.trusted_offset.powi(2) * patch.own_variance(&surface.normal)
-    {
+    let is_trusted = surface.height.powi(2)
+        <= settings.trusted_offset.powi(2) * patch.own_variance(&surface.normal);
+    if !is_trusted {
         prior += surface.height.powi(2);
     }
     let weight = share(noise, error.doubt * prior);
@@ -103,7 +103,7 @@ fn given_surface(
     let stays = (1.0 - weight).powi(2);
     let stays_noisy = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
     let blur = (noise.sqrt() / (SHARP * around)).min(1.0);
-    let stated = error.sharp + (1.0 - error.sharp) * blur;
+    let stated = if is_trusted { error.sharp + (1.0 - error.sharp) * blur } else { 1.0 };
     let elsewhere = (error.slant * surface.tilt).min(1.0) * beyond(own, noise);
     let along = (stated * (weight * weight * prior + stays_noisy)).min(noise) + elsewhere;
     let turned = (error.turn * surface.tilt).min(1.0) * own.max_std();

@@ -53,7 +53,8 @@ pub struct SurfaceError {
     pub slant: f64,
     /// Of the variance along the normal that the other factors come to, where the noise is nothing
     /// beside the spacing; it rises to all of it where the noise is a quarter of the spacing. Misfits
-    /// no larger than the noise, which the others allow for, are rare where the noise is small.
+    /// no larger than the noise, which the others allow for, are rare where the noise is small. Not of a point
+    /// farther than [`trusted_offset`](PosteriorSettings::trusted_offset) from the surface.
     pub sharp: f64,
 }
 
@@ -72,18 +73,18 @@ impl Default for PosteriorSettings {
 impl Default for SurfaceError {
     fn default() -> Self {
         Self {
-            leverage: 0.26,
+            leverage: 0.31,
             hidden: 0.7,
-            bend: 0.7,
+            bend: 0.84,
             misfit: 1.77,
-            suspected: 5.2,
-            disagreement: 0.021,
-            tilt: 0.49,
+            suspected: 7.9,
+            disagreement: 0.014,
+            tilt: 0.6,
             doubt: 2.21,
-            own_noise: 0.82,
-            turn: 60.0,
+            own_noise: 0.95,
+            turn: 90.0,
             slant: 8.0,
-            sharp: 0.57,
+            sharp: 0.45,
         }
     }
 }

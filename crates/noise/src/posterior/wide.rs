@@ -10,8 +10,9 @@ use crate::sensor::noise::SensorNoise;
 use crate::surface::patch::MOST_NEIGHBORS;
 use crate::surface::{Surface, fit_surface};
 
-/// How often a wider neighbourhood is gathered at most.
-const PASSES: usize = 3;
+/// How often neighbours are gathered at most, of a fourth of the cloud and of a sixteenth: the first tells about where
+/// the surface is.
+const PASSES: [usize; 2] = [1, 2];
 /// A move of which the square is less than this part of the squared error expected is none.
 const SETTLED: f64 = 0.25;
 /// A wider patch may have this many times the variance.
@@ -31,7 +32,7 @@ pub(crate) fn wide_surface(
     let Scratch { wide_blocks, wide_neighbors, wide_patch, .. } = scratch;
     let mut found: Option<Surface> = None;
     let mut place = points[index];
-    for (thinned, block) in neighborhoods.thinned().iter().zip(wide_blocks) {
+    for ((thinned, block), passes) in neighborhoods.thinned().iter().zip(wide_blocks).zip(PASSES) {
         let around = |place: &Point3| {
             // One more than are used, for the point itself is the measurement, not a part of what it
             // is held against.
@@ -49,7 +50,7 @@ pub(crate) fn wide_surface(
                 spacing,
             ))
         };
-        let Some((mut wide, at)) = settled(points[index], place, around) else { continue };
+        let Some((mut wide, at)) = settled(points[index], place, passes, around) else { continue };
         place = at;
         // Residuals of twice as many neighbours hide less.
         if found.is_some() {
@@ -68,10 +69,11 @@ pub(crate) fn wide_surface(
 fn settled(
     point: Point3,
     mut place: Point3,
+    passes: usize,
     mut around: impl FnMut(&Point3) -> Option<Surface>,
 ) -> Option<(Surface, Point3)> {
     let mut found = None;
-    for _ in 0..PASSES {
+    for _ in 0..passes {
         let surface = around(&place)?;
         let at = point + surface.normal.into_inner() * surface.height;
         let moved = (at - place).norm_squared();

@@ -12,15 +12,17 @@ use cloudtouch_geom::UnitVector3;
 use crate::lanes::{Kernel, Lanes, Machine, run};
 use crate::surface::candidates::best_candidate;
 use crate::surface::patch::{Patch, Plane};
-use crate::surface::regression::{Coefficients, FINAL_CUT, Frame, regress, residuals};
+use crate::surface::regression::{Coefficients, Frame, regress, residuals};
 use crate::surface::reweight::reweighted;
 
 /// The neighbourhood sizes that are tried.
-const SIZES: [usize; 6] = [8, 12, 18, 27, 40, 60];
+const SIZES: [usize; 4] = [8, 16, 30, 60];
 /// A plane through fewer neighbours than this explains anything.
 const LEAST_NEIGHBORS: usize = 4;
-/// Residuals beyond so many standard deviations weigh nothing, pass by pass.
-const CUTS: [f64; 4] = [3.5, 3.5, FINAL_CUT, FINAL_CUT];
+/// How often the first plane is fitted anew by the weights of the last.
+const FIRST_PASSES: usize = 2;
+/// How often those after it are, which begin with that of fewer neighbours.
+const LATER_PASSES: usize = 1;
 
 /// The surface near a point, in coordinates relative to it.
 #[derive(Debug, Clone, Copy)]
@@ -103,8 +105,8 @@ fn fitted<S: Machine>(machine: S, patch: &Patch) -> Option<Surface> {
             break;
         }
         let nearest = patch.nearest(size);
-        let cuts = if best.is_none() { &CUTS[..] } else { &CUTS[2..] };
-        if let Some(refined) = refined(machine, &nearest, plane, cuts)
+        let passes = if best.is_none() { FIRST_PASSES } else { LATER_PASSES };
+        if let Some(refined) = refined(machine, &nearest, plane, passes)
             && let Some(surface) = measured(machine, &nearest, &refined)
         {
             plane = refined;
@@ -122,12 +124,16 @@ fn fitted<S: Machine>(machine: S, patch: &Patch) -> Option<Surface> {
     Some(Surface { disagreement, tilt, suspected: suspected(&best, &tried), ..best })
 }
 
-/// The plane after a pass by each cut.
+/// The plane after so many passes.
 #[inline(always)]
-fn refined<S: Machine>(machine: S, patch: &Patch, mut plane: Plane, cuts: &[f64]) -> Option<Plane> {
-    // Not by an iterator, whose methods would be compiled without vector instructions.
-    for &cut in cuts {
-        plane = reweighted(machine, patch, &plane, cut)?;
+fn refined<S: Machine>(
+    machine: S,
+    patch: &Patch,
+    mut plane: Plane,
+    passes: usize,
+) -> Option<Plane> {
+    for _ in 0..passes {
+        plane = reweighted(machine, patch, &plane)?;
     }
     Some(plane)
 }
@@ -179,10 +185,10 @@ fn suspected(best: &Surface, tried: &[Option<Surface>]) -> f64 {
 fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surface> {
     let frame = Frame::new(plane.normal);
     let first = regress(machine, patch, &frame, &[plane.height, 0.0, 0.0, 0.0])?;
-    // Weights about the plane drop what curves away from it, so the curved surface gets its own.
-    let second = regress(machine, patch, &frame, &first.curved);
     let mut best = (first.flat, first.flat_error);
-    if let Some(second) = second
+    // Weights about the plane drop what curves away from it, so the curved surface gets its own.
+    if first.may_curve()
+        && let Some(second) = regress(machine, patch, &frame, &first.curved)
         && let Some(error) = second.curved_error
         && is_better(error.expected(), best.1.expected())
     {

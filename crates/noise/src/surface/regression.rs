@@ -6,10 +6,10 @@ use crate::lanes::{Lanes, Machine};
 use crate::surface::patch::Patch;
 use crate::surface::reweight::{sums, tukey};
 
-/// The cut of the weights an answer is measured with, in standard deviations.
-pub(crate) const FINAL_CUT: f64 = 3.0;
+/// Residuals beyond so many standard deviations weigh nothing.
+pub(crate) const TUKEY_CUT: f64 = 3.0;
 /// The variance of standard normal residuals weighted by Tukey factors that end at
-/// [`FINAL_CUT`]: ∫ t x² φ / ∫ t φ with t = (1 − x²/9)².
+/// [`TUKEY_CUT`]: ∫ t x² φ / ∫ t φ with t = (1 − x²/9)².
 const TUKEY_VARIANCE: f64 = 0.632;
 /// The largest variance of the normal that still says where the surface faces: about 20°.
 const MOST_TILT_VARIANCE: f64 = 0.125;
@@ -80,7 +80,7 @@ impl Moments {
     ) -> Self {
         let own = patch.own_variance(&frame.normal);
         let precisions = patch.precisions(&frame.normal);
-        let inverse_cut = 1.0 / (FINAL_CUT * FINAL_CUT);
+        let inverse_cut = 1.0 / (TUKEY_CUT * TUKEY_CUT);
         let [mut total, mut agreed, mut agreed_squared] = [Lanes::zero(machine); 3];
         let mut first = [Lanes::zero(machine); 4];
         let mut second = [[Lanes::zero(machine); 4]; 4];
@@ -200,6 +200,17 @@ pub(crate) struct Regression {
     pub(crate) curved: Coefficients,
     pub(crate) flat_error: HeightError,
     pub(crate) curved_error: Option<HeightError>,
+}
+
+impl Regression {
+    /// Whether a curved surface may be the better one: not where noise and chance explain what is left of the
+    /// plane, and a curvature makes the height less sure than it moves it.
+    #[inline(always)]
+    pub(crate) fn may_curve(&self) -> bool {
+        let flat = &self.flat_error;
+        flat.beyond > flat.chance
+            || self.curved_error.is_some_and(|curved| curved.leverage < flat.leverage + flat.bend)
+    }
 }
 
 /// What the error of a height is made of, m².

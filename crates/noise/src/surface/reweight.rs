@@ -4,6 +4,7 @@ use cloudtouch_geom::{Matrix3, Vector3};
 
 use crate::lanes::{Lanes, Machine};
 use crate::surface::patch::{Patch, Plane};
+use crate::surface::regression::TUKEY_CUT;
 use crate::surface::smallest_axis::smallest_axis;
 
 /// A scatter that is no larger beside the moments that it is the difference of is rounding.
@@ -12,14 +13,9 @@ const SCATTER_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// One pass of Tukey weights: the plane through the neighbours weighted by how well they agree
 /// with the last one. `None` when nobody agrees, or those who do lie about one line.
 #[inline(always)]
-pub(crate) fn reweighted<S: Machine>(
-    machine: S,
-    patch: &Patch,
-    plane: &Plane,
-    cut: f64,
-) -> Option<Plane> {
+pub(crate) fn reweighted<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Plane> {
     let precisions = patch.precisions(&plane.normal);
-    let inverse_cut = 1.0 / (cut * cut);
+    let inverse_cut = 1.0 / (TUKEY_CUT * TUKEY_CUT);
     let mut total = Lanes::zero(machine);
     let mut first = [Lanes::zero(machine); 3];
     let mut second = [Lanes::zero(machine); 6];
@@ -103,7 +99,7 @@ mod tests {
 
         #[inline(always)]
         fn run<S: Machine>(self, machine: S) -> Option<Plane> {
-            reweighted(machine, self.0, self.1, 3.0)
+            reweighted(machine, self.0, self.1)
         }
     }
 
