@@ -84,10 +84,7 @@ fn kappa_holds_for_every_point_and_is_near_the_best() {
             for p in cloud {
                 let margin = sign * plane.signed_distance(&p.mean);
                 assert!(margin > 0.0);
-                // The margin is taken again from the rounded plane: 1e-9 of it is that rounding.
-                assert!(
-                    margin >= plane.kappa * p.covariance.std_along(&plane.normal) * (1.0 - 1e-9)
-                );
+                assert!(margin >= plane.kappa * p.covariance.std_along(&plane.normal));
                 let probability = normal::below_zero(margin, p.covariance.std_along(&plane.normal));
                 assert!(probability <= plane.point_probability_bound() * (1.0 + 1e-6));
             }
@@ -119,6 +116,39 @@ fn translation_far_away_and_scale_change_nothing() {
             assert!((far - near).abs() < 1e-4 * (1.0 + near), "{far} {near}");
         }
     }
+}
+
+/// Where coordinates are a tenth of a millimetre apart and more, so is the plane itself.
+#[test]
+fn a_plane_far_from_the_origin_promised_more_than_it_kept() {
+    let mut stream = Stream::new(6);
+    let mut found = [0; 3];
+    for case in 0..40 {
+        let [a, b] = clouds(&mut stream, 0.2);
+        for (k, far) in [1e9, 1e11, 1e12].into_iter().enumerate() {
+            let offset = Vector3::new(0.6, -1.0, 0.8) * far;
+            let map = |cloud: &[UncertainPoint]| -> Vec<UncertainPoint> {
+                cloud.iter().map(|p| UncertainPoint { mean: p.mean + offset, ..*p }).collect()
+            };
+            let (a, b) = (map(&a), map(&b));
+            let Ok(plane) = separate(&a, &b, 50.0) else { continue };
+            found[k] += 1;
+            for (cloud, sign) in [(&a, 1.0), (&b, -1.0)] {
+                for p in cloud {
+                    let margin = sign * plane.signed_distance(&p.mean);
+                    let std = p.covariance.std_along(&plane.normal);
+                    assert!(margin > 0.0, "case {case} at {far} m: on the wrong side");
+                    assert!(
+                        margin >= plane.kappa * std,
+                        "case {case} at {far} m: {} deviations of {}",
+                        margin / std,
+                        plane.kappa
+                    );
+                }
+            }
+        }
+    }
+    assert!(found.iter().all(|planes| *planes >= 20), "{found:?} planes");
 }
 
 #[test]

@@ -17,7 +17,7 @@ pub const DEFAULT_KAPPA_MAX: f64 = 4.75;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Separation {
-    /// A point of the plane, in the frame of the clouds.
+    /// A point of the plane, in the frame of the clouds, to the digits that coordinates there have.
     pub point: Point3,
     /// Unit normal from cloud A to cloud B.
     pub normal: Vector3,
@@ -75,9 +75,10 @@ pub enum NoSeparation {
 /// Finds a plane between two clouds that is as many standard deviations as possible, up to
 /// `kappa_max`, from every point.
 ///
-/// A returned κ is checked against every point, with an allowance for rounding of distances and of
-/// standard deviations, whatever the search did; it can only be too small, usually by less than one
-/// part in a thousand of the best possible.
+/// A returned κ is checked against every point and the plane as returned, with an allowance for rounding
+/// of distances and of standard deviations, whatever the search did; it can only be too small, usually by
+/// less than one part in a thousand of the best possible. So far from the origin that coordinates are
+/// rounded to more than a part of the noise it is smaller, or there is no plane.
 ///
 /// The search asks whether the clouds of ellipsoids of radius κ can be separated, by GJK on the
 /// difference of their hulls with the support function v·x ± κ|S v|: at once for `kappa_max`, and
@@ -99,16 +100,12 @@ pub fn separate(
     let anchor = check(a, Class::A)?;
     check(b, Class::B)?;
     let (side_a, side_b) = (Side::new(a, &anchor), Side::new(b, &anchor));
-    let found = Pair { a: &side_a, b: &side_b, kappa_max }.best_plane();
+    let found = Pair { a: &side_a, b: &side_b, anchor, kappa_max }.best_plane();
     let found = found.ok_or(NoSeparation::NotFound)?;
     if found.kappa <= 0.0 {
         return Err(NoSeparation::WithinRounding);
     }
-    Ok(Separation {
-        point: anchor + found.direction * found.offset,
-        normal: -found.direction,
-        kappa: found.kappa,
-    })
+    Ok(Separation { point: found.point, normal: -found.direction, kappa: found.kappa })
 }
 
 /// The first point, of a cloud that has one and is finite.

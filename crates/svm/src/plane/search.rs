@@ -8,6 +8,9 @@ use crate::plane::gjk::{Effort, separating_direction};
 const MAX_CLIMBS: usize = 24;
 /// Share of κ given up to keep exact points strictly on their side.
 const BACK_OFF: f64 = 1e-4;
+/// Shares of κ given up, one after the other while too little can be certified: none; what keeps clear of
+/// exact points; and more far from the origin, where the plane itself is rounded.
+const BACK_OFFS: [f64; 4] = [0.0, BACK_OFF, 1e-2, 0.5];
 
 /// Share of a length, or of a standard deviation, that rounding can have added or taken.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -44,17 +47,20 @@ impl Side {
     }
 }
 
-/// A plane by its unit normal from B to A and its offset along that from the anchor.
+/// A plane by its unit normal from B to A and a point of it.
 pub(crate) struct Found {
     pub(crate) direction: Vector3,
-    pub(crate) offset: f64,
+    /// As coordinates can hold it: far from the origin not quite where it was meant to be.
+    pub(crate) point: Point3,
     /// What was certified; not positive where rounding leaves nothing.
     pub(crate) kappa: f64,
 }
 
 pub(crate) struct Pair<'a> {
+    /// Relative to the anchor, as the other.
     pub(crate) a: &'a Side,
     pub(crate) b: &'a Side,
+    pub(crate) anchor: Point3,
     pub(crate) kappa_max: f64,
 }
 
@@ -121,33 +127,44 @@ impl Pair<'_> {
         kappa
     }
 
-    /// The plane across `direction` (from B to A) with the better κ of two: in the middle of the
-    /// width left at the best κ, or of that left at a slightly smaller one. Where an exact point
-    /// bounds the best κ it lies on the first plane itself, and only the second keeps clear of it.
+    /// The plane across `direction` (from B to A) with the best κ of some: in the middle of the width left
+    /// at the best κ, or of that left at a smaller one. Where an exact point bounds the best κ it lies on
+    /// the first plane itself, and only the others keep clear of it.
     fn plane(&self, direction: &Vector3) -> Option<Found> {
         let kappa = self.best_kappa(direction);
         if !kappa.is_finite() || kappa < 0.0 {
             return None;
         }
-        let middle = |kappa: f64| {
-            let low_a = self.a.lowest(direction, kappa).0;
-            let high_b = -self.b.lowest(&-direction, kappa).0;
-            let offset = 0.5 * (low_a + high_b);
-            let of_a = self.certified(self.a, direction, offset);
-            (of_a.min(self.certified(self.b, &-direction, -offset)), offset)
-        };
-        let (mut certified, mut offset) = middle(kappa);
-        if certified < kappa * (1.0 - BACK_OFF) {
-            (certified, offset) = middle(kappa * (1.0 - BACK_OFF));
+        let mut best: Option<Found> = None;
+        for share in BACK_OFFS {
+            let found = self.middle(direction, kappa * (1.0 - share));
+            let is_enough = found.kappa >= kappa * (1.0 - share - BACK_OFF);
+            if best.as_ref().is_none_or(|best| found.kappa > best.kappa) {
+                best = Some(found);
+            }
+            if is_enough {
+                break;
+            }
         }
-        Some(Found { direction: *direction, offset, kappa: certified })
+        best
     }
 
-    /// Least (n·x − offset)/std over a side, margins shortened and standard deviations lengthened by
-    /// what rounding can have done to them.
-    fn certified(&self, side: &Side, n: &Vector3, offset: f64) -> f64 {
+    /// The plane in the middle of the width left at a κ, with what can be certified of it.
+    fn middle(&self, direction: &Vector3, kappa: f64) -> Found {
+        let low_a = self.a.lowest(direction, kappa).0;
+        let high_b = -self.b.lowest(&-direction, kappa).0;
+        let point = self.anchor + direction * (0.5 * (low_a + high_b));
+        let from_anchor = point - self.anchor;
+        let of_a = self.certified(self.a, direction, &from_anchor);
+        let of_b = self.certified(self.b, &-direction, &from_anchor);
+        Found { direction: *direction, point, kappa: of_a.min(of_b) }
+    }
+
+    /// Least n·(x − point)/std over a side, margins shortened and standard deviations lengthened by what
+    /// rounding can have done to them. The point is the one that is returned, not the one aimed at.
+    fn certified(&self, side: &Side, n: &Vector3, point: &Vector3) -> f64 {
         let ratio = |(x, covariance): &(Vector3, Covariance)| {
-            let margin = n.dot(x) - offset - ROUNDING * (x.norm() + offset.abs());
+            let margin = n.dot(&(x - point)) - ROUNDING * (x.norm() + point.norm());
             // Also sorts out 0/0: a point on the plane is not on its own side.
             if margin > 0.0 { margin / longest_std(covariance, n) } else { f64::NEG_INFINITY }
         };
