@@ -75,6 +75,9 @@ fn a_wrong_file_or_mode_is_refused() {
     let refused = |more: &[&str]| refusal(&inputs.query_at(0.2, more), 2);
     assert!(refused(&["--mode", "paper", "--settings", "bad.toml"]).contains("gama"));
     assert!(refused(&["--mode", "paper", "--settings", "none.toml"]).contains("none.toml"));
+    inputs.write("many.toml", "[cloud.discretization]\nneighbors = 100000\n");
+    let many = refused(&["--mode", "paper", "--settings", "many.toml"]);
+    assert!(many.contains("discretization.neighbors` is 100000") && many.contains("200"), "{many}");
     inputs.write("good.toml", "");
     assert!(refused(&["--settings", "good.toml"]).contains("--mode paper"));
     assert!(refused(&["--json", "--explain"]).contains("--mode paper"));

@@ -6,7 +6,7 @@ use cloudtouch_geom::{Covariance, Matrix3, Point3};
 use crate::error::NoiseError;
 use crate::index::positions::Neighbor;
 use crate::neighborhoods::Neighborhoods;
-use crate::settings_error::{SettingsError, check_at_least_one, check_positive};
+use crate::settings_error::{SettingsError, check_at_least_one, check_at_most, check_positive};
 
 /// Which points the sums of eq. 17 run over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,8 +30,8 @@ pub enum Summed {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Discretization {
-    /// k, the size of the neighbourhood. 12 by default: about two rings of neighbours, the second
-    /// of which hardly counts.
+    /// k, the size of the neighbourhood, from 1 to 200. 12 by default: about two rings of neighbours,
+    /// the second of which hardly counts.
     pub neighbors: usize,
     /// τ, the width of the weights in units of η = Rₖ/√k, which on a surface of spacing h is
     /// h/√π. 2 by default: a neighbour one spacing away weighs e^(−π/4) = 0.46, one two spacings
@@ -51,13 +51,18 @@ impl Default for Discretization {
     }
 }
 
+/// More neighbours than this are no neighbourhood, and looking for them takes minutes: with the message
+/// that says so.
+const MOST_NEIGHBORS: (usize, &str) = (200, "at most 200; 12 are usual");
+
 impl Discretization {
     /// Checks the settings.
     ///
     /// # Errors
-    /// When there are no neighbours or the width is not positive and finite.
+    /// When there are no neighbours or more than 200, or the width is not positive and finite.
     pub fn validate(&self) -> Result<(), SettingsError> {
         check_at_least_one("discretization.neighbors", self.neighbors)?;
+        check_at_most("discretization.neighbors", self.neighbors, MOST_NEIGHBORS)?;
         check_positive("discretization.width", self.width)
     }
 }
@@ -194,6 +199,8 @@ mod tests {
         assert_eq!(discretization(&line(&[3.0, 3.0]), 0, &settings), Ok(None));
         for bad in [
             Discretization { neighbors: 0, ..settings },
+            // All of a room were looked for about each of its points, for minutes.
+            Discretization { neighbors: 201, ..settings },
             Discretization { width: 0.0, ..settings },
             Discretization { width: f64::NAN, ..settings },
         ] {

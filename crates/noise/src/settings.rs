@@ -40,7 +40,7 @@ impl NoiseSettings {
     /// Checks the settings.
     ///
     /// # Errors
-    /// When the neighbourhood is empty, its width is not positive, a parameter of the posterior is
+    /// When the neighbourhood is empty or larger than 200, its width is not positive, a parameter of the posterior is
     /// negative, or a value is not finite.
     pub fn validate(&self) -> Result<(), SettingsError> {
         self.discretization.validate()?;

@@ -26,6 +26,14 @@ pub(crate) fn check_at_least_one(name: &'static str, value: usize) -> Result<(),
     check(value >= 1, name, value as f64, "at least 1")
 }
 
+pub(crate) fn check_at_most(
+    name: &'static str,
+    value: usize,
+    (most, requirement): (usize, &'static str),
+) -> Result<(), SettingsError> {
+    check(value <= most, name, value as f64, requirement)
+}
+
 fn check(
     holds: bool,
     name: &'static str,
