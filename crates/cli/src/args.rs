@@ -29,7 +29,7 @@ pub(crate) use common::CommonArguments;
 use depth::DepthArguments;
 use limits::LimitArguments;
 pub(crate) use mode::ModeName;
-use parse::parse_fraction;
+use parse::parse_tolerance;
 pub(crate) use pose::PoseArguments;
 pub(crate) use query::QueryArguments;
 pub(crate) use robot::RobotOptions;
@@ -147,7 +147,7 @@ pub(crate) struct PathArguments {
     #[arg(long)]
     pub screw: bool,
     /// How finely the path is looked at, as a share of it
-    #[arg(long, value_name = "SHARE", value_parser = parse_fraction, default_value_t = 0.01,
+    #[arg(long, value_name = "SHARE", value_parser = parse_tolerance, default_value_t = 0.01,
           allow_negative_numbers = true)]
     pub tolerance: f64,
     #[command(flatten)]

@@ -65,6 +65,7 @@ fn wrong_usage_is_2() {
         &["query", "floor.pcd", "box.obj", "--outliers", "0,3"],
         &["query", "floor.pcd", "box.obj", "--outliers", "8,-3"],
         &["query", "floor.pcd", "box.obj", "--min-range=-1"],
+        &["path", "floor.pcd", "box.obj", "--poses", "path.csv", "--tolerance", "1e-9"],
         &["query", "floor.pcd", "box.obj", "--collision-map", "0"],
         &["query", "floor.pcd", "box.obj", "--seed", "3"],
         &["batch", "cases.json", "--pooling", "noisy-or", "--mode", "calibrated"],

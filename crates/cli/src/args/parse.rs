@@ -23,6 +23,19 @@ pub(super) fn parse_fraction(text: &str) -> Result<f64, String> {
     if is_between { Ok(fraction) } else { Err("give a number above 0 and below 1".to_owned()) }
 }
 
+/// The finest that the library takes: a path near contact needs up to twice its inverse bounds.
+const LEAST_TOLERANCE: f64 = 1e-5;
+
+pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
+    let tolerance = parse_fraction(text)?;
+    if tolerance >= LEAST_TOLERANCE {
+        return Ok(tolerance);
+    }
+    Err(format!(
+        "give {LEAST_TOLERANCE:e} or more, such as 0.001: the finer, the longer a path near contact takes"
+    ))
+}
+
 pub(super) fn parse_accept(text: &str) -> Result<f64, String> {
     let accept = numbers::finite(text)?;
     if (0.5..=1.0).contains(&accept) { Ok(accept) } else { Err("give 0.5 to 1".to_owned()) }

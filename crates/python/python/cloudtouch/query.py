@@ -211,7 +211,7 @@ class Query:
             rotation by the shorter turn.
         tolerance
             Stretches this short, as a share of the path, are not looked at closer; what they leave open stays in the
-            bounds.
+            bounds. At least 1e-5.
         screw
             The way between two poses is a screw, about one axis and along it, as a joint moves.
 
@@ -220,7 +220,7 @@ class Query:
         ValueError
             ``poses`` has the wrong shape or type, or a screw is not between two poses.
         CloudtouchError
-            All poses are the same, ``tolerance`` is not between 0 and 1, and what :meth:`run` raises.
+            All poses are the same, ``tolerance`` is below 1e-5 or not below 1, and what :meth:`run` raises.
         """
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
         if screw and len(matrices) != 2:

@@ -173,9 +173,9 @@ pub enum QueryError {
         /// How many there are.
         count: usize,
     },
-    /// The tolerance of a sweep is no share of the path.
+    /// The tolerance of a sweep is no share of the path, or too fine a one.
     #[error(
-        "the tolerance is {}: give a share of the path, above 0 and below 1",
+        "the tolerance is {}: give a share of the path from 1e-5 on and below 1, such as 0.001",
         number(*value)
     )]
     Tolerance {
