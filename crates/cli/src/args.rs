@@ -91,10 +91,24 @@ impl Arguments {
 
     /// Refuses options that contradict one another; the message names them.
     pub(crate) fn check(&self) -> Result<(), String> {
+        if let Some(common) = self.common() {
+            common.check()?;
+        }
         match &self.command {
             Command::Query(arguments) => arguments.check(),
             Command::Batch(arguments) => arguments.asked.check(&[], &[]),
             _ => Ok(()),
+        }
+    }
+
+    fn common(&self) -> Option<&CommonArguments> {
+        match &self.command {
+            Command::Query(arguments) => Some(&arguments.common),
+            Command::Path(arguments) => Some(&arguments.common),
+            Command::Scene(arguments) => Some(&arguments.common),
+            Command::Robot(arguments) => Some(&arguments.common),
+            Command::Batch(arguments) => Some(&arguments.common),
+            Command::Info(_) | Command::Demo(_) | Command::Settings => None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Numbers as the options spell them: lengths, angles, poses and fractions.
 
+use cloudtouch::geom::message::number;
 use cloudtouch::geom::{Pose, Vector3};
 use nalgebra::UnitQuaternion;
 
@@ -26,6 +27,26 @@ pub fn triple(text: &str) -> Result<Triple, String> {
     Ok(Triple(numbers(text, "three, as in 0.4,0,-1.2")?))
 }
 
+/// Nothing is farther from an origin, m: beyond it coordinates are too coarse to tell bodies apart.
+const FARTHEST: f64 = 1e10;
+
+/// `X,Y,Z` in metres.
+///
+/// # Errors
+/// As [`triple`], and when one of them is beyond 1e10 m.
+pub fn place(text: &str) -> Result<Triple, String> {
+    let Triple(at) = triple(text)?;
+    within_reach(&at)?;
+    Ok(Triple(at))
+}
+
+fn within_reach(lengths: &[f64]) -> Result<(), String> {
+    match lengths.iter().find(|length| length.abs() > FARTHEST) {
+        Some(length) => Err(format!("{} m is beyond {FARTHEST:e} m: give metres", number(*length))),
+        None => Ok(()),
+    }
+}
+
 /// Standard deviations of a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseStd(pub [f64; 6]);
@@ -33,12 +54,14 @@ pub struct PoseStd(pub [f64; 6]);
 /// `X,Y,Z,R,P,Y`: standard deviations along the axes of the object, m, and about them, rad.
 ///
 /// # Errors
-/// When there are not six finite numbers, one is negative, or an angle beyond half a turn.
+/// When there are not six finite numbers, one is negative, a length is beyond 1e10 m, or an angle beyond
+/// half a turn.
 pub fn pose_std(text: &str) -> Result<PoseStd, String> {
     let stds: [f64; 6] = numbers(text, "six, as in 0.005,0.005,0.005,0.01,0.01,0.01")?;
     if let Some(std) = stds.iter().find(|std| **std < 0.0) {
         return Err(format!("{std} is negative: a standard deviation is 0 or more"));
     }
+    within_reach(&stds[..3])?;
     match stds[3..].iter().find(|angle| **angle > 0.5 * WHOLE_TURN) {
         Some(angle) => Err(format!("{angle} rad is more than half a turn: is it in degrees?")),
         None => Ok(PoseStd(stds)),
@@ -81,15 +104,16 @@ pub fn quaternion(text: &str) -> Result<Turn, String> {
 /// `X,Y,Z` in metres, or `X,Y,Z,QX,QY,QZ,QW` with a quaternion in the order of ROS.
 ///
 /// # Errors
-/// When there are neither three nor seven finite numbers, or the quaternion is not of length one.
+/// When there are neither three nor seven finite numbers, a place is beyond 1e10 m, or the quaternion is not
+/// of length one.
 pub fn rigid(text: &str) -> Result<Rigid, String> {
     let Some((at, turn)) =
         text.match_indices(',').nth(2).map(|(i, _)| (&text[..i], &text[i + 1..]))
     else {
-        let Triple(at) = triple(text)?;
+        let Triple(at) = place(text)?;
         return Ok(Rigid(Pose::from_translation(at.into())));
     };
-    let (Triple(at), Turn(turn)) = (triple(at)?, quaternion(turn)?);
+    let (Triple(at), Turn(turn)) = (place(at)?, quaternion(turn)?);
     Ok(Rigid(Pose::from_translation_rotation(at.into(), turn)))
 }
 

@@ -125,18 +125,31 @@ pub enum NoiseError {
     },
 }
 
+/// No coordinate of a body is larger; squares of larger numbers, as covariances hold, may leave the range
+/// of `f64`.
+const MOST_VALUE: f64 = 1e10;
+
 pub(crate) fn check_value_positive(name: &'static str, value: f64) -> Result<(), NoiseError> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(NoiseError::SensorValue { name, value, requirement: "positive" })
+    check_value(value > 0.0, name, value, "positive")
 }
 
 pub(crate) fn check_value_not_negative(name: &'static str, value: f64) -> Result<(), NoiseError> {
-    if value.is_finite() && value >= 0.0 {
-        return Ok(());
+    check_value(value >= 0.0, name, value, "not negative")
+}
+
+fn check_value(
+    holds: bool,
+    name: &'static str,
+    value: f64,
+    requirement: &'static str,
+) -> Result<(), NoiseError> {
+    if !holds || !value.is_finite() {
+        Err(NoiseError::SensorValue { name, value, requirement })
+    } else if value > MOST_VALUE {
+        Err(NoiseError::SensorValue { name, value, requirement: "at most 1e10" })
+    } else {
+        Ok(())
     }
-    Err(NoiseError::SensorValue { name, value, requirement: "not negative" })
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What the commands that ask about bodies share.
 
 use clap::Args;
+use cloudtouch::geom::message::number;
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{FilterSettings, OutlierSettings, QuerySettings};
 use cloudtouch_io::LengthUnit;
@@ -10,7 +11,9 @@ use crate::sensor::SensorChoice;
 use super::caution::{CautionArguments, EffortArguments};
 use super::depth::DepthArguments;
 use super::limits::LimitArguments;
-use super::parse::{parse_accept, parse_fraction, parse_length, parse_outliers, parse_reject};
+use super::parse::{
+    parse_accept, parse_fraction, parse_length, parse_outliers, parse_positive, parse_reject,
+};
 
 /// What all of them take.
 #[derive(Debug, Args)]
@@ -39,7 +42,7 @@ pub(crate) struct CommonArguments {
     #[arg(long, value_name = "METRES", value_parser = parse_length, allow_negative_numbers = true, help_heading = "Cleaning")]
     pub min_range: Option<f64>,
     /// Drop points farther from the sensor
-    #[arg(long, value_name = "METRES", value_parser = parse_length, allow_negative_numbers = true, help_heading = "Cleaning")]
+    #[arg(long, value_name = "METRES", value_parser = parse_positive, allow_negative_numbers = true, help_heading = "Cleaning")]
     pub max_range: Option<f64>,
     /// Drop outliers: neighbours and standard deviations, such as 8,3
     #[arg(long, value_name = "K,M", value_parser = parse_outliers, allow_hyphen_values = true, help_heading = "Cleaning")]
@@ -72,6 +75,18 @@ impl CommonArguments {
             deadline: self.effort.deadline(),
             safeguards: self.caution.safeguards(usual.safeguards),
             ..usual
+        }
+    }
+
+    /// Refuses ranges that keep nothing.
+    pub(super) fn check(&self) -> Result<(), String> {
+        match (self.min_range, self.max_range) {
+            (Some(min), Some(max)) if min >= max => Err(format!(
+                "--min-range {} and --max-range {} leave no point: give the smaller first",
+                number(min),
+                number(max)
+            )),
+            _ => Ok(()),
         }
     }
 

@@ -14,7 +14,7 @@ pub(crate) struct PoseArguments {
           conflicts_with_all = ["translate", "rotate_rpy", "rotate_deg", "quaternion"])]
     pub pose: Option<PathBuf>,
     /// Where the object's origin goes in the scene, m
-    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::triple, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::place, allow_hyphen_values = true)]
     pub translate: Option<Triple>,
     /// Roll, pitch and yaw of the object about the axes of the scene, rad
     #[arg(long, value_name = "R,P,Y", value_parser = numbers::turn_in_radians,

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use cloudtouch_geom::message::number;
+
 use crate::error::NoiseError;
 use crate::sensor::model::SensorModel;
 
@@ -62,17 +64,24 @@ impl fmt::Display for SensorModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Exact => write!(f, "exact"),
-            Self::Isotropic { std } => write!(f, "iso:{std}"),
-            Self::Axes { stds: [x, y, z] } => write!(f, "axes:{x},{y},{z}"),
+            Self::Isotropic { std } => write!(f, "iso:{}", listed([*std])),
+            Self::Axes { stds } => write!(f, "axes:{}", listed(*stds)),
             Self::Stereo { baseline, focal_px, disparity_std } => {
-                write!(f, "stereo:{baseline},{focal_px},{disparity_std}")
+                write!(f, "stereo:{}", listed([*baseline, *focal_px, *disparity_std]))
             }
             Self::Kinect => write!(f, "kinect"),
-            Self::Lidar { range_std, beam_rad } => write!(f, "lidar:{range_std},{beam_rad}"),
-            Self::Grid { resolution } => write!(f, "grid:{resolution}"),
+            Self::Lidar { range_std, beam_rad } => {
+                write!(f, "lidar:{}", listed([*range_std, *beam_rad]))
+            }
+            Self::Grid { resolution } => write!(f, "grid:{}", listed([*resolution])),
             Self::PerPoint => write!(f, "per-point"),
         }
     }
+}
+
+/// Numbers as they are read back, each in few digits.
+fn listed<const N: usize>(values: [f64; N]) -> String {
+    values.map(number).join(",")
 }
 
 const STEREO: &str = "stereo:BASELINE,FOCAL_PX,DISPARITY_STD";
@@ -149,6 +158,12 @@ mod tests {
     }
 
     #[test]
+    fn tiny_numbers_were_spelled_with_hundreds_of_zeros() {
+        assert_eq!(SensorModel::Grid { resolution: 1e-300 }.to_string(), "grid:1e-300");
+        assert_eq!(SensorModel::Isotropic { std: 0.005 }.to_string(), "iso:0.005");
+    }
+
+    #[test]
     fn documented_forms_are_read() {
         let read = |spec: &str| spec.parse::<SensorModel>();
         assert_eq!(read("iso:0.005"), Ok(SensorModel::Isotropic { std: 0.005 }));
@@ -175,6 +190,8 @@ mod tests {
             ("lidar:0.1,0.2,0.3", &["lidar:RANGE_STD,BEAM_RAD", "2 values are needed, 3"]),
             ("iso:-0.1", &["standard deviation", "-0.1", "not negative"]),
             ("axes:0,0,inf", &["along z", "inf", "finite"]),
+            // Its square is no number: a point was blamed.
+            ("iso:1e300", &["standard deviation", "1e300", "at most 1e10"]),
             ("stereo:0,500,0.1", &["baseline", "is 0", "positive"]),
             // Read as 90 m, a cloud was a thousand times too sharp.
             ("stereo:90,570,0.2", &["90 m", "in millimetres?"]),
