@@ -122,8 +122,8 @@ def test_what_is_no_cloud_is_refused_by_name(points, says):
 @pytest.mark.parametrize(
     ("points", "says"),
     [
-        (np.empty((0, 3)), "no point is left of 0"),
-        (np.empty((0, 3), dtype=np.float32), "no point is left of 0"),
+        (np.empty((0, 3)), "the cloud has no points"),
+        (np.empty((0, 3), dtype=np.float32), "the cloud has no points"),
         (np.full((5, 3), np.nan), "no point is left of 5 after filtering (missing removed 5"),
         (np.full((5, 3), np.inf), "no point is left of 5"),
         (np.array([[0.0, 0.0, 1e12]]), "beyond 1e10 m"),

@@ -107,7 +107,7 @@ def test_what_cannot_be_changed_is_told_and_left_as_it_was(plate):
         (lambda: changed.remove([3, 3]), "point 3 is named twice"),
         (lambda: changed.remove(np.ones(400, dtype=bool)), "all 400 points"),
         (lambda: changed.move_points([0], [[0.0, 0.0, np.nan]]), "point 0 would get the coordinate NaN"),
-        (lambda: changed.insert(np.empty((0, 3))), "no point is left of 0"),
+        (lambda: changed.insert(np.empty((0, 3))), "the cloud has no points"),
         (lambda: changed.insert(np.full((5, 3), np.nan)), "no point is left of 5"),
         (lambda: changed.insert(POINTS, sensor="nothing"), "nothing"),
     ]:

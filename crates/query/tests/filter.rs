@@ -298,6 +298,8 @@ fn nothing_left_is_an_error_that_says_where_the_points_went() {
     }
     let empty = Cloud::prepare(&PointCloud::default(), &settings).unwrap_err();
     assert!(matches!(empty, PrepareError::NothingLeft { before: 0, .. }), "{empty:?}");
+    // It was told to loosen the filter.
+    assert_eq!(empty.to_string(), "the cloud has no points: check where it comes from");
 }
 
 #[test]

@@ -12,10 +12,7 @@ use super::filter::FilterError;
 #[non_exhaustive]
 pub enum PrepareError {
     /// No point was left after filtering.
-    #[error(
-        "no point is left of {before} after filtering ({stages}): loosen the filter, or check the \
-         file and its unit"
-    )]
+    #[error("{}", nothing_left(*before, stages))]
     NothingLeft {
         /// Points in the input.
         before: usize,
@@ -88,4 +85,15 @@ pub enum PrepareError {
         /// What the library said.
         reason: String,
     },
+}
+
+/// Of an empty cloud no stage is to blame.
+fn nothing_left(before: usize, stages: &str) -> String {
+    if before == 0 {
+        return "the cloud has no points: check where it comes from".to_owned();
+    }
+    format!(
+        "no point is left of {before} after filtering ({stages}): loosen the filter, or check the file and \
+         its unit"
+    )
 }
