@@ -110,6 +110,8 @@ fn errors_say_where_what_and_what_to_do() {
         (with_x(field("x", 0, 7, 3)), "byte 36: the count of a field is \"3\", expected 1"),
         (with_x(field("x", 9, 7, 1)), "the offset of a field is \"9\", expected a place within"),
         (with_x(field("x", u32::MAX, 7, 1)), "is \"4294967295\", expected a place within"),
+        // Read without a word, with a half of each in the other.
+        (with_x(field("x", 6, 7, 1)), "the offset of a field is \"4\", expected a place that no"),
         (with_x(field("i", 0, 7, 1)), "byte 32: there is no column x"),
         (with_x(field("Y", 0, 7, 1)), "byte 32: the column y appears a second time"),
         (Message { big_endian: 2, ..good.clone() }, "is_bigendian is \"2\", expected 0 or 1"),

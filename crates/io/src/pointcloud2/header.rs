@@ -82,9 +82,17 @@ pub(super) fn read(cursor: &mut Cursor<'_>, encoding: Encoding) -> Result<Header
         }));
     }
     let columns = found
-        .into_iter()
-        .map(|field| fields[field].column(point_step))
-        .collect::<Result<_, _>>()?;
+        .iter()
+        .map(|field| fields[*field].column(point_step))
+        .collect::<Result<Vec<_>, _>>()?;
+    if let Some(index) = first_within_another(&columns) {
+        let Field { place, offset, .. } = fields[found[index]];
+        return Err(place.error(Fault::BadEntry {
+            entry: "the offset of a field",
+            found: offset.to_string(),
+            expected: "a place that no other coordinate or covariance has",
+        }));
+    }
     Ok(Header {
         stamp_ns,
         frame_id,
@@ -96,6 +104,13 @@ pub(super) fn read(cursor: &mut Cursor<'_>, encoding: Encoding) -> Result<Header
         point_step,
         row_step,
     })
+}
+
+/// The first column some of whose bytes are also those of one before it: no writer means that.
+fn first_within_another(columns: &[Column]) -> Option<usize> {
+    let end = |column: &Column| column.offset + column.scalar.size();
+    let overlap = |p: &Column, q: &Column| p.offset < end(q) && q.offset < end(p);
+    (1..columns.len()).find(|&k| columns[..k].iter().any(|before| overlap(before, &columns[k])))
 }
 
 fn fields<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<Field<'a>>, FormatError> {

@@ -20,13 +20,14 @@ pub struct ScanName {
 impl ScanName {
     /// The scan that a path names; `None` when it is the path of no recording.
     ///
-    /// A recording is what ends in `.mcap`, in any case, and a scan of it what goes on with `#`.
+    /// A recording is what ends in `.mcap`, in any case, and a scan of it what goes on with `#`. The last `@`
+    /// begins the time: a topic that has one in its name is asked for with a time.
     ///
     /// # Errors
-    /// When what follows `@` is no time.
+    /// When what follows the last `@` is no time.
     pub fn of(path: &Path) -> Option<Result<Self, ReadError>> {
         let (file, rest) = split(path)?;
-        let (topic, at) = match rest.map(|rest| rest.split_once('@').unwrap_or((rest, ""))) {
+        let (topic, at) = match rest.map(|rest| rest.rsplit_once('@').unwrap_or((rest, ""))) {
             Some((topic, at)) => (Some(topic).filter(|t| !t.is_empty()), at),
             None => (None, ""),
         };
@@ -106,8 +107,14 @@ mod tests {
     }
 
     #[test]
+    fn the_time_of_a_topic_with_an_at_sign_was_looked_for_in_its_name() {
+        let name = ScanName::of(Path::new("run.mcap#/left@front@2.5")).unwrap().unwrap();
+        assert_eq!((name.topic.as_deref(), name.at), (Some("/left@front"), Some(2.5)));
+    }
+
+    #[test]
     fn a_time_is_a_number_from_zero() {
-        for time in ["", "-1", "nan", "inf", "1s", "1@2"] {
+        for time in ["", "-1", "nan", "inf", "1s", "1@b"] {
             let path = format!("run.mcap#/a@{time}");
             let error = ScanName::of(Path::new(&path)).unwrap().unwrap_err().to_string();
             assert!(error.starts_with(&path) && error.contains("is no time"), "{error}");
