@@ -103,11 +103,11 @@ impl Arguments {
 
     fn common(&self) -> Option<&CommonArguments> {
         match &self.command {
-            Command::Query(arguments) => Some(&arguments.common),
+            Command::Query(arguments) => Some(&arguments.asked.common),
             Command::Path(arguments) => Some(&arguments.common),
             Command::Scene(arguments) => Some(&arguments.common),
             Command::Robot(arguments) => Some(&arguments.common),
-            Command::Batch(arguments) => Some(&arguments.common),
+            Command::Batch(arguments) => Some(&arguments.asked.common),
             Command::Info(_) | Command::Demo(_) | Command::Settings => None,
         }
     }
