@@ -4,10 +4,8 @@ use cloudtouch_geom::Vector3;
 
 use crate::lanes::{Lanes, Machine};
 use crate::surface::patch::Patch;
-use crate::surface::reweight::{sums, tukey};
+use crate::surface::reweight::{TUKEY_CUT, sums, tukey};
 
-/// Residuals beyond so many standard deviations weigh nothing.
-pub(crate) const TUKEY_CUT: f64 = 3.0;
 /// The variance of standard normal residuals weighted by Tukey factors that end at
 /// [`TUKEY_CUT`]: ∫ t x² φ / ∫ t φ with t = (1 − x²/9)².
 const TUKEY_VARIANCE: f64 = 0.632;

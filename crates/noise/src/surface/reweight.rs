@@ -4,9 +4,10 @@ use cloudtouch_geom::{Matrix3, Vector3};
 
 use crate::lanes::{Lanes, Machine};
 use crate::surface::patch::{Patch, Plane};
-use crate::surface::regression::TUKEY_CUT;
 use crate::surface::smallest_axis::smallest_axis;
 
+/// Residuals beyond so many standard deviations weigh nothing.
+pub(crate) const TUKEY_CUT: f64 = 3.0;
 /// A scatter that is no larger beside the moments that it is the difference of is rounding.
 const SCATTER_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
