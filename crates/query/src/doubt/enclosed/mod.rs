@@ -90,9 +90,8 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
         }
     }
     // Of a wall nearby few of some points fall in each square, and of all of them as few where it is nearer still:
-    // each fills what its disc does. With half of the squares empty it is not all around. Where all points were looked
-    // at their discs may fill what is open: the hole of a ring.
-    if step > 1 && 2 * filled.count_ones() as usize >= all {
+    // each fills what its disc does. With half of the squares empty it is not all around.
+    if 2 * filled.count_ones() as usize >= all {
         let apart = cloud.makeup().spacing * (step as f64).sqrt();
         let near = 0.5 * a_side as f64 * POINTS_PER_SQUARE.sqrt() * apart;
         cloud.visit_measured_within(place, near, |point| {
