@@ -21,24 +21,24 @@ const STD: f64 = 0.005;
 ///
 /// The run is deterministic; the bounds leave room for changes that move single answers: .01 each as a rule, less where they were loosened.
 const RECORDED: [(Family, [[f64; 2]; 2]); 18] = [
-    (Family::PianoRoom, [[0.977, 0.067], [0.977, 0.065]]),
+    (Family::PianoRoom, [[0.979, 0.064], [0.977, 0.061]]),
     (Family::Tabletop, [[0.985, 0.045], [0.990, 0.024]]),
-    (Family::SphereAndPlane, [[0.956, 0.082], [0.963, 0.076]]),
-    (Family::WedgeAndPlane, [[0.987, 0.039], [0.990, 0.025]]),
-    (Family::CrossingSheets, [[0.990, 0.039], [0.990, 0.038]]),
-    (Family::PegInHole, [[0.990, 0.068], [0.990, 0.061]]),
+    (Family::SphereAndPlane, [[0.945, 0.097], [0.951, 0.084]]),
+    (Family::WedgeAndPlane, [[0.989, 0.034], [0.990, 0.024]]),
+    (Family::CrossingSheets, [[0.990, 0.045], [0.990, 0.036]]),
+    (Family::PegInHole, [[0.990, 0.062], [0.990, 0.048]]),
     (Family::InterlockedTori, [[0.989, 0.050], [0.987, 0.044]]),
-    (Family::ThinSlab, [[0.973, 0.071], [0.982, 0.048]]),
+    (Family::ThinSlab, [[0.973, 0.081], [0.982, 0.052]]),
     (Family::Furniture, [[0.936, 0.107], [0.958, 0.079]]),
     (Family::LivingRoom, [[0.962, 0.088], [0.964, 0.079]]),
-    (Family::Desk, [[0.977, 0.100], [0.977, 0.072]]),
+    (Family::Desk, [[0.977, 0.099], [0.977, 0.072]]),
     (Family::Kitchen, [[0.981, 0.061], [0.979, 0.046]]),
     (Family::Workbench, [[0.966, 0.081], [0.971, 0.071]]),
     (Family::BoxesInBin, [[0.990, 0.024], [0.990, 0.019]]),
-    (Family::Doorway, [[0.985, 0.053], [0.977, 0.059]]),
-    (Family::Staircase, [[0.950, 0.102], [0.950, 0.104]]),
-    (Family::SettingDown, [[0.987, 0.066], [0.990, 0.056]]),
-    (Family::Bookcase, [[0.961, 0.072], [0.966, 0.072]]),
+    (Family::Doorway, [[0.985, 0.052], [0.979, 0.059]]),
+    (Family::Staircase, [[0.941, 0.102], [0.956, 0.094]]),
+    (Family::SettingDown, [[0.987, 0.069], [0.990, 0.050]]),
+    (Family::Bookcase, [[0.961, 0.072], [0.967, 0.072]]),
 ];
 
 /// Runs it and compares.
