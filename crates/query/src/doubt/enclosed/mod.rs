@@ -7,7 +7,7 @@ mod squares;
 
 use cloudtouch_geom::{Point3, Pose};
 
-use crate::cloud::{DISC_SPACINGS, Prepared};
+use crate::cloud::Prepared;
 use crate::mesh::Mesh;
 use crate::shape::Shape;
 
@@ -64,7 +64,6 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
         return false;
     }
     let points = cloud.points();
-    let about = DISC_SPACINGS * cloud.makeup().spacing;
     let step = points.len().div_ceil(MOST_POINTS).max(1);
     let count = points.len().div_ceil(step);
     let a_side = (count as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt().floor() as usize;
@@ -72,7 +71,7 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
     // An open side is four of the smallest squares: more than may be empty.
     if a_side == MOST_SQUARES
         && cloud.is_searched_at_every_point()
-        && has_open_side(cloud.tree(), (points, about), place)
+        && has_open_side(cloud.tree(), points, place)
     {
         return false;
     }
@@ -89,13 +88,12 @@ fn surrounds(cloud: &Prepared, place: &Point3) -> bool {
             return !is_seen_into();
         }
     }
-    // Of a wall nearby few of some points fall in each square, and of all of them as few where it is nearer still:
-    // each fills what its disc does. With half of the squares empty it is not all around.
-    if 2 * filled.count_ones() as usize >= all {
+    // Of a wall nearby few of some points fall in each square. With half of the squares empty it is not all around.
+    if step > 1 && 2 * filled.count_ones() as usize >= all {
         let apart = cloud.makeup().spacing * (step as f64).sqrt();
         let near = 0.5 * a_side as f64 * POINTS_PER_SQUARE.sqrt() * apart;
         cloud.visit_measured_within(place, near, |point| {
-            filled |= squares.about(&(point - place), about);
+            filled |= squares.containing(&(point - place));
         });
     }
     // A small square all alone among filled ones has no point by chance, which hangs on the axes of the file.

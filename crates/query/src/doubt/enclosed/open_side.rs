@@ -6,27 +6,20 @@ use cloudtouch_geom::{Point3, Vector3};
 
 /// Sides are pyramids along the axes of the frame, as wide as this times their height to either hand.
 const SLOPE: f64 = 0.5;
-/// The top of a pyramid whose faces are farther out by one is so far back: √(1 + SLOPE²) / SLOPE, rounded up.
-const TOP: f64 = 2.24;
 /// So much wider, and boxes so much larger, that rounding cannot leave a point out.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether one of the six pyramids with their tops at a place holds none of the surface that reaches so far
-/// (m) about each point; `points` by their indices in the tree.
-pub(super) fn has_open_side(
-    tree: &Tree,
-    (points, about): (&[Point3], f64),
-    place: &Point3,
-) -> bool {
+/// Whether one of the six pyramids with their tops at a place holds no point; `points` by their indices
+/// in the tree.
+pub(super) fn has_open_side(tree: &Tree, points: &[Point3], place: &Point3) -> bool {
     Side::all().any(|side| {
         let mut is_open = true;
-        let top = &(place - side.outward() * (about * TOP));
         tree.visit_nodes(|node| {
-            if !is_open || !side.may_hold(node.obb(), top) {
+            if !is_open || !side.may_hold(node.obb(), place) {
                 return Visit::Prune;
             }
             let mut all = node.primitive_indices().iter();
-            if node.is_leaf() && all.any(|&index| side.holds(&(points[index as usize] - top))) {
+            if node.is_leaf() && all.any(|&index| side.holds(&(points[index as usize] - place))) {
                 is_open = false;
             }
             Visit::Descend
@@ -45,11 +38,6 @@ struct Side {
 impl Side {
     fn all() -> impl Iterator<Item = Self> {
         (0..3).flat_map(|axis| [1.0, -1.0].map(|sign| Self { axis, sign }))
-    }
-
-    /// From the top into the pyramid.
-    fn outward(self) -> Vector3 {
-        self.sign * Vector3::ith(self.axis, 1.0)
     }
 
     /// How far a place is within each of its four faces, in no unit.
@@ -98,7 +86,6 @@ mod tests {
             // Beyond .3 the most of a ball is missing.
             up_to in -0.9..1.0_f64,
             place in prop::array::uniform3(-0.7..0.7_f64),
-            about in 0.0..0.1_f64,
         ) {
             let draw = |i, k| 2.0 * unit(derive(seed, i, k)) - 1.0;
             let drawn = (0..count).map(|i| Vector3::new(draw(i, 0), draw(i, 1), draw(i, 2)));
@@ -112,10 +99,9 @@ mod tests {
             let primitive = |&mean: &Point3| Primitive::point(UncertainPoint { mean, covariance });
             let tree = Tree::build(points.iter().map(primitive).collect(), &TreeSettings::default());
             let place = Point3::from(Vector3::from(place));
-            let top = |side: Side| place - side.outward() * (TOP * about);
-            let is_empty = |side: Side| !points.iter().any(|p| side.holds(&(p - top(side))));
+            let is_empty = |side: Side| !points.iter().any(|p| side.holds(&(p - place)));
             let expected = Side::all().any(is_empty);
-            prop_assert_eq!(has_open_side(&tree.unwrap(), (&points, about), &place), expected);
+            prop_assert_eq!(has_open_side(&tree.unwrap(), &points, &place), expected);
         }
     }
 }

@@ -40,13 +40,6 @@ impl Squares {
         1 << (square + along(around[axis + 2]))
     }
 
-    /// The bits of the squares that a place lies in as seen from the origin, or one so far beside it along an axis.
-    pub(super) fn about(&self, place: &Vector3, aside: f64) -> u128 {
-        let along = |k: usize| [aside, -aside].map(|by| place + by * Vector3::ith(k, 1.0));
-        let beside = (0..3).flat_map(along).map(|place| self.containing(&place));
-        beside.fold(self.containing(place), |filled, square| filled | square)
-    }
-
     /// How many squares are not filled while all beside them are.
     pub(super) fn alone_among(&self, filled: u128) -> u32 {
         let side = f64::from(self.a_side);
