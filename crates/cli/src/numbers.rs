@@ -1,5 +1,6 @@
 //! Numbers as the options spell them: lengths, angles, poses and fractions.
 
+use cloudtouch::LARGEST_COORDINATE;
 use cloudtouch::geom::message::number;
 use cloudtouch::geom::{Pose, Vector3};
 use nalgebra::UnitQuaternion;
@@ -27,9 +28,6 @@ pub fn triple(text: &str) -> Result<Triple, String> {
     Ok(Triple(numbers(text, "three, as in 0.4,0,-1.2")?))
 }
 
-/// Nothing is farther from an origin, m: beyond it coordinates are too coarse to tell bodies apart.
-const FARTHEST: f64 = 1e10;
-
 /// `X,Y,Z` in metres.
 ///
 /// # Errors
@@ -41,8 +39,11 @@ pub fn place(text: &str) -> Result<Triple, String> {
 }
 
 fn within_reach(lengths: &[f64]) -> Result<(), String> {
-    match lengths.iter().find(|length| length.abs() > FARTHEST) {
-        Some(length) => Err(format!("{} m is beyond {FARTHEST:e} m: give metres", number(*length))),
+    match lengths.iter().find(|length| length.abs() > LARGEST_COORDINATE) {
+        Some(length) => {
+            let length = number(*length);
+            Err(format!("{length} m is beyond {LARGEST_COORDINATE:e} m: give metres"))
+        }
         None => Ok(()),
     }
 }

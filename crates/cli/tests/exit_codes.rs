@@ -83,6 +83,24 @@ fn wrong_usage_is_2() {
     }
 }
 
+/// Found by the library, they were errors (1) that named no option.
+#[test]
+fn impossible_values_are_told_with_the_option_they_were_given_to() {
+    let inputs = Inputs::new();
+    for (options, told) in [
+        ("--translate 1e11,0,0", &["--translate", "1e11 m is beyond 1e10 m"][..]),
+        ("--pose-std 1e11,0,0,0,0,0", &["--pose-std", "1e11 m is beyond 1e10 m"]),
+        ("--sensor-pose 1e11,0,0", &["--sensor-pose", "1e11 m is beyond 1e10 m"]),
+        ("--min-range=2 --max-range=1", &["--min-range 2", "--max-range 1", "smaller first"]),
+    ] {
+        let given = ["query", "floor.pcd", "box.obj"].into_iter().chain(options.split(' '));
+        let run = inputs.run(&given.collect::<Vec<_>>());
+        assert_eq!((run.code(), run.stdout().as_str()), (2, ""), "{options}");
+        let error = run.stderr();
+        assert!(told.iter().all(|words| error.contains(words)), "{options}: {error}");
+    }
+}
+
 #[test]
 fn help_and_version_are_0_and_fit_a_terminal() {
     let inputs = Inputs::new();

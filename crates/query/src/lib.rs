@@ -24,6 +24,7 @@ mod shape;
 mod stats;
 
 pub use body::{Body, BodyRef};
+pub use check::coordinates::LARGEST_COORDINATE;
 pub use cloud::{Change, Cloud, CloudSettings};
 pub use doubt::safeguards::Safeguards;
 pub use doubt::undecided::Undecided;

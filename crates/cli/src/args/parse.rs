@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use cloudtouch::OutlierSettings;
+use cloudtouch::{OutlierSettings, Query};
 use cloudtouch_cli::numbers;
 
 use crate::sensor::SensorChoice;
@@ -23,16 +23,14 @@ pub(super) fn parse_fraction(text: &str) -> Result<f64, String> {
     if is_between { Ok(fraction) } else { Err("give a number above 0 and below 1".to_owned()) }
 }
 
-/// The finest that the library takes: a path near contact needs up to twice its inverse bounds.
-const LEAST_TOLERANCE: f64 = 1e-5;
-
 pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
     let tolerance = parse_fraction(text)?;
-    if tolerance >= LEAST_TOLERANCE {
+    let least = Query::LEAST_TOLERANCE;
+    if tolerance >= least {
         return Ok(tolerance);
     }
     Err(format!(
-        "give {LEAST_TOLERANCE:e} or more, such as 0.001: the finer, the longer a path near contact takes"
+        "give {least:e} or more, such as 0.001: the finer, the longer a path near contact takes"
     ))
 }
 

@@ -4,8 +4,8 @@ use cloudtouch_geom::{Point3, Pose};
 
 use crate::error::PrepareError;
 
-/// The last place of such a coordinate is 2 micrometres, m.
-pub(crate) const LARGEST_COORDINATE: f64 = 1e10;
+/// No coordinate of a body or of a pose may be larger, m: its last place is 2 micrometres.
+pub const LARGEST_COORDINATE: f64 = 1e10;
 
 /// An entry of a pose that cannot be reckoned with.
 pub(crate) fn bad_entry(pose: &Pose) -> Option<f64> {

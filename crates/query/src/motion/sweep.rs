@@ -16,12 +16,13 @@ use super::stretch::ask;
 use super::swept::{Reached, SweepStats, Swept};
 use super::tested::Tested;
 
-/// The finest tolerance: a millimetre of a hundred metres. Where a path stays near contact its bounds leave
-/// it open however short the stretches are, for they know neither the extent of a contact nor what a
-/// classifier would say; all of that is cut into pieces of the tolerance then.
-const LEAST_TOLERANCE: f64 = 1e-5;
-
 impl Query {
+    /// The finest tolerance of [`Self::sweep`], as a share of a path: a millimetre of a hundred metres. Where a
+    /// path stays near contact its bounds leave it open however short the stretches are, for they know neither
+    /// the extent of a contact nor what a classifier would say; all of that is cut into pieces of the tolerance
+    /// then.
+    pub const LEAST_TOLERANCE: f64 = 1e-5;
+
     /// How likely the surfaces behind two bodies collide anywhere along a path of `b`, and where that
     /// first exceeds the accept threshold.
     ///
@@ -30,7 +31,7 @@ impl Query {
     /// clearly, as the motion lets it. Stretches whose bound is not below the reject threshold are
     /// halved, down to `tolerance` as a share of the path; what is open then stays in the bounds. A path
     /// that stays near contact takes up to twice the inverse of the tolerance bounds, which is why that may
-    /// be no finer than 1e-5.
+    /// be no finer than [`Self::LEAST_TOLERANCE`].
     /// Poses that the path leads through are asked about where they may matter. With [`Detail::Verdict`](crate::Detail::Verdict) it ends
     /// at the first pose that is found not to be free, wherever on the path, some of which are asked about
     /// before anything is bounded: for who wants no more than to know whether the path is free.
@@ -65,7 +66,7 @@ impl Query {
     /// ```
     ///
     /// # Errors
-    /// When the tolerance is below 1e-5 or not below 1, and those of [`Self::run`].
+    /// When the tolerance is below [`Self::LEAST_TOLERANCE`] or not below 1, and those of [`Self::run`].
     pub fn sweep<'a>(
         &self,
         a: impl Into<BodyRef<'a>>,
@@ -73,7 +74,7 @@ impl Query {
         path: &Path,
         tolerance: f64,
     ) -> Result<Swept, QueryError> {
-        if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
+        if !(Self::LEAST_TOLERANCE..1.0).contains(&tolerance) {
             return Err(QueryError::Tolerance { value: tolerance });
         }
         let start = Instant::now();
