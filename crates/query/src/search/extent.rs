@@ -17,8 +17,8 @@ const FULL: f64 = 0.6;
 
 /// The pieces of surface of one body that are looked at, and the other body.
 struct Facing<'f, 'a> {
-    own: &'f Leaves<'a>,
-    others: &'f Leaves<'a>,
+    own: &'f Leaves<Leaf<'a>>,
+    others: &'f Leaves<Leaf<'a>>,
     /// The other body where that is a closed mesh, and its local frame from that of A.
     solid: Option<(&'a Mesh, Pose)>,
     is_a: bool,
@@ -158,7 +158,7 @@ impl Facing<'_, '_> {
 /// The place of the other body that a piece is so many squared deviations from.
 fn nearest_to(
     (leaf, place): (&NoisyLeaf<'_>, usize),
-    others: &Leaves<'_>,
+    others: &Leaves<Leaf<'_>>,
     squared: f64,
 ) -> Option<UncertainPoint> {
     /// Relative, of the order in which two pieces are asked about.

@@ -47,8 +47,8 @@ pub(crate) struct Finding {
 /// All that the search found.
 #[derive(Debug, Default)]
 pub(crate) struct Found<'a> {
-    pub leaves_a: Leaves<'a>,
-    pub leaves_b: Leaves<'a>,
+    pub leaves_a: Leaves<Leaf<'a>>,
+    pub leaves_b: Leaves<Leaf<'a>>,
     pub findings: Vec<Finding>,
     /// The least deviations between two pieces of surface, at most [`MOST_DEVIATIONS`].
     pub deviations: f64,

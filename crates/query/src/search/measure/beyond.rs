@@ -71,7 +71,7 @@ fn least_within<'a>(
     // Of pairs whose boxes are within the margin no more is known than that: all are looked at.
     let reach = |least: f64| least.max(f64::MIN_POSITIVE);
     let sought = Sought { within: reach(most), margin, crossings: false, drift: None };
-    let mut leaves: (Leaves<'a>, Leaves<'a>) = Default::default();
+    let mut leaves: (Leaves<Leaf<'a>>, Leaves<Leaf<'a>>) = Default::default();
     let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
         let leaf_a = leaves.0.get_or_load(pair.a, || Leaf::load(a, pair.a, None, &mut stats));
         let load_b = || Leaf::load(b, pair.b, Some(&motion), &mut stats);

@@ -2,8 +2,9 @@
 
 use cloudtouch_geom::Drift;
 
-use crate::cloud::{DISC_SPACINGS, Surfel, edge_along};
+use crate::cloud::{DISC_SPACINGS, edge_along};
 
+use super::dividing::Dividing;
 use super::drifts::Drifts;
 use super::leaf::{SweptCloud, SweptEdges, SweptMesh};
 use super::passage::{Adrift, may_pierce, mesh_through_disc};
@@ -55,13 +56,14 @@ pub(super) fn may_reach_facets(
 /// Whether any edge of a leaf may meet a disc of another, all of each looked at as one box.
 pub(super) fn may_meet(
     is_a: bool,
-    (of_edges, edges): (&SweptCloud<'_>, &SweptEdges),
+    (of_edges, edges): (&SweptCloud<'_>, &SweptEdges<'_>),
     of_discs: &SweptCloud<'_>,
+    dividing: Dividing,
 ) -> bool {
     let (Some(edges), Some(discs)) = (&edges.hull, &of_discs.discs) else { return false };
     let (still, drifting) = if is_a { (edges, discs) } else { (discs, edges) };
     let thin = [of_discs, of_edges].map(|leaf| leaf.leaf.slab.direction);
-    thin.iter().all(|n| still.meets_along(drifting, n))
+    dividing.known().chain(thin).all(|n| still.meets_along(drifting, &n))
 }
 
 /// Adds the passages of edges of one leaf, which drift so, through discs of another.
@@ -70,26 +72,18 @@ pub(super) fn add_edges_through_discs(
     of_edges: &SweptCloud<'_>,
     of_discs: &NoisyLeaf<'_>,
     drift: &Drift,
-    found: &mut Passages,
+    (found, dividing): (&mut Passages, &mut Dividing),
 ) {
-    let Some(SweptEdges { all, tracks, hull: Some(hull) }) = of_edges.edges() else { return };
+    let Some(edges) = of_edges.edges() else { return };
     let (around, slab) = (of_discs.ball, of_discs.slab);
     // Most discs are beyond all edges of the leaf.
     let thin = [slab.direction, of_edges.leaf.slab.direction];
-    let layers = thin.map(|n| (n, hull.heights_on_the_way(&n)));
-    let is_met = |disc: &&Surfel| {
-        layers.iter().all(|(n, [low, high])| {
-            let height = n.dot(&disc.point.mean.coords);
-            let holds = |reach: f64| low - reach <= height && height <= high + reach;
-            disc.disc_reach(n).is_some_and(holds)
-        })
-    };
-    let discs: Vec<&Surfel> = of_discs.surfels.iter().filter(is_met).collect();
+    let discs = dividing.discs_met(&of_discs.surfels, edges, thin, drift);
     if discs.is_empty() {
         return;
     }
     let direction = Direction::new(slab.direction, drift);
-    for (edge, track) in all.iter().zip(tracks) {
+    for (edge, track) in edges.all.iter().zip(&edges.tracks) {
         let room = track.ends[0].along(&direction).max(track.ends[1].along(&direction));
         if !slab.may_hold(&edge.ends, room) {
             continue;
@@ -117,12 +111,11 @@ pub(super) fn add_edges_through_facets(
     of_edges: &SweptCloud<'_>,
     facets: &SweptMesh,
     drifts: &Drifts,
-    found: &mut Passages,
+    (found, dividing): (&mut Passages, &mut Dividing),
 ) {
-    let Some(SweptEdges { all, tracks, hull: Some(hull) }) = of_edges.edges() else { return };
-    let thin = Direction::new(of_edges.leaf.slab.direction, drifts.of(!is_a));
-    let met = facets.facets().filter(|facet| hull.meets_facet(facet, &thin));
-    let met: Vec<SweptFacet<'_>> = met.collect();
+    let Some(edges) = of_edges.edges() else { return };
+    let SweptEdges { all, tracks, .. } = edges;
+    let met = dividing.facets_met(facets, edges, of_edges.leaf.slab.direction, drifts.of(!is_a));
     if met.is_empty() {
         return;
     }

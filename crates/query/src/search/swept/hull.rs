@@ -39,7 +39,7 @@ impl Hull {
     }
 
     /// Between which heights everything in it is along a unit vector, m; never too narrow by rounding.
-    fn heights(&self, n: &Vector3) -> [f64; 2] {
+    pub(super) fn heights(&self, n: &Vector3) -> [f64; 2] {
         let (height, half) = (n.dot(&self.middle.coords), self.half_axes.tr_mul(n).abs().sum());
         let room = half + ROUNDING * (half + height.abs());
         [height - room, height + room]
@@ -60,18 +60,14 @@ impl Hull {
     /// Whether a triangle of the other body may meet it, as far as the plane of the triangle and one
     /// direction tell.
     pub(super) fn meets_facet(&self, swept: &SweptFacet<'_>, direction: &Direction) -> bool {
-        let SweptFacet { facet, corners } = swept;
-        let gets_to_plane = |n: Vector3| {
+        swept.gets_between(self.heights(&direction.n), direction) && self.meets_plane_of(swept)
+    }
+
+    /// As far as the plane of the triangle tells.
+    pub(super) fn meets_plane_of(&self, SweptFacet { facet, .. }: &SweptFacet<'_>) -> bool {
+        facet.normal.is_none_or(|n| {
             let ([low, high], at) = (self.heights_on_the_way(&n), n.dot(&facet.corners[0].coords));
             low <= at && at <= high
-        };
-        let [low, high] = self.heights(&direction.n);
-        let (mut is_above, mut is_below) = (true, true);
-        for corner in *corners {
-            let (at, room) = (direction.n.dot(&corner.place.coords), corner.along(direction));
-            is_above &= at - room > high;
-            is_below &= at + room < low;
-        }
-        !is_above && !is_below && facet.normal.is_none_or(gets_to_plane)
+        })
     }
 }

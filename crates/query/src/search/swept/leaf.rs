@@ -1,6 +1,8 @@
 //! Leaves of a search among surfaces of which one drifts: what is told once of a leaf for all others that
 //! it meets.
 
+use std::borrow::Cow;
+
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Drift, Matrix3, Motion, Vector3};
 
@@ -9,6 +11,7 @@ use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
 use crate::stats::Stats;
 
 use super::hull::Hull;
+use super::layer::{ExactLayer, Layer, span};
 use super::track::{Direction, SweptFacet, Track};
 use crate::search::compare::facet::Facet;
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
@@ -26,6 +29,8 @@ pub(super) struct SweptMesh {
     pub leaf: ExactLeaf,
     /// Of the corners of its facets.
     tracks: Vec<[Track; 3]>,
+    /// `None` where none of them has a normal.
+    pub layer: Option<ExactLayer>,
 }
 
 /// A leaf of a cloud.
@@ -40,14 +45,14 @@ pub(super) struct SweptCloud<'a> {
     /// From where it was measured to the frame of A; `None` for one of A.
     pub motion: Option<Motion>,
     axes: Matrix3,
-    edges: Option<SweptEdges>,
+    edges: Option<SweptEdges<'a>>,
 }
 
 /// The edges of a leaf.
 #[derive(Debug)]
-pub(super) struct SweptEdges {
+pub(super) struct SweptEdges<'a> {
     /// In the frame of A.
-    pub all: Vec<Edge>,
+    pub all: Cow<'a, [Edge]>,
     pub tracks: Vec<EdgeTrack>,
     /// About all of them; `None` where there are none.
     pub hull: Option<Hull>,
@@ -60,17 +65,6 @@ pub(super) struct EdgeTrack {
     pub ends: [Track; 2],
     /// How far its ends get in any direction, m.
     pub by: f64,
-}
-
-/// Between which heights the pieces of a leaf are along the direction it is thinnest, and how well they are
-/// known along it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Layer {
-    direction: Direction,
-    low: f64,
-    high: f64,
-    /// The largest variance along it, m².
-    variance: f64,
 }
 
 impl<'a> Swept<'a> {
@@ -101,8 +95,10 @@ fn axes_of(cloud: &Cloud, id: NodeId, motion: Option<&Motion>) -> Matrix3 {
 impl SweptMesh {
     fn new(leaf: ExactLeaf, drift: &Drift) -> Self {
         let track = |facet: &Facet| facet.corners.map(|corner| Track::of(&corner, drift));
-        let tracks = leaf.facets.iter().map(track).collect();
-        Self { leaf, tracks }
+        let tracks: Vec<[Track; 3]> = leaf.facets.iter().map(track).collect();
+        let normal = leaf.facets.iter().find_map(|facet| facet.normal);
+        let layer = normal.map(|n| ExactLayer::around(&tracks, Direction::new(n, drift)));
+        Self { leaf, tracks, layer }
     }
 
     pub(super) fn facets(&self) -> impl Iterator<Item = SweptFacet<'_>> {
@@ -129,24 +125,38 @@ impl<'a> SweptCloud<'a> {
     pub(super) fn load_edges(&mut self, id: NodeId, drift: &Drift) {
         if self.edges.is_none() {
             self.leaf.load_edges(id);
-            let edges = self.leaf.edges.iter().flat_map(|of_leaf| &of_leaf.edges);
-            let moved = edges.map(|edge| self.motion.map_or(*edge, |motion| edge.moved(&motion)));
-            self.edges = Some(SweptEdges::new(moved.collect(), &self.axes, drift));
+            let edges = self.leaf.edges.map_or(&[][..], |of_leaf| &of_leaf.edges);
+            let all = match &self.motion {
+                None => Cow::Borrowed(edges),
+                Some(motion) => edges.iter().map(|edge| edge.moved(motion)).collect(),
+            };
+            self.edges = Some(SweptEdges::new(all, &self.axes, drift));
         }
     }
 
     /// `None` before they were loaded.
-    pub(super) fn edges(&self) -> Option<&SweptEdges> {
+    pub(super) fn edges(&self) -> Option<&SweptEdges<'a>> {
         self.edges.as_ref()
     }
 }
 
-impl SweptEdges {
-    fn new(all: Vec<Edge>, axes: &Matrix3, drift: &Drift) -> Self {
+impl<'a> SweptEdges<'a> {
+    fn new(all: Cow<'a, [Edge]>, axes: &Matrix3, drift: &Drift) -> Self {
         let ends = all.iter().flat_map(|edge| edge.ends);
         let hull = Hull::around(axes, ends.map(|end| (end, Vector3::zeros())), drift);
         let tracks = all.iter().map(|edge| EdgeTrack::of(edge, drift)).collect();
         Self { all, tracks, hull }
+    }
+
+    /// Between which heights along a unit vector all of them are, m; never too narrow by rounding.
+    pub(super) fn heights(&self, n: &Vector3) -> [f64; 2] {
+        span(self.all.iter().flat_map(|edge| edge.ends).map(|end| (n.dot(&end.coords), 0.0)))
+    }
+
+    /// The same wherever they get.
+    pub(super) fn heights_on_the_way(&self, direction: &Direction) -> [f64; 2] {
+        let ends = self.tracks.iter().flat_map(|track| &track.ends);
+        span(ends.map(|end| (direction.n.dot(&end.place.coords), end.along(direction))))
     }
 }
 
@@ -155,29 +165,8 @@ impl EdgeTrack {
         let [from, to] = &edge.ends;
         let ends = [Track::of(from, drift), Track::of(to, drift)];
         let by = ends[0].in_any_direction().max(ends[1].in_any_direction());
-        Self { middle: Track::of(&edge.middle(), drift), ends, by }
-    }
-}
-
-impl Layer {
-    fn around(surfels: &[Surfel], direction: Direction) -> Self {
-        let mut layer =
-            Self { direction, low: f64::INFINITY, high: f64::NEG_INFINITY, variance: 0.0 };
-        for Surfel { point, .. } in surfels {
-            let height = direction.n.dot(&point.mean.coords);
-            let variance = point.covariance.variance_along(&direction.n);
-            layer.low = layer.low.min(height);
-            layer.high = layer.high.max(height);
-            layer.variance = layer.variance.max(variance);
-        }
-        layer
-    }
-
-    /// No piece of the leaf has fewer deviations along its direction to a piece of the other body, which has
-    /// so large a variance at any turn.
-    pub(super) fn deviations(&self, track: &Track, variance: impl Fn(&Direction) -> f64) -> f64 {
-        let height = self.direction.n.dot(&track.place.coords);
-        let gap = (height - self.high).max(self.low - height) - track.along(&self.direction);
-        if gap <= 0.0 { 0.0 } else { gap / (self.variance + variance(&self.direction)).sqrt() }
+        // What the arc adds is no more between its ends than at one of them.
+        let (way, beside) = (0.5 * (ends[0].way + ends[1].way), ends[0].beside.max(ends[1].beside));
+        Self { middle: Track { place: edge.middle(), way, beside }, ends, by }
     }
 }

@@ -2,10 +2,12 @@
 //! with all that the motion can add.
 
 mod depth;
+mod dividing;
 mod drifts;
 mod facets;
 mod gather;
 mod hull;
+mod layer;
 mod leaf;
 mod passage;
 mod pieces;

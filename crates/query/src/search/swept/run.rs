@@ -1,7 +1,5 @@
 //! The search for what geometry could say at most anywhere along a drift.
 
-use std::collections::BTreeMap;
-
 use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, SurfacePair, visit_surfaces};
 use cloudtouch_geom::{Drift, Motion, Pose};
 
@@ -11,17 +9,20 @@ use crate::judge::MOST_DEVIATIONS;
 use crate::search::run::SOUGHT;
 use crate::stats::Stats;
 
+use super::dividing::Dividing;
 use super::drifts::Drifts;
 use super::facets::may_touch;
 use super::gather::{
     add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_meet, may_reach,
     may_reach_facets,
 };
+use super::layer::ExactLayer;
 use super::leaf::{Swept, SweptCloud, SweptMesh};
 use super::pieces::{between_discs, to_facet, turned_variance};
 use super::pool::Passages;
 use super::track::Direction;
 use crate::search::visit::around::{Around, OfMesh};
+use crate::search::visit::leaves::Leaves;
 use crate::search::visit::trees::Trees;
 
 /// What the evidence can be on the way, at most.
@@ -53,6 +54,7 @@ pub(crate) fn reach_of<'a>(
         deviations: MOST_DEVIATIONS,
         passages: Passages::default(),
         around: Around::default(),
+        dividing: Dividing::default(),
     };
     let mut trees = Trees::of(a, b);
     let is_exact = matches!((a, b), (BodyRef::Mesh(_), BodyRef::Mesh(_)));
@@ -72,32 +74,30 @@ pub(crate) fn reach_of<'a>(
     Ok(Reach { deviations: way.deviations, clearness, is_complete: !outcome.stopped })
 }
 
-type Leaves<'a> = BTreeMap<NodeId, Swept<'a>>;
-
 struct Way<'a> {
     bodies: (BodyRef<'a>, BodyRef<'a>),
     a_from_b: Motion,
     drifts: Drifts,
-    leaves: (Leaves<'a>, Leaves<'a>),
+    leaves: (Leaves<Swept<'a>>, Leaves<Swept<'a>>),
     deviations: f64,
     passages: Passages,
     around: Around,
+    dividing: Dividing,
 }
 
 impl<'a> Way<'a> {
     fn look_at(&mut self, pair: &SurfacePair, stats: &mut Stats) {
         let (a, b) = self.bodies;
         let (motion, drifts) = (&self.a_from_b, &self.drifts);
-        let leaf_a = self.leaves.0.entry(pair.a);
-        let leaf_a = leaf_a.or_insert_with(|| Swept::load(a, pair.a, None, &drifts.of_a, stats));
-        let leaf_b = self.leaves.1.entry(pair.b);
+        let (of_a, of_b) = &mut self.leaves;
+        let leaf_a = of_a.get_or_load(pair.a, || Swept::load(a, pair.a, None, &drifts.of_a, stats));
         let leaf_b =
-            leaf_b.or_insert_with(|| Swept::load(b, pair.b, Some(motion), &drifts.of_b, stats));
+            of_b.get_or_load(pair.b, || Swept::load(b, pair.b, Some(motion), &drifts.of_b, stats));
         if pair.deviations < self.deviations {
             self.deviations = least_of(leaf_a, leaf_b, &drifts.of_b, self.deviations);
         }
         if pair.may_cross {
-            let told = (&mut self.passages, &mut self.around);
+            let told = (&mut self.passages, &mut self.around, &mut self.dividing);
             cross((a, b), motion, pair, (leaf_a, leaf_b), drifts, told);
         }
     }
@@ -142,7 +142,11 @@ fn to_exact(
     let mut least = most;
     let (surfels, whitenings, _) = noisy.leaf.whitened();
     for ((surfel, whitening), track) in surfels.iter().zip(whitenings).zip(&noisy.tracks) {
-        if !track.gets_to(&exact.leaf.ball, least * surfel.most_variance.sqrt()) {
+        let by_layer =
+            |layer: &ExactLayer| layer.deviations((surfel, track), is_facet_still, drift);
+        if !track.gets_to(&exact.leaf.ball, least * surfel.most_variance.sqrt())
+            || exact.layer.as_ref().is_some_and(|layer| by_layer(layer) >= least)
+        {
             continue;
         }
         for facet in exact.facets() {
@@ -161,17 +165,18 @@ fn cross_discs(
     (of_edges, id): (&mut SweptCloud<'_>, NodeId),
     of_discs: &SweptCloud<'_>,
     drift: &Drift,
-    passages: &mut Passages,
+    told: (&mut Passages, &mut Dividing),
 ) {
+    let dividing = *told.1;
     let may_meet = |of_edges: &SweptCloud<'_>| {
-        of_edges.edges().is_none_or(|edges| may_meet(is_a, (of_edges, edges), of_discs))
+        of_edges.edges().is_none_or(|edges| may_meet(is_a, (of_edges, edges), of_discs, dividing))
     };
     if !may_meet(of_edges) || !may_reach(of_edges, &of_discs.leaf, drift) {
         return;
     }
     of_edges.load_edges(id, drift);
     if may_meet(of_edges) {
-        add_edges_through_discs(is_a, of_edges, &of_discs.leaf, drift, passages);
+        add_edges_through_discs(is_a, of_edges, &of_discs.leaf, drift, told);
     }
 }
 
@@ -181,18 +186,18 @@ fn cross<'a>(
     pair: &SurfacePair,
     leaves: (&mut Swept<'a>, &mut Swept<'a>),
     drifts: &Drifts,
-    (passages, known): (&mut Passages, &mut Around),
+    (passages, known, dividing): (&mut Passages, &mut Around, &mut Dividing),
 ) {
     match leaves {
         (Swept::Noisy(on_a), Swept::Noisy(on_b)) => {
-            cross_discs(true, (on_a, pair.a), on_b, &drifts.of_a, passages);
-            cross_discs(false, (on_b, pair.b), on_a, &drifts.of_b, passages);
+            cross_discs(true, (on_a, pair.a), on_b, &drifts.of_a, (passages, dividing));
+            cross_discs(false, (on_b, pair.b), on_a, &drifts.of_b, (passages, dividing));
         }
         (Swept::Noisy(noisy), Swept::Exact(exact))
             if may_reach_facets(noisy, &exact.leaf, &drifts.of_a) =>
         {
             noisy.load_edges(pair.a, &drifts.of_a);
-            add_edges_through_facets(true, noisy, exact, drifts, passages);
+            add_edges_through_facets(true, noisy, exact, drifts, (passages, dividing));
             let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
             add_mesh_through_discs(true, noisy, exact, &mut around, drifts, passages);
         }
@@ -200,7 +205,7 @@ fn cross<'a>(
             if may_reach_facets(noisy, &exact.leaf, &drifts.of_b) =>
         {
             noisy.load_edges(pair.b, &drifts.of_b);
-            add_edges_through_facets(false, noisy, exact, drifts, passages);
+            add_edges_through_facets(false, noisy, exact, drifts, (passages, dividing));
             let mut around = OfMesh { known, body: a, a_from_mesh: None };
             add_mesh_through_discs(false, noisy, exact, &mut around, drifts, passages);
         }

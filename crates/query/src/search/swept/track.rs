@@ -96,6 +96,19 @@ pub(super) struct SweptFacet<'a> {
     pub corners: &'a [Track; 3],
 }
 
+impl SweptFacet<'_> {
+    /// Whether some of it gets between two heights along a direction, m.
+    pub(super) fn gets_between(&self, [low, high]: [f64; 2], direction: &Direction) -> bool {
+        let (mut is_above, mut is_below) = (true, true);
+        for corner in self.corners {
+            let (at, room) = (direction.n.dot(&corner.place.coords), corner.along(direction));
+            is_above &= at - room > high;
+            is_below &= at + room < low;
+        }
+        !is_above && !is_below
+    }
+}
+
 /// A place and a facet that come nearer to one another or part.
 pub(super) struct Approach<'a> {
     pub place: &'a Point3,

@@ -5,22 +5,26 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 use cloudtouch_bvh::NodeId;
 
-use super::leaf::Leaf;
-
 /// Leaves, each loaded once.
-#[derive(Debug, Default)]
-pub(crate) struct Leaves<'a> {
+#[derive(Debug)]
+pub(crate) struct Leaves<L> {
     /// In the order in which they were first seen.
-    seen: Vec<(NodeId, Leaf<'a>)>,
+    seen: Vec<(NodeId, L)>,
     places: HashMap<usize, usize, BuildHasherDefault<Spread>>,
 }
 
-impl<'a> Leaves<'a> {
+impl<L> Default for Leaves<L> {
+    fn default() -> Self {
+        Self { seen: Vec::new(), places: HashMap::default() }
+    }
+}
+
+impl<L> Leaves<L> {
     pub(in crate::search) fn get_or_load(
         &mut self,
         id: NodeId,
-        load: impl FnOnce() -> Leaf<'a>,
-    ) -> &mut Leaf<'a> {
+        load: impl FnOnce() -> L,
+    ) -> &mut L {
         let Self { seen, places } = self;
         let place = *places.entry(id.index()).or_insert_with(|| {
             seen.push((id, load()));
@@ -34,13 +38,13 @@ impl<'a> Leaves<'a> {
     }
 
     /// In the order of the search.
-    pub(in crate::search) fn all(&self) -> impl Iterator<Item = &Leaf<'a>> {
+    pub(in crate::search) fn all(&self) -> impl Iterator<Item = &L> {
         self.seen.iter().map(|(_, leaf)| leaf)
     }
 
     /// By the names of their nodes, whatever the order of the search.
-    pub(crate) fn in_order(&self) -> impl Iterator<Item = &Leaf<'a>> {
-        let mut order: Vec<&(NodeId, Leaf<'a>)> = self.seen.iter().collect();
+    pub(crate) fn in_order(&self) -> impl Iterator<Item = &L> {
+        let mut order: Vec<&(NodeId, L)> = self.seen.iter().collect();
         order.sort_unstable_by_key(|(id, _)| *id);
         order.into_iter().map(|(_, leaf)| leaf)
     }
