@@ -30,6 +30,12 @@ impl Prepared {
         self.neighborhoods.visit_within(place, distance, |near| visit(&points[near.index]));
     }
 
+    /// The place measured nearest to one, local frame.
+    pub(crate) fn measured_nearest(&self, place: &Point3) -> Option<Point3> {
+        let nearest = self.neighborhoods.nearest_to(place, 1);
+        nearest.first().map(|near| self.points()[near.index])
+    }
+
     /// How far apart samples are about a place in the local frame, m: those of one surface of that density,
     /// whether they lie in clumps or not.
     pub(crate) fn spacing_about(&self, place: &Point3) -> f64 {

@@ -6,13 +6,15 @@ use cloudtouch_geom::{Point3, Vector3};
 
 /// Sides are pyramids along the axes of the frame, as wide as this times their height to either hand.
 const SLOPE: f64 = 0.5;
+/// The distance of a face is this times what is measured across the axis: 1 / √(1 + SLOPE²).
+const ALONG: f64 = 0.894_427_190_999_915_9;
 /// So much wider, and boxes so much larger, that rounding cannot leave a point out.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether one of the six pyramids with their tops at a place holds no point; `points` by their indices
-/// in the tree.
-pub(super) fn has_open_side(tree: &Tree, points: &[Point3], place: &Point3) -> bool {
-    Side::all().any(|side| {
+/// Whether one of the six pyramids with their tops at a place holds no point, and has none so near its faces
+/// (m) either; `points` by their indices in the tree.
+pub(super) fn has_open_side(tree: &Tree, (points, near): (&[Point3], f64), place: &Point3) -> bool {
+    Side::all(near).any(|side| {
         let mut is_open = true;
         tree.visit_nodes(|node| {
             if !is_open || !side.may_hold(node.obb(), place) {
@@ -28,27 +30,31 @@ pub(super) fn has_open_side(tree: &Tree, points: &[Point3], place: &Point3) -> b
     })
 }
 
-/// The directions that are nearest to one of an axis, to the half of what lies between it and the others.
+/// The directions that are nearest to one of an axis, to the half of what lies between it and the others, and
+/// what is near them.
 #[derive(Clone, Copy)]
 struct Side {
     axis: usize,
     sign: f64,
+    /// What is so far beside it or behind its top counts, m.
+    near: f64,
 }
 
 impl Side {
-    fn all() -> impl Iterator<Item = Self> {
-        (0..3).flat_map(|axis| [1.0, -1.0].map(|sign| Self { axis, sign }))
+    fn all(near: f64) -> impl Iterator<Item = Self> {
+        (0..3).flat_map(move |axis| [1.0, -1.0].map(|sign| Self { axis, sign, near }))
     }
 
-    /// How far a place is within each of its four faces, in no unit.
-    fn within_faces(self, offset: &Vector3) -> [f64; 4] {
-        let half = SLOPE * (1.0 + ROUNDING) * self.sign * offset[self.axis];
-        let [p, q] = [1, 2].map(|k| offset[(self.axis + k) % 3]);
-        [half - p, half + p, half - q, half + q]
+    /// How far a place is within each of its four faces, and before its top, m.
+    fn within_faces(self, offset: &Vector3) -> [f64; 5] {
+        let before = self.sign * offset[self.axis];
+        let half = ALONG * SLOPE * (1.0 + ROUNDING) * before;
+        let [p, q] = [1, 2].map(|k| ALONG * offset[(self.axis + k) % 3]);
+        [half - p, half + p, half - q, half + q, before]
     }
 
     fn holds(self, offset: &Vector3) -> bool {
-        self.within_faces(offset).iter().all(|&within| within >= 0.0)
+        self.within_faces(offset).iter().all(|&within| within >= -self.near)
     }
 
     /// Whether some place of a box may be in it: not where a face parts them.
@@ -62,7 +68,7 @@ impl Side {
             }
         }
         let rounding = ROUNDING * (offset.lp_norm(1) + obb.half_extents.sum());
-        most.iter().all(|&most| most >= -rounding)
+        most.iter().all(|&most| most >= -(self.near + rounding))
     }
 }
 
@@ -86,6 +92,7 @@ mod tests {
             // Beyond .3 the most of a ball is missing.
             up_to in -0.9..1.0_f64,
             place in prop::array::uniform3(-0.7..0.7_f64),
+            near in prop_oneof![Just(0.0), 0.0..0.1_f64],
         ) {
             let draw = |i, k| 2.0 * unit(derive(seed, i, k)) - 1.0;
             let drawn = (0..count).map(|i| Vector3::new(draw(i, 0), draw(i, 1), draw(i, 2)));
@@ -100,8 +107,8 @@ mod tests {
             let tree = Tree::build(points.iter().map(primitive).collect(), &TreeSettings::default());
             let place = Point3::from(Vector3::from(place));
             let is_empty = |side: Side| !points.iter().any(|p| side.holds(&(p - place)));
-            let expected = Side::all().any(is_empty);
-            prop_assert_eq!(has_open_side(&tree.unwrap(), &points, &place), expected);
+            let expected = Side::all(near).any(is_empty);
+            prop_assert_eq!(has_open_side(&tree.unwrap(), (&points, near), &place), expected);
         }
     }
 }

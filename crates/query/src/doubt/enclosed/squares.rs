@@ -40,30 +40,41 @@ impl Squares {
         1 << (square + along(around[axis + 2]))
     }
 
-    /// How many squares are not filled while all beside them are.
-    pub(super) fn alone_among(&self, filled: u128) -> u32 {
-        let side = f64::from(self.a_side);
-        let mut alone = 0;
-        for face in 0..6 {
-            let at = |u: f64, v: f64| {
-                let mut direction = Vector3::zeros();
-                direction[face / 2] = if face % 2 == 0 { 1.0 } else { -1.0 };
-                direction[(face / 2 + 1) % 3] = u;
-                direction[(face / 2 + 2) % 3] = v;
-                self.containing(&direction)
-            };
-            for place in 0..self.a_side * self.a_side {
-                let middle = |k: u32| (2.0 * f64::from(k) + 1.0) / side - 1.0;
-                let (u, v) = (middle(place / self.a_side), middle(place % self.a_side));
-                // Beyond the edge of a face the next one begins.
-                let step = 2.0 / side;
-                let beside = at(u - step, v) | at(u + step, v) | at(u, v - step) | at(u, v + step);
-                let is_alone = filled & at(u, v) == 0 && filled & beside == beside;
-                alone += u32::from(is_alone);
-            }
-        }
-        alone
+    /// The directions of the middles of all.
+    pub(super) fn middles(&self) -> impl Iterator<Item = Vector3> {
+        let (a_side, step) = (self.a_side, 2.0 / f64::from(self.a_side));
+        let middle = move |k: u32| step * (f64::from(k) + 0.5) - 1.0;
+        let of_face = move |face| {
+            let all = 0..a_side * a_side;
+            all.map(move |k| toward(face, middle(k / a_side), middle(k % a_side)))
+        };
+        (0..6).flat_map(of_face)
     }
+
+    /// The squares that are not filled while all beside them are.
+    pub(super) fn alone_among(&self, filled: u128) -> u128 {
+        // Beyond the edge of a face the next one begins.
+        let step = 2.0 / f64::from(self.a_side);
+        let is_alone = |middle: &Vector3| {
+            let axis = middle.iamax();
+            let beside = [1, 2].into_iter().flat_map(|k| {
+                [step, -step].map(|by| middle + by * Vector3::ith((axis + k) % 3, 1.0))
+            });
+            let beside = beside.fold(0, |all, direction| all | self.containing(&direction));
+            filled & self.containing(middle) == 0 && filled & beside == beside
+        };
+        let alone = self.middles().filter(is_alone);
+        alone.fold(0, |all, middle| all | self.containing(&middle))
+    }
+}
+
+/// The direction to a place on a face of the cube.
+fn toward(face: usize, u: f64, v: f64) -> Vector3 {
+    let mut direction = Vector3::zeros();
+    direction[face / 2] = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
+    direction[(face / 2 + 1) % 3] = u;
+    direction[(face / 2 + 2) % 3] = v;
+    direction
 }
 
 #[cfg(test)]
@@ -95,7 +106,7 @@ mod tests {
             assert_eq!(squares.alone_among(all), 0);
             for lost in 0..6 * a_side * a_side {
                 let without = all & !(1 << lost);
-                assert_eq!(squares.alone_among(without), 1, "{a_side} {lost}");
+                assert_eq!(squares.alone_among(without), 1 << lost, "{a_side} {lost}");
                 // One beside it is not found alone, nor is it then: each has four such.
                 let beside = (0..6 * a_side * a_side)
                     .filter(|&other| other != lost)
