@@ -47,3 +47,4 @@ mod swap;
 mod thin_mesh;
 mod uncertain_pose;
 mod utm_offset;
+mod within_closed;

@@ -11,7 +11,7 @@ use super::CLOSED;
 use super::way::Way;
 
 /// The radius of a disc in spacings: of samples at random a thousandth of a surface is in none.
-pub(super) const RADIUS: f64 = 1.5;
+const RADIUS: f64 = 1.5;
 /// Where it is asked whether a sensor sees past them: four in a million are in none.
 const RADIUS_BEFORE_SENSOR: f64 = 2.0;
 /// A disc of RADIUS that closes a direction in whose square there is no sample is no farther away, in spacings:

@@ -14,7 +14,7 @@ use crate::cloud::Prepared;
 use crate::mesh::Mesh;
 use crate::shape::Shape;
 
-use discs::{Directions, Discs, RADIUS};
+use discs::{Directions, Discs};
 use open_side::has_open_side;
 use samples::Samples;
 use sight::sees;
@@ -75,8 +75,9 @@ fn surrounds(cloud: &Prepared, middle: &Point3, own: impl FnOnce() -> Option<Poi
         return false;
     }
     let samples = Samples::of(cloud);
-    // An open side is four of the smallest squares: more than may be empty.
-    let near = RADIUS * cloud.makeup().spacing;
+    // An open side is four of the smallest squares: more than may be empty. Where the surface is near it may be so
+    // by chance, but hardly with a spacing about it.
+    let near = cloud.makeup().spacing;
     if samples.are_many()
         && cloud.is_searched_at_every_point()
         && has_open_side(cloud.tree(), (cloud.points(), near), middle)
