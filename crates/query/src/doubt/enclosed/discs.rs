@@ -7,7 +7,7 @@ use cloudtouch_noise::Scratch;
 
 use crate::cloud::{DISC_SPACINGS, Prepared, Surfel};
 
-use super::CLOSED;
+use super::squares::CLOSED;
 use super::way::Way;
 
 /// The radius of a disc in spacings: of samples at random a thousandth of a surface is in none.

@@ -18,10 +18,7 @@ use discs::{Directions, Discs};
 use open_side::has_open_side;
 use samples::Samples;
 use sight::sees;
-use squares::{MOST_SQUARES, Squares};
-
-/// With this share of the directions filled there is no way out.
-const CLOSED: f64 = 0.97;
+use squares::{CLOSED, MOST_SQUARES, Squares};
 
 /// Whether the surface of a cloud is all around the other body, so that neither knows whether the space
 /// between them is empty. Where a sensor's place is known and it looks at the inner one past no

@@ -4,8 +4,7 @@ use cloudtouch_geom::{Point3, Vector3};
 
 use crate::cloud::Prepared;
 
-use super::CLOSED;
-use super::squares::{MOST_SQUARES, Squares};
+use super::squares::{CLOSED, MOST_SQUARES, Squares};
 
 /// Points that stand for the surface around, at most.
 const MOST_POINTS: usize = 4096;

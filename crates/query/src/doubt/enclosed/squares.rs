@@ -5,6 +5,8 @@ use cloudtouch_geom::Vector3;
 /// Directions are told apart by squares on the faces of a cube, so many a side at most: all of them are
 /// the bits of one number.
 pub(super) const MOST_SQUARES: usize = 4;
+/// With this share of the directions filled there is no way out.
+pub(super) const CLOSED: f64 = 0.97;
 
 /// The squares that directions are told apart by, so many a side.
 pub(super) struct Squares {

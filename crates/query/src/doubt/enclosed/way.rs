@@ -72,13 +72,14 @@ mod tests {
             let vector = |k| Vector3::new(drawn(k), drawn(k + 1), drawn(k + 2));
             let pose =
                 Pose::from_translation_rpy(vector(0), [3.0 * drawn(3), drawn(4), 3.0 * drawn(5)]);
-            let half_extents = 0.5 * vector(6).abs();
+            let half_extents = vector(6).abs();
             let axes = *pose.rotation().to_rotation_matrix().matrix();
             let obb = Obb { centre: pose.transform_point(&Point3::origin()), axes, half_extents };
-            let length = if draw % 2 == 0 { f64::INFINITY } else { drawn(9).abs() };
+            let length = if draw % 2 == 0 { f64::INFINITY } else { 3.0 * drawn(9).abs() };
             let axis = Vector3::ith(draw as usize % 3, 1.0);
-            let direction = if draw % 5 == 0 { axes * axis } else { vector(10) };
-            let from = Point3::from(1.5 * vector(13));
+            let from = Point3::from(2.0 * vector(13));
+            let toward = obb.centre - from + vector(10);
+            let direction = if draw % 5 == 0 { axes * axis } else { toward };
             let way = Way::toward(&from, &direction, length).expect("a direction");
             let near = 0.1 * drawn(16).abs();
             let of_box = |k: u64| {
@@ -91,7 +92,7 @@ mod tests {
             passes[0] += usize::from(is_near);
             passes[1] += usize::from(!way.may_pass(&obb, near));
         }
-        assert!(passes.iter().all(|&count| count > 200), "{passes:?}");
+        assert!(passes.iter().all(|&count| count > 100), "{passes:?}");
     }
 
     #[test]
