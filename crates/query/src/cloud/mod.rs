@@ -32,7 +32,7 @@ pub(crate) use surface::ball::Ball;
 pub(crate) use surface::edge::{DISC_SPACINGS, Edge, MOST_ALONG, edge_along};
 #[cfg(test)]
 pub(crate) use surface::join::edges_of;
-pub(crate) use surface::leaf::{LeafEdges, LeafSurface};
+pub(crate) use surface::leaf::{LeafEdges, LeafSurface, Pieces};
 pub(crate) use surface::onward::Onward;
 pub(crate) use surface::slab::Slab;
 pub(crate) use surface::surfel::Surfel;

@@ -11,8 +11,8 @@ use crate::stats::Stats;
 use super::compare::meeting::{Meeting, deviations_by_pose};
 use super::cross::crossings::Crossings;
 use super::cross::gather::{
-    add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, may_reach_facets,
-    reaching,
+    NearDisc, add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs,
+    may_reach_facets, reaching,
 };
 use super::measure::nearest::{Nearest, nearest_pieces};
 use super::visit::around::{Around, OfMesh};
@@ -54,8 +54,8 @@ pub(crate) struct Found<'a> {
     pub deviations: f64,
     pub crossings: Crossings,
     around: Around,
-    /// Memory for places of pieces in a leaf, to use again.
-    places: Vec<usize>,
+    /// Memory for the discs of a leaf that edges may pass, to use again.
+    discs: Vec<NearDisc>,
     /// How many deviations above the least is looked.
     pub(super) further: f64,
     /// Whether what was left out can change neither of these.
@@ -138,7 +138,7 @@ impl<'a> Found<'a> {
         let is_near = pair.deviations < most && of_means <= most * most_std;
         let nearest = is_near.then(|| nearest_pieces(leaf_a, leaf_b, most));
         if pair.may_cross && of_surfaces <= 0.0 {
-            let found = (&mut self.crossings, &mut self.around, &mut self.places);
+            let found = (&mut self.crossings, &mut self.around, &mut self.discs);
             cross((a, b), a_from_b, pair, (leaf_a, leaf_b), found);
         }
         let Some(nearest) = nearest.flatten() else { return };
@@ -155,19 +155,19 @@ fn cross<'a>(
     a_from_b: &Motion,
     pair: &SurfacePair,
     leaves: (&mut Leaf<'a>, &mut Leaf<'a>),
-    (crossings, known, places): (&mut Crossings, &mut Around, &mut Vec<usize>),
+    (crossings, known, discs): (&mut Crossings, &mut Around, &mut Vec<NearDisc>),
 ) {
     match leaves {
         (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
             let near = reaching(on_a, on_b);
             if !near.is_none() {
                 on_a.load_edges(pair.a);
-                add_edges_through_discs(None, (on_a, near), on_b, places, crossings);
+                add_edges_through_discs(None, (on_a, near), on_b, discs, crossings);
             }
             let near = reaching(on_b, on_a);
             if !near.is_none() {
                 on_b.load_edges(pair.b);
-                add_edges_through_discs(Some(a_from_b), (on_b, near), on_a, places, crossings);
+                add_edges_through_discs(Some(a_from_b), (on_b, near), on_a, discs, crossings);
             }
         }
         (Leaf::Noisy(noisy), Leaf::Exact(exact)) if may_reach_facets(noisy, exact) => {

@@ -41,7 +41,7 @@ pub(crate) struct Edge {
     /// Variances of the ends across the surface, m².
     pub across: [f64; 2],
     /// Which points of the leaf it joins, by their place in it; `None` for a point of another leaf.
-    pub own: [Option<usize>; 2],
+    pub own: [Option<u32>; 2],
 }
 
 impl Edge {
@@ -50,11 +50,21 @@ impl Edge {
         nalgebra::center(&self.ends[0], &self.ends[1])
     }
 
-    /// The same edge in another frame.
-    pub(crate) fn moved(&self, motion: &Motion) -> Self {
+    /// Its ends in another frame.
+    pub(crate) fn moved_ends(&self, motion: &Motion) -> [Point3; 2] {
         // PERF: written out, for `map` over arrays is not inlined where thousands are moved.
         let [from, to] = &self.ends;
-        Self { ends: [motion.point(from), motion.point(to)], ..*self }
+        [motion.point(from), motion.point(to)]
+    }
+
+    /// The same edge in another frame.
+    pub(crate) fn moved(&self, motion: &Motion) -> Self {
+        Self { ends: self.moved_ends(motion), ..*self }
+    }
+
+    /// The points of its leaf that it joins, by their places in it.
+    pub(crate) fn own_places(&self) -> impl Iterator<Item = usize> {
+        self.own.into_iter().flatten().map(|place| place as usize)
     }
 }
 

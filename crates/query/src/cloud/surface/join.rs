@@ -38,7 +38,7 @@ impl Prepared {
 ///
 /// Only points that are among each other's nearest are joined, so that both leaves agree.
 pub(crate) fn edges_of(cloud: &Prepared, indices: &[u32], scratch: &mut Scratch) -> Vec<Edge> {
-    let places: BTreeMap<u32, usize> = indices.iter().copied().zip(0..).collect();
+    let places: BTreeMap<u32, u32> = indices.iter().copied().zip(0..).collect();
     let mut nearest = Nearest { cloud, known: BTreeMap::new() };
     nearest.gather(&places, scratch);
     let mut edges = Vec::new();
@@ -73,7 +73,7 @@ struct Nearest<'a> {
 
 impl Nearest<'_> {
     /// Makes buffers ready for what will be asked of the points of other leaves.
-    fn gather(&mut self, places: &BTreeMap<u32, usize>, scratch: &mut Scratch) {
+    fn gather(&mut self, places: &BTreeMap<u32, u32>, scratch: &mut Scratch) {
         let near = self.cloud.near_pieces();
         let indices = |of: &[u32]| of.iter().map(|&index| index as usize).collect::<Vec<_>>();
         let unknown = |of: &u32| self.cloud.known_nearest(*of).is_none();

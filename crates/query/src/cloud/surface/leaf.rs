@@ -17,10 +17,16 @@ pub(crate) struct LeafSurface {
     pub slab: Slab,
 }
 
+/// Pieces of a leaf by their places in it, those from the last bit on together.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Pieces(u64);
+
 /// The edges of a leaf.
 #[derive(Debug)]
 pub(crate) struct LeafEdges {
     pub edges: Vec<Edge>,
+    /// Which pieces of the leaf each of them joins.
+    pub joined: Vec<Pieces>,
     /// Around them.
     pub slab: Slab,
 }
@@ -37,6 +43,30 @@ impl LeafEdges {
     /// Of a leaf that is thin along a unit vector.
     pub(super) fn new(edges: Vec<Edge>, thin: Vector3) -> Self {
         let slab = Slab::around_edges(&edges, thin);
-        Self { edges, slab }
+        let joined = edges.iter().map(|edge| edge.own_places().collect()).collect();
+        Self { edges, joined, slab }
+    }
+}
+
+impl FromIterator<usize> for Pieces {
+    fn from_iter<I: IntoIterator<Item = usize>>(places: I) -> Self {
+        let mut pieces = Self::default();
+        places.into_iter().for_each(|place| pieces.insert(place));
+        pieces
+    }
+}
+
+impl Pieces {
+    pub(crate) fn insert(&mut self, place: usize) {
+        self.0 |= 1 << place.min(u64::BITS as usize - 1);
+    }
+
+    /// Whether one of them may be among others.
+    pub(crate) fn meet(self, others: Self) -> bool {
+        self.0 & others.0 != 0
+    }
+
+    pub(crate) fn is_none(self) -> bool {
+        self.0 == 0
     }
 }

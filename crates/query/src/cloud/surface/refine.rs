@@ -7,7 +7,7 @@ use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3};
 use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
-use super::edge::{DISC_SPACINGS, Edge};
+use super::edge::DISC_SPACINGS;
 use super::leaf::{LeafEdges, LeafSurface};
 use super::slots::{Basis, Fitted};
 use super::surfel::Surfel;
@@ -122,13 +122,13 @@ impl Prepared {
     fn near_halves(&self, leaf: NodeId) -> Vec<[f64; 2]> {
         let surfels = self.leaf(leaf).0;
         let mut reach = vec![[0.0_f64; 2]; surfels.len()];
-        for Edge { ends, own, .. } in &self.leaf_edges(leaf).edges {
-            let half = 0.5 * (ends[1] - ends[0]);
-            for place in own.iter().flatten() {
-                let across = surfels[*place].normal.map_or(0.0, |n| n.dot(&half).abs());
+        for edge in &self.leaf_edges(leaf).edges {
+            let half = 0.5 * (edge.ends[1] - edge.ends[0]);
+            for place in edge.own_places() {
+                let across = surfels[place].normal.map_or(0.0, |n| n.dot(&half).abs());
                 let along = (half.norm_squared() - across * across).max(0.0).sqrt();
-                let [known_along, known_across] = reach[*place];
-                reach[*place] = [known_along.max(along), known_across.max(across)];
+                let [known_along, known_across] = reach[place];
+                reach[place] = [known_along.max(along), known_across.max(across)];
             }
         }
         reach

@@ -66,7 +66,10 @@ impl Slab {
     /// How far a place is from it, m; 0 within.
     pub(crate) fn distance(&self, place: &Point3) -> f64 {
         let height = place.coords.dot(&self.direction);
-        (height - self.high).max(self.low - height).max(0.0)
+        let (above, below) = (height - self.high, self.low - height);
+        // PERF: comparisons are fewer instructions than `max`, which knows NaN.
+        let off = if above > below { above } else { below };
+        if off > 0.0 { off } else { 0.0 }
     }
 
     /// Whether a place is at most so far from the height of some disc.
@@ -78,7 +81,8 @@ impl Slab {
     pub(crate) fn may_hold(&self, ends: &[Point3; 2], distance: f64) -> bool {
         let [from, to] = ends;
         let (from, to) = (from.coords.dot(&self.direction), to.coords.dot(&self.direction));
-        from.max(to) + distance >= self.low && from.min(to) - distance <= self.high
+        let (lower, upper) = if from < to { (from, to) } else { (to, from) };
+        upper + distance >= self.low && lower - distance <= self.high
     }
 }
 

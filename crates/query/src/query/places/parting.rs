@@ -101,7 +101,8 @@ struct Surroundings {
     reach: f64,
     weight: f64,
     sum: Vector3,
-    squares: Matrix3,
+    /// Of x², xy, xz, y², yz and z².
+    squares: [f64; 6],
 }
 
 /// Their mean, from the place on, m, and their covariance, m².
@@ -112,7 +113,7 @@ struct Moments {
 
 impl Surroundings {
     fn of(body: BodyRef<'_>, place: Point3, reach: f64) -> Self {
-        let (sum, squares) = (Vector3::zeros(), Matrix3::zeros());
+        let (sum, squares) = (Vector3::zeros(), [0.0; 6]);
         let mut around = Self { place, reach, weight: 0.0, sum, squares };
         match body {
             BodyRef::Cloud(cloud) => {
@@ -135,7 +136,13 @@ impl Surroundings {
             let weight = share * within * within;
             self.weight += weight;
             self.sum += offset * weight;
-            self.squares += offset * offset.transpose() * weight;
+            // PERF: half of a symmetric matrix, whose other half has the same bits.
+            let [x, y, z] = [offset.x, offset.y, offset.z];
+            for (sum, square) in
+                self.squares.iter_mut().zip([x * x, x * y, x * z, y * y, y * z, z * z])
+            {
+                *sum += square * weight;
+            }
         }
     }
 
@@ -143,7 +150,9 @@ impl Surroundings {
     fn moments(&self) -> Option<Moments> {
         (self.weight > 0.0).then(|| {
             let mean = self.sum / self.weight;
-            Moments { mean, spread: self.squares / self.weight - mean * mean.transpose() }
+            let [xx, xy, xz, yy, yz, zz] = self.squares;
+            let squares = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+            Moments { mean, spread: squares / self.weight - mean * mean.transpose() }
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Gathers the crossings of two leaves.
 
-use cloudtouch_geom::Motion;
+use cloudtouch_geom::{Motion, Point3, Vector3};
 
-use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, MOST_ALONG, edge_along};
+use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, MOST_ALONG, Pieces, edge_along};
 
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
@@ -11,31 +11,34 @@ use super::through_mesh::Outline;
 use crate::search::visit::around::OfMesh;
 use crate::search::visit::leaf::{ExactLeaf, NoisyLeaf};
 
-/// Pieces of a leaf by their places in it, those from the last bit on together.
-#[derive(Debug, Clone, Copy, Default)]
-pub(in crate::search) struct Reaching(u64);
+/// A disc that edges of a leaf may pass, as far as most of them are told to miss it.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::search) struct NearDisc {
+    /// Its place in its leaf.
+    at: usize,
+    middle: Point3,
+    normal: Vector3,
+    radius: f64,
+}
 
-impl Reaching {
-    fn bit(place: usize) -> u64 {
-        1 << place.min(u64::BITS as usize - 1)
-    }
-
-    /// Whether one of the pieces that an edge joins is among them.
-    fn is_joined_by(self, edge: &Edge) -> bool {
-        edge.own.iter().flatten().any(|&place| self.0 & Self::bit(place) != 0)
-    }
-
-    pub(in crate::search) fn is_none(self) -> bool {
-        self.0 == 0
+impl NearDisc {
+    /// Whether an edge has its ends on two sides of it, and its middle near enough.
+    fn may_be_passed_by(&self, ends: &[Point3; 2], middle: &Point3, half_length: f64) -> bool {
+        let reach = half_length + self.radius;
+        if (self.middle - middle).norm_squared() > reach * reach {
+            return false;
+        }
+        let height = |end: &Point3| (end - self.middle).dot(&self.normal);
+        height(&ends[0]) * height(&ends[1]) < 0.0
     }
 }
 
 /// The pieces of a leaf near which an edge from there may cross a disc of another leaf: that can be
 /// told before the edges are known, for half of one is not longer than a disc reaches, and runs along
 /// the surface.
-pub(in crate::search) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Reaching {
+pub(in crate::search) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Pieces {
     let NoisyLeaf { ball, slab, .. } = of_discs;
-    let mut reaching = Reaching::default();
+    let mut reaching = Pieces::default();
     for (place, surfel) in of_edges.surfels.iter().enumerate() {
         let Some(normal) = surfel.normal else { continue };
         let half = DISC_SPACINGS * surfel.spacing;
@@ -46,7 +49,7 @@ pub(in crate::search) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf
             && ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
             && (off == 0.0 || off <= half * edge_along(&normal, &slab.direction))
         {
-            reaching.0 |= Reaching::bit(place);
+            reaching.insert(place);
         }
     }
     reaching
@@ -62,46 +65,51 @@ pub(in crate::search) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &Exa
 
 /// Adds the crossings of edges of one leaf with discs of another near its pieces that [`reaching`] gave;
 /// the points they join, and those of the discs, are as probable as their clearest crossing. `motion` leads
-/// from where the edges were measured to the frame of A, none those of A; `places` is memory to use again.
+/// from where the edges were measured to the frame of A, none those of A; `discs` is memory to use again.
 pub(in crate::search) fn add_edges_through_discs(
     motion: Option<&Motion>,
-    (of_edges, near): (&mut NoisyLeaf<'_>, Reaching),
+    (of_edges, near): (&mut NoisyLeaf<'_>, Pieces),
     of_discs: &mut NoisyLeaf<'_>,
-    places: &mut Vec<usize>,
+    discs: &mut Vec<NearDisc>,
     found: &mut Crossings,
 ) {
-    let Some(LeafEdges { edges, slab: edge_slab }) = of_edges.edges else { return };
+    let Some(LeafEdges { edges, joined, slab: edge_slab }) = of_edges.edges else { return };
     let edge_slab = motion.map_or(*edge_slab, |motion| edge_slab.moved(motion));
     // Half of an edge is no longer than a disc of the pieces it is near to.
     let reach = DISC_SPACINGS * of_edges.ball.spacing;
-    places.clear();
-    places.extend((0..of_discs.surfels.len()).filter(|&at| {
-        let disc = &of_discs.surfels[at];
-        edge_slab.may_hold_disc_of(disc)
-            && of_edges.ball.is_within(&disc.point.mean, reach + DISC_SPACINGS * disc.spacing)
+    discs.clear();
+    discs.extend(of_discs.surfels.iter().enumerate().filter_map(|(at, disc)| {
+        let (normal, middle, radius) =
+            (disc.normal?, disc.point.mean, DISC_SPACINGS * disc.spacing);
+        let is_near =
+            edge_slab.may_hold_disc_of(disc) && of_edges.ball.is_within(&middle, reach + radius);
+        is_near.then_some(NearDisc { at, middle, normal, radius })
     }));
-    if places.is_empty() {
+    if discs.is_empty() {
         return;
     }
     let (around, slab) = (of_discs.ball, of_discs.slab);
     let (around, slab) = motion
         .map_or((around, slab), |motion| (around.moved_back(motion), slab.moved_back(motion)));
-    for edge in edges {
-        if !near.is_joined_by(edge) || !slab.may_hold(&edge.ends, 0.0) {
+    for (edge, &joined) in edges.iter().zip(joined) {
+        if !near.meet(joined) || !slab.may_hold(&edge.ends, 0.0) {
             continue;
         }
         if !around.is_within(&edge.middle(), edge.half_length + DISC_SPACINGS * around.spacing) {
             continue;
         }
-        let edge = &motion.map_or(*edge, |motion| edge.moved(motion));
-        let middle = edge.middle();
+        // PERF: of most no more than the ends are asked.
+        let ends = motion.map_or(edge.ends, |motion| edge.moved_ends(motion));
+        let middle = nalgebra::center(&ends[0], &ends[1]);
+        let passes = |disc: &&NearDisc| disc.may_be_passed_by(&ends, &middle, edge.half_length);
+        let mut passed = discs.iter().filter(passes).peekable();
+        if passed.peek().is_none() {
+            continue;
+        }
+        let edge = &Edge { ends, ..*edge };
         let past = Past::new(of_edges.cloud, edge, motion);
-        for &at in places.iter() {
+        for &NearDisc { at, .. } in passed {
             let disc = &of_discs.surfels[at];
-            let reach = edge.half_length + DISC_SPACINGS * disc.spacing;
-            if (disc.point.mean - middle).norm_squared() > reach * reach {
-                continue;
-            }
             let Some(crossing) = through_disc(edge, disc, |end| past.of(end)) else { continue };
             of_discs.crossing[at] = of_discs.crossing[at].max(crossing.probability);
             of_edges.raise_ends(edge, crossing.probability);
@@ -117,8 +125,12 @@ pub(in crate::search) fn add_edges_through_facets(
     facets: &ExactLeaf,
     found: &mut Crossings,
 ) {
+    let Some(LeafEdges { edges, slab, .. }) = of_edges.edges else { return };
     let around = motion.map_or(facets.ball, |motion| facets.ball.moved_back(motion));
-    for edge in of_edges.edges.into_iter().flat_map(|of_leaf| &of_leaf.edges) {
+    if !around.meets(slab) {
+        return;
+    }
+    for edge in edges {
         if !around.is_within(&edge.middle(), edge.half_length) {
             continue;
         }

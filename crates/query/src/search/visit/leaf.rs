@@ -162,7 +162,7 @@ impl<'a> NoisyLeaf<'a> {
 
     /// Notes a crossing of an edge for the points that it joins.
     pub(in crate::search) fn raise_ends(&mut self, edge: &Edge, probability: f64) {
-        for place in edge.own.into_iter().flatten() {
+        for place in edge.own_places() {
             self.crossing[place] = self.crossing[place].max(probability);
         }
     }
