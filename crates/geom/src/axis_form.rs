@@ -16,6 +16,7 @@ pub struct AxisForm {
 }
 
 impl AxisForm {
+    #[inline]
     pub(crate) fn symmetric(&self) -> Symmetric {
         let (along, across) = (self.along * self.along, self.across * self.across);
         let (a, extra) = (&self.axis, along - across);

@@ -117,6 +117,7 @@ impl Covariance {
     }
 
     /// A semidefinite matrix in the form that suits it.
+    #[inline]
     fn full(symmetric: Symmetric) -> Self {
         let Symmetric { xx, xy, xz, yy, yz, zz } = symmetric;
         let is_ball = xx == yy && yy == zz && [xy, xz, yz] == [0.0; 3];
@@ -139,6 +140,7 @@ impl Covariance {
         }
     }
 
+    #[inline]
     fn symmetric(&self) -> Symmetric {
         match &self.0 {
             &Form::Isotropic(v) => Symmetric { xx: v, xy: 0.0, xz: 0.0, yy: v, yz: 0.0, zz: v },
@@ -148,6 +150,7 @@ impl Covariance {
     }
 
     /// The full matrix, m².
+    #[inline]
     pub fn matrix(&self) -> Matrix3 {
         self.symmetric().matrix()
     }

@@ -34,6 +34,7 @@ impl Symmetric {
         }
     }
 
+    #[inline]
     pub(crate) fn matrix(&self) -> Matrix3 {
         let Self { xx, xy, xz, yy, yz, zz } = *self;
         Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
@@ -49,6 +50,7 @@ impl Symmetric {
         Self { xx, xy, xz, yy, yz, zz }
     }
 
+    #[inline]
     pub(crate) fn plus(&self, other: &Self) -> Self {
         Self {
             xx: self.xx + other.xx,

@@ -16,8 +16,11 @@ use crate::tree::node::{NodeData, pose_rounding};
 /// Room for as many pairs as a search has waiting at once, as a rule.
 pub(crate) const USUAL_PAIRS: usize = 256;
 
+/// A search moves so many boxes of B for each pair that waits at once, as a rule.
+const BOXES_OF_PAIR: usize = 4;
+
 /// So many nodes of B are remembered.
-const RECENT: usize = 256;
+const RECENT: usize = 1024;
 
 /// The pairs that wait, and what they are tested by.
 pub(crate) struct Pairs<'a> {
@@ -53,7 +56,7 @@ impl<'a> Pairs<'a> {
             sought,
             rounding: pose_rounding(roots, a_from_b),
             queue: BinaryHeap::with_capacity(capacity),
-            moved: Vec::with_capacity(capacity),
+            moved: Vec::with_capacity(BOXES_OF_PAIR * capacity),
             recent: [(u32::MAX, 0); RECENT],
             carried: Vec::new(),
         }

@@ -177,7 +177,7 @@ fn nearest_to(
                 }
             }
             Leaf::Exact(other) => {
-                for facet in &other.facets {
+                for facet in other.facets.iter() {
                     let found = facet.squared_deviations(surfel, &whitening, limit);
                     if let Some((found, way)) = found {
                         let on_mesh = surfel.point.mean + way;

@@ -129,8 +129,9 @@ impl<'a> Found<'a> {
         stats: &mut Stats,
     ) {
         let most = self.deviations_of_interest();
-        let leaf_a = self.leaves_a.get_or_load(pair.a, || Leaf::load(a, pair.a, None, stats));
-        let load_b = || Leaf::load(b, pair.b, Some(a_from_b), stats);
+        let load_a = || self.around.load(a, pair.a, None, stats);
+        let leaf_a = self.leaves_a.get_or_load(pair.a, load_a);
+        let load_b = || self.around.load(b, pair.b, Some(a_from_b), stats);
         let leaf_b = self.leaves_b.get_or_load(pair.b, load_b);
         let Between { of_means, of_surfaces, most_std } = leaf_a.between(leaf_b);
         self.at_least = self.at_least.min(of_surfaces);

@@ -71,6 +71,8 @@ pub(crate) struct Crossings {
     witnesses: BTreeMap<Witness, usize>,
     /// In the order in which they were first heard.
     seen: Vec<(Witness, Seen)>,
+    /// What each of these says, for most is asked of many times.
+    heard: Vec<Heard>,
     /// Where the best crossing of each is.
     cells: Cells,
     /// The witness heard last, until it was looked what there is at its place.
@@ -80,7 +82,7 @@ pub(crate) struct Crossings {
 }
 
 /// A witness at its place, reaching so far, with its clearness by sides.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Heard {
     place: Point3,
     reach: f64,
@@ -94,16 +96,12 @@ impl Crossings {
         let Crossing { clear, weight, probability, by_pose, .. } = crossing;
         let number = *self.witnesses.entry(witness).or_insert_with(|| {
             self.cells.push(&crossing.place, PLACE_SPACINGS * crossing.spacing);
-            self.seen.push((
-                witness,
-                Seen {
-                    sum: 0.0,
-                    clearest: 0.0,
-                    best: crossing,
-                    sum_by_pose: Wrench::zeros(),
-                    clearest_by_pose: Wrench::zeros(),
-                },
-            ));
+            let (sum, clearest) = (0.0, 0.0);
+            let (sum_by_pose, clearest_by_pose) = (Wrench::zeros(), Wrench::zeros());
+            let best = crossing;
+            let new = (witness, Seen { sum, clearest, best, sum_by_pose, clearest_by_pose });
+            self.heard.push(Heard::of(&new));
+            self.seen.push(new);
             self.seen.len() - 1
         });
         let (_, seen) = &mut self.seen[number];
@@ -116,6 +114,7 @@ impl Crossings {
             self.cells.shift(number, &crossing.place);
             seen.best = crossing;
         }
+        self.heard[number] = Heard::of(&self.seen[number]);
         self.last = Some(number);
     }
 
@@ -135,7 +134,7 @@ impl Crossings {
     }
 
     fn clearest_place(&self) -> Option<(f64, Heard)> {
-        let mut all: Vec<Heard> = self.ordered().map(Heard::of).collect();
+        let mut all: Vec<Heard> = self.witnesses.values().map(|&n| self.heard[n]).collect();
         // Of equals the last along x, in whatever order they were heard.
         all.sort_by(|p, q| p.place.x.total_cmp(&q.place.x));
         let places = all.into_iter().map(|at| (self.together(&at), at));
@@ -160,7 +159,7 @@ impl Crossings {
     /// cost nothing here.
     pub(in crate::search) fn last_clearness(&mut self) -> f64 {
         if let Some(last) = self.last.take() {
-            self.at_last = self.together(&Heard::of(&self.seen[last]));
+            self.at_last = self.together(&self.heard[last]);
         }
         self.at_last
     }
@@ -174,7 +173,7 @@ impl Crossings {
         let mut sums = [ONE_SIDED; 2];
         // PERF: of all, bodies that overlap all over would take the square of how many there are.
         self.cells.visit_near(&at.place, at.reach, |number| {
-            let other = Heard::of(&self.seen[number]);
+            let other = &self.heard[number];
             if at.reaches(&other.place) {
                 sums[0] += other.clearness[0];
                 sums[1] += other.clearness[1];

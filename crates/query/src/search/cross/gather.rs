@@ -111,7 +111,7 @@ pub(in crate::search) fn add_edges_through_discs(
         for &NearDisc { at, .. } in passed {
             let disc = &of_discs.surfels[at];
             let Some(crossing) = through_disc(edge, disc, |end| past.of(end)) else { continue };
-            of_discs.crossing[at] = of_discs.crossing[at].max(crossing.probability);
+            of_discs.raise(at, crossing.probability);
             of_edges.raise_ends(edge, crossing.probability);
             found.add(Witness::edge(motion.is_none(), edge), &crossing);
         }
@@ -136,7 +136,7 @@ pub(in crate::search) fn add_edges_through_facets(
         }
         let edge = &motion.map_or(*edge, |motion| edge.moved(motion));
         let past = Past::new(of_edges.cloud, edge, motion);
-        for facet in &facets.facets {
+        for facet in facets.facets.iter() {
             let Some(crossing) = through_facet(edge, facet, |end| past.of(end)) else { continue };
             of_edges.raise_ends(edge, crossing.probability);
             found.add(Witness::edge(motion.is_none(), edge), &crossing);
@@ -153,10 +153,11 @@ pub(in crate::search) fn add_mesh_through_discs(
     around: &mut OfMesh<'_>,
     found: &mut Crossings,
 ) {
-    for (k, disc) in discs.surfels.iter().enumerate() {
+    for k in 0..discs.surfels.len() {
+        let disc = &discs.surfels[k];
         let Some(normal) = disc.normal else { continue };
         let (middle, radius) = (disc.point.mean, DISC_SPACINGS * disc.spacing);
-        if discs.is_pierced[k] || !facets.ball.is_within(&middle, radius) {
+        if discs.is_pierced(k) || !facets.ball.is_within(&middle, radius) {
             continue;
         }
         let outline = Outline::new(middle, normal, radius);
@@ -164,10 +165,10 @@ pub(in crate::search) fn add_mesh_through_discs(
             continue;
         }
         // Once, and by all of the mesh there: however its triangles are shared out to leaves.
-        discs.is_pierced[k] = true;
         let through = outline.through(around.near(&middle, std::f64::consts::SQRT_2 * radius));
         let crossing = of_mesh(disc, normal, &through);
-        discs.crossing[k] = discs.crossing[k].max(crossing.probability);
         found.add(Witness::disc(is_a, disc), &crossing);
+        discs.set_pierced(k);
+        discs.raise(k, crossing.probability);
     }
 }

@@ -88,8 +88,8 @@ impl Outline {
                     }
                 });
             }
-            let passes = passes_nearest(&corners).filter(|reached| self.is_within(reached));
-            if let Some(reached) = passes {
+            let passes = || passes_nearest(&corners).filter(|reached| self.is_within(reached));
+            if let Some(reached) = is_astride(&corners).then(passes).flatten() {
                 let is_nearer = |known: Reached| reached.at.norm() < known.at.norm();
                 if nearest.is_none_or(is_nearer) {
                     nearest = Some(reached);
@@ -259,6 +259,12 @@ impl Outline {
             }
         }
     }
+}
+
+/// Whether a facet has corners on either side of height zero.
+fn is_astride([p, q, r]: &[Vector3; 3]) -> bool {
+    let is_below = p.z < 0.0;
+    is_below != (q.z < 0.0) || is_below != (r.z < 0.0)
 }
 
 /// Where a facet passes height zero, nearest to the middle.

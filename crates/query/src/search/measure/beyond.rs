@@ -119,7 +119,7 @@ fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf, margin: f64, most: f64
         if !exact.ball.is_within(&surfel.point.mean, reach) {
             continue;
         }
-        for facet in &exact.facets {
+        for facet in exact.facets.iter() {
             least = least.min(facet.deviations_beyond(surfel, whitening, margin));
         }
     }

@@ -87,7 +87,7 @@ fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf, within: f64) -> Option
         if !exact.ball.is_within(&surfel.point.mean, reach) {
             continue;
         }
-        for facet in &exact.facets {
+        for facet in exact.facets.iter() {
             let found = facet.squared_deviations(surfel, whitening, least_of_it.min(within));
             let Some((squared, way)) = found else { continue };
             *least_of_it = squared;

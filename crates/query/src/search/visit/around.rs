@@ -1,20 +1,55 @@
 //! The triangles of a mesh about places that a search comes by.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
+use std::rc::Rc;
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Point3};
 
 use crate::body::BodyRef;
+use crate::mesh::Mesh;
+use crate::stats::Stats;
 
-use super::leaf::facets_of;
+use super::leaf::{ExactLeaf, Leaf, facets_of};
+use super::leaves::Spread;
 use crate::search::compare::facet::Facet;
 
 /// Facets of the mesh of a pair in the frame of A, by the leaves of its tree: many discs pass the same
 /// leaves, and each is moved once.
 #[derive(Debug, Default)]
 pub(in crate::search) struct Around {
-    leaves: BTreeMap<NodeId, Vec<Facet>>,
+    leaves: Vec<Rc<Vec<Facet>>>,
+    /// Where each is among these, by the name of its node.
+    places: HashMap<usize, usize, BuildHasherDefault<Spread>>,
+}
+
+impl Around {
+    /// A leaf of a body, moved to the frame of A by `motion`, or of A itself.
+    pub(in crate::search) fn load<'a>(
+        &mut self,
+        body: BodyRef<'a>,
+        id: NodeId,
+        motion: Option<&Motion>,
+        stats: &mut Stats,
+    ) -> Leaf<'a> {
+        match body {
+            BodyRef::Cloud(_) => Leaf::load(body, id, motion, stats),
+            BodyRef::Mesh(mesh) => {
+                let place = self.place(mesh, id, motion);
+                Leaf::Exact(ExactLeaf::of(Rc::clone(&self.leaves[place])))
+            }
+        }
+    }
+
+    /// Where the facets of a leaf are, which are moved here where they are not.
+    fn place(&mut self, mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> usize {
+        let Self { leaves, places } = self;
+        *places.entry(id.index()).or_insert_with(|| {
+            leaves.push(Rc::new(facets_of(mesh, id, motion)));
+            leaves.len() - 1
+        })
+    }
 }
 
 /// These and where they come from.
@@ -32,15 +67,15 @@ impl OfMesh<'_> {
         place: &Point3,
         radius: f64,
     ) -> impl Iterator<Item = &Facet> {
-        let Self { known: Around { leaves }, body, a_from_mesh } = self;
+        let Self { known, body, a_from_mesh } = self;
         let mut near = Vec::new();
         if let BodyRef::Mesh(mesh) = body {
             let local = a_from_mesh.map_or(*place, |motion| motion.point_back(place));
             mesh.visit_leaves_near(&local, radius, |leaf| {
-                leaves.entry(leaf.id()).or_insert_with(|| facets_of(mesh, leaf.id(), *a_from_mesh));
-                near.push(leaf.id());
+                near.push(known.place(mesh, leaf.id(), *a_from_mesh));
             });
         }
-        near.into_iter().filter_map(|id| leaves.get(&id)).flatten()
+        let leaves = &known.leaves;
+        near.into_iter().flat_map(|place| leaves[place].iter())
     }
 }

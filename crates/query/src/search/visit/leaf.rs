@@ -1,6 +1,7 @@
 //! A leaf that the search came by, with what is known of its points so far.
 
 use std::borrow::Cow;
+use std::rc::Rc;
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Point3};
@@ -35,7 +36,7 @@ pub(in crate::search) struct Between {
 /// A leaf of a mesh.
 #[derive(Debug)]
 pub(crate) struct ExactLeaf {
-    pub(in crate::search) facets: Vec<Facet>,
+    pub(in crate::search) facets: Rc<Vec<Facet>>,
     pub(in crate::search) ball: Ball,
 }
 
@@ -52,10 +53,10 @@ pub(crate) struct NoisyLeaf<'a> {
     /// For each surfel the squared deviations to the nearest piece of the other body, at most those
     /// of [`MOST_DEVIATIONS`].
     pub squared: Vec<f64>,
-    /// For each surfel the probability of its clearest crossing.
-    pub crossing: Vec<f64>,
-    /// For each surfel whether a mesh was looked at that passes through its disc.
-    pub(in crate::search) is_pierced: Vec<bool>,
+    /// For each surfel the probability of its clearest crossing; empty until there is one.
+    crossing: Vec<f64>,
+    /// For each surfel whether a mesh was looked at that passes through its disc; empty where none was.
+    is_pierced: Vec<bool>,
     pub(in crate::search) ball: Ball,
     /// Around its discs.
     pub(in crate::search) slab: Slab,
@@ -71,7 +72,7 @@ impl<'a> Leaf<'a> {
     ) -> Self {
         match body {
             BodyRef::Cloud(cloud) => Self::Noisy(NoisyLeaf::load(cloud, id, motion, stats)),
-            BodyRef::Mesh(mesh) => Self::Exact(ExactLeaf::load(mesh, id, motion)),
+            BodyRef::Mesh(mesh) => Self::Exact(ExactLeaf::of(Rc::new(facets_of(mesh, id, motion)))),
         }
     }
 
@@ -102,8 +103,7 @@ impl<'a> Leaf<'a> {
 }
 
 impl ExactLeaf {
-    fn load(mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> Self {
-        let facets = facets_of(mesh, id, motion);
+    pub(super) fn of(facets: Rc<Vec<Facet>>) -> Self {
         let ball = Ball::around_points(facets.iter().flat_map(|facet| &facet.corners));
         Self { facets, ball }
     }
@@ -140,8 +140,8 @@ impl<'a> NoisyLeaf<'a> {
             edges: None,
             whitenings: Vec::new(),
             squared: vec![MOST_DEVIATIONS.powi(2); count],
-            crossing: vec![0.0; count],
-            is_pierced: vec![false; count],
+            crossing: Vec::new(),
+            is_pierced: Vec::new(),
             ball,
             slab,
         }
@@ -162,9 +162,28 @@ impl<'a> NoisyLeaf<'a> {
 
     /// Notes a crossing of an edge for the points that it joins.
     pub(in crate::search) fn raise_ends(&mut self, edge: &Edge, probability: f64) {
-        for place in edge.own_places() {
-            self.crossing[place] = self.crossing[place].max(probability);
+        edge.own_places().for_each(|place| self.raise(place, probability));
+    }
+
+    /// Notes a crossing of the disc about a surfel.
+    pub(in crate::search) fn raise(&mut self, place: usize, probability: f64) {
+        if self.crossing.is_empty() {
+            self.crossing.resize(self.surfels.len(), 0.0);
         }
+        self.crossing[place] = self.crossing[place].max(probability);
+    }
+
+    /// Whether a mesh was looked at that passes through the disc about a surfel.
+    pub(in crate::search) fn is_pierced(&self, place: usize) -> bool {
+        self.is_pierced.get(place).is_some_and(|&is_pierced| is_pierced)
+    }
+
+    /// Notes that one was.
+    pub(in crate::search) fn set_pierced(&mut self, place: usize) {
+        if self.is_pierced.is_empty() {
+            self.is_pierced.resize(self.surfels.len(), false);
+        }
+        self.is_pierced[place] = true;
     }
 
     /// How likely each piece is to collide, by geometry: halfway between two equally well known
@@ -172,11 +191,12 @@ impl<'a> NoisyLeaf<'a> {
     /// and none counts.
     pub(crate) fn probabilities(&self, within: f64) -> impl Iterator<Item = (&Surfel, f64)> {
         let within = within.min(MOST_DEVIATIONS).powi(2);
-        let of = move |(&squared, &crossing): (&f64, &f64)| {
+        let crossing = self.crossing.iter().copied().chain(std::iter::repeat(0.0));
+        let of = move |(&squared, crossing): (&f64, f64)| {
             let is_near = squared < within;
             let by_gap = if is_near { probability_at(squared.sqrt()) } else { 0.0 };
             by_gap.max(crossing)
         };
-        self.surfels.iter().zip(self.squared.iter().zip(&self.crossing).map(of))
+        self.surfels.iter().zip(self.squared.iter().zip(crossing).map(of))
     }
 }

@@ -52,7 +52,7 @@ impl<L> Leaves<L> {
 
 /// Spreads the names of nodes, which nobody chooses to collide: a search looks two of them up for every pair.
 #[derive(Debug, Default)]
-struct Spread(u64);
+pub(super) struct Spread(u64);
 
 impl Hasher for Spread {
     fn write(&mut self, bytes: &[u8]) {
