@@ -31,6 +31,7 @@ impl AxisForm {
     }
 
     /// s² (a·d)² + t² |a × d|²: no difference of large numbers, however unequal s and t are.
+    #[inline]
     pub(crate) fn variance_along(&self, direction: &Vector3) -> f64 {
         let along = self.along * self.axis.dot(direction);
         along * along + self.across * self.across * self.axis.cross(direction).norm_squared()

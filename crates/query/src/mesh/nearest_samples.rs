@@ -1,6 +1,7 @@
 //! The samples of a mesh that are nearest to a place, without those farther away.
 
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
 
 use cloudtouch_geom::Point3;
 
@@ -25,9 +26,18 @@ pub(crate) fn nearest_in_region(
 ) -> Result<Vec<Point3>, SubdivisionError> {
     let mut nearest = Nearest { region, wanted, samples: Vec::new(), parts: 0, max_parts };
     let away = |corners: [Point3; 3]| (region.away(&corners), corners);
-    let mut triangles: Vec<(f64, [Point3; 3])> = triangles.into_iter().map(away).collect();
-    triangles.sort_by(|(p, _), (q, _)| p.total_cmp(q));
-    for (away, corners) in triangles {
+    let is_beyond = |&(away, _): &(f64, _)| away > region.radius;
+    let triangles: Vec<(f64, [Point3; 3])> =
+        triangles.into_iter().map(away).filter(|triangle| !is_beyond(triangle)).collect();
+    let largest = triangles.iter().map(|(_, corners)| size_of(corners)).fold(0.0, f64::max);
+    // PERF: few come before all that are wanted are known, so that most need not be put in order.
+    let key = |(place, (away, _)): (usize, &(f64, _))| Reverse((by_size(*away), place));
+    let mut order: BinaryHeap<_> = triangles.iter().enumerate().map(key).collect();
+    while let Some(Reverse((_, place))) = order.pop() {
+        let (away, corners) = triangles[place];
+        if nearest.is_farther(away, largest) {
+            break;
+        }
         nearest.look(away, corners, MAX_DEPTH);
     }
     if nearest.parts > max_parts {
@@ -71,12 +81,16 @@ impl Nearest<'_> {
     }
 
     fn may_have_one(&self, away: f64, corners: &[Point3; 3]) -> bool {
+        // What is no number is looked at, until there are too many parts.
+        !(away > self.region.radius || self.is_farther(away, size_of(corners)))
+    }
+
+    /// Whether what is so far away, with coordinates of this size, is farther than all that are wanted.
+    fn is_farther(&self, away: f64, size: f64) -> bool {
         let is_full = self.samples.len() == self.wanted;
         let last = self.samples.last().filter(|_| is_full);
         let farthest = last.map_or(f64::INFINITY, |&(distance, _)| distance);
-        let size = corners.iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
-        // What is no number is looked at, until there are too many parts.
-        !(away > self.region.radius || away > farthest + ROUNDING * size)
+        away > farthest + ROUNDING * size
     }
 
     fn add(&mut self, place: Point3) {
@@ -89,6 +103,18 @@ impl Nearest<'_> {
             self.samples.truncate(self.wanted);
         }
     }
+}
+
+/// A number as a whole one of the same order as [`f64::total_cmp`]: among the bits of negative numbers those of
+/// the larger ones are less; turned they are more.
+fn by_size(number: f64) -> i64 {
+    let bits = number.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
+}
+
+/// The largest coordinate of some places, m.
+fn size_of(corners: &[Point3; 3]) -> f64 {
+    corners.iter().map(|p| p.coords.amax()).fold(0.0, f64::max)
 }
 
 fn by_distance(p: &(f64, Point3), q: &(f64, Point3)) -> Ordering {

@@ -4,7 +4,7 @@ use cloudtouch_geom::{Covariance, Matrix3, Motion, Point3, Vector3};
 
 use crate::cloud::Surfel;
 
-use super::meeting::{LEAST_STD, beyond_along};
+use super::meeting::{LEAST_STD, are_beyond, beyond_along};
 
 /// A triangle in the local frame of A.
 #[derive(Debug, Clone, Copy)]
@@ -95,6 +95,11 @@ impl Facet {
         if height * height > limit * surfel.most_variance {
             return None;
         }
+        // PERF: of the others most are apart across the facet.
+        let variance = self.normal.map(|normal| whitening.variance_along(&normal));
+        if variance.is_some_and(|variance| are_beyond(height, variance, limit)) {
+            return None;
+        }
         let corners = self.corners.map(|corner| whitening.apply(&(corner - mean)));
         let nearest = nearest_to_origin(&corners);
         let squared = nearest.norm_squared();
@@ -138,6 +143,11 @@ impl Whitening {
 
     pub(in crate::search) fn apply(&self, offset: &Vector3) -> Vector3 {
         self.inverse * offset
+    }
+
+    /// Along a unit vector, m².
+    fn variance_along(&self, direction: &Vector3) -> f64 {
+        (self.root * direction).norm_squared()
     }
 
     fn undo(&self, whitened: &Vector3) -> Vector3 {
@@ -220,6 +230,28 @@ mod tests {
             prop_assert!(facet.height(&(surfel.point.mean + way)).abs() < 1e-9);
             let back = whitening.apply(&way).norm_squared();
             prop_assert!((back - squared).abs() < 1e-9 * (1.0 + squared));
+        }
+
+        /// By the nearest place alone.
+        #[test]
+        fn a_facet_is_left_out_by_its_height_only_where_it_has_more_deviations(
+            a in vector(), b in vector(), c in vector(), axis in vector(),
+            stds in prop::array::uniform2(1e-4..0.5_f64), limit in 0.0..40.0_f64,
+        ) {
+            prop_assume!((b - a).cross(&(c - a)).norm() > 1e-3 && axis.norm() > 1e-3);
+            let covariance = Covariance::from_axis(&unit(&axis).unwrap(), stds[0], stds[1]);
+            let surfel = Surfel {
+                index: 0,
+                point: UncertainPoint { mean: Point3::origin(), covariance },
+                spacing: 1.0,
+                most_variance: covariance.max_std().powi(2),
+                normal: None,
+            };
+            let facet = Facet::new(0, [a, b, c].map(Point3::from));
+            let whitening = Whitening::of_any(&covariance);
+            let squared = nearest_to_origin(&[a, b, c].map(|v| whitening.apply(&v))).norm_squared();
+            let found = facet.squared_deviations(&surfel, &whitening, limit);
+            prop_assert_eq!(found.map(|(squared, _)| squared), (squared < limit).then_some(squared));
         }
 
         /// A large facet was told to be beyond a margin that its nearest place is within: by the way to
