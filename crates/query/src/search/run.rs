@@ -11,8 +11,8 @@ use crate::stats::Stats;
 use super::compare::meeting::{Meeting, deviations_by_pose};
 use super::cross::crossings::Crossings;
 use super::cross::gather::{
-    NearDisc, add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs,
-    may_reach_facets, reaching,
+    NearDisc, add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, reaching,
+    reaching_facets,
 };
 use super::measure::nearest::{Nearest, nearest_pieces};
 use super::visit::around::{Around, OfMesh};
@@ -171,19 +171,26 @@ fn cross<'a>(
                 add_edges_through_discs(Some(a_from_b), (on_b, near), on_a, discs, crossings);
             }
         }
-        (Leaf::Noisy(noisy), Leaf::Exact(exact)) if may_reach_facets(noisy, exact) => {
-            noisy.load_edges(pair.a);
-            add_edges_through_facets(None, noisy, exact, crossings);
-            let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
-            add_mesh_through_discs(true, noisy, exact, &mut around, crossings);
+        (Leaf::Noisy(noisy), Leaf::Exact(exact)) => {
+            let near = reaching_facets(noisy, exact);
+            if !near.is_none() {
+                noisy.load_edges(pair.a);
+                add_edges_through_facets(None, (noisy, near), exact, crossings);
+                let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
+                add_mesh_through_discs(true, noisy, exact, &mut around, crossings);
+            }
         }
-        (Leaf::Exact(exact), Leaf::Noisy(noisy)) if may_reach_facets(noisy, exact) => {
-            noisy.load_edges(pair.b);
-            add_edges_through_facets(Some(a_from_b), noisy, exact, crossings);
-            let mut around = OfMesh { known, body: a, a_from_mesh: None };
-            add_mesh_through_discs(false, noisy, exact, &mut around, crossings);
+        (Leaf::Exact(exact), Leaf::Noisy(noisy)) => {
+            let near = reaching_facets(noisy, exact);
+            if !near.is_none() {
+                noisy.load_edges(pair.b);
+                add_edges_through_facets(Some(a_from_b), (noisy, near), exact, crossings);
+                let mut around = OfMesh { known, body: a, a_from_mesh: None };
+                add_mesh_through_discs(false, noisy, exact, &mut around, crossings);
+            }
         }
-        _ => {}
+        // Two meshes are tested exactly and never come here.
+        (Leaf::Exact(_), Leaf::Exact(_)) => {}
     }
 }
 

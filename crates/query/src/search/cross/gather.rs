@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Motion, Point3, Vector3};
 
-use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, MOST_ALONG, Pieces, edge_along};
+use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, MOST_ALONG, Pieces, Surfel, edge_along};
 
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
@@ -55,12 +55,14 @@ pub(in crate::search) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf
     reaching
 }
 
-/// Whether a facet may be within reach of a disc or of the near half of an edge.
-pub(in crate::search) fn may_reach_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> bool {
-    of_edges.surfels.iter().any(|surfel| {
+/// The pieces of a leaf of which the disc, or the near half of an edge, may reach a facet.
+pub(in crate::search) fn reaching_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> Pieces {
+    let reaches = |surfel: &Surfel| {
         surfel.normal.is_some()
             && facets.ball.is_within(&surfel.point.mean, DISC_SPACINGS * surfel.spacing)
-    })
+    };
+    let pieces = of_edges.surfels.iter().enumerate();
+    pieces.filter(|(_, surfel)| reaches(surfel)).map(|(place, _)| place).collect()
 }
 
 /// Adds the crossings of edges of one leaf with discs of another near its pieces that [`reaching`] gave;
@@ -118,20 +120,21 @@ pub(in crate::search) fn add_edges_through_discs(
     }
 }
 
-/// Adds the crossings of edges of a leaf with the triangles of another; `motion` as for discs.
+/// Adds the crossings of edges of a leaf with the triangles of another near its pieces that [`reaching_facets`]
+/// gave: an edge is counted by the end that is nearer to what it passes. `motion` as for discs.
 pub(in crate::search) fn add_edges_through_facets(
     motion: Option<&Motion>,
-    of_edges: &mut NoisyLeaf<'_>,
+    (of_edges, near): (&mut NoisyLeaf<'_>, Pieces),
     facets: &ExactLeaf,
     found: &mut Crossings,
 ) {
-    let Some(LeafEdges { edges, slab, .. }) = of_edges.edges else { return };
+    let Some(LeafEdges { edges, joined, slab }) = of_edges.edges else { return };
     let around = motion.map_or(facets.ball, |motion| facets.ball.moved_back(motion));
     if !around.meets(slab) {
         return;
     }
-    for edge in edges {
-        if !around.is_within(&edge.middle(), edge.half_length) {
+    for (edge, &joined) in edges.iter().zip(joined) {
+        if !near.meet(joined) || !around.is_within(&edge.middle(), edge.half_length) {
             continue;
         }
         let edge = &motion.map_or(*edge, |motion| edge.moved(motion));

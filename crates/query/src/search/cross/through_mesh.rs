@@ -76,9 +76,15 @@ impl Outline {
         let level = Reached { at: Vector3::zeros(), pulled_by: Pull::Known(Vector3::zeros()) };
         let (mut above, mut below, mut nearest) = (level, level, None);
         for facet in facets {
+            // PERF: of a surface in many triangles few pass the disc, or reach farther than all before them.
+            let heights = facet.corners.map(|corner| self.normal.dot(&(corner - self.middle)));
+            let reaches = self.may_reach_beyond(heights, [below.at.z, above.at.z]);
+            let is_astride = are_astride(heights);
+            if !reaches && !is_astride {
+                continue;
+            }
             let Some(corners) = self.corners_not_aside(facet) else { continue };
-            // PERF: of a surface in many triangles few reach farther than all before them.
-            if self.may_reach_beyond(&corners, [below.at.z, above.at.z]) {
+            if reaches {
                 self.visit_heights(facet, &corners, |reached| {
                     if reached.at.z > above.at.z {
                         above = reached;
@@ -89,7 +95,7 @@ impl Outline {
                 });
             }
             let passes = || passes_nearest(&corners).filter(|reached| self.is_within(reached));
-            if let Some(reached) = is_astride(&corners).then(passes).flatten() {
+            if let Some(reached) = is_astride.then(passes).flatten() {
                 let is_nearer = |known: Reached| reached.at.norm() < known.at.norm();
                 if nearest.is_none_or(is_nearer) {
                     nearest = Some(reached);
@@ -108,12 +114,11 @@ impl Outline {
         }
     }
 
-    /// Whether a facet may reach lower or higher than known, where that still counts: in the outline as
+    /// Whether a facet with corners at these heights may reach lower or higher than known, where that still counts: in the outline as
     /// anywhere it is between its corners, but for rounding.
-    fn may_reach_beyond(&self, corners: &[Vector3; 3], [below, above]: [f64; 2]) -> bool {
+    fn may_reach_beyond(&self, [p, q, r]: [f64; 3], [below, above]: [f64; 2]) -> bool {
         /// Of its height and the disc's radius, generously.
         const ROUNDING: f64 = 1e-9;
-        let [p, q, r] = corners.map(|corner| corner.z);
         let (low, high) = (p.min(q).min(r), p.max(q).max(r));
         let slack = ROUNDING * (high - low + self.radius);
         above <= self.radius && high + slack > above || below >= -self.radius && low - slack < below
@@ -261,10 +266,10 @@ impl Outline {
     }
 }
 
-/// Whether a facet has corners on either side of height zero.
-fn is_astride([p, q, r]: &[Vector3; 3]) -> bool {
-    let is_below = p.z < 0.0;
-    is_below != (q.z < 0.0) || is_below != (r.z < 0.0)
+/// Whether there are heights on either side of zero.
+fn are_astride([p, q, r]: [f64; 3]) -> bool {
+    let is_below = p < 0.0;
+    is_below != (q < 0.0) || is_below != (r < 0.0)
 }
 
 /// Where a facet passes height zero, nearest to the middle.
