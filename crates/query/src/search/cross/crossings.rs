@@ -82,7 +82,7 @@ pub(crate) struct Crossings {
 }
 
 /// A witness at its place, reaching so far, with its clearness by sides.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 struct Heard {
     place: Point3,
     reach: f64,
