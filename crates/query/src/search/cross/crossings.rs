@@ -128,7 +128,8 @@ impl Crossings {
         self.ordered().map(|(_, seen)| &seen.best)
     }
 
-    /// Clearness of all crossings together at the place where it is most; never less by one more.
+    /// Clearness of all crossings together at the place where it is most. One more hardly makes it less: only where
+    /// it takes the place of a witness out of reach of others.
     pub(crate) fn clearness(&self) -> f64 {
         self.clearest_place().map_or(0.0, |(clearness, _)| clearness)
     }
