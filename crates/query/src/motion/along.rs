@@ -45,7 +45,8 @@ impl Sweep<'_> {
                 self.test(before.segment, 1.0)?;
             }
         }
-        if whole.iter().any(|interval| self.tested.is_wanted(interval)) {
+        let is_left_to_halving = whole.iter().all(|interval| self.is_open_path(interval));
+        if !is_left_to_halving && whole.iter().any(|interval| self.tested.is_wanted(interval)) {
             self.test(self.path.segments() - 1, 1.0)?;
         }
         let mut waiting = BinaryHeap::from(whole);
@@ -111,6 +112,7 @@ impl Sweep<'_> {
             let is_open = self.tested.is_known_open(&interval);
             // Where all of the first half is free, so is the pose at its end.
             let may_be_free = self.tested.may_be_free(&interval);
+            let is_path = self.is_open_path(&interval);
             if !may_be_free {
                 self.test(segment, middle)?;
             }
@@ -118,10 +120,19 @@ impl Sweep<'_> {
             if may_be_free && !self.tested.is_free(&first) {
                 self.test(segment, middle)?;
             }
-            waiting.push(first);
-            waiting.push(self.half(&interval, [middle, to], is_open)?);
+            let second = self.half(&interval, [middle, to], is_open)?;
+            // The last of the poses that were given: as free as the rest, or asked about for who asks about these.
+            if is_path && ![&first, &second].iter().all(|half| self.tested.is_free(half)) {
+                self.test(segment, to)?;
+            }
+            waiting.extend([first, second]);
         }
         Ok(())
+    }
+
+    /// Whether it is all of the path, which may be free.
+    fn is_open_path(&self, interval: &Interval) -> bool {
+        self.path.segments() == 1 && interval.length() == 1.0 && self.tested.may_be_free(interval)
     }
 
     /// A half of a stretch. What cannot matter any more keeps the bound of the whole; what waits for
