@@ -1,13 +1,10 @@
 #![doc = include_str!("../README.md")]
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
-mod axis_form;
 mod bounding_box;
 mod cloud;
 mod covariance;
-mod covariance_error;
 mod drift;
-mod jacobi;
 #[cfg(feature = "mesh")]
 mod mesh;
 pub mod message;
@@ -18,18 +15,15 @@ mod pose;
 mod repeats;
 #[cfg(feature = "seed")]
 pub mod seed;
-mod symmetric;
 #[cfg(feature = "mesh")]
 mod turn;
 mod uncertain;
 mod unit;
 mod vectors;
 
-pub use axis_form::AxisForm;
 pub use bounding_box::bounding_box;
 pub use cloud::PointCloud;
-pub use covariance::Covariance;
-pub use covariance_error::CovarianceError;
+pub use covariance::{AxisForm, Covariance, CovarianceError};
 pub use drift::{BoxDrift, Drift};
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshError, TriangleMesh};

@@ -194,6 +194,12 @@ mod tests {
 
     use super::*;
 
+    /// Of no fitted surface.
+    fn piece(point: UncertainPoint) -> Surfel {
+        let most_variance = point.covariance.max_std().powi(2);
+        Surfel { index: 0, point, spacing: 1.0, most_variance, normal: None }
+    }
+
     fn vector() -> impl Strategy<Value = Vector3> {
         (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(x, y, z)| Vector3::new(x, y, z))
     }
@@ -217,13 +223,7 @@ mod tests {
         ) {
             prop_assume!((b - a).cross(&(c - a)).norm() > 1e-3 && axis.norm() > 1e-3);
             let covariance = Covariance::from_axis(&unit(&axis).unwrap(), 0.1, 0.4);
-            let surfel = Surfel {
-                index: 0,
-                point: UncertainPoint { mean: Point3::from(mean), covariance },
-                spacing: 1.0,
-                most_variance: 0.16,
-                normal: None,
-            };
+            let surfel = piece(UncertainPoint { mean: Point3::from(mean), covariance });
             let facet = Facet::new(0, [a, b, c].map(Point3::from));
             let whitening = Whitening::of_any(&covariance);
             let (squared, way) = facet.squared_deviations(&surfel, &whitening, 1e6).unwrap();
@@ -240,13 +240,7 @@ mod tests {
         ) {
             prop_assume!((b - a).cross(&(c - a)).norm() > 1e-3 && axis.norm() > 1e-3);
             let covariance = Covariance::from_axis(&unit(&axis).unwrap(), stds[0], stds[1]);
-            let surfel = Surfel {
-                index: 0,
-                point: UncertainPoint { mean: Point3::origin(), covariance },
-                spacing: 1.0,
-                most_variance: covariance.max_std().powi(2),
-                normal: None,
-            };
+            let surfel = piece(UncertainPoint { mean: Point3::origin(), covariance });
             let facet = Facet::new(0, [a, b, c].map(Point3::from));
             let whitening = Whitening::of_any(&covariance);
             let squared = nearest_to_origin(&[a, b, c].map(|v| whitening.apply(&v))).norm_squared();
@@ -263,13 +257,7 @@ mod tests {
         ) {
             prop_assume!((b - a).cross(&(c - a)).norm() > 1e-3 && axis.norm() > 1e-3);
             let covariance = Covariance::from_axis(&unit(&axis).unwrap(), stds[0], stds[1]);
-            let surfel = Surfel {
-                index: 0,
-                point: UncertainPoint { mean: Point3::origin(), covariance },
-                spacing: 1.0,
-                most_variance: covariance.max_std().powi(2),
-                normal: None,
-            };
+            let surfel = piece(UncertainPoint { mean: Point3::origin(), covariance });
             let distance = nearest_to_origin(&[a, b, c]).norm();
             let facet = Facet::new(0, [a, b, c].map(Point3::from));
             let of = |margin| {
@@ -313,13 +301,7 @@ mod tests {
     #[test]
     fn exact_pieces_at_one_place_are_no_deviations_apart() {
         let whitening = Whitening::of_any(&Covariance::zero());
-        let surfel = Surfel {
-            index: 0,
-            point: UncertainPoint::exact(Point3::new(0.2, 0.3, 0.0)),
-            spacing: 1.0,
-            most_variance: 0.0,
-            normal: None,
-        };
+        let surfel = piece(UncertainPoint::exact(Point3::new(0.2, 0.3, 0.0)));
         let facet = |z: f64| {
             Facet::new(0, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, z)))
         };

@@ -1,7 +1,7 @@
 //! A covariance that is the same in every direction across an axis: noise along a viewing ray, a
 //! piece of surface.
 
-use crate::symmetric::Symmetric;
+use crate::covariance::symmetric::Symmetric;
 use crate::vectors::{Matrix3, UnitVector3, Vector3};
 
 /// s² a aᵀ + t² (I − a aᵀ): the axis a, and the standard deviations s along it and t across it.

@@ -1,6 +1,6 @@
 //! Symmetric 3×3 matrices by their six entries, and whether they are positive semidefinite.
 
-use crate::jacobi::jacobi;
+use crate::covariance::jacobi::jacobi;
 use crate::vectors::{Matrix3, Vector3};
 
 /// A symmetric matrix; semidefinite or not is known where it is used.
