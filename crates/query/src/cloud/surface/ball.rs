@@ -2,7 +2,6 @@
 
 use cloudtouch_geom::{Motion, Point3, Vector3};
 
-use super::slab::Slab;
 use super::surfel::Surfel;
 
 /// What all pieces of a leaf are in.
@@ -49,11 +48,5 @@ impl Ball {
         const ROUNDING: f64 = 1e-9;
         let reach = (self.radius + distance) * (1.0 + ROUNDING);
         (place - self.middle).norm_squared() <= reach * reach
-    }
-
-    /// Whether it may reach into a slab in its frame; never no by rounding.
-    pub(crate) fn meets(&self, slab: &Slab) -> bool {
-        const ROUNDING: f64 = 1e-9;
-        slab.is_within(&self.middle, self.radius * (1.0 + ROUNDING))
     }
 }

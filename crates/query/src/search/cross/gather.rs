@@ -128,11 +128,8 @@ pub(in crate::search) fn add_edges_through_facets(
     facets: &ExactLeaf,
     found: &mut Crossings,
 ) {
-    let Some(LeafEdges { edges, joined, slab }) = of_edges.edges else { return };
+    let Some(LeafEdges { edges, joined, .. }) = of_edges.edges else { return };
     let around = motion.map_or(facets.ball, |motion| facets.ball.moved_back(motion));
-    if !around.meets(slab) {
-        return;
-    }
     for (edge, &joined) in edges.iter().zip(joined) {
         if !near.meet(joined) || !around.is_within(&edge.middle(), edge.half_length) {
             continue;

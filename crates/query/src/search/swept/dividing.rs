@@ -87,8 +87,7 @@ impl Dividing {
     }
 
     fn remember(&mut self, n: Vector3) {
-        let others: Vec<Vector3> = self.known().filter(|known| *known != n).collect();
-        let mut latest = std::iter::once(n).chain(others);
+        let mut latest = std::iter::once(n).chain(self.known().filter(|known| *known != n));
         self.0 = std::array::from_fn(|_| latest.next());
     }
 }

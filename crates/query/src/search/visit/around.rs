@@ -1,7 +1,5 @@
 //! The triangles of a mesh about places that a search comes by.
 
-use std::collections::HashMap;
-use std::hash::BuildHasherDefault;
 use std::rc::Rc;
 
 use cloudtouch_bvh::NodeId;
@@ -12,17 +10,13 @@ use crate::mesh::Mesh;
 use crate::stats::Stats;
 
 use super::leaf::{ExactLeaf, Leaf, facets_of};
-use super::leaves::Spread;
+use super::leaves::Leaves;
 use crate::search::compare::facet::Facet;
 
 /// Facets of the mesh of a pair in the frame of A, by the leaves of its tree: many discs pass the same
 /// leaves, and each is moved once.
 #[derive(Debug, Default)]
-pub(in crate::search) struct Around {
-    leaves: Vec<Rc<Vec<Facet>>>,
-    /// Where each is among these, by the name of its node.
-    places: HashMap<usize, usize, BuildHasherDefault<Spread>>,
-}
+pub(in crate::search) struct Around(Leaves<Rc<Vec<Facet>>>);
 
 impl Around {
     /// A leaf of a body, moved to the frame of A by `motion`, or of A itself.
@@ -37,18 +31,14 @@ impl Around {
             BodyRef::Cloud(_) => Leaf::load(body, id, motion, stats),
             BodyRef::Mesh(mesh) => {
                 let place = self.place(mesh, id, motion);
-                Leaf::Exact(ExactLeaf::of(Rc::clone(&self.leaves[place])))
+                Leaf::Exact(ExactLeaf::of(Rc::clone(self.0.at(place))))
             }
         }
     }
 
     /// Where the facets of a leaf are, which are moved here where they are not.
     fn place(&mut self, mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> usize {
-        let Self { leaves, places } = self;
-        *places.entry(id.index()).or_insert_with(|| {
-            leaves.push(Rc::new(facets_of(mesh, id, motion)));
-            leaves.len() - 1
-        })
+        self.0.place(id, || Rc::new(facets_of(mesh, id, motion)))
     }
 }
 
@@ -75,7 +65,7 @@ impl OfMesh<'_> {
                 near.push(known.place(mesh, leaf.id(), *a_from_mesh));
             });
         }
-        let leaves = &known.leaves;
-        near.into_iter().flat_map(|place| leaves[place].iter())
+        let Around(leaves) = &**known;
+        near.into_iter().flat_map(|place| leaves.at(place).iter())
     }
 }

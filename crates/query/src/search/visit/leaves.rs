@@ -25,12 +25,21 @@ impl<L> Leaves<L> {
         id: NodeId,
         load: impl FnOnce() -> L,
     ) -> &mut L {
+        let place = self.place(id, load);
+        &mut self.seen[place].1
+    }
+
+    /// Where a leaf is among those seen, which is loaded where it is not.
+    pub(super) fn place(&mut self, id: NodeId, load: impl FnOnce() -> L) -> usize {
         let Self { seen, places } = self;
-        let place = *places.entry(id.index()).or_insert_with(|| {
+        *places.entry(id.index()).or_insert_with(|| {
             seen.push((id, load()));
             seen.len() - 1
-        });
-        &mut seen[place].1
+        })
+    }
+
+    pub(super) fn at(&self, place: usize) -> &L {
+        &self.seen[place].1
     }
 
     pub(in crate::search) fn len(&self) -> usize {
@@ -52,7 +61,7 @@ impl<L> Leaves<L> {
 
 /// Spreads the names of nodes, which nobody chooses to collide: a search looks two of them up for every pair.
 #[derive(Debug, Default)]
-pub(super) struct Spread(u64);
+struct Spread(u64);
 
 impl Hasher for Spread {
     fn write(&mut self, bytes: &[u8]) {
