@@ -2,6 +2,7 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod discretization;
+mod ends;
 mod error;
 mod finite;
 mod grid;
@@ -26,6 +27,7 @@ mod typical_spacing;
 /// Points, covariances, clouds and poses.
 pub use cloudtouch_geom as geom;
 pub use discretization::{Discretization, Summed, discretization};
+pub use ends::Face;
 pub use error::NoiseError;
 pub use grid::quantize_to_grid;
 pub use index::places::Places;

@@ -3,6 +3,7 @@
 mod bounds;
 mod common;
 mod degenerate;
+mod ends;
 mod neighborhoods;
 mod posterior;
 mod reach;

@@ -16,6 +16,35 @@ fn cloud(mesh: &TriangleMesh, std: f64, seed: u64) -> Body {
     Body::Cloud(Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap())
 }
 
+fn says_the_same_at_any_detail(
+    (is_mesh, std, seed): (bool, f64, u64),
+    (offset, turn): ([f64; 3], f64),
+    (reject, accept): (f64, f64),
+) -> Result<(), TestCaseError> {
+    let shape = scene::cuboid([0.2; 3]);
+    let a = cloud(&shape, std, seed);
+    let b = if is_mesh {
+        Body::Mesh(Mesh::prepare(&shape).unwrap())
+    } else {
+        cloud(&shape, std, !seed)
+    };
+    let pose = Pose::from_translation_rpy(Vector3::from(offset), [turn, 0.2, 0.0]);
+    let of = |detail: Detail| {
+        let settings = QuerySettings { detail, accept, reject, ..QuerySettings::default() };
+        Query::new(settings).unwrap().run(&a, &b, &pose).unwrap()
+    };
+    let (full, number, verdict) = (of(Detail::Full), of(Detail::Probability), of(Detail::Verdict));
+    prop_assert_eq!(number.collision_probability.to_bits(), full.collision_probability.to_bits());
+    prop_assert_eq!((number.bounds, number.verdict), (full.bounds, full.verdict));
+    prop_assert!(number.contacts.is_empty() && number.clearance_m.is_none());
+    prop_assert_eq!(verdict.verdict, full.verdict);
+    let [low, high] = verdict.bounds;
+    prop_assert!(low <= full.collision_probability && full.collision_probability <= high);
+    // What is in collision for sure is not free for less.
+    prop_assert!(full.verdict != Verdict::InCollision || verdict.collision_probability > accept);
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) })]
 
@@ -28,25 +57,18 @@ proptest! {
         thresholds in (0.0_f64..0.5, 0.5_f64..1.0),
         seed in any::<u64>(),
     ) {
-        let shape = scene::cuboid([0.2; 3]);
-        let a = cloud(&shape, std, seed);
-        let b = if is_mesh { Body::Mesh(Mesh::prepare(&shape).unwrap()) } else { cloud(&shape, std, !seed) };
-        let pose = Pose::from_translation_rpy(Vector3::from(offset), [turn, 0.2, 0.0]);
-        let (reject, accept) = thresholds;
-        let of = |detail: Detail| {
-            let settings = QuerySettings { detail, accept, reject, ..QuerySettings::default() };
-            Query::new(settings).unwrap().run(&a, &b, &pose).unwrap()
-        };
-        let (full, number, verdict) = (of(Detail::Full), of(Detail::Probability), of(Detail::Verdict));
-        prop_assert_eq!(number.collision_probability.to_bits(), full.collision_probability.to_bits());
-        prop_assert_eq!((number.bounds, number.verdict), (full.bounds, full.verdict));
-        prop_assert!(number.contacts.is_empty() && number.clearance_m.is_none());
-        prop_assert_eq!(verdict.verdict, full.verdict);
-        let [low, high] = verdict.bounds;
-        prop_assert!(low <= full.collision_probability && full.collision_probability <= high);
-        // What is in collision for sure is not free for less.
-        prop_assert!(full.verdict != Verdict::InCollision || verdict.collision_probability > accept);
+        says_the_same_at_any_detail((is_mesh, std, seed), (offset, turn), thresholds)?;
     }
+}
+
+/// A witness whose place was that of its best crossing went out of reach of others as a better one was found:
+/// .994181 and more by the verdict, .994010 by the report.
+#[test]
+fn what_was_clear_is_no_less_clear_as_more_crossings_are_found() {
+    let offset = [0.024572816733615777, -0.1604266648897314, -0.16581431772608793];
+    let of_bodies = (false, 0.007117900515142896, 7692151804146277188);
+    let thresholds = (0.0, 0.5473295510305617);
+    says_the_same_at_any_detail(of_bodies, (offset, 2.652490371108757), thresholds).unwrap();
 }
 
 /// A distance is not looked for where it is not wanted; what hangs on it is.

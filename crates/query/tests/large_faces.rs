@@ -66,3 +66,23 @@ fn a_face_on_itself_read_free() {
     assert_eq!(report.evidence.and_then(|evidence| evidence.extent), Some(0.0));
     assert_ne!(report.verdict, Verdict::Free, "{report:?}");
 }
+
+/// Samples at the rim of its bottom, and of its walls beside that, were as likely below it as their noise and
+/// the discs about them: 4.6 mm was told, of 10.
+#[test]
+fn a_box_over_a_table_was_told_as_near_as_the_samples_at_its_rim() {
+    const GAP: f64 = 0.01;
+    let query = Query::new(QuerySettings::default()).expect("settings");
+    let table = mesh(&scene::cuboid([0.5, 0.4, 0.04]));
+    let pose = at(0.03, -0.02, -(0.02 + 0.05 + GAP));
+    let told = |seed: u64| {
+        let points = measured(&scene::cuboid([0.12, 0.08, 0.1]), 0.005, 0.002, seed);
+        let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+        let carton = Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a cloud");
+        let report = query.run(&carton, &table, &pose).expect("a good pose");
+        assert_sound(&report);
+        report.clearance_m.expect("a gap").mean
+    };
+    let mean = (0..DRAWS).map(told).sum::<f64>() / DRAWS as f64;
+    assert!((0.0053..GAP).contains(&mean), "{mean}");
+}

@@ -23,7 +23,7 @@ impl Prepared {
             computed = true;
             let mut scratch = Scratch::default();
             let indices = self.shared_indices(id);
-            indices.into_iter().map(|index| *self.surfel(index, &mut scratch)).collect()
+            indices.into_iter().map(|index| self.told(index, &mut scratch)).collect()
         });
         (surfels, computed)
     }

@@ -255,7 +255,7 @@ mod tests {
                 let past = Past::new(cloud, edge, motion);
                 let through = |disc| through_disc(edge, disc, |end| past.of(end));
                 for crossing in discs.iter().filter_map(through) {
-                    crossings.add(Witness::edge(is_a, edge), &crossing);
+                    crossings.add(Witness::edge(is_a, edge), &edge.middle(), &crossing);
                 }
             }
         }

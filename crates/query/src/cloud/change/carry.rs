@@ -41,10 +41,9 @@ impl Prepared {
             let Some(mut fitted) = fitted.filter(of_cap).filter(is_same) else { return false };
             fitted.surfel.index = piece as u32;
             // None of them went.
-            fitted.basis.nearest =
-                fitted.basis.nearest.map(|nearest| nearest.map(|index| after[index as usize]));
+            fitted.basis = fitted.basis.renumbered(&after);
             // A slot of a new cloud is empty.
-            self.surface.surfels[piece].set(Box::new(fitted)).is_ok()
+            self.surface.fits[piece].set(Box::new(fitted)).is_ok()
         });
         Ok(carried.count())
     }

@@ -27,7 +27,7 @@ pub(super) struct Before {
 
 impl Before {
     pub(super) fn basis(&self, piece: u32) -> Option<&Basis> {
-        match self.surface.surfels.get(piece as usize) {
+        match self.surface.fits.get(piece as usize) {
             Some(slot) => slot.get().map(|fitted| &fitted.basis),
             None => self.surface.bases.get(piece as usize),
         }
@@ -35,7 +35,7 @@ impl Before {
 
     /// Of a piece of a leaf that holds others now.
     fn spacing(&self, piece: u32) -> Option<f64> {
-        match self.surface.surfels.get(piece as usize) {
+        match self.surface.fits.get(piece as usize) {
             Some(slot) => slot.get().map(|fitted| fitted.surfel.spacing),
             None => self.moved_house.get(&piece).map(|surfel| surfel.spacing),
         }

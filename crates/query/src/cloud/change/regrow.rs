@@ -26,38 +26,33 @@ impl Prepared {
         self.surface.fitted.take();
         let mut is_lost = vec![false; before.len()];
         lost.iter().for_each(|&piece| is_lost[piece as usize] = true);
-        let renumbered = |basis: &Basis| Basis {
-            nearest: basis.nearest.map(|near| near.map(|index| old.after[index as usize])),
-            ..*basis
-        };
         let kept = before.len() - lost.len();
-        if old.surface.surfels.is_empty() {
-            let unknown = Basis { reach: f64::INFINITY, nearest: None };
+        if old.surface.fits.is_empty() {
             let basis = |(index, before): (usize, &Option<u32>)| {
                 let known = before.filter(|_| !is_lost[index]);
-                known.and_then(|before| old.basis(before)).map_or(unknown, renumbered)
+                let known = known.and_then(|before| old.basis(before));
+                known.map_or(Basis::UNKNOWN, |basis| basis.renumbered(&old.after))
             };
             self.surface.bases = before.par_iter().enumerate().map(basis).collect();
             self.refit(&old.moved_house, before, patched, lost, &is_lost)?;
             return Ok(kept);
         }
-        let mut surfels = old.surface.surfels;
+        let mut fits = old.surface.fits;
         let carried = |(index, before): (usize, &Option<u32>)| {
             let before = before.filter(|_| !is_lost[index]);
-            let fitted = before.and_then(|before| surfels[before as usize].take());
+            let fitted = before.and_then(|before| fits[before as usize].take());
             fitted.map_or_else(Default::default, |mut fitted| {
                 fitted.surfel.index = index as u32;
-                fitted.basis = renumbered(&fitted.basis);
+                fitted.basis = fitted.basis.renumbered(&old.after);
                 fitted.into()
             })
         };
-        self.surface.surfels = before.iter().enumerate().map(carried).collect();
-        for leaf in self.with_other_edges(&is_lost) {
+        self.surface.fits = before.iter().enumerate().map(carried).collect();
+        for leaf in self.leaves_with(|piece| self.has_other_edges(piece, &is_lost)) {
             self.surface.edges[leaf.index()].take();
-            let pieces = self.tree.leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
-            if pieces.iter().any(|&piece| is_lost[piece as usize]) {
-                self.surface.leaves[leaf.index()].take();
-            }
+        }
+        for leaf in self.leaves_with(|piece| self.is_told_otherwise(piece, &is_lost)) {
+            self.surface.leaves[leaf.index()].take();
         }
         let Self { noise, neighborhoods, scans, surface, tree, .. } = self;
         let measured = (&*noise, &*neighborhoods, &scans.noise);
@@ -79,32 +74,43 @@ impl Prepared {
     ) -> Result<(), PrepareError> {
         let fit = |scratch: &mut Scratch, &piece: &u32| (piece, self.fitted(piece, scratch));
         let fitted: Vec<(u32, Fitted)> = lost.par_iter().map_init(Scratch::default, fit).collect();
-        let mut leaves = patched.leaves.clone();
-        leaves.extend(lost.iter().filter_map(|&piece| self.tree.leaf_of(piece as usize)));
+        let mut found = BTreeMap::new();
+        for (piece, fitted) in fitted {
+            found.insert(piece, fitted.surfel);
+            self.surface.bases[piece as usize] = fitted.basis;
+        }
+        let others = self.leaves_with(|piece| self.is_told_otherwise(piece, is_lost));
+        let mut leaves = [&patched.leaves[..], &others].concat();
         leaves.sort_unstable();
         leaves.dedup();
-        let fitted: BTreeMap<u32, Fitted> = fitted.into_iter().collect();
-        for leaf in leaves {
-            let Some(node) = self.tree.leaf(leaf) else { continue };
-            let known = self.surface.leaves[leaf.index()].take();
-            let known = known.map(|leaf| leaf.surfels).unwrap_or_default();
-            let surfel = |(place, piece): (usize, &u32)| match fitted.get(piece) {
-                Some(fitted) => Some(fitted.surfel),
-                None => known.get(place).copied().or_else(|| {
-                    let surfel = moved_house.get(&before[*piece as usize]?)?;
-                    Some(Surfel { index: *piece, ..*surfel })
-                }),
+        // A piece that may end elsewhere is as it was fitted first.
+        let as_fitted = |scratch: &mut Scratch, &leaf: &NodeId| {
+            let known = self.surface.leaves[leaf.index()].get();
+            let pieces = self.tree.leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
+            let mut surfel = |(place, &piece): (usize, &u32)| {
+                let of_leaf = || known.and_then(|leaf| leaf.surfels.get(place)).copied();
+                let of_other = || moved_house.get(&before[piece as usize]?).copied();
+                let surfel = found.get(&piece).copied().or_else(of_leaf).or_else(of_other)?;
+                Some(match surfel.is_cut_off && self.is_told_otherwise(piece, is_lost) {
+                    true => self.fitted(piece, scratch).surfel,
+                    false => Surfel { index: piece, ..surfel },
+                })
             };
-            let surfels = node.primitive_indices().iter().enumerate().filter_map(surfel).collect();
-            let surface = LeafSurface::new(surfels, self.thin_side(leaf));
+            let surfels = pieces.iter().enumerate().filter_map(&mut surfel).collect();
+            LeafSurface::new(surfels, self.thin_side(leaf))
+        };
+        let surfaces: Vec<LeafSurface> =
+            leaves.par_iter().map_init(Scratch::default, as_fitted).collect();
+        for (leaf, surface) in leaves.iter().zip(surfaces) {
             self.surface.leaves[leaf.index()] = Box::new(surface).into();
         }
-        fitted.iter().for_each(|(&piece, fitted)| {
-            self.surface.bases[piece as usize] = fitted.basis;
-        });
-        let leaves = self.with_other_edges(is_lost);
+        self.end_again(&others, is_lost);
+        let leaves = self.leaves_with(|piece| self.has_other_edges(piece, is_lost));
         leaves.iter().for_each(|leaf| drop(self.surface.edges[leaf.index()].take()));
-        let amended: Vec<_> = (leaves.par_iter())
+        let mut amended = [leaves, others].concat();
+        amended.sort_unstable();
+        amended.dedup();
+        let amended: Vec<_> = (amended.par_iter())
             .map_init(Scratch::default, |scratch, &leaf| {
                 self.leaf_edges_with(leaf, scratch);
                 self.primitives_of(leaf)
@@ -115,18 +121,49 @@ impl Prepared {
         Ok(())
     }
 
-    /// The leaves that hold a piece of these, or one that has one of these among its nearest.
-    fn with_other_edges(&self, is_lost: &[bool]) -> Vec<NodeId> {
-        let is_other = |&piece: &u32| {
-            is_lost[piece as usize]
-                || self
-                    .known_nearest(piece)
-                    .is_none_or(|nearest| nearest.iter().any(|&near| is_lost[near as usize]))
+    /// Lets the pieces of some leaves of a refined cloud that are told otherwise end where they do now.
+    fn end_again(&mut self, leaves: &[NodeId], is_lost: &[bool]) {
+        let ended = |scratch: &mut Scratch, &leaf: &NodeId| -> Vec<(usize, Surfel)> {
+            let pieces = self.tree.leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
+            let places = pieces.iter().enumerate();
+            places
+                .filter(|&(_, &piece)| self.is_told_otherwise(piece, is_lost))
+                .map(|(place, &piece)| {
+                    let fit = *self.fit(piece, scratch);
+                    (place, self.ended(piece, &fit, scratch))
+                })
+                .collect()
         };
+        let ended: Vec<_> = leaves.par_iter().map_init(Scratch::default, ended).collect();
+        for (leaf, ended) in leaves.iter().zip(ended) {
+            if let Some(surface) = self.surface.leaves[leaf.index()].get_mut() {
+                ended.into_iter().for_each(|(place, surfel)| surface.surfels[place] = surfel);
+            }
+        }
+    }
+
+    /// Whether a piece is lost, or one of the fits that tell where it ends.
+    fn is_told_otherwise(&self, piece: u32, is_lost: &[bool]) -> bool {
+        let beside = self.basis(piece).and_then(|basis| basis.beside.as_deref());
+        is_lost[piece as usize]
+            || beside.is_some_and(|beside| beside.iter().any(|&near| is_lost[near as usize]))
+    }
+
+    /// Whether a piece is lost, or one that is among its nearest.
+    fn has_other_edges(&self, piece: u32, is_lost: &[bool]) -> bool {
+        is_lost[piece as usize]
+            || self
+                .known_nearest(piece)
+                .is_none_or(|nearest| nearest.iter().any(|&near| is_lost[near as usize]))
+    }
+
+    /// The leaves that hold a piece such as these.
+    fn leaves_with(&self, is_one: impl Fn(u32) -> bool + Sync) -> Vec<NodeId> {
         let leaves: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
-        let has_other = |leaf: &NodeId| {
-            self.tree.leaf(*leaf).is_some_and(|leaf| leaf.primitive_indices().iter().any(is_other))
+        let has_one = |leaf: &NodeId| {
+            let pieces = self.tree.leaf(*leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
+            pieces.iter().any(|&piece| is_one(piece))
         };
-        leaves.into_par_iter().filter(has_other).collect()
+        leaves.into_par_iter().filter(has_one).collect()
     }
 }

@@ -49,14 +49,14 @@ pub(crate) fn edges_of(cloud: &Prepared, indices: &[u32], scratch: &mut Scratch)
             if q == p || is_second || !nearest.of(q, scratch).contains(&p) {
                 continue;
             }
-            let from = *cloud.surfel(p, scratch);
-            let to = *cloud.surfel(q, scratch);
+            let from = *cloud.fit(p, scratch);
+            let to = *cloud.fit(q, scratch);
             if runs_along(&from, &to) {
                 edges.push(Edge {
                     ends: [from.point.mean, to.point.mean],
                     half_length: 0.5 * (to.point.mean - from.point.mean).norm(),
                     points: [p, q],
-                    across: [from.variance_across(), to.variance_across()],
+                    across: [from.across, to.across],
                     own: [Some(place), other],
                 });
             }

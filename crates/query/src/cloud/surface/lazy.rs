@@ -1,16 +1,13 @@
 //! The surface of a cloud: its noise model is computed when a query first comes near, and kept.
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::{Point3, UnitVector3};
+use cloudtouch_geom::Point3;
 use cloudtouch_noise::Scratch;
 
 use super::leaf::LeafSurface;
 use super::slots::{Basis, Fitted, NEIGHBORS};
 use super::surfel::Surfel;
 use crate::cloud::prepared::Prepared;
-
-/// Relative rounding of an eigenvalue, generously.
-const ROUNDING: f64 = 1e-9;
 
 impl Prepared {
     /// The surface at the points of a node, and whether this call computed it.
@@ -40,7 +37,7 @@ impl Prepared {
             let pieces = self.tree.node(id).map_or(&[][..], |leaf| leaf.primitive_indices());
             let known = pieces.iter().find_map(|&piece| self.known_reach(piece));
             self.gather(pieces, known, scratch);
-            let surfels = pieces.iter().map(|&piece| *self.surfel(piece, scratch)).collect();
+            let surfels = self.told_together(pieces, scratch);
             Box::new(LeafSurface::new(surfels, self.thin_side(id)))
         });
         (leaf, computed)
@@ -65,7 +62,7 @@ impl Prepared {
             pieces.iter().copied().filter(|&piece| is_wanted(&places[piece as usize])).collect();
         let known = pieces.iter().find_map(|&piece| self.known_reach(piece));
         self.gather(&wanted, known, scratch);
-        wanted.iter().map(|&piece| self.surfel(piece, scratch)).for_each(visit);
+        self.told_together(&wanted, scratch).iter().for_each(visit);
         !wanted.is_empty()
     }
 
@@ -73,7 +70,7 @@ impl Prepared {
     pub(crate) fn surfels_near(&self, place: &Point3, count: usize) -> Vec<Surfel> {
         let mut scratch = Scratch::default();
         let nearest = self.near_pieces().nearest_to(place, count);
-        nearest.iter().map(|near| *self.surfel(near.index as u32, &mut scratch)).collect()
+        nearest.iter().map(|near| self.told(near.index as u32, &mut scratch)).collect()
     }
 
     /// Makes buffers ready for the fits at those of some pieces near one another where the surface is not
@@ -91,31 +88,38 @@ impl Prepared {
         }
     }
 
-    /// The surface at one piece.
-    pub(in crate::cloud) fn surfel(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
-        match self.surface.surfels.get(piece as usize) {
+    /// The surface at one piece as it is fitted, but that a refined cloud knows no covariance other than what
+    /// is left of it where it ends.
+    pub(in crate::cloud) fn fit(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
+        match self.surface.fits.get(piece as usize) {
             Some(slot) => &slot.get_or_init(|| Box::new(self.fitted(piece, scratch))).surfel,
-            None => self.kept(piece),
+            None => self.of_leaf(piece),
         }
     }
 
-    /// The surface at one piece, where it was computed already.
+    /// The surface at one piece as it is fitted, where that is known.
     pub(in crate::cloud) fn known(&self, piece: u32) -> Option<Fitted> {
-        match self.surface.surfels.get(piece as usize) {
-            Some(slot) => slot.get().map(|fitted| **fitted),
+        match self.surface.fits.get(piece as usize) {
+            Some(slot) => slot.get().map(|fitted| (**fitted).clone()),
             None => {
-                let basis = *self.surface.bases.get(piece as usize)?;
-                Some(Fitted { surfel: *self.kept(piece), basis })
+                let surfel = *self.of_leaf(piece);
+                let basis = self.surface.bases.get(piece as usize).filter(|_| !surfel.is_cut_off);
+                Some(Fitted { surfel, basis: basis?.clone() })
             }
+        }
+    }
+
+    /// What the surface at a piece rests on, where it was computed.
+    pub(in crate::cloud) fn basis(&self, piece: u32) -> Option<&Basis> {
+        match self.surface.fits.get(piece as usize) {
+            Some(slot) => slot.get().map(|fitted| &fitted.basis),
+            None => self.surface.bases.get(piece as usize),
         }
     }
 
     /// The pieces nearest to one, where its surface was computed and tells.
     pub(in crate::cloud) fn known_nearest(&self, piece: u32) -> Option<[u32; NEIGHBORS]> {
-        match self.surface.surfels.get(piece as usize) {
-            Some(slot) => slot.get()?.basis.nearest,
-            None => self.surface.bases.get(piece as usize)?.nearest,
-        }
+        self.basis(piece)?.nearest
     }
 
     /// The pieces nearest to one; with fewer of them the piece itself fills the rest, to which no edge leads.
@@ -135,22 +139,22 @@ impl Prepared {
 
     /// How far the fit at a piece looked, m, where that is known and not everywhere.
     pub(super) fn known_reach(&self, piece: u32) -> Option<f64> {
-        let fitted = self.surface.surfels.get(piece as usize)?.get()?;
+        let fitted = self.surface.fits.get(piece as usize)?.get()?;
         Some(fitted.basis.reach).filter(|reach| reach.is_finite())
     }
 
     /// Whether the surface at one piece was computed already.
     pub(in crate::cloud) fn is_known(&self, piece: u32) -> bool {
-        self.surface.surfels.get(piece as usize).is_none_or(|slot| slot.get().is_some())
+        self.surface.fits.get(piece as usize).is_none_or(|slot| slot.get().is_some())
     }
 
     /// Whether the surface was computed everywhere and the tree fitted to it.
     pub(crate) fn is_refined(&self) -> bool {
-        self.surface.surfels.is_empty()
+        self.surface.fits.is_empty()
     }
 
-    /// The surface at one piece of a refined cloud, whose leaves hold all of them.
-    fn kept(&self, piece: u32) -> &Surfel {
+    /// The surface at one piece as its leaf holds it: in a refined cloud, where else.
+    pub(in crate::cloud) fn of_leaf(&self, piece: u32) -> &Surfel {
         let leaf = self.tree.leaf_of(piece as usize).and_then(|id| self.tree.leaf(id));
         let leaf = leaf.expect("no piece is ever removed");
         let place = leaf.primitive_indices().iter().position(|&own| own == piece);
@@ -172,16 +176,15 @@ impl Prepared {
                 self.pieces.refine(piece, measured, cap, scratch)
             }
         };
-        let (point, spacing) = (refined.point, refined.spacing);
-        let normal = refined.normal.map(UnitVector3::into_inner);
-        let most_variance = point.covariance.max_std().powi(2) * (1.0 + ROUNDING);
-        let surfel = Surfel { index: index as u32, point, spacing, most_variance, normal };
+        let surfel = Surfel::new(index as u32, &refined);
         let found = match (self.pieces.is_each(), &self.scans.normals) {
             (true, None) => scratch.neighbors(),
             (false, None) => scratch.near_representatives(),
             (_, Some(_)) => &[],
         };
         let nearest = found.first_chunk::<NEIGHBORS>().map(|all| all.map(|near| near.index as u32));
-        Fitted { surfel, basis: Basis { reach: scratch.reach(), nearest } }
+        let reach = scratch.reach();
+        let (beside, reach) = self.beside(&surfel, piece, reach, scratch);
+        Fitted { surfel, basis: Basis { reach, nearest, beside } }
     }
 }

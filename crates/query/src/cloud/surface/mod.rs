@@ -2,6 +2,7 @@
 
 pub(super) mod ball;
 pub(super) mod edge;
+mod ends;
 pub(super) mod join;
 mod lazy;
 pub(super) mod leaf;

@@ -37,20 +37,20 @@ impl Prepared {
     pub(crate) fn onward(&self, edge: &Edge, end: usize) -> Onward {
         let mut scratch = Scratch::default();
         let (piece, behind) = (edge.points[end], edge.points[1 - end]);
-        let at = *self.surfel(piece, &mut scratch);
-        let along = at.point.mean - self.surfel(behind, &mut scratch).point.mean;
+        let at = *self.fit(piece, &mut scratch);
+        let along = at.point.mean - self.fit(behind, &mut scratch).point.mean;
         let along = along.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let (mut sum, mut step) = (OF_END, Vector3::zeros());
-        let mut across = OF_END * at.variance_across();
+        let mut across = OF_END * at.across;
         for neighbor in self.nearest(piece, &mut scratch) {
-            let next = *self.surfel(neighbor, &mut scratch);
+            let next = *self.fit(neighbor, &mut scratch);
             let way = next.point.mean - at.point.mean;
             let ahead = way.dot(&along) - AHEAD * way.norm();
             if ahead > 0.0 && runs_along(&at, &next) {
                 let weight = (ahead / ((1.0 - AHEAD) * way.norm())).powi(2);
                 sum += weight;
                 step += way * weight;
-                across += weight * next.variance_across();
+                across += weight * next.across;
             }
         }
         Onward { place: at.point.mean + step / sum, across: across / sum }

@@ -35,10 +35,10 @@ impl Prepared {
             None => self.fitted_tree()?,
         };
         // Every leaf has copies of its own.
-        let slots = std::mem::take(&mut self.surface.surfels);
-        let unknown = Basis { reach: f64::INFINITY, nearest: None };
-        let basis = |slot: &OnceLock<Box<Fitted>>| slot.get().map_or(unknown, |f| f.basis);
-        self.surface.bases = slots.iter().map(basis).collect();
+        let slots = std::mem::take(&mut self.surface.fits);
+        let basis =
+            |slot: OnceLock<Box<Fitted>>| slot.into_inner().map_or(Basis::UNKNOWN, |f| f.basis);
+        self.surface.bases = slots.into_iter().map(basis).collect();
         self.enclose_again();
         self.prepare_time += start.elapsed();
         Ok(())

@@ -9,31 +9,51 @@ use super::surfel::Surfel;
 
 /// Neighbours of a point that may be joined to it.
 pub(super) const NEIGHBORS: usize = 8;
+/// Neighbours of a piece that tell where it ends.
+pub(super) const BESIDE: usize = 16;
 /// Points that a spacing is told from, at most.
 const REGION_POINTS: usize = 40;
 
-/// The surface at a piece, and what it rests on.
-#[derive(Debug, Clone, Copy)]
+/// The surface at a piece as it is fitted, and what it rests on.
+#[derive(Debug, Clone)]
 pub(in crate::cloud) struct Fitted {
     pub surfel: Surfel,
     pub basis: Basis,
 }
 
 /// What the surface at a piece rests on.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(in crate::cloud) struct Basis {
     /// Points farther away had no part in it, m.
     pub reach: f64,
     /// The pieces nearest to it, where the fit told.
     pub nearest: Option<[u32; NEIGHBORS]>,
+    /// The same and more, where some of them are off its plane: there it may end at the face that they are of.
+    pub beside: Option<Box<[u32; BESIDE]>>,
+}
+
+impl Basis {
+    /// Of a piece that nothing is known of.
+    pub(in crate::cloud) const UNKNOWN: Self =
+        Self { reach: f64::INFINITY, nearest: None, beside: None };
+
+    /// The same where pieces have other numbers.
+    pub(in crate::cloud) fn renumbered(&self, after: &[u32]) -> Self {
+        let now = |index: &u32| after[*index as usize];
+        Self {
+            reach: self.reach,
+            nearest: self.nearest.map(|nearest| nearest.map(|index| now(&index))),
+            beside: self.beside.as_ref().map(|beside| Box::new(beside.each_ref().map(now))),
+        }
+    }
 }
 
 /// One slot per piece, and per tree node, of which only those of leaves are ever filled. Each is a
 /// pure function of the cloud, so it does not matter which thread fills it.
 #[derive(Debug)]
 pub(in crate::cloud) struct LazySurface {
-    /// None once all leaves hold theirs.
-    pub surfels: Vec<OnceLock<Box<Fitted>>>,
+    /// None once all leaves hold what is told of theirs.
+    pub fits: Vec<OnceLock<Box<Fitted>>>,
     /// Of each what it rests on, once all leaves hold theirs.
     pub bases: Vec<Basis>,
     pub leaves: Vec<OnceLock<Box<LeafSurface>>>,
@@ -51,7 +71,7 @@ impl LazySurface {
     /// For a tree with pieces of these limits.
     pub(in crate::cloud) fn new(tree: &Tree, spacing_caps: Vec<f64>) -> Self {
         Self {
-            surfels: slots(spacing_caps.len()),
+            fits: slots(spacing_caps.len()),
             bases: Vec::new(),
             leaves: slots(tree.node_slots()),
             shared: slots(tree.node_slots()),
@@ -64,7 +84,7 @@ impl LazySurface {
     /// Of no pieces.
     pub(in crate::cloud) fn empty() -> Self {
         Self {
-            surfels: Vec::new(),
+            fits: Vec::new(),
             bases: Vec::new(),
             leaves: Vec::new(),
             shared: Vec::new(),

@@ -1,6 +1,7 @@
 //! A piece of surface about a sample.
 
-use cloudtouch_geom::{Motion, UncertainPoint, Vector3};
+use cloudtouch_geom::{Motion, UncertainPoint, UnitVector3, Vector3};
+use cloudtouch_noise::Refined;
 
 use super::edge::{DISC_SPACINGS, MOST_SINE, sine};
 
@@ -9,17 +10,39 @@ use super::edge::{DISC_SPACINGS, MOST_SINE, sine};
 pub(crate) struct Surfel {
     /// Index among the points the filter kept.
     pub index: u32,
-    /// Where the surface is expected, and how well that is known.
+    /// Where the surface is expected, and how well that is known: less where it ends at another face.
     pub point: UncertainPoint,
+    /// Whether it does, so that not all of what was fitted is left.
+    pub is_cut_off: bool,
     /// Distance between samples there, m.
     pub spacing: f64,
-    /// The largest variance of `point` in any direction, m²; never too small by rounding.
+    /// What no variance of `point` in any direction is above, m²; never too small by rounding.
     pub most_variance: f64,
+    /// Variance across the surface as it was fitted, m²; zero where no normal was.
+    pub across: f64,
     /// Unit normal of the surface there, of either sign, where one was fitted.
     pub normal: Option<Vector3>,
 }
 
+/// Relative rounding of an eigenvalue, generously.
+const ROUNDING: f64 = 1e-9;
+
 impl Surfel {
+    /// As it was fitted.
+    pub(crate) fn new(index: u32, fit: &Refined) -> Self {
+        let Refined { point, spacing, normal } = *fit;
+        let variance = |normal: UnitVector3| point.covariance.variance_along(&normal);
+        Self {
+            index,
+            point,
+            is_cut_off: false,
+            spacing,
+            most_variance: point.covariance.max_std().powi(2) * (1.0 + ROUNDING),
+            across: normal.map_or(0.0, variance),
+            normal: normal.map(UnitVector3::into_inner),
+        }
+    }
+
     /// The same piece in another frame.
     pub(crate) fn moved(&self, motion: &Motion) -> Self {
         Self {
@@ -39,10 +62,5 @@ impl Surfel {
     pub(crate) fn disc_reach(&self, along: &Vector3) -> Option<f64> {
         let radius = DISC_SPACINGS * self.spacing;
         self.normal.map(|normal| radius * sine(&normal, along))
-    }
-
-    /// Variance of the position across the surface, m²; zero where no normal was fitted.
-    pub(crate) fn variance_across(&self) -> f64 {
-        self.normal.map_or(0.0, |normal| self.point.covariance.variance_along(&normal))
     }
 }

@@ -118,8 +118,8 @@ pub(in crate::search) struct Whitening {
 impl Whitening {
     pub(in crate::search) fn of(surfel: &Surfel) -> Self {
         match surfel.normal {
-            Some(normal) => Self::of_disc(&normal, &surfel.point.covariance),
-            None => Self::of_any(&surfel.point.covariance),
+            Some(normal) if !surfel.is_cut_off => Self::of_disc(&normal, &surfel.point.covariance),
+            _ => Self::of_any(&surfel.point.covariance),
         }
     }
 
@@ -190,14 +190,14 @@ pub(in crate::search) fn nearest_to_origin([a, b, c]: &[Vector3; 3]) -> Vector3 
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::{UncertainPoint, unit};
+    use cloudtouch_noise::Refined;
     use proptest::prelude::*;
 
     use super::*;
 
     /// Of no fitted surface.
     fn piece(point: UncertainPoint) -> Surfel {
-        let most_variance = point.covariance.max_std().powi(2);
-        Surfel { index: 0, point, spacing: 1.0, most_variance, normal: None }
+        Surfel::new(0, &Refined { point, spacing: 1.0, normal: None })
     }
 
     fn vector() -> impl Strategy<Value = Vector3> {

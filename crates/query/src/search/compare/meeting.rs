@@ -141,6 +141,7 @@ pub(in crate::search) fn solve(sigma: &Matrix3, v: &Vector3) -> Option<Vector3> 
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::{Covariance, UncertainPoint, unit};
+    use cloudtouch_noise::Refined;
     use proptest::prelude::*;
 
     use super::*;
@@ -148,13 +149,8 @@ mod tests {
     fn disc(mean: Point3, normal: Vector3, across: f64, along: f64) -> Surfel {
         let axis = unit(&normal).unwrap();
         let covariance = Covariance::from_axis(&axis, across, along);
-        Surfel {
-            index: 0,
-            point: UncertainPoint { mean, covariance },
-            spacing: 1.0,
-            most_variance: covariance.max_std().powi(2),
-            normal: Some(normal),
-        }
+        let point = UncertainPoint { mean, covariance };
+        Surfel::new(0, &Refined { point, spacing: 1.0, normal: Some(axis) })
     }
 
     #[test]

@@ -91,7 +91,7 @@ impl Crossing {
 
 /// What a mesh does to the disc about a sample.
 pub(super) fn of_mesh(disc: &Surfel, axis: Vector3, through: &Through) -> Crossing {
-    let std = disc.variance_across().sqrt();
+    let std = disc.across.sqrt();
     let weight = weight_by_pose(&through.off, disc.spacing);
     let heights = [through.above, through.below];
     let of_pair = Crossing::of((heights, [std; 2]), |_| None, weight, disc.spacing);
@@ -132,7 +132,7 @@ pub(in crate::search) fn through_disc(
     if off.is_nan() || off > DISC_SPACINGS * disc.spacing {
         return None;
     }
-    let of_disc = disc.variance_across();
+    let of_disc = disc.across;
     let stds = edge.across.map(|across| (across + of_disc).sqrt());
     // Where the edge passes moves with it, and along it back into the plane of the disc.
     let away = aside.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
@@ -190,18 +190,15 @@ fn nearer_end(edge: &Edge, heights: [f64; 2]) -> usize {
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::{Covariance, UncertainPoint};
+    use cloudtouch_noise::Refined;
 
     use super::*;
 
     fn disc(std: f64) -> Surfel {
-        let covariance = Covariance::from_axis(&Vector3::z_axis(), std, 0.35);
-        Surfel {
-            index: 0,
-            point: UncertainPoint { mean: Point3::origin(), covariance },
-            spacing: 1.0,
-            most_variance: covariance.max_std().powi(2),
-            normal: Some(Vector3::z()),
-        }
+        let axis = Vector3::z_axis();
+        let covariance = Covariance::from_axis(&axis, std, 0.35);
+        let point = UncertainPoint { mean: Point3::origin(), covariance };
+        Surfel::new(0, &Refined { point, spacing: 1.0, normal: Some(axis) })
     }
 
     fn upright(x: f64, low: f64, high: f64) -> Edge {

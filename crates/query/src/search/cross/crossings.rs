@@ -10,7 +10,7 @@ use super::cells::Cells;
 use super::crossing::Crossing;
 use crate::search::wrench::Wrench;
 
-/// Crossings within so many spacings of one another are at one place: what adds up there does not
+/// Witnesses within so many spacings of one another are at one place: what adds up there does not
 /// grow with the area of contact.
 pub(in crate::search) const PLACE_SPACINGS: f64 = 3.0;
 /// Clearness, in standard deviations, that a crossing seen from one side alone brings without any
@@ -20,7 +20,8 @@ pub(in crate::search) const ONE_SIDED: f64 = 0.25;
 /// A piece of surface that passes through the other body: an edge, or the disc about a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::search) struct Witness {
-    is_a: bool,
+    /// Whether it is a piece of A.
+    pub is_a: bool,
     points: [u32; 2],
 }
 
@@ -73,7 +74,7 @@ pub(crate) struct Crossings {
     seen: Vec<(Witness, Seen)>,
     /// What each of these says, for most is asked of many times.
     heard: Vec<Heard>,
-    /// Where the best crossing of each is.
+    /// Where each is.
     cells: Cells,
     /// The witness heard last, until it was looked what there is at its place.
     last: Option<usize>,
@@ -81,27 +82,36 @@ pub(crate) struct Crossings {
     at_last: f64,
 }
 
-/// A witness at its place, reaching so far, with its clearness by sides.
+/// A witness at its place, with its clearness by sides.
 #[derive(Debug, Clone, Copy)]
 struct Heard {
+    /// Its middle, not where it crosses best: that may move out of reach of others as more crossings are
+    /// found, and together they would say less than before.
     place: Point3,
+    /// The farthest that one of its crossings reaches, m.
     reach: f64,
     clearness: [f64; 2],
 }
 
 impl Crossings {
-    pub(in crate::search) fn add(&mut self, witness: Witness, crossing: &Crossing) {
+    /// Adds a crossing of a witness that has its middle there, always the same.
+    pub(in crate::search) fn add(
+        &mut self,
+        witness: Witness,
+        middle: &Point3,
+        crossing: &Crossing,
+    ) {
         // What passes may be of A: then it is what is passed that moves.
         let crossing = if witness.is_of_a() { crossing.reversed() } else { *crossing };
-        let Crossing { clear, weight, probability, by_pose, .. } = crossing;
+        let Crossing { clear, weight, probability, by_pose, spacing, .. } = crossing;
+        let reach = PLACE_SPACINGS * spacing;
         let number = *self.witnesses.entry(witness).or_insert_with(|| {
-            self.cells.push(&crossing.place, PLACE_SPACINGS * crossing.spacing);
+            self.cells.push(middle, reach);
             let (sum, clearest) = (0.0, 0.0);
             let (sum_by_pose, clearest_by_pose) = (Wrench::zeros(), Wrench::zeros());
             let best = crossing;
-            let new = (witness, Seen { sum, clearest, best, sum_by_pose, clearest_by_pose });
-            self.heard.push(Heard::of(&new));
-            self.seen.push(new);
+            self.heard.push(Heard { place: *middle, reach, clearness: [0.0; 2] });
+            self.seen.push((witness, Seen { sum, clearest, best, sum_by_pose, clearest_by_pose }));
             self.seen.len() - 1
         });
         let (_, seen) = &mut self.seen[number];
@@ -111,25 +121,20 @@ impl Crossings {
             (seen.clearest, seen.clearest_by_pose) = (clear, by_pose.clear);
         }
         if probability > seen.best.probability {
-            self.cells.shift(number, &crossing.place);
             seen.best = crossing;
         }
-        self.heard[number] = Heard::of(&self.seen[number]);
+        let heard = &mut self.heard[number];
+        heard.reach = heard.reach.max(reach);
+        heard.clearness[usize::from(witness.is_of_a())] = seen.clearness();
         self.last = Some(number);
-    }
-
-    /// The witnesses in order, and what they saw.
-    fn ordered(&self) -> impl Iterator<Item = &(Witness, Seen)> {
-        self.witnesses.values().map(|&number| &self.seen[number])
     }
 
     /// The most probable crossing of every witness.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Crossing> {
-        self.ordered().map(|(_, seen)| &seen.best)
+        self.witnesses.values().map(|&number| &self.seen[number].1.best)
     }
 
-    /// Clearness of all crossings together at the place where it is most. One more hardly makes it less: only where
-    /// it takes the place of a witness out of reach of others.
+    /// Clearness of all crossings together at the place where it is most. One more never makes it less.
     pub(crate) fn clearness(&self) -> f64 {
         self.clearest_place().map_or(0.0, |(clearness, _)| clearness)
     }
@@ -146,8 +151,9 @@ impl Crossings {
     pub(crate) fn clearness_by_pose(&self) -> Wrench {
         let Some((_, at)) = self.clearest_place() else { return Wrench::zeros() };
         let (mut sums, mut by_pose) = ([ONE_SIDED; 2], [Wrench::zeros(); 2]);
-        for (witness, seen) in self.ordered() {
-            if at.reaches(&seen.best.place) {
+        for &number in self.witnesses.values() {
+            if at.reaches(&self.heard[number].place) {
+                let (witness, seen) = &self.seen[number];
                 let side = usize::from(witness.is_of_a());
                 sums[side] += seen.clearness();
                 by_pose[side] += seen.clearness_by_pose();
@@ -185,12 +191,6 @@ impl Crossings {
 }
 
 impl Heard {
-    fn of((witness, seen): &(Witness, Seen)) -> Self {
-        let mut clearness = [0.0; 2];
-        clearness[usize::from(witness.is_of_a())] = seen.clearness();
-        Self { place: seen.best.place, reach: PLACE_SPACINGS * seen.best.spacing, clearness }
-    }
-
     fn reaches(&self, place: &Point3) -> bool {
         (place - self.place).norm_squared() <= self.reach * self.reach
     }
@@ -204,6 +204,7 @@ pub(in crate::search) fn by_both_sides(sums: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use cloudtouch_geom::Vector3;
+    use proptest::prelude::*;
 
     use super::*;
     use crate::search::cross::crossing::CrossingByPose;
@@ -232,7 +233,8 @@ mod tests {
             for is_a in [true, false] {
                 if sides[usize::from(is_a)] {
                     let witness = Witness { is_a, points: [i, i + 1] };
-                    all.add(witness, &crossing(step * f64::from(i)));
+                    let crossing = crossing(step * f64::from(i));
+                    all.add(witness, &crossing.place, &crossing);
                 }
             }
         }
@@ -259,10 +261,41 @@ mod tests {
         let mut all = Crossings::default();
         let witness = Witness { is_a: true, points: [3, 7] };
         for x in [0.0, 0.01, 0.02] {
-            all.add(witness, &crossing(x));
+            all.add(witness, &Point3::origin(), &crossing(x));
         }
         let mut once = Crossings::default();
-        once.add(witness, &crossing(0.0));
+        once.add(witness, &Point3::origin(), &crossing(0.0));
         assert_eq!(all.clearness(), once.clearness());
+    }
+
+    proptest! {
+        /// Few and many, along a line, each through several discs beside its middle.
+        #[test]
+        fn one_more_crossing_never_takes_from_the_rest_and_their_order_is_all_the_same(
+            found in prop::collection::vec(
+                (any::<bool>(), 0..100_u32, -0.1..0.1_f64, 0.01..0.2_f64, prop::array::uniform3(0.0..1.0_f64)),
+                1..200,
+            ),
+        ) {
+            let add = |all: &mut Crossings, &(is_a, i, aside, spacing, told): &(_, u32, _, _, _)| {
+                let middle = Point3::new(0.02 * f64::from(i), 0.0, 0.0);
+                let [clear, weight, probability] = told;
+                let (clear, known) = (6.0 * clear, crossing(middle.x + aside));
+                let crossing = Crossing { clear, weight, probability, spacing, ..known };
+                all.add(Witness { is_a, points: [i, i + 1] }, &middle, &crossing);
+            };
+            let (mut all, mut clearness) = (Crossings::default(), 0.0);
+            // Many are summed in another order than few.
+            let slack = 1e-12;
+            for one in &found {
+                add(&mut all, one);
+                let more = all.clearness();
+                prop_assert!(more >= clearness - slack * (1.0 + clearness), "{more} {clearness}");
+                clearness = more;
+            }
+            let mut turned = Crossings::default();
+            found.iter().rev().for_each(|one| add(&mut turned, one));
+            prop_assert!((turned.clearness() - clearness).abs() <= slack * (1.0 + clearness));
+        }
     }
 }

@@ -115,7 +115,7 @@ pub(in crate::search) fn add_edges_through_discs(
             let Some(crossing) = through_disc(edge, disc, |end| past.of(end)) else { continue };
             of_discs.raise(at, crossing.probability);
             of_edges.raise_ends(edge, crossing.probability);
-            found.add(Witness::edge(motion.is_none(), edge), &crossing);
+            found.add(Witness::edge(motion.is_none(), edge), &middle, &crossing);
         }
     }
 }
@@ -139,7 +139,7 @@ pub(in crate::search) fn add_edges_through_facets(
         for facet in facets.facets.iter() {
             let Some(crossing) = through_facet(edge, facet, |end| past.of(end)) else { continue };
             of_edges.raise_ends(edge, crossing.probability);
-            found.add(Witness::edge(motion.is_none(), edge), &crossing);
+            found.add(Witness::edge(motion.is_none(), edge), &edge.middle(), &crossing);
         }
     }
 }
@@ -167,7 +167,7 @@ pub(in crate::search) fn add_mesh_through_discs(
         // Once, and by all of the mesh there: however its triangles are shared out to leaves.
         let through = outline.through(around.near(&middle, std::f64::consts::SQRT_2 * radius));
         let crossing = of_mesh(disc, normal, &through);
-        found.add(Witness::disc(is_a, disc), &crossing);
+        found.add(Witness::disc(is_a, disc), &middle, &crossing);
         discs.set_pierced(k);
         discs.raise(k, crossing.probability);
     }

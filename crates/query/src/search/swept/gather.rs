@@ -99,7 +99,7 @@ pub(super) fn add_edges_through_discs(
                 track.middle.times_near(&disc.point.mean, half + DISC_SPACINGS * disc.spacing);
             let Some(times) = near else { continue };
             if let Some(passage) = adrift.through_disc(disc, times, drift) {
-                found.add(Witness::edge(is_a, edge), &passage);
+                found.add(Witness::edge(is_a, edge), &track.middle, &passage);
             }
         }
     }
@@ -127,7 +127,7 @@ pub(super) fn add_edges_through_facets(
         let adrift = Adrift::new(is_a, edge, track, &past);
         for facet in &met {
             if let Some(passage) = adrift.through_facet(*facet, drifts) {
-                found.add(Witness::edge(is_a, edge), &passage);
+                found.add(Witness::edge(is_a, edge), &track.middle, &passage);
             }
         }
     }
@@ -157,8 +157,8 @@ pub(super) fn add_mesh_through_discs(
         }
         let off = may_pierce(is_a, (disc, track), &normal, &met, drifts);
         if let Some(off) = off.filter(|_| disc.spacing > 0.0) {
-            let passage = mesh_through_disc(is_a, disc, (normal, off), around, drifts.of(is_a));
-            found.add(Witness::disc(is_a, disc), &passage);
+            let passage = mesh_through_disc(disc, (normal, off), around, drifts.of(is_a));
+            found.add(Witness::disc(is_a, disc), track, &passage);
         }
     }
 }

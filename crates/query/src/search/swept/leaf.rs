@@ -63,8 +63,6 @@ pub(super) struct SweptEdges<'a> {
 pub(super) struct EdgeTrack {
     pub middle: Track,
     pub ends: [Track; 2],
-    /// How far its ends get in any direction, m.
-    pub by: f64,
 }
 
 impl<'a> Swept<'a> {
@@ -164,9 +162,8 @@ impl EdgeTrack {
     fn of(edge: &Edge, drift: &Drift) -> Self {
         let [from, to] = &edge.ends;
         let ends = [Track::of(from, drift), Track::of(to, drift)];
-        let by = ends[0].in_any_direction().max(ends[1].in_any_direction());
         // What the arc adds is no more between its ends than at one of them.
         let (way, beside) = (0.5 * (ends[0].way + ends[1].way), ends[0].beside.max(ends[1].beside));
-        Self { middle: Track { place: edge.middle(), way, beside }, ends, by }
+        Self { middle: Track { place: edge.middle(), way, beside }, ends }
     }
 }

@@ -22,9 +22,6 @@ pub(super) struct Passage {
     /// No clearer and with no more weight than this.
     pub clear: f64,
     pub weight: f64,
-    /// No farther than `radius` metres from here.
-    pub middle: Point3,
-    pub radius: f64,
     /// Distance between samples there, m.
     pub spacing: f64,
 }
@@ -74,7 +71,7 @@ impl<'a> Adrift<'a> {
         drift: &Drift,
     ) -> Option<Passage> {
         let (normal, middle) = (disc.normal?, disc.point.mean);
-        let across = disc.variance_across();
+        let across = disc.across;
         let known = self.edge.across.map(|own| known_to((own + across).sqrt(), disc.spacing));
         let plane = Plane::new(normal, &middle, times, drift);
         let crossed = self.crossed(&plane, known)?;
@@ -86,13 +83,7 @@ impl<'a> Adrift<'a> {
         let known_past =
             |onward: &Onward| known_past_to((onward.across + across).sqrt(), disc.spacing);
         let clear = self.clear_past(crossed.clear, (&plane, drift), known, known_past);
-        let mut passage = self.passage(clear, weight_at(off), part, disc.spacing);
-        let reach = DISC_SPACINGS * disc.spacing;
-        if !self.is_a && reach < passage.radius {
-            // The disc keeps still.
-            (passage.middle, passage.radius) = (middle, reach);
-        }
-        Some(passage)
+        Some(Passage { clear, weight: weight_at(off), spacing: disc.spacing })
     }
 
     /// Of a triangle of the other body.
@@ -115,7 +106,7 @@ impl<'a> Adrift<'a> {
         (off <= half * (1.0 + ROUNDING) + ROUNDING * spacing).then(|| {
             let known_past = |onward: &Onward| known_to(onward.across.sqrt(), spacing);
             let clear = self.clear_past(crossed.clear, (&plane, of_edge), known, known_past);
-            self.passage(clear, 1.0, [from, to], spacing)
+            Passage { clear, weight: 1.0, spacing }
         })
     }
 
@@ -138,12 +129,6 @@ impl<'a> Adrift<'a> {
         });
         let pairs = [[&pasts[0], &ends[1]], [&ends[0], &pasts[1]], [&pasts[0], &pasts[1]]];
         pairs.into_iter().map(|pair| plane.clear(pair)).fold(by_ends, f64::max).min(CLEAREST)
-    }
-
-    fn passage(&self, clear: f64, weight: f64, part: [Point3; 2], spacing: f64) -> Passage {
-        let middle = nalgebra::center(&part[0], &part[1]);
-        let radius = 0.5 * (part[1] - part[0]).norm() + if self.is_a { 0.0 } else { self.track.by };
-        Passage { clear, weight, middle, radius, spacing }
     }
 }
 
@@ -232,7 +217,6 @@ pub(super) fn may_pierce(
 /// What a mesh may do to the disc about a sample, which drifts so, that it may pass so near to its middle;
 /// `around` gives all its triangles within a distance of a place.
 pub(super) fn mesh_through_disc(
-    is_a: bool,
     disc: &Surfel,
     (normal, off): (Vector3, f64),
     around: &mut OfMesh<'_>,
@@ -240,12 +224,10 @@ pub(super) fn mesh_through_disc(
 ) -> Passage {
     let (middle, radius) = (disc.point.mean, DISC_SPACINGS * disc.spacing);
     let by = drift.in_any_direction(&middle);
-    let std = known_to(disc.variance_across().sqrt(), disc.spacing);
+    let std = known_to(disc.across.sqrt(), disc.spacing);
     let passage = |clear: f64| Passage {
         clear: (clear / std).min(CLEAREST),
         weight: weight_at(off / disc.spacing),
-        middle,
-        radius: radius + if is_a { 0.0 } else { by },
         spacing: disc.spacing,
     };
     if by > radius {

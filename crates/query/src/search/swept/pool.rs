@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use cloudtouch_geom::Point3;
 
 use super::passage::Passage;
+use super::track::Track;
 use crate::search::cross::crossings::{ONE_SIDED, PLACE_SPACINGS, Witness, by_both_sides};
 
 /// What one witness may see at most.
@@ -14,9 +15,9 @@ struct MaySee {
     is_of_a: bool,
     sum: f64,
     clearest: f64,
-    /// Its place is no farther than `radius` from here, whichever of its passages is the best, m.
-    middle: Point3,
-    radius: f64,
+    /// Where its middle is, and how far that gets from there, m: those of A keep still.
+    place: Point3,
+    by: f64,
     /// What counts as one place with it reaches so far, m.
     reach: f64,
 }
@@ -34,24 +35,19 @@ pub(super) struct Passages {
 }
 
 impl Passages {
-    pub(super) fn add(&mut self, witness: Witness, passage: &Passage) {
-        let Passage { clear, weight, middle, radius, spacing } = *passage;
+    /// Adds one of the passages of a witness whose middle gets so far.
+    pub(super) fn add(&mut self, witness: Witness, middle: &Track, passage: &Passage) {
+        let Passage { clear, weight, spacing } = *passage;
         let index = *self.indices.entry(witness).or_insert(self.heard.len());
         if index == self.heard.len() {
-            let is_of_a = witness.is_of_a();
-            self.heard.push(MaySee {
-                is_of_a,
-                sum: 0.0,
-                clearest: 0.0,
-                middle,
-                radius,
-                reach: 0.0,
-            });
+            let (is_of_a, place) = (witness.is_of_a(), middle.place);
+            let by = if witness.is_a { 0.0 } else { middle.in_any_direction() };
+            let (sum, clearest, reach) = (0.0, 0.0, 0.0);
+            self.heard.push(MaySee { is_of_a, sum, clearest, place, by, reach });
         }
         let seen = &mut self.heard[index];
         seen.sum += clear * weight;
         seen.clearest = seen.clearest.max(clear);
-        seen.radius = seen.radius.max((middle - seen.middle).norm() + radius);
         seen.reach = seen.reach.max(PLACE_SPACINGS * spacing);
         self.last = Some(index);
     }
@@ -73,8 +69,8 @@ impl Passages {
     fn around(&self, at: &MaySee) -> f64 {
         let mut sums = [ONE_SIDED; 2];
         for other in &self.heard {
-            let reach = at.reach + at.radius + other.radius;
-            if (other.middle - at.middle).norm_squared() <= reach * reach {
+            let reach = at.reach + at.by + other.by;
+            if (other.place - at.place).norm_squared() <= reach * reach {
                 sums[usize::from(other.is_of_a)] += other.sum.min(other.clearest);
             }
         }
