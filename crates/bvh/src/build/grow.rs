@@ -1,7 +1,7 @@
 //! Grows what is below a node: large halves each on a thread of their own, with the same result.
 
 use crate::build::fit::overlapping;
-use crate::build::parts::{Memory, Part, fitted_parts, halve, set_far_apart};
+use crate::build::parts::{Memory, Part, fitted_halves, fitted_parts, halve, set_far_apart};
 use crate::tree::node::NodeData;
 use crate::{Moments, Obb, Primitives, TreeSettings};
 
@@ -107,7 +107,8 @@ impl<'a> Growth<'a> {
                 continue;
             };
             let (low, high) = own.split_at(middle);
-            let halves = self.halves(node, middle, [self.fitted(low), self.fitted(high)]);
+            let fitted = fitted_halves([low, high], self.primitives, self.are_points);
+            let halves = self.halves(node, middle, fitted);
             let first = nodes.len();
             nodes[id].children = Some([first as u32, first as u32 + 1]);
             nodes.extend(halves.map(|half| NodeData { parent: Some(id as u32), ..half }));

@@ -3,7 +3,7 @@
 
 use std::slice;
 
-use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
 use crate::build::fit::fitted;
 use crate::tree::primitive::centroid;
@@ -41,12 +41,33 @@ pub(crate) fn fitted_parts(
     are_points: bool,
 ) -> (Moments, Obb) {
     if are_points {
-        let moments = Moments::of(parts.iter().map(|part| slice::from_ref(&part.centroid)));
-        let places = parts.iter().map(|part| &part.centroid);
-        (moments, Obb::enclosing(moments.axes(), moments.mean, places))
+        let moments = moments_of_points(parts);
+        (moments, box_of_points(parts, &moments, moments.axes()))
     } else {
         fitted(parts.iter().map(|part| primitives.corners(part.index)))
     }
+}
+
+/// The same of both halves of a node, in less time.
+pub(crate) fn fitted_halves(
+    halves: [&[Part]; 2],
+    primitives: &Primitives,
+    are_points: bool,
+) -> [(Moments, Obb); 2] {
+    if !are_points {
+        return halves.map(|parts| fitted_parts(parts, primitives, are_points));
+    }
+    let moments = halves.map(moments_of_points);
+    let axes = Moments::axes_of_two([&moments[0], &moments[1]]);
+    [0, 1].map(|k| (moments[k], box_of_points(halves[k], &moments[k], axes[k])))
+}
+
+fn moments_of_points(parts: &[Part]) -> Moments {
+    Moments::of(parts.iter().map(|part| slice::from_ref(&part.centroid)))
+}
+
+fn box_of_points(parts: &[Part], moments: &Moments, axes: Matrix3) -> Obb {
+    Obb::enclosing(axes, moments.mean, parts.iter().map(|part| &part.centroid))
 }
 
 /// Puts what is far from a place last, farther than [`FAR`] times the median distance, and says where

@@ -78,12 +78,21 @@ impl Moments {
 
     /// Unit axes as columns, right-handed, from the largest variance to the smallest.
     pub(crate) fn axes(&self) -> Matrix3 {
-        let (_, mut axes) = self.covariance.eigen();
-        if axes.determinant() < 0.0 {
-            axes.column_mut(2).neg_mut();
-        }
-        axes
+        right_handed(self.covariance.eigen().1)
     }
+
+    /// The axes of two, in little more than the time of one.
+    pub(crate) fn axes_of_two([one, other]: [&Self; 2]) -> [Matrix3; 2] {
+        let eigen = Covariance::eigen_of_two([&one.covariance, &other.covariance]);
+        eigen.map(|(_, axes)| right_handed(axes))
+    }
+}
+
+fn right_handed(mut axes: Matrix3) -> Matrix3 {
+    if axes.determinant() < 0.0 {
+        axes.column_mut(2).neg_mut();
+    }
+    axes
 }
 
 #[cfg(test)]

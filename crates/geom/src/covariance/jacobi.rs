@@ -3,7 +3,7 @@
 use crate::vectors::{Matrix3, Vector3};
 
 /// Sweeps at most; more than six have not been seen.
-const MOST_SWEEPS: usize = 20;
+pub(super) const MOST_SWEEPS: usize = 20;
 
 /// Eigenvalues and axes (columns) of a symmetric matrix by cyclic Jacobi rotations: for 3×3 several
 /// times as fast as a tridiagonal decomposition, and more accurate for small eigenvalues.

@@ -4,6 +4,7 @@ mod axis_form;
 mod combined;
 mod error;
 mod jacobi;
+mod jacobi_of_two;
 mod made;
 mod spread;
 mod symmetric;
