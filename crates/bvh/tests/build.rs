@@ -274,19 +274,21 @@ fn a_tree_built_with_bounds_is_one_that_is_given_them() {
         [(Primitives::Each(listed.clone()), 1), (Primitives::Each(listed.clone()), 4), (alike, 3)]
     {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let build = || Tree::build_bounded(primitives, &settings, |_, leaf| bounds_of(leaf));
-        let built = pool.install(build).unwrap();
+        let of_leaf = |_: &Tree, leaf: Node<'_>| (bounds_of(leaf), leaf.id());
+        let build = || Tree::build_bounded(primitives, &settings, of_leaf);
+        let (built, leaves) = pool.install(build).unwrap();
+        assert!(leaves.into_iter().eq(built.leaves().map(|leaf| leaf.id())));
         assert_eq!(told(&built), told(&after));
         assert_eq!(built.validate(), Ok(()));
         assert!((0..POINTS).all(|index| built.primitive(index) == Some(listed[index])));
     }
     let nothing_known =
-        |_: &Tree, _: Node<'_>| LeafBounds { std: f64::NAN, shift: 0.0, reach: 0.0 };
+        |_: &Tree, _: Node<'_>| (LeafBounds { std: f64::NAN, shift: 0.0, reach: 0.0 }, ());
     let refused = Tree::build_bounded(Primitives::Each(listed), &settings, nothing_known);
     assert!(matches!(refused, Err(TreeError::LeafBounds { .. })));
     let far = vec![Point3::origin(), Point3::new(1e101, 0.0, 0.0)];
     let far = Primitives::Alike { means: Arc::new(far), covariance };
-    let refused = Tree::build_bounded(far, &settings, |_, leaf| bounds_of(leaf));
+    let refused = Tree::build_bounded(far, &settings, |_, leaf| (bounds_of(leaf), ()));
     assert!(matches!(refused, Err(TreeError::Coordinate { index: 1, .. })));
 }
 

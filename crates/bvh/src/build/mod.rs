@@ -39,21 +39,22 @@ impl Tree {
     }
 
     /// [`Self::build`] and [`Self::set_leaf_bounds`] in one, on all threads of the pool, with the same
-    /// result: bounds that would be replaced at once are never computed. `bounds_of` is given the tree and one
-    /// of its leaves, in which all is as it will be but the bounds.
+    /// result: bounds that would be replaced at once are never computed. `of_leaf` is given the tree and one
+    /// of its leaves, in which all is as it will be but the bounds; what else it says is returned in the
+    /// order of the leaves.
     ///
     /// # Errors
     /// As either of the two.
-    pub fn build_bounded(
+    pub fn build_bounded<T: Send>(
         primitives: Primitives,
         settings: &TreeSettings,
-        bounds_of: impl Fn(&Self, Node<'_>) -> LeafBounds + Sync,
-    ) -> Result<Self, TreeError> {
+        of_leaf: impl Fn(&Self, Node<'_>) -> (LeafBounds, T) + Sync,
+    ) -> Result<(Self, Vec<T>), TreeError> {
         let mut tree = Self::of(primitives, settings)?;
         tree.grow(LEAST_SHARED);
-        tree.refined = tree.listed(|leaf| bounds_of(&tree, leaf))?;
-        tree.update_all_bounds();
-        Ok(tree)
+        let said = tree.said_of_leaves(|leaf| of_leaf(&tree, leaf))?;
+        tree.take_bounds(&said);
+        Ok((tree, said.into_iter().map(|(_, besides)| besides).collect()))
     }
 
     /// Without any nodes.

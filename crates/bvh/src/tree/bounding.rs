@@ -23,25 +23,44 @@ impl Tree {
         &mut self,
         bounds_of: impl Fn(Node<'_>) -> LeafBounds + Sync,
     ) -> Result<(), TreeError> {
-        self.refined = self.listed(bounds_of)?;
+        let said = self.said_of_leaves(|leaf| (bounds_of(leaf), ()))?;
         self.extents.clear();
-        self.update_all_bounds();
+        self.take_bounds(&said);
         Ok(())
     }
 
-    /// What is said of every leaf, by the primitives of the leaves.
-    pub(crate) fn listed(
+    /// What is said of every leaf, in their order, with bounds that are some.
+    pub(crate) fn said_of_leaves<T: Send>(
         &self,
-        bounds_of: impl Fn(Node<'_>) -> LeafBounds + Sync,
-    ) -> Result<BoundsList, TreeError> {
+        of_leaf: impl Fn(Node<'_>) -> (LeafBounds, T) + Sync,
+    ) -> Result<Vec<(LeafBounds, T)>, TreeError> {
         let leaves: Vec<Node<'_>> = self.leaves().collect();
-        let said: Vec<LeafBounds> = leaves.par_iter().map(|&leaf| bounds_of(leaf)).collect();
-        let mut listed = BoundsList::default();
-        for (leaf, bounds) in leaves.into_iter().zip(said) {
+        let said: Vec<(LeafBounds, T)> = leaves.par_iter().map(|&leaf| of_leaf(leaf)).collect();
+        for (leaf, (bounds, _)) in leaves.into_iter().zip(&said) {
             bounds.check(leaf.id().index())?;
-            listed.set(leaf.primitive_indices(), bounds, self.primitives.len());
         }
-        Ok(listed)
+        Ok(said)
+    }
+
+    /// Takes the bounds that were [said](Self::said_of_leaves) of every leaf, and carries them upward;
+    /// there are no extents.
+    pub(crate) fn take_bounds<T>(&mut self, said: &[(LeafBounds, T)]) {
+        let leaves: Vec<u32> = self.leaves().map(|leaf| leaf.id).collect();
+        self.refined = BoundsList::default();
+        for (leaf, (bounds, _)) in leaves.into_iter().zip(said) {
+            let Self { nodes, order, refined, primitives, .. } = self;
+            let node = &mut nodes[leaf as usize];
+            let own = &order[node.start as usize..][..node.count as usize];
+            refined.set(own, *bounds, primitives.len());
+            // PERF: those of all its primitives are the same, which need not be looked up for each.
+            let of_all = SpreadBounds::of(None, Some(*bounds), None, &node.obb.axes);
+            node.bounds = SpreadBounds::NONE.max(&of_all);
+        }
+        for id in self.preorder(self.root).into_iter().rev() {
+            if self.nodes[id as usize].children.is_some() {
+                self.nodes[id as usize].bounds = self.bounds_of(id);
+            }
+        }
     }
 
     /// Sets, by index, how far the surface that a primitive stands for reaches from its mean, and

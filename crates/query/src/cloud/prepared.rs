@@ -95,17 +95,17 @@ impl Prepared {
         };
         let primitives = primitives_of(&neighborhoods, &pieces, sensor, weigh);
         let measured = (&noise, &neighborhoods, sensor);
-        let bounds_of = |tree: &Tree, leaf: Node<'_>| {
-            leaf_bounds(leaf, spacing_cap(tree, leaf), |piece| pieces.index(piece), measured)
+        let of_leaf = |tree: &Tree, leaf: Node<'_>| {
+            let cap = spacing_cap(tree, leaf);
+            (leaf_bounds(leaf, cap, |piece| pieces.index(piece), measured), cap)
         };
         let (makeup, tree) = rayon::join(
             || makeup_of(&all, (&neighborhoods, &sample), &origin),
-            || Tree::build_bounded(primitives, by_tree, bounds_of),
+            || Tree::build_bounded(primitives, by_tree, of_leaf),
         );
-        let (makeup, tree) = (makeup?, tree?);
+        let (makeup, (tree, caps_of_leaves)) = (makeup?, tree?);
         let mut caps = vec![0.0; pieces.neighborhoods(&neighborhoods).points().len()];
-        for leaf in tree.leaves() {
-            let cap = spacing_cap(&tree, leaf);
+        for (leaf, cap) in tree.leaves().zip(caps_of_leaves) {
             leaf.primitive_indices().iter().for_each(|&piece| caps[piece as usize] = cap);
         }
         let surface = LazySurface::new(&tree, caps);
