@@ -30,7 +30,7 @@ pub use discretization::{Discretization, Summed, discretization};
 pub use ends::Face;
 pub use error::NoiseError;
 pub use grid::quantize_to_grid;
-pub use index::places::Places;
+pub use index::places::repeated;
 pub use index::positions::Neighbor;
 pub use model::NoiseModel;
 pub use motion::MotionNoise;

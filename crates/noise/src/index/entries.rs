@@ -5,14 +5,6 @@ use kiddo::ImmutableKdTree;
 
 use crate::error::NoiseError;
 
-/// An index, and a position.
-pub(crate) type Entry = (u32, [f64; 3]);
-
-/// Adding zero turns -0 into 0, which is the same place.
-pub(crate) fn entry(index: u32, point: &Point3) -> Entry {
-    (index, point.coords.map(|v| v + 0.0).into())
-}
-
 /// Who builds a tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Threads {
@@ -25,17 +17,36 @@ pub(crate) enum Threads {
 /// Trees of fewer are built by who asks for them.
 const LEAST_SHARED: usize = 4096;
 
-/// The same tree, whoever builds it.
+/// The tree over some of the points of a cloud, by their indices, which are in order and each there once: the
+/// same tree, whoever builds it.
 pub(crate) fn tree_of(
-    entries: &[Entry],
+    points: &[Point3],
+    indices: &[u32],
+    by: Threads,
+) -> Result<ImmutableKdTree<f64, 3>, NoiseError> {
+    // Adding zero turns -0 into 0, which is the same place.
+    let along = |point: &Point3, axis: usize| point[axis] + 0.0;
+    if indices.len() == points.len() {
+        // PERF: all of them are read where they are.
+        return built(points, along, |index, _| index as u32, by);
+    }
+    built(indices, |&index, axis| along(&points[index as usize], axis), |_, &index| index, by)
+}
+
+fn built<X: Sync>(
+    source: &[X],
+    along: impl Fn(&X, usize) -> f64 + Sync,
+    item: impl Fn(usize, &X) -> u32,
     by: Threads,
 ) -> Result<ImmutableKdTree<f64, 3>, NoiseError> {
     let builder = ImmutableKdTree::builder();
     // PERF: alone, what is shared takes longer.
     let built = if by == Threads::This || rayon::current_num_threads() == 1 {
-        builder.with_serial_construction().build_from_entries(entries)
+        builder.with_serial_construction().build_from_source(source, along, item)
     } else {
-        builder.with_parallel_construction_threshold(LEAST_SHARED).build_from_entries(entries)
+        builder
+            .with_parallel_construction_threshold(LEAST_SHARED)
+            .build_from_source(source, along, item)
     };
-    built.map_err(|error| NoiseError::Index { points: entries.len(), reason: error.to_string() })
+    built.map_err(|error| NoiseError::Index { points: source.len(), reason: error.to_string() })
 }

@@ -4,7 +4,7 @@ use cloudtouch_geom::Point3;
 use kiddo::ImmutableKdTree;
 
 use crate::error::NoiseError;
-use crate::index::entries::{Entry, Threads, entry, tree_of};
+use crate::index::entries::{Threads, tree_of};
 
 /// A position that is not there any more.
 pub(crate) const GONE: u32 = u32::MAX;
@@ -47,12 +47,16 @@ impl Overlay {
         let mut is_in_tree = vec![false; points.len()];
         let kept = now.iter().filter(|index| **index != GONE);
         kept.for_each(|&index| is_in_tree[index as usize] = true);
-        let came = (0..).zip(points).zip(&is_in_tree).filter(|(_, is_in_tree)| !**is_in_tree);
-        let added: Vec<Entry> = came.map(|((index, point), _)| entry(index, point)).collect();
+        let came = (0..).zip(&is_in_tree).filter(|(_, is_in_tree)| !**is_in_tree);
+        let added: Vec<u32> = came.map(|(index, _)| index).collect();
         let gone = now.len() + added.len() - points.len();
         if (gone + added.len()) as f64 > MOST_CHANGED * now.len() as f64 {
             return Ok(None);
         }
-        Ok(Some(Self { now, added: tree_of(&added, Threads::All)?, added_count: added.len() }))
+        Ok(Some(Self {
+            now,
+            added: tree_of(points, &added, Threads::All)?,
+            added_count: added.len(),
+        }))
     }
 }

@@ -9,9 +9,9 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
 use crate::error::NoiseError;
 use crate::finite::is_finite;
-use crate::index::entries::{Entry, Threads, entry, tree_of};
+use crate::index::entries::{Threads, tree_of};
 use crate::index::overlay::{GONE, Overlay};
-use crate::index::places::Places;
+use crate::index::places::repeated;
 
 /// Squares of differences of such coordinates, and sums of three, are still finite.
 const LARGEST_COORDINATE: f64 = 1e150;
@@ -59,10 +59,9 @@ impl Positions {
         if let Some(index) = points.iter().position(too_far) {
             return Err(NoiseError::CoordinateRange { index, point: points[index] });
         }
-        let entries: Vec<Entry> =
-            distinct_indices(&points).map(|index| entry(index, &points[index as usize])).collect();
-        let tree = Arc::new(tree_of(&entries, by)?);
-        let (points, distinct) = (Arc::new(points), entries.len());
+        let indices = distinct_indices(&points);
+        let tree = Arc::new(tree_of(&points, &indices, by)?);
+        let (points, distinct) = (Arc::new(points), indices.len());
         Ok(Self { points, distinct, tree, overlay: None, id: Arc::default() })
     }
 
@@ -111,7 +110,7 @@ impl Positions {
         if self.distinct == self.points.len() {
             return (0..self.points.len() as u32).collect();
         }
-        distinct_indices(&self.points).collect()
+        distinct_indices(&self.points)
     }
 
     /// The same for no other index that is still in use.
@@ -259,10 +258,10 @@ fn neighbor(item: u32, squared_distance: f64, now: &[u32]) -> Option<Neighbor> {
 }
 
 /// The lowest index of every finite position, in order.
-fn distinct_indices(points: &[Point3]) -> impl Iterator<Item = u32> {
-    let mut places = Places::of(points);
-    (0_u32..)
-        .zip(points)
-        .filter(move |&(index, point)| is_finite(point) && places.is_first(index as usize))
-        .map(|(index, _)| index)
+fn distinct_indices(points: &[Point3]) -> Vec<u32> {
+    let finite = (0_u32..).zip(points).filter(|(_, point)| is_finite(point));
+    let mut indices: Vec<u32> = finite.map(|(index, _)| index).collect();
+    let mut repeated = repeated(points, indices.iter().copied()).into_iter().peekable();
+    indices.retain(|index| repeated.next_if_eq(index).is_none());
+    indices
 }

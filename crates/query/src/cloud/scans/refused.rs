@@ -1,7 +1,7 @@
 //! Scans that are refused, and what of them is looked at for that.
 
 use cloudtouch_geom::{Point3, UnitVector3};
-use cloudtouch_noise::Places;
+use cloudtouch_noise::repeated;
 
 use crate::error::PrepareError;
 use crate::filter::StageReport;
@@ -31,12 +31,14 @@ pub(super) fn check_for_repeats(points: &[Point3], ends: &[usize]) -> Result<(),
     if ends.len() < 2 {
         return Ok(());
     }
-    let mut places = Places::of(points);
+    // So many points no index can hold: they are refused elsewhere.
+    let Ok(count) = u32::try_from(points.len()) else { return Ok(()) };
+    let repeated = repeated(points, 0..count);
+    let before = |end: usize| repeated.partition_point(|&index| (index as usize) < end);
     let (mut start, mut counts) = (0, Vec::new());
     for (scan, &end) in (1..).zip(ends) {
-        // All are to be seen, not the first alone.
-        let own = (start..end).filter(|&index| places.is_first(index)).count();
-        if own == 0 && counts.contains(&(end - start)) {
+        let are_all_repeated = before(end) - before(start) == end - start;
+        if are_all_repeated && counts.contains(&(end - start)) {
             return Err(PrepareError::RepeatedScan { scan });
         }
         counts.push(end - start);
