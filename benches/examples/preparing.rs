@@ -10,6 +10,7 @@ use cloudtouch_benches::piano_room::{NOISE, room};
 use cloudtouch_geom::{PointCloud, Pose};
 use cloudtouch_noise::{
     Combination, Neighborhoods, NoiseModel, NoiseSettings, Representatives, SensorNoise,
+    spacings_at,
 };
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::{scene, surface};
@@ -63,7 +64,8 @@ fn model(near: &Neighborhoods, sensor: &SensorNoise, runs: usize) -> (f64, usize
     let model = NoiseModel::new(settings).expect("settings");
     let mut scratch = cloudtouch_noise::Scratch::default();
     let sample: Vec<usize> = (0..near.points().len()).step_by(near.points().len() / 200).collect();
-    match Representatives::choose(near, sensor, &sample).expect("an index") {
+    let spacings = spacings_at(near, sample.iter().copied());
+    match Representatives::choose(near, sensor, (&sample, &spacings)).expect("an index") {
         None => {
             let all = least(runs, || model.refine_all(near, sensor, f64::INFINITY));
             (all, near.points().len())

@@ -46,4 +46,4 @@ pub use sensor::ranging::{Kinect, Lidar, StereoCamera};
 pub use sensor::{Sensor, along_ray, position_noise};
 pub use settings::{Combination, NoiseSettings};
 pub use settings_error::SettingsError;
-pub use typical_spacing::{typical_spacing, typical_spacing_at};
+pub use typical_spacing::{spacings_at, typical_of_spacings, typical_spacing};

@@ -3,7 +3,6 @@
 use cloudtouch_geom::Point3;
 
 use crate::error::NoiseError;
-use crate::index::density::Density;
 use crate::index::positions::Positions;
 use crate::index::spacing::is_noisy;
 use crate::neighborhoods::Neighborhoods;
@@ -29,8 +28,9 @@ pub struct Representatives {
 
 impl Representatives {
     /// Chooses among the points of a cloud, whose position noise is `sensor`; `None` where every point
-    /// stands for itself, as at all but a few of `sample`, indices of points from all over the cloud: some
-    /// hundred do. What a choice is not to depend on, such as the order of the points, they must not either.
+    /// stands for itself, as at all but a few of `sample`, indices of points from all over the cloud, some
+    /// hundred, with [their spacings](crate::spacings_at). What a choice is not to depend on, such as the order
+    /// of the points, they must not either.
     ///
     /// The densest places come first, which are those near the surface, so that the choice depends on
     /// neither the frame nor the order of the points. A point whose noise is small is never stood for
@@ -44,10 +44,10 @@ impl Representatives {
     pub fn choose(
         cloud: &Neighborhoods,
         sensor: &SensorNoise,
-        sample: &[usize],
+        sample: (&[usize], &[f64]),
     ) -> Result<Option<Self>, NoiseError> {
         assert_eq!(sensor.len(), cloud.points().len(), "one sensor covariance for each point");
-        if !is_crowded(cloud, sensor, sample) {
+        if !is_crowded(sensor, sample) {
             return Ok(None);
         }
         let indices = chosen(cloud, sensor);
@@ -76,11 +76,10 @@ impl Representatives {
 }
 
 /// Whether the noise exceeds the spacing at more than a few of some points.
-fn is_crowded(cloud: &Neighborhoods, sensor: &SensorNoise, sample: &[usize]) -> bool {
-    let mut buffers = Default::default();
-    let mut spacing = |index| Density::around(cloud.positions(), index, &mut buffers).spacing;
-    let is_noisy = |&&index: &&usize| is_noisy(&sensor[index], spacing(index));
-    sample.iter().filter(is_noisy).count() as f64 > NOISY_SHARE * sample.len() as f64
+fn is_crowded(sensor: &SensorNoise, (indices, spacings): (&[usize], &[f64])) -> bool {
+    let is_noisy = |(index, spacing): &(&usize, &f64)| is_noisy(&sensor[**index], **spacing);
+    let noisy = indices.iter().zip(spacings).filter(is_noisy).count();
+    noisy as f64 > NOISY_SHARE * indices.len() as f64
 }
 
 fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {

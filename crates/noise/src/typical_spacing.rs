@@ -14,20 +14,26 @@ pub fn typical_spacing(neighborhoods: &Neighborhoods, sample: usize) -> f64 {
     let sample = sample.min(count);
     // The product fits: an index holds at most 2³² points.
     let index = |s: usize| (s as u64 * count as u64 / sample as u64) as usize;
-    typical_spacing_at(neighborhoods, (0..sample).map(index))
+    typical_of_spacings(&spacings_at(neighborhoods, (0..sample).map(index)))
 }
 
-/// The same over these points.
-pub fn typical_spacing_at(
+/// The spacing about each of these points, m; infinite without a neighbour.
+pub fn spacings_at(
     neighborhoods: &Neighborhoods,
     indices: impl Iterator<Item = usize>,
-) -> f64 {
+) -> Vec<f64> {
     let mut found = Vec::new();
-    let mut spacings = Vec::with_capacity(indices.size_hint().0);
-    for index in indices {
+    let spacing = |index| {
         neighborhoods.nearest_into(index, SPACING_NEIGHBORS, &mut found);
-        spacings.extend(spacing_around(&found));
-    }
+        spacing_around(&found).unwrap_or(f64::INFINITY)
+    };
+    indices.map(spacing).collect()
+}
+
+/// The [typical spacing](typical_spacing) by those about some points.
+pub fn typical_of_spacings(spacings: &[f64]) -> f64 {
+    let mut spacings: Vec<f64> =
+        spacings.iter().copied().filter(|spacing| spacing.is_finite()).collect();
     if spacings.is_empty() {
         return 0.0;
     }

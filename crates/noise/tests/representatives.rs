@@ -3,7 +3,8 @@
 use crate::common::{noisy, sphere};
 use cloudtouch_geom::{Covariance, Matrix3, Point3, Vector3};
 use cloudtouch_noise::{
-    Combination, Neighborhoods, NoiseModel, NoiseSettings, Representatives, Scratch, SensorNoise,
+    Combination, Neighborhoods, NoiseError, NoiseModel, NoiseSettings, Representatives, Scratch,
+    SensorNoise, spacings_at,
 };
 use proptest::prelude::*;
 
@@ -12,16 +13,20 @@ fn ball(std: f64, stream: u64) -> Vec<Point3> {
     noisy(&sphere(0.05, 0.0028, stream).points, std, stream + 1)
 }
 
-/// Every tenth.
-fn sample(cloud: &Neighborhoods) -> Vec<usize> {
-    (0..cloud.points().len()).step_by(10).collect()
+/// By every tenth point.
+fn choose(
+    cloud: &Neighborhoods,
+    noise: &SensorNoise,
+) -> Result<Option<Representatives>, NoiseError> {
+    let sample: Vec<usize> = (0..cloud.points().len()).step_by(10).collect();
+    let spacings = spacings_at(cloud, sample.iter().copied());
+    Representatives::choose(cloud, noise, (&sample, &spacings))
 }
 
 fn chosen(points: &[Point3], std: f64) -> Option<Vec<Point3>> {
     let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
     let cloud = Neighborhoods::new(points.to_vec()).expect("an index");
-    let chosen =
-        Representatives::choose(&cloud, &noise, &sample(&cloud)).expect("an index of some")?;
+    let chosen = choose(&cloud, &noise).expect("an index of some")?;
     Some(chosen.indices().iter().map(|&index| points[index as usize]).collect())
 }
 
@@ -52,7 +57,7 @@ fn a_sharp_point_is_not_stood_for_by_a_noisy_one() {
     let noise: SensorNoise = (0..points.len()).map(of).collect::<Vec<_>>().into();
     let count = points.len();
     let cloud = Neighborhoods::new(points).unwrap();
-    let chosen = Representatives::choose(&cloud, &noise, &sample(&cloud)).unwrap().unwrap();
+    let chosen = choose(&cloud, &noise).unwrap().unwrap();
     for index in (0..count).filter(|&index| sharp(index)) {
         assert!(chosen.indices().contains(&(index as u32)), "{index}");
     }
@@ -64,7 +69,7 @@ fn discs_are_as_wide_as_the_spacing_of_what_was_chosen() {
     let points = ball(std, 4);
     let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
     let cloud = Neighborhoods::new(points).unwrap();
-    let chosen = Representatives::choose(&cloud, &noise, &sample(&cloud)).unwrap().unwrap();
+    let chosen = choose(&cloud, &noise).unwrap().unwrap();
     let model = NoiseModel::new(NoiseSettings::default()).unwrap();
     let mut scratch = Scratch::default();
     let mut wider = 0;
@@ -96,7 +101,7 @@ fn other_combinations_are_those_of_all_points() {
     let points = ball(std, 5);
     let noise = SensorNoise::uniform(Covariance::isotropic(std * std), points.len());
     let cloud = Neighborhoods::new(points).unwrap();
-    let chosen = Representatives::choose(&cloud, &noise, &sample(&cloud)).unwrap().unwrap();
+    let chosen = choose(&cloud, &noise).unwrap().unwrap();
     for combination in [Combination::Precision, Combination::Convolution] {
         let model = NoiseModel::new(NoiseSettings { combination, ..NoiseSettings::default() });
         let (model, mut scratch) = (model.unwrap(), Scratch::default());

@@ -4,6 +4,8 @@ use cloudtouch_noise::{
     Neighborhoods, NoiseError, NoiseModel, Refined, Representatives, Scratch, SensorNoise,
 };
 
+use super::makeup::spread::Sample;
+
 /// The points that a surface is fitted at, and that the tree is built over: all, or a few of them
 /// where they are far denser than their noise.
 #[derive(Debug)]
@@ -21,8 +23,9 @@ impl Pieces {
     pub(super) fn chosen(
         cloud: &Neighborhoods,
         noise: &SensorNoise,
-        sample: &[usize],
+        sample: &Sample,
     ) -> Result<Self, NoiseError> {
+        let sample = (sample.indices.as_slice(), sample.spacings(cloud));
         Ok(Self { chosen: Representatives::choose(cloud, noise, sample)? })
     }
 

@@ -11,7 +11,7 @@ use crate::filter::StageReport;
 
 use super::makeup::Makeup;
 use super::makeup::scatter::{Flattest, Overstated, scatter};
-use super::makeup::spread::sample_of;
+use super::makeup::spread::{Sample, sample_of};
 use super::pieces::Pieces;
 use super::preparation::Preparation;
 use super::primitives::{Weight, leaf_bounds, primitives_of};
@@ -255,7 +255,7 @@ fn corners_of(all: &Scans) -> Result<(Point3, Point3), PrepareError> {
 /// When there is no point, or they have more noise than the cloud has size.
 pub(super) fn makeup_of(
     all: &Scans,
-    (points, sample): (&Neighborhoods, &[usize]),
+    (points, sample): (&Neighborhoods, &Sample),
     origin: &Vector3,
 ) -> Result<Makeup, PrepareError> {
     let (low, high) = corners_of(all)?;

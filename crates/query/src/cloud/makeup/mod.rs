@@ -8,12 +8,12 @@ pub(super) mod spread;
 use std::sync::OnceLock;
 
 use cloudtouch_geom::{Point3, PointCloud, Vector3};
-use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_spacing_at};
+use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_of_spacings};
 
 use crate::cloud::makeup::clumps::{Clumps, clumps};
 use crate::cloud::makeup::pinhole::is_misplaced;
 use crate::cloud::makeup::scatter::Flattest;
-use crate::cloud::makeup::spread::SAMPLE;
+use crate::cloud::makeup::spread::{SAMPLE, Sample};
 use crate::filter::StageReport;
 
 /// Points are on a line when none is farther from it than this share of its length: single precision
@@ -80,21 +80,21 @@ pub(crate) struct Makeup {
 }
 
 impl Makeup {
-    /// Of the points kept, with their noise and a [sample](sample_of) of them, and the box around them, in the
-    /// local frame; and what was told of their scans.
+    /// Of the points kept, with their noise and a [sample](spread::sample_of) of them, and the box around them,
+    /// in the local frame; and what was told of their scans.
     pub(super) fn new(
         corners: [Point3; 2],
-        (kept, noise, sample): (&Neighborhoods, &SensorNoise, &[usize]),
+        (kept, noise, sample): (&Neighborhoods, &SensorNoise, &Sample),
         (missing, step): (f64, Option<f64>),
         sensor_doubts: Vec<SensorDoubt>,
     ) -> Self {
         let points = kept.points();
-        let std = median(sample.iter().map(|&i| noise[i].max_std()));
+        let std = median(sample.indices.iter().map(|&i| noise[i].max_std()));
         Self {
             corners,
-            spacing: typical_spacing_at(kept, sample.iter().copied()),
+            spacing: typical_of_spacings(sample.spacings(kept)),
             std,
-            clumps: clumps(kept, sample),
+            clumps: clumps(kept, &sample.indices),
             distinct: kept.distinct(),
             is_line: !has_area(points, (corners[1] - corners[0]).norm()) && is_line(points),
             missing,

@@ -1,15 +1,34 @@
 //! Some of the points of a cloud, from all over it.
 
+use std::sync::OnceLock;
+
 use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_noise::{Neighborhoods, spacings_at};
 
 /// Points that spacing, noise and distance are told from, at most.
 pub(super) const SAMPLE: usize = 200;
 /// Shells of equal steps of the squared distance from the middle.
 const SHELLS: usize = 4096;
+const LAST_SHELL: u16 = SHELLS as u16 - 1;
+
+/// Some hundred of the points of a cloud, from all over it.
+#[derive(Debug)]
+pub(in crate::cloud) struct Sample {
+    pub indices: Vec<usize>,
+    /// Told when first asked for.
+    spacings: OnceLock<Vec<f64>>,
+}
+
+impl Sample {
+    /// The spacing about each of them, m, given the cloud that they are of.
+    pub(in crate::cloud) fn spacings(&self, cloud: &Neighborhoods) -> &[f64] {
+        self.spacings.get_or_init(|| spacings_at(cloud, self.indices.iter().copied()))
+    }
+}
 
 /// Some hundred of the points, from all over the cloud.
-pub(in crate::cloud) fn sample_of(points: &[Point3]) -> Vec<usize> {
-    spread(points, SAMPLE)
+pub(in crate::cloud) fn sample_of(points: &[Point3]) -> Sample {
+    Sample { indices: spread(points, SAMPLE), spacings: OnceLock::new() }
 }
 
 /// Some of the points, evenly spread by how far they are from the middle of all: probabilities depend on
@@ -23,9 +42,10 @@ pub(super) fn spread(points: &[Point3], count: usize) -> Vec<usize> {
     let squared = |p: &Point3| (p - middle).norm_squared();
     // PERF: counted by shells about the middle, only points of those that hold a rank are put in order.
     let outermost = points.iter().map(squared).fold(0.0, f64::max);
-    let shell = |squared: f64| ((squared / outermost * SHELLS as f64) as usize).min(SHELLS - 1);
+    let shell = |p: &Point3| ((squared(p) / outermost * SHELLS as f64) as u16).min(LAST_SHELL);
+    let shells: Vec<u16> = points.iter().map(shell).collect();
     let mut counts = vec![0_usize; SHELLS];
-    points.iter().for_each(|p| counts[shell(squared(p))] += 1);
+    shells.iter().for_each(|&shell| counts[usize::from(shell)] += 1);
     // The product fits: an index holds at most 2³² points.
     let rank = |k: usize| ((2 * k + 1) as u64 * points.len() as u64 / (2 * count) as u64) as usize;
     let (mut is_wanted, mut ranks) = (vec![false; SHELLS], Vec::with_capacity(count));
@@ -39,9 +59,10 @@ pub(super) fn spread(points: &[Point3], count: usize) -> Vec<usize> {
         is_wanted[at] = true;
         ranks.push(rank - left_out);
     }
-    let with_place = points.iter().map(squared).zip(0..);
+    let with_place = points.iter().zip(0..).zip(shells);
+    let wanted = with_place.filter(|(_, shell)| is_wanted[usize::from(*shell)]);
     let mut by_distance: Vec<(f64, u32)> =
-        with_place.filter(|(squared, _)| is_wanted[shell(*squared)]).collect();
+        wanted.map(|((p, place), _)| (squared(p), place)).collect();
     let mut chosen = Vec::with_capacity(count);
     select(&mut by_distance, &ranks, 0, &mut chosen);
     chosen
