@@ -21,8 +21,10 @@ const LINE_RATIO: f64 = 9.0;
 pub(super) fn drop_veil(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
     match cloud.image_size {
         Some((width, height)) if width > 1 && height > 1 => {
-            let least_cosine = settings.max_angle.cos();
-            let is_kept = |&i: &usize| !is_veil_in_image(cloud, i, (width, height), least_cosine);
+            let (from, least_cosine) = (cloud.sensor_origin(), settings.max_angle.cos());
+            let size = (width, height);
+            let is_kept =
+                |&i: &usize| !is_veil_in_image(&cloud.points, i, size, &from, least_cosine);
             *kept = std::mem::take(kept).into_par_iter().filter(is_kept).collect();
         }
         _ => drop_veil_lines(cloud, kept, settings),
@@ -30,21 +32,22 @@ pub(super) fn drop_veil(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &Ve
 }
 
 fn is_veil_in_image(
-    cloud: &PointCloud,
+    points: &[Point3],
     index: usize,
     (width, height): (usize, usize),
+    from: &Point3,
     least_cosine: f64,
 ) -> bool {
     let (row, column) = (index / width, index % width);
-    let at = |row: usize, column: usize| cloud.points.get(row * width + column);
+    let at = |row: usize, column: usize| points.get(row * width + column);
     let horizontal =
         (column > 0 && column + 1 < width).then(|| (at(row, column - 1), at(row, column + 1)));
     let vertical =
         (row > 0 && row + 1 < height).then(|| (at(row - 1, column), at(row + 1, column)));
-    let point = &cloud.points[index];
+    let point = &points[index];
+    let ray = point - from;
     [horizontal, vertical].into_iter().flatten().any(|(before, after)| {
         let (Some(before), Some(after)) = (before, after) else { return false };
-        let ray = point - cloud.sensor_origin();
         if is_missing(before) || is_missing(after) {
             return false;
         }
