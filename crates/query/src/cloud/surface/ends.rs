@@ -30,15 +30,13 @@ impl Surfel {
 impl Prepared {
     /// The surface at one piece, as far as it goes.
     pub(in crate::cloud) fn told(&self, piece: u32, scratch: &mut Scratch) -> Surfel {
-        let surfel = *self.fit(piece, scratch);
-        if self.is_refined() { surfel } else { self.ended(piece, &surfel, scratch) }
+        let fit = *self.fit(piece, scratch);
+        // What a refined cloud holds has ended.
+        if self.is_refined() { fit } else { self.ended(piece, &fit, scratch) }
     }
 
-    /// [`Self::told`] of some pieces near one another.
+    /// [`Self::told`] of some pieces near one another, of a cloud that is not refined.
     pub(super) fn told_together(&self, pieces: &[u32], scratch: &mut Scratch) -> Vec<Surfel> {
-        if self.is_refined() {
-            return pieces.iter().map(|&piece| *self.fit(piece, scratch)).collect();
-        }
         let fits: Vec<Surfel> = pieces.iter().map(|&piece| *self.fit(piece, scratch)).collect();
         let beside = pieces.iter().filter_map(|&piece| self.basis(piece)?.beside.as_deref());
         let mut beside: Vec<u32> = beside.flatten().copied().collect();
