@@ -7,7 +7,7 @@ use super::surfel::Surfel;
 use crate::cloud::prepared::Prepared;
 
 /// A point so many spacings off a piece may be of another face ...
-const OFF_SPACINGS: f64 = 0.6;
+const OFF_SPACINGS: f64 = 0.3;
 /// ... where there are so many of them.
 const LEAST_OFF: usize = 2;
 
