@@ -27,10 +27,7 @@ pub(super) struct Before {
 
 impl Before {
     pub(super) fn basis(&self, piece: u32) -> Option<&Basis> {
-        match self.surface.fits.get(piece as usize) {
-            Some(slot) => slot.get().map(|fitted| &fitted.basis),
-            None => self.surface.bases.get(piece as usize),
-        }
+        self.surface.basis(piece)
     }
 
     /// Of a piece of a leaf that holds others now.

@@ -73,10 +73,9 @@ impl Prepared {
     ) -> (Option<Box<[u32; BESIDE]>>, f64) {
         let Some(normal) = fit.normal else { return (None, reach) };
         let near = self.near_pieces();
-        let found = match (self.pieces.is_each(), &self.scans.normals) {
-            (true, None) => scratch.neighbors(),
-            (false, None) => scratch.near_representatives(),
-            (_, Some(_)) => near.nearest_with(piece as usize, BESIDE, scratch),
+        let found = match &self.scans.normals {
+            None => self.found_by_fit(scratch),
+            Some(_) => near.nearest_with(piece as usize, BESIDE, scratch),
         };
         let found = &found[..found.len().min(BESIDE)];
         let is_off = |other: &&Neighbor| {

@@ -2,7 +2,7 @@
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::Point3;
-use cloudtouch_noise::Scratch;
+use cloudtouch_noise::{Neighbor, Scratch};
 
 use super::leaf::LeafSurface;
 use super::slots::{Basis, Fitted, NEIGHBORS};
@@ -111,10 +111,7 @@ impl Prepared {
 
     /// What the surface at a piece rests on, where it was computed.
     pub(in crate::cloud) fn basis(&self, piece: u32) -> Option<&Basis> {
-        match self.surface.fits.get(piece as usize) {
-            Some(slot) => slot.get().map(|fitted| &fitted.basis),
-            None => self.surface.bases.get(piece as usize),
-        }
+        self.surface.basis(piece)
     }
 
     /// The pieces nearest to one, where its surface was computed and tells.
@@ -177,14 +174,19 @@ impl Prepared {
             }
         };
         let surfel = Surfel::new(index as u32, &refined);
-        let found = match (self.pieces.is_each(), &self.scans.normals) {
-            (true, None) => scratch.neighbors(),
-            (false, None) => scratch.near_representatives(),
-            (_, Some(_)) => &[],
-        };
+        let found = self.found_by_fit(scratch);
         let nearest = found.first_chunk::<NEIGHBORS>().map(|all| all.map(|near| near.index as u32));
         let reach = scratch.reach();
         let (beside, reach) = self.beside(&surfel, piece, reach, scratch);
         Fitted { surfel, basis: Basis { reach, nearest, beside } }
+    }
+
+    /// The pieces near the one that was fitted last, in order; none where it was not, for its normal is known.
+    pub(super) fn found_by_fit<'a>(&self, scratch: &'a Scratch) -> &'a [Neighbor] {
+        match (self.pieces.is_each(), &self.scans.normals) {
+            (true, None) => scratch.neighbors(),
+            (false, None) => scratch.near_representatives(),
+            (_, Some(_)) => &[],
+        }
     }
 }

@@ -94,6 +94,14 @@ impl LazySurface {
         }
     }
 
+    /// What the surface at a piece rests on, where it was computed.
+    pub(in crate::cloud) fn basis(&self, piece: u32) -> Option<&Basis> {
+        match self.fits.get(piece as usize) {
+            Some(slot) => slot.get().map(|fitted| &fitted.basis),
+            None => self.bases.get(piece as usize),
+        }
+    }
+
     /// What the spacing of each point of a leaf is limited to, m.
     pub(in crate::cloud) fn spacing_cap(&self, leaf: Node<'_>) -> f64 {
         leaf.primitive_indices().first().map_or(0.0, |&index| self.spacing_caps[index as usize])
