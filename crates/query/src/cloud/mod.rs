@@ -29,11 +29,11 @@ pub use prepare::Cloud;
 pub(crate) use prepared::Prepared;
 pub use settings::CloudSettings;
 pub(crate) use surface::ball::Ball;
-pub(crate) use surface::edge::{DISC_SPACINGS, Edge, MOST_ALONG, edge_along};
+pub(crate) use surface::edge::{DISC_SPACINGS, EDGE_SLOPE, Edge, MOST_ALONG, edge_along};
 #[cfg(test)]
 pub(crate) use surface::join::edges_of;
 pub(crate) use surface::leaf::{LeafEdges, LeafSurface, Pieces};
 pub(crate) use surface::onward::Onward;
 pub(crate) use surface::slab::Slab;
-pub(crate) use surface::surfel::Surfel;
+pub(crate) use surface::surfel::{End, Surfel};
 pub(crate) use view::raster::Sight;

@@ -10,7 +10,7 @@ use super::accessors::cloud_accessors;
 use super::prepared::Prepared;
 use super::settings::CloudSettings;
 use super::surface::edge::Edge;
-use super::surface::leaf::{LeafEdges, LeafSurface};
+use super::surface::leaf::LeafSurface;
 use super::surface::onward::Onward;
 use super::surface::surfel::Surfel;
 
@@ -76,25 +76,21 @@ impl Cloud {
         id: NodeId,
         is_wanted: impl FnMut(&Point3) -> bool,
         scratch: &mut Scratch,
-        visit: impl FnMut(&Surfel),
+        visit: impl FnMut(u32, &Surfel),
     ) -> bool {
         self.prepared.visit_some_of_leaf(id, is_wanted, scratch, visit)
     }
 
-    pub(crate) fn leaf_surface(&self, id: NodeId) -> (&LeafSurface, bool) {
-        self.prepared.leaf_surface(id)
-    }
-
-    pub(crate) fn leaf_edges(&self, id: NodeId) -> &LeafEdges {
-        self.prepared.leaf_edges(id)
+    pub(crate) fn leaf_surface(
+        &self,
+        id: NodeId,
+        scratch: &mut Scratch,
+    ) -> (&LeafSurface, bool) {
+        self.prepared.leaf_surface(id, scratch)
     }
 
     pub(crate) fn onward(&self, edge: &Edge, end: usize) -> Onward {
         self.prepared.onward(edge, end)
-    }
-
-    pub(crate) fn surfels_near(&self, place: &Point3, count: usize) -> Vec<Surfel> {
-        self.prepared.surfels_near(place, count)
     }
 
     pub(crate) fn sensor_std(&self, index: u32) -> f64 {

@@ -2,6 +2,7 @@
 //! borders of leaves, for the classifier.
 
 use cloudtouch_geom::{Motion, Point3, Pose, UncertainPoint};
+use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::classifier::{PairPoint, PairPoints};
@@ -116,12 +117,14 @@ fn around(
 
 /// The pieces of surface of a cloud nearest to a seed at this place of its frame.
 fn of_cloud(seed: &Seed, cloud: &Cloud, place: &Point3) -> Vec<Surfel> {
-    let distance = |s: &Surfel| (s.point.mean - place).norm();
-    let mut near = cloud.surfels_near(place, GATHERED_POINTS);
+    let mut scratch = Scratch::default();
+    let distance = |(_, s): &(u32, Surfel)| (s.point.mean - place).norm();
+    let mut near = cloud.prepared().fits_near(place, GATHERED_POINTS, &mut scratch);
     near.retain(|s| distance(s) <= seed.reach);
-    near.sort_by(|s, t| distance(s).total_cmp(&distance(t)).then(s.index.cmp(&t.index)));
+    near.sort_by(|s, t| distance(s).total_cmp(&distance(t)).then(s.1.index.cmp(&t.1.index)));
     near.truncate(MOST_POINTS);
-    near
+    let near: Vec<u32> = near.iter().map(|(piece, _)| *piece).collect();
+    cloud.prepared().told_together(&near, &mut scratch)
 }
 
 /// The samples of a mesh, as dense as the cloud it faces, nearest to a seed.

@@ -3,6 +3,7 @@
 use cloudtouch_geom::{Pose, UncertainPoint, normal};
 
 use crate::body::BodyRef;
+use crate::cloud::End;
 use crate::mesh::Mesh;
 
 use super::compare::facet::Whitening;
@@ -170,7 +171,9 @@ fn nearest_to(
     for other in others.all() {
         match other {
             Leaf::Noisy(other) => {
-                for on_other in other.surfels.iter() {
+                // What did not have to end is not the nearest.
+                let ended = other.surfels.iter().filter(|other| other.end != End::Open);
+                for on_other in ended {
                     if let Some(found) = squared_deviations(surfel, on_other, limit) {
                         (limit, nearest) = (found, Some(on_other.point));
                     }

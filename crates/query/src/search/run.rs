@@ -2,6 +2,7 @@
 
 use cloudtouch_bvh::{Sought, SurfaceFlow, SurfacePair, visit_surfaces};
 use cloudtouch_geom::{Motion, Pose, Vector3};
+use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
@@ -11,14 +12,15 @@ use crate::stats::Stats;
 use super::compare::meeting::{Meeting, deviations_by_pose};
 use super::cross::crossings::Crossings;
 use super::cross::gather::{
-    NearDisc, add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs, reaching,
-    reaching_facets,
+    NearDisc, add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs,
 };
+use super::cross::near::{may_cross_a_disc, may_cross_a_facet, reaching, reaching_facets};
 use super::measure::nearest::{Nearest, nearest_pieces};
 use super::visit::around::{Around, OfMesh};
-use super::visit::leaf::{Between, Leaf};
+use super::visit::leaf::{Between, Leaf, NoisyLeaf};
 use super::visit::leaves::Leaves;
 use super::visit::trees::Trees;
+use super::visit::unseen::Unseen;
 use super::wrench::Wrench;
 
 /// Places that are more than this many deviations above the least are not looked at, where it counts over how many
@@ -54,8 +56,10 @@ pub(crate) struct Found<'a> {
     pub deviations: f64,
     pub crossings: Crossings,
     around: Around,
-    /// Memory for the discs of a leaf that edges may pass, to use again.
+    /// Memory for the discs of a leaf that edges may pass, to use again, ...
     discs: Vec<NearDisc>,
+    /// ... and for fits of either body.
+    scratch: [Scratch; 2],
     /// How many deviations above the least is looked.
     pub(super) further: f64,
     /// Whether what was left out can change neither of these.
@@ -80,12 +84,17 @@ pub(crate) fn search<'a>(
     let mut trees = Trees::of(a, b);
     let outcome = visit_surfaces(trees.both(), a_from_b, SOUGHT, |pair| {
         stats.leaf_pairs += 1;
-        found.add((a, b), &motion, &pair, stats);
+        match found.told_apart((a, b), &motion, &pair, stats) {
+            Some(apart) => found.at_least = found.at_least.min(apart),
+            None => {
+                found.add((a, b), &motion, &pair, stats);
+                trees.count_pair([found.leaves_a.len(), found.leaves_b.len()]);
+            }
+        }
         let (deviations, clearness) = (found.deviations, found.crossings.last_clearness());
         if is_enough(deviations, clearness) {
             return SurfaceFlow::Stop;
         }
-        trees.count_pair([found.leaves_a.len(), found.leaves_b.len()]);
         let within = found.deviations_of_interest();
         trees.flow(within, stats, || is_enough(deviations, clearness))
     })?;
@@ -121,6 +130,35 @@ impl<'a> Found<'a> {
             .unwrap_or_else(Wrench::zeros)
     }
 
+    /// How far apart the surfaces of two leaves are, m, where one of them tells that the other, whose surface was
+    /// not looked at yet, changes nothing.
+    fn told_apart(
+        &mut self,
+        (a, b): (BodyRef<'a>, BodyRef<'a>),
+        a_from_b: &Motion,
+        pair: &SurfacePair,
+        stats: &mut Stats,
+    ) -> Option<f64> {
+        let most = self.deviations_of_interest();
+        let Self { leaves_a, leaves_b, around, scratch: [of_a, of_b], .. } = self;
+        let unseen_a = || Unseen::of(a, pair.a, None);
+        let unseen_b = || Unseen::of(b, pair.b, Some(a_from_b));
+        let unseen_a = if leaves_a.has(pair.a) { None } else { unseen_a() };
+        let unseen_b = if leaves_b.has(pair.b) { None } else { unseen_b() };
+        let is_b_first = match (&unseen_a, &unseen_b) {
+            (None, None) => return None,
+            (Some(a), Some(b)) => b.reach() > a.reach(),
+            (unseen_a, _) => unseen_a.is_some(),
+        };
+        if is_b_first {
+            let load_b = || around.load(b, pair.b, Some(a_from_b), (of_b, stats));
+            unseen_a?.apart_from(leaves_b.get_or_load(pair.b, load_b), most)
+        } else {
+            let load_a = || around.load(a, pair.a, None, (of_a, stats));
+            unseen_b?.apart_from(leaves_a.get_or_load(pair.a, load_a), most)
+        }
+    }
+
     fn add(
         &mut self,
         (a, b): (BodyRef<'a>, BodyRef<'a>),
@@ -129,18 +167,19 @@ impl<'a> Found<'a> {
         stats: &mut Stats,
     ) {
         let most = self.deviations_of_interest();
-        let load_a = || self.around.load(a, pair.a, None, stats);
+        let Self { around, scratch, .. } = self;
+        let load_a = || around.load(a, pair.a, None, (&mut scratch[0], stats));
         let leaf_a = self.leaves_a.get_or_load(pair.a, load_a);
-        let load_b = || self.around.load(b, pair.b, Some(a_from_b), stats);
+        let load_b = || around.load(b, pair.b, Some(a_from_b), (&mut scratch[1], stats));
         let leaf_b = self.leaves_b.get_or_load(pair.b, load_b);
         let Between { of_means, of_surfaces, most_std } = leaf_a.between(leaf_b);
         self.at_least = self.at_least.min(of_surfaces);
         // PERF: what the tree knows of leaves whose surface it has not seen is loose.
         let is_near = pair.deviations < most && of_means <= most * most_std;
-        let nearest = is_near.then(|| nearest_pieces(leaf_a, leaf_b, most));
+        let nearest = is_near.then(|| nearest_pieces(leaf_a, leaf_b, most, scratch));
         if pair.may_cross && of_surfaces <= 0.0 {
-            let found = (&mut self.crossings, &mut self.around, &mut self.discs);
-            cross((a, b), a_from_b, pair, (leaf_a, leaf_b), found);
+            let found = (&mut self.crossings, around, &mut self.discs);
+            cross((a, b), a_from_b, (leaf_a, leaf_b), scratch, found);
         }
         let Some(nearest) = nearest.flatten() else { return };
         self.deviations = self.deviations.min(nearest.squared.sqrt());
@@ -154,28 +193,29 @@ impl<'a> Found<'a> {
 fn cross<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Motion,
-    pair: &SurfacePair,
     leaves: (&mut Leaf<'a>, &mut Leaf<'a>),
+    [of_a, of_b]: &mut [Scratch; 2],
     (crossings, known, discs): (&mut Crossings, &mut Around, &mut Vec<NearDisc>),
 ) {
     match leaves {
         (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
             let near = reaching(on_a, on_b);
-            if !near.is_none() {
-                on_a.load_edges(pair.a);
+            let may_cross = |on_a: &NoisyLeaf<'a>| may_cross_a_disc(on_a, on_b);
+            if !near.is_none() && on_a.has_edges_or(may_cross, of_a) {
                 add_edges_through_discs(None, (on_a, near), on_b, discs, crossings);
             }
             let near = reaching(on_b, on_a);
-            if !near.is_none() {
-                on_b.load_edges(pair.b);
+            let may_cross = |on_b: &NoisyLeaf<'a>| may_cross_a_disc(on_b, on_a);
+            if !near.is_none() && on_b.has_edges_or(may_cross, of_b) {
                 add_edges_through_discs(Some(a_from_b), (on_b, near), on_a, discs, crossings);
             }
         }
         (Leaf::Noisy(noisy), Leaf::Exact(exact)) => {
             let near = reaching_facets(noisy, exact);
             if !near.is_none() {
-                noisy.load_edges(pair.a);
-                add_edges_through_facets(None, (noisy, near), exact, crossings);
+                if noisy.has_edges_or(|noisy| may_cross_a_facet(noisy, exact), of_a) {
+                    add_edges_through_facets(None, (noisy, near), exact, crossings);
+                }
                 let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
                 add_mesh_through_discs(true, noisy, exact, &mut around, crossings);
             }
@@ -183,8 +223,9 @@ fn cross<'a>(
         (Leaf::Exact(exact), Leaf::Noisy(noisy)) => {
             let near = reaching_facets(noisy, exact);
             if !near.is_none() {
-                noisy.load_edges(pair.b);
-                add_edges_through_facets(Some(a_from_b), (noisy, near), exact, crossings);
+                if noisy.has_edges_or(|noisy| may_cross_a_facet(noisy, exact), of_b) {
+                    add_edges_through_facets(Some(a_from_b), (noisy, near), exact, crossings);
+                }
                 let mut around = OfMesh { known, body: a, a_from_mesh: None };
                 add_mesh_through_discs(false, noisy, exact, &mut around, crossings);
             }
@@ -223,8 +264,10 @@ mod tests {
 
     /// All pieces and edges of a cloud, in the frame of A, as if it were one leaf.
     fn whole(cloud: &Cloud, a_from_cloud: &Pose) -> (Vec<Surfel>, Vec<Edge>) {
-        let leaves = cloud.tree().leaves().map(|leaf| leaf.id());
-        let surfels = leaves.flat_map(|id| cloud.leaf(id).0.to_vec());
+        let leaves = cloud.tree().leaves();
+        let mut scratch = Scratch::default();
+        let pieces = leaves.flat_map(|leaf| leaf.primitive_indices().to_vec());
+        let surfels = pieces.map(|piece| cloud.prepared().told(piece, &mut scratch));
         let motion = Motion::from(a_from_cloud);
         let indices: Vec<u32> =
             cloud.tree().leaves().flat_map(|leaf| leaf.primitive_indices().to_vec()).collect();

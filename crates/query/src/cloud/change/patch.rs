@@ -150,7 +150,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::cloud::surface::surfel::Surfel;
+    use crate::cloud::surface::surfel::{End, Surfel};
     use crate::{Cloud, CloudSettings};
 
     fn unit(stream: u64, index: u64) -> f64 {
@@ -166,13 +166,13 @@ mod tests {
     /// All of a piece but what is left of its covariance where it ends.
     fn as_fitted(surfel: &Surfel) -> Surfel {
         let point = UncertainPoint::exact(surfel.point.mean);
-        Surfel { point, is_cut_off: false, ..*surfel }
+        Surfel { point, end: End::Nowhere, ..*surfel }
     }
 
     /// The edges between pieces such as these, in order.
     fn edges(cloud: &Prepared, is_one: impl Fn(u32) -> bool) -> Vec<[u32; 2]> {
         let ids: Vec<_> = cloud.tree.leaves().map(|leaf| leaf.id()).collect();
-        let edges = ids.iter().flat_map(|&id| &cloud.leaf_edges(id).edges);
+        let edges = ids.iter().flat_map(|&id| &cloud.leaf_edges(id, &mut Scratch::default()).edges);
         let mut all: Vec<[u32; 2]> = edges
             .map(|edge| {
                 let [p, q] = edge.points;
@@ -239,13 +239,14 @@ mod tests {
             let mut kept = 0;
             for piece in 0..points.len() as u32 {
                 if is_whole(piece) {
-                    let [one, other] = [changed, fresh].map(|cloud| *cloud.of_leaf(piece));
+                    let [one, other] = [changed, fresh].map(|cloud| cloud.told(piece, &mut scratch));
                     // Where it ends, pieces tell that may be limited themselves.
-                    let beside = fresh.basis(piece).and_then(|basis| basis.beside.as_deref());
-                    let is_same = beside.is_none_or(|all| all.iter().all(|&near| is_whole(near)));
+                    let beside = fresh.beside(piece);
+                    let is_same =
+                        beside.is_none_or(|all| all.pieces.iter().all(|&near| is_whole(near)));
                     let told = |surfel| if is_same { surfel } else { as_fitted(&surfel) };
                     prop_assert_eq!(told(one), told(other));
-                    cut_off += usize::from(one.is_cut_off);
+                    cut_off += usize::from(one.end == End::CutOff);
                     kept += 1;
                 }
             }

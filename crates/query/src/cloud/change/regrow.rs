@@ -11,7 +11,7 @@ use crate::cloud::prepared::Prepared;
 use crate::cloud::primitives::leaf_bounds;
 use crate::cloud::surface::leaf::LeafSurface;
 use crate::cloud::surface::slots::{Basis, Fitted};
-use crate::cloud::surface::surfel::Surfel;
+use crate::cloud::surface::surfel::{End, Surfel};
 use crate::error::PrepareError;
 
 impl Prepared {
@@ -51,7 +51,7 @@ impl Prepared {
         for leaf in self.leaves_with(|piece| self.has_other_edges(piece, &is_lost)) {
             self.surface.edges[leaf.index()].take();
         }
-        for leaf in self.leaves_with(|piece| self.is_told_otherwise(piece, &is_lost)) {
+        for leaf in self.leaves_with(|piece| is_lost[piece as usize]) {
             self.surface.leaves[leaf.index()].take();
         }
         let Self { noise, neighborhoods, scans, surface, tree, .. } = self;
@@ -91,9 +91,11 @@ impl Prepared {
                 let of_leaf = || known.and_then(|leaf| leaf.surfels.get(place)).copied();
                 let of_other = || moved_house.get(&before[piece as usize]?).copied();
                 let surfel = found.get(&piece).copied().or_else(of_leaf).or_else(of_other)?;
-                Some(match surfel.is_cut_off && self.is_told_otherwise(piece, is_lost) {
-                    true => self.fitted(piece, scratch).surfel,
-                    false => Surfel { index: piece, ..surfel },
+                let surfel = Surfel { index: piece, ..surfel };
+                Some(match self.is_told_otherwise(piece, is_lost) {
+                    true if surfel.end == End::CutOff => self.fitted(piece, scratch).surfel,
+                    true => Surfel { end: self.basis(piece)?.end(), ..surfel },
+                    false => surfel,
                 })
             };
             let surfels = pieces.iter().enumerate().filter_map(&mut surfel).collect();
@@ -112,8 +114,7 @@ impl Prepared {
         amended.dedup();
         let amended: Vec<_> = (amended.par_iter())
             .map_init(Scratch::default, |scratch, &leaf| {
-                self.leaf_edges_with(leaf, scratch);
-                self.primitives_of(leaf)
+                self.primitives_of(leaf, scratch)
             })
             .flatten()
             .collect();
@@ -144,9 +145,9 @@ impl Prepared {
 
     /// Whether a piece is lost, or one of the fits that tell where it ends.
     fn is_told_otherwise(&self, piece: u32, is_lost: &[bool]) -> bool {
-        let beside = self.basis(piece).and_then(|basis| basis.beside.as_deref());
+        let is_any_lost = |pieces: &[u32]| pieces.iter().any(|&near| is_lost[near as usize]);
         is_lost[piece as usize]
-            || beside.is_some_and(|beside| beside.iter().any(|&near| is_lost[near as usize]))
+            || self.beside(piece).is_some_and(|beside| is_any_lost(&beside.pieces))
     }
 
     /// Whether a piece is lost, or one that is among its nearest.

@@ -8,7 +8,7 @@ pub(crate) const EDGE_SPACINGS: f64 = 2.2;
 /// farther from its own end to its middle.
 pub(crate) const DISC_SPACINGS: f64 = 1.1;
 /// Edges run along the surface: the sine of their angle to it is at most this.
-pub(super) const SLOPE: f64 = 0.5;
+pub(crate) const EDGE_SLOPE: f64 = 0.5;
 
 /// A tilt smaller than this is rounding.
 const ROUNDING: f64 = 1e-6;
@@ -21,12 +21,12 @@ pub(super) fn sine(one: &Vector3, other: &Vector3) -> f64 {
     (1.0 - one.dot(other).powi(2)).max(0.0).sqrt() + ROUNDING
 }
 
-/// What [`edge_along`] is at most: the root of 1 + [`SLOPE`]², rounded up.
+/// What [`edge_along`] is at most: the root of 1 + [`EDGE_SLOPE`]², rounded up.
 pub(crate) const MOST_ALONG: f64 = 1.12;
 
 /// The most that an edge at a piece with this normal reaches along a unit vector, as a share of its length.
 pub(crate) fn edge_along(normal: &Vector3, along: &Vector3) -> f64 {
-    SLOPE.mul_add(normal.dot(along).abs(), sine(normal, along))
+    EDGE_SLOPE.mul_add(normal.dot(along).abs(), sine(normal, along))
 }
 
 /// A straight piece of surface between two neighbours of one cloud.

@@ -1,9 +1,10 @@
 //! Where a piece of surface ends at another face, what is known of it is less than what was fitted.
 
+use cloudtouch_geom::{Covariance, UncertainPoint};
 use cloudtouch_noise::{Face, Neighbor, Scratch};
 
-use super::slots::BESIDE;
-use super::surfel::Surfel;
+use super::slots::{BESIDE, Beside};
+use super::surfel::{End, Surfel};
 use crate::cloud::prepared::Prepared;
 
 /// A point so many spacings off a piece may be of another face ...
@@ -18,32 +19,31 @@ impl Surfel {
         self.normal.map(|normal| Face { place, normal, across: self.across })
     }
 
-    /// What is left of it as it was fitted, given the fits beside it.
-    fn cut_off_by(&self, near: &[Face]) -> Self {
-        let left = self.face().and_then(|own| own.cut_off(&self.point.covariance, near));
-        let mut surfel = Self { is_cut_off: left.is_some(), ..*self };
-        surfel.point.covariance = left.unwrap_or(surfel.point.covariance);
-        surfel
+    /// The piece with what is left of it where it ends; none where it ends nowhere.
+    fn with(self, left: Option<&Covariance>) -> Self {
+        let Some(&covariance) = left else { return Self { end: End::Nowhere, ..self } };
+        Self { end: End::CutOff, point: UncertainPoint { covariance, ..self.point }, ..self }
     }
 }
 
 impl Prepared {
     /// The surface at one piece, as far as it goes.
-    pub(in crate::cloud) fn told(&self, piece: u32, scratch: &mut Scratch) -> Surfel {
+    pub(crate) fn told(&self, piece: u32, scratch: &mut Scratch) -> Surfel {
         let fit = *self.fit(piece, scratch);
-        // What a refined cloud holds has ended.
-        if self.is_refined() { fit } else { self.ended(piece, &fit, scratch) }
+        self.ended(piece, &fit, scratch)
     }
 
-    /// [`Self::told`] of some pieces near one another, of a cloud that is not refined.
-    pub(super) fn told_together(&self, pieces: &[u32], scratch: &mut Scratch) -> Vec<Surfel> {
+    /// [`Self::told`] of some pieces near one another.
+    pub(crate) fn told_together(&self, pieces: &[u32], scratch: &mut Scratch) -> Vec<Surfel> {
         let fits: Vec<Surfel> = pieces.iter().map(|&piece| *self.fit(piece, scratch)).collect();
-        let beside = pieces.iter().filter_map(|&piece| self.basis(piece)?.beside.as_deref());
-        let mut beside: Vec<u32> = beside.flatten().copied().collect();
-        beside.sort_unstable();
-        beside.dedup();
+        let open = pieces.iter().zip(&fits).filter(|(_, fit)| fit.end == End::Open);
+        let beside = open.filter_map(|(&piece, _)| self.beside(piece));
+        let unknown = beside.filter(|beside| beside.left.get().is_none());
+        let mut unknown: Vec<u32> = unknown.flat_map(|beside| beside.pieces).collect();
+        unknown.sort_unstable();
+        unknown.dedup();
         let reach = pieces.iter().find_map(|&piece| self.known_reach(piece));
-        self.gather(&beside, reach, scratch);
+        self.gather(&unknown, reach, scratch);
         pieces.iter().zip(&fits).map(|(&piece, fit)| self.ended(piece, fit, scratch)).collect()
     }
 
@@ -54,23 +54,31 @@ impl Prepared {
         fit: &Surfel,
         scratch: &mut Scratch,
     ) -> Surfel {
-        let Some(beside) = self.basis(piece).and_then(|basis| basis.beside.as_deref()) else {
-            return *fit;
+        let Some(beside) = self.beside(piece).filter(|_| fit.end == End::Open) else { return *fit };
+        let left = || {
+            let others = beside.pieces.iter().filter(|&&other| other != piece);
+            let near: Vec<Face> =
+                others.filter_map(|&other| self.fit(other, scratch).face()).collect();
+            let left = fit.face().and_then(|own| own.cut_off(&fit.point.covariance, &near));
+            left.map(Box::new)
         };
-        let others = beside.iter().filter(|&&other| other != piece);
-        let near: Vec<Face> = others.filter_map(|&other| self.fit(other, scratch).face()).collect();
-        fit.cut_off_by(&near)
+        fit.with(beside.left.get_or_init(left).as_deref())
+    }
+
+    /// The pieces about one that may end there.
+    pub(in crate::cloud) fn beside(&self, piece: u32) -> Option<&Beside> {
+        self.basis(piece)?.beside.as_deref()
     }
 
     /// The pieces beside one, just fitted, where some were measured off its plane, and how far it was looked
     /// for them and the fit, m; with fewer of them the piece itself fills the rest.
-    pub(super) fn beside(
+    pub(super) fn look_beside(
         &self,
         fit: &Surfel,
         piece: u32,
         reach: f64,
         scratch: &mut Scratch,
-    ) -> (Option<Box<[u32; BESIDE]>>, f64) {
+    ) -> (Option<Box<Beside>>, f64) {
         let Some(normal) = fit.normal else { return (None, reach) };
         let near = self.near_pieces();
         let found = match &self.scans.normals {
@@ -85,10 +93,10 @@ impl Prepared {
         let last = found.get(BESIDE - 1).map_or(f64::INFINITY, |l| l.squared_distance.sqrt());
         let is_beside = found.iter().filter(is_off).count() >= LEAST_OFF;
         let beside = is_beside.then(|| {
-            let mut beside = Box::new([piece; BESIDE]);
+            let mut beside = [piece; BESIDE];
             let others = found.iter().map(|other| other.index as u32);
             beside.iter_mut().zip(others).for_each(|(slot, other)| *slot = other);
-            beside
+            Beside::new(beside)
         });
         (beside, reach.max(last))
     }

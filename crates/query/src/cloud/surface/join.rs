@@ -5,27 +5,20 @@ use std::collections::BTreeMap;
 use cloudtouch_bvh::NodeId;
 use cloudtouch_noise::Scratch;
 
-use super::edge::{EDGE_SPACINGS, Edge, SLOPE};
+use super::edge::{EDGE_SLOPE, EDGE_SPACINGS, Edge};
 use super::leaf::LeafEdges;
 use super::slots::NEIGHBORS;
 use super::surfel::Surfel;
 use crate::cloud::prepared::Prepared;
 
 impl Prepared {
-    /// The edges that start or end at a point of a leaf.
-    pub(crate) fn leaf_edges(&self, id: NodeId) -> &LeafEdges {
-        match self.surface.edges[id.index()].get() {
-            Some(edges) => edges,
-            None => self.leaf_edges_with(id, &mut Scratch::default()),
-        }
+    /// The edges that start or end at a point of a leaf, where they were joined.
+    pub(crate) fn known_edges(&self, id: NodeId) -> Option<&LeafEdges> {
+        self.surface.edges[id.index()].get().map(|edges| &**edges)
     }
 
-    /// [`Self::leaf_edges`] with buffers that leaves nearby were joined with.
-    pub(in crate::cloud) fn leaf_edges_with(
-        &self,
-        id: NodeId,
-        scratch: &mut Scratch,
-    ) -> &LeafEdges {
+    /// The edges that start or end at a point of a leaf, by buffers that leaves nearby were joined with.
+    pub(crate) fn leaf_edges(&self, id: NodeId, scratch: &mut Scratch) -> &LeafEdges {
         self.surface.edges[id.index()].get_or_init(|| {
             let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
             Box::new(LeafEdges::new(edges_of(self, pieces, scratch), self.thin_side(id)))
@@ -103,6 +96,6 @@ impl Nearest<'_> {
 pub(super) fn runs_along(p: &Surfel, q: &Surfel) -> bool {
     let step = q.point.mean - p.point.mean;
     let length = step.norm();
-    let along = |s: &Surfel| s.normal.is_some_and(|n| step.dot(&n).abs() <= SLOPE * length);
+    let along = |s: &Surfel| s.normal.is_some_and(|n| step.dot(&n).abs() <= EDGE_SLOPE * length);
     length <= EDGE_SPACINGS * p.spacing.min(q.spacing) && along(p) && along(q)
 }

@@ -6,27 +6,24 @@ use cloudtouch_noise::{Neighbor, Scratch};
 
 use super::leaf::LeafSurface;
 use super::slots::{Basis, Fitted, NEIGHBORS};
-use super::surfel::Surfel;
+use super::surfel::{End, Surfel};
 use crate::cloud::prepared::Prepared;
 
 impl Prepared {
-    /// The surface at the points of a node, and whether this call computed it.
+    /// The surface at the points of a leaf, as it is fitted, and whether this call computed it.
     pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
-        let (leaf, computed) = self.leaf_surface(id);
-        (&leaf.surfels, computed)
-    }
-
-    /// [`Self::leaf`] with what encloses it.
-    pub(crate) fn leaf_surface(&self, id: NodeId) -> (&LeafSurface, bool) {
         match self.surface.leaves[id.index()].get() {
             // PERF: buffers that are not used cost as much as the rest.
-            Some(leaf) => (leaf, false),
-            None => self.leaf_surface_with(id, &mut Scratch::default()),
+            Some(leaf) => (&leaf.surfels, false),
+            None => {
+                let (leaf, computed) = self.leaf_surface(id, &mut Scratch::default());
+                (&leaf.surfels, computed)
+            }
         }
     }
 
-    /// [`Self::leaf_surface`] by buffers that leaves nearby were computed with.
-    pub(super) fn leaf_surface_with(
+    /// [`Self::leaf`] with what encloses it, by buffers that leaves nearby were computed with.
+    pub(crate) fn leaf_surface(
         &self,
         id: NodeId,
         scratch: &mut Scratch,
@@ -35,42 +32,46 @@ impl Prepared {
         let leaf = self.surface.leaves[id.index()].get_or_init(|| {
             computed = true;
             let pieces = self.tree.node(id).map_or(&[][..], |leaf| leaf.primitive_indices());
-            let known = pieces.iter().find_map(|&piece| self.known_reach(piece));
-            self.gather(pieces, known, scratch);
-            let surfels = self.told_together(pieces, scratch);
+            self.gather_around(pieces, scratch);
+            let surfels = pieces.iter().map(|&piece| *self.fit(piece, scratch)).collect();
             Box::new(LeafSurface::new(surfels, self.thin_side(id)))
         });
         (leaf, computed)
     }
 
-    /// Visits the surface at those points of a leaf that are asked for by where they were measured, in the
-    /// local frame; whether any of it was computed for that.
+    /// Visits the surface, as it is fitted, at those points of a leaf that are asked for by where they were
+    /// measured, in the local frame; whether any of it was computed for that.
     pub(crate) fn visit_some_of_leaf(
         &self,
         id: NodeId,
         mut is_wanted: impl FnMut(&Point3) -> bool,
         scratch: &mut Scratch,
-        visit: impl FnMut(&Surfel),
+        mut visit: impl FnMut(u32, &Surfel),
     ) -> bool {
+        let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
         if let Some(leaf) = self.surface.leaves[id.index()].get() {
-            leaf.surfels.iter().for_each(visit);
+            pieces.iter().zip(&leaf.surfels).for_each(|(&piece, surfel)| visit(piece, surfel));
             return false;
         }
-        let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
         let places = self.near_pieces().points();
         let wanted: Vec<u32> =
             pieces.iter().copied().filter(|&piece| is_wanted(&places[piece as usize])).collect();
         let known = pieces.iter().find_map(|&piece| self.known_reach(piece));
         self.gather(&wanted, known, scratch);
-        self.told_together(&wanted, scratch).iter().for_each(visit);
+        wanted.iter().for_each(|&piece| visit(piece, self.fit(piece, scratch)));
         !wanted.is_empty()
     }
 
-    /// The surface at the points measured nearest to a place in the local frame.
-    pub(crate) fn surfels_near(&self, place: &Point3, count: usize) -> Vec<Surfel> {
-        let mut scratch = Scratch::default();
+    /// The pieces measured nearest to a place in the local frame, with the surface there as it is fitted.
+    pub(crate) fn fits_near(
+        &self,
+        place: &Point3,
+        count: usize,
+        scratch: &mut Scratch,
+    ) -> Vec<(u32, Surfel)> {
         let nearest = self.near_pieces().nearest_to(place, count);
-        nearest.iter().map(|near| self.told(near.index as u32, &mut scratch)).collect()
+        let pieces = nearest.iter().map(|near| near.index as u32);
+        pieces.map(|piece| (piece, *self.fit(piece, scratch))).collect()
     }
 
     /// Makes buffers ready for the fits at those of some pieces near one another where the surface is not
@@ -88,6 +89,12 @@ impl Prepared {
         }
     }
 
+    /// [`Self::gather`] for all pieces of a leaf.
+    pub(super) fn gather_around(&self, pieces: &[u32], scratch: &mut Scratch) {
+        let known = pieces.iter().find_map(|&piece| self.known_reach(piece));
+        self.gather(pieces, known, scratch);
+    }
+
     /// The surface at one piece as it is fitted, but that a refined cloud knows no covariance other than what
     /// is left of it where it ends.
     pub(in crate::cloud) fn fit(&self, piece: u32, scratch: &mut Scratch) -> &Surfel {
@@ -103,8 +110,8 @@ impl Prepared {
             Some(slot) => slot.get().map(|fitted| (**fitted).clone()),
             None => {
                 let surfel = *self.of_leaf(piece);
-                let basis = self.surface.bases.get(piece as usize).filter(|_| !surfel.is_cut_off);
-                Some(Fitted { surfel, basis: basis?.clone() })
+                let basis = self.basis(piece).filter(|_| surfel.end != End::CutOff)?.clone();
+                Some(Fitted { surfel: Surfel { end: basis.end(), ..surfel }, basis })
             }
         }
     }
@@ -177,8 +184,9 @@ impl Prepared {
         let found = self.found_by_fit(scratch);
         let nearest = found.first_chunk::<NEIGHBORS>().map(|all| all.map(|near| near.index as u32));
         let reach = scratch.reach();
-        let (beside, reach) = self.beside(&surfel, piece, reach, scratch);
-        Fitted { surfel, basis: Basis { reach, nearest, beside } }
+        let (beside, reach) = self.look_beside(&surfel, piece, reach, scratch);
+        let basis = Basis { reach, nearest, beside };
+        Fitted { surfel: Surfel { end: basis.end(), ..surfel }, basis }
     }
 
     /// The pieces near the one that was fitted last, in order; none where it was not, for its normal is known.

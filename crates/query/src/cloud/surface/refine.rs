@@ -24,16 +24,20 @@ impl Prepared {
     pub(in crate::cloud) fn refine(&mut self) -> Result<(), PrepareError> {
         let start = std::time::Instant::now();
         let leaves: Vec<NodeId> = self.tree.leaves().map(|leaf| leaf.id()).collect();
-        leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
-            self.leaf_surface_with(leaf, scratch);
-        });
-        leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
-            self.leaf_edges_with(leaf, scratch);
-        });
-        self.tree = match self.surface.fitted.take().flatten() {
-            Some(fitted) => *fitted,
-            None => self.fitted_tree()?,
+        let told = |scratch: &mut Scratch, &leaf: &NodeId| {
+            let pieces = self.tree.leaf(leaf).map_or(&[][..], |leaf| leaf.primitive_indices());
+            self.gather_around(pieces, scratch);
+            LeafSurface::new(self.told_together(pieces, scratch), self.thin_side(leaf))
         };
+        let told: Vec<_> = leaves.par_iter().map_init(Scratch::default, told).collect();
+        for (leaf, told) in leaves.iter().zip(told) {
+            self.surface.leaves[leaf.index()] = Box::new(told).into();
+        }
+        leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
+            self.leaf_edges(leaf, scratch);
+        });
+        self.surface.fitted.take();
+        self.tree = self.fitted_tree()?;
         // Every leaf has copies of its own.
         let slots = std::mem::take(&mut self.surface.fits);
         let basis =
@@ -59,14 +63,14 @@ impl Prepared {
                 if is_over() {
                     return None;
                 }
-                let (_, computed) = self.leaf_surface_with(leaf.id(), &mut scratch);
+                let (_, computed) = self.leaf_surface(leaf.id(), &mut scratch);
                 stats.leaves_prepared += usize::from(computed);
             }
             for leaf in self.tree.leaves() {
                 if is_over() {
                     return None;
                 }
-                self.leaf_edges_with(leaf.id(), &mut scratch);
+                self.leaf_edges(leaf.id(), &mut scratch);
             }
         }
         let fitted = || self.fitted_tree().ok().map(Box::new);
@@ -79,8 +83,9 @@ impl Prepared {
         let mut extents = vec![Covariance::zero(); pieces];
         let mut primitives =
             vec![Primitive::point(UncertainPoint::exact(Point3::origin())); pieces];
+        let mut scratch = Scratch::default();
         for leaf in self.tree.leaves() {
-            for (piece, primitive, extent) in self.primitives_of(leaf.id()) {
+            for (piece, primitive, extent) in self.primitives_of(leaf.id(), &mut scratch) {
                 (primitives[piece as usize], extents[piece as usize]) = (primitive, extent);
             }
         }
@@ -108,9 +113,10 @@ impl Prepared {
     pub(in crate::cloud) fn primitives_of(
         &self,
         leaf: NodeId,
+        scratch: &mut Scratch,
     ) -> Vec<(u32, Primitive, Covariance)> {
         let Some(node) = self.tree.leaf(leaf) else { return Vec::new() };
-        let surfels = self.leaf(leaf).0.iter().zip(self.near_halves(leaf));
+        let surfels = self.leaf(leaf).0.iter().zip(self.near_halves(leaf, scratch));
         let of = |(&piece, (surfel, edges)): (&u32, (&Surfel, [f64; 2]))| {
             (piece, Primitive::point(surfel.point), extent(surfel, edges))
         };
@@ -119,10 +125,10 @@ impl Prepared {
 
     /// For each point of a leaf how far the near halves of its edges reach along its disc and across
     /// it, m.
-    fn near_halves(&self, leaf: NodeId) -> Vec<[f64; 2]> {
+    fn near_halves(&self, leaf: NodeId, scratch: &mut Scratch) -> Vec<[f64; 2]> {
         let surfels = self.leaf(leaf).0;
         let mut reach = vec![[0.0_f64; 2]; surfels.len()];
-        for edge in &self.leaf_edges(leaf).edges {
+        for edge in &self.leaf_edges(leaf, scratch).edges {
             let half = 0.5 * (edge.ends[1] - edge.ends[0]);
             for place in edge.own_places() {
                 let across = surfels[place].normal.map_or(0.0, |n| n.dot(&half).abs());

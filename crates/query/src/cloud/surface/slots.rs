@@ -3,9 +3,10 @@
 use std::sync::OnceLock;
 
 use cloudtouch_bvh::{Node, Tree};
+use cloudtouch_geom::Covariance;
 
 use super::leaf::{LeafEdges, LeafSurface};
-use super::surfel::Surfel;
+use super::surfel::{End, Surfel};
 
 /// Neighbours of a point that may be joined to it.
 pub(super) const NEIGHBORS: usize = 8;
@@ -29,7 +30,22 @@ pub(in crate::cloud) struct Basis {
     /// The pieces nearest to it, where the fit told.
     pub nearest: Option<[u32; NEIGHBORS]>,
     /// The same and more, where some of them are off its plane: there it may end at the face that they are of.
-    pub beside: Option<Box<[u32; BESIDE]>>,
+    pub beside: Option<Box<Beside>>,
+}
+
+/// The pieces about one.
+#[derive(Debug, Clone)]
+pub(in crate::cloud) struct Beside {
+    /// With fewer of them the piece itself fills the rest.
+    pub pieces: [u32; BESIDE],
+    /// What is left of it where it ends, m²; none inside where it ends nowhere.
+    pub left: OnceLock<Option<Box<Covariance>>>,
+}
+
+impl Beside {
+    pub(in crate::cloud) fn new(pieces: [u32; BESIDE]) -> Box<Self> {
+        Box::new(Self { pieces, left: OnceLock::new() })
+    }
 }
 
 impl Basis {
@@ -37,13 +53,18 @@ impl Basis {
     pub(in crate::cloud) const UNKNOWN: Self =
         Self { reach: f64::INFINITY, nearest: None, beside: None };
 
-    /// The same where pieces have other numbers.
+    /// Whether the piece may end.
+    pub(in crate::cloud) fn end(&self) -> End {
+        if self.beside.is_some() { End::Open } else { End::Nowhere }
+    }
+
+    /// The same where pieces have other numbers, and those about this one may have other fits.
     pub(in crate::cloud) fn renumbered(&self, after: &[u32]) -> Self {
         let now = |index: &u32| after[*index as usize];
         Self {
             reach: self.reach,
             nearest: self.nearest.map(|nearest| nearest.map(|index| now(&index))),
-            beside: self.beside.as_ref().map(|beside| Box::new(beside.each_ref().map(now))),
+            beside: self.beside.as_ref().map(|all| Beside::new(all.pieces.each_ref().map(now))),
         }
     }
 }

@@ -12,8 +12,8 @@ pub(crate) struct Surfel {
     pub index: u32,
     /// Where the surface is expected, and how well that is known: less where it ends at another face.
     pub point: UncertainPoint,
-    /// Whether it does, so that not all of what was fitted is left.
-    pub is_cut_off: bool,
+    /// Where it ends, as far as that was looked for.
+    pub end: End,
     /// Distance between samples there, m.
     pub spacing: f64,
     /// What no variance of `point` in any direction is above, m²; never too small by rounding.
@@ -22,6 +22,17 @@ pub(crate) struct Surfel {
     pub across: f64,
     /// Unit normal of the surface there, of either sign, where one was fitted.
     pub normal: Option<Vector3>,
+}
+
+/// Whether a piece of surface ends at another face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    /// Nowhere: all of what was fitted is left.
+    Nowhere,
+    /// It may, which takes the fits beside it to tell: what is left is as fitted or less.
+    Open,
+    /// It does, and what was fitted is cut off there.
+    CutOff,
 }
 
 /// Relative rounding of an eigenvalue, generously.
@@ -35,7 +46,7 @@ impl Surfel {
         Self {
             index,
             point,
-            is_cut_off: false,
+            end: End::Nowhere,
             spacing,
             most_variance: point.covariance.max_std().powi(2) * (1.0 + ROUNDING),
             across: normal.map_or(0.0, variance),

@@ -62,15 +62,16 @@ impl Raster {
         measured: impl Iterator<Item = (Point3, f64)>,
         pixels: usize,
     ) -> Option<Self> {
-        let rays: Vec<(Vector3, f64)> = measured.map(|(p, std)| (p - origin, std)).collect();
-        let lens = Lens::of(rays.iter().map(|(ray, _)| ray), turn)?;
-        let placed: Vec<([f64; 2], [f64; 2])> = rays
-            .iter()
-            .filter_map(|(ray, std)| {
-                let range = ray.norm();
-                Some(([range - CLEARLY * std, range + CLEARLY * std], lens.project(ray)?))
-            })
-            .collect();
+        let ray = |(place, std): (Point3, f64)| {
+            let ray = place - origin;
+            (ray, ray.norm(), CLEARLY * std)
+        };
+        let rays: Vec<(Vector3, f64, f64)> = measured.map(ray).collect();
+        let lens = Lens::of(rays.iter().map(|(ray, range, _)| (ray, *range)), turn)?;
+        let place = |(ray, range, clear): &(Vector3, f64, f64)| {
+            Some(([range - clear, range + clear], lens.project(ray)?))
+        };
+        let placed: Vec<([f64; 2], [f64; 2])> = rays.iter().filter_map(place).collect();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for (_, at) in &placed {
             for axis in 0..2 {
@@ -147,8 +148,9 @@ impl Raster {
 
     /// The cell of a place of the view; `None` outside of it.
     fn cell(&self, at: [f64; 2]) -> Option<[isize; 2]> {
-        let [x, y] = [0, 1].map(|axis| ((at[axis] - self.low[axis]) / self.pitch).floor());
+        let [x, y] = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.pitch);
         let is_within = |v: f64, axis: usize| v >= 0.0 && v < self.size[axis] as f64;
+        // The whole part.
         (is_within(x, 0) && is_within(y, 1)).then_some([x as isize, y as isize])
     }
 
@@ -169,13 +171,15 @@ enum Lens {
 }
 
 impl Lens {
+    /// Of rays and how long they are, m.
     fn of<'a>(
-        rays: impl Iterator<Item = &'a Vector3> + Clone,
+        rays: impl Iterator<Item = (&'a Vector3, f64)> + Clone,
         turn: &UnitQuaternion<f64>,
     ) -> Option<Self> {
-        let directions = || rays.clone().filter_map(|ray| ray.try_normalize(0.0));
-        let forward = directions().sum::<Vector3>().try_normalize(0.0)?;
-        if directions().any(|direction| direction.dot(&forward) < PANORAMA) {
+        let rays = || rays.clone().filter(|(_, range)| *range > 0.0);
+        let directions = rays().map(|(ray, range)| ray / range);
+        let forward = directions.sum::<Vector3>().try_normalize(0.0)?;
+        if rays().any(|(ray, range)| ray.dot(&forward) < PANORAMA * range) {
             return Some(Self::Panorama(turn.inverse()));
         }
         // A camera looks along its z; one whose turn is stated otherwise, as in a frame with x forward, still has

@@ -71,7 +71,7 @@ impl<'a> Discs<'a> {
             }
             if node.is_leaf() {
                 let is_near = |place: &Point3| way.distance_to(place) <= reach;
-                cloud.visit_some_of_leaf(node.id(), is_near, scratch, |surfel| {
+                cloud.visit_some_of_leaf(node.id(), is_near, scratch, |_, surfel| {
                     is_crossed = is_crossed || is_across(surfel, radius, way);
                 });
             }

@@ -6,6 +6,7 @@
 //! spread along it, S⁻¹(m_b − m_a). See docs/decisions/0026-normals-that-part.md.
 
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
+use cloudtouch_noise::Scratch;
 
 use super::spots::{Spot, Spots};
 use crate::body::BodyRef;
@@ -89,9 +90,12 @@ struct Grain {
 /// Of the piece nearest to a place; none of what is exact.
 fn grain(body: BodyRef<'_>, place: &Point3) -> Grain {
     let BodyRef::Cloud(cloud) = body else { return Grain::default() };
-    let of =
-        |nearest: &Surfel| Grain { spacing: nearest.spacing, std: cloud.sensor_std(nearest.index) };
-    cloud.surfels_near(place, 1).first().map(of).unwrap_or_default()
+    let of = |(_, nearest): &(u32, Surfel)| Grain {
+        spacing: nearest.spacing,
+        std: cloud.sensor_std(nearest.index),
+    };
+    let nearest = cloud.prepared().fits_near(place, 1, &mut Scratch::default());
+    nearest.first().map(of).unwrap_or_default()
 }
 
 /// Samples about a place, those farther away counting less, down to nothing at the reach. All in the frame of

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Covariance, Matrix3, Motion, Point3, Vector3};
 
-use crate::cloud::Surfel;
+use crate::cloud::{End, Surfel};
 
 use super::meeting::{LEAST_STD, are_beyond, beyond_along};
 
@@ -43,6 +43,11 @@ impl Facet {
     /// The height of a place above its plane, m; zero where it has none.
     pub(in crate::search) fn height(&self, place: &Point3) -> f64 {
         self.normal.map_or(0.0, |normal| normal.dot(&(place - self.corners[0])))
+    }
+
+    /// The way to it from a place, m.
+    pub(in crate::search) fn way_from(&self, place: &Point3) -> Vector3 {
+        nearest_to_origin(&self.corners.map(|corner| corner - place))
     }
 
     /// Where the straight line between two ends passes through it; its border counts.
@@ -118,7 +123,7 @@ pub(in crate::search) struct Whitening {
 impl Whitening {
     pub(in crate::search) fn of(surfel: &Surfel) -> Self {
         match surfel.normal {
-            Some(normal) if !surfel.is_cut_off => Self::of_disc(&normal, &surfel.point.covariance),
+            Some(normal) if surfel.end != End::CutOff => Self::of_disc(&normal, &surfel.point.covariance),
             _ => Self::of_any(&surfel.point.covariance),
         }
     }

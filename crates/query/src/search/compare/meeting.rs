@@ -61,6 +61,12 @@ pub(in crate::search) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) 
     (squared < limit).then_some(squared.max(0.0))
 }
 
+/// Whether two pieces, wherever they end, may be fewer deviations than some from being within a margin (m).
+pub(in crate::search) fn are_in_reach(a: &Surfel, b: &Surfel, margin: f64, limit: f64) -> bool {
+    let reach = margin + limit.max(0.0) * (a.most_variance + b.most_variance).sqrt();
+    (b.point.mean - a.point.mean).norm_squared() <= reach * reach
+}
+
 /// How many deviations two pieces are from being within a margin (m): the largest of
 /// (n·δ − m)/√(nᵀΣn) over a few directions n, which none can exceed; negative where they are within
 /// it. `None` where that is not below `limit`. Without a margin it is the Mahalanobis distance.
@@ -70,11 +76,10 @@ pub(in crate::search) fn deviations_beyond(
     margin: f64,
     limit: f64,
 ) -> Option<f64> {
-    let offset = b.point.mean - a.point.mean;
-    let reach = margin + limit.max(0.0) * (a.most_variance + b.most_variance).sqrt();
-    if offset.norm_squared() > reach * reach {
+    if !are_in_reach(a, b, margin, limit) {
         return None;
     }
+    let offset = b.point.mean - a.point.mean;
     let joint = a.point.covariance.sum(&b.point.covariance).matrix();
     let beyond = beyond((&joint, &offset), &solve(&joint, &offset)?, margin);
     (beyond < limit).then_some(beyond)

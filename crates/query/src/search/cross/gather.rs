@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::{Motion, Point3, Vector3};
 
-use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, MOST_ALONG, Pieces, Surfel, edge_along};
+use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, Pieces};
 
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
@@ -31,38 +31,6 @@ impl NearDisc {
         let height = |end: &Point3| (end - self.middle).dot(&self.normal);
         height(&ends[0]) * height(&ends[1]) < 0.0
     }
-}
-
-/// The pieces of a leaf near which an edge from there may cross a disc of another leaf: that can be
-/// told before the edges are known, for half of one is not longer than a disc reaches, and runs along
-/// the surface.
-pub(in crate::search) fn reaching(of_edges: &NoisyLeaf<'_>, of_discs: &NoisyLeaf<'_>) -> Pieces {
-    let NoisyLeaf { ball, slab, .. } = of_discs;
-    let mut reaching = Pieces::default();
-    for (place, surfel) in of_edges.surfels.iter().enumerate() {
-        let Some(normal) = surfel.normal else { continue };
-        let half = DISC_SPACINGS * surfel.spacing;
-        let middle = &surfel.point.mean;
-        let off = slab.distance(middle);
-        // PERF: most are told by their height alone.
-        if off <= half * MOST_ALONG
-            && ball.is_within(middle, half + DISC_SPACINGS * ball.spacing)
-            && (off == 0.0 || off <= half * edge_along(&normal, &slab.direction))
-        {
-            reaching.insert(place);
-        }
-    }
-    reaching
-}
-
-/// The pieces of a leaf of which the disc, or the near half of an edge, may reach a facet.
-pub(in crate::search) fn reaching_facets(of_edges: &NoisyLeaf<'_>, facets: &ExactLeaf) -> Pieces {
-    let reaches = |surfel: &Surfel| {
-        surfel.normal.is_some()
-            && facets.ball.is_within(&surfel.point.mean, DISC_SPACINGS * surfel.spacing)
-    };
-    let pieces = of_edges.surfels.iter().enumerate();
-    pieces.filter(|(_, surfel)| reaches(surfel)).map(|(place, _)| place).collect()
 }
 
 /// Adds the crossings of edges of one leaf with discs of another near its pieces that [`reaching`] gave;

@@ -2,14 +2,16 @@
 
 use cloudtouch_bvh::{Sought, SurfaceFlow, visit_surfaces};
 use cloudtouch_geom::{Motion, Pose};
+use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
+use crate::cloud::Surfel;
 use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::stats::Stats;
 
-use crate::search::compare::meeting::deviations_beyond;
+use crate::search::compare::meeting::{are_in_reach, deviations_beyond};
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use crate::search::visit::leaves::Leaves;
 use crate::search::visit::trees::Trees;
@@ -72,11 +74,14 @@ fn least_within<'a>(
     let reach = |least: f64| least.max(f64::MIN_POSITIVE);
     let sought = Sought { within: reach(most), margin, crossings: false, drift: None };
     let mut leaves: (Leaves<Leaf<'a>>, Leaves<Leaf<'a>>) = Default::default();
+    let [mut of_a, mut of_b]: [Scratch; 2] = Default::default();
     let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
-        let leaf_a = leaves.0.get_or_load(pair.a, || Leaf::load(a, pair.a, None, &mut stats));
-        let load_b = || Leaf::load(b, pair.b, Some(&motion), &mut stats);
+        let load_a = || Leaf::load(a, pair.a, None, (&mut of_a, &mut stats));
+        let leaf_a = leaves.0.get_or_load(pair.a, load_a);
+        let load_b = || Leaf::load(b, pair.b, Some(&motion), (&mut of_b, &mut stats));
         let leaf_b = leaves.1.get_or_load(pair.b, load_b);
-        least = least_of(leaf_a, leaf_b, margin, least).max(-MOST_DEVIATIONS);
+        let scratch = [&mut of_a, &mut of_b];
+        least = least_of(leaf_a, leaf_b, margin, least, scratch).max(-MOST_DEVIATIONS);
         if clock.is_over() || least <= enough {
             return SurfaceFlow::Stop;
         }
@@ -87,11 +92,22 @@ fn least_within<'a>(
 }
 
 /// The least deviations beyond the margin of two pieces of two leaves; `most` where none has fewer.
-fn least_of(a: &mut Leaf<'_>, b: &mut Leaf<'_>, margin: f64, most: f64) -> f64 {
+fn least_of(
+    a: &mut Leaf<'_>,
+    b: &mut Leaf<'_>,
+    margin: f64,
+    most: f64,
+    [of_a, of_b]: [&mut Scratch; 2],
+) -> f64 {
     match (a, b) {
-        (Leaf::Noisy(a), Leaf::Noisy(b)) => between_noisy(a, b, margin, most),
-        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b, margin, most),
-        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a, margin, most),
+        (Leaf::Noisy(a), Leaf::Noisy(b)) => {
+            let are_near = |on_a: &Surfel, on_b: &Surfel| are_in_reach(on_a, on_b, margin, most);
+            a.end_near(|on_a, _| b.surfels.iter().any(|on_b| are_near(on_a, on_b)), of_a);
+            b.end_near(|on_b, _| a.surfels.iter().any(|on_a| are_near(on_a, on_b)), of_b);
+            between_noisy(a, b, margin, most)
+        }
+        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b, margin, most, of_a),
+        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a, margin, most, of_b),
         // Two meshes are tested exactly and never come here.
         (Leaf::Exact(_), Leaf::Exact(_)) => most,
     }
@@ -111,12 +127,22 @@ fn between_noisy(a: &NoisyLeaf<'_>, b: &NoisyLeaf<'_>, margin: f64, most: f64) -
     least
 }
 
-fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf, margin: f64, most: f64) -> f64 {
+fn to_exact(
+    noisy: &mut NoisyLeaf<'_>,
+    exact: &ExactLeaf,
+    margin: f64,
+    most: f64,
+    scratch: &mut Scratch,
+) -> f64 {
+    let is_in_reach = |surfel: &Surfel, least: f64| {
+        let reach = margin + least.max(0.0) * surfel.most_variance.sqrt();
+        exact.ball.is_within(&surfel.point.mean, reach)
+    };
+    noisy.end_near(|surfel, _| is_in_reach(surfel, most), scratch);
     let mut least = most;
     let (surfels, whitenings, _) = noisy.whitened();
     for (surfel, whitening) in surfels.iter().zip(whitenings) {
-        let reach = margin + least.max(0.0) * surfel.most_variance.sqrt();
-        if !exact.ball.is_within(&surfel.point.mean, reach) {
+        if !is_in_reach(surfel, least) {
             continue;
         }
         for facet in exact.facets.iter() {

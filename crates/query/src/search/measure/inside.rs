@@ -21,7 +21,8 @@ pub(crate) struct Inside {
     /// Depth over the largest standard deviation of the point, sampling included: a lonely point is
     /// known badly.
     pub deviations: f64,
-    /// Depth, m, and standard deviation toward the surface.
+    /// Depth, m, and standard deviation toward the surface; while it is looked for, the largest in any
+    /// direction.
     pub depth: f64,
     pub std: f64,
     /// The nearest place of the mesh, in the frame of A.
@@ -95,7 +96,7 @@ fn deepest(
     if !mesh.is_closed() {
         return looked;
     }
-    let cloud_from_mesh = mesh_from_cloud.inverse();
+    let mut deepest = None;
     // PERF: what is deepest comes first, since a point that is clearly inside spares all others their fits.
     let mut sides = Sides::of(mesh);
     let mut leaves = looked.leaves_within(cloud, (mesh, &mut sides), mesh_from_cloud, clock);
@@ -117,14 +118,24 @@ fn deepest(
             leaf,
             |place| !clear.are_clear_around(&mesh_from_cloud.transform_point(place), shift),
             &mut scratch,
-            |surfel| looked.look_at(surfel, (mesh, &mut sides), mesh_from_cloud, &cloud_from_mesh),
+            |piece, surfel| {
+                if let Some(inside) = looked.look_at(surfel, (mesh, &mut sides), mesh_from_cloud) {
+                    looked.deepest = Some(inside);
+                    deepest = Some(piece);
+                }
+            },
         );
         looked.leaves_prepared += usize::from(computed);
     }
-    looked.deepest = looked.deepest.map(|inside| Inside {
-        place: a_from_mesh.transform_point(&inside.place),
-        outward: a_from_mesh.transform_vector(&inside.outward),
-        ..inside
+    looked.deepest = looked.deepest.zip(deepest).map(|(inside, piece)| {
+        let told = cloud.prepared().told(piece, &mut scratch);
+        let outward = mesh_from_cloud.inverse().transform_vector(&inside.outward);
+        Inside {
+            std: told.point.covariance.std_along(&outward),
+            place: a_from_mesh.transform_point(&inside.place),
+            outward: a_from_mesh.transform_vector(&inside.outward),
+            ..inside
+        }
     });
     looked
 }
@@ -204,37 +215,30 @@ impl Looked {
         self.deepest.map_or(0.0, |inside| inside.deviations)
     }
 
-    /// Keeps a point that is more clearly inside than all before, in the frame of the mesh.
+    /// A point that is more clearly inside than all before, in the frame of the mesh, known no better in any
+    /// direction than in all.
     fn look_at(
-        &mut self,
+        &self,
         surfel: &Surfel,
         (mesh, sides): (&Mesh, &mut Sides<'_>),
         mesh_from_cloud: &Pose,
-        cloud_from_mesh: &Pose,
-    ) {
+    ) -> Option<Inside> {
         let at = mesh_from_cloud.transform_point(&surfel.point.mean);
         if mesh.is_surely_outside(&at) {
-            return;
+            return None;
         }
         let (place, _) = mesh.nearest(&at);
         let depth = (at - place).norm();
-        let deviations = depth / surfel.most_variance.sqrt().max(f64::MIN_POSITIVE);
+        let std = surfel.most_variance.sqrt();
+        let deviations = depth / std.max(f64::MIN_POSITIVE);
         // PERF: on which side it is takes longest to tell.
         if deviations.partial_cmp(&self.deviations()) != Some(Ordering::Greater)
             || !sides.encloses(&at, depth)
         {
-            return;
+            return None;
         }
         // On the surface itself no direction is outward.
-        let Some(outward) = (place - at).try_normalize(0.0) else { return };
-        let in_cloud = cloud_from_mesh.transform_vector(&outward);
-        self.deepest = Some(Inside {
-            deviations,
-            depth,
-            std: surfel.point.covariance.std_along(&in_cloud),
-            place,
-            outward,
-            spacing: surfel.spacing,
-        });
+        let outward = (place - at).try_normalize(0.0)?;
+        Some(Inside { deviations, depth, std, place, outward, spacing: surfel.spacing })
     }
 }

@@ -1,8 +1,12 @@
 //! The two pieces of surface of two leaves with the least deviations between them.
 
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
+use cloudtouch_noise::Scratch;
 
+use crate::cloud::Surfel;
+use crate::search::compare::facet::{Facet, Whitening};
 use crate::search::compare::meeting::squared_deviations;
+use crate::search::visit::ends::ROUNDING;
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 
 /// The two pieces of two leaves with the least deviations between them.
@@ -33,15 +37,45 @@ pub(in crate::search) fn nearest_pieces(
     a: &mut Leaf<'_>,
     b: &mut Leaf<'_>,
     within: f64,
+    scratch: &mut [Scratch; 2],
 ) -> Option<Nearest> {
     let within = within * within;
+    let [of_a, of_b] = scratch;
     match (a, b) {
-        (Leaf::Noisy(a), Leaf::Noisy(b)) => between_noisy(a, b, within),
-        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b, within),
-        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a, within).map(Nearest::swapped),
+        (Leaf::Noisy(a), Leaf::Noisy(b)) => {
+            end_near_noisy(a, b, within, [of_a, of_b]);
+            between_noisy(a, b, within)
+        }
+        (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b, within, of_a),
+        (Leaf::Exact(a), Leaf::Noisy(b)) => to_exact(b, a, within, of_b).map(Nearest::swapped),
         // Two meshes are tested exactly and never come here.
         (Leaf::Exact(_), Leaf::Exact(_)) => None,
     }
+}
+
+/// Lets those pieces of two leaves end that are near some of the other.
+fn end_near_noisy(
+    a: &mut NoisyLeaf<'_>,
+    b: &mut NoisyLeaf<'_>,
+    within: f64,
+    [of_a, of_b]: [&mut Scratch; 2],
+) {
+    let are_near = |(on_a, least_of_a): (&Surfel, f64), (on_b, least_of_b): (&Surfel, f64)| {
+        let limit = least_of_a.max(least_of_b).min(within) * (1.0 + ROUNDING);
+        squared_deviations(on_a, on_b, limit).is_some()
+    };
+    let is_near_b = |on_a: &Surfel, least: f64| {
+        let mut of_b = b.surfels.iter().zip(b.squared.iter().copied());
+        let reach = (within * (on_a.most_variance + b.ball.variance)).sqrt();
+        b.ball.is_within(&on_a.point.mean, reach) && of_b.any(|on_b| are_near((on_a, least), on_b))
+    };
+    a.end_near(is_near_b, of_a);
+    let is_near_a = |on_b: &Surfel, least: f64| {
+        let mut of_a = a.surfels.iter().zip(a.squared.iter().copied());
+        let reach = (within * (on_b.most_variance + a.ball.variance)).sqrt();
+        a.ball.is_within(&on_b.point.mean, reach) && of_a.any(|on_a| are_near(on_a, (on_b, least)))
+    };
+    b.end_near(is_near_a, of_b);
 }
 
 fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>, within: f64) -> Option<Nearest> {
@@ -77,7 +111,20 @@ fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>, within: f64) -> O
 }
 
 /// From the pieces of a cloud to those of a mesh.
-fn to_exact(noisy: &mut NoisyLeaf<'_>, exact: &ExactLeaf, within: f64) -> Option<Nearest> {
+fn to_exact(
+    noisy: &mut NoisyLeaf<'_>,
+    exact: &ExactLeaf,
+    within: f64,
+    scratch: &mut Scratch,
+) -> Option<Nearest> {
+    let is_near = |surfel: &Surfel, least: f64| {
+        let limit = least.min(within) * (1.0 + ROUNDING);
+        let whitening = Whitening::of(surfel);
+        let near = |facet: &Facet| facet.squared_deviations(surfel, &whitening, limit).is_some();
+        let reach = (limit * surfel.most_variance).sqrt();
+        exact.ball.is_within(&surfel.point.mean, reach) && exact.facets.iter().any(near)
+    };
+    noisy.end_near(is_near, scratch);
     let mut least = within;
     let mut nearest = None;
     let (surfels, whitenings, squared) = noisy.whitened();

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Drift, Matrix3, Motion, Vector3};
+use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
@@ -72,9 +73,9 @@ impl<'a> Swept<'a> {
         id: NodeId,
         motion: Option<&Motion>,
         drift: &Drift,
-        stats: &mut Stats,
+        known: (&mut Scratch, &mut Stats),
     ) -> Self {
-        match Leaf::load(body, id, motion, stats) {
+        match Leaf::load(body, id, motion, known) {
             Leaf::Noisy(leaf) => {
                 let axes = axes_of(leaf.cloud, id, motion);
                 Self::Noisy(Box::new(SweptCloud::new(leaf, motion.copied(), axes, drift)))
@@ -120,9 +121,9 @@ impl<'a> SweptCloud<'a> {
     }
 
     /// Gets its edges, once.
-    pub(super) fn load_edges(&mut self, id: NodeId, drift: &Drift) {
+    pub(super) fn load_edges(&mut self, drift: &Drift, scratch: &mut Scratch) {
         if self.edges.is_none() {
-            self.leaf.load_edges(id);
+            self.leaf.load_edges(scratch);
             let edges = self.leaf.edges.map_or(&[][..], |of_leaf| &of_leaf.edges);
             let all = match &self.motion {
                 None => Cow::Borrowed(edges),

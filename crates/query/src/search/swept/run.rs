@@ -1,7 +1,8 @@
 //! The search for what geometry could say at most anywhere along a drift.
 
-use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, SurfacePair, visit_surfaces};
+use cloudtouch_bvh::{Sought, SurfaceFlow, SurfacePair, visit_surfaces};
 use cloudtouch_geom::{Drift, Motion, Pose};
+use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
@@ -55,6 +56,7 @@ pub(crate) fn reach_of<'a>(
         passages: Passages::default(),
         around: Around::default(),
         dividing: Dividing::default(),
+        scratch: Default::default(),
     };
     let mut trees = Trees::of(a, b);
     let is_exact = matches!((a, b), (BodyRef::Mesh(_), BodyRef::Mesh(_)));
@@ -83,6 +85,7 @@ struct Way<'a> {
     passages: Passages,
     around: Around,
     dividing: Dividing,
+    scratch: [Scratch; 2],
 }
 
 impl<'a> Way<'a> {
@@ -90,15 +93,17 @@ impl<'a> Way<'a> {
         let (a, b) = self.bodies;
         let (motion, drifts) = (&self.a_from_b, &self.drifts);
         let (of_a, of_b) = &mut self.leaves;
-        let leaf_a = of_a.get_or_load(pair.a, || Swept::load(a, pair.a, None, &drifts.of_a, stats));
-        let leaf_b =
-            of_b.get_or_load(pair.b, || Swept::load(b, pair.b, Some(motion), &drifts.of_b, stats));
+        let [scratch_a, scratch_b] = &mut self.scratch;
+        let load_a = || Swept::load(a, pair.a, None, &drifts.of_a, (scratch_a, stats));
+        let leaf_a = of_a.get_or_load(pair.a, load_a);
+        let load_b = || Swept::load(b, pair.b, Some(motion), &drifts.of_b, (scratch_b, stats));
+        let leaf_b = of_b.get_or_load(pair.b, load_b);
         if pair.deviations < self.deviations {
             self.deviations = least_of(leaf_a, leaf_b, &drifts.of_b, self.deviations);
         }
         if pair.may_cross {
             let told = (&mut self.passages, &mut self.around, &mut self.dividing);
-            cross((a, b), motion, pair, (leaf_a, leaf_b), drifts, told);
+            cross((a, b), motion, (leaf_a, leaf_b), drifts, &mut self.scratch, told);
         }
     }
 }
@@ -162,9 +167,10 @@ fn to_exact(
 /// of the edges.
 fn cross_discs(
     is_a: bool,
-    (of_edges, id): (&mut SweptCloud<'_>, NodeId),
+    of_edges: &mut SweptCloud<'_>,
     of_discs: &SweptCloud<'_>,
     drift: &Drift,
+    scratch: &mut Scratch,
     told: (&mut Passages, &mut Dividing),
 ) {
     let dividing = *told.1;
@@ -174,7 +180,7 @@ fn cross_discs(
     if !may_meet(of_edges) || !may_reach(of_edges, &of_discs.leaf, drift) {
         return;
     }
-    of_edges.load_edges(id, drift);
+    of_edges.load_edges(drift, scratch);
     if may_meet(of_edges) {
         add_edges_through_discs(is_a, of_edges, &of_discs.leaf, drift, told);
     }
@@ -183,20 +189,20 @@ fn cross_discs(
 fn cross<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Motion,
-    pair: &SurfacePair,
     leaves: (&mut Swept<'a>, &mut Swept<'a>),
     drifts: &Drifts,
+    [of_a, of_b]: &mut [Scratch; 2],
     (passages, known, dividing): (&mut Passages, &mut Around, &mut Dividing),
 ) {
     match leaves {
         (Swept::Noisy(on_a), Swept::Noisy(on_b)) => {
-            cross_discs(true, (on_a, pair.a), on_b, &drifts.of_a, (passages, dividing));
-            cross_discs(false, (on_b, pair.b), on_a, &drifts.of_b, (passages, dividing));
+            cross_discs(true, on_a, on_b, &drifts.of_a, of_a, (passages, dividing));
+            cross_discs(false, on_b, on_a, &drifts.of_b, of_b, (passages, dividing));
         }
         (Swept::Noisy(noisy), Swept::Exact(exact))
             if may_reach_facets(noisy, &exact.leaf, &drifts.of_a) =>
         {
-            noisy.load_edges(pair.a, &drifts.of_a);
+            noisy.load_edges(&drifts.of_a, of_a);
             add_edges_through_facets(true, noisy, exact, drifts, (passages, dividing));
             let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
             add_mesh_through_discs(true, noisy, exact, &mut around, drifts, passages);
@@ -204,7 +210,7 @@ fn cross<'a>(
         (Swept::Exact(exact), Swept::Noisy(noisy))
             if may_reach_facets(noisy, &exact.leaf, &drifts.of_b) =>
         {
-            noisy.load_edges(pair.b, &drifts.of_b);
+            noisy.load_edges(&drifts.of_b, of_b);
             add_edges_through_facets(false, noisy, exact, drifts, (passages, dividing));
             let mut around = OfMesh { known, body: a, a_from_mesh: None };
             add_mesh_through_discs(false, noisy, exact, &mut around, drifts, passages);

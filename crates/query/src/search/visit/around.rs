@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Point3};
+use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::mesh::Mesh;
@@ -25,10 +26,10 @@ impl Around {
         body: BodyRef<'a>,
         id: NodeId,
         motion: Option<&Motion>,
-        stats: &mut Stats,
+        (scratch, stats): (&mut Scratch, &mut Stats),
     ) -> Leaf<'a> {
         match body {
-            BodyRef::Cloud(_) => Leaf::load(body, id, motion, stats),
+            BodyRef::Cloud(_) => Leaf::load(body, id, motion, (scratch, stats)),
             BodyRef::Mesh(mesh) => {
                 let place = self.place(mesh, id, motion);
                 Leaf::Exact(ExactLeaf::of(Rc::clone(self.0.at(place))))

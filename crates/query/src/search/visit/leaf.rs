@@ -5,9 +5,10 @@ use std::rc::Rc;
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Point3};
+use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
-use crate::cloud::{Ball, Cloud, DISC_SPACINGS, Edge, LeafEdges, LeafSurface, Slab, Surfel};
+use crate::cloud::{Ball, Cloud, DISC_SPACINGS, Edge, End, LeafEdges, LeafSurface, Slab, Surfel};
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 use crate::stats::Stats;
@@ -44,12 +45,17 @@ pub(crate) struct ExactLeaf {
 #[derive(Debug)]
 pub(crate) struct NoisyLeaf<'a> {
     pub(in crate::search) cloud: &'a Cloud,
+    pub(super) id: NodeId,
+    /// From where it was measured to the frame of A; `None` for one of A.
+    pub(super) motion: Option<Motion>,
+    /// Whether of any piece it is open where it ends.
+    pub(super) may_end: bool,
     pub surfels: Cow<'a, [Surfel]>,
     /// Where they were measured, for most are told to be far from another leaf before they are moved;
     /// `None` until they are needed.
     pub(in crate::search) edges: Option<&'a LeafEdges>,
     /// For each surfel lengths in its standard deviations; empty until they are needed.
-    whitenings: Vec<Whitening>,
+    pub(super) whitenings: Vec<Whitening>,
     /// For each surfel the squared deviations to the nearest piece of the other body, at most those
     /// of [`MOST_DEVIATIONS`].
     pub squared: Vec<f64>,
@@ -68,10 +74,12 @@ impl<'a> Leaf<'a> {
         body: BodyRef<'a>,
         id: NodeId,
         motion: Option<&Motion>,
-        stats: &mut Stats,
+        (scratch, stats): (&mut Scratch, &mut Stats),
     ) -> Self {
         match body {
-            BodyRef::Cloud(cloud) => Self::Noisy(NoisyLeaf::load(cloud, id, motion, stats)),
+            BodyRef::Cloud(cloud) => {
+                Self::Noisy(NoisyLeaf::load(cloud, id, motion, (scratch, stats)))
+            }
             BodyRef::Mesh(mesh) => Self::Exact(ExactLeaf::of(Rc::new(facets_of(mesh, id, motion)))),
         }
     }
@@ -121,11 +129,17 @@ pub(super) fn facets_of(mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> Vec
 
 impl<'a> NoisyLeaf<'a> {
     /// A leaf of a cloud, moved to the frame of A by `motion`, or of A itself.
-    fn load(cloud: &'a Cloud, id: NodeId, motion: Option<&Motion>, stats: &mut Stats) -> Self {
-        let (leaf, computed) = cloud.leaf_surface(id);
+    fn load(
+        cloud: &'a Cloud,
+        id: NodeId,
+        motion: Option<&Motion>,
+        (scratch, stats): (&mut Scratch, &mut Stats),
+    ) -> Self {
+        let (leaf, computed) = cloud.leaf_surface(id, scratch);
         stats.leaves_prepared += usize::from(computed);
         let LeafSurface { surfels, ball, slab } = leaf;
         let count = surfels.len();
+        let may_end = surfels.iter().any(|surfel| surfel.end == End::Open);
         let (surfels, ball, slab) = match motion {
             None => (Cow::Borrowed(&surfels[..]), *ball, *slab),
             Some(motion) => (
@@ -136,6 +150,9 @@ impl<'a> NoisyLeaf<'a> {
         };
         Self {
             cloud,
+            id,
+            motion: motion.copied(),
+            may_end,
             surfels,
             edges: None,
             whitenings: Vec::new(),
@@ -156,8 +173,23 @@ impl<'a> NoisyLeaf<'a> {
     }
 
     /// Gets its edges, once.
-    pub(in crate::search) fn load_edges(&mut self, id: NodeId) {
-        self.edges.get_or_insert_with(|| self.cloud.leaf_edges(id));
+    pub(in crate::search) fn load_edges(&mut self, scratch: &mut Scratch) {
+        self.edges.get_or_insert_with(|| self.cloud.prepared().leaf_edges(self.id, scratch));
+    }
+
+    /// Gets them where they are known, or where it is worth to join what they lead to; whether it has them.
+    pub(in crate::search) fn has_edges_or(
+        &mut self,
+        are_worth: impl FnOnce(&Self) -> bool,
+        scratch: &mut Scratch,
+    ) -> bool {
+        if self.edges.is_none() {
+            self.edges = self.cloud.prepared().known_edges(self.id);
+            if self.edges.is_none() && are_worth(self) {
+                self.load_edges(scratch);
+            }
+        }
+        self.edges.is_some()
     }
 
     /// Notes a crossing of an edge for the points that it joins.

@@ -42,6 +42,10 @@ impl<L> Leaves<L> {
         &self.seen[place].1
     }
 
+    pub(in crate::search) fn has(&self, id: NodeId) -> bool {
+        self.places.contains_key(&id.index())
+    }
+
     pub(in crate::search) fn len(&self) -> usize {
         self.seen.len()
     }

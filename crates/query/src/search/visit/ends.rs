@@ -1,0 +1,48 @@
+//! Pieces of a leaf that something is near, which tells whether they end before it.
+//!
+//! Where a piece ends takes the fits of those beside it, most of what a first query costs. As fitted it is
+//! never known better than where it has ended, so that what is too far from it as fitted is too far.
+
+use cloudtouch_noise::Scratch;
+
+use crate::cloud::{End, Surfel};
+use crate::search::compare::facet::Whitening;
+
+use super::leaf::NoisyLeaf;
+
+/// Rounding of deviations, by which they may be more as fitted, relative, generously.
+pub(in crate::search) const ROUNDING: f64 = 1e-9;
+
+impl NoisyLeaf<'_> {
+    /// Lets those pieces end that something is near as they were fitted, by their squared deviations so far.
+    pub(in crate::search) fn end_near(
+        &mut self,
+        is_near: impl Fn(&Surfel, f64) -> bool,
+        scratch: &mut Scratch,
+    ) {
+        if !self.may_end {
+            return;
+        }
+        let all = self.surfels.iter().zip(&self.squared).enumerate();
+        let open = all.filter(|(_, (surfel, _))| surfel.end == End::Open);
+        let near: Vec<usize> = open
+            .filter(|(_, (surfel, squared))| is_near(surfel, **squared))
+            .map(|(place, _)| place)
+            .collect();
+        if near.is_empty() {
+            return;
+        }
+        let cloud = self.cloud;
+        let pieces = cloud.tree().leaf(self.id).map_or(&[][..], |leaf| leaf.primitive_indices());
+        let pieces: Vec<u32> = near.iter().map(|&place| pieces[place]).collect();
+        let told = cloud.prepared().told_together(&pieces, scratch);
+        let surfels = self.surfels.to_mut();
+        for (place, surfel) in near.into_iter().zip(told) {
+            surfels[place] = self.motion.map_or(surfel, |motion| surfel.moved(&motion));
+            if let Some(whitening) = self.whitenings.get_mut(place) {
+                *whitening = Whitening::of(&surfels[place]);
+            }
+        }
+        self.may_end = self.surfels.iter().any(|surfel| surfel.end == End::Open);
+    }
+}
