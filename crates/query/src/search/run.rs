@@ -84,13 +84,11 @@ pub(crate) fn search<'a>(
     let mut trees = Trees::of(a, b);
     let outcome = visit_surfaces(trees.both(), a_from_b, SOUGHT, |pair| {
         stats.leaf_pairs += 1;
-        match found.told_apart((a, b), &motion, &pair, stats) {
+        match found.told_apart((a, b), &motion, &pair, trees.may_be_loose(), stats) {
             Some(apart) => found.at_least = found.at_least.min(apart),
-            None => {
-                found.add((a, b), &motion, &pair, stats);
-                trees.count_pair([found.leaves_a.len(), found.leaves_b.len()]);
-            }
+            None => found.add((a, b), &motion, &pair, stats),
         }
+        trees.count_pair([found.leaves_a.len(), found.leaves_b.len()]);
         let (deviations, clearness) = (found.deviations, found.crossings.last_clearness());
         if is_enough(deviations, clearness) {
             return SurfaceFlow::Stop;
@@ -137,14 +135,15 @@ impl<'a> Found<'a> {
         (a, b): (BodyRef<'a>, BodyRef<'a>),
         a_from_b: &Motion,
         pair: &SurfacePair,
+        [is_a_loose, is_b_loose]: [bool; 2],
         stats: &mut Stats,
     ) -> Option<f64> {
         let most = self.deviations_of_interest();
         let Self { leaves_a, leaves_b, around, scratch: [of_a, of_b], .. } = self;
-        let unseen_a = || Unseen::of(a, pair.a, None);
-        let unseen_b = || Unseen::of(b, pair.b, Some(a_from_b));
-        let unseen_a = if leaves_a.has(pair.a) { None } else { unseen_a() };
-        let unseen_b = if leaves_b.has(pair.b) { None } else { unseen_b() };
+        let is_unseen_a = is_a_loose && !leaves_a.has(pair.a);
+        let is_unseen_b = is_b_loose && !leaves_b.has(pair.b);
+        let unseen_a = is_unseen_a.then(|| Unseen::of(a, pair.a, None)).flatten();
+        let unseen_b = is_unseen_b.then(|| Unseen::of(b, pair.b, Some(a_from_b))).flatten();
         let is_b_first = match (&unseen_a, &unseen_b) {
             (None, None) => return None,
             (Some(a), Some(b)) => b.reach() > a.reach(),

@@ -129,6 +129,7 @@ impl Prepared {
         surface.edges = mem::take(&mut old.edges);
         surface.leaves.resize_with(tree.node_slots(), Default::default);
         surface.edges.resize_with(tree.node_slots(), Default::default);
+        surface.ended = slots(tree.node_slots());
         surface.shared = slots(tree.node_slots());
         let after = after(before, old.spacing_caps.len());
         if (0..).zip(before).any(|(index, before)| before.is_some_and(|before| before != index)) {

@@ -1,5 +1,6 @@
 //! Where a piece of surface ends at another face, what is known of it is less than what was fitted.
 
+use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Covariance, UncertainPoint};
 use cloudtouch_noise::{Face, Neighbor, Scratch};
 
@@ -63,6 +64,11 @@ impl Prepared {
             left.map(Box::new)
         };
         fit.with(beside.left.get_or_init(left).as_deref())
+    }
+
+    /// The surface at the points of a leaf as far as it goes, where all of it was told.
+    pub(crate) fn ended_leaf(&self, id: NodeId) -> Option<&[Surfel]> {
+        self.surface.ended.get(id.index())?.get().map(|surfels| &surfels[..])
     }
 
     /// The pieces about one that may end there.

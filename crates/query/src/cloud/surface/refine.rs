@@ -36,13 +36,14 @@ impl Prepared {
         leaves.par_iter().for_each_init(Scratch::default, |scratch, &leaf| {
             self.leaf_edges(leaf, scratch);
         });
-        self.surface.fitted.take();
-        self.tree = self.fitted_tree()?;
         // Every leaf has copies of its own.
         let slots = std::mem::take(&mut self.surface.fits);
         let basis =
             |slot: OnceLock<Box<Fitted>>| slot.into_inner().map_or(Basis::UNKNOWN, |f| f.basis);
         self.surface.bases = slots.into_iter().map(basis).collect();
+        self.surface.ended = Vec::new();
+        self.surface.fitted.take();
+        self.tree = self.fitted_tree()?;
         self.enclose_again();
         self.prepare_time += start.elapsed();
         Ok(())
@@ -116,11 +117,17 @@ impl Prepared {
         scratch: &mut Scratch,
     ) -> Vec<(u32, Primitive, Covariance)> {
         let Some(node) = self.tree.leaf(leaf) else { return Vec::new() };
-        let surfels = self.leaf(leaf).0.iter().zip(self.near_halves(leaf, scratch));
-        let of = |(&piece, (surfel, edges)): (&u32, (&Surfel, [f64; 2]))| {
+        let edges = self.near_halves(leaf, scratch);
+        let pieces = node.primitive_indices();
+        let surfels = match self.is_refined() {
+            true => self.leaf(leaf).0,
+            false => self.surface.ended[leaf.index()]
+                .get_or_init(|| self.told_together(pieces, scratch)),
+        };
+        let of = |((&piece, surfel), edges): ((&u32, &Surfel), [f64; 2])| {
             (piece, Primitive::point(surfel.point), extent(surfel, edges))
         };
-        node.primitive_indices().iter().zip(surfels).map(of).collect()
+        pieces.iter().zip(surfels).zip(edges).map(of).collect()
     }
 
     /// For each point of a leaf how far the near halves of its edges reach along its disc and across

@@ -78,6 +78,8 @@ pub(in crate::cloud) struct LazySurface {
     /// Of each what it rests on, once all leaves hold theirs.
     pub bases: Vec<Basis>,
     pub leaves: Vec<OnceLock<Box<LeafSurface>>>,
+    /// Of leaves with all that ends cut off, where a tree was fitted to that.
+    pub ended: Vec<OnceLock<Vec<Surfel>>>,
     /// Of leaves with what they share.
     pub shared: Vec<OnceLock<Vec<Surfel>>>,
     pub edges: Vec<OnceLock<Box<LeafEdges>>>,
@@ -95,6 +97,7 @@ impl LazySurface {
             fits: slots(spacing_caps.len()),
             bases: Vec::new(),
             leaves: slots(tree.node_slots()),
+            ended: slots(tree.node_slots()),
             shared: slots(tree.node_slots()),
             edges: slots(tree.node_slots()),
             spacing_caps,
@@ -108,6 +111,7 @@ impl LazySurface {
             fits: Vec::new(),
             bases: Vec::new(),
             leaves: Vec::new(),
+            ended: Vec::new(),
             shared: Vec::new(),
             edges: Vec::new(),
             spacing_caps: Vec::new(),

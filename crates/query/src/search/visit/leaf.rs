@@ -138,6 +138,7 @@ impl<'a> NoisyLeaf<'a> {
         let (leaf, computed) = cloud.leaf_surface(id, scratch);
         stats.leaves_prepared += usize::from(computed);
         let LeafSurface { surfels, ball, slab } = leaf;
+        let surfels = cloud.prepared().ended_leaf(id).unwrap_or(surfels);
         let count = surfels.len();
         let may_end = surfels.iter().any(|surfel| surfel.end == End::Open);
         let (surfels, ball, slab) = match motion {

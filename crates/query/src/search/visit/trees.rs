@@ -35,6 +35,11 @@ impl<'a> Trees<'a> {
         Self { bodies, trees, may_be_loose, pairs: 0, leaves: [0; 2] }
     }
 
+    /// Whether what a search knows of leaves whose surface it has not seen may be loose, of A and of B.
+    pub(in crate::search) fn may_be_loose(&self) -> [bool; 2] {
+        self.may_be_loose
+    }
+
     pub(in crate::search) fn both(&self) -> (&'a Tree, &'a Tree) {
         (self.trees[0], self.trees[1])
     }

@@ -39,15 +39,14 @@ struct Parted {
 }
 
 impl Unseen {
-    /// A leaf that may be loose, moved to the frame of A by `motion`, or of A itself; none of a mesh, nor of a
-    /// cloud that is refined.
+    /// A leaf, moved to the frame of A by `motion`, or of A itself; none of a mesh.
     pub(in crate::search) fn of(
         body: BodyRef<'_>,
         id: NodeId,
         motion: Option<&Motion>,
     ) -> Option<Self> {
         let BodyRef::Cloud(cloud) = body else { return None };
-        let node = cloud.tree().leaf(id).filter(|_| !cloud.prepared().is_refined())?;
+        let node = cloud.tree().leaf(id)?;
         let obb = node.obb();
         let (centre, axes) = match motion {
             None => (obb.centre, obb.axes),
