@@ -102,8 +102,14 @@ fn least_of(
     match (a, b) {
         (Leaf::Noisy(a), Leaf::Noisy(b)) => {
             let are_near = |on_a: &Surfel, on_b: &Surfel| are_in_reach(on_a, on_b, margin, most);
-            a.end_near(|on_a, _| b.surfels.iter().any(|on_b| are_near(on_a, on_b)), of_a);
-            b.end_near(|on_b, _| a.surfels.iter().any(|on_a| are_near(on_a, on_b)), of_b);
+            let is_near_b = |a: &NoisyLeaf<'_>, on_a: usize| {
+                b.surfels.iter().any(|on_b| are_near(&a.surfels[on_a], on_b))
+            };
+            a.end_near(is_near_b, of_a);
+            let is_near_a = |b: &NoisyLeaf<'_>, on_b: usize| {
+                a.surfels.iter().any(|on_a| are_near(on_a, &b.surfels[on_b]))
+            };
+            b.end_near(is_near_a, of_b);
             between_noisy(a, b, margin, most)
         }
         (Leaf::Noisy(a), Leaf::Exact(b)) => to_exact(a, b, margin, most, of_a),
@@ -138,7 +144,7 @@ fn to_exact(
         let reach = margin + least.max(0.0) * surfel.most_variance.sqrt();
         exact.ball.is_within(&surfel.point.mean, reach)
     };
-    noisy.end_near(|surfel, _| is_in_reach(surfel, most), scratch);
+    noisy.end_near(|noisy, place| is_in_reach(&noisy.surfels[place], most), scratch);
     let mut least = most;
     let (surfels, whitenings, _) = noisy.whitened();
     for (surfel, whitening) in surfels.iter().zip(whitenings) {

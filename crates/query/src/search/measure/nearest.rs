@@ -3,8 +3,8 @@
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 use cloudtouch_noise::Scratch;
 
-use crate::cloud::Surfel;
-use crate::search::compare::facet::{Facet, Whitening};
+use crate::cloud::{Ball, End, Surfel};
+use crate::search::compare::facet::Facet;
 use crate::search::compare::meeting::squared_deviations;
 use crate::search::visit::ends::ROUNDING;
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
@@ -60,20 +60,22 @@ fn end_near_noisy(
     within: f64,
     [of_a, of_b]: [&mut Scratch; 2],
 ) {
-    let are_near = |(on_a, least_of_a): (&Surfel, f64), (on_b, least_of_b): (&Surfel, f64)| {
-        let limit = least_of_a.max(least_of_b).min(within) * (1.0 + ROUNDING);
-        squared_deviations(on_a, on_b, limit).is_some()
+    let are_near = |(a, on_a): (&NoisyLeaf<'_>, usize), (b, on_b): (&NoisyLeaf<'_>, usize)| {
+        let limit = a.squared[on_a].max(b.squared[on_b]).min(within) * (1.0 + ROUNDING);
+        squared_deviations(&a.surfels[on_a], &b.surfels[on_b], limit).is_some()
     };
-    let is_near_b = |on_a: &Surfel, least: f64| {
-        let mut of_b = b.surfels.iter().zip(b.squared.iter().copied());
-        let reach = (within * (on_a.most_variance + b.ball.variance)).sqrt();
-        b.ball.is_within(&on_a.point.mean, reach) && of_b.any(|on_b| are_near((on_a, least), on_b))
+    let is_in_reach = |surfel: &Surfel, ball: &Ball| {
+        let reach = (within * (surfel.most_variance + ball.variance)).sqrt();
+        ball.is_within(&surfel.point.mean, reach)
+    };
+    let is_near_b = |a: &NoisyLeaf<'_>, on_a: usize| {
+        is_in_reach(&a.surfels[on_a], &b.ball)
+            && (0..b.surfels.len()).any(|on_b| are_near((a, on_a), (b, on_b)))
     };
     a.end_near(is_near_b, of_a);
-    let is_near_a = |on_b: &Surfel, least: f64| {
-        let mut of_a = a.surfels.iter().zip(a.squared.iter().copied());
-        let reach = (within * (on_b.most_variance + a.ball.variance)).sqrt();
-        a.ball.is_within(&on_b.point.mean, reach) && of_a.any(|on_a| are_near(on_a, (on_b, least)))
+    let is_near_a = |b: &NoisyLeaf<'_>, on_b: usize| {
+        is_in_reach(&b.surfels[on_b], &a.ball)
+            && (0..a.surfels.len()).any(|on_a| are_near((a, on_a), (b, on_b)))
     };
     b.end_near(is_near_a, of_b);
 }
@@ -82,7 +84,11 @@ fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>, within: f64) -> O
     let mut least = within;
     let mut nearest = None;
     let mut most_of_b = b.squared.iter().copied().fold(0.0, f64::max);
+    let has_ended = |surfel: &Surfel| surfel.end != End::Open;
     for (on_a, least_of_a) in a.surfels.iter().zip(&mut a.squared) {
+        if !has_ended(on_a) {
+            continue;
+        }
         let limit = least_of_a.max(most_of_b).min(within);
         let reach = (limit * (on_a.most_variance + b.ball.variance)).sqrt();
         if !b.ball.is_within(&on_a.point.mean, reach) {
@@ -117,10 +123,11 @@ fn to_exact(
     within: f64,
     scratch: &mut Scratch,
 ) -> Option<Nearest> {
-    let is_near = |surfel: &Surfel, least: f64| {
-        let limit = least.min(within) * (1.0 + ROUNDING);
-        let whitening = Whitening::of(surfel);
-        let near = |facet: &Facet| facet.squared_deviations(surfel, &whitening, limit).is_some();
+    noisy.whiten();
+    let is_near = |noisy: &NoisyLeaf<'_>, place: usize| {
+        let (surfel, whitening) = (&noisy.surfels[place], &noisy.whitenings[place]);
+        let limit = noisy.squared[place].min(within) * (1.0 + ROUNDING);
+        let near = |facet: &Facet| facet.squared_deviations(surfel, whitening, limit).is_some();
         let reach = (limit * surfel.most_variance).sqrt();
         exact.ball.is_within(&surfel.point.mean, reach) && exact.facets.iter().any(near)
     };
@@ -128,7 +135,8 @@ fn to_exact(
     let mut least = within;
     let mut nearest = None;
     let (surfels, whitenings, squared) = noisy.whitened();
-    for ((surfel, whitening), least_of_it) in surfels.iter().zip(whitenings).zip(squared) {
+    let all = surfels.iter().zip(whitenings).zip(squared);
+    for ((surfel, whitening), least_of_it) in all.filter(|((surfel, _), _)| surfel.end != End::Open) {
         let limit = least_of_it.min(within);
         let reach = (limit * surfel.most_variance).sqrt();
         if !exact.ball.is_within(&surfel.point.mean, reach) {

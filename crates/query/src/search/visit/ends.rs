@@ -5,7 +5,7 @@
 
 use cloudtouch_noise::Scratch;
 
-use crate::cloud::{End, Surfel};
+use crate::cloud::End;
 use crate::search::compare::facet::Whitening;
 
 use super::leaf::NoisyLeaf;
@@ -14,21 +14,19 @@ use super::leaf::NoisyLeaf;
 pub(in crate::search) const ROUNDING: f64 = 1e-9;
 
 impl NoisyLeaf<'_> {
-    /// Lets those pieces end that something is near as they were fitted, by their squared deviations so far.
+    /// Lets those pieces end that something is near as they were fitted, by their places, after which nothing
+    /// is near those where that is open.
     pub(in crate::search) fn end_near(
         &mut self,
-        is_near: impl Fn(&Surfel, f64) -> bool,
+        is_near: impl Fn(&Self, usize) -> bool,
         scratch: &mut Scratch,
     ) {
         if !self.may_end {
             return;
         }
-        let all = self.surfels.iter().zip(&self.squared).enumerate();
-        let open = all.filter(|(_, (surfel, _))| surfel.end == End::Open);
-        let near: Vec<usize> = open
-            .filter(|(_, (surfel, squared))| is_near(surfel, **squared))
-            .map(|(place, _)| place)
-            .collect();
+        let is_open = |place: &usize| self.surfels[*place].end == End::Open;
+        let open = (0..self.surfels.len()).filter(is_open);
+        let near: Vec<usize> = open.filter(|&place| is_near(self, place)).collect();
         if near.is_empty() {
             return;
         }

@@ -55,7 +55,7 @@ pub(crate) struct NoisyLeaf<'a> {
     /// `None` until they are needed.
     pub(in crate::search) edges: Option<&'a LeafEdges>,
     /// For each surfel lengths in its standard deviations; empty until they are needed.
-    pub(super) whitenings: Vec<Whitening>,
+    pub(in crate::search) whitenings: Vec<Whitening>,
     /// For each surfel the squared deviations to the nearest piece of the other body, at most those
     /// of [`MOST_DEVIATIONS`].
     pub squared: Vec<f64>,
@@ -167,10 +167,14 @@ impl<'a> NoisyLeaf<'a> {
 
     /// Lengths in the standard deviations of each surfel, beside what is changed with them.
     pub(in crate::search) fn whitened(&mut self) -> (&[Surfel], &[Whitening], &mut [f64]) {
+        self.whiten();
+        (&self.surfels, &self.whitenings, &mut self.squared)
+    }
+
+    pub(in crate::search) fn whiten(&mut self) {
         if self.whitenings.is_empty() {
             self.whitenings = self.surfels.iter().map(Whitening::of).collect();
         }
-        (&self.surfels, &self.whitenings, &mut self.squared)
     }
 
     /// Gets its edges, once.
