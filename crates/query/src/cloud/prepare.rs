@@ -81,11 +81,7 @@ impl Cloud {
         self.prepared.visit_some_of_leaf(id, is_wanted, scratch, visit)
     }
 
-    pub(crate) fn leaf_surface(
-        &self,
-        id: NodeId,
-        scratch: &mut Scratch,
-    ) -> (&LeafSurface, bool) {
+    pub(crate) fn leaf_surface(&self, id: NodeId, scratch: &mut Scratch) -> (&LeafSurface, bool) {
         self.prepared.leaf_surface(id, scratch)
     }
 

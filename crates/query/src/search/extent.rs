@@ -3,7 +3,6 @@
 use cloudtouch_geom::{Pose, UncertainPoint, normal};
 
 use crate::body::BodyRef;
-use crate::cloud::End;
 use crate::mesh::Mesh;
 
 use super::compare::facet::Whitening;
@@ -172,7 +171,7 @@ fn nearest_to(
         match other {
             Leaf::Noisy(other) => {
                 // What did not have to end is not the nearest.
-                let ended = other.surfels.iter().filter(|other| other.end != End::Open);
+                let ended = other.surfels.iter().filter(|other| !other.may_end());
                 for on_other in ended {
                     if let Some(found) = squared_deviations(surfel, on_other, limit) {
                         (limit, nearest) = (found, Some(on_other.point));

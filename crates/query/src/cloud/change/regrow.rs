@@ -113,9 +113,7 @@ impl Prepared {
         amended.sort_unstable();
         amended.dedup();
         let amended: Vec<_> = (amended.par_iter())
-            .map_init(Scratch::default, |scratch, &leaf| {
-                self.primitives_of(leaf, scratch)
-            })
+            .map_init(Scratch::default, |scratch, &leaf| self.primitives_of(leaf, scratch))
             .flatten()
             .collect();
         self.tree.amend(&amended)?;

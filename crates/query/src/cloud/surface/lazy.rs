@@ -23,11 +23,7 @@ impl Prepared {
     }
 
     /// [`Self::leaf`] with what encloses it, by buffers that leaves nearby were computed with.
-    pub(crate) fn leaf_surface(
-        &self,
-        id: NodeId,
-        scratch: &mut Scratch,
-    ) -> (&LeafSurface, bool) {
+    pub(crate) fn leaf_surface(&self, id: NodeId, scratch: &mut Scratch) -> (&LeafSurface, bool) {
         let mut computed = false;
         let leaf = self.surface.leaves[id.index()].get_or_init(|| {
             computed = true;

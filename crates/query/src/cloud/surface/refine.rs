@@ -118,16 +118,11 @@ impl Prepared {
     ) -> Vec<(u32, Primitive, Covariance)> {
         let Some(node) = self.tree.leaf(leaf) else { return Vec::new() };
         let edges = self.near_halves(leaf, scratch);
-        let pieces = node.primitive_indices();
-        let surfels = match self.is_refined() {
-            true => self.leaf(leaf).0,
-            false => self.surface.ended[leaf.index()]
-                .get_or_init(|| self.told_together(pieces, scratch)),
-        };
+        let surfels = self.ended_leaf(leaf, scratch);
         let of = |((&piece, surfel), edges): ((&u32, &Surfel), [f64; 2])| {
             (piece, Primitive::point(surfel.point), extent(surfel, edges))
         };
-        pieces.iter().zip(surfels).zip(edges).map(of).collect()
+        node.primitive_indices().iter().zip(surfels).zip(edges).map(of).collect()
     }
 
     /// For each point of a leaf how far the near halves of its edges reach along its disc and across

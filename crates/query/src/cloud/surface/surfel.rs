@@ -54,6 +54,11 @@ impl Surfel {
         }
     }
 
+    /// Whether it is open where it ends.
+    pub(crate) fn may_end(&self) -> bool {
+        self.end == End::Open
+    }
+
     /// The same piece in another frame.
     pub(crate) fn moved(&self, motion: &Motion) -> Self {
         Self {

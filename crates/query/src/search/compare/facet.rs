@@ -123,7 +123,9 @@ pub(in crate::search) struct Whitening {
 impl Whitening {
     pub(in crate::search) fn of(surfel: &Surfel) -> Self {
         match surfel.normal {
-            Some(normal) if surfel.end != End::CutOff => Self::of_disc(&normal, &surfel.point.covariance),
+            Some(normal) if surfel.end != End::CutOff => {
+                Self::of_disc(&normal, &surfel.point.covariance)
+            }
             _ => Self::of_any(&surfel.point.covariance),
         }
     }

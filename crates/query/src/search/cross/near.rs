@@ -57,9 +57,8 @@ pub(in crate::search) fn may_cross_a_disc(
         offset.norm_squared() <= reach * reach && disc.normal.as_ref().is_some_and(is_along)
     };
     let from = of_edges.surfels.iter().filter_map(|from| Some((from, from.normal?)));
-    from.into_iter().any(|(from, normal)| {
-        of_discs.surfels.iter().any(|disc| crosses(from, &normal, disc))
-    })
+    from.into_iter()
+        .any(|(from, normal)| of_discs.surfels.iter().any(|disc| crosses(from, &normal, disc)))
 }
 
 /// The same for facets.
@@ -69,7 +68,8 @@ pub(in crate::search) fn may_cross_a_facet(of_edges: &NoisyLeaf<'_>, facets: &Ex
         let is_along = |across: &Vector3| {
             facet.height(&from.point.mean).abs() <= half * edge_along(normal, across)
         };
-        facet.normal.as_ref().is_some_and(is_along) && facet.way_from(&from.point.mean).norm() <= half
+        facet.normal.as_ref().is_some_and(is_along)
+            && facet.way_from(&from.point.mean).norm() <= half
     };
     let from = of_edges.surfels.iter().filter_map(|from| Some((from, from.normal?)));
     from.into_iter()

@@ -146,11 +146,12 @@ fn to_exact(
     };
     noisy.end_near(|noisy, place| is_in_reach(&noisy.surfels[place], most), scratch);
     let mut least = most;
-    let (surfels, whitenings, _) = noisy.whitened();
-    for (surfel, whitening) in surfels.iter().zip(whitenings) {
+    noisy.make_room();
+    for (place, surfel) in noisy.surfels.iter().enumerate() {
         if !is_in_reach(surfel, least) {
             continue;
         }
+        let whitening = noisy.whitening(place);
         for facet in exact.facets.iter() {
             least = least.min(facet.deviations_beyond(surfel, whitening, margin));
         }

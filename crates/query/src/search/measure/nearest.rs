@@ -3,8 +3,8 @@
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 use cloudtouch_noise::Scratch;
 
-use crate::cloud::{Ball, End, Surfel};
-use crate::search::compare::facet::Facet;
+use crate::cloud::{Ball, Surfel};
+use crate::search::compare::facet::Whitening;
 use crate::search::compare::meeting::squared_deviations;
 use crate::search::visit::ends::ROUNDING;
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
@@ -84,9 +84,8 @@ fn between_noisy(a: &mut NoisyLeaf<'_>, b: &mut NoisyLeaf<'_>, within: f64) -> O
     let mut least = within;
     let mut nearest = None;
     let mut most_of_b = b.squared.iter().copied().fold(0.0, f64::max);
-    let has_ended = |surfel: &Surfel| surfel.end != End::Open;
     for (on_a, least_of_a) in a.surfels.iter().zip(&mut a.squared) {
-        if !has_ended(on_a) {
+        if on_a.may_end() {
             continue;
         }
         let limit = least_of_a.max(most_of_b).min(within);
@@ -123,29 +122,32 @@ fn to_exact(
     within: f64,
     scratch: &mut Scratch,
 ) -> Option<Nearest> {
-    noisy.whiten();
+    noisy.make_room();
     let is_near = |noisy: &NoisyLeaf<'_>, place: usize| {
-        let (surfel, whitening) = (&noisy.surfels[place], &noisy.whitenings[place]);
+        let surfel = &noisy.surfels[place];
         let limit = noisy.squared[place].min(within) * (1.0 + ROUNDING);
-        let near = |facet: &Facet| facet.squared_deviations(surfel, whitening, limit).is_some();
         let reach = (limit * surfel.most_variance).sqrt();
-        exact.ball.is_within(&surfel.point.mean, reach) && exact.facets.iter().any(near)
+        let mut facets = exact.facets.iter();
+        let mut is_any_near = |whitening: &Whitening| {
+            facets.any(|facet| facet.squared_deviations(surfel, whitening, limit).is_some())
+        };
+        exact.ball.is_within(&surfel.point.mean, reach) && is_any_near(noisy.whitening(place))
     };
     noisy.end_near(is_near, scratch);
     let mut least = within;
     let mut nearest = None;
-    let (surfels, whitenings, squared) = noisy.whitened();
-    let all = surfels.iter().zip(whitenings).zip(squared);
-    for ((surfel, whitening), least_of_it) in all.filter(|((surfel, _), _)| surfel.end != End::Open) {
-        let limit = least_of_it.min(within);
-        let reach = (limit * surfel.most_variance).sqrt();
-        if !exact.ball.is_within(&surfel.point.mean, reach) {
+    for place in 0..noisy.surfels.len() {
+        let surfel = &noisy.surfels[place];
+        let mut least_of_it = noisy.squared[place];
+        let reach = (least_of_it.min(within) * surfel.most_variance).sqrt();
+        if surfel.may_end() || !exact.ball.is_within(&surfel.point.mean, reach) {
             continue;
         }
+        let whitening = noisy.whitening(place);
         for facet in exact.facets.iter() {
             let found = facet.squared_deviations(surfel, whitening, least_of_it.min(within));
             let Some((squared, way)) = found else { continue };
-            *least_of_it = squared;
+            least_of_it = squared;
             if squared < least {
                 least = squared;
                 let on_mesh: Point3 = surfel.point.mean + way;
@@ -159,6 +161,7 @@ fn to_exact(
                 });
             }
         }
+        noisy.squared[place] = least_of_it;
     }
     nearest
 }

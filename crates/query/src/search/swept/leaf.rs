@@ -73,10 +73,12 @@ impl<'a> Swept<'a> {
         id: NodeId,
         motion: Option<&Motion>,
         drift: &Drift,
-        known: (&mut Scratch, &mut Stats),
+        (scratch, stats): (&mut Scratch, &mut Stats),
     ) -> Self {
-        match Leaf::load(body, id, motion, known) {
-            Leaf::Noisy(leaf) => {
+        match Leaf::load(body, id, motion, (scratch, stats)) {
+            Leaf::Noisy(mut leaf) => {
+                // Less noise takes less of the way.
+                leaf.end_all(scratch);
                 let axes = axes_of(leaf.cloud, id, motion);
                 Self::Noisy(Box::new(SweptCloud::new(leaf, motion.copied(), axes, drift)))
             }

@@ -145,8 +145,8 @@ fn to_exact(
     most: f64,
 ) -> f64 {
     let mut least = most;
-    let (surfels, whitenings, _) = noisy.leaf.whitened();
-    for ((surfel, whitening), track) in surfels.iter().zip(whitenings).zip(&noisy.tracks) {
+    noisy.leaf.make_room();
+    for (place, (surfel, track)) in noisy.leaf.surfels.iter().zip(&noisy.tracks).enumerate() {
         let by_layer =
             |layer: &ExactLayer| layer.deviations((surfel, track), is_facet_still, drift);
         if !track.gets_to(&exact.leaf.ball, least * surfel.most_variance.sqrt())
@@ -154,6 +154,7 @@ fn to_exact(
         {
             continue;
         }
+        let whitening = noisy.leaf.whitening(place);
         for facet in exact.facets() {
             let of_facet =
                 to_facet((surfel, whitening, track), facet, is_facet_still, drift, least);

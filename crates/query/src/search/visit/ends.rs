@@ -5,8 +5,7 @@
 
 use cloudtouch_noise::Scratch;
 
-use crate::cloud::End;
-use crate::search::compare::facet::Whitening;
+use crate::cloud::Surfel;
 
 use super::leaf::NoisyLeaf;
 
@@ -14,6 +13,18 @@ use super::leaf::NoisyLeaf;
 pub(in crate::search) const ROUNDING: f64 = 1e-9;
 
 impl NoisyLeaf<'_> {
+    /// Lets all pieces end.
+    pub(in crate::search) fn end_all(&mut self, scratch: &mut Scratch) {
+        if self.may_end {
+            let ended = self.cloud.prepared().ended_leaf(self.id, scratch).iter();
+            self.surfels = match self.motion {
+                None => ended.copied().collect(),
+                Some(motion) => ended.map(|surfel| surfel.moved(&motion)).collect(),
+            };
+            self.may_end = false;
+        }
+    }
+
     /// Lets those pieces end that something is near as they were fitted, by their places, after which nothing
     /// is near those where that is open.
     pub(in crate::search) fn end_near(
@@ -24,8 +35,7 @@ impl NoisyLeaf<'_> {
         if !self.may_end {
             return;
         }
-        let is_open = |place: &usize| self.surfels[*place].end == End::Open;
-        let open = (0..self.surfels.len()).filter(is_open);
+        let open = (0..self.surfels.len()).filter(|&place| self.surfels[place].may_end());
         let near: Vec<usize> = open.filter(|&place| is_near(self, place)).collect();
         if near.is_empty() {
             return;
@@ -38,9 +48,9 @@ impl NoisyLeaf<'_> {
         for (place, surfel) in near.into_iter().zip(told) {
             surfels[place] = self.motion.map_or(surfel, |motion| surfel.moved(&motion));
             if let Some(whitening) = self.whitenings.get_mut(place) {
-                *whitening = Whitening::of(&surfels[place]);
+                whitening.take();
             }
         }
-        self.may_end = self.surfels.iter().any(|surfel| surfel.end == End::Open);
+        self.may_end = self.surfels.iter().any(Surfel::may_end);
     }
 }

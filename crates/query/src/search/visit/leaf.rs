@@ -1,6 +1,7 @@
 //! A leaf that the search came by, with what is known of its points so far.
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 use std::rc::Rc;
 
 use cloudtouch_bvh::NodeId;
@@ -8,7 +9,7 @@ use cloudtouch_geom::{Motion, Point3};
 use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
-use crate::cloud::{Ball, Cloud, DISC_SPACINGS, Edge, End, LeafEdges, LeafSurface, Slab, Surfel};
+use crate::cloud::{Ball, Cloud, DISC_SPACINGS, Edge, LeafEdges, LeafSurface, Slab, Surfel};
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 use crate::stats::Stats;
@@ -54,8 +55,8 @@ pub(crate) struct NoisyLeaf<'a> {
     /// Where they were measured, for most are told to be far from another leaf before they are moved;
     /// `None` until they are needed.
     pub(in crate::search) edges: Option<&'a LeafEdges>,
-    /// For each surfel lengths in its standard deviations; empty until they are needed.
-    pub(in crate::search) whitenings: Vec<Whitening>,
+    /// For each surfel lengths in its standard deviations, once they are needed.
+    pub(super) whitenings: Vec<OnceCell<Whitening>>,
     /// For each surfel the squared deviations to the nearest piece of the other body, at most those
     /// of [`MOST_DEVIATIONS`].
     pub squared: Vec<f64>,
@@ -138,9 +139,9 @@ impl<'a> NoisyLeaf<'a> {
         let (leaf, computed) = cloud.leaf_surface(id, scratch);
         stats.leaves_prepared += usize::from(computed);
         let LeafSurface { surfels, ball, slab } = leaf;
-        let surfels = cloud.prepared().ended_leaf(id).unwrap_or(surfels);
+        let surfels = cloud.prepared().known_ended(id).unwrap_or(surfels);
         let count = surfels.len();
-        let may_end = surfels.iter().any(|surfel| surfel.end == End::Open);
+        let may_end = surfels.iter().any(Surfel::may_end);
         let (surfels, ball, slab) = match motion {
             None => (Cow::Borrowed(&surfels[..]), *ball, *slab),
             Some(motion) => (
@@ -165,16 +166,17 @@ impl<'a> NoisyLeaf<'a> {
         }
     }
 
-    /// Lengths in the standard deviations of each surfel, beside what is changed with them.
-    pub(in crate::search) fn whitened(&mut self) -> (&[Surfel], &[Whitening], &mut [f64]) {
-        self.whiten();
-        (&self.surfels, &self.whitenings, &mut self.squared)
+    /// Makes room for the whitenings of its surfels.
+    pub(in crate::search) fn make_room(&mut self) {
+        if self.whitenings.is_empty() {
+            self.whitenings.resize_with(self.surfels.len(), OnceCell::new);
+        }
     }
 
-    pub(in crate::search) fn whiten(&mut self) {
-        if self.whitenings.is_empty() {
-            self.whitenings = self.surfels.iter().map(Whitening::of).collect();
-        }
+    /// Lengths in the standard deviations of a surfel; asked for after there is room.
+    pub(in crate::search) fn whitening(&self, place: usize) -> &Whitening {
+        // PERF: most pieces are told to be far beforehand.
+        self.whitenings[place].get_or_init(|| Whitening::of(&self.surfels[place]))
     }
 
     /// Gets its edges, once.

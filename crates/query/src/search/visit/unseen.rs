@@ -70,7 +70,9 @@ impl Unseen {
             parted.surfaces > 0.0 && parted.deviations >= deviations
         };
         let are_apart = match leaf {
-            Leaf::Noisy(leaf) => leaf.surfels.iter().all(|surfel| is_apart(self.from_piece(surfel))),
+            Leaf::Noisy(leaf) => {
+                leaf.surfels.iter().all(|surfel| is_apart(self.from_piece(surfel)))
+            }
             Leaf::Exact(leaf) => leaf.facets.iter().all(|facet| is_apart(self.from_facet(facet))),
         };
         are_apart.then_some(least)
