@@ -10,7 +10,6 @@ use super::accessors::cloud_accessors;
 use super::prepared::Prepared;
 use super::settings::CloudSettings;
 use super::surface::edge::Edge;
-use super::surface::leaf::LeafSurface;
 use super::surface::onward::Onward;
 use super::surface::surfel::Surfel;
 
@@ -79,10 +78,6 @@ impl Cloud {
         visit: impl FnMut(u32, &Surfel),
     ) -> bool {
         self.prepared.visit_some_of_leaf(id, is_wanted, scratch, visit)
-    }
-
-    pub(crate) fn leaf_surface(&self, id: NodeId, scratch: &mut Scratch) -> (&LeafSurface, bool) {
-        self.prepared.leaf_surface(id, scratch)
     }
 
     pub(crate) fn onward(&self, edge: &Edge, end: usize) -> Onward {

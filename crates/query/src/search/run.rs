@@ -2,7 +2,6 @@
 
 use cloudtouch_bvh::{Sought, SurfaceFlow, SurfacePair, visit_surfaces};
 use cloudtouch_geom::{Motion, Pose, Vector3};
-use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
@@ -11,14 +10,13 @@ use crate::stats::Stats;
 
 use super::compare::meeting::{Meeting, deviations_by_pose};
 use super::cross::crossings::Crossings;
-use super::cross::gather::{
-    NearDisc, add_edges_through_discs, add_edges_through_facets, add_mesh_through_discs,
-};
-use super::cross::near::{may_cross_a_disc, may_cross_a_facet, reaching, reaching_facets};
+use super::cross::gather::NearDisc;
+use super::cross::leaves::cross;
 use super::measure::nearest::{Nearest, nearest_pieces};
-use super::visit::around::{Around, OfMesh};
-use super::visit::leaf::{Between, Leaf, NoisyLeaf};
+use super::visit::around::Around;
+use super::visit::leaf::{Between, Leaf};
 use super::visit::leaves::Leaves;
+use super::visit::side::Side;
 use super::visit::trees::Trees;
 use super::visit::unseen::Unseen;
 use super::wrench::Wrench;
@@ -56,10 +54,9 @@ pub(crate) struct Found<'a> {
     pub deviations: f64,
     pub crossings: Crossings,
     around: Around,
-    /// Memory for the discs of a leaf that edges may pass, to use again, ...
+    /// Memory for the discs of a leaf that edges may pass, to use again.
     discs: Vec<NearDisc>,
-    /// ... and for fits of either body.
-    scratch: [Scratch; 2],
+    sides: [Side; 2],
     /// How many deviations above the least is looked.
     pub(super) further: f64,
     /// Whether what was left out can change neither of these.
@@ -69,8 +66,8 @@ pub(crate) struct Found<'a> {
 }
 
 /// Looks at the pairs of leaves where the surfaces may touch, up to so many deviations `further` than the least,
-/// until `is_enough` of the deviations
-/// and of the clearness of crossings, as far as found.
+/// until
+/// `is_enough` of the deviations and of the clearness of crossings, as far as found.
 pub(crate) fn search<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
@@ -81,10 +78,11 @@ pub(crate) fn search<'a>(
     let (deviations, at_least) = (MOST_DEVIATIONS, f64::INFINITY);
     let mut found = Found { deviations, further, at_least, ..Found::default() };
     let motion = Motion::from(a_from_b);
+    found.sides = [Side::default(), Side::moved(motion)];
     let mut trees = Trees::of(a, b);
     let outcome = visit_surfaces(trees.both(), a_from_b, SOUGHT, |pair| {
         stats.leaf_pairs += 1;
-        match found.told_apart((a, b), &motion, &pair, trees.may_be_loose(), stats) {
+        match found.told_apart((a, b), &pair, trees.may_be_loose(), stats) {
             Some(apart) => found.at_least = found.at_least.min(apart),
             None => found.add((a, b), &motion, &pair, stats),
         }
@@ -133,27 +131,26 @@ impl<'a> Found<'a> {
     fn told_apart(
         &mut self,
         (a, b): (BodyRef<'a>, BodyRef<'a>),
-        a_from_b: &Motion,
         pair: &SurfacePair,
         [is_a_loose, is_b_loose]: [bool; 2],
         stats: &mut Stats,
     ) -> Option<f64> {
         let most = self.deviations_of_interest();
-        let Self { leaves_a, leaves_b, around, scratch: [of_a, of_b], .. } = self;
+        let Self { leaves_a, leaves_b, around, sides: [of_a, of_b], .. } = self;
         let is_unseen_a = is_a_loose && !leaves_a.has(pair.a);
         let is_unseen_b = is_b_loose && !leaves_b.has(pair.b);
-        let unseen_a = is_unseen_a.then(|| Unseen::of(a, pair.a, None)).flatten();
-        let unseen_b = is_unseen_b.then(|| Unseen::of(b, pair.b, Some(a_from_b))).flatten();
+        let unseen_a = is_unseen_a.then(|| Unseen::of(a, pair.a, of_a)).flatten();
+        let unseen_b = is_unseen_b.then(|| Unseen::of(b, pair.b, of_b)).flatten();
         let is_b_first = match (&unseen_a, &unseen_b) {
             (None, None) => return None,
             (Some(a), Some(b)) => b.reach() > a.reach(),
             (unseen_a, _) => unseen_a.is_some(),
         };
         if is_b_first {
-            let load_b = || around.load(b, pair.b, Some(a_from_b), (of_b, stats));
+            let load_b = || around.load(b, pair.b, of_b, stats);
             unseen_a?.apart_from(leaves_b.get_or_load(pair.b, load_b), most)
         } else {
-            let load_a = || around.load(a, pair.a, None, (of_a, stats));
+            let load_a = || around.load(a, pair.a, of_a, stats);
             unseen_b?.apart_from(leaves_a.get_or_load(pair.a, load_a), most)
         }
     }
@@ -166,19 +163,19 @@ impl<'a> Found<'a> {
         stats: &mut Stats,
     ) {
         let most = self.deviations_of_interest();
-        let Self { around, scratch, .. } = self;
-        let load_a = || around.load(a, pair.a, None, (&mut scratch[0], stats));
+        let Self { around, sides, .. } = self;
+        let load_a = || around.load(a, pair.a, &mut sides[0], stats);
         let leaf_a = self.leaves_a.get_or_load(pair.a, load_a);
-        let load_b = || around.load(b, pair.b, Some(a_from_b), (&mut scratch[1], stats));
+        let load_b = || around.load(b, pair.b, &mut sides[1], stats);
         let leaf_b = self.leaves_b.get_or_load(pair.b, load_b);
         let Between { of_means, of_surfaces, most_std } = leaf_a.between(leaf_b);
         self.at_least = self.at_least.min(of_surfaces);
         // PERF: what the tree knows of leaves whose surface it has not seen is loose.
         let is_near = pair.deviations < most && of_means <= most * most_std;
-        let nearest = is_near.then(|| nearest_pieces(leaf_a, leaf_b, most, scratch));
+        let nearest = is_near.then(|| nearest_pieces(leaf_a, leaf_b, most, sides));
         if pair.may_cross && of_surfaces <= 0.0 {
             let found = (&mut self.crossings, around, &mut self.discs);
-            cross((a, b), a_from_b, (leaf_a, leaf_b), scratch, found);
+            cross((a, b), a_from_b, (leaf_a, leaf_b), sides, found);
         }
         let Some(nearest) = nearest.flatten() else { return };
         self.deviations = self.deviations.min(nearest.squared.sqrt());
@@ -189,70 +186,30 @@ impl<'a> Found<'a> {
     }
 }
 
-fn cross<'a>(
-    (a, b): (BodyRef<'a>, BodyRef<'a>),
-    a_from_b: &Motion,
-    leaves: (&mut Leaf<'a>, &mut Leaf<'a>),
-    [of_a, of_b]: &mut [Scratch; 2],
-    (crossings, known, discs): (&mut Crossings, &mut Around, &mut Vec<NearDisc>),
-) {
-    match leaves {
-        (Leaf::Noisy(on_a), Leaf::Noisy(on_b)) => {
-            let near = reaching(on_a, on_b);
-            let may_cross = |on_a: &NoisyLeaf<'a>| may_cross_a_disc(on_a, on_b);
-            if !near.is_none() && on_a.has_edges_or(may_cross, of_a) {
-                add_edges_through_discs(None, (on_a, near), on_b, discs, crossings);
-            }
-            let near = reaching(on_b, on_a);
-            let may_cross = |on_b: &NoisyLeaf<'a>| may_cross_a_disc(on_b, on_a);
-            if !near.is_none() && on_b.has_edges_or(may_cross, of_b) {
-                add_edges_through_discs(Some(a_from_b), (on_b, near), on_a, discs, crossings);
-            }
-        }
-        (Leaf::Noisy(noisy), Leaf::Exact(exact)) => {
-            let near = reaching_facets(noisy, exact);
-            if !near.is_none() {
-                if noisy.has_edges_or(|noisy| may_cross_a_facet(noisy, exact), of_a) {
-                    add_edges_through_facets(None, (noisy, near), exact, crossings);
-                }
-                let mut around = OfMesh { known, body: b, a_from_mesh: Some(a_from_b) };
-                add_mesh_through_discs(true, noisy, exact, &mut around, crossings);
-            }
-        }
-        (Leaf::Exact(exact), Leaf::Noisy(noisy)) => {
-            let near = reaching_facets(noisy, exact);
-            if !near.is_none() {
-                if noisy.has_edges_or(|noisy| may_cross_a_facet(noisy, exact), of_b) {
-                    add_edges_through_facets(Some(a_from_b), (noisy, near), exact, crossings);
-                }
-                let mut around = OfMesh { known, body: a, a_from_mesh: None };
-                add_mesh_through_discs(false, noisy, exact, &mut around, crossings);
-            }
-        }
-        // Two meshes are tested exactly and never come here.
-        (Leaf::Exact(_), Leaf::Exact(_)) => {}
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{Point3, PointCloud};
-    use cloudtouch_noise::SensorModel;
+    use cloudtouch_geom::{Point3, PointCloud, TriangleMesh};
+    use cloudtouch_noise::{Scratch, SensorModel};
     use cloudtouch_testkit::noise::{NoiseKind, add_noise};
     use cloudtouch_testkit::{scene, surface};
     use proptest::prelude::*;
 
     use super::*;
-    use crate::Cloud;
-    use crate::CloudSettings;
+    use crate::body::Body;
     use crate::cloud::{Edge, Surfel, edges_of};
+    use crate::mesh::Mesh;
     use crate::search::compare::meeting::squared_deviations;
     use crate::search::cross::crossing::through_disc;
     use crate::search::cross::crossings::Witness;
     use crate::search::cross::past::Past;
+    use crate::{Cloud, CloudSettings};
 
-    fn ball(count: usize, std: f64, seed: u64) -> Cloud {
-        let samples = surface::sample_surface(&scene::sphere(0.05, 2), count, seed);
+    fn shape(is_box: bool) -> TriangleMesh {
+        if is_box { scene::cuboid([0.1, 0.06, 0.03]) } else { scene::sphere(0.05, 2) }
+    }
+
+    fn cloud(of: &TriangleMesh, count: usize, std: f64, seed: u64) -> Cloud {
+        let samples = surface::sample_surface(of, count, seed);
         let points: Vec<Point3> =
             add_noise(&surface::positions(&samples), NoiseKind::Gaussian, std, seed);
         let mut settings = CloudSettings::new(SensorModel::Isotropic { std });
@@ -270,7 +227,7 @@ mod tests {
         let motion = Motion::from(a_from_cloud);
         let indices: Vec<u32> =
             cloud.tree().leaves().flat_map(|leaf| leaf.primitive_indices().to_vec()).collect();
-        let edges = edges_of(cloud.prepared(), &indices, &mut cloudtouch_noise::Scratch::default());
+        let edges = edges_of(cloud.prepared(), &indices, &mut Scratch::default());
         (
             surfels.map(|s| s.moved(&motion)).collect(),
             edges.iter().map(|e| e.moved(&motion)).collect(),
@@ -304,6 +261,10 @@ mod tests {
         (least.sqrt(), crossings.clearness())
     }
 
+    fn all_of<'a>(bodies: (BodyRef<'a>, BodyRef<'a>), pose: &Pose) -> Found<'a> {
+        search(bodies, pose, WITH_EXTENT, |_, _| false, &mut Stats::default()).unwrap()
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
 
@@ -313,18 +274,51 @@ mod tests {
             std in 0.0002_f64..0.01,
             offset in 0.05_f64..0.2,
             turn in -3.0_f64..3.0,
+            are_boxes in any::<[bool; 2]>(),
             seed in any::<u64>(),
         ) {
-            let (a, b) = (ball(counts[0], std, seed), ball(counts[1], std, !seed));
+            let [a, b] = [(0, seed), (1, !seed)]
+                .map(|(k, seed)| cloud(&shape(are_boxes[k]), counts[k], std, seed));
             let offset = Vector3::new(0.0, 0.3 * offset, offset);
             let pose = Pose::from_translation_rpy(offset, [turn, 0.3, 0.0]);
-            let found =
-                search((BodyRef::Cloud(&a), BodyRef::Cloud(&b)), &pose, WITH_EXTENT, |_, _| false, &mut Stats::default()).unwrap();
+            let found = all_of((BodyRef::Cloud(&a), BodyRef::Cloud(&b)), &pose);
             prop_assert!(found.is_complete);
             let (deviations, clearness) = brute_force(&a, &b, &pose);
             prop_assert!((found.deviations - deviations).abs() < 1e-9);
             // The sums run in different orders.
             prop_assert!((found.crossings.clearness() - clearness).abs() <= 1e-9 * (1.0 + clearness));
+        }
+
+        /// A refined cloud has ended everywhere, and its tree leaves out more.
+        #[test]
+        fn what_is_found_of_fresh_clouds_is_what_is_found_of_refined_ones(
+            mesh in 0..3_usize,
+            counts in [60_usize..400, 60_usize..400],
+            std in 0.0002_f64..0.01,
+            offset in 0.02_f64..0.15,
+            turn in -3.0_f64..3.0,
+            are_boxes in any::<[bool; 2]>(),
+            seed in any::<u64>(),
+        ) {
+            let offset = Vector3::new(0.3 * offset, 0.2 * offset, offset);
+            let pose = Pose::from_translation_rpy(offset, [turn, 0.3, 0.0]);
+            let body = |k: usize, is_refined: bool| {
+                let shape = shape(are_boxes[k]);
+                if k == mesh {
+                    return Body::Mesh(Mesh::prepare(&shape).unwrap());
+                }
+                let cloud = cloud(&shape, counts[k], std, seed.wrapping_add(k as u64));
+                Body::Cloud(if is_refined { cloud.refined().unwrap() } else { cloud })
+            };
+            let [fresh, refined] = [false, true].map(|refined| [body(0, refined), body(1, refined)]);
+            let [fresh, refined] = [&fresh, &refined].map(|[a, b]| (a.into(), b.into()));
+            let (one, other) = (all_of(fresh, &pose), all_of(refined, &pose));
+            prop_assert_eq!(one.deviations, other.deviations);
+            let is_same = |p: f64, q: f64| (p - q).abs() <= 1e-12 * (1.0 + p.abs());
+            let [p, q] = [&one, &other].map(|found| found.crossings.clearness());
+            prop_assert!(is_same(p, q), "clearness {p} and {q}");
+            let (p, q) = (one.extent(fresh, &pose), other.extent(refined, &pose));
+            prop_assert!(is_same(p, q), "extent {p} and {q}");
         }
     }
 }

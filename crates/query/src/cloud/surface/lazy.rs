@@ -12,14 +12,17 @@ use crate::cloud::prepared::Prepared;
 impl Prepared {
     /// The surface at the points of a leaf, as it is fitted, and whether this call computed it.
     pub(crate) fn leaf(&self, id: NodeId) -> (&[Surfel], bool) {
-        match self.surface.leaves[id.index()].get() {
+        let (leaf, computed) = match self.known_leaf(id) {
             // PERF: buffers that are not used cost as much as the rest.
-            Some(leaf) => (&leaf.surfels, false),
-            None => {
-                let (leaf, computed) = self.leaf_surface(id, &mut Scratch::default());
-                (&leaf.surfels, computed)
-            }
-        }
+            Some(leaf) => (leaf, false),
+            None => self.leaf_surface(id, &mut Scratch::default()),
+        };
+        (&leaf.surfels, computed)
+    }
+
+    /// [`Self::leaf`] with what encloses it, where it was computed.
+    pub(crate) fn known_leaf(&self, id: NodeId) -> Option<&LeafSurface> {
+        self.surface.leaves[id.index()].get().map(|leaf| &**leaf)
     }
 
     /// [`Self::leaf`] with what encloses it, by buffers that leaves nearby were computed with.

@@ -4,6 +4,7 @@ pub(super) mod cells;
 pub(super) mod crossing;
 pub(super) mod crossings;
 pub(super) mod gather;
+pub(super) mod leaves;
 pub(super) mod near;
 pub(super) mod past;
 pub(super) mod side;

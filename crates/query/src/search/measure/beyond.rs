@@ -2,7 +2,6 @@
 
 use cloudtouch_bvh::{Sought, SurfaceFlow, visit_surfaces};
 use cloudtouch_geom::{Motion, Pose};
-use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
@@ -14,6 +13,7 @@ use crate::stats::Stats;
 use crate::search::compare::meeting::{are_in_reach, deviations_beyond};
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use crate::search::visit::leaves::Leaves;
+use crate::search::visit::side::Side;
 use crate::search::visit::trees::Trees;
 
 /// What a search beyond a margin found.
@@ -68,20 +68,19 @@ fn least_within<'a>(
     let mut least = most;
     // A margin is told without what it cost.
     let mut stats = Stats::default();
-    let motion = Motion::from(a_from_b);
     let mut trees = Trees::of(a, b);
     // Of pairs whose boxes are within the margin no more is known than that: all are looked at.
     let reach = |least: f64| least.max(f64::MIN_POSITIVE);
     let sought = Sought { within: reach(most), margin, crossings: false, drift: None };
     let mut leaves: (Leaves<Leaf<'a>>, Leaves<Leaf<'a>>) = Default::default();
-    let [mut of_a, mut of_b]: [Scratch; 2] = Default::default();
+    let (mut of_a, mut of_b) = (Side::default(), Side::moved(Motion::from(a_from_b)));
     let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
-        let load_a = || Leaf::load(a, pair.a, None, (&mut of_a, &mut stats));
+        let load_a = || Leaf::load(a, pair.a, &mut of_a, &mut stats);
         let leaf_a = leaves.0.get_or_load(pair.a, load_a);
-        let load_b = || Leaf::load(b, pair.b, Some(&motion), (&mut of_b, &mut stats));
+        let load_b = || Leaf::load(b, pair.b, &mut of_b, &mut stats);
         let leaf_b = leaves.1.get_or_load(pair.b, load_b);
-        let scratch = [&mut of_a, &mut of_b];
-        least = least_of(leaf_a, leaf_b, margin, least, scratch).max(-MOST_DEVIATIONS);
+        let sides = [&mut of_a, &mut of_b];
+        least = least_of(leaf_a, leaf_b, margin, least, sides).max(-MOST_DEVIATIONS);
         if clock.is_over() || least <= enough {
             return SurfaceFlow::Stop;
         }
@@ -97,7 +96,7 @@ fn least_of(
     b: &mut Leaf<'_>,
     margin: f64,
     most: f64,
-    [of_a, of_b]: [&mut Scratch; 2],
+    [of_a, of_b]: [&mut Side; 2],
 ) -> f64 {
     match (a, b) {
         (Leaf::Noisy(a), Leaf::Noisy(b)) => {
@@ -138,13 +137,13 @@ fn to_exact(
     exact: &ExactLeaf,
     margin: f64,
     most: f64,
-    scratch: &mut Scratch,
+    side: &mut Side,
 ) -> f64 {
     let is_in_reach = |surfel: &Surfel, least: f64| {
         let reach = margin + least.max(0.0) * surfel.most_variance.sqrt();
         exact.ball.is_within(&surfel.point.mean, reach)
     };
-    noisy.end_near(|noisy, place| is_in_reach(&noisy.surfels[place], most), scratch);
+    noisy.end_near(|noisy, place| is_in_reach(&noisy.surfels[place], most), side);
     let mut least = most;
     noisy.make_room();
     for (place, surfel) in noisy.surfels.iter().enumerate() {

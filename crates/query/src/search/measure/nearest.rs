@@ -1,13 +1,13 @@
 //! The two pieces of surface of two leaves with the least deviations between them.
 
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
-use cloudtouch_noise::Scratch;
 
 use crate::cloud::{Ball, Surfel};
 use crate::search::compare::facet::Whitening;
 use crate::search::compare::meeting::squared_deviations;
 use crate::search::visit::ends::ROUNDING;
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
+use crate::search::visit::side::Side;
 
 /// The two pieces of two leaves with the least deviations between them.
 #[derive(Debug, Clone, Copy)]
@@ -37,10 +37,10 @@ pub(in crate::search) fn nearest_pieces(
     a: &mut Leaf<'_>,
     b: &mut Leaf<'_>,
     within: f64,
-    scratch: &mut [Scratch; 2],
+    sides: &mut [Side; 2],
 ) -> Option<Nearest> {
     let within = within * within;
-    let [of_a, of_b] = scratch;
+    let [of_a, of_b] = sides;
     match (a, b) {
         (Leaf::Noisy(a), Leaf::Noisy(b)) => {
             end_near_noisy(a, b, within, [of_a, of_b]);
@@ -58,7 +58,7 @@ fn end_near_noisy(
     a: &mut NoisyLeaf<'_>,
     b: &mut NoisyLeaf<'_>,
     within: f64,
-    [of_a, of_b]: [&mut Scratch; 2],
+    [of_a, of_b]: [&mut Side; 2],
 ) {
     let are_near = |(a, on_a): (&NoisyLeaf<'_>, usize), (b, on_b): (&NoisyLeaf<'_>, usize)| {
         let limit = a.squared[on_a].max(b.squared[on_b]).min(within) * (1.0 + ROUNDING);
@@ -120,7 +120,7 @@ fn to_exact(
     noisy: &mut NoisyLeaf<'_>,
     exact: &ExactLeaf,
     within: f64,
-    scratch: &mut Scratch,
+    side: &mut Side,
 ) -> Option<Nearest> {
     noisy.make_room();
     let is_near = |noisy: &NoisyLeaf<'_>, place: usize| {
@@ -133,7 +133,7 @@ fn to_exact(
         };
         exact.ball.is_within(&surfel.point.mean, reach) && is_any_near(noisy.whitening(place))
     };
-    noisy.end_near(is_near, scratch);
+    noisy.end_near(is_near, side);
     let mut least = within;
     let mut nearest = None;
     for place in 0..noisy.surfels.len() {

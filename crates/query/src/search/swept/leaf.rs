@@ -5,7 +5,6 @@ use std::borrow::Cow;
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Drift, Matrix3, Motion, Vector3};
-use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
@@ -16,6 +15,7 @@ use super::layer::{ExactLayer, Layer, span};
 use super::track::{Direction, SweptFacet, Track};
 use crate::search::compare::facet::Facet;
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
+use crate::search::visit::side::Side;
 
 /// A leaf in the frame of A, and where its pieces get to.
 #[derive(Debug)]
@@ -67,20 +67,20 @@ pub(super) struct EdgeTrack {
 }
 
 impl<'a> Swept<'a> {
-    /// A leaf of a body, moved to the frame of A by `motion`, or of A itself.
+    /// A leaf of a body, moved to the frame of A.
     pub(super) fn load(
         body: BodyRef<'a>,
         id: NodeId,
-        motion: Option<&Motion>,
+        side: &mut Side,
         drift: &Drift,
-        (scratch, stats): (&mut Scratch, &mut Stats),
+        stats: &mut Stats,
     ) -> Self {
-        match Leaf::load(body, id, motion, (scratch, stats)) {
+        match Leaf::load(body, id, side, stats) {
             Leaf::Noisy(mut leaf) => {
                 // Less noise takes less of the way.
-                leaf.end_all(scratch);
-                let axes = axes_of(leaf.cloud, id, motion);
-                Self::Noisy(Box::new(SweptCloud::new(leaf, motion.copied(), axes, drift)))
+                leaf.end_all(side);
+                let axes = axes_of(leaf.cloud, id, side.motion.as_ref());
+                Self::Noisy(Box::new(SweptCloud::new(leaf, side.motion, axes, drift)))
             }
             Leaf::Exact(leaf) => Self::Exact(SweptMesh::new(leaf, drift)),
         }
@@ -123,9 +123,9 @@ impl<'a> SweptCloud<'a> {
     }
 
     /// Gets its edges, once.
-    pub(super) fn load_edges(&mut self, drift: &Drift, scratch: &mut Scratch) {
+    pub(super) fn load_edges(&mut self, drift: &Drift, side: &mut Side) {
         if self.edges.is_none() {
-            self.leaf.load_edges(scratch);
+            self.leaf.load_edges(side);
             let edges = self.leaf.edges.map_or(&[][..], |of_leaf| &of_leaf.edges);
             let all = match &self.motion {
                 None => Cow::Borrowed(edges),

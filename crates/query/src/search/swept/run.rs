@@ -2,7 +2,6 @@
 
 use cloudtouch_bvh::{Sought, SurfaceFlow, SurfacePair, visit_surfaces};
 use cloudtouch_geom::{Drift, Motion, Pose};
-use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
@@ -24,6 +23,7 @@ use super::pool::Passages;
 use super::track::Direction;
 use crate::search::visit::around::{Around, OfMesh};
 use crate::search::visit::leaves::Leaves;
+use crate::search::visit::side::Side;
 use crate::search::visit::trees::Trees;
 
 /// What the evidence can be on the way, at most.
@@ -56,7 +56,7 @@ pub(crate) fn reach_of<'a>(
         passages: Passages::default(),
         around: Around::default(),
         dividing: Dividing::default(),
-        scratch: Default::default(),
+        sides: [Side::default(), Side::moved(Motion::from(a_from_b))],
     };
     let mut trees = Trees::of(a, b);
     let is_exact = matches!((a, b), (BodyRef::Mesh(_), BodyRef::Mesh(_)));
@@ -85,7 +85,7 @@ struct Way<'a> {
     passages: Passages,
     around: Around,
     dividing: Dividing,
-    scratch: [Scratch; 2],
+    sides: [Side; 2],
 }
 
 impl<'a> Way<'a> {
@@ -93,17 +93,17 @@ impl<'a> Way<'a> {
         let (a, b) = self.bodies;
         let (motion, drifts) = (&self.a_from_b, &self.drifts);
         let (of_a, of_b) = &mut self.leaves;
-        let [scratch_a, scratch_b] = &mut self.scratch;
-        let load_a = || Swept::load(a, pair.a, None, &drifts.of_a, (scratch_a, stats));
+        let [side_a, side_b] = &mut self.sides;
+        let load_a = || Swept::load(a, pair.a, side_a, &drifts.of_a, stats);
         let leaf_a = of_a.get_or_load(pair.a, load_a);
-        let load_b = || Swept::load(b, pair.b, Some(motion), &drifts.of_b, (scratch_b, stats));
+        let load_b = || Swept::load(b, pair.b, side_b, &drifts.of_b, stats);
         let leaf_b = of_b.get_or_load(pair.b, load_b);
         if pair.deviations < self.deviations {
             self.deviations = least_of(leaf_a, leaf_b, &drifts.of_b, self.deviations);
         }
         if pair.may_cross {
             let told = (&mut self.passages, &mut self.around, &mut self.dividing);
-            cross((a, b), motion, (leaf_a, leaf_b), drifts, &mut self.scratch, told);
+            cross((a, b), motion, (leaf_a, leaf_b), drifts, &mut self.sides, told);
         }
     }
 }
@@ -171,7 +171,7 @@ fn cross_discs(
     of_edges: &mut SweptCloud<'_>,
     of_discs: &SweptCloud<'_>,
     drift: &Drift,
-    scratch: &mut Scratch,
+    side: &mut Side,
     told: (&mut Passages, &mut Dividing),
 ) {
     let dividing = *told.1;
@@ -181,7 +181,7 @@ fn cross_discs(
     if !may_meet(of_edges) || !may_reach(of_edges, &of_discs.leaf, drift) {
         return;
     }
-    of_edges.load_edges(drift, scratch);
+    of_edges.load_edges(drift, side);
     if may_meet(of_edges) {
         add_edges_through_discs(is_a, of_edges, &of_discs.leaf, drift, told);
     }
@@ -192,7 +192,7 @@ fn cross<'a>(
     a_from_b: &Motion,
     leaves: (&mut Swept<'a>, &mut Swept<'a>),
     drifts: &Drifts,
-    [of_a, of_b]: &mut [Scratch; 2],
+    [of_a, of_b]: &mut [Side; 2],
     (passages, known, dividing): (&mut Passages, &mut Around, &mut Dividing),
 ) {
     match leaves {

@@ -4,7 +4,6 @@ use std::rc::Rc;
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Point3};
-use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::mesh::Mesh;
@@ -12,6 +11,7 @@ use crate::stats::Stats;
 
 use super::leaf::{ExactLeaf, Leaf, facets_of};
 use super::leaves::Leaves;
+use super::side::Side;
 use crate::search::compare::facet::Facet;
 
 /// Facets of the mesh of a pair in the frame of A, by the leaves of its tree: many discs pass the same
@@ -20,18 +20,18 @@ use crate::search::compare::facet::Facet;
 pub(in crate::search) struct Around(Leaves<Rc<Vec<Facet>>>);
 
 impl Around {
-    /// A leaf of a body, moved to the frame of A by `motion`, or of A itself.
+    /// A leaf of a body, moved to the frame of A.
     pub(in crate::search) fn load<'a>(
         &mut self,
         body: BodyRef<'a>,
         id: NodeId,
-        motion: Option<&Motion>,
-        (scratch, stats): (&mut Scratch, &mut Stats),
+        side: &mut Side,
+        stats: &mut Stats,
     ) -> Leaf<'a> {
         match body {
-            BodyRef::Cloud(_) => Leaf::load(body, id, motion, (scratch, stats)),
+            BodyRef::Cloud(_) => Leaf::load(body, id, side, stats),
             BodyRef::Mesh(mesh) => {
-                let place = self.place(mesh, id, motion);
+                let place = self.place(mesh, id, side.motion.as_ref());
                 Leaf::Exact(ExactLeaf::of(Rc::clone(self.0.at(place))))
             }
         }

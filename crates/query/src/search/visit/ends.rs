@@ -3,23 +3,22 @@
 //! Where a piece ends takes the fits of those beside it, most of what a first query costs. As fitted it is
 //! never known better than where it has ended, so that what is too far from it as fitted is too far.
 
-use cloudtouch_noise::Scratch;
-
 use crate::cloud::Surfel;
 
 use super::leaf::NoisyLeaf;
+use super::side::Side;
 
 /// Rounding of deviations, by which they may be more as fitted, relative, generously.
 pub(in crate::search) const ROUNDING: f64 = 1e-9;
 
 impl NoisyLeaf<'_> {
     /// Lets all pieces end.
-    pub(in crate::search) fn end_all(&mut self, scratch: &mut Scratch) {
+    pub(in crate::search) fn end_all(&mut self, side: &mut Side) {
         if self.may_end {
-            let ended = self.cloud.prepared().ended_leaf(self.id, scratch).iter();
-            self.surfels = match self.motion {
+            let ended = self.cloud.prepared().ended_leaf(self.id, side.scratch()).iter();
+            self.surfels = match &side.motion {
                 None => ended.copied().collect(),
-                Some(motion) => ended.map(|surfel| surfel.moved(&motion)).collect(),
+                Some(motion) => ended.map(|surfel| surfel.moved(motion)).collect(),
             };
             self.may_end = false;
         }
@@ -30,7 +29,7 @@ impl NoisyLeaf<'_> {
     pub(in crate::search) fn end_near(
         &mut self,
         is_near: impl Fn(&Self, usize) -> bool,
-        scratch: &mut Scratch,
+        side: &mut Side,
     ) {
         if !self.may_end {
             return;
@@ -43,10 +42,10 @@ impl NoisyLeaf<'_> {
         let cloud = self.cloud;
         let pieces = cloud.tree().leaf(self.id).map_or(&[][..], |leaf| leaf.primitive_indices());
         let pieces: Vec<u32> = near.iter().map(|&place| pieces[place]).collect();
-        let told = cloud.prepared().told_together(&pieces, scratch);
+        let told = cloud.prepared().told_together(&pieces, side.scratch());
         let surfels = self.surfels.to_mut();
         for (place, surfel) in near.into_iter().zip(told) {
-            surfels[place] = self.motion.map_or(surfel, |motion| surfel.moved(&motion));
+            surfels[place] = side.motion.map_or(surfel, |motion| surfel.moved(&motion));
             if let Some(whitening) = self.whitenings.get_mut(place) {
                 whitening.take();
             }

@@ -6,7 +6,6 @@ use std::rc::Rc;
 
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Motion, Point3};
-use cloudtouch_noise::Scratch;
 
 use crate::body::BodyRef;
 use crate::cloud::{Ball, Cloud, DISC_SPACINGS, Edge, LeafEdges, LeafSurface, Slab, Surfel};
@@ -14,6 +13,7 @@ use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::Mesh;
 use crate::stats::Stats;
 
+use super::side::Side;
 use crate::search::compare::facet::{Facet, Whitening};
 use crate::search::compare::meeting::probability_at;
 
@@ -47,8 +47,6 @@ pub(crate) struct ExactLeaf {
 pub(crate) struct NoisyLeaf<'a> {
     pub(in crate::search) cloud: &'a Cloud,
     pub(super) id: NodeId,
-    /// From where it was measured to the frame of A; `None` for one of A.
-    pub(super) motion: Option<Motion>,
     /// Whether of any piece it is open where it ends.
     pub(super) may_end: bool,
     pub surfels: Cow<'a, [Surfel]>,
@@ -70,18 +68,18 @@ pub(crate) struct NoisyLeaf<'a> {
 }
 
 impl<'a> Leaf<'a> {
-    /// A leaf of a body, moved to the frame of A by `motion`, or of A itself.
+    /// A leaf of a body, moved to the frame of A.
     pub(in crate::search) fn load(
         body: BodyRef<'a>,
         id: NodeId,
-        motion: Option<&Motion>,
-        (scratch, stats): (&mut Scratch, &mut Stats),
+        side: &mut Side,
+        stats: &mut Stats,
     ) -> Self {
         match body {
-            BodyRef::Cloud(cloud) => {
-                Self::Noisy(NoisyLeaf::load(cloud, id, motion, (scratch, stats)))
+            BodyRef::Cloud(cloud) => Self::Noisy(NoisyLeaf::load(cloud, id, side, stats)),
+            BodyRef::Mesh(mesh) => {
+                Self::Exact(ExactLeaf::of(Rc::new(facets_of(mesh, id, side.motion.as_ref()))))
             }
-            BodyRef::Mesh(mesh) => Self::Exact(ExactLeaf::of(Rc::new(facets_of(mesh, id, motion)))),
         }
     }
 
@@ -129,21 +127,20 @@ pub(super) fn facets_of(mesh: &Mesh, id: NodeId, motion: Option<&Motion>) -> Vec
 }
 
 impl<'a> NoisyLeaf<'a> {
-    /// A leaf of a cloud, moved to the frame of A by `motion`, or of A itself.
-    fn load(
-        cloud: &'a Cloud,
-        id: NodeId,
-        motion: Option<&Motion>,
-        (scratch, stats): (&mut Scratch, &mut Stats),
-    ) -> Self {
-        let (leaf, computed) = cloud.leaf_surface(id, scratch);
+    /// A leaf of a cloud, moved to the frame of A.
+    fn load(cloud: &'a Cloud, id: NodeId, side: &mut Side, stats: &mut Stats) -> Self {
+        let prepared = cloud.prepared();
+        let (leaf, computed) = match prepared.known_leaf(id) {
+            Some(leaf) => (leaf, false),
+            None => prepared.leaf_surface(id, side.scratch()),
+        };
         stats.leaves_prepared += usize::from(computed);
         let LeafSurface { surfels, ball, slab } = leaf;
-        let surfels = cloud.prepared().known_ended(id).unwrap_or(surfels);
+        let surfels = prepared.known_ended(id).unwrap_or(surfels);
         let count = surfels.len();
         let may_end = surfels.iter().any(Surfel::may_end);
-        let (surfels, ball, slab) = match motion {
-            None => (Cow::Borrowed(&surfels[..]), *ball, *slab),
+        let (surfels, ball, slab) = match &side.motion {
+            None => (Cow::Borrowed(surfels), *ball, *slab),
             Some(motion) => (
                 surfels.iter().map(|s| s.moved(motion)).collect(),
                 ball.moved(motion),
@@ -153,7 +150,6 @@ impl<'a> NoisyLeaf<'a> {
         Self {
             cloud,
             id,
-            motion: motion.copied(),
             may_end,
             surfels,
             edges: None,
@@ -180,20 +176,21 @@ impl<'a> NoisyLeaf<'a> {
     }
 
     /// Gets its edges, once.
-    pub(in crate::search) fn load_edges(&mut self, scratch: &mut Scratch) {
-        self.edges.get_or_insert_with(|| self.cloud.prepared().leaf_edges(self.id, scratch));
+    pub(in crate::search) fn load_edges(&mut self, side: &mut Side) {
+        self.has_edges_or(|_| true, side);
     }
 
     /// Gets them where they are known, or where it is worth to join what they lead to; whether it has them.
     pub(in crate::search) fn has_edges_or(
         &mut self,
         are_worth: impl FnOnce(&Self) -> bool,
-        scratch: &mut Scratch,
+        side: &mut Side,
     ) -> bool {
         if self.edges.is_none() {
-            self.edges = self.cloud.prepared().known_edges(self.id);
+            let prepared = self.cloud.prepared();
+            self.edges = prepared.known_edges(self.id);
             if self.edges.is_none() && are_worth(self) {
-                self.load_edges(scratch);
+                self.edges = Some(prepared.leaf_edges(self.id, side.scratch()));
             }
         }
         self.edges.is_some()

@@ -4,5 +4,6 @@ pub(super) mod around;
 pub(super) mod ends;
 pub(super) mod leaf;
 pub(super) mod leaves;
+pub(super) mod side;
 pub(super) mod trees;
 pub(super) mod unseen;

@@ -6,13 +6,14 @@
 //! spares these their fits.
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::{Matrix3, Motion, Point3, Vector3};
+use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
 use crate::body::BodyRef;
 use crate::cloud::{DISC_SPACINGS, EDGE_SLOPE, Surfel};
 use crate::search::compare::facet::Facet;
 
 use super::leaf::Leaf;
+use super::side::Side;
 
 /// Rounding of distances, relative, generously.
 const ROUNDING: f64 = 1e-9;
@@ -39,16 +40,12 @@ struct Parted {
 }
 
 impl Unseen {
-    /// A leaf, moved to the frame of A by `motion`, or of A itself; none of a mesh.
-    pub(in crate::search) fn of(
-        body: BodyRef<'_>,
-        id: NodeId,
-        motion: Option<&Motion>,
-    ) -> Option<Self> {
+    /// A leaf, moved to the frame of A; none of a mesh.
+    pub(in crate::search) fn of(body: BodyRef<'_>, id: NodeId, side: &Side) -> Option<Self> {
         let BodyRef::Cloud(cloud) = body else { return None };
         let node = cloud.tree().leaf(id)?;
         let obb = node.obb();
-        let (centre, axes) = match motion {
+        let (centre, axes) = match &side.motion {
             None => (obb.centre, obb.axes),
             Some(motion) => (motion.point(&obb.centre), motion.rotation() * obb.axes),
         };
@@ -71,16 +68,18 @@ impl Unseen {
         };
         let are_apart = match leaf {
             Leaf::Noisy(leaf) => {
-                leaf.surfels.iter().all(|surfel| is_apart(self.from_piece(surfel)))
+                leaf.surfels.iter().all(|surfel| is_apart(self.parted_from_piece(surfel)))
             }
-            Leaf::Exact(leaf) => leaf.facets.iter().all(|facet| is_apart(self.from_facet(facet))),
+            Leaf::Exact(leaf) => {
+                leaf.facets.iter().all(|facet| is_apart(self.parted_from_facet(facet)))
+            }
         };
         are_apart.then_some(least)
     }
 
     /// From a piece: whatever its edges are, the half that is counted at it is no longer than its disc is wide,
     /// and runs along the surface.
-    fn from_piece(&self, surfel: &Surfel) -> Parted {
+    fn parted_from_piece(&self, surfel: &Surfel) -> Parted {
         let [shift, reach] = self.room;
         let offset = self.centre - surfel.point.mean;
         let beyond = self.axes.tr_mul(&offset).abs() - self.half_extents;
@@ -100,7 +99,7 @@ impl Unseen {
         }
     }
 
-    fn from_facet(&self, facet: &Facet) -> Parted {
+    fn parted_from_facet(&self, facet: &Facet) -> Parted {
         let [shift, reach] = self.room;
         let way = facet.way_from(&self.centre);
         let slack = ROUNDING * (way.norm() + self.half_extents.norm());
@@ -113,5 +112,118 @@ impl Unseen {
     /// Half its width along a unit vector, m.
     fn half_width(&self, n: &Vector3) -> f64 {
         self.axes.tr_mul(n).abs().dot(&self.half_extents)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
+    use nalgebra::Rotation3;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::cloud::End;
+    use crate::search::compare::facet::Whitening;
+    use crate::search::compare::meeting::squared_deviations;
+
+    fn vector(of: [f64; 3]) -> Vector3 {
+        Vector3::from(of)
+    }
+
+    fn unit() -> impl Strategy<Value = Vector3> {
+        prop::array::uniform3(-1.0..1.0_f64)
+            .prop_filter_map("a direction", |v| vector(v).try_normalize(1e-3))
+    }
+
+    /// A box of some centimetres about the origin.
+    fn unseen() -> impl Strategy<Value = Unseen> {
+        let angles = prop::array::uniform3(-3.0..3.0_f64);
+        let sizes = prop::array::uniform3(0.001..0.03_f64);
+        (angles, sizes, [0.0..0.01_f64, 0.001..0.02], 0.001..0.01_f64).prop_map(
+            |([roll, pitch, yaw], sizes, room, std)| Unseen {
+                centre: Point3::origin(),
+                axes: Rotation3::from_euler_angles(roll, pitch, yaw).into_inner(),
+                half_extents: vector(sizes),
+                room,
+                std,
+            },
+        )
+    }
+
+    /// Where in the box a point was measured, in half its sides; which way its surface is from there; which way
+    /// that reaches.
+    type Draw = ([f64; 3], Vector3, Vector3);
+
+    fn draws() -> impl Strategy<Value = Vec<Draw>> {
+        let one = (prop::array::uniform3(prop::sample::select(vec![-1.0, 1.0])), unit(), unit());
+        prop::collection::vec(one, 60)
+    }
+
+    /// A piece of the unseen leaf, as far off as it may be, and a place of its surface.
+    fn drawn(unseen: &Unseen, (corner, off, reach): Draw) -> (Surfel, Point3) {
+        let measured = unseen.axes * vector(corner).component_mul(&unseen.half_extents);
+        let mean = unseen.centre + measured + unseen.room[0] * off;
+        let covariance = Covariance::isotropic(unseen.std.powi(2));
+        let surfel = surfel(UncertainPoint { mean, covariance }, unseen.room[1], None, unseen.std);
+        (surfel, mean + unseen.room[1] * reach)
+    }
+
+    fn surfel(point: UncertainPoint, spacing: f64, normal: Option<Vector3>, across: f64) -> Surfel {
+        let (end, across) = (End::Nowhere, across * across);
+        let most_variance = point.covariance.max_std().powi(2);
+        Surfel { index: 0, point, end, spacing, most_variance, across, normal }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn no_piece_of_an_unseen_leaf_is_nearer_to_another(
+            unseen in unseen(),
+            (way, distance) in (unit(), 0.01..0.15_f64),
+            (normal, spacing) in (unit(), 0.001..0.02_f64),
+            stds in [0.0002..0.005_f64, 0.001..0.01],
+            along in prop::array::uniform2(-1.0..1.0_f64),
+            draws in draws(),
+        ) {
+            let mean = Point3::from(distance * way);
+            let [across, wide] = stds;
+            let normal = UnitVector3::new_unchecked(normal);
+            let point = UncertainPoint { mean, covariance: Covariance::from_axis(&normal, across, wide) };
+            let piece = surfel(point, spacing, Some(*normal), across);
+            let Parted { surfaces, deviations } = unseen.parted_from_piece(&piece);
+            // The end of half an edge that rises as steeply as any, or lies in the disc.
+            let aside = normal.cross(&way).try_normalize(1e-6).unwrap_or_else(|| normal.cross(&Vector3::x()));
+            let other = normal.cross(&aside);
+            let flat = (along[0] * aside + along[1] * other).try_normalize(1e-6).unwrap_or(aside);
+            let steep = EDGE_SLOPE.mul_add(-EDGE_SLOPE, 1.0).sqrt() * flat - EDGE_SLOPE * *normal * normal.dot(&way).signum();
+            let ends = [flat, steep].map(|along| mean + DISC_SPACINGS * spacing * along);
+            for draw in draws {
+                let (inside, place) = drawn(&unseen, draw);
+                let squared = squared_deviations(&piece, &inside, f64::INFINITY).unwrap();
+                prop_assert!(squared.sqrt() >= deviations * (1.0 - 1e-9), "{} and {deviations}", squared.sqrt());
+                for end in ends {
+                    let gap = (end - place).norm();
+                    prop_assert!(gap >= surfaces - 1e-9, "{gap} and {surfaces}");
+                }
+            }
+        }
+
+        #[test]
+        fn no_piece_of_an_unseen_leaf_is_nearer_to_a_facet(
+            unseen in unseen(),
+            corners in prop::array::uniform3(prop::array::uniform3(-0.1..0.1_f64)),
+            draws in draws(),
+        ) {
+            let facet = Facet::new(0, corners.map(Point3::from));
+            let Parted { surfaces, deviations } = unseen.parted_from_facet(&facet);
+            for draw in draws {
+                let (inside, place) = drawn(&unseen, draw);
+                let whitening = Whitening::of(&inside);
+                let found = facet.squared_deviations(&inside, &whitening, f64::INFINITY).unwrap();
+                prop_assert!(found.0.sqrt() >= deviations * (1.0 - 1e-9));
+                prop_assert!(facet.way_from(&place).norm() >= surfaces - 1e-9);
+            }
+        }
     }
 }
