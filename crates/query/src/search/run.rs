@@ -18,7 +18,7 @@ use super::visit::leaf::{Between, Leaf};
 use super::visit::leaves::Leaves;
 use super::visit::side::Side;
 use super::visit::trees::Trees;
-use super::visit::unseen::Unseen;
+use super::visit::unseen::{Parted, told_apart};
 use super::wrench::Wrench;
 
 /// Places that are more than this many deviations above the least are not looked at, where it counts over how many
@@ -126,33 +126,21 @@ impl<'a> Found<'a> {
             .unwrap_or_else(Wrench::zeros)
     }
 
-    /// How far apart the surfaces of two leaves are, m, where one of them tells that the other, whose surface was
-    /// not looked at yet, changes nothing.
+    /// How far apart the surfaces of two leaves are, m, where one tells that the other, whose surface was not
+    /// looked at yet, changes nothing.
     fn told_apart(
         &mut self,
-        (a, b): (BodyRef<'a>, BodyRef<'a>),
+        bodies: (BodyRef<'a>, BodyRef<'a>),
         pair: &SurfacePair,
-        [is_a_loose, is_b_loose]: [bool; 2],
+        are_loose: [bool; 2],
         stats: &mut Stats,
     ) -> Option<f64> {
         let most = self.deviations_of_interest();
-        let Self { leaves_a, leaves_b, around, sides: [of_a, of_b], .. } = self;
-        let is_unseen_a = is_a_loose && !leaves_a.has(pair.a);
-        let is_unseen_b = is_b_loose && !leaves_b.has(pair.b);
-        let unseen_a = is_unseen_a.then(|| Unseen::of(a, pair.a, of_a)).flatten();
-        let unseen_b = is_unseen_b.then(|| Unseen::of(b, pair.b, of_b)).flatten();
-        let is_b_first = match (&unseen_a, &unseen_b) {
-            (None, None) => return None,
-            (Some(a), Some(b)) => b.reach() > a.reach(),
-            (unseen_a, _) => unseen_a.is_some(),
-        };
-        if is_b_first {
-            let load_b = || around.load(b, pair.b, of_b, stats);
-            unseen_a?.apart_from(leaves_b.get_or_load(pair.b, load_b), most)
-        } else {
-            let load_a = || around.load(a, pair.a, of_a, stats);
-            unseen_b?.apart_from(leaves_a.get_or_load(pair.a, load_a), most)
-        }
+        let Self { leaves_a, leaves_b, around, sides, .. } = self;
+        let load = |body, id, side: &mut Side| around.load(body, id, side, stats);
+        let is_apart =
+            |parted: &Parted| parted.surfaces > 0.0 && parted.deviations_beyond(0.0) >= most;
+        told_apart(bodies, pair, are_loose, (leaves_a, leaves_b), sides, load, is_apart)
     }
 
     fn add(
@@ -196,12 +184,14 @@ mod tests {
 
     use super::*;
     use crate::body::Body;
+    use crate::classifier::Clock;
     use crate::cloud::{Edge, Surfel, edges_of};
     use crate::mesh::Mesh;
     use crate::search::compare::meeting::squared_deviations;
     use crate::search::cross::crossing::through_disc;
     use crate::search::cross::crossings::Witness;
     use crate::search::cross::past::Past;
+    use crate::search::least_beyond;
     use crate::{Cloud, CloudSettings};
 
     fn shape(is_box: bool) -> TriangleMesh {
@@ -319,6 +309,12 @@ mod tests {
             prop_assert!(is_same(p, q), "clearness {p} and {q}");
             let (p, q) = (one.extent(fresh, &pose), other.extent(refined, &pose));
             prop_assert!(is_same(p, q), "extent {p} and {q}");
+            let clock = Clock::new(std::time::Instant::now(), None);
+            for margin in [0.0, 0.004, 0.03] {
+                let beyond = |bodies| least_beyond(bodies, &pose, margin, &clock).unwrap();
+                let (p, q) = (beyond(fresh), beyond(refined));
+                prop_assert_eq!(p.deviations, q.deviations, "beyond {} m", margin);
+            }
         }
     }
 }

@@ -61,10 +61,25 @@ pub(in crate::search) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) 
     (squared < limit).then_some(squared.max(0.0))
 }
 
-/// Whether two pieces, wherever they end, may be fewer deviations than some from being within a margin (m).
-pub(in crate::search) fn are_in_reach(a: &Surfel, b: &Surfel, margin: f64, limit: f64) -> bool {
-    let reach = margin + limit.max(0.0) * (a.most_variance + b.most_variance).sqrt();
-    (b.point.mean - a.point.mean).norm_squared() <= reach * reach
+/// Whether two pieces, wherever they end, may be fewer deviations than some from being within a margin (m), by the way
+/// between them.
+pub(in crate::search) fn may_be_beyond(a: &Surfel, b: &Surfel, margin: f64, limit: f64) -> bool {
+    let offset = b.point.mean - a.point.mean;
+    let variance =
+        |n: &Vector3| a.point.covariance.variance_along(n) + b.point.covariance.variance_along(n);
+    offset.try_normalize(0.0).is_none_or(|n| is_in_reach(&offset, variance(&n), margin, limit))
+}
+
+/// Whether what is this way (m) off may be fewer deviations than some from being within a margin (m), given the
+/// variance along it as it was fitted.
+pub(in crate::search) fn is_in_reach(
+    way: &Vector3,
+    variance: f64,
+    margin: f64,
+    limit: f64,
+) -> bool {
+    let known = (variance + LEAST_STD.powi(2)).sqrt() * CLEARLY_MORE;
+    way.norm() <= margin * CLEARLY_MORE + limit.max(0.0) * known
 }
 
 /// How many deviations two pieces are from being within a margin (m): the largest of
@@ -76,10 +91,11 @@ pub(in crate::search) fn deviations_beyond(
     margin: f64,
     limit: f64,
 ) -> Option<f64> {
-    if !are_in_reach(a, b, margin, limit) {
+    let offset = b.point.mean - a.point.mean;
+    let reach = margin + limit.max(0.0) * (a.most_variance + b.most_variance).sqrt();
+    if offset.norm_squared() > reach * reach {
         return None;
     }
-    let offset = b.point.mean - a.point.mean;
     let joint = a.point.covariance.sum(&b.point.covariance).matrix();
     let beyond = beyond((&joint, &offset), &solve(&joint, &offset)?, margin);
     (beyond < limit).then_some(beyond)

@@ -1,7 +1,7 @@
 //! How many deviations two bodies are from being within a margin of each other.
 
 use cloudtouch_bvh::{Sought, SurfaceFlow, visit_surfaces};
-use cloudtouch_geom::{Motion, Pose};
+use cloudtouch_geom::{Motion, Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
@@ -10,11 +10,12 @@ use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::stats::Stats;
 
-use crate::search::compare::meeting::{are_in_reach, deviations_beyond};
+use crate::search::compare::meeting::{deviations_beyond, is_in_reach, may_be_beyond};
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use crate::search::visit::leaves::Leaves;
 use crate::search::visit::side::Side;
 use crate::search::visit::trees::Trees;
+use crate::search::visit::unseen::{Parted, told_apart};
 
 /// What a search beyond a margin found.
 #[derive(Debug, Clone, Copy)]
@@ -73,14 +74,19 @@ fn least_within<'a>(
     let reach = |least: f64| least.max(f64::MIN_POSITIVE);
     let sought = Sought { within: reach(most), margin, crossings: false, drift: None };
     let mut leaves: (Leaves<Leaf<'a>>, Leaves<Leaf<'a>>) = Default::default();
-    let (mut of_a, mut of_b) = (Side::default(), Side::moved(Motion::from(a_from_b)));
+    let mut sides = [Side::default(), Side::moved(Motion::from(a_from_b))];
     let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
-        let load_a = || Leaf::load(a, pair.a, &mut of_a, &mut stats);
-        let leaf_a = leaves.0.get_or_load(pair.a, load_a);
-        let load_b = || Leaf::load(b, pair.b, &mut of_b, &mut stats);
-        let leaf_b = leaves.1.get_or_load(pair.b, load_b);
-        let sides = [&mut of_a, &mut of_b];
-        least = least_of(leaf_a, leaf_b, margin, least, sides).max(-MOST_DEVIATIONS);
+        let is_apart = |parted: &Parted| parted.deviations_beyond(margin) >= reach(least);
+        let (of_a, of_b) = (&mut leaves.0, &mut leaves.1);
+        let load = |body, id, side: &mut Side| Leaf::load(body, id, side, &mut stats);
+        let are_loose = trees.may_be_loose();
+        if told_apart((a, b), &pair, are_loose, (of_a, of_b), &mut sides, load, is_apart).is_none()
+        {
+            let [side_a, side_b] = &mut sides;
+            let leaf_a = of_a.get_or_load(pair.a, || Leaf::load(a, pair.a, side_a, &mut stats));
+            let leaf_b = of_b.get_or_load(pair.b, || Leaf::load(b, pair.b, side_b, &mut stats));
+            least = least_of(leaf_a, leaf_b, margin, least, &mut sides).max(-MOST_DEVIATIONS);
+        }
         if clock.is_over() || least <= enough {
             return SurfaceFlow::Stop;
         }
@@ -96,11 +102,11 @@ fn least_of(
     b: &mut Leaf<'_>,
     margin: f64,
     most: f64,
-    [of_a, of_b]: [&mut Side; 2],
+    [of_a, of_b]: &mut [Side; 2],
 ) -> f64 {
     match (a, b) {
         (Leaf::Noisy(a), Leaf::Noisy(b)) => {
-            let are_near = |on_a: &Surfel, on_b: &Surfel| are_in_reach(on_a, on_b, margin, most);
+            let are_near = |on_a: &Surfel, on_b: &Surfel| may_be_beyond(on_a, on_b, margin, most);
             let is_near_b = |a: &NoisyLeaf<'_>, on_a: usize| {
                 b.surfels.iter().any(|on_b| are_near(&a.surfels[on_a], on_b))
             };
@@ -139,15 +145,25 @@ fn to_exact(
     most: f64,
     side: &mut Side,
 ) -> f64 {
-    let is_in_reach = |surfel: &Surfel, least: f64| {
+    let may_reach = |surfel: &Surfel, least: f64| {
         let reach = margin + least.max(0.0) * surfel.most_variance.sqrt();
         exact.ball.is_within(&surfel.point.mean, reach)
     };
-    noisy.end_near(|noisy, place| is_in_reach(&noisy.surfels[place], most), side);
+    let is_near = |noisy: &NoisyLeaf<'_>, place: usize| {
+        let surfel = &noisy.surfels[place];
+        let mut ways = exact.facets.iter().map(|facet| facet.way_from(&surfel.point.mean));
+        let variance = |n: &Vector3| surfel.point.covariance.variance_along(n);
+        let is_near = |way: Vector3| {
+            let unit = way.try_normalize(0.0);
+            unit.is_none_or(|n| is_in_reach(&way, variance(&n), margin, most))
+        };
+        may_reach(surfel, most) && ways.any(is_near)
+    };
+    noisy.end_near(is_near, side);
     let mut least = most;
     noisy.make_room();
     for (place, surfel) in noisy.surfels.iter().enumerate() {
-        if !is_in_reach(surfel, least) {
+        if surfel.may_end() || !may_reach(surfel, least) {
             continue;
         }
         let whitening = noisy.whitening(place);

@@ -5,7 +5,7 @@
 //! of them, once they are known, tell that of most others by the box about what was measured there, which
 //! spares these their fits.
 
-use cloudtouch_bvh::NodeId;
+use cloudtouch_bvh::{NodeId, SurfacePair};
 use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
 use crate::body::BodyRef;
@@ -13,6 +13,7 @@ use crate::cloud::{DISC_SPACINGS, EDGE_SLOPE, Surfel};
 use crate::search::compare::facet::Facet;
 
 use super::leaf::Leaf;
+use super::leaves::Leaves;
 use super::side::Side;
 
 /// Rounding of distances, relative, generously.
@@ -20,7 +21,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A leaf in the frame of A, before its surface is known.
 #[derive(Debug)]
-pub(in crate::search) struct Unseen {
+struct Unseen {
     /// The box about what was measured.
     centre: Point3,
     axes: Matrix3,
@@ -33,15 +34,58 @@ pub(in crate::search) struct Unseen {
 }
 
 /// How far something is from an unseen leaf at least.
-struct Parted {
+#[derive(Debug, Clone, Copy)]
+pub(in crate::search) struct Parted {
     /// What discs and edges of both stand for, m.
-    surfaces: f64,
-    deviations: f64,
+    pub surfaces: f64,
+    /// Pieces, m, and their standard deviations, m, in one direction and another.
+    gaps: [(f64, f64); 2],
+}
+
+impl Parted {
+    /// How many deviations pieces are from being within a margin (m) of each other at least; none where they
+    /// may be.
+    pub(in crate::search) fn deviations_beyond(&self, margin: f64) -> f64 {
+        let beyond = |(gap, known): &(f64, f64)| {
+            let beyond = gap - margin;
+            if beyond > 0.0 { beyond / known } else { 0.0 }
+        };
+        self.gaps.iter().map(beyond).fold(0.0, f64::max)
+    }
+}
+
+/// How far apart the surfaces of two leaves are, m, where one of them tells that the other, which is not among those
+/// seen, is apart from all of it. `are_loose`: whether what is not seen may be known loosely.
+pub(in crate::search) fn told_apart<'a>(
+    (a, b): (BodyRef<'a>, BodyRef<'a>),
+    pair: &SurfacePair,
+    are_loose: [bool; 2],
+    (leaves_a, leaves_b): (&mut Leaves<Leaf<'a>>, &mut Leaves<Leaf<'a>>),
+    [side_a, side_b]: &mut [Side; 2],
+    mut load: impl FnMut(BodyRef<'a>, NodeId, &mut Side) -> Leaf<'a>,
+    is_apart: impl Fn(&Parted) -> bool,
+) -> Option<f64> {
+    let is_unseen = [are_loose[0] && !leaves_a.has(pair.a), are_loose[1] && !leaves_b.has(pair.b)];
+    let unseen_a = is_unseen[0].then(|| Unseen::of(a, pair.a, side_a)).flatten();
+    let unseen_b = is_unseen[1].then(|| Unseen::of(b, pair.b, side_b)).flatten();
+    // The coarser tells more of the other.
+    let is_b_first = match (&unseen_a, &unseen_b) {
+        (None, None) => return None,
+        (Some(a), Some(b)) => b.reach() > a.reach(),
+        (unseen_a, _) => unseen_a.is_some(),
+    };
+    if is_b_first {
+        let leaf_b = leaves_b.get_or_load(pair.b, || load(b, pair.b, side_b));
+        unseen_a?.apart_from(leaf_b, is_apart)
+    } else {
+        let leaf_a = leaves_a.get_or_load(pair.a, || load(a, pair.a, side_a));
+        unseen_b?.apart_from(leaf_a, is_apart)
+    }
 }
 
 impl Unseen {
     /// A leaf, moved to the frame of A; none of a mesh.
-    pub(in crate::search) fn of(body: BodyRef<'_>, id: NodeId, side: &Side) -> Option<Self> {
+    fn of(body: BodyRef<'_>, id: NodeId, side: &Side) -> Option<Self> {
         let BodyRef::Cloud(cloud) = body else { return None };
         let node = cloud.tree().leaf(id)?;
         let obb = node.obb();
@@ -53,18 +97,18 @@ impl Unseen {
         Some(Self { centre, axes, half_extents: obb.half_extents, room, std: node.max_std() })
     }
 
-    /// How far its surface may reach, m: the sooner it is looked at itself, the more it tells of others.
-    pub(in crate::search) fn reach(&self) -> f64 {
+    /// How far its surface may reach, m.
+    fn reach(&self) -> f64 {
         self.room[1]
     }
 
-    /// How far it is from the surface of a leaf that is known, m, where no piece of the one has fewer than so
-    /// many deviations to a piece of the other, nor crosses one: else `None`.
-    pub(in crate::search) fn apart_from(&self, leaf: &Leaf<'_>, deviations: f64) -> Option<f64> {
+    /// How far it is from the surface of a leaf that is known, m, where it is told to be apart from each piece
+    /// of that: else `None`.
+    fn apart_from(&self, leaf: &Leaf<'_>, is_apart: impl Fn(&Parted) -> bool) -> Option<f64> {
         let mut least = f64::INFINITY;
         let mut is_apart = |parted: Parted| {
             least = least.min(parted.surfaces);
-            parted.surfaces > 0.0 && parted.deviations >= deviations
+            is_apart(&parted)
         };
         let are_apart = match leaf {
             Leaf::Noisy(leaf) => {
@@ -89,13 +133,13 @@ impl Unseen {
         let disc = DISC_SPACINGS * surfel.spacing;
         let Some(normal) = surfel.normal else {
             // It has neither disc nor edges.
-            return Parted { surfaces: around - reach, deviations: around / known };
+            return Parted { surfaces: around - reach, gaps: [(around, known); 2] };
         };
         let along = offset.dot(&normal).abs() - self.half_width(&normal) - shift - slack;
         let known_along = (surfel.across + self.std * self.std).sqrt();
         Parted {
             surfaces: (around - disc).max(along - EDGE_SLOPE * disc) - reach,
-            deviations: (around / known).max(along / known_along),
+            gaps: [(around, known), (along, known_along)],
         }
     }
 
@@ -106,7 +150,7 @@ impl Unseen {
         let toward = way.try_normalize(0.0).map_or(0.0, |n| way.norm() - self.half_width(&n));
         let height = |n: &Vector3| facet.height(&self.centre).abs() - self.half_width(n);
         let apart = toward.max(facet.normal.as_ref().map_or(0.0, height)) - shift - slack;
-        Parted { surfaces: apart - reach, deviations: apart / self.std }
+        Parted { surfaces: apart - reach, gaps: [(apart, self.std); 2] }
     }
 
     /// Half its width along a unit vector, m.
@@ -191,7 +235,8 @@ mod tests {
             let normal = UnitVector3::new_unchecked(normal);
             let point = UncertainPoint { mean, covariance: Covariance::from_axis(&normal, across, wide) };
             let piece = surfel(point, spacing, Some(*normal), across);
-            let Parted { surfaces, deviations } = unseen.parted_from_piece(&piece);
+            let parted = unseen.parted_from_piece(&piece);
+            let (surfaces, deviations) = (parted.surfaces, parted.deviations_beyond(0.0));
             // The end of half an edge that rises as steeply as any, or lies in the disc.
             let aside = normal.cross(&way).try_normalize(1e-6).unwrap_or_else(|| normal.cross(&Vector3::x()));
             let other = normal.cross(&aside);
@@ -216,7 +261,8 @@ mod tests {
             draws in draws(),
         ) {
             let facet = Facet::new(0, corners.map(Point3::from));
-            let Parted { surfaces, deviations } = unseen.parted_from_facet(&facet);
+            let parted = unseen.parted_from_facet(&facet);
+            let (surfaces, deviations) = (parted.surfaces, parted.deviations_beyond(0.0));
             for draw in draws {
                 let (inside, place) = drawn(&unseen, draw);
                 let whitening = Whitening::of(&inside);
