@@ -78,7 +78,7 @@ pub(in crate::cloud) struct LazySurface {
     /// Of each what it rests on, once all leaves hold theirs.
     pub bases: Vec<Basis>,
     pub leaves: Vec<OnceLock<Box<LeafSurface>>>,
-    /// Of leaves with all that ends cut off, where a tree was fitted to that.
+    /// Of leaves with all that ends cut off, where all of it was asked for.
     pub ended: Vec<OnceLock<Vec<Surfel>>>,
     /// Of leaves with what they share.
     pub shared: Vec<OnceLock<Vec<Surfel>>>,
