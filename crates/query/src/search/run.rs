@@ -66,8 +66,7 @@ pub(crate) struct Found<'a> {
 }
 
 /// Looks at the pairs of leaves where the surfaces may touch, up to so many deviations `further` than the least,
-/// until
-/// `is_enough` of the deviations and of the clearness of crossings, as far as found.
+/// until `is_enough` of the deviations and of the clearness of crossings, as far as found.
 pub(crate) fn search<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
@@ -210,16 +209,14 @@ mod tests {
 
     /// All pieces and edges of a cloud, in the frame of A, as if it were one leaf.
     fn whole(cloud: &Cloud, a_from_cloud: &Pose) -> (Vec<Surfel>, Vec<Edge>) {
-        let leaves = cloud.tree().leaves();
         let mut scratch = Scratch::default();
-        let pieces = leaves.flat_map(|leaf| leaf.primitive_indices().to_vec());
-        let surfels = pieces.map(|piece| cloud.prepared().told(piece, &mut scratch));
         let motion = Motion::from(a_from_cloud);
         let indices: Vec<u32> =
             cloud.tree().leaves().flat_map(|leaf| leaf.primitive_indices().to_vec()).collect();
-        let edges = edges_of(cloud.prepared(), &indices, &mut Scratch::default());
+        let edges = edges_of(cloud.prepared(), &indices, &mut scratch);
+        let surfels = cloud.prepared().told_together(&indices, &mut scratch);
         (
-            surfels.map(|s| s.moved(&motion)).collect(),
+            surfels.iter().map(|s| s.moved(&motion)).collect(),
             edges.iter().map(|e| e.moved(&motion)).collect(),
         )
     }

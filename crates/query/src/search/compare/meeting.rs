@@ -61,25 +61,21 @@ pub(in crate::search) fn squared_deviations(a: &Surfel, b: &Surfel, limit: f64) 
     (squared < limit).then_some(squared.max(0.0))
 }
 
-/// Whether two pieces, wherever they end, may be fewer deviations than some from being within a margin (m), by the way
-/// between them.
+/// Whether two pieces, wherever they end, may be fewer deviations than some from being within a margin (m).
 pub(in crate::search) fn may_be_beyond(a: &Surfel, b: &Surfel, margin: f64, limit: f64) -> bool {
-    let offset = b.point.mean - a.point.mean;
-    let variance =
-        |n: &Vector3| a.point.covariance.variance_along(n) + b.point.covariance.variance_along(n);
-    offset.try_normalize(0.0).is_none_or(|n| is_in_reach(&offset, variance(&n), margin, limit))
+    let joint = a.point.covariance.sum(&b.point.covariance).matrix();
+    may_have_fewer(&joint, &(b.point.mean - a.point.mean), margin, limit)
 }
 
-/// Whether what is this way (m) off may be fewer deviations than some from being within a margin (m), given the
-/// variance along it as it was fitted.
-pub(in crate::search) fn is_in_reach(
+/// The same of what is this way (m) off, given the covariance as it was fitted: where pieces end, there are no fewer
+/// along the way.
+pub(in crate::search) fn may_have_fewer(
+    covariance: &Matrix3,
     way: &Vector3,
-    variance: f64,
     margin: f64,
     limit: f64,
 ) -> bool {
-    let known = (variance + LEAST_STD.powi(2)).sqrt() * CLEARLY_MORE;
-    way.norm() <= margin * CLEARLY_MORE + limit.max(0.0) * known
+    beyond_along((covariance, way), way, margin) <= limit.max(0.0) * CLEARLY_MORE
 }
 
 /// How many deviations two pieces are from being within a margin (m): the largest of

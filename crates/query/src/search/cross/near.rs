@@ -56,9 +56,8 @@ pub(in crate::search) fn may_cross_a_disc(
         };
         offset.norm_squared() <= reach * reach && disc.normal.as_ref().is_some_and(is_along)
     };
-    let from = of_edges.surfels.iter().filter_map(|from| Some((from, from.normal?)));
-    from.into_iter()
-        .any(|(from, normal)| of_discs.surfels.iter().any(|disc| crosses(from, &normal, disc)))
+    let mut from = of_edges.surfels.iter().filter_map(|from| Some((from, from.normal?)));
+    from.any(|(from, normal)| of_discs.surfels.iter().any(|disc| crosses(from, &normal, disc)))
 }
 
 /// The same for facets.
@@ -71,7 +70,6 @@ pub(in crate::search) fn may_cross_a_facet(of_edges: &NoisyLeaf<'_>, facets: &Ex
         facet.normal.as_ref().is_some_and(is_along)
             && facet.way_from(&from.point.mean).norm() <= half
     };
-    let from = of_edges.surfels.iter().filter_map(|from| Some((from, from.normal?)));
-    from.into_iter()
-        .any(|(from, normal)| facets.facets.iter().any(|facet| crosses(from, &normal, facet)))
+    let mut from = of_edges.surfels.iter().filter_map(|from| Some((from, from.normal?)));
+    from.any(|(from, normal)| facets.facets.iter().any(|facet| crosses(from, &normal, facet)))
 }

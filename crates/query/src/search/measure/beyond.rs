@@ -1,7 +1,7 @@
 //! How many deviations two bodies are from being within a margin of each other.
 
 use cloudtouch_bvh::{Sought, SurfaceFlow, visit_surfaces};
-use cloudtouch_geom::{Motion, Pose, Vector3};
+use cloudtouch_geom::{Motion, Pose};
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
@@ -10,7 +10,7 @@ use crate::error::QueryError;
 use crate::judge::MOST_DEVIATIONS;
 use crate::stats::Stats;
 
-use crate::search::compare::meeting::{deviations_beyond, is_in_reach, may_be_beyond};
+use crate::search::compare::meeting::{deviations_beyond, may_be_beyond, may_have_fewer};
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use crate::search::visit::leaves::Leaves;
 use crate::search::visit::side::Side;
@@ -151,13 +151,9 @@ fn to_exact(
     };
     let is_near = |noisy: &NoisyLeaf<'_>, place: usize| {
         let surfel = &noisy.surfels[place];
+        let covariance = surfel.point.covariance.matrix();
         let mut ways = exact.facets.iter().map(|facet| facet.way_from(&surfel.point.mean));
-        let variance = |n: &Vector3| surfel.point.covariance.variance_along(n);
-        let is_near = |way: Vector3| {
-            let unit = way.try_normalize(0.0);
-            unit.is_none_or(|n| is_in_reach(&way, variance(&n), margin, most))
-        };
-        may_reach(surfel, most) && ways.any(is_near)
+        may_reach(surfel, most) && ways.any(|way| may_have_fewer(&covariance, &way, margin, most))
     };
     noisy.end_near(is_near, side);
     let mut least = most;
