@@ -81,10 +81,12 @@ fn an_exact_coplanar_cloud_has_exact_normals_and_does_not_move() {
     {
         assert_eq!(refined.point.mean, *point);
         assert!(refined.normal.unwrap().z.abs() > 1.0 - 1e-12);
-        // What bends between samples is all that is left along the normal.
+        // What bends between samples is all that is left along the normal; at an end these are farther apart
+        // than as many all around would be, as half of the disc that tells is empty.
         let sampling = PosteriorSettings::default().sampling_std;
         let along = refined.point.covariance.std_along(&refined.normal.unwrap());
-        assert!((along - sampling * refined.spacing).abs() < 1e-12);
+        let told = sampling * refined.spacing;
+        assert!((told - 1e-12..std::f64::consts::SQRT_2 * told + 1e-12).contains(&along));
     }
 }
 

@@ -5,6 +5,7 @@ mod common;
 mod degenerate;
 mod ends;
 mod neighborhoods;
+mod outline;
 mod posterior;
 mod reach;
 mod representatives;

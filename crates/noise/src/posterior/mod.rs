@@ -4,12 +4,14 @@ pub(crate) mod settings;
 mod spacing;
 mod wide;
 
-use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3};
+use std::f64::consts::SQRT_2;
+
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3};
 
 use crate::index::spacing::{is_noisy, spacing_around};
 use crate::neighborhoods::Neighborhoods;
 use crate::posterior::settings::{PosteriorSettings, SurfaceError};
-use crate::posterior::spacing::tangential_spacing;
+use crate::posterior::spacing::{beside_end, tangential_spacing};
 use crate::posterior::wide::wide_surface;
 use crate::refined::Refined;
 use crate::representatives::Representatives;
@@ -62,19 +64,23 @@ pub(crate) fn posterior(
             let alone = sensor[index].max_std();
             tangential_spacing(&others, &surface).unwrap_or(alone)
         }
-    }
-    .min(spacing_cap);
+    };
+    let sharp = 1.0 - blur(sensor[index].max_std(), around);
+    // No limit to the other acts on it unless it acts there.
+    let apart = spacing.min(SQRT_2 * spacing_cap);
+    let spacing = beside_end(spacing, &surface, sharp).min(spacing_cap);
     let point = given_surface(
         (&points[index], &sensor[index]),
         (&surface, &patch),
-        (around, spacing),
+        [around, apart, spacing],
         settings,
     );
     Some(Refined { point, spacing, normal: Some(surface.normal) })
 }
 
 /// The point given its measurement, with its covariance, and the surface fitted to a patch about it;
-/// `around` is the spacing of what is measured about it, `spacing` that of samples on the surface.
+/// `around` is the spacing of what is measured about it, `apart` how far from one another samples on the
+/// surface are, `spacing` that of as many all around.
 ///
 /// With s² the variance of the noise along the normal, V that of the surface, h its height above the
 /// point and d the doubt, the point moves by w h, w = s²/(s² + d V), and has the variance
@@ -83,10 +89,14 @@ pub(crate) fn posterior(
 /// widened by the noise where fits to other neighbourhoods face elsewhere: what is along the normal
 /// of the one is across that of the other. Where the noise has a direction, such as that of a ray, so much of what
 /// it has there more than along the normal comes to that along it.
+///
+/// Noise also takes samples past the end of a surface, where it goes on as far as its neighbours can tell, but
+/// that these are on one side. Along the surface the point moves by Σ ∇ log f, f being how dense the samples
+/// are: so far off, in the mean, is what was measured there (the formula of Tweedie: Robbins 1956; Efron 2011).
 fn given_surface(
     (measured, own): (&Point3, &Covariance),
     (surface, patch): (&Surface, &Patch),
-    (around, spacing): (f64, f64),
+    [around, apart, spacing]: [f64; 3],
     settings: &PosteriorSettings,
 ) -> UncertainPoint {
     let error = &settings.surface_error;
@@ -102,16 +112,40 @@ fn given_surface(
     let shift = (weight * surface.height).clamp(-most, most);
     let stays = (1.0 - weight).powi(2);
     let stays_noisy = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
-    let blur = (noise.sqrt() / (SHARP * around)).min(1.0);
+    let blur = blur(noise.sqrt(), around);
     let stated = if is_trusted { error.sharp + (1.0 - error.sharp) * blur } else { 1.0 };
     let elsewhere = (error.slant * surface.tilt).min(1.0) * beyond(own, noise);
     let along = (stated * (weight * weight * prior + stays_noisy)).min(noise) + elsewhere;
     let turned = (error.turn * surface.tilt).min(1.0) * own.max_std();
     let across = (settings.disc_std * spacing).hypot(turned);
+    let normal = surface.normal.into_inner();
+    let back = back_along(
+        surface,
+        own,
+        settings.most_shift.powi(2) * own.max_std().powi(2) - shift * shift,
+    );
     UncertainPoint {
-        mean: measured + surface.normal.into_inner() * shift,
-        covariance: disc(&surface.normal, along, across, spacing, settings),
+        mean: measured + normal * shift + back,
+        covariance: disc(&surface.normal, along, across, apart, settings),
     }
+}
+
+/// How far noise of this standard deviation (m) is from small beside a spacing (m), up to 1.
+fn blur(std: f64, spacing: f64) -> f64 {
+    (std / (SHARP * spacing)).min(1.0)
+}
+
+/// How far along the surface a point was displaced, in the mean, m; its square is no more than `most`, m².
+fn back_along(surface: &Surface, noise: &Covariance, most: f64) -> Vector3 {
+    let back = match noise.isotropic_variance() {
+        Some(variance) => surface.score * variance,
+        None => {
+            let back = noise.matrix() * surface.score;
+            back - surface.normal.into_inner() * surface.normal.dot(&back)
+        }
+    };
+    let squared = back.norm_squared();
+    if squared <= most { back } else { back * (most.max(0.0) / squared).sqrt() }
 }
 
 /// By how much a variance along some direction is beyond this one, m².

@@ -81,10 +81,10 @@ impl Default for SurfaceError {
             disagreement: 0.014,
             tilt: 0.6,
             doubt: 2.21,
-            own_noise: 0.95,
+            own_noise: 0.9,
             turn: 90.0,
             slant: 8.0,
-            sharp: 0.45,
+            sharp: 0.5,
         }
     }
 }

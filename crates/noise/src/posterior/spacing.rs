@@ -5,6 +5,8 @@ use crate::lanes::{Kernel, Lanes, Machine, WIDTH, run};
 use crate::surface::Surface;
 use crate::surface::patch::Patch;
 
+/// Samples get denser by this part over a spacing where they are scattered all around, and at a straight end.
+const DENSER: [f64; 2] = [0.3, 0.85];
 /// A neighbour so many standard deviations off the surface is not a sample of it.
 const SAMPLE_OFFSET: f64 = 3.5;
 
@@ -12,6 +14,16 @@ const SAMPLE_OFFSET: f64 = 3.5;
 /// across the normal among the neighbours near the surface; `None` when there is none.
 pub(super) fn tangential_spacing(patch: &Patch, surface: &Surface) -> Option<f64> {
     run(Spacing { patch, surface })
+}
+
+/// The spacing told at a point (m) where it is as far as samples are seen all around. At an end they fill half the
+/// disc that it is told from. `sharp` is how small the noise is beside it, up to 1: where that is large, which
+/// samples are past the end is not known, and they are as far apart as they seem.
+pub(super) fn beside_end(told: f64, surface: &Surface, sharp: f64) -> f64 {
+    let [all_around, at_end] = DENSER;
+    let denser = surface.score.norm() * told;
+    let one_sided = ((denser - all_around) / (at_end - all_around)).clamp(0.0, 1.0);
+    told * (1.0 - 0.5 * sharp * one_sided).sqrt()
 }
 
 struct Spacing<'a> {

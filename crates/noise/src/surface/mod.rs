@@ -5,15 +5,17 @@ mod candidates;
 pub(crate) mod patch;
 mod regression;
 mod reweight;
+mod score;
 mod smallest_axis;
 
-use cloudtouch_geom::UnitVector3;
+use cloudtouch_geom::{UnitVector3, Vector3};
 
 use crate::lanes::{Kernel, Lanes, Machine, run};
 use crate::surface::candidates::best_candidate;
 use crate::surface::patch::{Patch, Plane};
 use crate::surface::regression::{Coefficients, Frame, regress, residuals};
 use crate::surface::reweight::reweighted;
+use crate::surface::score::score;
 
 /// The neighbourhood sizes that are tried.
 const SIZES: [usize; 4] = [8, 16, 30, 60];
@@ -48,6 +50,8 @@ pub(crate) struct Surface {
     pub(crate) disagreement: f64,
     /// The mean squared sine between the normals of these fits and this one.
     pub(crate) tilt: f64,
+    /// The score of the samples at the point along the surface: which way, and how soon, they get denser, 1/m.
+    pub(crate) score: Vector3,
     /// The frame of the fit, in which `coefficients` holds.
     frame: Frame,
     /// Height above the point's tangential position: c₀ + c₁a + c₂b + c₃(a²+b²).
@@ -121,7 +125,8 @@ fn fitted<S: Machine>(machine: S, patch: &Patch) -> Option<Surface> {
     }
     let best = best?;
     let (disagreement, tilt) = disagreement(&best, &tried);
-    Some(Surface { disagreement, tilt, suspected: suspected(&best, &tried), ..best })
+    let (score, suspected) = (score(machine, patch, &best), suspected(&best, &tried));
+    Some(Surface { disagreement, tilt, suspected, score, ..best })
 }
 
 /// The plane after so many passes.
@@ -209,6 +214,7 @@ fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surf
         suspected: 0.0,
         disagreement: 0.0,
         tilt: 0.0,
+        score: Vector3::zeros(),
         frame,
         coefficients,
     })

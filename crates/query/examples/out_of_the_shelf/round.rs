@@ -20,8 +20,8 @@ const LOG_ODDS: f64 = -4.6;
 /// all that is asked. Deep in a collision, where log odds stand still, it says where to.
 const CLEARANCE: f64 = 0.02;
 /// What counts as much as one in the log odds: of clearance, of the path's bend at a pose, and of moving it in
-/// one round, m.
-const SCALES: [f64; 3] = [0.002, 0.004, 0.006];
+/// one round, m. The path is so stiff that poses beside one another leave a board on the same side.
+const SCALES: [f64; 3] = [0.002, 0.002, 0.006];
 const ITERATIONS: u64 = 100;
 
 /// A number of a pose, and what it changes by for a shift of it in the frame of the scene, per m.
