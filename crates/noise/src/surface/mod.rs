@@ -125,7 +125,8 @@ fn fitted<S: Machine>(machine: S, patch: &Patch) -> Option<Surface> {
     }
     let best = best?;
     let (disagreement, tilt) = disagreement(&best, &tried);
-    let (score, suspected) = (score(machine, patch, &best), suspected(&best, &tried));
+    let score = score(machine, patch, best.normal.into_inner(), (&best.frame, &best.coefficients));
+    let suspected = suspected(&best, &tried);
     Some(Surface { disagreement, tilt, suspected, score, ..best })
 }
 

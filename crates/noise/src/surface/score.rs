@@ -3,8 +3,8 @@
 use cloudtouch_geom::Vector3;
 
 use crate::lanes::{Lanes, Machine};
-use crate::surface::Surface;
 use crate::surface::patch::Patch;
+use crate::surface::regression::{Coefficients, Frame, residuals};
 use crate::surface::reweight::{TUKEY_CUT, sums, tukey};
 
 /// Samples count up to the neighbour of this rank, ...
@@ -15,13 +15,18 @@ const REACH_STDS: f64 = 2.5;
 /// What so little of the weights says, a part of what those of samples all around come to, is next to nothing.
 const LEAST_TOLD: f64 = 0.01;
 
-/// The score ∇ log f of the samples at the point along a surface, 1/m, f being how dense they are there.
+/// The score ∇ log f of the samples at the point along a surface of these coefficients, 1/m, f being how dense
+/// they are there. `normal` is that of the surface nearest the point.
 ///
 /// With weights that depend on the distance alone, f changes by the part g·x over a vector x, where Σw x =
 /// ½ g Σw x². What is off the surface does not count.
 #[inline(always)]
-pub(crate) fn score<S: Machine>(machine: S, patch: &Patch, surface: &Surface) -> Vector3 {
-    let normal = surface.normal.into_inner();
+pub(crate) fn score<S: Machine>(
+    machine: S,
+    patch: &Patch,
+    normal: Vector3,
+    (frame, coefficients): (&Frame, &Coefficients),
+) -> Vector3 {
     let reach = squared_reach(patch);
     let inverse_reach = 1.0 / reach;
     let inverse_cut = 1.0 / (TUKEY_CUT * TUKEY_CUT);
@@ -31,9 +36,12 @@ pub(crate) fn score<S: Machine>(machine: S, patch: &Patch, surface: &Surface) ->
     for group in 0..patch.groups() {
         let offsets = patch.group(machine, group);
         let [x, y, z] = offsets;
-        let [residual, across] = surface.squared_residual_and_reach(machine, offsets);
+        let coordinates = frame.coordinates(offsets);
+        let [a, b, _] = coordinates;
+        let across = a * a + b * b;
+        let residual = residuals(machine, coordinates, across, coefficients);
         let precision = precisions.group(machine, group);
-        let weight = tukey(machine, residual * precision * inverse_cut)
+        let weight = tukey(machine, residual * residual * precision * inverse_cut)
             * tukey(machine, (x * x + y * y + z * z) * inverse_reach)
             * patch.present(machine, group);
         for (sum, entry) in first.iter_mut().zip(offsets) {
@@ -59,10 +67,22 @@ fn squared_reach(patch: &Patch) -> f64 {
 mod tests {
     use cloudtouch_geom::{Covariance, seed};
     use proptest::prelude::*;
+    use pulp::Scalar256b;
 
     use super::*;
-    use crate::surface::fit_surface;
+    use crate::lanes::{Kernel, run};
     use crate::surface::patch::{Offsets, PatchNoise};
+
+    struct Flat<'a>(&'a Patch<'a>);
+
+    impl Kernel for Flat<'_> {
+        type Output = Vector3;
+
+        #[inline(always)]
+        fn run<S: Machine>(self, machine: S) -> Vector3 {
+            score(machine, self.0, Vector3::z(), (&Frame::new(Vector3::z()), &[0.0; 4]))
+        }
+    }
 
     /// What is told of places about one, whose noise is `std` along each axis.
     fn told(mut places: Vec<Vector3>, std: f64) -> Vector3 {
@@ -72,7 +92,10 @@ mod tests {
         offsets.set(places.into_iter());
         let noise = Covariance::isotropic(std * std);
         let patch = Patch::new(&offsets, PatchNoise::Uniform(&noise), &noise, 0.1);
-        fit_surface(&patch).unwrap().score
+        let found = run(Flat(&patch));
+        let portable = Flat(&patch).run(Scalar256b);
+        assert_eq!(found.map(f64::to_bits), portable.map(f64::to_bits));
+        found
     }
 
     fn grid(keep: impl Fn(f64) -> bool) -> Vec<Vector3> {
