@@ -52,6 +52,7 @@ pub(crate) fn posterior(
     let nearest = neighbors.iter().map(|near| near.index);
     let patch = patch.patch(index, nearest, points, sensor, around);
     let surface = wide.or_else(|| fit_surface(&patch))?;
+    let std = sensor[index].max_std();
     let spacing = match representatives {
         None => tangential_spacing(&patch, &surface)?,
         Some(kept) => {
@@ -61,16 +62,15 @@ pub(crate) fn posterior(
             let nearest = found.iter().map(|near| in_cloud(near.index));
             let others = wide_patch.patch(index, nearest, points, sensor, around);
             // One alone stands for no more than its noise.
-            let alone = sensor[index].max_std();
-            tangential_spacing(&others, &surface).unwrap_or(alone)
+            tangential_spacing(&others, &surface).unwrap_or(std)
         }
     };
-    let sharp = 1.0 - blur(sensor[index].max_std(), around);
+    let sharp = 1.0 - blur(std, around);
     // No limit to the other acts on it unless it acts there.
     let apart = spacing.min(SQRT_2 * spacing_cap);
     let spacing = beside_end(spacing, &surface, sharp).min(spacing_cap);
     let point = given_surface(
-        (&points[index], &sensor[index]),
+        (&points[index], &sensor[index], std),
         (&surface, &patch),
         [around, apart, spacing],
         settings,
@@ -78,8 +78,8 @@ pub(crate) fn posterior(
     Some(Refined { point, spacing, normal: Some(surface.normal) })
 }
 
-/// The point given its measurement, with its covariance, and the surface fitted to a patch about it;
-/// `around` is the spacing of what is measured about it, `apart` how far from one another samples on the
+/// The point given its measurement, with its covariance and the largest standard deviation of that, and the surface
+/// fitted to a patch about it; `around` is the spacing of what is measured about it, `apart` how far from one another samples on the
 /// surface are, `spacing` that of as many all around.
 ///
 /// With s² the variance of the noise along the normal, V that of the surface, h its height above the
@@ -94,7 +94,7 @@ pub(crate) fn posterior(
 /// that these are on one side. Along the surface the point moves by Σ ∇ log f, f being how dense the samples
 /// are: so far off, in the mean, is what was measured there (the formula of Tweedie: Robbins 1956; Efron 2011).
 fn given_surface(
-    (measured, own): (&Point3, &Covariance),
+    (measured, own, std): (&Point3, &Covariance, f64),
     (surface, patch): (&Surface, &Patch),
     [around, apart, spacing]: [f64; 3],
     settings: &PosteriorSettings,
@@ -114,16 +114,13 @@ fn given_surface(
     let stays_noisy = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
     let blur = blur(noise.sqrt(), around);
     let stated = if is_trusted { error.sharp + (1.0 - error.sharp) * blur } else { 1.0 };
-    let elsewhere = (error.slant * surface.tilt).min(1.0) * beyond(own, noise);
+    let elsewhere = (error.slant * surface.tilt).min(1.0) * beyond(own, std, noise);
     let along = (stated * (weight * weight * prior + stays_noisy)).min(noise) + elsewhere;
-    let turned = (error.turn * surface.tilt).min(1.0) * own.max_std();
+    let turned = (error.turn * surface.tilt).min(1.0) * std;
     let across = (settings.disc_std * spacing).hypot(turned);
     let normal = surface.normal.into_inner();
-    let back = back_along(
-        surface,
-        own,
-        settings.most_shift.powi(2) * own.max_std().powi(2) - shift * shift,
-    );
+    let room = (settings.most_shift * std).powi(2) - shift * shift;
+    let back = back_along(surface, own, room);
     UncertainPoint {
         mean: measured + normal * shift + back,
         covariance: disc(&surface.normal, along, across, apart, settings),
@@ -148,11 +145,11 @@ fn back_along(surface: &Surface, noise: &Covariance, most: f64) -> Vector3 {
     if squared <= most { back } else { back * (most.max(0.0) / squared).sqrt() }
 }
 
-/// By how much a variance along some direction is beyond this one, m².
-fn beyond(noise: &Covariance, along: f64) -> f64 {
+/// By how much the variance of noise with this largest standard deviation (m) is beyond one along some direction, m².
+fn beyond(noise: &Covariance, std: f64, along: f64) -> f64 {
     match noise.isotropic_variance() {
         Some(_) => 0.0,
-        None => (noise.max_std().powi(2) - along).max(0.0),
+        None => (std.powi(2) - along).max(0.0),
     }
 }
 

@@ -13,7 +13,7 @@ use cloudtouch_geom::{UnitVector3, Vector3};
 use crate::lanes::{Kernel, Lanes, Machine, run};
 use crate::surface::candidates::best_candidate;
 use crate::surface::patch::{Patch, Plane};
-use crate::surface::regression::{Coefficients, Frame, regress, residuals};
+use crate::surface::regression::{Coefficients, Frame, regress, squared_residual_and_reach};
 use crate::surface::reweight::reweighted;
 use crate::surface::score::score;
 
@@ -67,11 +67,7 @@ impl Surface {
         machine: S,
         offsets: [Lanes<S>; 3],
     ) -> [Lanes<S>; 2] {
-        let coordinates = self.frame.coordinates(offsets);
-        let [a, b, _] = coordinates;
-        let reach = a * a + b * b;
-        let residual = residuals(machine, coordinates, reach, &self.coefficients);
-        [residual * residual, reach]
+        squared_residual_and_reach(machine, offsets, (&self.frame, &self.coefficients))
     }
 }
 

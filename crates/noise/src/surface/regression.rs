@@ -53,6 +53,21 @@ pub(crate) fn residuals<S: Machine>(
     z - (Lanes::splat(machine, c0) + a * c1 + b * c2 + q * c3)
 }
 
+/// The squared distances of places from a surface along the normal of its frame, and from the point across it,
+/// m²; the places are relative to the point.
+#[inline(always)]
+pub(crate) fn squared_residual_and_reach<S: Machine>(
+    machine: S,
+    offsets: [Lanes<S>; 3],
+    (frame, coefficients): (&Frame, &Coefficients),
+) -> [Lanes<S>; 2] {
+    let coordinates = frame.coordinates(offsets);
+    let [a, b, _] = coordinates;
+    let reach = a * a + b * b;
+    let residual = residuals(machine, coordinates, reach, coefficients);
+    [residual * residual, reach]
+}
+
 /// Weighted sums over the neighbours of 1, a, b, q = a²+b², z and their products.
 #[derive(Debug)]
 struct Moments {

@@ -4,7 +4,7 @@ use cloudtouch_geom::Vector3;
 
 use crate::lanes::{Lanes, Machine};
 use crate::surface::patch::Patch;
-use crate::surface::regression::{Coefficients, Frame, residuals};
+use crate::surface::regression::{Coefficients, Frame, squared_residual_and_reach};
 use crate::surface::reweight::{TUKEY_CUT, sums, tukey};
 
 /// Samples count up to the neighbour of this rank, ...
@@ -25,7 +25,7 @@ pub(crate) fn score<S: Machine>(
     machine: S,
     patch: &Patch,
     normal: Vector3,
-    (frame, coefficients): (&Frame, &Coefficients),
+    surface: (&Frame, &Coefficients),
 ) -> Vector3 {
     let reach = squared_reach(patch);
     let inverse_reach = 1.0 / reach;
@@ -36,12 +36,9 @@ pub(crate) fn score<S: Machine>(
     for group in 0..patch.groups() {
         let offsets = patch.group(machine, group);
         let [x, y, z] = offsets;
-        let coordinates = frame.coordinates(offsets);
-        let [a, b, _] = coordinates;
-        let across = a * a + b * b;
-        let residual = residuals(machine, coordinates, across, coefficients);
+        let [residual, across] = squared_residual_and_reach(machine, offsets, surface);
         let precision = precisions.group(machine, group);
-        let weight = tukey(machine, residual * residual * precision * inverse_cut)
+        let weight = tukey(machine, residual * precision * inverse_cut)
             * tukey(machine, (x * x + y * y + z * z) * inverse_reach)
             * patch.present(machine, group);
         for (sum, entry) in first.iter_mut().zip(offsets) {
