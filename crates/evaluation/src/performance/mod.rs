@@ -47,9 +47,9 @@ told the surfaces and stops at the first triangles that cut; a probability takes
 deviations of the likeliest, though none beyond 3.5 but that one, and samples 10 cm apart stand for \
 discs that reach far. *Far*: no coarse map of distances is kept of a scene, so that every \
 query goes down both trees ([decision 15](../decisions/0015-fewer-instructions.md)). *Deep*: the \
-search stops at P > .999 only. *Boxes and the stereo scan*: blurred boxes have \
-their noise model computed everywhere at the first query, and to prepare the scan alone takes as long as all is to \
-take. *Hard leaf problems*: SMO finishes none within its steps, and of the interior \
+search stops at P > .999 only. *Boxes and frames*: blurred boxes have \
+their noise model computed everywhere at the first query, and to prepare the stereo scan alone takes as long as all is to \
+take; simulated frames are close to what is asked, on either side of it by the machine of the day. *Hard leaf problems*: SMO finishes none within its steps, and of the interior \
 point method, though it starts beside what SMO found, every step is cubic in the points.";
 
 /// Measures and writes the page.
