@@ -10,6 +10,8 @@ use crate::index::density::{Density, densest_first};
 use crate::index::positions::{Neighbor, Positions};
 use crate::index::thinned::Thinned;
 use crate::scratch::Scratch;
+use crate::surface::patch::MOST_NEIGHBORS;
+use crate::surface::scatter::possible_variance_alone;
 
 /// An index over a cloud that answers which points are nearest.
 ///
@@ -87,6 +89,20 @@ impl Neighborhoods {
                 densest_first(&Density::everywhere_on_this_thread(&self.positions))
             });
             Thinned::fourth_and_sixteenth(&self.positions, densest_first)
+        })
+    }
+
+    /// [`possible_variance_alone`] about the first of some points, those of the least part of the cloud nearest to a
+    /// place; for all that have it nearest it is told once. They give way to what is looked at for that.
+    pub(crate) fn possible_variance_about(&self, near: &mut Vec<Neighbor>) -> f64 {
+        let (Some(&Neighbor { index, .. }), Some(least)) = (near.first(), self.thinned().last())
+        else {
+            return f64::INFINITY;
+        };
+        least.told(index, || {
+            self.nearest_into(index, MOST_NEIGHBORS, near);
+            let points = self.points();
+            possible_variance_alone(near.iter().map(|near| points[near.index] - points[index]))
         })
     }
 

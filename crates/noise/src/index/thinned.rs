@@ -1,5 +1,7 @@
 //! A part of a cloud, evenly taken, that stands for it where a fit needs no more.
 
+use std::sync::OnceLock;
+
 use crate::finite::is_finite;
 use crate::index::positions::Positions;
 
@@ -9,6 +11,8 @@ pub(crate) struct Thinned {
     /// Their indices in the cloud.
     indices: Vec<u32>,
     positions: Positions,
+    /// What was told about each of them; nothing where nobody asked.
+    told: OnceLock<Box<[OnceLock<f64>]>>,
 }
 
 impl Thinned {
@@ -28,11 +32,26 @@ impl Thinned {
         indices.sort_unstable();
         let points = indices.iter().map(|&index| cloud.points()[index as usize]).collect();
         // Points that could be indexed before can be again.
-        Some(Self { indices, positions: Positions::on_this_thread(points).ok()? })
+        let positions = Positions::on_this_thread(points).ok()?;
+        Some(Self { indices, positions, told: OnceLock::new() })
     }
 
     pub(crate) fn positions(&self) -> &Positions {
         &self.positions
+    }
+
+    /// What `tell` says of one of them, given by its index in the cloud; it is asked once, and must always say the
+    /// same. Of another point it is asked each time.
+    pub(crate) fn told(&self, index: usize, tell: impl FnOnce() -> f64) -> f64 {
+        let place = self.indices.binary_search_by_key(&index, |&kept| kept as usize);
+        match place {
+            Ok(place) => {
+                let told =
+                    self.told.get_or_init(|| vec![OnceLock::new(); self.indices.len()].into());
+                *told[place].get_or_init(tell)
+            }
+            Err(_) => tell(),
+        }
     }
 
     /// The index in the cloud of one of them.

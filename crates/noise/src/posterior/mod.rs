@@ -1,5 +1,6 @@
 //! The point given its measurement and a surface fitted to its neighbours.
 
+mod displaced;
 pub(crate) mod settings;
 mod spacing;
 mod wide;
@@ -10,6 +11,7 @@ use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3};
 
 use crate::index::spacing::{is_noisy, spacing_around};
 use crate::neighborhoods::Neighborhoods;
+use crate::posterior::displaced::displaced;
 use crate::posterior::settings::{PosteriorSettings, SurfaceError};
 use crate::posterior::spacing::{beside_end, tangential_spacing};
 use crate::posterior::wide::wide_surface;
@@ -18,6 +20,7 @@ use crate::representatives::Representatives;
 use crate::scratch::Scratch;
 use crate::sensor::noise::SensorNoise;
 use crate::surface::patch::{MOST_NEIGHBORS, Patch};
+use crate::surface::scatter::possible_variance;
 use crate::surface::{Surface, fit_surface};
 
 /// Noise of so many spacings is no longer small beside them ([`SurfaceError::sharp`]).
@@ -48,11 +51,21 @@ pub(crate) fn posterior(
     if wide.is_none() && representatives.is_some() {
         neighborhoods.look_around(index, MOST_NEIGHBORS, scratch);
     }
-    let Scratch { neighbors, patch, kept_block, near_representatives, wide_patch, .. } = scratch;
+    let Scratch {
+        neighbors,
+        patch,
+        kept_block,
+        near_representatives,
+        wide_neighbors,
+        wide_patch,
+        ..
+    } = scratch;
     let nearest = neighbors.iter().map(|near| near.index);
     let patch = patch.patch(index, nearest, points, sensor, around);
+    let is_wide = wide.is_some();
     let surface = wide.or_else(|| fit_surface(&patch))?;
-    let std = sensor[index].max_std();
+    let own = &sensor[index];
+    let std = own.max_std();
     let spacing = match representatives {
         None => tangential_spacing(&patch, &surface)?,
         Some(kept) => {
@@ -69,9 +82,15 @@ pub(crate) fn posterior(
     // No limit to the other acts on it unless it acts there.
     let apart = spacing.min(SQRT_2 * spacing_cap);
     let spacing = beside_end(spacing, &surface, sharp).min(spacing_cap);
+    let back = displaced(&surface, own, || {
+        if is_wide {
+            return neighborhoods.possible_variance_about(wide_neighbors);
+        }
+        possible_variance((0..patch.len()).map(|rank| patch.offset(rank)), &surface.normal)
+    });
     let point = given_surface(
-        (&points[index], &sensor[index], std),
-        (&surface, &patch),
+        (&points[index], own, std),
+        (&surface, &patch, back),
         [around, apart, spacing],
         settings,
     );
@@ -91,11 +110,10 @@ pub(crate) fn posterior(
 /// it has there more than along the normal comes to that along it.
 ///
 /// Noise also takes samples past the end of a surface, where it goes on as far as its neighbours can tell, but
-/// that these are on one side. Along the surface the point moves by Σ ∇ log f, f being how dense the samples
-/// are: so far off, in the mean, is what was measured there (the formula of Tweedie: Robbins 1956; Efron 2011).
+/// that these are on one side. Along the surface the point moves `back` by what it was displaced there, in the mean.
 fn given_surface(
     (measured, own, std): (&Point3, &Covariance, f64),
-    (surface, patch): (&Surface, &Patch),
+    (surface, patch, back): (&Surface, &Patch, Vector3),
     [around, apart, spacing]: [f64; 3],
     settings: &PosteriorSettings,
 ) -> UncertainPoint {
@@ -120,7 +138,7 @@ fn given_surface(
     let across = (settings.disc_std * spacing).hypot(turned);
     let normal = surface.normal.into_inner();
     let room = (settings.most_shift * std).powi(2) - shift * shift;
-    let back = back_along(surface, own, room);
+    let back = limited(back, room);
     UncertainPoint {
         mean: measured + normal * shift + back,
         covariance: disc(&surface.normal, along, across, apart, settings),
@@ -132,17 +150,10 @@ fn blur(std: f64, spacing: f64) -> f64 {
     (std / (SHARP * spacing)).min(1.0)
 }
 
-/// How far along the surface a point was displaced, in the mean, m; its square is no more than `most`, m².
-fn back_along(surface: &Surface, noise: &Covariance, most: f64) -> Vector3 {
-    let back = match noise.isotropic_variance() {
-        Some(variance) => surface.score * variance,
-        None => {
-            let back = noise.matrix() * surface.score;
-            back - surface.normal.into_inner() * surface.normal.dot(&back)
-        }
-    };
-    let squared = back.norm_squared();
-    if squared <= most { back } else { back * (most.max(0.0) / squared).sqrt() }
+/// A vector, or as much of it as its square is no more than `most`.
+fn limited(vector: Vector3, most: f64) -> Vector3 {
+    let squared = vector.norm_squared();
+    if squared <= most { vector } else { vector * (most.max(0.0) / squared).sqrt() }
 }
 
 /// By how much the variance of noise with this largest standard deviation (m) is beyond one along some direction, m².

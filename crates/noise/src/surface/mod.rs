@@ -5,6 +5,7 @@ mod candidates;
 pub(crate) mod patch;
 mod regression;
 mod reweight;
+pub(crate) mod scatter;
 mod score;
 mod smallest_axis;
 
