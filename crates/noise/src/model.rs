@@ -77,8 +77,8 @@ impl NoiseModel {
     /// but the spacing, and the disc as wide as it, are those of the representatives.
     ///
     /// # Panics
-    /// When `index`, the representatives or the length of `sensor` do not belong to the cloud, or a covariance of
-    /// `sensor` that it needs is not finite.
+    /// When `index` is none of the representatives, these or the length of `sensor` do not belong to the cloud, or a
+    /// covariance of `sensor` that it needs is not finite.
     pub fn refine_representative(
         &self,
         index: usize,
@@ -131,15 +131,21 @@ impl NoiseModel {
         assert_eq!(sensor.len(), points.len(), "one sensor covariance for each point");
         let count = self.neighbors();
         scratch.near_representatives.clear();
-        match (representatives, self.settings.combination) {
-            // Mostly the nearest of all points tell no more than how dense they are.
-            (Some(_), Combination::SurfacePosterior) => {
-                neighborhoods.look_around_for_few(index, SPACING_NEIGHBORS, scratch);
+        let around = match (representatives, self.settings.combination) {
+            // Mostly the nearest of all points tell no more than how dense they are, which is known.
+            (Some(representatives), Combination::SurfacePosterior) => {
+                scratch.neighbors.clear();
+                // Which points stand for the others hangs on all of them.
+                scratch.reach = f64::INFINITY;
+                representatives.spacing(index)
             }
-            _ => neighborhoods.look_around(index, count, scratch),
-        }
-        scratch.reach = reach(&scratch.neighbors, count);
-        let spacing = spacing_around(&scratch.neighbors).unwrap_or(0.0).min(spacing_cap);
+            _ => {
+                neighborhoods.look_around(index, count, scratch);
+                scratch.reach = reach(&scratch.neighbors, count);
+                spacing_around(&scratch.neighbors)
+            }
+        };
+        let spacing = around.unwrap_or(0.0).min(spacing_cap);
         let unfitted = |covariance| Refined {
             point: UncertainPoint { mean: points[index], covariance },
             spacing,
@@ -160,16 +166,11 @@ impl NoiseModel {
             Combination::SurfacePosterior => {
                 let settings = &self.settings.posterior;
                 let disc = (settings.disc_std * spacing).powi(2);
-                posterior(
-                    index,
-                    neighborhoods,
-                    representatives,
-                    sensor,
-                    spacing_cap,
-                    settings,
-                    scratch,
-                )
-                .unwrap_or_else(|| unfitted(sensor[index].sum(&Covariance::isotropic(disc))))
+                let measured = (neighborhoods, representatives, sensor);
+                let found = around.and_then(|around| {
+                    posterior(index, measured, [around, spacing_cap], settings, scratch)
+                });
+                found.unwrap_or_else(|| unfitted(sensor[index].sum(&Covariance::isotropic(disc))))
             }
         }
     }

@@ -23,6 +23,8 @@ const NOISY_SHARE: f64 = 0.05;
 #[derive(Debug)]
 pub struct Representatives {
     indices: Vec<u32>,
+    /// How far apart all samples are about each of them, m.
+    spacings: Vec<f64>,
     near: Neighborhoods,
 }
 
@@ -50,13 +52,13 @@ impl Representatives {
         if !is_crowded(sensor, sample) {
             return Ok(None);
         }
-        let indices = chosen(cloud, sensor);
+        let (indices, spacings) = chosen(cloud, sensor);
         if indices.len() == cloud.points().len() {
             return Ok(None);
         }
         let places: Vec<Point3> = indices.iter().map(|&i| cloud.points()[i as usize]).collect();
         let near = Neighborhoods::new(places)?;
-        Ok(Some(Self { indices, near }))
+        Ok(Some(Self { indices, spacings, near }))
     }
 
     /// Their indices in the cloud they were chosen from, in order.
@@ -67,6 +69,17 @@ impl Representatives {
     /// Which of them are near which, by their places in [`Self::indices`].
     pub fn neighborhoods(&self) -> &Neighborhoods {
         &self.near
+    }
+
+    /// How far apart all samples of the cloud are about one of them, given by its index there, m; `None` where it is
+    /// alone.
+    ///
+    /// # Panics
+    /// When it is none of them.
+    pub(crate) fn spacing(&self, index: usize) -> Option<f64> {
+        let place = self.indices.binary_search_by_key(&index, |&chosen| chosen as usize);
+        let spacing = self.spacings[place.expect("the index of a representative")];
+        spacing.is_finite().then_some(spacing)
     }
 
     /// Their positions, and the index in the cloud of one of these.
@@ -82,7 +95,8 @@ fn is_crowded(sensor: &SensorNoise, (indices, spacings): (&[usize], &[f64])) -> 
     noisy as f64 > NOISY_SHARE * indices.len() as f64
 }
 
-fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
+/// The indices that are chosen, in order, and the spacings there.
+fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> (Vec<u32>, Vec<f64>) {
     let (densities, densest_first) = cloud.densities();
     let mut is_represented = vec![false; densities.len()];
     let mut chosen = Vec::new();
@@ -103,5 +117,34 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> Vec<u32> {
         }
     }
     chosen.sort_unstable();
-    chosen
+    let spacings = chosen.iter().map(|&index| densities[index as usize].spacing).collect();
+    (chosen, spacings)
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Covariance, seed};
+
+    use super::*;
+    use crate::index::spacing::{SPACING_NEIGHBORS, spacing_around};
+
+    /// Some points twice, and one alone far away.
+    #[test]
+    fn spacings_are_those_of_the_cloud_to_the_bit() {
+        let unit = |i, k| seed::unit(seed::derive(3, i, k));
+        let mut points: Vec<Point3> =
+            (0..900).map(|i| Point3::new(unit(i, 0), unit(i, 1), 0.05 * unit(i, 2))).collect();
+        points.extend_from_within(..90);
+        points.push(Point3::new(9.0, 0.0, 0.0));
+        let cloud = Neighborhoods::new(points.clone()).unwrap();
+        let sensor = SensorNoise::uniform(Covariance::isotropic(0.01), points.len());
+        let spacing = |index| spacing_around(&cloud.nearest(index, SPACING_NEIGHBORS));
+        let sample: Vec<usize> = (0..100).collect();
+        let spacings: Vec<f64> = sample.iter().map(|&i| spacing(i).unwrap()).collect();
+        let kept = Representatives::choose(&cloud, &sensor, (&sample, &spacings)).unwrap().unwrap();
+        assert!((20..800).contains(&kept.indices().len()), "{}", kept.indices().len());
+        for index in kept.indices().iter().map(|&index| index as usize) {
+            assert_eq!(kept.spacing(index), spacing(index), "{index}");
+        }
+    }
 }

@@ -9,7 +9,7 @@ use std::f64::consts::SQRT_2;
 
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3};
 
-use crate::index::spacing::{is_noisy, spacing_around};
+use crate::index::spacing::is_noisy;
 use crate::neighborhoods::Neighborhoods;
 use crate::posterior::displaced::displaced;
 use crate::posterior::settings::{PosteriorSettings, SurfaceError};
@@ -28,22 +28,24 @@ use crate::surface::{Surface, fit_surface};
 /// [`SurfaceError::sharp`]: crate::SurfaceError::sharp
 const SHARP: f64 = 0.25;
 
-/// The point given its measurement and the surface of its neighbours, which are in `scratch`; `None`
-/// where there is no surface to be fitted.
+/// The point given its measurement and the surface of its neighbours, which are in `scratch` where nobody stands for
+/// others, samples being so far apart about it and its spacing no more than the other number, m; `None` where there
+/// is no surface to be fitted.
 pub(crate) fn posterior(
     index: usize,
-    neighborhoods: &Neighborhoods,
-    representatives: Option<&Representatives>,
-    sensor: &SensorNoise,
-    spacing_cap: f64,
+    (neighborhoods, representatives, sensor): (
+        &Neighborhoods,
+        Option<&Representatives>,
+        &SensorNoise,
+    ),
+    [around, spacing_cap]: [f64; 2],
     settings: &PosteriorSettings,
     scratch: &mut Scratch,
 ) -> Option<Refined> {
     let points = neighborhoods.points();
-    let around = spacing_around(&scratch.neighbors)?;
     let is_wide = is_noisy(&sensor[index], around);
-    if is_wide || representatives.is_some() {
-        // Which points stand for the others hangs on all of them.
+    if is_wide {
+        // What the cloud is thinned to hangs on all of it.
         scratch.reach = f64::INFINITY;
     }
     let wide =
