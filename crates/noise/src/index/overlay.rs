@@ -1,10 +1,9 @@
 //! What became of the positions of an index since its tree was built.
 
 use cloudtouch_geom::Point3;
-use kiddo::ImmutableKdTree;
 
 use crate::error::NoiseError;
-use crate::index::entries::{Threads, tree_of};
+use crate::index::entries::{PointTree, Threads, tree_of};
 
 /// A position that is not there any more.
 pub(crate) const GONE: u32 = u32::MAX;
@@ -17,7 +16,7 @@ pub(crate) struct Overlay {
     /// By item of the tree: the index that the position has now.
     pub(crate) now: Vec<u32>,
     /// The positions that came, by their indices now.
-    pub(crate) added: ImmutableKdTree<f64, 3>,
+    pub(crate) added: PointTree,
     pub(crate) added_count: usize,
 }
 

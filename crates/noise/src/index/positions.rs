@@ -5,11 +5,11 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use cloudtouch_geom::Point3;
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use kiddo::SquaredEuclidean;
 
 use crate::error::NoiseError;
 use crate::finite::is_finite;
-use crate::index::entries::{Threads, tree_of};
+use crate::index::entries::{PointTree, Threads, tree_of};
 use crate::index::overlay::{GONE, Overlay};
 use crate::index::places::repeated;
 
@@ -34,7 +34,7 @@ pub(crate) struct Positions {
     points: Arc<Vec<Point3>>,
     distinct: usize,
     /// Of the positions when the tree was last built.
-    tree: Arc<ImmutableKdTree<f64, 3>>,
+    tree: Arc<PointTree>,
     /// What became of them since.
     overlay: Option<Overlay>,
     /// Tells it from any other while somebody keeps this.
@@ -145,7 +145,7 @@ impl Positions {
         squared_distance: f64,
         mut visit: impl FnMut(Neighbor),
     ) {
-        let mut within = |tree: &ImmutableKdTree<f64, 3>, now: &[u32]| {
+        let mut within = |tree: &PointTree, now: &[u32]| {
             let query: [f64; 3] = place.coords.into();
             // The slack keeps the tree's box tests, which round, from losing one.
             tree.query(&query)
@@ -180,7 +180,7 @@ impl Positions {
     /// The positions nearest to a place, in order of distance: so many at least, or all.
     fn nearest(&self, place: &Point3, wanted: NonZeroUsize, found: &mut Vec<Neighbor>) {
         let query: [f64; 3] = place.coords.into();
-        let nearest = |tree: &ImmutableKdTree<f64, 3>, most: NonZeroUsize| {
+        let nearest = |tree: &PointTree, most: NonZeroUsize| {
             tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(most).execute()
         };
         let Some(overlay) = &self.overlay else {
