@@ -10,6 +10,8 @@ use crate::surface::smallest_axis::smallest_axis;
 
 /// It is told from so many of the nearest neighbours: the others are nearest to some of them.
 const ASKED: usize = 40;
+/// Fewer are even by chance.
+const LEAST: usize = 20;
 /// The deviation of the distances to the nearest of scattered samples, in parts of their mean, is .52, the
 /// √(4/π − 1) of a Poisson process; of so few as [`ASKED`] it is hardly ever less than this.
 const SCATTERED: f64 = 0.36;
@@ -32,6 +34,9 @@ pub(crate) fn possible_variance(offsets: impl Iterator<Item = Vector3>, normal: 
     }
     let [x, y] = &places;
     let asked = count.min(ASKED);
+    if asked < LEAST {
+        return f64::INFINITY;
+    }
     let mut nearest = [f64::INFINITY; ASKED];
     for other in 0..count {
         // PERF: of all at once, with itself put off for later: no lane differs from the others.
@@ -136,8 +141,9 @@ mod tests {
 
     #[test]
     fn few_neighbours_or_the_same_place_tell_nothing() {
-        let same = [Vector3::x(); 20];
-        for offsets in [&[][..], &[Vector3::x()], &same] {
+        let same = [Vector3::x(); LEAST];
+        let few: Vec<Vector3> = (1..LEAST).map(|x| Vector3::x() * x as f64).collect();
+        for offsets in [&[], &few[..1], &few, &same] {
             let offsets = offsets.iter().copied();
             assert_eq!(possible_variance(offsets.clone(), &Vector3::z()), f64::INFINITY);
             assert_eq!(possible_variance_alone(offsets), f64::INFINITY);
