@@ -7,6 +7,8 @@ use hashbrown::{DefaultHashBuilder, HashTable, hash_table};
 
 /// Points whose places are compared together, on average.
 const PART: usize = 2048;
+/// Marks to choose among for each point: about one in so many, at most, has that of another by chance.
+const MARKS: usize = 8;
 
 /// A point, by the hash of its place and its index.
 #[derive(Clone, Copy, Default)]
@@ -24,7 +26,7 @@ pub fn repeated(points: &[Point3], some: impl IntoIterator<Item = u32>) -> Vec<u
     let place = |index: u32| points[index as usize].coords.map(|v| (v + 0.0).to_bits());
     let hasher = DefaultHashBuilder::default();
     let tag = |index: u32| Tag { hash: hasher.hash_one(place(index)), index };
-    let (tags, ends) = parted(some.into_iter().map(tag).collect());
+    let (tags, ends) = parted(suspects(some.into_iter().map(tag).collect()));
     let (mut repeated, mut seen, mut start) = (Vec::new(), HashTable::new(), 0);
     for end in ends {
         seen.clear();
@@ -40,6 +42,27 @@ pub fn repeated(points: &[Point3], some: impl IntoIterator<Item = u32>) -> Vec<u
     }
     repeated.sort_unstable();
     repeated
+}
+
+/// Those whose hash may be that of another, in the order given: most clouds have no point twice, and of these few are
+/// left.
+///
+/// PERF: two passes over some bits for each, instead of an entry of a table.
+fn suspects(tags: Vec<Tag>) -> Vec<Tag> {
+    let words = (tags.len() * MARKS / 64).next_power_of_two();
+    let mark = |tag: &Tag| ((tag.hash >> 38) as usize % words, 1_u64 << (tag.hash >> 32 & 63));
+    // Which were met, and which of them again.
+    let mut met = vec![[0_u64; 2]; words];
+    for (word, bit) in tags.iter().map(mark) {
+        let [once, again] = &mut met[word];
+        *again |= *once & bit;
+        *once |= bit;
+    }
+    let is_again = |tag: &Tag| {
+        let (word, bit) = mark(tag);
+        met[word][1] & bit != 0
+    };
+    tags.into_iter().filter(is_again).collect()
 }
 
 /// Tags by some bits of their hashes, which a table makes no use of, else in the order given, and where each
