@@ -28,9 +28,9 @@ use crate::surface::{Surface, fit_surface};
 /// [`SurfaceError::sharp`]: crate::SurfaceError::sharp
 const SHARP: f64 = 0.25;
 
-/// The point given its measurement and the surface of its neighbours, which are in `scratch` where nobody stands for
-/// others, samples being so far apart about it and its spacing no more than the other number, m; `None` where there
-/// is no surface to be fitted.
+/// The point given its measurement and the surface of its neighbours, which are in `scratch` where every point stands
+/// for itself; `None` where there is no surface to be fitted. `around` is how far apart samples are about it, m, and
+/// `spacing_cap` the most that its own spacing may be, m.
 pub(crate) fn posterior(
     index: usize,
     (neighborhoods, representatives, sensor): (

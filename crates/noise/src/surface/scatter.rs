@@ -39,7 +39,7 @@ pub(crate) fn possible_variance(offsets: impl Iterator<Item = Vector3>, normal: 
     }
     let mut nearest = [f64::INFINITY; ASKED];
     for other in 0..count {
-        // PERF: of all at once, with itself put off for later: no lane differs from the others.
+        // PERF: all of them alike, so that several are compared at once; what it had as its own nearest comes back.
         let own = nearest.get(other).copied();
         for (rank, least) in nearest.iter_mut().enumerate() {
             let squared = (x[rank] - x[other]).powi(2) + (y[rank] - y[other]).powi(2);
