@@ -10,8 +10,6 @@ use crate::index::density::{Density, densest_first};
 use crate::index::positions::{Neighbor, Positions};
 use crate::index::thinned::Thinned;
 use crate::scratch::Scratch;
-use crate::surface::patch::MOST_NEIGHBORS;
-use crate::surface::scatter::possible_variance_alone;
 
 /// An index over a cloud that answers which points are nearest.
 ///
@@ -92,20 +90,6 @@ impl Neighborhoods {
         })
     }
 
-    /// [`possible_variance_alone`] about the first of some points, those of the least part of the cloud nearest to a
-    /// place; for all that have it nearest it is told once. They give way to what is looked at for that.
-    pub(crate) fn possible_variance_about(&self, near: &mut Vec<Neighbor>) -> f64 {
-        let (Some(&Neighbor { index, .. }), Some(least)) = (near.first(), self.thinned().last())
-        else {
-            return f64::INFINITY;
-        };
-        least.told(index, || {
-            self.nearest_into(index, MOST_NEIGHBORS, near);
-            let points = self.points();
-            possible_variance_alone(near.iter().map(|near| points[near.index] - points[index]))
-        })
-    }
-
     /// How dense the samples are about every point, on all threads of the pool, and the order of the
     /// indices by that.
     pub(crate) fn densities(&self) -> (Vec<Density>, &[u32]) {
@@ -135,20 +119,15 @@ impl Neighborhoods {
         k: usize,
         scratch: &'a mut Scratch,
     ) -> &'a [Neighbor] {
-        self.look_around_for_few(index, k, scratch);
-        &scratch.neighbors
+        let Scratch { few_block, neighbors, .. } = scratch;
+        few_block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
+        neighbors
     }
 
     /// Finds the neighbours of a point, by the block that the last one had.
     pub(crate) fn look_around(&self, index: usize, k: usize, scratch: &mut Scratch) {
         let Scratch { block, neighbors, .. } = scratch;
         block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
-    }
-
-    /// The same of so few that another block is better.
-    pub(crate) fn look_around_for_few(&self, index: usize, k: usize, scratch: &mut Scratch) {
-        let Scratch { few_block, neighbors, .. } = scratch;
-        few_block.nearest_into(&self.positions, &self.points()[index], k, true, neighbors);
     }
 
     /// Makes buffers ready for [`Self::nearest_with`] of some points near one another.

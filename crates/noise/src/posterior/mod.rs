@@ -14,7 +14,7 @@ use crate::neighborhoods::Neighborhoods;
 use crate::posterior::displaced::displaced;
 use crate::posterior::settings::{PosteriorSettings, SurfaceError};
 use crate::posterior::spacing::{beside_end, tangential_spacing};
-use crate::posterior::wide::wide_surface;
+use crate::posterior::wide::{possible_variance_about, wide_surface};
 use crate::refined::Refined;
 use crate::representatives::Representatives;
 use crate::scratch::Scratch;
@@ -43,13 +43,14 @@ pub(crate) fn posterior(
     scratch: &mut Scratch,
 ) -> Option<Refined> {
     let points = neighborhoods.points();
-    let is_wide = is_noisy(&sensor[index], around);
-    if is_wide {
+    let own = &sensor[index];
+    let is_all_noise = is_noisy(own, around);
+    if is_all_noise {
         // What the cloud is thinned to hangs on all of it.
         scratch.reach = f64::INFINITY;
     }
     let wide =
-        is_wide.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
+        is_all_noise.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
     if wide.is_none() && representatives.is_some() {
         neighborhoods.look_around(index, MOST_NEIGHBORS, scratch);
     }
@@ -66,7 +67,6 @@ pub(crate) fn posterior(
     let patch = patch.patch(index, nearest, points, sensor, around);
     let is_wide = wide.is_some();
     let surface = wide.or_else(|| fit_surface(&patch))?;
-    let own = &sensor[index];
     let std = own.max_std();
     let spacing = match representatives {
         None => tangential_spacing(&patch, &surface)?,
@@ -86,7 +86,7 @@ pub(crate) fn posterior(
     let spacing = beside_end(spacing, &surface, sharp).min(spacing_cap);
     let back = displaced(&surface, own, || {
         if is_wide {
-            return neighborhoods.possible_variance_about(wide_neighbors);
+            return possible_variance_about(neighborhoods, wide_neighbors);
         }
         possible_variance((0..patch.len()).map(|rank| patch.offset(rank)), &surface.normal)
     });

@@ -4,10 +4,12 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use cloudtouch_geom::Point3;
 
+use crate::index::positions::Neighbor;
 use crate::neighborhoods::Neighborhoods;
 use crate::scratch::Scratch;
 use crate::sensor::noise::SensorNoise;
 use crate::surface::patch::MOST_NEIGHBORS;
+use crate::surface::scatter::possible_variance_alone;
 use crate::surface::{Surface, fit_surface};
 
 /// How often neighbours are gathered at most, of a fourth of the cloud and of a sixteenth: the first tells about where
@@ -61,6 +63,26 @@ pub(crate) fn wide_surface(
         }
     }
     found
+}
+
+/// The largest variance that noise can have along the surface that [`wide_surface`] found last, m², given the
+/// neighbours that it left: as it is about the nearest of them, told once for all that have it nearest.
+pub(super) fn possible_variance_about(
+    neighborhoods: &Neighborhoods,
+    wide_neighbors: &mut Vec<Neighbor>,
+) -> f64 {
+    let (Some(&Neighbor { index, .. }), Some(least)) =
+        (wide_neighbors.first(), neighborhoods.thinned().last())
+    else {
+        return f64::INFINITY;
+    };
+    least.told(index, || {
+        neighborhoods.nearest_into(index, MOST_NEIGHBORS, wide_neighbors);
+        let points = neighborhoods.points();
+        possible_variance_alone(
+            wide_neighbors.iter().map(|near| points[near.index] - points[index]),
+        )
+    })
 }
 
 /// The surface of a point by what is about a place, and where it is. What is nearest to a displaced
