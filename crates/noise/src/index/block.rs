@@ -113,24 +113,28 @@ impl Block {
 
     /// Holds what is within a distance of a place from now on, which may be nothing.
     fn fill(&mut self, cloud: &Positions, place: &Point3, radius: f64) {
-        self.indices.clear();
-        self.groups.clear();
+        let Self { indices, groups, .. } = self;
+        indices.clear();
+        groups.clear();
         (self.centre, self.radius) = (*place, radius);
         if radius <= 0.0 {
             return;
         }
-        for near in cloud.hits_within(place, radius * radius) {
-            let (group, lane) = (self.indices.len() / WIDTH, self.indices.len() % WIDTH);
+        let points = cloud.points().as_slice();
+        cloud.visit_within(place, radius * radius, |near| {
+            let lane = indices.len() % WIDTH;
             if lane == 0 {
                 // Lanes without a position are infinitely far away.
-                self.groups.push([[f64::INFINITY; WIDTH]; 3]);
+                groups.push([[f64::INFINITY; WIDTH]; 3]);
             }
-            self.indices.push(near.index as u32);
-            let position = cloud.points()[near.index];
-            for (lanes, value) in self.groups[group].iter_mut().zip(position.iter()) {
-                lanes[lane] = *value;
+            indices.push(near.index as u32);
+            let position = &points[near.index];
+            if let Some(group) = groups.last_mut() {
+                for (lanes, value) in group.iter_mut().zip(position.iter()) {
+                    lanes[lane] = *value;
+                }
             }
-        }
+        });
         if self.indices.len() == cloud.distinct() {
             self.radius = f64::INFINITY;
         }

@@ -7,7 +7,9 @@ mod regression;
 mod reweight;
 pub(crate) mod scatter;
 mod score;
+mod sieve;
 mod smallest_axis;
+mod vote;
 
 use cloudtouch_geom::{UnitVector3, Vector3};
 

@@ -219,6 +219,16 @@ impl<'a> Patch<'a> {
         }
     }
 
+    /// Σᵢ of the point itself.
+    pub(crate) fn own_noise(&self) -> &'a Covariance {
+        self.own_noise
+    }
+
+    /// The least variance a residual is judged by, m².
+    pub(crate) fn floor(&self) -> f64 {
+        self.floor
+    }
+
     /// The variance of the point itself along a unit normal, by the same measure.
     pub(crate) fn own_variance(&self, normal: &Vector3) -> f64 {
         let isotropic = self.own_noise.isotropic_variance();

@@ -1,0 +1,142 @@
+//! Which planes cannot win a vote: told of four at a time, and of nearly all.
+
+use std::f64::consts::LN_2;
+
+use cloudtouch_geom::Vector3;
+
+use crate::lanes::{Lanes, Machine, Stored, WIDTH};
+use crate::surface::vote::{CUT, OWN_VOTES, Vote};
+
+/// What rounding may take from a cost, a part of the most that voters can spare.
+const ROUNDING: f64 = 1e-9;
+
+impl<S: Machine> Vote<'_, S> {
+    /// The least that planes through three places each can cost: no more than [`Self::disagreement`], and less by a
+    /// hundredth of the voters' most at most, but for the tails of what is missed. Of three places on one line it
+    /// says nothing.
+    #[inline(always)]
+    pub(super) fn least_costs(&self, places: [[Vector3; 3]; WIDTH]) -> Stored {
+        let Self { machine, voters, scale, .. } = *self;
+        let [a, b, c] = [0, 1, 2].map(|corner| {
+            [0, 1, 2].map(|axis| Lanes::load(machine, places.map(|plane| plane[corner][axis])))
+        });
+        // As long as it is: nobody needs its length, but the square of it.
+        let normal = cross(minus(b, a), minus(c, a));
+        let inverse_square = dot(normal, normal).inverse();
+        let height = dot(normal, a);
+        let variance = self.variances(normal, inverse_square);
+        let narrowness = variance.stored().map(|variance| log_at_least(variance / scale));
+        let inverse = variance.inverse() * inverse_square;
+        let (most, all) = (Lanes::splat(machine, CUT * CUT), voters.len() as f64);
+        let own = height * height * inverse;
+        let beyond = (own - most * OWN_VOTES).not_negative();
+        let spare = most - Lanes::load(machine, narrowness);
+        let mut spared = Lanes::zero(machine);
+        for voter in 0..voters.len() {
+            let place = voters.offset(voter);
+            let above = normal[0] * place.x + normal[1] * place.y + normal[2] * place.z - height;
+            spared += (spare - above * above * inverse).not_negative();
+        }
+        (own - beyond + most * all - spared - spare * (ROUNDING * all)).stored()
+    }
+
+    /// The variances of the point along normals that are not of unit length, m².
+    #[inline(always)]
+    fn variances(&self, [x, y, z]: [Lanes<S>; 3], inverse_square: Lanes<S>) -> Lanes<S> {
+        let [xx, xy, xz, yy, yz, zz] = self.voters.own_noise().upper_triangle();
+        let along =
+            x * x * xx + y * y * yy + z * z * zz + (x * y * xy + x * z * xz + y * z * yz) * 2.0;
+        (along * inverse_square).at_least(self.voters.floor())
+    }
+}
+
+#[inline(always)]
+fn minus<S: Machine>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot<S: Machine>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross<S: Machine>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
+    let across = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+    [across(1, 2), across(2, 0), across(0, 1)]
+}
+
+/// No more than the natural logarithm, and less by .06 at most: the chord between powers of two, which a number's
+/// bits are.
+#[inline(always)]
+fn log_at_least(number: f64) -> f64 {
+    if number < f64::MIN_POSITIVE {
+        return f64::NEG_INFINITY;
+    }
+    LN_2 * (number.to_bits() as f64 / (1_u64 << 52) as f64 - 1023.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_geom::{Covariance, Matrix3};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::lanes::{Kernel, run};
+    use crate::surface::patch::{Offsets, Patch, PatchNoise, Plane};
+
+    /// The least costs of planes, and what they cost.
+    struct Costs<'a>(&'a Patch<'a>, [[Vector3; 3]; WIDTH]);
+
+    impl Kernel for Costs<'_> {
+        type Output = [Stored; 2];
+
+        #[inline(always)]
+        fn run<S: Machine>(self, machine: S) -> [Stored; 2] {
+            let vote = Vote::new(machine, self.0);
+            let cost = |[a, b, c]: [Vector3; 3]| {
+                let normal = (b - a).cross(&(c - a)).normalize();
+                vote.disagreement(&Plane { normal, height: normal.dot(&a) })
+            };
+            [vote.least_costs(self.1), self.1.map(cost)]
+        }
+    }
+
+    proptest! {
+        /// Else the best candidate might be left out; and were it less by much, hardly any would be.
+        #[test]
+        fn it_is_no_more_than_the_cost_and_hardly_less(
+            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 8..20),
+            flat in 0.0..1.0_f64,
+            stds in prop::array::uniform3(0.003..0.3_f64),
+            turn in prop::array::uniform3(-1.0..1.0_f64),
+        ) {
+            let mut places: Vec<Vector3> =
+                places.into_iter().map(|[x, y, z]| Vector3::new(x, y, flat * z)).collect();
+            places.sort_by(|p, q| p.norm_squared().total_cmp(&q.norm_squared()));
+            let mut offsets = Offsets::default();
+            offsets.set(places.iter().copied());
+            let skew = Matrix3::identity() + Vector3::from(turn).cross_matrix();
+            let variances = Matrix3::from_diagonal(&Vector3::from(stds.map(|std| std * std)));
+            let noise = Covariance::from_symmetric(&(skew * variances * skew.transpose()));
+            let patch = Patch::new(&offsets, PatchNoise::Uniform(&noise), &noise, 0.1);
+            let origin = Vector3::zeros();
+            let planes = [[origin, places[0], places[3]], [origin, places[2], places[7]],
+                [places[0], places[1], places[2]], [places[3], places[5], places[6]]];
+            let [least, costs] = run(Costs(&patch, planes));
+            // All misses' tails, the point's among them, and what the chord may lack.
+            let voters = places.len() as f64;
+            let most = 0.1 * (voters + OWN_VOTES) + 0.06 * voters + 1e-6;
+            for (least, cost) in least.into_iter().zip(costs) {
+                prop_assert!(least <= cost, "{} of {}", least, cost);
+                prop_assert!(cost <= least + most, "{} of {}", least, cost);
+            }
+        }
+    }
+
+    #[test]
+    fn the_logarithm_of_what_is_no_variance_is_the_least() {
+        assert_eq!(log_at_least(0.0), f64::NEG_INFINITY);
+        assert_eq!(log_at_least(1.0), 0.0);
+    }
+}
