@@ -15,8 +15,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Truths, scores (larger = more likely a collision), and probabilities or nothing, each in
-    /// the same order.
+    /// Truths, scores (larger = more likely a collision), and probabilities or nothing, each in the same order.
     pub fn new(collides: Vec<bool>, scores: Vec<f64>, probabilities: Vec<f64>) -> Self {
         let mut by_score: Vec<u32> = (0..scores.len() as u32).collect();
         by_score.sort_by(|&a, &b| scores[a as usize].total_cmp(&scores[b as usize]));

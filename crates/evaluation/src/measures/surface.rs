@@ -39,8 +39,7 @@ pub struct Sample<const D: usize> {
     pub weight: f64,
 }
 
-/// Pins of a surface whose first and last values along its first axis, each of so many, are its knots
-/// themselves.
+/// Pins of a surface whose first and last values along its first axis, each of so many, are its knots themselves.
 pub fn border(axis: &[f64], row: usize) -> Vec<(usize, f64)> {
     let last = axis.len() - 1;
     [0, last]

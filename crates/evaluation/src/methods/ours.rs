@@ -15,8 +15,7 @@ use crate::answers::Said;
 /// The query with some settings.
 pub struct Ours {
     name: String,
-    /// The judge is that fitted without the family asked about, unless all evidence is gathered for a
-    /// new one.
+    /// The judge is that fitted without the family asked about, unless all evidence is gathered for a new one.
     pub query: QuerySettings,
     /// Whether the surface is computed everywhere beforehand.
     is_refined: bool,

@@ -15,11 +15,10 @@ const MARGINS: [f64; 3] = [0.01, 0.03, 0.1];
 /// What is stated of a margin may be wrong by this much on average.
 const MOST_ERROR: f64 = 0.05;
 
-const MARGIN: &str = "The bodies of the sweep's scenes, at its poses and noises, asked how likely they \
-are nearer to one another than a margin. *Nearer*: share of the poses where the exact surfaces are. \
-*ECE*: expected calibration error with what chance alone makes of it taken off, as for collisions; \
-*worst family*: the same of the ordinary family where it is largest. The log odds of margins were \
-fitted on other draws of the same families.";
+const MARGIN: &str = "The bodies of the sweep's scenes, at its poses and noises, asked how likely they are nearer to \
+one another than a margin. *Nearer*: share of the poses where the exact surfaces are. *ECE*: expected calibration \
+error with what chance alone makes of it taken off, as for collisions; *worst family*: the same of the ordinary \
+family where it is largest. The log odds of margins were fitted on other draws of the same families.";
 
 /// Log odds at the knots fitted to some draws, printed.
 pub(super) fn fit(draws: u32, poses: usize) -> Result<()> {

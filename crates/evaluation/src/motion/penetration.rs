@@ -24,12 +24,11 @@ const GOOD: f64 = 0.8;
 /// The share of overlaps where the distance is to be enough: as often as it is told to be.
 const ENOUGH: f64 = 1.0 - PROBABILITY;
 
-const TEXT: &str = "How deep the object is in, told as how far it has to move until a collision is as \
-likely as not, and how far until it is less likely than a tenth, beside the shortest translation that was \
-found to free the exact meshes (162 directions, then closer around the best; itself an upper bound), where \
-these overlap by up to 10 cm; ordinary families, 10,000 points. *Good*: off by no more than 25 % or 1 cm; \
-*off*: its median, told less exact. *Enough*: the distance is no less than the exact depth. *None*: no \
-direction freed it. *Time*: median of a call.";
+const TEXT: &str = "How deep the object is in, told as how far it has to move until a collision is as likely as not, \
+and how far until it is less likely than a tenth, beside the shortest translation that was found to free the exact \
+meshes (162 directions, then closer around the best; itself an upper bound), where these overlap by up to 10 cm; \
+ordinary families, 10,000 points. *Good*: off by no more than 25 % or 1 cm; *off*: its median, told less exact. \
+*Enough*: the distance is no less than the exact depth. *None*: no direction freed it. *Time*: median of a call.";
 
 /// Asks for the way out.
 struct WayOut;

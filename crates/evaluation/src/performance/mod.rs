@@ -35,22 +35,23 @@ pub struct Arguments {
     data: PathBuf,
 }
 
-const INTRODUCTION: &str = "How long queries, preparation and the solver take, beside other \
-libraries on the same scenes in the same run. Times are wall times of single calls on one thread, \
-but for the batch. Methods that are compared take turns, so that a slow minute of the machine slows \
-all of them. No speed without its error: each table of times of methods says what they get wrong on \
-the same poses. Speed against error over methods and noises is in [accuracy.md](accuracy.md).";
+const INTRODUCTION: &str = "How long queries, preparation and the solver take, beside other libraries on the same \
+scenes in the same run. Times are wall times of single calls on one thread, but for the batch. Methods that are \
+compared take turns, so that a slow minute of the machine slows all of them. No speed without its error: each table \
+of times of methods says what they get wrong on the same poses. Speed against error over methods and noises is in \
+[accuracy.md](accuracy.md).";
 
 /// Why targets are missed, where they are.
-const MISSED: &str = "Where targets are missed, it is for these reasons. *Exact meshes*: parry3d is \
-told the surfaces and stops at the first triangles that cut; a probability takes every place within 1.5 \
-deviations of the likeliest, though none beyond 3.5 but that one, and samples 10 cm apart stand for \
-discs that reach far. *Far*: no coarse map of distances is kept of a scene, so that every \
-query goes down both trees ([decision 15](../decisions/0015-fewer-instructions.md)). *Deep*: the \
-search stops at P > .999 only. *Boxes and frames*: blurred boxes have \
-their noise model computed everywhere at the first query, and to prepare the stereo scan alone takes as long as all is to \
-take; simulated frames are close to what is asked, on either side of it by the machine of the day. *Hard leaf problems*: SMO finishes none within its steps, and of the interior \
-point method, though it starts beside what SMO found, every step is cubic in the points.";
+const MISSED: &str = "Where targets are missed, it is for these reasons. *Exact meshes*: parry3d is told the surfaces \
+and stops at the first triangles that cut; a probability takes every place within 1.5 deviations of the likeliest, \
+though none beyond 3.5 but that one, and samples 10 cm apart stand for discs that reach far. *Far*: no coarse map of \
+distances is kept of a scene, so that every query goes down both trees ([decision \
+15](../decisions/0015-fewer-instructions.md)). *Deep*: the search stops at P > .999 only. *Refining*: of each point up \
+to 60 neighbours are put in order and fitted four times, and edges and the ends of discs come with it. *Boxes and \
+frames*: blurred boxes have their noise model computed everywhere at the first query, and to prepare the stereo scan \
+alone takes as long as all is to take. *Leaf problems*: SMO finishes none of the hard ones within its steps, and of \
+the interior point method, though it starts beside what SMO found, every step is cubic in the points. *Memory*: scans, \
+index and tree each hold a position of their own.";
 
 /// Measures and writes the page.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {

@@ -6,7 +6,7 @@ use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, Vector3};
 use cloudtouch_svm::{Class, Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 
-use super::timing::{least_of, ratio, three_digits, times};
+use super::timing::{least_of, ratio, three_digits, times, within};
 use crate::SEED;
 use crate::report::{Findings, Section, Table, Target};
 use crate::statistics::median;
@@ -47,13 +47,12 @@ struct Compared {
     past_smo: usize,
 }
 
-const INTRODUCTION: &str = "Random leaf problems in the unit box: a plane against a cap, a wedge or a \
-sheet that crosses it, a gap of −0.1 to 0.3. `easy`: γ 5, C 100, r 1, noise 1 to 2 %. `contact`: γ \
-10, C 100, r 1, noise 1 to 5 %. `hard`: γ 20, C 1000, r 2 to 6, noise 5 to 10 %. Ours is SMO and, \
-where that gives up, the dense interior point method; Clarabel solves the same dual (eq. 13), asked \
-for a tolerance a tenth of the gap. The gap is recomputed from the multipliers for both alike; *at \
-the gap* counts the problems that reach 1e-4. Times include the preparation of the problem; the \
-solvers take turns problem by problem, three times up to 2 × 40 points. *Ratio*: Clarabel's median \
+const INTRODUCTION: &str = "Random leaf problems in the unit box: a plane against a cap, a wedge or a sheet that \
+crosses it, a gap of −0.1 to 0.3. `easy`: γ 5, C 100, r 1, noise 1 to 2 %. `contact`: γ 10, C 100, r 1, noise 1 to 5 \
+%. `hard`: γ 20, C 1000, r 2 to 6, noise 5 to 10 %. Ours is SMO and, where that gives up, the dense interior point \
+method; Clarabel solves the same dual (eq. 13), asked for a tolerance a tenth of the gap. The gap is recomputed from \
+the multipliers for both alike; *at the gap* counts the problems that reach 1e-4. Times include the preparation of \
+the problem; the solvers take turns problem by problem, three times up to 2 × 40 points. *Ratio*: Clarabel's median \
 time over ours.";
 
 /// Measures every cell at every size.
@@ -61,8 +60,8 @@ pub(super) fn measure() -> Findings {
     let all = CELLS.iter().flat_map(|cell| SIZES.iter().map(move |size| (cell, size)));
     let all: Vec<Compared> =
         all.map(|(cell, size)| Compared::measure(cell, *size)).collect::<Result<_>>()?;
-    const HEADER: &str = "cell, points, problems, at the gap, past SMO, ours median, ours p95, \
-                          Clarabel median, Clarabel p95, ratio";
+    const HEADER: &str = "cell, points, problems, at the gap, past SMO, ours median, ours p95, Clarabel median, Clarabel \
+p95, ratio";
     let mut table = Table::new(HEADER.split(", "));
     for c in &all {
         let [ours, theirs] = c.at_the_gap;
@@ -74,7 +73,10 @@ pub(super) fn measure() -> Findings {
         table.row(row);
     }
     let section = Section::new("Leaf problems").text(INTRODUCTION).text(table);
-    let targets = [(40, 50.0), (200, 10.0)].map(|(per_side, least)| {
+    let patches = all.iter().filter(|c| c.per_side == 20 && c.cell != "hard");
+    let patch = patches.map(|c| median(&c.seconds[0])).fold(0.0, f64::max);
+    let patch = within("2 × 20 points, gap 1e-4, but for hard ones: median", patch, 60e-6);
+    let compared = [(40, 50.0), (200, 10.0)].map(|(per_side, least)| {
         let of_size = || all.iter().filter(|c| c.per_side == per_side);
         let worst = of_size().map(Compared::speedup).fold(f64::INFINITY, f64::min);
         let cells: Vec<String> =
@@ -82,7 +84,7 @@ pub(super) fn measure() -> Findings {
         let what = format!("2 × {per_side} points, gap 1e-4: ≥ {least} × Clarabel, every cell");
         Target::new(what, cells.join(", "), worst >= least)
     });
-    Ok((section, targets.into()))
+    Ok((section, [patch].into_iter().chain(compared).collect()))
 }
 
 impl Compared {

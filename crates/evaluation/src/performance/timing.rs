@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 
+use crate::report::Target;
 use crate::statistics::{median, quantile};
 
 /// What a call returns and how long it took, s.
@@ -51,6 +52,11 @@ pub(super) fn three_digits(value: f64) -> String {
         _ => 0,
     };
     format!("{value:.digits$}")
+}
+
+/// That something takes so long at most, s.
+pub(super) fn within(what: &str, seconds: f64, limit: f64) -> Target {
+    Target::new(format!("{what} ≤ {}", time(limit)), time(seconds), seconds <= limit)
 }
 
 /// Median and 95th percentile, written.

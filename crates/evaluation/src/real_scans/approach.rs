@@ -1,5 +1,4 @@
-//! A gripper that advances on a mug, step by step: the probability must rise, and the contacts
-//! must lie on the scene.
+//! A gripper that advances on a mug, step by step: the probability must rise, and the contacts must lie on the scene.
 
 use std::path::Path;
 

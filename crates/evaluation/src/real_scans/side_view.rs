@@ -1,5 +1,4 @@
-//! The scene and the object from the side: a slice through both, so that what looks like an overlap
-//! is one.
+//! The scene and the object from the side: a slice through both, so that what looks like an overlap is one.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -43,8 +43,7 @@ impl Figure {
     }
 }
 
-/// The looks of all names in the order in which they first occur: neighbours differ in colour and
-/// in shape.
+/// The looks of all names in the order in which they first occur: neighbours differ in colour and in shape.
 fn looks(figure: &Figure) -> Vec<Look<'_>> {
     let mut looks: Vec<Look<'_>> = Vec::new();
     let series = figure.panels.iter().flat_map(|panel| &panel.series);
