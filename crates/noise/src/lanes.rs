@@ -91,6 +91,18 @@ impl<S: Machine> Lanes<S> {
         Self(self.0, self.0.div_f64s(self.0.splat_f64s(1.0), self.1))
     }
 
+    /// The root of each.
+    #[inline(always)]
+    pub(crate) fn sqrt(self) -> Self {
+        Self(self.0, self.0.sqrt_f64s(self.1))
+    }
+
+    /// `self` · `times` + `plus`, rounded once or twice, as the machine does it: not the same bits with any of them.
+    #[inline(always)]
+    pub(crate) fn times_plus(self, times: Self, plus: Self) -> Self {
+        Self(self.0, self.0.mul_add_e_f64s(self.1, times.1, plus.1))
+    }
+
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
         let [a, b, c, d] = self.stored();

@@ -1,12 +1,13 @@
 //! The room in more and more points: queries, building, memory.
 
-use std::fs;
+use std::alloc::System;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use cloudtouch::bvh::{Primitive, Tree, TreeSettings};
 use cloudtouch::noise::SensorModel;
 use cloudtouch_geom::{PointCloud, UncertainPoint};
 use cloudtouch_testkit::family::Observation;
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 use super::scene::{POINTS, STD, Scene};
 use super::timing::{least_of, ratio, three_digits, time};
@@ -15,6 +16,10 @@ use crate::answers::Pair;
 use crate::methods::{Draw, ExactMeshes, Ours, prepared};
 use crate::report::{Findings, Section, Table, Target};
 use crate::statistics::median;
+
+/// Counts what is held, which the resident memory does not tell: a part of it was used before.
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Points of the room.
 const SIZES: [usize; 4] = [10_000, 100_000, 300_000, LARGEST];
@@ -50,8 +55,7 @@ pub(super) fn measure(scene: &Scene) -> Findings {
         "The room in more and more points, the piano in {POINTS}, {} mm of noise, {POSES} poses, \
          asked as above of clouds that are not refined. *Tree* is `Tree::build` alone, *prepare* \
          all of `Cloud::prepare`; of {BUILDS} the fastest. Meshes have as many triangles as the \
-         cloud has points. *Bytes a point*: how much the resident memory of the process (`VmRSS`) \
-         grows while a cloud is prepared, and refined; only the largest sizes mean something.",
+         cloud has points. *Bytes a point*: what a cloud holds, prepared and refined, as its allocator counts.",
         1e3 * STD
     ));
     let (first, [ours, meshes, tree, all]) = (rows[0], rows[SIZES.len() - 1]);
@@ -84,20 +88,16 @@ fn tree_time(cloud: &PointCloud) -> Result<f64> {
     Ok(least_of(BUILDS, build)?.1)
 }
 
-/// What a cloud of the room holds a point, prepared and refined.
+/// What a cloud of the room holds a point, bytes: prepared and refined.
 fn bytes_a_point(room: &Observation) -> Result<[f64; 2]> {
-    let before = resident()?;
+    let before = Region::new(ALLOCATOR);
     let cloud = prepared(room)?;
     let count = cloud.len() as f64;
-    let held = (resident()? - before) / count;
+    let held = || {
+        let change = before.change();
+        (change.bytes_allocated as f64 - change.bytes_deallocated as f64) / count
+    };
+    let first = held();
     let _cloud = cloud.refined()?;
-    Ok([held, (resident()? - before) / count])
-}
-
-/// Resident memory of this process, bytes; NaN where the kernel does not say.
-fn resident() -> Result<f64> {
-    let Ok(status) = fs::read_to_string("/proc/self/status") else { return Ok(f64::NAN) };
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-    let kilobytes = line.and_then(|line| line.trim().strip_suffix(" kB"));
-    Ok(1024.0 * kilobytes.context("VmRSS in /proc/self/status")?.parse::<f64>()?)
+    Ok([first, held()])
 }

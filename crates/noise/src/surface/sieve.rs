@@ -20,22 +20,33 @@ impl<S: Machine> Vote<'_, S> {
         let [a, b, c] = [0, 1, 2].map(|corner| {
             [0, 1, 2].map(|axis| Lanes::load(machine, places.map(|plane| plane[corner][axis])))
         });
-        // As long as it is: nobody needs its length, but the square of it.
         let normal = cross(minus(b, a), minus(c, a));
         let inverse_square = dot(normal, normal).inverse();
-        let height = dot(normal, a);
-        let variance = self.variances(normal, inverse_square);
-        let narrowness = variance.stored().map(|variance| log_at_least(variance / scale));
-        let inverse = variance.inverse() * inverse_square;
+        let (inverse, narrowness) = match self.same {
+            Some((variance, narrowness)) => {
+                (inverse_square * (1.0 / variance), Lanes::splat(machine, narrowness))
+            }
+            None => {
+                let variance = self.variances(normal, inverse_square);
+                let narrowness = variance.stored().map(|variance| log_at_least(variance / scale));
+                (variance.inverse() * inverse_square, Lanes::load(machine, narrowness))
+            }
+        };
+        // In standard deviations.
+        let scaling = inverse.sqrt();
+        let [x, y, z] = normal.map(|entry| entry * scaling);
+        let below = Lanes::zero(machine) - dot([x, y, z], a);
         let (most, all) = (Lanes::splat(machine, CUT * CUT), voters.len() as f64);
-        let own = height * height * inverse;
+        let own = below * below;
         let beyond = (own - most * OWN_VOTES).not_negative();
-        let spare = most - Lanes::load(machine, narrowness);
+        let spare = most - narrowness;
         let mut spared = Lanes::zero(machine);
         for voter in 0..voters.len() {
-            let place = voters.offset(voter);
-            let above = normal[0] * place.x + normal[1] * place.y + normal[2] * place.z - height;
-            spared += (spare - above * above * inverse).not_negative();
+            let place: [f64; 3] = voters.offset(voter).into();
+            let [p, q, r] = place.map(|entry| Lanes::splat(machine, entry));
+            let above = x.times_plus(p, y.times_plus(q, z.times_plus(r, below)));
+            let less = Lanes::zero(machine) - above;
+            spared += less.times_plus(above, spare).not_negative();
         }
         (own - beyond + most * all - spared - spare * (ROUNDING * all)).stored()
     }

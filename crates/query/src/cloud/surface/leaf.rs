@@ -41,7 +41,9 @@ impl LeafSurface {
 
 impl LeafEdges {
     /// Of a leaf that is thin along a unit vector.
-    pub(super) fn new(edges: Vec<Edge>, thin: Vector3) -> Self {
+    pub(super) fn new(mut edges: Vec<Edge>, thin: Vector3) -> Self {
+        // What they grew by would be a seventh of what a refined cloud holds.
+        edges.shrink_to_fit();
         let slab = Slab::around_edges(&edges, thin);
         let joined = edges.iter().map(|edge| edge.own_places().collect()).collect();
         Self { edges, joined, slab }
