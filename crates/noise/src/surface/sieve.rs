@@ -121,6 +121,7 @@ mod tests {
             flat in 0.0..1.0_f64,
             stds in prop::array::uniform3(0.003..0.3_f64),
             turn in prop::array::uniform3(-1.0..1.0_f64),
+            is_same in any::<bool>(),
         ) {
             let mut places: Vec<Vector3> =
                 places.into_iter().map(|[x, y, z]| Vector3::new(x, y, flat * z)).collect();
@@ -129,7 +130,11 @@ mod tests {
             offsets.set(places.iter().copied());
             let skew = Matrix3::identity() + Vector3::from(turn).cross_matrix();
             let variances = Matrix3::from_diagonal(&Vector3::from(stds.map(|std| std * std)));
-            let noise = Covariance::from_symmetric(&(skew * variances * skew.transpose()));
+            let noise = if is_same {
+                Covariance::isotropic(stds[0] * stds[0])
+            } else {
+                Covariance::from_symmetric(&(skew * variances * skew.transpose()))
+            };
             let patch = Patch::new(&offsets, PatchNoise::Uniform(&noise), &noise, 0.1);
             let origin = Vector3::zeros();
             let planes = [[origin, places[0], places[3]], [origin, places[2], places[7]],
