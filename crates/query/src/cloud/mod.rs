@@ -29,6 +29,8 @@ pub use prepare::Cloud;
 pub(crate) use prepared::Prepared;
 pub use settings::CloudSettings;
 pub(crate) use surface::ball::Ball;
+#[cfg(test)]
+pub(crate) use surface::edge::Place;
 pub(crate) use surface::edge::{DISC_SPACINGS, EDGE_SLOPE, Edge, MOST_ALONG, edge_along};
 #[cfg(test)]
 pub(crate) use surface::join::edges_of;

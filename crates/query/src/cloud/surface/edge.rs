@@ -1,5 +1,7 @@
 //! Edges between neighbouring samples: they stand for the surface between them.
 
+use std::num::NonZeroU32;
+
 use cloudtouch_geom::{Motion, Point3, Vector3};
 
 /// Edges join samples up to this many of the smaller of their spacings apart.
@@ -29,6 +31,20 @@ pub(crate) fn edge_along(normal: &Vector3, along: &Vector3) -> f64 {
     EDGE_SLOPE.mul_add(normal.dot(along).abs(), sine(normal, along))
 }
 
+/// The place of a point in its leaf, in no more memory where there may be none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Place(NonZeroU32);
+
+impl Place {
+    pub(crate) fn new(place: u32) -> Self {
+        Self(NonZeroU32::MIN.saturating_add(place))
+    }
+
+    fn get(self) -> usize {
+        self.0.get() as usize - 1
+    }
+}
+
 /// A straight piece of surface between two neighbours of one cloud.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Edge {
@@ -40,8 +56,8 @@ pub(crate) struct Edge {
     pub points: [u32; 2],
     /// Variances of the ends across the surface, m².
     pub across: [f64; 2],
-    /// Which points of the leaf it joins, by their place in it; `None` for a point of another leaf.
-    pub own: [Option<u32>; 2],
+    /// Which points of the leaf it joins; `None` for a point of another leaf.
+    pub own: [Option<Place>; 2],
 }
 
 impl Edge {
@@ -64,7 +80,7 @@ impl Edge {
 
     /// The points of its leaf that it joins, by their places in it.
     pub(crate) fn own_places(&self) -> impl Iterator<Item = usize> {
-        self.own.into_iter().flatten().map(|place| place as usize)
+        self.own.into_iter().flatten().map(Place::get)
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use cloudtouch_bvh::NodeId;
 use cloudtouch_noise::Scratch;
 
-use super::edge::{EDGE_SLOPE, EDGE_SPACINGS, Edge};
+use super::edge::{EDGE_SLOPE, EDGE_SPACINGS, Edge, Place};
 use super::leaf::LeafEdges;
 use super::slots::NEIGHBORS;
 use super::surfel::Surfel;
@@ -50,7 +50,7 @@ pub(crate) fn edges_of(cloud: &Prepared, indices: &[u32], scratch: &mut Scratch)
                     half_length: 0.5 * (to.point.mean - from.point.mean).norm(),
                     points: [p, q],
                     across: [from.across, to.across],
-                    own: [Some(place), other],
+                    own: [Some(Place::new(place)), other.map(Place::new)],
                 });
             }
         }
