@@ -9,7 +9,8 @@ use anyhow::{Context, Result};
 use crate::cargo::{AS_TESTED, RECORDINGS, cargo, succeed};
 
 /// Says why this Python is of no use, and nothing where it is.
-const LOOK: &str = "import sys
+const LOOK: &str = "\
+import sys
 if sys.version_info < (3, 9): sys.exit('it is Python %d.%d, and 3.9 is needed' % sys.version_info[:2])
 try: import ensurepip, venv
 except ImportError as error: sys.exit('%s: install its venv (Debian: apt install python3-venv)' % error)

@@ -94,9 +94,10 @@ pub(super) mod tests {
         Manifest { folder: "crates/x".into(), table: text.parse().unwrap() }
     }
 
-    const GOOD: &str = "[package]\nname = 'x'\ndescription = 'd'\nreadme = 'README.md'\nversion.workspace = \
-true\nedition.workspace = true\nrust-version.workspace = true\nlicense.workspace = true\n[lints]\nworkspace = \
-true\n[dependencies]\nserde.workspace = true\n";
+    const GOOD: &str = "[package]\nname = 'x'\ndescription = 'd'\nreadme = 'README.md'\n\
+        version.workspace = true\nedition.workspace = true\nrust-version.workspace = true\n\
+        license.workspace = true\n[lints]\nworkspace = true\n\
+        [dependencies]\nserde.workspace = true\n";
 
     #[test]
     fn a_good_manifest_passes_and_each_fault_is_named() {

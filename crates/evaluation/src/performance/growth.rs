@@ -22,8 +22,7 @@ use crate::statistics::median;
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Points of the room.
-const SIZES: [usize; 4] = [10_000, 100_000, 300_000, LARGEST];
-const LARGEST: usize = 1_000_000;
+const SIZES: [usize; 4] = [10_000, 100_000, 300_000, 1_000_000];
 /// Poses asked of each, at most.
 const POSES: usize = 30;
 /// How often something is built; the least time counts.
@@ -58,8 +57,9 @@ pub(super) fn measure(scene: &Scene) -> Findings {
          cloud has points. *Bytes a point*: what a cloud holds, prepared and refined, as its allocator counts.",
         1e3 * STD
     ));
-    let (first, [ours, meshes, tree, all]) = (rows[0], rows[SIZES.len() - 1]);
-    let at = format!("room of {LARGEST} points");
+    let (first, [ours, meshes, ..]) = (rows[0], rows[SIZES.len() - 1]);
+    let [tree, all] = [2, 3].map(|k| rows.iter().map(|row| row[k]).fold(f64::INFINITY, f64::min));
+    let [at, to] = ["", "10k to "].map(|from| format!("room of {from}{} points", SIZES[3]));
     let rate = |rate: f64| format!("{} M points/s", million(rate));
     let bytes = |held: f64| format!("{held:.0} bytes");
     let (by_meshes, growth) = (ours / meshes, ours / first[0]);
@@ -68,8 +68,8 @@ pub(super) fn measure(scene: &Scene) -> Findings {
     let targets = vec![
         Target::new(meshes, ratio(by_meshes), by_meshes <= 0.2),
         Target::new(format!("{at}: query, median ≤ 2 × that at 10k"), ratio(growth), growth <= 2.0),
-        Target::new(format!("{at}: tree ≥ 2 M points/s"), rate(tree), tree >= 2e6),
-        Target::new(format!("{at}: `Cloud::prepare` ≥ 2 M points/s"), rate(all), all >= 2e6),
+        Target::new(format!("{to}: tree ≥ 2 M points/s"), rate(tree), tree >= 2e6),
+        Target::new(format!("{to}: `Cloud::prepare` ≥ 2 M points/s"), rate(all), all >= 2e6),
         Target::new(small, rate(first[3]), first[3] >= 4e6),
         Target::new(format!("{at}: ≤ 120 bytes a point"), bytes(held[0]), held[0] <= 120.0),
         Target::new(format!("{at}: refined ≤ 200 bytes a point"), bytes(held[1]), held[1] <= 200.0),

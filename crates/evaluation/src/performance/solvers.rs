@@ -60,8 +60,8 @@ pub(super) fn measure() -> Findings {
     let all = CELLS.iter().flat_map(|cell| SIZES.iter().map(move |size| (cell, size)));
     let all: Vec<Compared> =
         all.map(|(cell, size)| Compared::measure(cell, *size)).collect::<Result<_>>()?;
-    const HEADER: &str = "cell, points, problems, at the gap, past SMO, ours median, ours p95, Clarabel median, Clarabel \
-p95, ratio";
+    const HEADER: &str = "cell, points, problems, at the gap, past SMO, ours median, ours p95, \
+                          Clarabel median, Clarabel p95, ratio";
     let mut table = Table::new(HEADER.split(", "));
     for c in &all {
         let [ours, theirs] = c.at_the_gap;
