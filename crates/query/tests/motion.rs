@@ -240,7 +240,7 @@ fn check_random_motion(index: u64, samples: u32) -> usize {
     swept.stats.stretches
 }
 
-/// Of a path through a sheet sixteen poses tell that it is not free; bounds for all that is between them took a
+/// Of a path through a sheet three poses tell that it is not free; bounds for all that is between them took a
 /// hundred times as long.
 #[test]
 fn a_sweep_that_is_asked_for_the_verdict_alone_ends_with_the_first_pose_that_is_not_free() {
@@ -255,6 +255,19 @@ fn a_sweep_that_is_asked_for_the_verdict_alone_ends_with_the_first_pose_that_is_
     assert_eq!((swept.stats.poses, swept.stats.stretches), (3, 0));
     assert_eq!((swept.certified_free_until, swept.bounds[1]), (0.0, 1.0));
     assert!(swept.first.is_some_and(|first| first.at.share == 0.5 && first.not_before == 0.0));
+}
+
+/// Seventeen of its poses were asked about before one bound told that it is free.
+#[test]
+fn the_verdict_on_a_path_that_keeps_clear_takes_its_ends_its_middle_and_one_bound() {
+    let sheet = cloud(&scene::cuboid([0.4, 0.4, 0.004]), 0.012, 0.001, 1);
+    let block = cloud(&scene::cuboid([0.1, 0.1, 0.1]), 0.012, 0.001, 2);
+    let path = Path::linear(&at(-0.1, 0.0, 0.3), &at(0.1, 0.0, 0.3)).expect("two poses");
+    let settings = QuerySettings { detail: Detail::Verdict, ..QuerySettings::default() };
+    let swept = Query::new(settings).expect("good settings").sweep(&sheet, &block, &path, 0.01);
+    let swept = swept.expect("a good path");
+    assert_eq!((swept.verdict, swept.certified_free_until), (Verdict::Free, 1.0));
+    assert_eq!((swept.stats.poses, swept.stats.stretches), (3, 1));
 }
 
 /// 200 of them here; 10,000 with
