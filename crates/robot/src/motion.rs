@@ -83,7 +83,7 @@ impl RobotChecker {
     /// [`Detail::Full`](cloudtouch::Detail::Full) for contacts and clearances of what is found.
     ///
     /// # Errors
-    /// With fewer than two positions, a tolerance that is not above 0 and at most 1, and where
+    /// With fewer than two positions, a tolerance below [`Query::LEAST_TOLERANCE`] or above 1, and where
     /// [`Self::check`] has one at any position.
     pub fn check_path(
         &self,
@@ -94,7 +94,7 @@ impl RobotChecker {
         if path.len() < 2 {
             return Err(PathError::TooFew { count: path.len() });
         }
-        if !(tolerance > 0.0 && tolerance <= 1.0) {
+        if !(Query::LEAST_TOLERANCE..=1.0).contains(&tolerance) {
             return Err(PathError::Tolerance { value: tolerance });
         }
         let at = |(index, joints)| {

@@ -342,7 +342,7 @@ class RobotChecker:
         ValueError
             A position has the wrong shape or type.
         CloudtouchError
-            There are fewer than two, ``tolerance`` is not above 0 and at most 1, or as :meth:`check`.
+            There are fewer than two, ``tolerance`` is below 1e-5 or above 1, or as :meth:`check`.
         """
         rows = _arrays.rows_of(path)
         positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(rows)]

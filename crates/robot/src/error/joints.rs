@@ -76,8 +76,8 @@ pub enum PathError {
         /// How many are given.
         count: usize,
     },
-    /// No share of the path.
-    #[error("the tolerance is {value}: give a share of the path, above 0 and at most 1")]
+    /// No share of the path, or too fine a one.
+    #[error("the tolerance is {value:?}: give a share of the path from 1e-5 to 1, such as 0.001")]
     Tolerance {
         /// What was given.
         value: f64,
