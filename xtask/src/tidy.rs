@@ -104,9 +104,4 @@ mod tests {
         assert_eq!(files, ["a/b.txt", "c"]);
         assert!(found.len() == 1 && found[0].starts_with("c: a symbolic link"), "{found:?}");
     }
-
-    #[test]
-    fn the_workspace_is_tidy() {
-        super::run(&crate::project_root()).unwrap();
-    }
 }

@@ -67,15 +67,6 @@ pub(super) fn check(manifest: &Manifest) -> Vec<String> {
     if !inherits(manifest.table.get("lints")) {
         complain("`[lints] workspace = true` is missing".into());
     }
-    let mut required = vec!["description"];
-    if manifest.is_published() {
-        required.push("readme");
-    }
-    for key in required {
-        if manifest.package(key).and_then(Value::as_str).is_none_or(str::is_empty) {
-            complain(format!("`{key}` is missing"));
-        }
-    }
     for kind in KINDS {
         for (name, value) in manifest.dependencies(kind) {
             if !inherits(Some(value)) {
@@ -94,9 +85,8 @@ pub(super) mod tests {
         Manifest { folder: "crates/x".into(), table: text.parse().unwrap() }
     }
 
-    const GOOD: &str = "[package]\nname = 'x'\ndescription = 'd'\nreadme = 'README.md'\n\
-        version.workspace = true\nedition.workspace = true\nrust-version.workspace = true\n\
-        license.workspace = true\n[lints]\nworkspace = true\n\
+    const GOOD: &str = "[package]\nname = 'x'\nversion.workspace = true\nedition.workspace = true\n\
+        rust-version.workspace = true\nlicense.workspace = true\n[lints]\nworkspace = true\n\
         [dependencies]\nserde.workspace = true\n";
 
     #[test]
@@ -105,8 +95,6 @@ pub(super) mod tests {
         for (from, to, named) in [
             ("license.workspace = true", "license = 'MIT'", "license"),
             ("[lints]\nworkspace = true", "", "lints"),
-            ("description = 'd'", "description = ''", "description"),
-            ("readme = 'README.md'", "", "readme"),
             ("serde.workspace = true", "serde = '1'", "serde"),
         ] {
             let found = check(&manifest(&GOOD.replace(from, to)));

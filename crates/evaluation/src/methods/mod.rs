@@ -2,6 +2,7 @@
 //!
 //! A method is prepared once for a draw of a scene and then asked at many poses, as a planner does.
 
+mod balls;
 mod distance;
 mod fitted;
 mod ours;
@@ -16,6 +17,7 @@ use cloudtouch_testkit::family::Observation;
 use cloudtouch_testkit::noise::{NoiseKind, add_noise};
 use cloudtouch_testkit::surface::{positions, sample_surface};
 
+pub use balls::Balls;
 pub use distance::Distance;
 pub use fitted::Fitted;
 pub use ours::Ours;

@@ -5,9 +5,8 @@ use cloudtouch::{Detail, Query, QuerySettings};
 use cloudtouch_geom::Pose;
 use rayon::ThreadPoolBuilder;
 
-use super::scene::{POINTS, STD, Scene};
+use super::scene::Scene;
 use super::timing::{ratio, timed};
-use crate::methods::prepared;
 use crate::report::{Findings, Section, Target};
 
 /// Poses of the batch, and its parts; one and two threads take turns at each.
@@ -16,8 +15,7 @@ const PARTS: usize = 10;
 
 /// Asks all poses of the batch three times: untimed, on one thread, on two.
 pub(super) fn measure(scene: &Scene) -> Findings {
-    let room = prepared(&scene.room(POINTS, STD))?.refined()?;
-    let piano = prepared(&scene.piano(STD))?.refined()?;
+    let [room, piano] = scene.refined()?;
     let settings = QuerySettings { detail: Detail::Probability, ..QuerySettings::default() };
     let query = Query::new(settings)?;
     let poses: Vec<Pose> =
@@ -33,9 +31,8 @@ pub(super) fn measure(scene: &Scene) -> Findings {
         }
     }
     let section = Section::new("Many poses at once").text(format_args!(
-        "`Query::run_batch` for probabilities alone (`Detail::Probability`) on one thread and on two, \
-         {POSES} poses: those above over and over. All \
-         were asked before; one and two threads take turns at tenths of the batch."
+        "`Query::run_batch` for probabilities alone (`Detail::Probability`) on one thread and on two, {POSES} poses: \
+         those above over and over. All were asked before; one and two threads take turns at tenths of the batch."
     ));
     let what = format!("batch of {POSES} poses: two threads ≥ 1.9 × one");
     let faster = seconds[0] / seconds[1];

@@ -12,10 +12,11 @@ use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::family::{Family, Observation, Side};
 use cloudtouch_testkit::noise::NoiseKind;
 use cloudtouch_testkit::poses::{LabelledPose, poses_near_contact};
+use cloudtouch_testkit::poses_by_class::Class;
 use cloudtouch_testkit::scene::cuboid;
 use rayon::ThreadPoolBuilder;
 
-use super::scene::{Class, POINTS, STD, Scene, seeds};
+use super::scene::{POINTS, STD, Scene, seeds};
 use super::timing::{p95, time, timed, within};
 use crate::SEED;
 use crate::methods::{prepared, sampled};

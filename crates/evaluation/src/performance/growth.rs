@@ -3,9 +3,6 @@
 use std::alloc::System;
 
 use anyhow::Result;
-use cloudtouch::bvh::{Primitive, Tree, TreeSettings};
-use cloudtouch::noise::SensorModel;
-use cloudtouch_geom::{PointCloud, UncertainPoint};
 use cloudtouch_testkit::family::Observation;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -30,35 +27,33 @@ const BUILDS: usize = 3;
 
 /// Measures every size.
 pub(super) fn measure(scene: &Scene) -> Findings {
-    let header = ["points", "query, median", "parry3d, exact meshes", "tree, M points/s"];
-    let more = ["prepare, M points/s", "bytes a point", "refined"];
-    let mut table = Table::new(header.into_iter().chain(more));
+    let header = ["points", "query, median", "parry3d, exact meshes", "prepare, M points/s"];
+    let mut table = Table::new(header.into_iter().chain(["bytes a point", "refined"]));
     let million = |rate: f64| three_digits(1e-6 * rate);
     let (mut rows, mut held) = (Vec::new(), [f64::NAN; 2]);
     for points in SIZES {
         let (room, piano) = (scene.room(points, STD), scene.piano(STD));
         held = bytes_a_point(&room)?;
-        let (_, preparing) = least_of(BUILDS, || prepared(&room))?;
-        let [tree, all] = [tree_time(&room.cloud)?, preparing].map(|time| points as f64 / time);
+        let (_, seconds) = least_of(BUILDS, || prepared(&room))?;
+        let rate = points as f64 / seconds;
         let draw = Draw { family: "", a: &room, b: &piano, mesh: &scene.piano };
         let ours = Ours::new("ours, not refined")?;
         let meshes = ExactMeshes(scene.meshes(points));
         let poses = &scene.poses[..scene.poses.len().min(POSES)];
         let timed = take_turns(&[&ours, &meshes], &draw, Pair::CloudCloud, poses)?;
         let [ours, meshes] = [0, 1].map(|i| median(&timed[i].seconds(None)));
-        rows.push([ours, meshes, tree, all]);
-        let row = [points.to_string(), time(ours), time(meshes), million(tree), million(all)];
+        rows.push([ours, meshes, rate]);
+        let row = [points.to_string(), time(ours), time(meshes), million(rate)];
         table.row(row.into_iter().chain(held.map(|held| format!("{held:.0}"))));
     }
     let section = Section::new("Larger scenes").text(format_args!(
-        "The room in more and more points, the piano in {POINTS}, {} mm of noise, {POSES} poses, \
-         asked as above of clouds that are not refined. *Tree* is `Tree::build` alone, *prepare* \
-         all of `Cloud::prepare`; of {BUILDS} the fastest. Meshes have as many triangles as the \
-         cloud has points. *Bytes a point*: what a cloud holds, prepared and refined, as its allocator counts.",
+        "The room in more and more points, the piano in {POINTS}, {} mm of noise, {POSES} poses, asked as above of \
+         clouds that are not refined. *Prepare*: `Cloud::prepare`, the fastest of {BUILDS}. Meshes have as many \
+         triangles as the cloud has points. *Bytes a point*: what it holds, prepared and refined, by its allocator.",
         1e3 * STD
     ));
     let (first, [ours, meshes, ..]) = (rows[0], rows[SIZES.len() - 1]);
-    let [tree, all] = [2, 3].map(|k| rows.iter().map(|row| row[k]).fold(f64::INFINITY, f64::min));
+    let least = rows.iter().map(|row| row[2]).fold(f64::INFINITY, f64::min);
     let [at, to] = ["", "10k to "].map(|from| format!("room of {from}{} points", SIZES[3]));
     let rate = |rate: f64| format!("{} M points/s", million(rate));
     let bytes = |held: f64| format!("{held:.0} bytes");
@@ -68,24 +63,12 @@ pub(super) fn measure(scene: &Scene) -> Findings {
     let targets = vec![
         Target::new(meshes, ratio(by_meshes), by_meshes <= 0.2),
         Target::new(format!("{at}: query, median ≤ 2 × that at 10k"), ratio(growth), growth <= 2.0),
-        Target::new(format!("{to}: tree ≥ 2 M points/s"), rate(tree), tree >= 2e6),
-        Target::new(format!("{to}: `Cloud::prepare` ≥ 2 M points/s"), rate(all), all >= 2e6),
-        Target::new(small, rate(first[3]), first[3] >= 4e6),
+        Target::new(format!("{to}: `Cloud::prepare` ≥ 2 M points/s"), rate(least), least >= 2e6),
+        Target::new(small, rate(first[2]), first[2] >= 4e6),
         Target::new(format!("{at}: ≤ 120 bytes a point"), bytes(held[0]), held[0] <= 120.0),
         Target::new(format!("{at}: refined ≤ 200 bytes a point"), bytes(held[1]), held[1] <= 200.0),
     ];
     Ok((section.text(table), targets))
-}
-
-/// Least time of the tree alone, s.
-fn tree_time(cloud: &PointCloud) -> Result<f64> {
-    let covariances = SensorModel::Isotropic { std: STD }.covariances(cloud)?;
-    let points = cloud.points.iter().zip(covariances.iter());
-    let point = |(&mean, &covariance)| Primitive::point(UncertainPoint { mean, covariance });
-    let primitives: Vec<Primitive> = points.map(point).collect();
-    let mut copies = vec![primitives; BUILDS];
-    let build = || Ok(Tree::build(copies.pop().unwrap_or_default(), &TreeSettings::default())?);
-    Ok(least_of(BUILDS, build)?.1)
 }
 
 /// What a cloud of the room holds a point, bytes: prepared and refined.

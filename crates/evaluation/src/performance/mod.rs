@@ -4,6 +4,7 @@
 mod batch;
 mod fresh;
 mod growth;
+mod paths;
 mod room;
 mod scene;
 mod solvers;
@@ -60,16 +61,16 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
     let data = cases::folder(root, data);
     // Whatever uses rayon gets one thread; the batch brings pools of its own.
     let alone = ThreadPoolBuilder::new().num_threads(1).build().context("start a thread")?;
-    let parts: [Part<'_>; 5] = [
+    let parts: [Part<'_>; 6] = [
         ("prepared queries", &|| room::measure(&scene)),
         ("fresh bodies", &|| fresh::measure(&scene, data.as_deref())),
         ("leaf problems", &solvers::measure),
         ("larger scenes", &|| growth::measure(&scene)),
         ("batch", &|| batch::measure(&scene)),
+        ("paths", &|| paths::measure(&scene)),
     ];
-    let command = format!("--poses {poses} --update-docs");
-    let names = ("performance", "Performance");
-    let page = Page::new(names, ("bench-report", &command), INTRODUCTION, root, SEED);
+    let command = ("bench-report", &*format!("--poses {poses} --update-docs"));
+    let page = Page::new(("performance", "Performance"), command, INTRODUCTION, root, SEED);
     let folder = page::folder(root, update_docs);
     alone.install(|| targets::report(page, &folder, MISSED, &parts)).map(drop)
 }

@@ -2,9 +2,9 @@
 
 use anyhow::Result;
 use cloudtouch_geom::seed::{derive, unit};
-use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, Vector3};
+use cloudtouch_geom::{UncertainPoint, Vector3};
 use cloudtouch_svm::{Class, Kernel, Problem, Rung, Sample, Settings, Solution, Solver};
-use cloudtouch_testkit::noise::{NoiseKind, add_noise};
+use cloudtouch_testkit::facing::patches_over_a_plane;
 
 use super::timing::{least_of, ratio, three_digits, times, within};
 use crate::SEED;
@@ -112,35 +112,19 @@ impl Compared {
 }
 
 impl Cell {
-    /// A problem of this kind, with equal or lopsided noise: so many measured points of a cap, a wedge or a
-    /// sheet, and as many of the plane below.
+    /// A problem of this kind, with equal or lopsided noise.
     fn problem(&self, per_side: usize, from: u64) -> Vec<Sample> {
         let draw = |k| unit(derive(from, 0, k));
         let between = |[low, high]: [f64; 2], k| low + (high - low) * draw(k);
         let root = if draw(4) < 0.5 { Vector3::repeat(1.0) } else { Vector3::new(0.2, 0.5, 1.0) };
         let (gap, std) = (between([-0.1, 0.3], 0), root * between(self.noise, 1));
         let (radius, penalty) = (between(self.radius, 2), self.penalty);
-        let variances = Matrix3::from_diagonal(&std.component_mul(&std));
-        let covariance = Covariance::from_symmetric(&variances);
-        let samples = |(side, class): (u64, Class)| {
-            let at = |i: u64| {
-                let draw = |k| unit(derive(derive(from, 1, side), i, k)) - 0.5;
-                let (x, y) = (draw(0), draw(1));
-                let above = match (3.0 * unit(derive(from, 0, 3))) as usize {
-                    0 => 0.6 * (x * x + y * y),
-                    1 => 0.8 * x.abs(),
-                    _ => 0.4 * (x + 0.5),
-                };
-                Point3::new(x, y, if side == 0 { gap + above } else { 0.0 })
-            };
-            let exact: Vec<Point3> = (0..per_side as u64).map(at).collect();
-            let moved = add_noise(&exact, NoiseKind::Gaussian, 1.0, derive(from, 2, side));
-            let errors = exact.iter().zip(moved).map(|(p, q)| (q - p).component_mul(&std));
-            let means = exact.iter().zip(errors).map(|(p, error)| p + error);
-            let points = means.map(|mean| UncertainPoint { mean, covariance });
-            points.map(|point| Sample { point, class, radius, penalty }).collect::<Vec<_>>()
+        let sides = [Class::A, Class::B].into_iter();
+        let sides = sides.zip(patches_over_a_plane(per_side, gap, &std, from));
+        let of = |(class, points): (Class, Vec<UncertainPoint>)| {
+            points.into_iter().map(move |point| Sample { point, class, radius, penalty })
         };
-        [(0, Class::A), (1, Class::B)].into_iter().flat_map(samples).collect()
+        sides.flat_map(of).collect()
     }
 }
 

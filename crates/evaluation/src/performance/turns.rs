@@ -2,8 +2,8 @@
 
 use anyhow::{Context, Result};
 use cloudtouch_testkit::poses::LabelledPose;
+use cloudtouch_testkit::poses_by_class::Class;
 
-use super::scene::Class;
 use super::timing::{ratio, time, timed, times};
 use crate::answers::Pair;
 use crate::measures::{Sample, auc};
