@@ -79,6 +79,15 @@ impl Kernel {
         }
     }
 
+    /// [`Self::influence`] of a point on itself.
+    #[inline]
+    pub(crate) fn own_influence(&self, x: &Vector3, a: f64, s: &Vector3) -> (f64, Vector3) {
+        match *self {
+            Self::Linear => self.influence(x, x, self.reduced_own(x), a, s),
+            Self::Gaussian { gamma } => (0.0, s * (2.0 * gamma)),
+        }
+    }
+
     /// The factor between a displacement at a point and the gradient it causes there: 2γ, or 1 for
     /// the linear kernel.
     #[inline]

@@ -47,15 +47,6 @@ impl<'a> Local<'a> {
         self.gradient += dg;
     }
 
-    fn feel_itself(&mut self, a: f64, s: &Vector3) {
-        let x = &self.problem.points[self.index].x;
-        let (df, dg) =
-            self.problem.kernel.influence(x, x, self.problem.kernel.reduced_own(x), a, s);
-        self.f += df;
-        self.gradient += dg;
-        self.change.a += a;
-        self.change.s += s;
-    }
 
     /// Moves p to the best place in its ball and returns the change of the displacement.
     pub(crate) fn ball_step(&mut self) -> Vector3 {
@@ -69,7 +60,10 @@ impl<'a> Local<'a> {
         let p = ball_minimiser(&m, &h, self.alpha);
         let s = point.displacement(&(p - self.p));
         self.p = p;
-        self.feel_itself(0.0, &s);
+        let (df, dg) = self.problem.kernel.own_influence(&point.x, 0.0, &s);
+        self.f += df;
+        self.gradient += dg;
+        self.change.s += s;
         s
     }
 
@@ -90,6 +84,9 @@ impl<'a> Local<'a> {
 }
 
 /// The exact step along (α_i, α_j) += (c_i, −c_j)·δ with both directions u fixed; false when it is 0.
+///
+/// It is the last of what moves the two: what it does to f₀ and the gradient there is left to be
+/// carried to them with all others.
 pub(crate) fn pair_step(first: &mut Local<'_>, second: &mut Local<'_>, k: f64) -> bool {
     let problem = first.problem;
     let (pi, pj) = (&problem.points[first.index], &problem.points[second.index]);
@@ -100,8 +97,7 @@ pub(crate) fn pair_step(first: &mut Local<'_>, second: &mut Local<'_>, k: f64) -
     let of = |from: &Vector3, to: &Vector3, k: f64, a: f64, s: &Vector3| {
         kernel.influence(from, to, k, a, s)
     };
-    let own = |x: &Vector3, a: f64, s: &Vector3| of(x, x, kernel.reduced_own(x), a, s);
-    let (own_i, own_j) = (own(&pi.x, 1.0, &si), own(&pj.x, -1.0, &sj));
+    let (own_i, own_j) = (kernel.own_influence(&pi.x, 1.0, &si), kernel.own_influence(&pj.x, -1.0, &sj));
     let (at_i, at_j) = (of(&pj.x, &pi.x, k, -1.0, &sj), of(&pi.x, &pj.x, k, 1.0, &si));
     let (fi, gi) = (own_i.0 + at_i.0, own_i.1 + at_i.1);
     let (fj, gj) = (own_j.0 + at_j.0, own_j.1 + at_j.1);
@@ -123,18 +119,10 @@ pub(crate) fn pair_step(first: &mut Local<'_>, second: &mut Local<'_>, k: f64) -
     if delta == 0.0 || !delta.is_finite() {
         return false;
     }
-    let (si, sj) = (si * delta, sj * delta);
     move_to(first, pi.penalty, pi.sign * delta, &ui);
     move_to(second, pj.penalty, -pj.sign * delta, &uj);
-    first.feel_itself(delta, &si);
-    second.feel_itself(-delta, &sj);
-    let (df_i, dg_i) = of(&pj.x, &pi.x, k, -delta, &sj);
-    let (df_j, dg_j) = of(&pi.x, &pj.x, k, delta, &si);
-
-    first.f += df_i;
-    first.gradient += dg_i;
-    second.f += df_j;
-    second.gradient += dg_j;
+    first.change = Change { a: delta, s: first.change.s + si * delta };
+    second.change = Change { a: -delta, s: second.change.s + sj * delta };
     true
 }
 
