@@ -36,6 +36,10 @@ pub(crate) struct Limits {
 /// step costs more in scans than it saves in steps, less often takes up to five times the steps.
 const BALL_STEP_EVERY: usize = 3;
 
+/// A point of a pair is turned before the two are moved where that gains this share of what moving them
+/// does: less costs more than it saves in steps.
+const WORTH_TURNING: f64 = 0.05;
+
 /// Steps a sample after which the decay of the gap tells where it leads; fewer give up on problems
 /// that SMO would soon have done.
 const TOLD_AFTER: usize = 4;
@@ -139,11 +143,18 @@ fn step(state: &mut State<'_>, tools: &mut Tools<'_, '_>, consider_ball: bool) -
     rows.ensure_beside(state.problem, pair.j, pair.i);
     let k = rows.at(pair.i, pair.j);
     let (mut first, mut second) = (Local::new(state, pair.i), Local::new(state, pair.j));
-    let s = first.ball_step();
-    second.feel(&first, k, 0.0, &s);
-    let t = second.ball_step();
-    first.feel(&second, k, 0.0, &t);
-    let turned = s != Vector3::zeros() || t != Vector3::zeros();
+    let worth = WORTH_TURNING * pair.gain;
+    let mut turned = false;
+    if state.misalignment(pair.i) > worth {
+        let s = first.ball_step();
+        second.feel(&first, k, 0.0, &s);
+        turned |= s != Vector3::zeros();
+    }
+    if state.misalignment(pair.j) > worth {
+        let s = second.ball_step();
+        first.feel(&second, k, 0.0, &s);
+        turned |= s != Vector3::zeros();
+    }
     let moved = pair_step(&mut first, &mut second, k) || turned;
     if moved {
         commit(state, rows, &first, Some(&second));

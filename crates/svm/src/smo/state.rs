@@ -39,6 +39,12 @@ impl Numbers {
         &self.p
     }
 
+    /// p·T∇f₀ of a sample.
+    #[inline]
+    fn turned(&self, i: usize) -> f64 {
+        (0..3).map(|axis| self.p[axis].at(i) * self.field.scaled[axis].at(i)).sum()
+    }
+
     /// Moves the dual variables of a sample; what they induce stays.
     pub(crate) fn put(&mut self, i: usize, alpha: f64, p: &Vector3) {
         self.alpha.put(i, alpha);
@@ -125,6 +131,13 @@ impl<'a> State<'a> {
     /// y − cb: how far the worst point of the ellipsoid is inside the margin with this bias.
     pub(crate) fn excess(&self, i: usize, bias: f64) -> f64 {
         self.violation(i) - self.problem.points[i].sign * bias
+    }
+
+    /// α|T∇f₀| + p·T∇f₀: what the cone vector of a sample, turned against the gradient, gains about.
+    #[inline]
+    pub(crate) fn misalignment(&self, i: usize) -> f64 {
+        let Numbers { alpha, field, .. } = &self.numbers;
+        alpha.at(i) * field.norm.at(i) + self.numbers.turned(i)
     }
 
     /// Objective values and gap, from the f₀ and gradients at hand.
