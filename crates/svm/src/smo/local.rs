@@ -6,6 +6,10 @@ use crate::problem::Problem;
 use crate::smo::ball::ball_minimiser;
 use crate::smo::state::State;
 
+/// How much further than to the best place along their line a pair is moved. As in over-relaxation that takes
+/// fewer steps where the next ones undo part of what this one does; it still gains 0.84 of what it could.
+const FURTHER: f64 = 1.4;
+
 /// What a step adds at one point: weight cα and displacement S v.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Change {
@@ -47,7 +51,6 @@ impl<'a> Local<'a> {
         self.gradient += dg;
     }
 
-
     /// Moves p to the best place in its ball and returns the change of the displacement.
     pub(crate) fn ball_step(&mut self) -> Vector3 {
         let point = &self.problem.points[self.index];
@@ -83,7 +86,7 @@ impl<'a> Local<'a> {
     }
 }
 
-/// The exact step along (α_i, α_j) += (c_i, −c_j)·δ with both directions u fixed; false when it is 0.
+/// The step along (α_i, α_j) += (c_i, −c_j)·δ with both directions u fixed; false when it is 0.
 ///
 /// It is the last of what moves the two: what it does to f₀ and the gradient there is left to be
 /// carried to them with all others.
@@ -97,7 +100,8 @@ pub(crate) fn pair_step(first: &mut Local<'_>, second: &mut Local<'_>, k: f64) -
     let of = |from: &Vector3, to: &Vector3, k: f64, a: f64, s: &Vector3| {
         kernel.influence(from, to, k, a, s)
     };
-    let (own_i, own_j) = (kernel.own_influence(&pi.x, 1.0, &si), kernel.own_influence(&pj.x, -1.0, &sj));
+    let (own_i, own_j) =
+        (kernel.own_influence(&pi.x, 1.0, &si), kernel.own_influence(&pj.x, -1.0, &sj));
     let (at_i, at_j) = (of(&pj.x, &pi.x, k, -1.0, &sj), of(&pi.x, &pj.x, k, 1.0, &si));
     let (fi, gi) = (own_i.0 + at_i.0, own_i.1 + at_i.1);
     let (fj, gj) = (own_j.0 + at_j.0, own_j.1 + at_j.1);
@@ -115,7 +119,7 @@ pub(crate) fn pair_step(first: &mut Local<'_>, second: &mut Local<'_>, k: f64) -
     };
     let (low_i, high_i) = range(pi.sign, first.alpha, pi.penalty);
     let (low_j, high_j) = range(-pj.sign, second.alpha, pj.penalty);
-    let delta = (slope / curvature).max(low_i.max(low_j)).min(high_i.min(high_j));
+    let delta = (FURTHER * slope / curvature).max(low_i.max(low_j)).min(high_i.min(high_j));
     if delta == 0.0 || !delta.is_finite() {
         return false;
     }
