@@ -120,7 +120,8 @@ mod tests {
             let mut tools =
                 Tools { rows: &mut rows, watch: Watch::nobody(), effort: Effort::default() };
             let mut state = State::cold(&problem, Numbers::default());
-            let limits = Limits { relative_gap: tolerance, max_steps: steps, predict: false };
+            let (predict, gives_way) = (false, false);
+            let limits = Limits { relative_gap: tolerance, max_steps: steps, predict, gives_way };
             improve(&mut state, &limits, &mut tools);
             let duals: Vec<Dual> = (0..problem.len()).map(|i| state.dual(i)).collect();
 

@@ -17,6 +17,8 @@ use crate::status::{Ends, Rung, Status};
 const TIGHTER: f64 = 1e-2;
 /// No tolerance is tightened beyond this: rounding is next.
 const TIGHTEST: f64 = 1e-14;
+/// Samples up to which the interior point method takes so little time that SMO's counts beside it.
+const SOON_DONE: usize = 200;
 /// Twenty are usual.
 #[cfg(feature = "clarabel")]
 const CLARABEL_ITERATIONS: usize = 200;
@@ -84,6 +86,7 @@ fn climb_to<'a>(
         relative_gap: tolerance,
         max_steps: settings.max_steps.unwrap_or(automatic),
         predict: settings.max_steps.is_none(),
+        gives_way: settings.fallback && n <= SOON_DONE,
     };
     let mut ends = Ends::default();
     let (mut certificate, end) = improve(&mut state, &limits, tools);
