@@ -43,10 +43,12 @@ impl<'a> Iterate<'a> {
     pub(super) fn cold(problem: &'a Problem, so_far: &[Dual]) -> Self {
         let reaches = problem.points.iter().map(|p| problem.kernel.squared_reach(&p.x));
         let least = (START / reaches.fold(0.0, f64::max)).min(f64::MAX);
-        // Where SMO got stuck its multipliers are of the right size, if nothing more: an iteration changes
-        // them by a bounded factor, so that large penalties take many from a small start.
-        let sum: f64 = so_far.iter().map(|(alpha, _)| alpha).sum();
-        Self::start(problem, least.max(sum / problem.len() as f64))
+        // Where SMO gave up its multipliers still grow, towards the penalties at most. An iteration changes
+        // them by a bounded factor: a start between the two takes fewest.
+        let n = problem.len() as f64;
+        let reached = so_far.iter().map(|(alpha, _)| alpha).sum::<f64>() / n;
+        let penalty = problem.points.iter().map(|p| p.penalty).sum::<f64>() / n;
+        Self::start(problem, least.max(reached.sqrt() * penalty.sqrt()))
     }
 
     /// Multipliers of about `size` and well inside their range with Σcα = 0, cone vectors 0.
