@@ -6,7 +6,7 @@ use clarabel::solver::{
     SolverStatus, SupportedConeT, ZeroConeT,
 };
 use cloudtouch_geom::Vector3;
-use faer::Mat;
+use faer::MatRef;
 
 use crate::interior::gram::{begins, gram};
 use crate::problem::Problem;
@@ -52,7 +52,8 @@ pub(crate) fn solve(
     max_iterations: usize,
 ) -> Result<ClarabelDual, Status> {
     let variables = variables(problem);
-    let quadratic = upper_triangle(&gram(problem, &begins(problem)).ok_or(Status::TooLarge)?);
+    let quadratic =
+        upper_triangle(gram(problem, &begins(problem)).ok_or(Status::TooLarge)?.as_ref());
     let linear: Vec<f64> =
         variables.iter().map(|v| if v.axis.is_none() { -1.0 } else { 0.0 }).collect();
     let (constraints, bounds, cones) = constraints(problem, &variables);
@@ -86,7 +87,7 @@ pub(crate) fn solve(
     Ok(ClarabelDual { alpha, p, iterations: solver.solution.iterations as usize, status })
 }
 
-fn upper_triangle(matrix: &Mat<f64>) -> CscMatrix<f64> {
+fn upper_triangle(matrix: MatRef<'_, f64>) -> CscMatrix<f64> {
     let n = matrix.ncols();
     let mut starts = vec![0];
     let (mut rows, mut values) = (Vec::new(), Vec::new());

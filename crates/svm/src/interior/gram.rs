@@ -1,9 +1,9 @@
 //! The dense quadratic form of the dual, for the interior point methods.
 
 use cloudtouch_geom::Vector3;
-use faer::Mat;
 use nalgebra::Matrix4;
 
+use crate::interior::square::Square;
 use crate::lanes::Lanes;
 use crate::problem::kernel::Kernel;
 use crate::problem::{PreparedPoint, Problem};
@@ -26,7 +26,7 @@ pub(crate) fn begins(problem: &Problem) -> Vec<usize> {
 /// The Gram matrix B of the dual's quadratic form (full, symmetric), of feature vectors relative to
 /// that of the centre: with Σcα = 0 that is the same form, and it keeps its digits where the kernel is
 /// wide. `None` when it is too large.
-pub(crate) fn gram(problem: &Problem, begins: &[usize]) -> Option<Mat<f64>> {
+pub(crate) fn gram(problem: &Problem, begins: &[usize]) -> Option<Square> {
     let size = begins[problem.len()];
     if size > MAX_VARIABLES {
         return None;
@@ -44,16 +44,20 @@ pub(crate) fn gram(problem: &Problem, begins: &[usize]) -> Option<Mat<f64>> {
             Features { point, reduced_at_zero: row.at(i), at_zero: point.factor * at_zero }
         })
         .collect();
-    let mut matrix = Mat::zeros(size, size);
+    let mut matrix = Square::zeros(size);
     for (j, of_j) in features.iter().enumerate() {
         problem.kernel.reduced_row(&of_j.point.x, &problem.places, row.lanes_mut());
         for (i, of_i) in features[..=j].iter().enumerate() {
             let block = of_i.products(of_j, &problem.kernel, row.at(i));
-            for (b, row) in (begins[j]..begins[j + 1]).enumerate() {
-                for (a, column) in (begins[i]..begins[i + 1].min(row + 1)).enumerate() {
-                    matrix[(row, column)] = block[(a, b)];
-                    matrix[(column, row)] = block[(a, b)];
-                }
+            let [rows, columns] = [i, j].map(|k| begins[k]..begins[k + 1]);
+            for (b, column) in columns.clone().enumerate() {
+                let to = &mut matrix.column_mut(column)[rows.clone()];
+                to.iter_mut().zip(&block.column(b)).for_each(|(to, value)| *to = *value);
+            }
+            // Of a point with itself the block is symmetric but for rounding.
+            for (a, column) in rows.enumerate().filter(|_| i < j) {
+                let to = &mut matrix.column_mut(column)[columns.clone()];
+                to.iter_mut().zip(&block.row(a)).for_each(|(to, value)| *to = *value);
             }
         }
     }
@@ -149,6 +153,7 @@ mod tests {
             let begins = begins(&problem);
             assert_eq!(begins, [0, 4, 8, 9, 12, 16]);
             let matrix = gram(&problem, &begins).unwrap();
+            let matrix = matrix.as_ref();
             let term = |k: usize| {
                 let i = begins.partition_point(|begin| *begin <= k) - 1;
                 let point = &problem.points[i];
@@ -183,6 +188,7 @@ mod tests {
             let problem = Problem::new(&samples, Kernel::Gaussian { gamma }).unwrap();
             let begins = begins(&problem);
             let matrix = gram(&problem, &begins).unwrap();
+            let matrix = matrix.as_ref();
             let count = matrix.ncols();
             let size = (0..count).map(|i| matrix[(i, i)]).fold(0.0, f64::max);
             for x in 0..20_u32 {

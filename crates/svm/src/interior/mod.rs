@@ -9,6 +9,7 @@ mod cone;
 pub(crate) mod gram;
 mod iterate;
 mod newton;
+mod square;
 mod step;
 
 use nalgebra::Vector4;

@@ -4,11 +4,12 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization};
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Col, Mat, Par, Scale, Spec};
+use faer::{Accum, Col, Par, Scale, Spec};
 use nalgebra::Vector4;
 
 use crate::interior::cone::Scaling;
 use crate::interior::gram::{begins, gram};
+use crate::interior::square::Square;
 use crate::problem::Problem;
 
 /// By what share the diagonal is raised until the factor exists: near the boundary of a cone the entries
@@ -20,9 +21,9 @@ const RAISES: [f64; 5] = [0.0, 1e-15, 1e-14, 1e-13, 1e-12];
 pub(crate) struct Newton {
     /// Where the variables of each point begin, and where those of the last end.
     begins: Vec<usize>,
-    quadratic: Mat<f64>,
+    quadratic: Square,
     /// The Cholesky factor, below and on the diagonal.
-    factor: Mat<f64>,
+    factor: Square,
     /// c of each multiplier.
     labels: Col<f64>,
     /// The solution for the labels on the right.
@@ -39,7 +40,7 @@ impl Newton {
     pub(crate) fn of(problem: &Problem) -> Option<Self> {
         let begins = begins(problem);
         let quadratic = gram(problem, &begins)?;
-        let size = quadratic.nrows();
+        let size = quadratic.size();
         let mut labels = Col::zeros(size);
         for (point, begin) in problem.points.iter().zip(&begins) {
             labels[*begin] = point.sign;
@@ -47,7 +48,7 @@ impl Newton {
         let memory = llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, parameters());
         Some(Self {
             begins,
-            factor: Mat::zeros(size, size),
+            factor: Square::zeros(size),
             quadratic,
             toward_bias: Col::zeros(size),
             labels,
@@ -62,7 +63,7 @@ impl Newton {
     pub(crate) fn product(&mut self, z: &[Vector4<f64>], moved: &mut [Vector4<f64>]) {
         gather(&self.begins, |i| z[i], &mut self.column);
         let (to, from) = (self.moved.as_mat_mut(), self.column.as_mat());
-        matmul(to, Accum::Replace, &self.quadratic, from, 1.0, Par::Seq);
+        matmul(to, Accum::Replace, self.quadratic.as_ref(), from, 1.0, Par::Seq);
         scatter(&self.begins, &self.moved, moved);
     }
 
@@ -90,16 +91,17 @@ impl Newton {
 
     /// Q + H, its diagonal times a factor.
     fn fill(&mut self, scalings: &[Scaling], bound: impl Fn(usize) -> f64, raise: f64) {
-        self.factor.copy_from_triangular_lower(&self.quadratic);
+        let mut factor = self.factor.as_mut();
+        factor.copy_from_triangular_lower(self.quadratic.as_ref());
         for (i, scaling) in scalings.iter().enumerate() {
             let (begin, end) = (self.begins[i], self.begins[i + 1]);
             let mut h = scaling.squared();
             h[(0, 0)] += bound(i);
             for column in begin..end {
                 for row in column..end {
-                    self.factor[(row, column)] += h[(row - begin, column - begin)];
+                    factor[(row, column)] += h[(row - begin, column - begin)];
                 }
-                self.factor[(column, column)] *= raise;
+                factor[(column, column)] *= raise;
             }
         }
     }
@@ -123,7 +125,7 @@ fn parameters() -> Spec<LltParams, f64> {
     Spec::default()
 }
 
-fn solve_in_place(factor: &Mat<f64>, right: &mut Col<f64>) {
+fn solve_in_place(factor: &Square, right: &mut Col<f64>) {
     let none = MemStack::new(&mut []);
     llt::solve::solve_in_place(factor.as_ref(), right.as_mat_mut(), Par::Seq, none);
 }

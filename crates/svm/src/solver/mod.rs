@@ -19,7 +19,7 @@ use crate::watch::{Progress, Watch};
 /// Checked settings, and the memory of the last solve for the next one.
 ///
 /// What was solved before has no influence on an answer. The interior point method and Clarabel, which
-/// few problems need, take memory of their own.
+/// few problems need, take memory of their own; the former leaves some to the next solve of its thread.
 #[derive(Debug)]
 pub struct Solver {
     settings: Settings,
