@@ -59,6 +59,11 @@ impl Newton {
         })
     }
 
+    /// How many variables there are.
+    pub(crate) fn variables(&self) -> usize {
+        self.quadratic.size()
+    }
+
     /// Q z, point by point.
     pub(crate) fn product(&mut self, z: &[Vector4<f64>], moved: &mut [Vector4<f64>]) {
         gather(&self.begins, |i| z[i], &mut self.column);

@@ -9,6 +9,12 @@ use crate::interior::newton::Newton;
 /// Share of the way to the boundary that a step goes.
 const STEP: f64 = 0.99;
 
+/// Variables from which on a step is corrected anew, with what the last correction has found: that takes a
+/// fifth fewer iterations, whose factors are cubic, for solutions, which are quadratic.
+const WORTH_CORRECTING: usize = 200;
+/// How often at most.
+const CORRECTIONS: usize = 2;
+
 /// A step of the iterate.
 #[derive(Default)]
 struct Direction {
@@ -29,17 +35,20 @@ impl Iterate<'_> {
         newton.factor(&self.scalings, |i| self.xi[i] / self.u[i])?;
         let pairs = (0..n).map(|i| self.z[i].dot(&self.s[i]) + self.u[i] * self.xi[i]);
         let complementarity = pairs.sum::<f64>() / (2 * n) as f64;
-        let square = |i: usize| product(&self.scalings[i].lambda, &self.scalings[i].lambda);
-        let predictor = self.direction(newton, |i| -square(i), |i| -self.u[i] * self.xi[i])?;
+        let predictor = self.direction(newton, |i| -self.square(i), |i| -self.u[i] * self.xi[i])?;
         let target = complementarity * (1.0 - self.longest(&predictor)).powi(3);
-        let cone = |i: usize| {
-            let (w, z, s) = (&self.scalings[i], &predictor.z[i], &predictor.s[i]);
-            head(target) - square(i) - product(&w.apply_inverse(s), &w.apply(z))
-        };
-        let bound =
-            |i: usize| target - self.u[i] * self.xi[i] + predictor.z[i][0] * predictor.xi[i];
-        let corrected = self.direction(newton, cone, bound)?;
-        let length = STEP * self.longest(&corrected);
+        let mut corrected = self.corrected(newton, &predictor, target)?;
+        let mut longest = self.longest(&corrected);
+        let corrections = if newton.variables() < WORTH_CORRECTING { 0 } else { CORRECTIONS };
+        for _ in 0..corrections {
+            let Some(again) = self.corrected(newton, &corrected, target) else { break };
+            let reach = self.longest(&again);
+            if reach <= longest {
+                break;
+            }
+            (corrected, longest) = (again, reach);
+        }
+        let length = STEP * longest;
         for i in 0..n {
             self.z[i] += corrected.z[i] * length;
             self.s[i] += corrected.s[i] * length;
@@ -48,6 +57,21 @@ impl Iterate<'_> {
         }
         self.bias += corrected.bias * length;
         (length > 1e-10).then_some(())
+    }
+
+    /// The direction to products of `target`, with the second-order terms that a direction known before has.
+    fn corrected(&self, newton: &mut Newton, known: &Direction, target: f64) -> Option<Direction> {
+        let cone = |i: usize| {
+            let (w, z, s) = (&self.scalings[i], &known.z[i], &known.s[i]);
+            head(target) - self.square(i) - product(&w.apply_inverse(s), &w.apply(z))
+        };
+        let bound = |i: usize| target - self.u[i] * self.xi[i] + known.z[i][0] * known.xi[i];
+        self.direction(newton, cone, bound)
+    }
+
+    /// λ∘λ of a point.
+    fn square(&self, i: usize) -> Vector4<f64> {
+        product(&self.scalings[i].lambda, &self.scalings[i].lambda)
     }
 
     /// Where λ∘(W dz + W⁻¹ ds) is `cone`, u dξ + ξ du is `bound`, and nothing is left of
