@@ -40,22 +40,22 @@ pub(crate) struct Margin {
     pub(crate) turned: f64,
 }
 
-/// Objective values and gap of a dual point with these margins.
+/// Objective values and gap of a dual point with these margins, and y = 1 − c f₀ + |T∇f₀| alone.
 ///
 /// gap = Σ (C−α)(y−cb)₊ + α(y−cb)₋ + (α|g| + p·g), with b the minimiser of Σ C(y−cb)₊.
 pub(crate) fn certify(
     points: &[PreparedPoint],
     slack: &mut Slack,
+    violation: impl Fn(usize) -> f64,
     at: impl Fn(usize) -> Margin,
 ) -> Certificate {
-    let violation = |margin: &Margin| 1.0 - margin.value + margin.norm;
     let terms = points.iter().enumerate();
-    slack.set(terms.map(|(i, point)| (point.sign, violation(&at(i)), point.penalty)));
+    slack.set(terms.map(|(i, point)| (point.sign, violation(i), point.penalty)));
     let bias = slack.minimiser();
     let (mut sum, mut squared_norm, mut loss, mut gap) = (0.0, 0.0, 0.0, 0.0);
     for (i, point) in points.iter().enumerate() {
         let margin = at(i);
-        let excess = violation(&margin) - point.sign * bias;
+        let excess = 1.0 - margin.value + margin.norm - point.sign * bias;
         let above = excess.max(0.0);
         sum += margin.alpha;
         squared_norm += margin.alpha * margin.value + margin.turned;

@@ -138,7 +138,8 @@ impl<'a> Iterate<'a> {
 
     /// Of these multipliers as they are: every iterate keeps Σcα = 0 up to rounding.
     pub(super) fn certificate(&self, slack: &mut Slack) -> Certificate {
-        certify(&self.problem.points, slack, |i| {
+        let violation = |i: usize| self.violation(i).1;
+        certify(&self.problem.points, slack, violation, |i| {
             let (z, moved) = (&self.z[i], &self.moved[i]);
             let turned = z.dot(moved) - z[0] * moved[0];
             Margin { alpha: z[0], value: moved[0], norm: tail(moved).norm(), turned }

@@ -39,12 +39,6 @@ impl Numbers {
         &self.p
     }
 
-    /// p·T∇f₀ of a sample.
-    #[inline]
-    fn turned(&self, i: usize) -> f64 {
-        (0..3).map(|axis| self.p[axis].at(i) * self.field.scaled[axis].at(i)).sum()
-    }
-
     /// Moves the dual variables of a sample; what they induce stays.
     pub(crate) fn put(&mut self, i: usize, alpha: f64, p: &Vector3) {
         self.alpha.put(i, alpha);
@@ -133,22 +127,24 @@ impl<'a> State<'a> {
         self.violation(i) - self.problem.points[i].sign * bias
     }
 
-    /// α|T∇f₀| + p·T∇f₀: what the cone vector of a sample, turned against the gradient, gains about.
+    /// α|T∇f₀| + p·T∇f₀: what a cone vector, turned against the gradient, gains about.
     #[inline]
     pub(crate) fn misalignment(&self, i: usize) -> f64 {
-        let Numbers { alpha, field, .. } = &self.numbers;
-        alpha.at(i) * field.norm.at(i) + self.numbers.turned(i)
+        let Numbers { alpha, p, field, .. } = &self.numbers;
+        alpha.at(i) * field.norm.at(i) + turned(p, field, i)
     }
 
     /// Objective values and gap, from the f₀ and gradients at hand.
     pub(crate) fn certificate(&mut self) -> Certificate {
         let Numbers { alpha, p, field, slack } = &mut self.numbers;
         let points = &self.problem.points;
-        certify(points, slack, |i| Margin {
+        let value = |i: usize| points[i].sign * field.f.at(i);
+        let violation = |i: usize| 1.0 - value(i) + field.norm.at(i);
+        certify(points, slack, violation, |i| Margin {
             alpha: alpha.at(i),
-            value: points[i].sign * field.f.at(i),
+            value: value(i),
             norm: field.norm.at(i),
-            turned: (0..3).map(|axis| p[axis].at(i) * field.scaled[axis].at(i)).sum(),
+            turned: turned(p, field, i),
         })
     }
 
@@ -162,4 +158,10 @@ impl<'a> State<'a> {
         let at = |i: usize| (self.numbers.alpha.at(i), self.violation(i));
         largest_violation(&self.problem.points, at)
     }
+}
+
+/// p·T∇f₀ of a sample.
+#[inline]
+fn turned(p: &[Lanes; 3], field: &Field, i: usize) -> f64 {
+    (0..3).map(|axis| p[axis].at(i) * field.scaled[axis].at(i)).sum()
 }
