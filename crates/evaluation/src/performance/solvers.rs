@@ -93,10 +93,11 @@ impl Compared {
         let mut all = Self { cell: cell.name, per_side, seconds, at_the_gap: [0; 2], past_smo: 0 };
         for number in 0..count {
             let from = derive(derive(SEED, 6, per_side as u64), number as u64, 0);
+            let samples = cell.problem(per_side, from);
             for (which, with) in
                 [Solver::solve, Solver::solve_with_clarabel].into_iter().enumerate()
             {
-                let (solution, seconds) = least_of(repeats, || solve(cell, per_side, from, with))?;
+                let (solution, seconds) = least_of(repeats, || solve(cell, &samples, with))?;
                 all.seconds[which].push(seconds);
                 all.at_the_gap[which] += usize::from(solution.relative_gap <= GAP);
                 all.past_smo += usize::from(which == 0 && solution.rung != Rung::Smo);
@@ -130,12 +131,10 @@ impl Cell {
 
 fn solve(
     cell: &Cell,
-    per_side: usize,
-    from: u64,
+    samples: &[Sample],
     with: fn(&mut Solver, &Problem) -> Solution,
 ) -> Result<Solution> {
-    let samples = cell.problem(per_side, from);
-    let problem = Problem::new(&samples, Kernel::Gaussian { gamma: cell.gamma })?;
+    let problem = Problem::new(samples, Kernel::Gaussian { gamma: cell.gamma })?;
     let settings = Settings { relative_gap: GAP, ..Settings::default() };
     Ok(with(&mut Solver::new(settings)?, &problem))
 }
