@@ -43,16 +43,18 @@ of times of methods says what they get wrong on the same poses. Speed against er
 [accuracy.md](accuracy.md).";
 
 /// Why targets are missed, where they are.
-const MISSED: &str = "Where targets are missed, it is for these reasons. *Exact meshes*: parry3d is told the surfaces \
-and stops at the first triangles that cut; a probability takes every place within 1.5 deviations of the likeliest, \
-though none beyond 3.5 but that one, and samples 10 cm apart stand for discs that reach far. *Far*: no coarse map of \
-distances is kept of a scene, so that every query goes down both trees ([decision \
-15](../decisions/0015-fewer-instructions.md)). *Deep*: the search stops at P > .999 only. *Refining*: of each point up \
-to 60 neighbours are put in order and fitted four times, and edges and the ends of discs come with it. *Boxes and \
-frames*: blurred boxes have their noise model computed everywhere at the first query, and to prepare the stereo scan \
-alone takes as long as all is to take. *Leaf problems*: SMO finishes none of the hard ones within its steps, and of \
-the interior point method, though it starts beside what SMO found, every step is cubic in the points. *Memory*: scans, \
-index and tree each hold a position of their own.";
+const MISSED: &str = "Where targets are missed, it is for these reasons; profiles, and what was tried, are in \
+[decision 42](../decisions/0042-where-the-time-is.md). *Exact meshes*: parry3d is told the surfaces and stops at the \
+first triangles that cut; a probability takes every place within 1.5 deviations of the likeliest, though none beyond \
+3.5 but that one, and samples 10 cm apart stand for discs that reach far. *Kiddo and capt*: they are told nothing of \
+noise and spacing, and rank poses worse; balls stop at the first that touches. *Far*: no coarse map of distances is \
+kept of a scene, so that every query goes down both trees. *Deep*, and with it the batch: the search stops at P > \
+.999 only. *Refining*: of each point up to 60 neighbours are put in order and fitted four times, and edges and the \
+ends of discs come with it. *Boxes and frames*: blurred boxes have their noise model computed everywhere at the first \
+query; half of preparing a frame is its tree, and to prepare the stereo scan alone takes as long as all is to take. \
+*Leaf problems*: an easy one takes SMO some 220 steps of a third of a microsecond; of the hard ones it finishes none, \
+and of the interior point method, though it starts beside what SMO found, every step is cubic in the points. \
+*Memory*: scans, index and tree each hold a position of their own.";
 
 /// Measures and writes the page.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<()> {
