@@ -76,8 +76,8 @@ const LASER: SensorModel = SensorModel::Lidar { range_std: 0.02, beam_rad: 0.003
 fn is_all_around(cloud: &PointCloud) -> bool {
     const MOST: f64 = 0.25;
     let origin = cloud.sensor_origin();
-    let rays = cloud.points.iter().filter_map(|point| (point - origin).try_normalize(0.0));
-    let rays = rays.filter(|ray| ray.iter().all(|x| x.is_finite()));
+    let returns = cloud.points.iter().filter(|point| PointCloud::is_return(point));
+    let rays = returns.filter_map(|point| (point - origin).try_normalize(0.0));
     let (sum, count) =
         rays.fold((Vector3::zeros(), 0_u32), |(sum, count), ray| (sum + ray, count + 1));
     sum.norm() < MOST * f64::from(count)

@@ -329,6 +329,23 @@ fn auto_was_no_sensor_in_a_case() {
     assert_eq!(lines[0]["scene"]["sensor_because"], "nothing in the file tells");
 }
 
+/// Each case had a sensor of its own, and the one given beside them was passed over in silence.
+#[test]
+fn a_sensor_that_no_cloud_goes_by_is_told() {
+    let inputs = Inputs::new();
+    let own = case_at("own", 0.11);
+    let plain = own.replace(r#""scene_sensor":"iso:0.002","#, "").replace("own", "plain");
+    inputs.write("own.json", &case_file(std::slice::from_ref(&own)));
+    inputs.write("mixed.json", &case_file(&[own, plain]));
+    for option in ["--sensor=iso:0.03", "--sensor-for=floor=iso:0.03"] {
+        let run = inputs.run(&["batch", "own.json", option]);
+        let told = format!("own.json: {} is of no cloud", option.replacen('=', " ", 1));
+        assert_eq!(run.code(), 0, "{}", run.stderr());
+        assert!(run.stderr().contains(&told), "{told}: {}", run.stderr());
+        inputs.run(&["batch", "mixed.json", option]).quiet(0);
+    }
+}
+
 /// A typo gave the usual noise, and the name of the folder that all is in gave every file that sensor.
 #[test]
 fn a_sensor_for_no_file_was_taken_in_silence() {

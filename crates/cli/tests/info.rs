@@ -21,6 +21,18 @@ fn counts_what_a_cloud_holds() {
     assert!((45.0..55.0).contains(&millimetres), "{spacing}, where points are 50 mm apart");
 }
 
+/// Rows of the largest float made its box 3.4e38 m large, and a laser of the sensor.
+#[test]
+fn placeholders_of_missing_returns_are_not_in_the_box() {
+    let inputs = Inputs::new();
+    let mut cloud = support::floor();
+    cloud.points.extend([Point3::new(1.0, 1.0, 1.0) * f64::from(f32::MAX); 3]);
+    cloudtouch_io::write_cloud_pcd(inputs.path("cloud.pcd"), &cloud).unwrap();
+    let text = inputs.run(&["info", "cloud.pcd"]).quiet(0).stdout();
+    let expected = ["missing     3 ", "(-0.500, -0.500, 0.000) to (0.500, 0.500, 0.000) m", "iso:"];
+    assert!(expected.iter().all(|part| text.contains(part)), "{text}");
+}
+
 #[test]
 fn a_cloud_without_any_return_is_no_error() {
     let inputs = Inputs::new();
@@ -76,6 +88,7 @@ fn a_mesh_of_one_collapsed_face_was_watertight() {
     assert!(text.contains("no triangle has an area") && !text.contains("watertight"), "{text}");
 }
 
+/// It was an error (1), where a query calls it a wrong use (2).
 #[test]
 fn a_unit_of_the_other_kind_of_file_is_refused() {
     let inputs = Inputs::new();
@@ -83,7 +96,7 @@ fn a_unit_of_the_other_kind_of_file_is_refused() {
         [("floor.pcd", "--unit", "--cloud-unit"), ("box.obj", "--cloud-unit", "--unit")]
     {
         let run = inputs.run(&["info", file, option, "mm"]);
-        assert_eq!(run.code(), 1);
+        assert_eq!(run.code(), 2);
         assert!(run.stderr().contains(other), "{}", run.stderr());
     }
 }

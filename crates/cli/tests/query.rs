@@ -207,3 +207,11 @@ fn what_was_not_seen_is_said_to_be_unknown_without_a_depth_image() {
         assert!(text.contains("verdict") && !text.contains(told), "{text}");
     }
 }
+
+/// It told the sensor that was stated, by which nothing had been computed.
+#[test]
+fn the_sensor_of_a_collision_map_is_its_grid() {
+    let inputs = Inputs::new();
+    let answer = &inputs.query_at(0.5, &["--collision-map=0.1", "--json"]).json_lines()[0];
+    assert_eq!(answer["scene"]["sensor"], "grid:0.1", "{answer}");
+}

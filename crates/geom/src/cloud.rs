@@ -5,6 +5,9 @@ use crate::covariance::Covariance;
 use crate::pose::Pose;
 use crate::vectors::{Point3, UnitVector3};
 
+/// What some sensors write for "no return" is the largest float, 3.4e38; no scene is so large, m.
+const PLACEHOLDER: f64 = 1e30;
+
 /// Points in one frame, in file order, NaN rows included.
 ///
 /// What the points mean (which sensor, how noisy) is not known here.
@@ -91,9 +94,15 @@ impl PointCloud {
         self.image_size.is_some_and(|(width, height)| width > 1 && height > 1)
     }
 
-    /// Lowest and highest corner of the finite points; `None` when there is none.
+    /// Whether a row stands for a return: NaN and infinity do not, nor what is farther than any scene is large, as
+    /// the largest float that some sensors write for "none".
+    pub fn is_return(point: &Point3) -> bool {
+        point.iter().all(|v| v.abs() < PLACEHOLDER)
+    }
+
+    /// Lowest and highest corner of the points that are returns; `None` when there is none.
     pub fn bounding_box(&self) -> Option<(Point3, Point3)> {
-        bounding_box(self.points.iter().filter(|p| p.iter().all(|v| v.is_finite())))
+        bounding_box(self.points.iter().filter(|p| Self::is_return(p)))
     }
 }
 
@@ -145,5 +154,9 @@ mod tests {
         let (low, high) = cloud.bounding_box().unwrap();
         assert_eq!((low, high), (Point3::new(-1.0, 2.0, 0.0), Point3::new(1.0, 5.0, 3.0)));
         assert!(PointCloud::default().bounding_box().is_none());
+        // By a box of 3.4e38 m a cloud of centimetres was taken for a laser scan.
+        let none = Point3::new(f64::from(f32::MAX), 0.0, 0.0);
+        let with_none = PointCloud::from_points([&cloud.points[..], &[none]].concat());
+        assert_eq!(with_none.bounding_box(), cloud.bounding_box());
     }
 }

@@ -138,8 +138,8 @@ pub struct Contact {
     pub point: Point3,
     /// Unit vector along which B leaves A there, as far as the samples of both around the contact tell:
     /// across the plane that separates these best. Where they lie in one another, as a peg in its hole, it
-    /// may be any; so it may in deep overlaps, of which less is seen from a contact. Between two meshes the
-    /// normal of the triangles, on the paper's path that of the separating surface.
+    /// may be any; so it may in deep overlaps, of which less is seen from a contact. On the paper's path that of
+    /// the separating surface.
     #[serde(serialize_with = "vector_as_array")]
     pub normal_a_to_b: Vector3,
     /// Probability that the surfaces meet there; never above that of the collision.

@@ -44,13 +44,17 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
     }
     let text = match load::geometry(&arguments.file, units, &arguments.limits.read_limits())? {
         (Geometry::Cloud(_), _) if arguments.unit.is_some() => {
-            bail!("--unit is for meshes, and this is a cloud: give --cloud-unit")
+            bail!(WrongUsage(
+                "--unit is for meshes, and this is a cloud: give --cloud-unit".to_owned()
+            ))
         }
         (_, Kind::DepthImage(_)) if arguments.cloud_unit.is_some() => {
             bail!(WrongUsage(unused::CLOUD_UNIT.to_owned()))
         }
         (Geometry::Mesh(_), _) if arguments.cloud_unit.is_some() => {
-            bail!("--cloud-unit is for clouds, and this is a mesh: give --unit")
+            bail!(WrongUsage(
+                "--cloud-unit is for clouds, and this is a mesh: give --unit".to_owned()
+            ))
         }
         (Geometry::Cloud(cloud), Kind::DepthImage(camera)) => {
             // What is too large is so by its steps.

@@ -229,6 +229,7 @@ fn of_clouds<C: PreparedCloud>(
         );
     }
     let first = scans.first().with_context(|| format!("{name}: no scan"))?;
+    let collision_map = options.collision_map.filter(|_| role == Role::Scene);
     let Chosen { sensor, because } = sensor.of(first);
     if scans.iter().any(|scan| scan.covariances.is_some()) && sensor != SensorModel::PerPoint {
         tracing::warn!(
@@ -241,12 +242,17 @@ fn of_clouds<C: PreparedCloud>(
         options.common.change(filter);
         if role == Role::Scene {
             filter.robot = robot;
-            filter.collision_map = options.collision_map;
-            if let Some(resolution) = options.collision_map {
-                *sensor = SensorModel::Grid { resolution };
-            }
+            filter.collision_map = collision_map;
+        }
+        if let Some(resolution) = collision_map {
+            *sensor = SensorModel::Grid { resolution };
         }
     });
+    // The boxes of a map are as noisy as they are large, whatever saw what is in them.
+    let (sensor, because) = match collision_map {
+        Some(resolution) => (SensorModel::Grid { resolution }, None),
+        None => (sensor, because),
+    };
     let mut units: Vec<String> = kinds.iter().map(|kind| kind.unit()).collect();
     units.dedup();
     let input = Input {

@@ -21,8 +21,12 @@ pub(crate) struct SensorsFor<'a> {
 impl SensorsFor<'_> {
     /// What is said of a file; the first NAME that it has counts.
     pub(crate) fn of(&self, file: &Path) -> Option<SensorChoice> {
-        let found = self.given.iter().find(|(name, _)| self.has(file, name));
-        found.map(|(_, sensor)| *sensor)
+        self.place(file).map(|place| self.given[place].1)
+    }
+
+    /// Which of the options counts for a file.
+    pub(crate) fn place(&self, file: &Path) -> Option<usize> {
+        self.given.iter().position(|(name, _)| self.has(file, name))
     }
 
     /// Refuses a NAME that no file has: it is misspelt, and its sensor would be of no cloud. A case that

@@ -15,11 +15,10 @@ use crate::statistics::median;
 const LENGTH: f64 = 0.2;
 const POSES: u32 = 101;
 
-const INTRODUCTION: &str = "A straight path of 20 cm in some direction through each of the poses above, both clouds \
-refined. *One by one*: its 101 poses, 2 mm apart, by `Query::run`, which takes as long as for poses far from one \
-another: nothing is carried on. *Swept*: `Query::sweep`, which misses nothing between them either; `verdict alone` \
-ends with the first pose that is not free, `probability` finds where a collision begins too. Times are those of a path \
-over its poses, medians over paths, the least of three.";
+const INTRODUCTION: &str = "A straight path of 20 cm through each of the poses above, both clouds refined. *One by \
+one*: its 101 poses, 2 mm apart, by `Query::run`, to which it is all the same how far apart poses are. *Swept*: \
+`Query::sweep`, which misses nothing between them either; `verdict alone` ends with the first pose that is not free, \
+`probability` finds where a collision begins too. Times of a path over its poses, medians over paths, the least of three.";
 
 /// Times every path both ways, by what is asked and by whether the path is free.
 pub(super) fn measure(scene: &Scene) -> Findings {

@@ -3,7 +3,6 @@
 
 mod collision_map;
 mod duplicates;
-mod missing;
 mod outliers;
 mod range;
 mod self_points;
@@ -14,8 +13,6 @@ use cloudtouch_geom::PointCloud;
 use serde::Serialize;
 
 use crate::error::FilterError;
-
-use missing::is_missing;
 
 pub use self_points::SelfMesh;
 pub(crate) use self_points::beyond_noise;
@@ -67,7 +64,7 @@ pub(crate) fn filter_and_tell(
     check_lengths(cloud)?;
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
     let mut of_robot = Vec::new();
-    run.stage("missing", |cloud, kept| kept.retain(|&i| !is_missing(&cloud.points[i])));
+    run.stage("missing", |cloud, kept| kept.retain(|&i| PointCloud::is_return(&cloud.points[i])));
     if settings.min_range != Some(0.0) || settings.max_range.is_finite() {
         run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
     }

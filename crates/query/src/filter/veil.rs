@@ -11,7 +11,6 @@ use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
 use super::VeilSettings;
-use super::missing::is_missing;
 
 /// Neighbours that decide whether an unorganised neighbourhood is a line along the ray.
 const LINE_NEIGHBORS: usize = 10;
@@ -48,7 +47,7 @@ fn is_veil_in_image(
     let ray = point - from;
     [horizontal, vertical].into_iter().flatten().any(|(before, after)| {
         let (Some(before), Some(after)) = (before, after) else { return false };
-        if is_missing(before) || is_missing(after) {
+        if ![before, after].into_iter().all(PointCloud::is_return) {
             return false;
         }
         let forward = along_ray(&ray, point, after, least_cosine);

@@ -101,6 +101,47 @@ pub(super) fn warn_of_sensors_of_meshes<'a, C: PreparedCloud>(
     }
 }
 
+/// Tells of sensors that are given for clouds where each has another that goes before: no answer is by them.
+pub(super) fn warn_of_unused_sensors<'a, C: PreparedCloud>(
+    arguments: &BatchArguments,
+    options: &BodyOptions<'_>,
+    cases: impl Iterator<Item = &'a Case>,
+    bodies: &Bodies<C>,
+) {
+    let named = sensors_for(arguments);
+    let given = |(name, sensor): &(String, SensorChoice)| format!("--sensor-for {name}={sensor}");
+    let mut unused: Vec<Option<String>> =
+        arguments.sensor_for.iter().map(given).map(Some).collect();
+    let [mut of_all, mut of_objects] =
+        [("--sensor", options.common.sensor), ("--object-sensor", options.object_sensor)]
+            .map(|(option, sensor)| sensor.map(|sensor| format!("{option} {sensor}")));
+    for case in cases {
+        let given = [case.scene_sensor, case.object_sensor];
+        for (key, _) in
+            keys(arguments, options, case).iter().zip(given).filter(|(_, given)| given.is_none())
+        {
+            // What cannot be read may be a cloud.
+            if bodies.get(key).is_some_and(|body| body.as_ref().is_ok_and(Loaded::is_mesh)) {
+                continue;
+            }
+            match named.place(&key.0) {
+                Some(place) => unused[place] = None,
+                None if key.1 == Role::Object && options.object_sensor.is_some() => {
+                    of_objects = None
+                }
+                None => of_all = None,
+            }
+        }
+    }
+    unused.extend([of_all, of_objects]);
+    for option in unused.into_iter().flatten() {
+        tracing::warn!(
+            "{}: {option} is of no cloud, each has a sensor that goes before it: leave it out",
+            arguments.cases.display()
+        );
+    }
+}
+
 /// What was taken for the sensor of each file where nothing was said.
 pub(super) fn guessed<C: PreparedCloud>(bodies: &Bodies<C>) -> String {
     let input = |loaded: &Loaded<C>| {

@@ -39,6 +39,10 @@ fn run_by<P: body::Estimator>(query: &P, arguments: &BatchArguments) -> Result<E
     warn_of_same_names(arguments, &file);
     let bodies = bodies::prepare::<P::Cloud>(arguments, options, good())?;
     bodies::warn_of_sensors_of_meshes(arguments, options, good(), &bodies);
+    // What cannot be read may be what a sensor is for.
+    if good().count() == file.cases.len() {
+        bodies::warn_of_unused_sensors(arguments, options, good(), &bodies);
+    }
     let batch = Batch { query, arguments, options, file: &file, bodies: &bodies };
     let mut done = Done { has_failed: false, shown: Shown::new() };
     let mut write = |jsonl: &mut dyn Write| batch.write(jsonl, &mut done);
