@@ -96,6 +96,7 @@ impl PointCloud {
 
     /// Whether a row stands for a return: NaN and infinity do not, nor what is farther than any scene is large, as
     /// the largest float that some sensors write for "none".
+    #[inline]
     pub fn is_return(point: &Point3) -> bool {
         point.iter().all(|v| v.abs() < PLACEHOLDER)
     }
