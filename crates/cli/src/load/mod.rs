@@ -229,7 +229,9 @@ fn of_clouds<C: PreparedCloud>(
         );
     }
     let first = scans.first().with_context(|| format!("{name}: no scan"))?;
+    // The boxes of a map are as noisy as they are large, whatever saw what is in them.
     let collision_map = options.collision_map.filter(|_| role == Role::Scene);
+    let grid = collision_map.map(|resolution| SensorModel::Grid { resolution });
     let Chosen { sensor, because } = sensor.of(first);
     if scans.iter().any(|scan| scan.covariances.is_some()) && sensor != SensorModel::PerPoint {
         tracing::warn!(
@@ -244,22 +246,15 @@ fn of_clouds<C: PreparedCloud>(
             filter.robot = robot;
             filter.collision_map = collision_map;
         }
-        if let Some(resolution) = collision_map {
-            *sensor = SensorModel::Grid { resolution };
-        }
+        *sensor = grid.unwrap_or(*sensor);
     });
-    // The boxes of a map are as noisy as they are large, whatever saw what is in them.
-    let (sensor, because) = match collision_map {
-        Some(resolution) => (SensorModel::Grid { resolution }, None),
-        None => (sensor, because),
-    };
     let mut units: Vec<String> = kinds.iter().map(|kind| kind.unit()).collect();
     units.dedup();
     let input = Input {
         file: name.to_owned(),
         unit: units.join(", "),
-        sensor: Some(sensor.to_string()),
-        sensor_because: because,
+        sensor: Some(grid.unwrap_or(sensor).to_string()),
+        sensor_because: because.filter(|_| grid.is_none()),
     };
     let body = Body::Cloud(prepared.with_context(|| name.to_owned())?);
     Ok(Loaded { body, input, kinds })

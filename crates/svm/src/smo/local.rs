@@ -42,11 +42,11 @@ impl<'a> Local<'a> {
         }
     }
 
-    /// Adds the influence of a change at `source`, `k` being the reduced kernel of the two points.
-    pub(crate) fn feel(&mut self, source: &Local<'_>, k: f64, a: f64, s: &Vector3) {
+    /// Adds the influence of a displacement at `source`, `k` being the reduced kernel of the two points.
+    pub(crate) fn feel(&mut self, source: &Local<'_>, k: f64, s: &Vector3) {
         let from = &self.problem.points[source.index].x;
         let to = &self.problem.points[self.index].x;
-        let (df, dg) = self.problem.kernel.influence(from, to, k, a, s);
+        let (df, dg) = self.problem.kernel.influence(from, to, k, 0.0, s);
         self.f += df;
         self.gradient += dg;
     }

@@ -153,18 +153,16 @@ fn step(state: &mut State<'_>, tools: &mut Tools<'_, '_>, consider_ball: bool) -
     rows.ensure_beside(state.problem, pair.j, pair.i);
     let k = rows.at(pair.i, pair.j);
     let (mut first, mut second) = (Local::new(state, pair.i), Local::new(state, pair.j));
-    let worth = WORTH_TURNING * pair.gain;
-    let mut turned = false;
-    if state.misalignment(pair.i) > worth {
-        let s = first.ball_step();
-        second.feel(&first, k, 0.0, &s);
-        turned |= s != Vector3::zeros();
-    }
-    if state.misalignment(pair.j) > worth {
-        let s = second.ball_step();
-        first.feel(&second, k, 0.0, &s);
-        turned |= s != Vector3::zeros();
-    }
+    let turn = |of: &mut Local<'_>, other: &mut Local<'_>| {
+        let is_worth = state.misalignment(of.index) > WORTH_TURNING * pair.gain;
+        let s = if is_worth { of.ball_step() } else { Vector3::zeros() };
+        let has_turned = s != Vector3::zeros();
+        if has_turned {
+            other.feel(of, k, &s);
+        }
+        has_turned
+    };
+    let turned = turn(&mut first, &mut second) | turn(&mut second, &mut first);
     let moved = pair_step(&mut first, &mut second, k) || turned;
     if moved {
         commit(state, rows, &first, Some(&second));

@@ -37,6 +37,12 @@ impl Field {
         }
     }
 
+    /// y = 1 − c f₀ + |T∇f₀| of a sample of this class.
+    #[inline]
+    pub(crate) fn violation(&self, sign: f64, i: usize) -> f64 {
+        1.0 - sign * self.f.at(i) + self.norm.at(i)
+    }
+
     pub(crate) fn gradient_at(&self, i: usize) -> Vector3 {
         Vector3::from_fn(|axis, _| self.gradient[axis].at(i))
     }

@@ -118,8 +118,7 @@ impl<'a> State<'a> {
     /// y = 1 − c f₀ + |T∇f₀|: how far the worst point of the ellipsoid is inside the margin, b aside.
     #[inline]
     pub(crate) fn violation(&self, i: usize) -> f64 {
-        let field = &self.numbers.field;
-        1.0 - self.problem.points[i].sign * field.f.at(i) + field.norm.at(i)
+        self.numbers.field.violation(self.problem.points[i].sign, i)
     }
 
     /// y − cb: how far the worst point of the ellipsoid is inside the margin with this bias.
@@ -138,11 +137,10 @@ impl<'a> State<'a> {
     pub(crate) fn certificate(&mut self) -> Certificate {
         let Numbers { alpha, p, field, slack } = &mut self.numbers;
         let points = &self.problem.points;
-        let value = |i: usize| points[i].sign * field.f.at(i);
-        let violation = |i: usize| 1.0 - value(i) + field.norm.at(i);
+        let violation = |i: usize| field.violation(points[i].sign, i);
         certify(points, slack, violation, |i| Margin {
             alpha: alpha.at(i),
-            value: value(i),
+            value: points[i].sign * field.f.at(i),
             norm: field.norm.at(i),
             turned: turned(p, field, i),
         })
