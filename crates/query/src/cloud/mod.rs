@@ -29,12 +29,11 @@ pub use prepare::Cloud;
 pub(crate) use prepared::Prepared;
 pub use settings::CloudSettings;
 pub(crate) use surface::ball::Ball;
-#[cfg(test)]
-pub(crate) use surface::edge::Place;
 pub(crate) use surface::edge::{DISC_SPACINGS, EDGE_SLOPE, Edge, MOST_ALONG, edge_along};
+pub(crate) use surface::edges::{LeafEdges, Pieces};
 #[cfg(test)]
 pub(crate) use surface::join::edges_of;
-pub(crate) use surface::leaf::{LeafEdges, LeafSurface, Pieces};
+pub(crate) use surface::leaf::LeafSurface;
 pub(crate) use surface::onward::Onward;
 pub(crate) use surface::slab::Slab;
 pub(crate) use surface::surfel::{End, Surfel};

@@ -10,8 +10,8 @@ use crate::stats::Stats;
 
 use super::compare::meeting::{Meeting, deviations_by_pose};
 use super::cross::crossings::Crossings;
-use super::cross::gather::NearDisc;
 use super::cross::leaves::cross;
+use super::cross::near_discs::Memory;
 use super::measure::nearest::{Nearest, nearest_pieces};
 use super::visit::around::Around;
 use super::visit::leaf::{Between, Leaf};
@@ -54,8 +54,7 @@ pub(crate) struct Found<'a> {
     pub deviations: f64,
     pub crossings: Crossings,
     around: Around,
-    /// Memory for the discs of a leaf that edges may pass, to use again.
-    discs: Vec<NearDisc>,
+    memory: Memory,
     sides: [Side; 2],
     /// How many deviations above the least is looked.
     pub(super) further: f64,
@@ -161,7 +160,7 @@ impl<'a> Found<'a> {
         let is_near = pair.deviations < most && of_means <= most * most_std;
         let nearest = is_near.then(|| nearest_pieces(leaf_a, leaf_b, most, sides));
         if pair.may_cross && of_surfaces <= 0.0 {
-            let found = (&mut self.crossings, around, &mut self.discs);
+            let found = (&mut self.crossings, around, &mut self.memory);
             cross((a, b), a_from_b, (leaf_a, leaf_b), sides, found);
         }
         let Some(nearest) = nearest.flatten() else { return };
@@ -213,7 +212,7 @@ mod tests {
         let motion = Motion::from(a_from_cloud);
         let indices: Vec<u32> =
             cloud.tree().leaves().flat_map(|leaf| leaf.primitive_indices().to_vec()).collect();
-        let edges = edges_of(cloud.prepared(), &indices, &mut scratch);
+        let edges = edges_of(cloud.prepared(), &indices, Vector3::z(), &mut scratch);
         let surfels = cloud.prepared().told_together(&indices, &mut scratch);
         (
             surfels.iter().map(|s| s.moved(&motion)).collect(),

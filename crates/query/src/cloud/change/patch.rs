@@ -136,9 +136,8 @@ impl Prepared {
             surface.leaves.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|leaf| {
                 leaf.surfels.iter_mut().for_each(|s| s.index = after[s.index as usize]);
             });
-            surface.edges.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|leaf| {
-                leaf.edges.iter_mut().for_each(|e| e.points = e.points.map(|p| after[p as usize]));
-            });
+            let edges = surface.edges.par_iter_mut().filter_map(|slot| slot.get_mut());
+            edges.for_each(|leaf| leaf.renumber(&after));
         }
         Before { surface: old, moved_house, after }
     }
@@ -173,7 +172,7 @@ mod tests {
     /// The edges between pieces such as these, in order.
     fn edges(cloud: &Prepared, is_one: impl Fn(u32) -> bool) -> Vec<[u32; 2]> {
         let ids: Vec<_> = cloud.tree.leaves().map(|leaf| leaf.id()).collect();
-        let edges = ids.iter().flat_map(|&id| &cloud.leaf_edges(id, &mut Scratch::default()).edges);
+        let edges = ids.iter().flat_map(|&id| cloud.leaf_edges(id, &mut Scratch::default()).iter());
         let mut all: Vec<[u32; 2]> = edges
             .map(|edge| {
                 let [p, q] = edge.points;

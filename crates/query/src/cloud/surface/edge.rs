@@ -1,7 +1,5 @@
 //! Edges between neighbouring samples: they stand for the surface between them.
 
-use std::num::NonZeroU32;
-
 use cloudtouch_geom::{Motion, Point3, Vector3};
 
 /// Edges join samples up to this many of the smaller of their spacings apart.
@@ -31,18 +29,15 @@ pub(crate) fn edge_along(normal: &Vector3, along: &Vector3) -> f64 {
     EDGE_SLOPE.mul_add(normal.dot(along).abs(), sine(normal, along))
 }
 
-/// The place of a point in its leaf, in no more memory where there may be none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place(NonZeroU32);
-
-impl Place {
-    pub(crate) fn new(place: u32) -> Self {
-        Self(NonZeroU32::MIN.saturating_add(place))
-    }
-
-    fn get(self) -> usize {
-        self.0.get() as usize - 1
-    }
+/// A sample that edges end at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct EdgeEnd {
+    /// Where it is, in the cloud's local frame.
+    pub place: Point3,
+    /// Variance of that across the surface, m².
+    pub across: f64,
+    /// Which piece of the cloud it is.
+    pub piece: u32,
 }
 
 /// A straight piece of surface between two neighbours of one cloud.
@@ -56,31 +51,37 @@ pub(crate) struct Edge {
     pub points: [u32; 2],
     /// Variances of the ends across the surface, m².
     pub across: [f64; 2],
-    /// Which points of the leaf it joins; `None` for a point of another leaf.
-    pub own: [Option<Place>; 2],
+    /// The places in the leaf of the points it joins; `None` for a point of another leaf.
+    pub own: [Option<usize>; 2],
 }
 
 impl Edge {
+    /// Between two ends that have these places in the leaf.
+    pub(super) fn between([from, to]: [&EdgeEnd; 2], own: [Option<usize>; 2]) -> Self {
+        Self {
+            ends: [from.place, to.place],
+            half_length: 0.5 * (to.place - from.place).norm(),
+            points: [from.piece, to.piece],
+            across: [from.across, to.across],
+            own,
+        }
+    }
+
     /// Halfway between its ends.
     pub(crate) fn middle(&self) -> Point3 {
         nalgebra::center(&self.ends[0], &self.ends[1])
     }
 
-    /// Its ends in another frame.
-    pub(crate) fn moved_ends(&self, motion: &Motion) -> [Point3; 2] {
-        // PERF: written out, for `map` over arrays is not inlined where thousands are moved.
-        let [from, to] = &self.ends;
-        [motion.point(from), motion.point(to)]
-    }
-
     /// The same edge in another frame.
     pub(crate) fn moved(&self, motion: &Motion) -> Self {
-        Self { ends: self.moved_ends(motion), ..*self }
+        // PERF: written out, for `map` over arrays is not inlined where thousands are moved.
+        let [from, to] = &self.ends;
+        Self { ends: [motion.point(from), motion.point(to)], ..*self }
     }
 
     /// The points of its leaf that it joins, by their places in it.
     pub(crate) fn own_places(&self) -> impl Iterator<Item = usize> {
-        self.own.into_iter().flatten().map(Place::get)
+        self.own.into_iter().flatten()
     }
 }
 

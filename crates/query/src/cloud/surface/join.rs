@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use cloudtouch_bvh::NodeId;
+use cloudtouch_geom::Vector3;
 use cloudtouch_noise::Scratch;
 
-use super::edge::{EDGE_SLOPE, EDGE_SPACINGS, Edge, Place};
-use super::leaf::LeafEdges;
+use super::edge::{EDGE_SLOPE, EDGE_SPACINGS, EdgeEnd};
+use super::edges::{Growing, LeafEdges};
 use super::slots::NEIGHBORS;
 use super::surfel::Surfel;
 use crate::cloud::prepared::Prepared;
@@ -21,7 +22,7 @@ impl Prepared {
     pub(crate) fn leaf_edges(&self, id: NodeId, scratch: &mut Scratch) -> &LeafEdges {
         self.surface.edges[id.index()].get_or_init(|| {
             let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
-            Box::new(LeafEdges::new(edges_of(self, pieces, scratch), self.thin_side(id)))
+            Box::new(edges_of(self, pieces, self.thin_side(id), scratch))
         })
     }
 }
@@ -29,33 +30,41 @@ impl Prepared {
 /// The edges at the points of a leaf: to each other once, and to points of other leaves, each of
 /// which has the same edge.
 ///
-/// Only points that are among each other's nearest are joined, so that both leaves agree.
-pub(crate) fn edges_of(cloud: &Prepared, indices: &[u32], scratch: &mut Scratch) -> Vec<Edge> {
+/// They are thin along a unit vector. Only points that are among each other's nearest are joined, so that both leaves agree.
+pub(crate) fn edges_of(
+    cloud: &Prepared,
+    indices: &[u32],
+    thin: Vector3,
+    scratch: &mut Scratch,
+) -> LeafEdges {
     let places: BTreeMap<u32, u32> = indices.iter().copied().zip(0..).collect();
     let mut nearest = Nearest { cloud, known: BTreeMap::new() };
     nearest.gather(&places, scratch);
-    let mut edges = Vec::new();
+    let end = |piece: u32, surfel: &Surfel| EdgeEnd {
+        place: surfel.point.mean,
+        across: surfel.across,
+        piece,
+    };
+    let mut own = |&piece: &u32| end(piece, cloud.fit(piece, scratch));
+    let mut edges = Growing::at(indices.iter().map(&mut own).collect());
     for (&p, &place) in &places {
         for q in nearest.of(p, scratch) {
-            let other = places.get(&q).copied();
-            let is_second = other.is_some() && q < p;
+            let is_second = q < p && places.contains_key(&q);
             if q == p || is_second || !nearest.of(q, scratch).contains(&p) {
                 continue;
             }
             let from = *cloud.fit(p, scratch);
             let to = *cloud.fit(q, scratch);
-            if runs_along(&from, &to) {
-                edges.push(Edge {
-                    ends: [from.point.mean, to.point.mean],
-                    half_length: 0.5 * (to.point.mean - from.point.mean).norm(),
-                    points: [p, q],
-                    across: [from.across, to.across],
-                    own: [Some(Place::new(place)), other.map(Place::new)],
-                });
+            if !runs_along(&from, &to) {
+                continue;
+            }
+            match places.get(&q) {
+                Some(&other) => edges.join(place, other),
+                None => edges.join_other(place, end(q, &to)),
             }
         }
     }
-    edges
+    edges.grown(thin)
 }
 
 /// The points nearest to points of a leaf; most are asked for several times.

@@ -2,6 +2,7 @@
 
 pub(super) mod ball;
 pub(super) mod edge;
+pub(super) mod edges;
 mod ends;
 pub(super) mod join;
 mod lazy;

@@ -8,7 +8,7 @@ use cloudtouch_noise::Scratch;
 use rayon::prelude::*;
 
 use super::edge::DISC_SPACINGS;
-use super::leaf::{LeafEdges, LeafSurface};
+use super::leaf::LeafSurface;
 use super::slots::{Basis, Fitted};
 use super::surfel::Surfel;
 use crate::cloud::prepared::Prepared;
@@ -105,7 +105,7 @@ impl Prepared {
                 **leaf = LeafSurface::new(std::mem::take(&mut leaf.surfels), thin);
             }
             if let Some(leaf) = self.surface.edges[id.index()].get_mut() {
-                **leaf = LeafEdges::new(std::mem::take(&mut leaf.edges), thin);
+                leaf.enclose(thin);
             }
         }
     }
@@ -130,7 +130,7 @@ impl Prepared {
     fn near_halves(&self, leaf: NodeId, scratch: &mut Scratch) -> Vec<[f64; 2]> {
         let surfels = self.leaf(leaf).0;
         let mut reach = vec![[0.0_f64; 2]; surfels.len()];
-        for edge in &self.leaf_edges(leaf, scratch).edges {
+        for edge in self.leaf_edges(leaf, scratch).iter() {
             let half = 0.5 * (edge.ends[1] - edge.ends[0]);
             for place in edge.own_places() {
                 let across = surfels[place].normal.map_or(0.0, |n| n.dot(&half).abs());

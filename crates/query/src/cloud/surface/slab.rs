@@ -2,7 +2,6 @@
 
 use cloudtouch_geom::{Motion, Point3, Vector3};
 
-use super::edge::Edge;
 use super::surfel::Surfel;
 
 /// Between which heights along a direction all discs of a leaf lie, or all its edges, m.
@@ -24,18 +23,13 @@ impl Slab {
         slab
     }
 
-    pub(super) fn around_edges(edges: &[Edge], direction: Vector3) -> Self {
-        let mut slab = Self::empty(direction);
-        edges.iter().flat_map(|edge| &edge.ends).for_each(|end| slab.include(end, 0.0));
-        slab
-    }
-
-    fn empty(direction: Vector3) -> Self {
+    /// Around nothing.
+    pub(super) fn empty(direction: Vector3) -> Self {
         Self { direction, low: f64::INFINITY, high: f64::NEG_INFINITY }
     }
 
     /// Grows to what reaches so far (m) from the height of a place.
-    fn include(&mut self, place: &Point3, reach: f64) {
+    pub(super) fn include(&mut self, place: &Point3, reach: f64) {
         let height = place.coords.dot(&self.direction);
         self.low = self.low.min(height - reach);
         self.high = self.high.max(height + reach);
@@ -77,9 +71,14 @@ impl Slab {
         self.distance(place) <= distance
     }
 
+    /// Whether a place is below all discs, and whether it is above them.
+    pub(crate) fn is_left_by(&self, place: &Point3) -> [bool; 2] {
+        let height = place.coords.dot(&self.direction);
+        [height < self.low, height > self.high]
+    }
+
     /// Whether some place between two ends may be so near to the height of a disc, m.
-    pub(crate) fn may_hold(&self, ends: &[Point3; 2], distance: f64) -> bool {
-        let [from, to] = ends;
+    pub(crate) fn may_hold(&self, [from, to]: [&Point3; 2], distance: f64) -> bool {
         let (from, to) = (from.coords.dot(&self.direction), to.coords.dot(&self.direction));
         let (lower, upper) = if from < to { (from, to) } else { (to, from) };
         upper + distance >= self.low && lower - distance <= self.high

@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 use cloudtouch_bvh::{Node, Tree};
 use cloudtouch_geom::Covariance;
 
-use super::leaf::{LeafEdges, LeafSurface};
+use super::edges::LeafEdges;
+use super::leaf::LeafSurface;
 use super::surfel::{End, Surfel};
 
 /// Neighbours of a point that may be joined to it.

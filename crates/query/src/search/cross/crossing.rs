@@ -193,7 +193,6 @@ mod tests {
     use cloudtouch_noise::Refined;
 
     use super::*;
-    use crate::cloud::Place;
 
     fn disc(std: f64) -> Surfel {
         let axis = Vector3::z_axis();
@@ -208,7 +207,7 @@ mod tests {
             half_length: 0.5 * (high - low),
             points: [0, 1],
             across: [0.0; 2],
-            own: [Some(Place::new(0)), None],
+            own: [Some(0), None],
         }
     }
 

@@ -1,84 +1,65 @@
 //! Gathers the crossings of two leaves.
 
-use cloudtouch_geom::{Motion, Point3, Vector3};
+use cloudtouch_geom::Motion;
 
-use crate::cloud::{DISC_SPACINGS, Edge, LeafEdges, Pieces};
+use crate::cloud::{DISC_SPACINGS, Edge, Pieces};
 
 use super::crossing::{of_mesh, through_disc, through_facet};
 use super::crossings::{Crossings, Witness};
+use super::near_discs::{Memory, NearDisc, Told};
 use super::past::Past;
 use super::through_mesh::Outline;
 use crate::search::visit::around::OfMesh;
 use crate::search::visit::leaf::{ExactLeaf, NoisyLeaf};
 
-/// A disc that edges of a leaf may pass, as far as most of them are told to miss it.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::search) struct NearDisc {
-    /// Its place in its leaf.
-    at: usize,
-    middle: Point3,
-    normal: Vector3,
-    radius: f64,
-}
-
-impl NearDisc {
-    /// Whether an edge has its ends on two sides of it, and its middle near enough.
-    fn may_be_passed_by(&self, ends: &[Point3; 2], middle: &Point3, half_length: f64) -> bool {
-        let reach = half_length + self.radius;
-        if (self.middle - middle).norm_squared() > reach * reach {
-            return false;
-        }
-        let height = |end: &Point3| (end - self.middle).dot(&self.normal);
-        height(&ends[0]) * height(&ends[1]) < 0.0
-    }
-}
-
 /// Adds the crossings of edges of one leaf with discs of another near its pieces that [`reaching`] gave;
 /// the points they join, and those of the discs, are as probable as their clearest crossing. `motion` leads
-/// from where the edges were measured to the frame of A, none those of A; `discs` is memory to use again.
+/// from where the edges were measured to the frame of A, none those of A.
 pub(in crate::search) fn add_edges_through_discs(
     motion: Option<&Motion>,
     (of_edges, near): (&mut NoisyLeaf<'_>, Pieces),
     of_discs: &mut NoisyLeaf<'_>,
-    discs: &mut Vec<NearDisc>,
+    Memory { discs, ends: told }: &mut Memory,
     found: &mut Crossings,
 ) {
-    let Some(LeafEdges { edges, joined, slab: edge_slab }) = of_edges.edges else { return };
-    let edge_slab = motion.map_or(*edge_slab, |motion| edge_slab.moved(motion));
+    let Some(edges) = of_edges.edges else { return };
+    let edge_slab = motion.map_or(edges.slab, |motion| edges.slab.moved(motion));
     // Half of an edge is no longer than a disc of the pieces it is near to.
     let reach = DISC_SPACINGS * of_edges.ball.spacing;
     discs.clear();
     discs.extend(of_discs.surfels.iter().enumerate().filter_map(|(at, disc)| {
-        let (normal, middle, radius) =
-            (disc.normal?, disc.point.mean, DISC_SPACINGS * disc.spacing);
-        let is_near =
-            edge_slab.may_hold_disc_of(disc) && of_edges.ball.is_within(&middle, reach + radius);
-        is_near.then_some(NearDisc { at, middle, normal, radius })
+        let near = NearDisc::of(disc, at)?;
+        let is_near = edge_slab.may_hold_disc_of(disc)
+            && of_edges.ball.is_within(&near.middle, reach + near.radius);
+        is_near.then_some(near)
     }));
     if discs.is_empty() {
         return;
     }
-    let (around, slab) = (of_discs.ball, of_discs.slab);
-    let (around, slab) = motion
-        .map_or((around, slab), |motion| (around.moved_back(motion), slab.moved_back(motion)));
-    for (edge, &joined) in edges.iter().zip(joined) {
-        if !near.meet(joined) || !slab.may_hold(&edge.ends, 0.0) {
-            continue;
-        }
-        if !around.is_within(&edge.middle(), edge.half_length + DISC_SPACINGS * around.spacing) {
+    let slab = of_discs.slab;
+    let slab = motion.map_or(slab, |motion| slab.moved_back(motion));
+    told.clear();
+    told.extend(edges.ends().map(|(own, end)| {
+        Told::new(slab.is_left_by(&end.place), own.is_some_and(|place| near.has(place)))
+    }));
+    for &joint in edges.joints() {
+        let [from, to] = joint.places().map(|end| told[end]);
+        if !from.may_pass(to) {
             continue;
         }
         // PERF: of most no more than the ends are asked.
-        let ends = motion.map_or(edge.ends, |motion| edge.moved_ends(motion));
-        let middle = nalgebra::center(&ends[0], &ends[1]);
-        let passes = |disc: &&NearDisc| disc.may_be_passed_by(&ends, &middle, edge.half_length);
-        let mut passed = discs.iter().filter(passes).peekable();
+        let ends = edges.ends_of(joint).map(|end| end.place);
+        let ends = motion.map_or(ends, |motion| ends.map(|end| motion.point(&end)));
+        let mut passed = discs.iter().filter(|disc| disc.parts(&ends)).peekable();
         if passed.peek().is_none() {
             continue;
         }
-        let edge = &Edge { ends, ..*edge };
+        let edge = edges.edge(joint);
+        let middle = nalgebra::center(&ends[0], &ends[1]);
+        let edge = &Edge { ends, ..edge };
         let past = Past::new(of_edges.cloud, edge, motion);
-        for &NearDisc { at, .. } in passed {
+        let near = |disc: &&NearDisc| disc.is_within_reach(&middle, edge.half_length);
+        for &NearDisc { at, .. } in passed.filter(near) {
             let disc = &of_discs.surfels[at];
             let Some(crossing) = through_disc(edge, disc, |end| past.of(end)) else { continue };
             of_discs.raise(at, crossing.probability);
@@ -96,13 +77,17 @@ pub(in crate::search) fn add_edges_through_facets(
     facets: &ExactLeaf,
     found: &mut Crossings,
 ) {
-    let Some(LeafEdges { edges, joined, .. }) = of_edges.edges else { return };
+    let Some(edges) = of_edges.edges else { return };
     let around = motion.map_or(facets.ball, |motion| facets.ball.moved_back(motion));
-    for (edge, &joined) in edges.iter().zip(joined) {
-        if !near.meet(joined) || !around.is_within(&edge.middle(), edge.half_length) {
+    for &joint in edges.joints() {
+        if !near.meet(edges.pieces_of(joint)) {
             continue;
         }
-        let edge = &motion.map_or(*edge, |motion| edge.moved(motion));
+        let edge = edges.edge(joint);
+        if !around.is_within(&edge.middle(), edge.half_length) {
+            continue;
+        }
+        let edge = &motion.map_or(edge, |motion| edge.moved(motion));
         let past = Past::new(of_edges.cloud, edge, motion);
         for facet in facets.facets.iter() {
             let Some(crossing) = through_facet(edge, facet, |end| past.of(end)) else { continue };

@@ -6,6 +6,7 @@ pub(super) mod crossings;
 pub(super) mod gather;
 pub(super) mod leaves;
 pub(super) mod near;
+pub(super) mod near_discs;
 pub(super) mod past;
 pub(super) mod side;
 pub(super) mod through_mesh;

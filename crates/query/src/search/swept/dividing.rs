@@ -23,7 +23,7 @@ impl Dividing {
     pub(super) fn discs_met<'d>(
         &mut self,
         discs: &'d [Surfel],
-        edges: &SweptEdges<'_>,
+        edges: &SweptEdges,
         thin: [Vector3; 2],
         drift: &Drift,
     ) -> Vec<&'d Surfel> {
@@ -47,7 +47,7 @@ impl Dividing {
     pub(super) fn facets_met<'f>(
         &mut self,
         facets: &'f SweptMesh,
-        edges: &SweptEdges<'_>,
+        edges: &SweptEdges,
         thin: Vector3,
         drift: &Drift,
     ) -> Vec<SweptFacet<'f>> {

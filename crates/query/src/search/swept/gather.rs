@@ -56,7 +56,7 @@ pub(super) fn may_reach_facets(
 /// Whether any edge of a leaf may meet a disc of another, all of each looked at as one box.
 pub(super) fn may_meet(
     is_a: bool,
-    (of_edges, edges): (&SweptCloud<'_>, &SweptEdges<'_>),
+    (of_edges, edges): (&SweptCloud<'_>, &SweptEdges),
     of_discs: &SweptCloud<'_>,
     dividing: Dividing,
 ) -> bool {
@@ -85,7 +85,7 @@ pub(super) fn add_edges_through_discs(
     let direction = Direction::new(slab.direction, drift);
     for (edge, track) in edges.all.iter().zip(&edges.tracks) {
         let room = track.ends[0].along(&direction).max(track.ends[1].along(&direction));
-        if !slab.may_hold(&edge.ends, room) {
+        if !slab.may_hold(edge.ends.each_ref(), room) {
             continue;
         }
         let half = edge.half_length;

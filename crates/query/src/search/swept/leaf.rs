@@ -1,13 +1,11 @@
 //! Leaves of a search among surfaces of which one drifts: what is told once of a leaf for all others that
 //! it meets.
 
-use std::borrow::Cow;
-
 use cloudtouch_bvh::NodeId;
 use cloudtouch_geom::{Drift, Matrix3, Motion, Vector3};
 
 use crate::body::BodyRef;
-use crate::cloud::{Cloud, DISC_SPACINGS, Edge, Surfel};
+use crate::cloud::{Cloud, DISC_SPACINGS, Edge, LeafEdges, Surfel};
 use crate::stats::Stats;
 
 use super::hull::Hull;
@@ -46,14 +44,14 @@ pub(super) struct SweptCloud<'a> {
     /// From where it was measured to the frame of A; `None` for one of A.
     pub motion: Option<Motion>,
     axes: Matrix3,
-    edges: Option<SweptEdges<'a>>,
+    edges: Option<SweptEdges>,
 }
 
 /// The edges of a leaf.
 #[derive(Debug)]
-pub(super) struct SweptEdges<'a> {
+pub(super) struct SweptEdges {
     /// In the frame of A.
-    pub all: Cow<'a, [Edge]>,
+    pub all: Vec<Edge>,
     pub tracks: Vec<EdgeTrack>,
     /// About all of them; `None` where there are none.
     pub hull: Option<Hull>,
@@ -126,26 +124,33 @@ impl<'a> SweptCloud<'a> {
     pub(super) fn load_edges(&mut self, drift: &Drift, side: &mut Side) {
         if self.edges.is_none() {
             self.leaf.load_edges(side);
-            let edges = self.leaf.edges.map_or(&[][..], |of_leaf| &of_leaf.edges);
-            let all = match &self.motion {
-                None => Cow::Borrowed(edges),
-                Some(motion) => edges.iter().map(|edge| edge.moved(motion)).collect(),
-            };
-            self.edges = Some(SweptEdges::new(all, &self.axes, drift));
+            let motion = self.motion.as_ref();
+            self.edges =
+                self.leaf.edges.map(|edges| SweptEdges::new(edges, motion, &self.axes, drift));
         }
     }
 
     /// `None` before they were loaded.
-    pub(super) fn edges(&self) -> Option<&SweptEdges<'a>> {
+    pub(super) fn edges(&self) -> Option<&SweptEdges> {
         self.edges.as_ref()
     }
 }
 
-impl<'a> SweptEdges<'a> {
-    fn new(all: Cow<'a, [Edge]>, axes: &Matrix3, drift: &Drift) -> Self {
+impl SweptEdges {
+    fn new(edges: &LeafEdges, motion: Option<&Motion>, axes: &Matrix3, drift: &Drift) -> Self {
+        let moved = |edge: Edge| motion.map_or(edge, |motion| edge.moved(motion));
+        let all: Vec<Edge> = edges.iter().map(moved).collect();
         let ends = all.iter().flat_map(|edge| edge.ends);
         let hull = Hull::around(axes, ends.map(|end| (end, Vector3::zeros())), drift);
-        let tracks = all.iter().map(|edge| EdgeTrack::of(edge, drift)).collect();
+        // PERF: where an end gets to is told once for all edges there.
+        let mut known: Vec<Option<Track>> = vec![None; edges.ends().len()];
+        let tracks = edges.joints().iter().zip(&all).map(|(joint, edge)| {
+            let places = joint.places();
+            let ends = [0, 1]
+                .map(|k| *known[places[k]].get_or_insert_with(|| Track::of(&edge.ends[k], drift)));
+            EdgeTrack::of(edge, ends)
+        });
+        let tracks = tracks.collect();
         Self { all, tracks, hull }
     }
 
@@ -162,9 +167,7 @@ impl<'a> SweptEdges<'a> {
 }
 
 impl EdgeTrack {
-    fn of(edge: &Edge, drift: &Drift) -> Self {
-        let [from, to] = &edge.ends;
-        let ends = [Track::of(from, drift), Track::of(to, drift)];
+    fn of(edge: &Edge, ends: [Track; 2]) -> Self {
         // What the arc adds is no more between its ends than at one of them.
         let (way, beside) = (0.5 * (ends[0].way + ends[1].way), ends[0].beside.max(ends[1].beside));
         Self { middle: Track { place: edge.middle(), way, beside }, ends }
