@@ -58,8 +58,8 @@ pub enum PoseError {
 const QUATERNION_ROUNDING: f64 = 1e-3;
 /// How far products of many quaternions of length one may get from it by rounding.
 const DRIFT: f64 = 1e-9;
-/// What counts as rounding in R Rᵀ = I: files often hold six to nine digits.
-const ROUNDING: f64 = 1e-4;
+/// What counts as rounding in R Rᵀ = I: files often hold six to nine digits, and four may leave 1.7e-4.
+const ROUNDING: f64 = 2e-4;
 
 impl Pose {
     /// The pose that changes nothing.
@@ -121,7 +121,7 @@ impl Pose {
     ///
     /// # Errors
     /// When an entry is not finite, the last row is not 0 0 0 1, or the rotation part scales,
-    /// shears or mirrors by more than the rounding of a text file (1e-4).
+    /// shears or mirrors by more than the rounding of a text file (2e-4: four digits).
     pub fn try_from_matrix(m: &Matrix4<f64>) -> Result<Self, PoseError> {
         for row in 0..4 {
             for column in 0..4 {
@@ -144,7 +144,8 @@ impl Pose {
         if determinant < 0.0 {
             return Err(PoseError::Mirrored { determinant });
         }
-        let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&linear));
+        let rotation = Rotation3::from_matrix_unchecked(nearest_rotation(linear));
+        let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
         let translation = Translation3::new(m[(0, 3)], m[(1, 3)], m[(2, 3)]);
         Ok(Self(Isometry3::from_parts(translation, rotation)))
     }
@@ -194,9 +195,67 @@ impl Pose {
     }
 }
 
+/// The rotation nearest to a matrix that is one but for rounding: Newton's iteration for its polar factor, which
+/// squares what is missing at each step and leaves a rotation as it is, half turns too.
+fn nearest_rotation(mut linear: Matrix3) -> Matrix3 {
+    const STEPS: usize = 3;
+    for _ in 0..STEPS {
+        let Some(inverse) = linear.try_inverse() else { break };
+        linear = 0.5 * (linear + inverse.transpose());
+    }
+    linear
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// How far the motion taken from a matrix is from it, with its entries rounded to so many digits.
+    fn off_by(rotation: &Matrix3, digits: i32) -> f64 {
+        let unit = 10_f64.powi(-digits);
+        let rounded = rotation.map(|entry| (entry / unit).round() * unit);
+        let taken = Pose::try_from_matrix(&rounded.to_homogeneous()).unwrap();
+        (taken.rotation().to_rotation_matrix().matrix() - rotation).amax()
+    }
+
+    #[test]
+    fn half_turns_are_not_taken_for_other_rotations() {
+        let about = |axis: Vector3, angle| *Rotation3::new(axis.normalize() * angle).matrix();
+        let half = std::f64::consts::PI;
+        let of_rows = |rows: [[f64; 3]; 3]| Matrix3::from_fn(|r, c| rows[r][c]);
+        let turned = of_rows([[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]);
+        assert_eq!(off_by(&turned, 0), 0.0);
+        for k in 0..720 {
+            let yaw = about(Vector3::z(), f64::from(k) * half / 360.0);
+            let aside = Vector3::new(f64::from(k % 7) - 3.0, 1.0, f64::from(k % 5) - 2.0);
+            for flip in [Vector3::x(), Vector3::y(), aside] {
+                for close in [0.0, 1e-12, 1e-7, 1e-3] {
+                    let rotation = yaw * about(flip, half - close);
+                    for digits in 4..17 {
+                        let off = off_by(&rotation, digits);
+                        assert!(off < 1.1 * 10_f64.powi(-digits) + 1e-14, "{k} {digits} {off}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn all_rotations_that_exchange_axes_are_taken_as_they_are() {
+        let signs = [1.0, -1.0];
+        let mut count = 0;
+        for axes in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
+            for code in 0..8 {
+                let sign = |row: usize| signs[code >> row & 1];
+                let matrix = Matrix3::from_fn(|r, c| if axes[r] == c { sign(r) } else { 0.0 });
+                if matrix.determinant() > 0.0 {
+                    assert!(off_by(&matrix, 0) < 1e-15, "{matrix}");
+                    count += 1;
+                }
+            }
+        }
+        assert_eq!(count, 24);
+    }
 
     #[test]
     fn takes_a_rounded_matrix_and_refuses_bad_ones() {

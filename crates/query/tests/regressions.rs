@@ -197,6 +197,23 @@ fn nan_in_a_pose_is_an_error() {
     }
 }
 
+/// A gripper that points down was turned about y by half a turn; the matrix of that was taken for none at all,
+/// and a box deep in a ball was free.
+#[test]
+fn a_half_turn_is_not_taken_for_none() {
+    let at = |x| Pose::from_translation(Vector3::new(x, 0.0, 0.0));
+    let ball = scene::moved(&scene::sphere(0.1, 3), &at(0.3));
+    let cloud = common::scan(&ball, 0.005, 0.001, 1, Mode::Calibrated);
+    // Beside the origin of its frame, so that it is the turn that brings it to the ball.
+    let held = mesh(&scene::moved(&scene::cuboid([0.06; 3]), &at(-0.23)));
+    let half_turn = Matrix4::from_diagonal(&nalgebra::Vector4::new(-1.0, 1.0, -1.0, 1.0));
+    let pose = Pose::try_from_matrix(&half_turn).unwrap();
+    let query = query(Mode::Calibrated);
+    assert_eq!(query.run(&cloud, &held, &pose).unwrap().verdict, Verdict::InCollision);
+    let as_if_none = query.run(&cloud, &held, &Pose::identity()).unwrap();
+    assert_eq!(as_if_none.verdict, Verdict::Free, "{as_if_none:?}");
+}
+
 /// A scene placed so far away that differences overflow is not free either.
 #[test]
 fn overflow_is_not_free() {

@@ -51,7 +51,7 @@ fn look_at_table(distance: f64, rng: &mut ChaCha8Rng) -> Pose {
     let forward = -back;
     let right = forward.cross(&Vector3::z()).normalize();
     let axes = Matrix3::from_columns(&[right, forward.cross(&right), forward]);
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&axes));
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
     let position = Point3::new(0.0, 0.0, 0.05) + back * distance;
     Pose::from_isometry(Isometry3::from_parts(Translation3::from(position.coords), rotation))
         .inverse()
