@@ -51,6 +51,10 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
         ("not a JSON object", "5".to_owned()),
         ("not a JSON object", "null".to_owned()),
         ("missing field `scene`", r#"{"id":"bad"}"#.to_owned()),
+        ("`scene` is [\"floor.pcd\"]: write the path", with("\"floor.pcd\"", "[\"floor.pcd\"]")),
+        ("`object` is \"\"", with("box.obj", "")),
+        ("`scene_sensor` is 5", with("\"iso:0.002\"", "5")),
+        ("`scene` is there twice", with("\"scene\"", "\"scene\":\"other.pcd\",\"scene\"")),
         ("gone.pcd: cannot be read", with("floor.pcd", "gone.pcd")),
         ("not a rotation", with("[[1,", "[[2,")),
         ("mirrors", with("[[1,", "[[-1,")),
@@ -85,7 +89,7 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
     }
     assert_eq!(lines.last().unwrap()["verdict"], "free");
     let table = inputs.run(&["batch", "cases.json"]).quiet(1).stdout();
-    assert!(table.contains("1 answers, 16 errors"), "{table}");
+    assert!(table.contains("1 answers, 20 errors"), "{table}");
 }
 
 #[test]

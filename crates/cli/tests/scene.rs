@@ -116,6 +116,9 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         (with("attached_to", json!("box")), vec!["body 2", "`box`", "detach"]),
         (with("file", json!("gone.obj")), vec!["body 2 `box`", "gone.obj", "cannot be read"]),
         (with("file", json!("scene.json")), vec!["body 2 `box`", "scene.json"]),
+        (with("file", json!(["box.obj"])), vec!["body 2 `box`", "`file` is [\"box.obj\"]"]),
+        (with("unit", json!(1)), vec!["body 2 `box`", "`unit` is 1"]),
+        (of_scene("bodies", json!([["a", "b"], 1])), vec!["body 1", "a JSON object"]),
         (with("sensor", json!("sonar")), vec!["body 2 `box`", "`sonar`"]),
         (with("unit", json!("miles")), vec!["body 2 `box`", "miles"]),
         (with("pose", json!([[1, 0, 0, 0]])), vec!["body 2 `box`", "1 rows", "4x4"]),
@@ -137,6 +140,10 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         assert!(error.starts_with("error: scene.json: "), "{error}");
         assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");
     }
+    let text = of_bodies(&[floor(), body("box", "box.obj", 1.25)]).to_string();
+    inputs.write("twice.json", &text.replace("\"box\"", "\"box\",\"name\":\"tool\""));
+    let run = inputs.run(&["scene", "twice.json"]);
+    assert!(run.stderr().contains(": `name` is there twice: leave"), "{}", run.stderr());
     // What Python writes for a number that is none.
     let text =
         of_bodies(&[floor(), body("box", "box.obj", 1.25)]).to_string().replace("1.25", "NaN");

@@ -10,8 +10,8 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 use serde_json::value::RawValue;
 
-use crate::files::case_fields;
 use crate::files::json::{matrix, shortened, without_bare_words};
+use crate::files::{case_fields, fields};
 use crate::sensor::SensorChoice;
 
 /// The cases of a file, in order. A case that cannot be read keeps its place and its reason.
@@ -55,11 +55,11 @@ struct RawFile<'a> {
 
 #[derive(Deserialize)]
 struct RawCase {
-    scene: PathBuf,
-    object: PathBuf,
+    scene: Value,
+    object: Value,
     pose: Value,
-    scene_sensor: Option<String>,
-    object_sensor: Option<String>,
+    scene_sensor: Option<Value>,
+    object_sensor: Option<Value>,
     // Never used, so nothing about them is wrong.
     label: Option<Value>,
     in_collision: Option<Value>,
@@ -132,8 +132,8 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<CaseFile> {
         .map(|(position, text)| {
             let number = format!("case-{}", position + 1);
             let case = serde_json::from_str::<Value>(text.get()).context("the case cannot be read");
-            let case = case.and_then(|value| parse_case(value, folder)).map_err(shortened);
-            (id(text.get()).unwrap_or(number), case)
+            let case = case.and_then(|value| parse_case(value, text.get(), folder));
+            (id(text.get()).unwrap_or(number), case.map_err(shortened))
         })
         .collect();
     Ok(CaseFile { cases })
@@ -152,22 +152,25 @@ fn id(case: &str) -> Option<String> {
     }
 }
 
-fn parse_case(value: Value, folder: &Path) -> Result<Case> {
-    let Value::Object(fields) = &value else {
+/// A case, and the text that it was read from.
+fn parse_case(value: Value, text: &str, folder: &Path) -> Result<Case> {
+    let Value::Object(given) = &value else {
         bail!("the case is not a JSON object but {}", kind(&value));
     };
-    case_fields::check(fields)?;
+    fields::check_once(text)?;
+    case_fields::check(given)?;
     let raw = RawCase::deserialize(&value)?;
     let scene_from_object = matrix(raw.pose)?;
-    let sensor = |spec: Option<String>| {
-        spec.map(|s| s.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))).transpose()
+    let sensor = |name: &str, spec: Option<Value>| -> Result<Option<SensorChoice>> {
+        let Some(spec) = spec else { return Ok(None) };
+        fields::text(name, spec)?.parse().map(Some).map_err(|error| anyhow!("{error}"))
     };
     Ok(Case {
-        scene: folder.join(raw.scene),
-        object: folder.join(raw.object),
+        scene: folder.join(fields::file("scene", raw.scene)?),
+        object: folder.join(fields::file("object", raw.object)?),
         scene_from_object,
-        scene_sensor: sensor(raw.scene_sensor)?,
-        object_sensor: sensor(raw.object_sensor)?,
+        scene_sensor: sensor("scene_sensor", raw.scene_sensor)?,
+        object_sensor: sensor("object_sensor", raw.object_sensor)?,
         label: raw.label.and_then(spelled).or_else(|| {
             let hit = raw.in_collision?.as_bool()?;
             Some(if hit { "collision" } else { "apart" }.to_owned())

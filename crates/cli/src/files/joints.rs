@@ -1,13 +1,12 @@
 //! Positions of joints in a file.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Context as _, Result, bail};
-use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
 
+use crate::files::fields::Names;
 use crate::files::json::{as_written, shortened, without_bare_words};
 
 /// Positions of joints by name, rad or m.
@@ -45,12 +44,19 @@ pub fn parse(text: &[u8]) -> Result<Vec<Joints>> {
     if is_list {
         let names: Vec<Names> = serde_json::from_slice(&text)?;
         for (index, names) in names.iter().enumerate() {
-            names.check().with_context(|| place(index))?;
+            given_once(names).with_context(|| place(index))?;
         }
     } else {
-        serde_json::from_slice::<Names>(&text)?.check()?;
+        given_once(&serde_json::from_slice(&text)?)?;
     }
     Ok(read)
+}
+
+fn given_once(names: &Names) -> Result<()> {
+    match names.twice() {
+        Some(name) => bail!("joint `{name}` is there twice: give it one position"),
+        None => Ok(()),
+    }
 }
 
 /// A position of a list in words, counted from 1; by its index.
@@ -69,41 +75,6 @@ fn positions(value: Value) -> Result<Joints> {
         }
     };
     entries.into_iter().map(number).collect()
-}
-
-/// The names of an object, each as often as it is there.
-struct Names(Vec<String>);
-
-impl Names {
-    fn check(&self) -> Result<()> {
-        let mut known = BTreeSet::new();
-        match self.0.iter().find(|name| !known.insert(*name)) {
-            Some(name) => bail!("joint `{name}` is there twice: give it one position"),
-            None => Ok(()),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Names {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Each;
-        impl<'de> Visitor<'de> for Each {
-            type Value = Names;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("an object of joint names and positions")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Names, A::Error> {
-                let mut names = Vec::new();
-                while let Some((name, IgnoredAny)) = map.next_entry()? {
-                    names.push(name);
-                }
-                Ok(Names(names))
-            }
-        }
-        deserializer.deserialize_map(Each)
-    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 pub mod case;
 mod case_fields;
+mod fields;
 pub mod intrinsics;
 pub mod joints;
 mod json;

@@ -7,7 +7,9 @@ use cloudtouch::geom::Pose;
 use cloudtouch_io::LengthUnit;
 use serde::Deserialize;
 use serde_json::Value;
+use serde_json::value::RawValue;
 
+use crate::files::fields;
 use crate::files::json::{as_written, matrix, shortened, without_bare_words};
 use crate::intrinsics::{self, DepthImages, Intrinsics};
 
@@ -44,11 +46,12 @@ pub struct BodyEntry {
 
 #[derive(Deserialize)]
 #[serde(rename = "scene file", deny_unknown_fields)]
-struct RawFile {
+struct RawFile<'a> {
     format: u32,
     length_unit: String,
     threshold: Option<Value>,
-    bodies: Vec<Value>,
+    #[serde(borrow)]
+    bodies: Vec<&'a RawValue>,
     #[serde(default)]
     allowed: Vec<Value>,
 }
@@ -57,14 +60,14 @@ struct RawFile {
 #[derive(Deserialize)]
 #[serde(rename = "body", deny_unknown_fields)]
 struct RawBody {
-    name: String,
-    file: PathBuf,
-    sensor: Option<String>,
-    unit: Option<String>,
+    name: Value,
+    file: Value,
+    sensor: Option<Value>,
+    unit: Option<Value>,
     intrinsics: Option<Value>,
     depth_scale: Option<Value>,
     pose: Option<Value>,
-    attached_to: Option<String>,
+    attached_to: Option<Value>,
 }
 
 /// Reads a scene file of at most `max_bytes`; paths in it are relative to its folder.
@@ -121,7 +124,7 @@ fn parse_whole(text: &[u8], folder: &Path) -> Result<SceneFile> {
 
 fn parse_any(text: &[u8], folder: &Path) -> Result<SceneFile> {
     let text = without_bare_words(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text));
-    let raw: RawFile = serde_json::from_slice(&text).context(
+    let raw: RawFile<'_> = serde_json::from_slice(&text).context(
         "not a scene file, a JSON object with \"format\", \"length_unit\" and \"bodies\"",
     )?;
     if raw.format != 1 {
@@ -130,10 +133,12 @@ fn parse_any(text: &[u8], folder: &Path) -> Result<SceneFile> {
     if raw.length_unit != "m" {
         bail!("length_unit `{}`: poses must be in metres (\"m\")", raw.length_unit);
     }
-    let body = |(index, value): (usize, Value)| {
+    let body = |(index, text): (usize, &RawValue)| {
+        let value: Value = serde_json::from_str(text.get())
+            .with_context(|| format!("body {} cannot be read", index + 1))?;
         let name = value.get("name").and_then(Value::as_str).map(|name| format!(" `{name}`"));
         let place = || format!("body {}{}", index + 1, name.unwrap_or_default());
-        body(value, folder).with_context(place)
+        body(value, text.get(), folder).with_context(place)
     };
     let pair = |(index, value): (usize, Value)| {
         let form = || format!("pair {} of \"allowed\" is not a list of two names", index + 1);
@@ -153,24 +158,33 @@ fn threshold(value: Value) -> Result<f64> {
     }
 }
 
-fn body(value: Value, folder: &Path) -> Result<BodyEntry> {
+/// A body, and the text that it was read from.
+fn body(value: Value, text: &str, folder: &Path) -> Result<BodyEntry> {
+    // Of a list the fields would be taken by their order.
+    if !value.is_object() {
+        bail!("is {}: write a JSON object", as_written(&value));
+    }
+    fields::check_once(text)?;
     let raw = RawBody::deserialize(value)?;
-    if raw.name.trim().is_empty() {
+    let name = fields::text("name", raw.name)?;
+    if name.trim().is_empty() {
         bail!("its `name` is empty: give it one, by which answers call it");
     }
     let depth = DepthImages {
         intrinsics: raw.intrinsics.map(|value| stated(value, folder)).transpose()?,
         depth_scale: raw.depth_scale.map(depth_scale).transpose()?,
     };
-    let unit = raw.unit.map(|unit| unit.parse::<LengthUnit>()).transpose();
+    let text =
+        |name, value: Option<Value>| value.map(|value| fields::text(name, value)).transpose();
+    let unit = text("unit", raw.unit)?.map(|unit| unit.parse::<LengthUnit>()).transpose();
     Ok(BodyEntry {
-        name: raw.name,
-        file: folder.join(raw.file),
-        sensor: raw.sensor,
+        name,
+        file: folder.join(fields::file("file", raw.file)?),
+        sensor: text("sensor", raw.sensor)?,
         unit: unit?,
         depth,
         pose: raw.pose.map(matrix).transpose()?.unwrap_or_default(),
-        attached_to: raw.attached_to,
+        attached_to: text("attached_to", raw.attached_to)?,
     })
 }
 
