@@ -14,7 +14,6 @@ pub fn length(metres: f64) -> String {
 
 /// How much of a body a depth image did not see, and why.
 pub fn unseen(unseen: &Unseen) -> String {
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     let all = [
         ("behind the camera", unseen.behind_camera),
         ("outside of its view", unseen.outside_view),
@@ -31,6 +30,11 @@ pub fn unseen(unseen: &Unseen) -> String {
         return format!("nothing of the {}", unseen.body);
     }
     format!("{} of the {}: {}", percent(unseen.share()), unseen.body, shares.join(", "))
+}
+
+/// Rounded up, as in the warning: what is above the share allowed is not told as if it were not.
+fn percent(share: f64) -> String {
+    format!("{:.0} %", (100.0 * share).ceil())
 }
 
 /// What a verdict means, in a sentence.
@@ -76,6 +80,11 @@ pub fn clearance(measured: Option<Clearance>, at_least: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_share_above_the_one_allowed_was_told_as_that_one() {
+        assert_eq!([0.0, 0.001, 0.052, 1.0].map(percent), ["0 %", "1 %", "6 %", "100 %"]);
+    }
 
     #[test]
     fn a_clearance_says_which_side_and_how_sure() {
