@@ -38,13 +38,18 @@ export class Body {
     return light.map((_, i) => 0.85 - (0.4 * (this.positions[3 * i + 2] - min.z)) / (max.z - min.z || 1));
   }
 
+  // Takes the coloured points of another view away.
+  plain() {
+    if (!this.likely) return;
+    this.group.remove(this.likely);
+    this.likely.geometry.dispose();
+    this.likely.material.dispose();
+    this.likely = undefined;
+  }
+
   // Replaces the coloured points.
   color({ points: chosen, probabilities }) {
-    if (this.likely) {
-      this.group.remove(this.likely);
-      this.likely.geometry.dispose();
-      this.likely.material.dispose();
-    }
+    this.plain();
     const [at, likely] = [indices(chosen), bytes(probabilities)];
     const positions = new Float32Array(3 * at.length);
     const colors = new Float32Array(3 * at.length);

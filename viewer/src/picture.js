@@ -91,7 +91,9 @@ export class Picture {
   // Draws what was not asked about; returns the box around it, and whether it is a cloud.
   showOther(standing) {
     const isCloud = !this.data[standing.body].triangles;
-    return { isCloud, box: this.stand(standing, isCloud ? SCENE : AROUND) };
+    const color = isCloud ? SCENE : AROUND;
+    this.body(standing.body, color).plain();
+    return { isCloud, box: this.stand(standing, color) };
   }
 
   // Draws the two that were asked about; returns the boxes around both, and around the object.
