@@ -314,3 +314,15 @@ fn a_batch_drew_no_points_inside_of_a_box() {
     assert!(bytes(&likely[0]["points"]).len() > 5 * 4, "{likely}");
     assert_eq!(&many["views"][0]["asked"]["likely"], likely);
 }
+
+/// The answer in the terminal said so, and the page that was sent around did not.
+#[test]
+fn a_page_says_that_what_was_not_seen_is_unknown() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &case_file(&[case_at("a", 0.5)]));
+    inputs.query_at(0.5, &["--html=query.html"]).quiet(0);
+    inputs.run(&["batch", "cases.json", "--html=batch.html"]).quiet(0);
+    inputs.run(&["query", "box.obj", "box.obj", "--html=meshes.html"]);
+    let told = |name| page(&inputs, name).contains("what the sensor did not see counts as empty");
+    assert_eq!(["query.html", "batch.html", "meshes.html"].map(told), [true, true, false]);
+}

@@ -29,10 +29,8 @@ pub(crate) fn text(
     shows_work: bool,
 ) -> String {
     let mut text = found(report, scene);
-    // The paper's mode looks at no image either.
-    if scene.is_cloud && report.unseen.is_none() && report.mode == Mode::Calibrated {
-        let words = "not known (no rows and columns): what the sensor did not see counts as empty";
-        let _ = writeln!(text, "{}", labelled("unseen", words));
+    if let Some(Fact { text: words, .. }) = not_seen(report, scene.is_cloud) {
+        let _ = writeln!(text, "{}", labelled("unseen", &words));
     }
     text.push_str(&place(placement));
     for warning in &report.warnings {
@@ -43,6 +41,14 @@ pub(crate) fn text(
     }
     text.truncate(text.trim_end().len());
     text
+}
+
+/// About what the sensor of a cloud did not see, where its rows and columns do not tell; here and on the page.
+pub(crate) fn not_seen(report: &Report, is_cloud: bool) -> Option<Fact> {
+    // The paper's mode looks at no image either.
+    let is_told = !is_cloud || report.unseen.is_some() || report.mode != Mode::Calibrated;
+    let words = "not known (no rows and columns): what the sensor did not see counts as empty";
+    (!is_told).then(|| Fact::new("Unseen", words))
 }
 
 /// About a margin, and between what distances the bodies lie.

@@ -72,10 +72,12 @@ impl<'a, C: PreparedCloud> Shown<'a, C> {
                     bodies.push(pages::body(loaded, Some(file), limits)?);
                 }
             }
-            let more = answered.nearness.as_ref().map(answers::text::nearness);
+            let [(_, scene), _] = answered.bodies;
+            let not_seen = answers::text::not_seen(colored, !scene.is_mesh());
+            let nearness = answered.nearness.as_ref().map(answers::text::nearness);
             let view = View::of_pair(*id, places, *answered.pose, colored);
             let view = view.with_placement(&answered.placement);
-            views.push(view.with_more(more.into_iter().collect()));
+            views.push(view.with_more(not_seen.into_iter().chain(nearness).collect()));
         }
         tell_apart(&mut bodies, &known);
         let title = format!("{} poses of {cases}", views.len());

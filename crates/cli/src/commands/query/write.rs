@@ -10,7 +10,7 @@ use cloudtouch_page::{Page, View};
 use super::ask::Found;
 use super::question::Question;
 use super::tell;
-use crate::answers::per_point;
+use crate::answers::{per_point, text};
 use crate::body::PreparedCloud;
 use crate::inside::with_points_inside;
 use crate::{pages, picture};
@@ -60,9 +60,10 @@ fn write_page<C: PreparedCloud>(
         pages::body(scene, scan, &limits)?,
         pages::body(object, Some(&arguments.object), &limits)?,
     ];
+    let not_seen = text::not_seen(shown, !scene.is_mesh());
     let view = View::of_pair("The pose asked about", [0, 1], *pose, shown)
         .with_placement(&found.placement)
-        .with_more(tell::facts(found));
+        .with_more(not_seen.into_iter().chain(tell::facts(found)).collect());
     let title = format!("{} in {}", bodies[1].name, bodies[0].name);
     let page = Page { title, bodies: bodies.into(), views: vec![view], ..Page::default() };
     pages::write(path, page)
