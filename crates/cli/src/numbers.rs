@@ -114,6 +114,10 @@ pub fn rigid(text: &str) -> Result<Rigid, String> {
         let Triple(at) = place(text)?;
         return Ok(Rigid(Pose::from_translation(at.into())));
     };
+    let count = text.split(',').count();
+    if count != 7 && separated(text).is_none() {
+        return Err(format!("{count} numbers are given: write three, or seven with x,y,z,w last"));
+    }
     let (Triple(at), Turn(turn)) = (place(at)?, quaternion(turn)?);
     Ok(Rigid(Pose::from_translation_rotation(at.into(), turn)))
 }
@@ -210,7 +214,7 @@ mod tests {
             (triple("a man").map(|_| ()), "`a man` is not a number"),
             (quaternion("0,0,0").map(|_| ()), "write four"),
             (quaternion("0,0,0,2").map(|_| ()), "length"),
-            (rigid("1,2,3,4").map(|_| ()), "write four"),
+            (rigid("1,2,3,4").map(|_| ()), "4 numbers are given: write three, or seven"),
             (share("5").map(|_| ()), "0 to 1"),
         ] {
             let error = result.unwrap_err();

@@ -215,3 +215,14 @@ fn the_sensor_of_a_collision_map_is_its_grid() {
     let answer = &inputs.query_at(0.5, &["--collision-map=0.1", "--json"]).json_lines()[0];
     assert_eq!(answer["scene"]["sensor"], "grid:0.1", "{answer}");
 }
+
+/// Cells finer than the noise keep it, and count as noise no larger than a cell.
+#[test]
+fn a_collision_map_finer_than_the_noise_took_the_noise_away_in_silence() {
+    let inputs = Inputs::new();
+    let told = |map: &str| inputs.query_at(0.5, &[map]).stderr();
+    for part in ["--collision-map 0.001", "--sensor iso:0.002", "several times the noise"] {
+        assert!(told("--collision-map=0.001").contains(part), "{}", told("--collision-map=0.001"));
+    }
+    assert_eq!(told("--collision-map=0.1"), "");
+}

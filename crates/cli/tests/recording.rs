@@ -96,7 +96,7 @@ mod with_feature {
         let text = inputs.run(&["info", "run.mcap#/floor@1", "--cloud-unit=mm"]).quiet(0).stdout();
         assert!(text.contains("box         (-0.001, -0.001, 0.000)"), "{text}");
         for (scan, unit) in [("run.mcap", "--cloud-unit=mm"), ("run.mcap#/floor", "--unit=mm")] {
-            assert_eq!(inputs.run(&["info", scan, unit]).code(), 1);
+            assert_eq!(inputs.run(&["info", scan, unit]).code(), 2);
         }
     }
 

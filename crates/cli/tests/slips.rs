@@ -183,7 +183,7 @@ const MISUSED: &[Slip] = &[
     ("floor.pcd box.obj --sensor-pose 1 -2.5 3", &["'-2'", "commas", "as in 1,-2.5,3"]),
     ("floor.pcd box.obj --sensor kinect2", &["`kinect2`", "kinect"]),
     ("floor.pcd box.obj --sensor iso:5mm", &["`5mm`", "iso:STD"]),
-    ("floor.pcd box.obj --sensor-pose 1,2,3,4", &["write four"]),
+    ("floor.pcd box.obj --sensor-pose 1,2,3,4", &["4 numbers", "write three, or seven"]),
     ("floor.pcd box.obj --unit metre", &["\"metre\"", "m, cm, mm or in"]),
     ("floor.pcd box.obj --outliers 100000,3", &["100000 neighbours", "200"]),
     ("floor.pcd box.obj --reject 10", &["0 to 0.5"]),

@@ -84,6 +84,8 @@ pub(super) fn parse_outliers(text: &str) -> Result<OutlierSettings, String> {
 pub(super) fn parse_sensor_for(text: &str) -> Result<(String, SensorChoice), String> {
     let (name, spec) = text
         .split_once('=')
+        // Every path has the empty name in it.
+        .filter(|(name, _)| !name.is_empty())
         .ok_or_else(|| format!("`{text}`: write NAME=SPEC, as in mug=kinect"))?;
     let sensor = spec.parse::<SensorChoice>().map_err(|error| error.to_string())?;
     Ok((name.to_owned(), sensor))

@@ -7,6 +7,7 @@ use cloudtouch_io::scaled_cloud;
 
 use crate::answers::print::one_line;
 use crate::args::InfoArguments;
+use crate::usage::WrongUsage;
 
 /// The topics of a recording, or where and when the scan named was taken and what `describe_cloud`
 /// says of it.
@@ -19,14 +20,17 @@ pub(super) fn describe(
     if name.topic.is_none() && name.at.is_none() {
         ensure!(
             arguments.unit.is_none() && arguments.cloud_unit.is_none(),
-            "--unit and --cloud-unit are for meshes and clouds, and this is a recording: name a \
-             scan of it, as in run.mcap#/topic@SECONDS"
+            WrongUsage(
+                "--unit and --cloud-unit are for meshes and clouds, and this is a recording: name a \
+                 scan of it, as in run.mcap#/topic@SECONDS"
+                    .to_owned()
+            )
         );
         return Ok(list(name, &recording.topics()?));
     }
     ensure!(
         arguments.unit.is_none(),
-        "--unit is for meshes, and this is a cloud: give --cloud-unit"
+        WrongUsage("--unit is for meshes, and this is a cloud: give --cloud-unit".to_owned())
     );
     let RecordedScan { scan, topic, time } = recording.scan(name.topic.as_deref(), name.at)?;
     let unit = arguments.cloud_unit.unwrap_or_default();

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use cloudtouch::geom::{MeshError, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, Mesh, PrepareError, SelfMesh};
+use cloudtouch::{Cloud, FilterSettings, Mesh, PrepareError, SelfMesh};
 use cloudtouch_cli::numbers::Rigid;
 use cloudtouch_io::{Geometry, LengthUnit, read_mesh_within};
 use serde::Serialize;
@@ -239,6 +239,16 @@ fn of_clouds<C: PreparedCloud>(
              --sensor per-point to use them"
         );
     }
+    check_max_range(name, first, &sensor, options)?;
+    if let (Some(cell), SensorModel::Isotropic { std }) = (collision_map, sensor)
+        && options.common.sensor.is_some()
+        && cell < std
+    {
+        tracing::warn!(
+            "{name}: the cells of --collision-map {cell} are smaller than the noise of --sensor {sensor}, which \
+             counts no more: choose cells of several times the noise, or leave --collision-map out"
+        );
+    }
     let settings = options.settings.map(|file| &file.settings);
     let prepared = C::prepare(&scans, sensor, settings, |filter, sensor| {
         options.common.change(filter);
@@ -258,6 +268,30 @@ fn of_clouds<C: PreparedCloud>(
     };
     let body = Body::Cloud(prepared.with_context(|| name.to_owned())?);
     Ok(Loaded { body, input, kinds })
+}
+
+/// What is nearer to a camera or a laser scanner than this is left out where it is known to be, m: the
+/// default that `--min-range` tells.
+const LEFT_OUT: f64 = 0.1;
+
+/// Refuses a `--max-range` within the range that is left out without an option.
+fn check_max_range(
+    name: &str,
+    scan: &PointCloud,
+    sensor: &SensorModel,
+    options: &BodyOptions<'_>,
+) -> Result<()> {
+    let common = options.common;
+    let leaves_out = common.min_range.is_none()
+        && FilterSettings::for_sensor(sensor).min_range.is_none()
+        && (scan.is_image() || scan.sensor_pose.is_some());
+    match common.max_range.filter(|max| leaves_out && *max < LEFT_OUT) {
+        Some(max) => bail!(WrongUsage(format!(
+            "{name}: --max-range {max} leaves no point, for nearer than {LEFT_OUT} m to a {sensor} all are \
+             left out: give a larger one, or --min-range 0"
+        ))),
+        None => Ok(()),
+    }
 }
 
 fn robot(options: &BodyOptions<'_>) -> Result<Vec<SelfMesh>> {
