@@ -85,6 +85,25 @@ def test_a_poisoned_row_is_an_error_in_its_place(root, whole):
     assert_same(taken({n: c for n, c in answers.items() if n != "pose"}, good), taken({n: c for n, c in whole.items() if n != "pose"}, good))
 
 
+@pytest.mark.parametrize("name", ["scene", "object"])
+@pytest.mark.parametrize("nothing", [None, float("nan"), ""])
+def test_a_row_without_a_path_was_told_of_a_file_called_nan(root, name, nothing):
+    rows = table()
+    rows[name] = rows[name].astype(object)
+    rows[name][4] = nothing
+    answers = ct.PoseChecker(root, sensor="iso:0.001")(rows)
+    assert answers["verdict"][4] == "error" and answers["error"][4].startswith(f"{name} is missing: ")
+    assert (answers["verdict"] == "error").sum() == 1
+
+
+def test_columns_of_no_rows_were_numbers(root):
+    pandas = pytest.importorskip("pandas")
+    rows = pandas.DataFrame({name: list(column) for name, column in table().items()})
+    checker = ct.PoseChecker(root, sensor="iso:0.001")
+    none, some = checker(rows.iloc[:0]), checker(rows.iloc[:2])
+    assert len(none) == 0 and none.dtypes.to_dict() == some.dtypes.to_dict()
+
+
 @pytest.mark.parametrize("bad", [None, "none", [1.0] * 15, [[1.0, 0.0], [0.0]], 3.0])
 def test_a_pose_that_is_none_among_lists_costs_no_other_row_its_answer(root, whole, bad):
     rows: dict = {name: column.tolist() for name, column in table().items()}

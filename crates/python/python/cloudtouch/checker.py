@@ -107,12 +107,15 @@ class PoseChecker:
             for name, column in batch.columns().items():
                 answers[name][places] = column
         if hasattr(rows, "assign"):
-            return rows.assign(**{name: list(column) for name, column in answers.items()})
+            return rows.assign(**_of_table(type(rows), answers, count))
         return {**columns, **answers}
 
     def _answer(self, names: tuple[str, str], poses: list[Any]) -> Batch:
         if poses[0] is None:
             return _refused("pose is not 16 numbers: give those of a 4 x 4 matrix, row by row", len(poses))
+        for column, name in zip(NEEDED, names):
+            if not name:
+                return _refused(f"{column} is missing: give a path that starts from root", len(poses))
         try:
             scene = self._scenes.get(names[0], lambda: self._read(names[0], is_scene=True))
             body = self._objects.get(names[1], lambda: self._read(names[1], is_scene=False))
@@ -172,10 +175,23 @@ def _groups(
     """Scene and object, and the rows that ask about them, in the order they first come; those without a pose apart."""
     places: dict[tuple[str, str, bool], list[int]] = {}
     for place, pose in enumerate(poses):
-        key = (str(rows["scene"][place]), str(rows["object"][place]), pose is None)
+        key = (_path(rows["scene"][place]), _path(rows["object"][place]), pose is None)
         places.setdefault(key, []).append(place)
     for (scene, body, _), group in places.items():
         yield (scene, body), np.asarray(group)
+
+
+def _path(value: Any) -> str:
+    # Where a table has nothing, it hands None or NaN on.
+    return str(value) if isinstance(value, (str, os.PathLike)) else ""
+
+
+def _of_table(kind: Any, answers: Mapping[str, npt.NDArray[Any]], count: int) -> dict[str, Any]:
+    """Columns for a table. Those of no rows are of the kinds they are of elsewhere: made of nothing, all would be numbers."""
+    if count:
+        return {name: list(column) for name, column in answers.items()}
+    one = {name: list(column) for name, column in _refused("", 1).columns().items()}
+    return dict(kind(one).iloc[:0].items())
 
 
 def _sixteen(pose: Any) -> npt.NDArray[np.float64] | None:
