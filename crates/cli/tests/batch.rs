@@ -53,6 +53,7 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
         ("missing field `scene`", r#"{"id":"bad"}"#.to_owned()),
         ("`scene` is [\"floor.pcd\"]: write the path", with("\"floor.pcd\"", "[\"floor.pcd\"]")),
         ("`object` is \"\"", with("box.obj", "")),
+        ("`object` is NaN: write the path", with("\"box.obj\"", "NaN")),
         ("`scene_sensor` is 5", with("\"iso:0.002\"", "5")),
         ("`scene` is there twice", with("\"scene\"", "\"scene\":\"other.pcd\",\"scene\"")),
         ("gone.pcd: cannot be read", with("floor.pcd", "gone.pcd")),
@@ -89,7 +90,7 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
     }
     assert_eq!(lines.last().unwrap()["verdict"], "free");
     let table = inputs.run(&["batch", "cases.json"]).quiet(1).stdout();
-    assert!(table.contains("1 answers, 20 errors"), "{table}");
+    assert!(table.contains("1 answers, 21 errors"), "{table}");
 }
 
 #[test]

@@ -20,11 +20,11 @@ pub(crate) fn text(name: &str, value: Value) -> Result<String> {
 
 /// The file that a field names. An empty name would be that of the folder.
 pub(crate) fn file(name: &str, value: Value) -> Result<PathBuf> {
+    // Python writes NaN where a table has nothing, which is a string by now.
+    let written = as_written(&value);
     match value {
-        Value::String(path) if !path.is_empty() => Ok(path.into()),
-        other => {
-            bail!("`{name}` is {}: write the path of one file, a string", as_written(&other))
-        }
+        Value::String(path) if !path.is_empty() && written.starts_with('"') => Ok(path.into()),
+        _ => bail!("`{name}` is {written}: write the path of one file, a string"),
     }
 }
 
