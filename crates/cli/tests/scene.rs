@@ -74,6 +74,10 @@ fn what_is_attached_is_placed_by_what_carries_it_and_allowed_pairs_may_touch() {
     file["allowed"] = json!([["load", "floor"]]);
     let answer = scene(&inputs, &file, &["--json", "--exit-code"]).quiet(0).json_lines().remove(0);
     assert_eq!((pairs(&answer).len(), &answer["counts"]["allowed"]), (0, &json!(1)));
+    let all = json!([["load", "floor"], ["carrier", "floor"], ["carrier", "load"]]);
+    file["allowed"] = all;
+    let run = scene(&inputs, &file, &["--exit-code"]);
+    assert!(run.code() == 0 && run.stderr().contains("none was asked about"), "{}", run.stderr());
 }
 
 #[test]

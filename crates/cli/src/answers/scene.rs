@@ -16,6 +16,15 @@ use crate::remedies;
 /// Of many bodies far from all others no more are named.
 const OUTSIDE_TOLD: usize = 3;
 
+/// Says so where all pairs were left out: nothing was looked at, and the answer is free all the same.
+pub(crate) fn warn_of_nothing_asked(checked: &Checked) {
+    if checked.allowed == checked.count {
+        tracing::warn!(
+            "all pairs may touch by what was said, so that none was asked about: free says nothing"
+        );
+    }
+}
+
 /// What a scene answers, in JSON.
 #[derive(Serialize)]
 pub(crate) struct Line<'a> {

@@ -63,6 +63,7 @@ impl Ask<'_> {
 
     fn position(&self, joints: &Joints, bodies: Bodies<'_>) -> Result<Answer> {
         let checked = self.checker.check(self.query, joints)?;
+        answers::scene::warn_of_nothing_asked(&checked);
         let threshold = self.query.settings().reject;
         if let Some(page) = &self.page {
             let scene = self.checker.scene_at(joints)?;
@@ -96,6 +97,8 @@ impl Ask<'_> {
 
     fn path(&self, path: &[Joints], bodies: Vec<Bodies<'_>>) -> Result<Answer> {
         let checked = self.checker.check_path(self.query, path, TOLERANCE)?;
+        // Which pairs are asked about is the same at all of them.
+        checked.given.iter().take(1).for_each(answers::scene::warn_of_nothing_asked);
         if let Some(page) = &self.page {
             let found = (self.checker, path, &checked);
             let taken_for = |name: &str| self.taken_for(name);

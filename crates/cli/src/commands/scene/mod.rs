@@ -35,6 +35,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
         scene.replace(name, Arc::clone(&prepared.body))?;
     }
     let checked = scene.check(&query);
+    answers::scene::warn_of_nothing_asked(&checked);
     let threshold = query.settings().reject;
     if let Some(output) = &arguments.answer.html {
         let taken_for = |name: &str| bodies[name].words.clone();
