@@ -59,6 +59,9 @@ pub enum Fault {
     /// There is nothing in it.
     #[error("the file is empty: was it written completely?")]
     Empty,
+    /// Text of two bytes a character, as Windows PowerShell and "Unicode text" of spreadsheets write it.
+    #[error("the text is in UTF-16: save it as UTF-8")]
+    Utf16,
     /// It does not begin as its format demands.
     #[error("found {found:?}, expected {expected}: is the file extension right?")]
     WrongMagic {

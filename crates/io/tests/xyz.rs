@@ -155,3 +155,15 @@ fn faults_are_named_by_line_and_column() {
         matches!(fault, Fault::BadEntry { entry: "the first row", found, .. } if found == "one 2 3")
     );
 }
+
+/// What Windows PowerShell redirects into a file was told to have no numbers in its first row.
+#[test]
+fn text_in_utf_16_is_told_as_such() {
+    let two_bytes = |bytes: fn(u16) -> [u8; 2]| -> Vec<u8> {
+        std::iter::once(0xfeff).chain("1 2 3\r\n".encode_utf16()).flat_map(bytes).collect()
+    };
+    for text in [two_bytes(u16::to_le_bytes), two_bytes(u16::to_be_bytes)] {
+        let error = xyz::parse(&text).unwrap_err().to_string();
+        assert!(error.contains("UTF-16: save it as UTF-8"), "{error}");
+    }
+}

@@ -38,6 +38,9 @@ pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
 /// # Errors
 /// As [`parse`].
 pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, FormatError> {
+    if [b"\xff\xfe", b"\xfe\xff"].iter().any(|mark| bytes.starts_with(*mark)) {
+        return Err(Place::Byte(0).error(Fault::Utf16));
+    }
     let mut lines = Lines::new(bytes);
     let (comment, first) = first_row(&mut lines);
     let first = first.ok_or_else(|| Place::Byte(0).error(Fault::Empty))?;
