@@ -58,6 +58,12 @@ impl<'a> Shape<'a> {
         }
     }
 
+    /// The middle of that box.
+    pub(crate) fn middle(&self) -> Point3 {
+        let [low, high] = self.corners();
+        nalgebra::center(&low, &high)
+    }
+
     /// At most some hundred places that stand for the whole surface, in the local frame, m.
     pub(crate) fn samples(&self) -> Vec<Point3> {
         match self {

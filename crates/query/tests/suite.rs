@@ -11,6 +11,7 @@ mod detail;
 mod determinism;
 mod enclosed;
 mod evidence;
+mod far_background;
 mod far_points;
 mod filter;
 mod frames;

@@ -4,14 +4,16 @@ use std::time::{Duration, Instant};
 
 use cloudtouch_bvh::{Node, NodeId, Obb, Tree, TreeSettings};
 use cloudtouch_geom::{Point3, PointCloud, Vector3, bounding_box};
-use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, SensorNoise};
+use cloudtouch_noise::{
+    Combination, Neighborhoods, NoiseModel, SensorNoise, spacings_at, typical_of_spacings,
+};
 
 use crate::error::PrepareError;
 use crate::filter::StageReport;
 
-use super::makeup::Makeup;
 use super::makeup::scatter::{Flattest, Overstated, scatter};
 use super::makeup::spread::{Sample, sample_of};
+use super::makeup::{Makeup, median};
 use super::pieces::Pieces;
 use super::preparation::Preparation;
 use super::primitives::{Weight, leaf_bounds, primitives_of};
@@ -21,6 +23,9 @@ use super::view::SingleView;
 
 /// Points with more noise than half the size of their cloud say nothing.
 const MOST_NOISE: f64 = 0.5;
+
+/// Points that tell what a cloud is like at a place.
+const NEAR_PLACE: usize = 20;
 
 /// A noisy cloud, ready to be queried in any pose, from many threads at once. Each path wraps it in
 /// a type of its own.
@@ -231,6 +236,14 @@ impl Prepared {
     /// Distance of a place in the local frame to the nearest point, m.
     pub(crate) fn distance_to(&self, place: &Point3) -> Option<f64> {
         Some(self.neighborhoods.nearest_to(place, 1).first()?.squared_distance.sqrt())
+    }
+
+    /// The typical spacing and standard deviation of some points nearest to a place in the local frame, m.
+    pub(crate) fn scale_near(&self, place: &Point3) -> Option<[f64; 2]> {
+        let nearest = self.neighborhoods.nearest_to(place, NEAR_PLACE);
+        let spacings = spacings_at(&self.neighborhoods, nearest.iter().map(|near| near.index));
+        let stds = nearest.iter().map(|near| self.scans.noise[near.index].max_std());
+        (!nearest.is_empty()).then(|| [typical_of_spacings(&spacings), median(stds)])
     }
 
     /// Keeps what the last frames say of themselves, and no more of their filters than these stages.

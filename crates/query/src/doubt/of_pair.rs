@@ -1,7 +1,7 @@
 //! What speaks against believing that a pair is free, whatever the evidence says: what the bodies are
 //! like, and how they lie to one another.
 
-use cloudtouch_geom::Pose;
+use cloudtouch_geom::{Point3, Pose};
 
 use crate::cloud::{Clumps, Makeup, Overstated, Prepared, SensorDoubt};
 use crate::doubt::safeguards::Safeguards;
@@ -42,24 +42,29 @@ const LARGE_NOISE: f64 = 0.05;
 /// scene and an object in it, or two of many.
 pub(crate) fn doubts(
     (a, b): (Shape<'_>, Shape<'_>),
-    a_from_b: &Pose,
+    a_from_b: Option<&Pose>,
     unseen: Option<&Unseen>,
     are_alone: bool,
     limits: &Safeguards,
 ) -> Vec<Warning> {
     let bodies = [(Which::A, a, b), (Which::B, b, a)];
+    let middles = a_from_b.map(|a_from_b| {
+        [a_from_b.transform_point(&b.middle()), a_from_b.inverse().transform_point(&a.middle())]
+    });
     let mut warnings: Vec<Warning> =
         bodies.into_iter().flat_map(|(body, shape, _)| of_surface(body, shape, limits)).collect();
     let smaller = a.size().min(b.size());
     warnings.extend(bodies.into_iter().filter_map(|(body, shape, _)| coarse(body, shape, smaller)));
     warnings.extend(units((a, b), are_alone));
     warnings.extend(bodies.into_iter().filter_map(|(body, shape, other)| match shape {
-        Shape::Cloud(cloud) => scale(body, cloud, other.size()),
+        Shape::Cloud(cloud) => {
+            scale(body, cloud, other.size(), middles.map(|of_other| of_other[body as usize]))
+        }
         Shape::Mesh(_) => None,
     }));
     warnings.extend(bodies.into_iter().flat_map(|(body, shape, _)| of_sensor(body, shape)));
     warnings.extend(exchanged(a, b).filter(|_| are_alone));
-    warnings.extend(apart((a, b), a_from_b));
+    warnings.extend(a_from_b.and_then(|a_from_b| apart((a, b), a_from_b)));
     let share = unseen.map_or(0.0, Unseen::share);
     if let Some(Unseen { body, .. }) = unseen.filter(|_| share > limits.max_unseen) {
         warnings.push(Warning::Unseen { body: *body, share, limit: limits.max_unseen });
@@ -131,8 +136,19 @@ fn units((a, b): (Shape<'_>, Shape<'_>), are_alone: bool) -> Option<Warning> {
     of(Which::A, a, b).or_else(|| of(Which::B, b, a))
 }
 
-fn scale(body: Which, cloud: &Prepared, other_size_m: f64) -> Option<Warning> {
-    let Makeup { spacing: spacing_m, std: std_m, .. } = *cloud.makeup();
+/// Points too far apart, or too noisy, to tell of a body of such a size, m, with its middle there: most of them
+/// and those nearest to it too. What is far behind it is both, and says nothing about what is beside it.
+fn scale(
+    body: Which,
+    cloud: &Prepared,
+    other_size_m: f64,
+    other: Option<Point3>,
+) -> Option<Warning> {
+    let Makeup { spacing, std, .. } = *cloud.makeup();
+    let is_beyond = spacing.max(std) > other_size_m;
+    let near = other.filter(|_| is_beyond).and_then(|middle| cloud.scale_near(&middle));
+    let [spacing_m, std_m] =
+        near.map_or([spacing, std], |near| [near[0].min(spacing), near[1].min(std)]);
     if other_size_m == 0.0 {
         None
     } else if spacing_m > other_size_m {

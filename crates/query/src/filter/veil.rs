@@ -3,7 +3,8 @@
 //!
 //! In an image, such a point continues along its viewing ray: one neighbour is nearer, the opposite
 //! one farther, and both steps run almost along the ray. On a true surface that steep to the ray a
-//! camera gets hardly any return. Without an image layout the neighbours are the nearest points,
+//! camera gets hardly any return. Beside veils pixels often have no return at all: then the next one
+//! within a few pixels is the neighbour. Without an image layout the neighbours are the nearest points,
 //! and a veil point is one whose neighbourhood is a line along the ray.
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Vector3};
@@ -12,6 +13,8 @@ use rayon::prelude::*;
 
 use super::VeilSettings;
 
+/// A neighbour is at most so many pixels away: those between gave no return.
+const ACROSS_HOLES: usize = 3;
 /// Neighbours that decide whether an unorganised neighbourhood is a line along the ray.
 const LINE_NEIGHBORS: usize = 10;
 /// A neighbourhood counts as a line when its largest variance is this many times the next.
@@ -38,22 +41,22 @@ fn is_veil_in_image(
     least_cosine: f64,
 ) -> bool {
     let (row, column) = (index / width, index % width);
-    let at = |row: usize, column: usize| points.get(row * width + column);
-    let horizontal =
-        (column > 0 && column + 1 < width).then(|| (at(row, column - 1), at(row, column + 1)));
-    let vertical =
-        (row > 0 && row + 1 < height).then(|| (at(row - 1, column), at(row + 1, column)));
+    let next = |room: usize, at: &dyn Fn(usize) -> usize| {
+        let pixels = (1..=room.min(ACROSS_HOLES)).filter_map(|step| points.get(at(step)));
+        pixels.into_iter().find(|other| PointCloud::is_return(other))
+    };
     let point = &points[index];
     let ray = point - from;
-    [horizontal, vertical].into_iter().flatten().any(|(before, after)| {
-        let (Some(before), Some(after)) = (before, after) else { return false };
-        if ![before, after].into_iter().all(PointCloud::is_return) {
-            return false;
-        }
-        let forward = along_ray(&ray, point, after, least_cosine);
-        let backward = along_ray(&ray, point, before, least_cosine);
-        forward * backward < 0.0
-    })
+    let step = |other: Option<&Point3>| {
+        other.map_or(0.0, |other| along_ray(&ray, point, other, least_cosine))
+    };
+    let across = [
+        next(column, &|by| index - by),
+        next(width - 1 - column, &|by| index + by),
+        next(row, &|by| index - by * width),
+        next(height - 1 - row, &|by| index + by * width),
+    ];
+    across.chunks(2).any(|sides| step(sides[0]) * step(sides[1]) < 0.0)
 }
 
 /// +1 when the step from `point` to `other` runs along the ray away from the sensor, −1 towards it,

@@ -41,7 +41,8 @@ impl Terms {
         may_be_free: bool,
     ) -> Doubts {
         let unseen = unseen(a, b, local);
-        let warnings = doubts((a, b), local, unseen.as_ref(), self.are_alone, &self.safeguards);
+        let warnings =
+            doubts((a, b), Some(local), unseen.as_ref(), self.are_alone, &self.safeguards);
         let gravest = || {
             let mut counting = warnings.iter().filter(|warning| counts(warning, is_clear));
             let enclosed = || is_enclosed(a, b, local).then_some(Undecided::Enclosed);
@@ -68,7 +69,7 @@ impl Terms {
     /// it is beside B, and what it did not see.
     pub(crate) fn may_doubt(&self, (a, b): (Shape<'_>, Shape<'_>)) -> bool {
         let is_of_a = |warning: &&Warning| warning.body() == Some(Which::A);
-        let warnings = doubts((a, b), &Pose::identity(), None, self.are_alone, &self.safeguards);
+        let warnings = doubts((a, b), None, None, self.are_alone, &self.safeguards);
         // Pairs that nobody looks at are clear of each other.
         let mut of_a = warnings.iter().filter(is_of_a).filter(|warning| counts(warning, true));
         knows_unseen(a) || of_a.any(|warning| self.reason(warning).is_some())

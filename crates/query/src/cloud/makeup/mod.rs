@@ -127,7 +127,7 @@ pub(super) fn robot_doubt(stages: &[StageReport]) -> Option<SensorDoubt> {
     }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     let middle = values.len() / 2;
     values.sort_unstable_by(f64::total_cmp);

@@ -1,6 +1,7 @@
 //! What sensors delivered, made ready: scans filtered, each with the noise of its sensor, and put
 //! together in one frame.
 
+mod beyond;
 mod noise;
 mod refused;
 
@@ -13,6 +14,7 @@ use crate::check::coordinates::check_points;
 use crate::error::PrepareError;
 use crate::filter::{Filtered, StageReport, filter_and_tell};
 
+use self::beyond::beyond_range;
 use self::noise::{coarse_step, joined, moved, padded};
 use self::refused::{check_for_repeats, checked, nothing_left};
 use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
@@ -107,7 +109,8 @@ impl Scans {
         if scan.is_image() {
             // A robot that no return came from is elsewhere, and makes nothing known.
             let robot = if of_robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
-            images.push(Image::of(scan, (&kept, &rows), robot));
+            let beyond = beyond_range(scan, by)?;
+            images.push(Image::of(scan, (&kept, &rows), robot, &beyond));
         } else {
             ranges.push(Range { sensor_origin: scan.sensor_origin(), most: by.filter.max_range });
         }

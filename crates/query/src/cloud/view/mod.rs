@@ -25,34 +25,45 @@ pub(super) struct Image {
     pub pixels: usize,
     /// The links of the robot that were taken out of it.
     pub robot: Vec<SelfMesh>,
+    /// Rays of returns that were left out for their range, up to where they say that there is nothing, m.
+    pub beyond: Arc<[Vector3]>,
 }
 
 impl Image {
-    /// Of an organised cloud, given what was kept of it, from which rows, and the links that were taken out.
+    /// Of an organised cloud, given what was kept of it, from which rows, the links that were taken out, and rows
+    /// and rays of what was too far.
     pub(super) fn of(
         scan: &PointCloud,
         (kept, rows): (&PointCloud, &[usize]),
         robot: Vec<SelfMesh>,
+        beyond: &[(usize, Vector3)],
     ) -> Self {
+        let looked_at = rows.iter().chain(beyond.iter().map(|(row, _)| row));
         Self {
             sensor_origin: kept.sensor_origin(),
             turn: *kept.from_sensor().rotation(),
             points: 0..kept.len(),
-            pixels: pixels_about(scan, rows).unwrap_or(kept.len()),
+            pixels: pixels_about(scan, looked_at).unwrap_or(kept.len()),
             robot,
+            beyond: beyond.iter().map(|(_, ray)| *ray).collect(),
         }
     }
 }
 
-/// Pixels of the part of an image that these of its rows, in order, are in, with and without return.
-fn pixels_about(image: &PointCloud, rows: &[usize]) -> Option<usize> {
+/// Pixels of the part of an image that these of its rows are in, with and without return.
+fn pixels_about<'a>(
+    image: &PointCloud,
+    mut rows: impl Iterator<Item = &'a usize>,
+) -> Option<usize> {
     let (width, _) = image.image_size?;
-    let lines = (rows.last()? / width).abs_diff(rows.first()? / width) + 1;
-    let widen = |(least, most): (usize, usize), row: &usize| {
-        (least.min(row % width), most.max(row % width))
+    let at = |row: &usize| [row / width, row % width];
+    let first = at(rows.next()?);
+    let widen = |[low, high]: [[usize; 2]; 2], row: &usize| {
+        let at = at(row);
+        [[0, 1].map(|k| low[k].min(at[k])), [0, 1].map(|k| high[k].max(at[k]))]
     };
-    let (least, most) = rows.iter().fold((width, 0), widen);
-    Some(lines * (most + 1).saturating_sub(least))
+    let [low, high] = rows.fold([first; 2], widen);
+    Some((high[0] - low[0] + 1) * (high[1] - low[1] + 1))
 }
 
 /// Where the sensor stood, and the raster of its view once that is needed.
@@ -101,9 +112,9 @@ impl SingleView {
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
         let raster = self.raster.get_or_init(|| {
-            let Image { sensor_origin, turn, points: own, pixels, .. } = &self.image;
+            let Image { sensor_origin, turn, points: own, pixels, beyond, .. } = &self.image;
             let own = own.clone().map(|index| (points[index], noise[index].std_bound()));
-            Raster::new((sensor_origin, turn), own, *pixels).map(Arc::new)
+            Raster::new((sensor_origin, turn), own, beyond, *pixels).map(Arc::new)
         });
         raster.as_deref()
     }
@@ -116,7 +127,8 @@ impl SingleView {
         shift: &Vector3,
     ) -> Option<Self> {
         let _looked = self.sight(measured)?;
-        let settled = Self::new(Image { points: 0..0, ..self.image.clone() }, shift);
+        let settled =
+            Self::new(Image { points: 0..0, beyond: Arc::default(), ..self.image.clone() }, shift);
         Some(Self { raster: self.raster.clone(), ..settled })
     }
 }
@@ -176,6 +188,7 @@ mod tests {
                 points: 0..points.len(),
                 pixels: points.len(),
                 robot: Vec::new(),
+                beyond: Arc::default(),
             };
             let view = SingleView::new(image, &Vector3::zeros());
             let sight = view.sight((&points, &noise)).expect("points with directions");

@@ -50,30 +50,36 @@ pub(super) struct Raster {
     clearly_behind: Vec<f64>,
     /// The range, m, clearly before the nearest return of each cell; infinite without one.
     clearly_before: Vec<f64>,
+    /// Of each cell whether what is farther was left out; empty where nothing was.
+    is_open: Vec<bool>,
 }
 
 impl Raster {
-    /// Of the points measured, each with an upper bound of its standard deviations, m, in so many pixels.
+    /// Of the points measured, each with an upper bound of its standard deviations, m, in so many pixels, and of
+    /// rays `beyond` which returns were left out.
     ///
     /// Cells are as large as pixels are, however many of these have no return: by the returns alone holes
     /// would be the smaller the more of them there are.
     pub(super) fn new(
         (origin, turn): (&Point3, &UnitQuaternion<f64>),
         measured: impl Iterator<Item = (Point3, f64)>,
+        beyond: &[Vector3],
         pixels: usize,
     ) -> Option<Self> {
         let ray = |(place, std): (Point3, f64)| {
             let ray = place - origin;
             (ray, ray.norm(), CLEARLY * std)
         };
-        let rays: Vec<(Vector3, f64, f64)> = measured.map(ray).collect();
+        let mut rays: Vec<(Vector3, f64, f64)> = measured.map(ray).collect();
+        let returns = rays.len();
+        rays.extend(beyond.iter().map(|ray| (*ray, ray.norm(), 0.0)));
         let lens = Lens::of(rays.iter().map(|(ray, range, _)| (ray, *range)), turn)?;
-        let place = |(ray, range, clear): &(Vector3, f64, f64)| {
-            Some(([range - clear, range + clear], lens.project(ray)?))
+        let place = |(number, (ray, range, clear)): (usize, &(Vector3, f64, f64))| {
+            Some((number, [range - clear, range + clear], lens.project(ray)?))
         };
-        let placed: Vec<([f64; 2], [f64; 2])> = rays.iter().filter_map(place).collect();
+        let placed: Vec<_> = rays.iter().enumerate().filter_map(place).collect();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for (_, at) in &placed {
+        for (_, _, at) in &placed {
             for axis in 0..2 {
                 low[axis] = low[axis].min(at[axis]);
                 high[axis] = high[axis].max(at[axis]);
@@ -92,11 +98,15 @@ impl Raster {
         let size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
         let cells = size[0] * size[1];
         let (clearly_behind, clearly_before) = (vec![0.0; cells], vec![f64::INFINITY; cells]);
-        let mut raster = Self { lens, low, pitch, size, clearly_behind, clearly_before };
-        for ([before, behind], at) in placed {
+        let is_open = vec![false; if beyond.is_empty() { 0 } else { cells }];
+        let mut raster = Self { lens, low, pitch, size, clearly_behind, clearly_before, is_open };
+        for (number, [before, behind], at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
                 raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
                 raster.clearly_before[cell] = raster.clearly_before[cell].min(before);
+                if number >= returns {
+                    raster.is_open[cell] = true;
+                }
             }
         }
         Some(raster)
@@ -112,17 +122,22 @@ impl Raster {
         let range = ray.norm();
         // The nearest ring of cells with a return tells; within a ring, the farthest return.
         for ring in 0..=HOLE_CELLS {
-            let mut farthest = 0.0_f64;
+            let (mut farthest, mut is_open) = (0.0_f64, false);
             for dy in -ring..=ring {
                 let step = if dy.abs() == ring { 1 } else { 2 * ring.max(1) };
                 for dx in (-ring..=ring).step_by(step as usize) {
                     if let Some(cell) = self.index(x + dx, y + dy) {
                         farthest = farthest.max(self.clearly_behind[cell]);
+                        is_open |= self.is_open.get(cell).is_some_and(|&is_open| is_open);
                     }
                 }
             }
             if farthest > 0.0 {
-                return if range > farthest { Sight::BehindReturns } else { Sight::Seen };
+                return match range > farthest {
+                    true if is_open => Sight::OutOfRange,
+                    true => Sight::BehindReturns,
+                    false => Sight::Seen,
+                };
             }
         }
         Sight::Hole
