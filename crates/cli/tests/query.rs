@@ -208,6 +208,16 @@ fn what_was_not_seen_is_said_to_be_unknown_without_a_depth_image() {
     }
 }
 
+/// A deviation of 1 m, meant in millimetres, left a pose free whose neighbours collide.
+#[test]
+fn a_free_pose_that_is_known_too_roughly_is_told_so() {
+    let inputs = Inputs::new();
+    let told = |stds: &str| inputs.query_at(0.5, &["--pose-std", stds]).stderr();
+    let rough = told("0,0,0.5,0,0,0");
+    assert!(rough.contains("over those that --pose-std allows, a collision has 0."), "{rough}");
+    assert_eq!(told("0,0,0.001,0,0,0"), "");
+}
+
 /// It told the sensor that was stated, by which nothing had been computed.
 #[test]
 fn the_sensor_of_a_collision_map_is_its_grid() {

@@ -1,6 +1,7 @@
 //! Which links may touch, by an SRDF.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use crate::error::RobotFault;
 
@@ -8,6 +9,9 @@ use crate::error::RobotFault;
 struct Srdf {
     #[serde(rename = "disable_collisions", default)]
     disabled: Vec<Disabled>,
+    /// A URDF has these.
+    #[serde(rename = "link", default)]
+    links: Vec<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -23,5 +27,8 @@ struct Disabled {
 pub(crate) fn disabled_pairs(text: &str) -> Result<Vec<[String; 2]>, RobotFault> {
     let srdf: Srdf = quick_xml::de::from_str(text)
         .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
+    if srdf.disabled.is_empty() && !srdf.links.is_empty() {
+        return Err(RobotFault::NotSrdf);
+    }
     Ok(srdf.disabled.into_iter().map(|pair| [pair.link1, pair.link2]).collect())
 }

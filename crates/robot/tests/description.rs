@@ -116,6 +116,16 @@ fn a_limit_without_velocity_was_no_urdf() {
     assert!(error.contains("joint `j` has no <limit> with a range"), "{error}");
 }
 
+/// A URDF in the place of the SRDF let no pair touch, without a word.
+#[test]
+fn a_urdf_is_not_taken_for_an_srdf() {
+    let arm = Arm::default();
+    let urdf = arm.path("itself.urdf");
+    std::fs::write(&urdf, two_links(BOX, FIXED)).unwrap();
+    let error = arm.of(&two_links(BOX, FIXED)).unwrap().with_srdf(urdf).unwrap_err().to_string();
+    assert!(error.contains("itself.urdf") && error.contains("give the SRDF"), "{error}");
+}
+
 /// What an SRDF of MoveIt says beside its pairs names joints and frames that are no links.
 #[test]
 fn links_of_an_srdf_that_are_not_there_are_named() {

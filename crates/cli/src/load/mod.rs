@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use cloudtouch::geom::{MeshError, PointCloud, Pose, TriangleMesh};
+use cloudtouch::geom::{Covariance, MeshError, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, FilterSettings, Mesh, PrepareError, SelfMesh};
 use cloudtouch_cli::numbers::Rigid;
@@ -240,14 +240,8 @@ fn of_clouds<C: PreparedCloud>(
         );
     }
     check_max_range(name, first, &sensor, options)?;
-    if let (Some(cell), SensorModel::Isotropic { std }) = (collision_map, sensor)
-        && options.common.sensor.is_some()
-        && cell < std
-    {
-        tracing::warn!(
-            "{name}: the cells of --collision-map {cell} are smaller than the noise of --sensor {sensor}, which \
-             counts no more: choose cells of several times the noise, or leave --collision-map out"
-        );
+    if let Some(cell) = collision_map {
+        warn_of_small_cells(name, first, (&sensor, cell), options);
     }
     let settings = options.settings.map(|file| &file.settings);
     let prepared = C::prepare(&scans, sensor, settings, |filter, sensor| {
@@ -268,6 +262,31 @@ fn of_clouds<C: PreparedCloud>(
     };
     let body = Body::Cloud(prepared.with_context(|| name.to_owned())?);
     Ok(Loaded { body, input, kinds })
+}
+
+/// Says so where the cells of a collision map are smaller than the noise stated for the points in them, in the
+/// median: it counts no more.
+fn warn_of_small_cells(
+    name: &str,
+    scan: &PointCloud,
+    (sensor, cell): (&SensorModel, f64),
+    options: &BodyOptions<'_>,
+) {
+    if options.common.sensor.is_none() {
+        return;
+    }
+    let returns: Vec<usize> =
+        (0..scan.len()).filter(|&row| PointCloud::is_return(&scan.points[row])).collect();
+    // What is wrong with the sensor is told when the cloud is prepared.
+    let Ok(noise) = sensor.covariances(&scan.select(&returns)) else { return };
+    let mut stds: Vec<f64> = noise.iter().map(Covariance::max_std).collect();
+    stds.sort_unstable_by(f64::total_cmp);
+    if stds.get(stds.len() / 2).is_some_and(|std| cell < *std) {
+        tracing::warn!(
+            "{name}: the cells of --collision-map {cell} are smaller than the noise of --sensor {sensor}, which \
+             counts no more: choose cells of several times the noise, or leave --collision-map out"
+        );
+    }
 }
 
 /// What is nearer to a camera or a laser scanner than this is left out where it is known to be, m: the

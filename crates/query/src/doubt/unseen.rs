@@ -21,8 +21,8 @@ pub struct Unseen {
     pub outside_view: f64,
     /// Where no return came from.
     pub hole: f64,
-    /// Farther than returns were kept ([`FilterSettings::max_range`](crate::FilterSettings::max_range)); of a
-    /// depth image that is a hole.
+    /// Farther than returns were kept ([`FilterSettings::max_range`](crate::FilterSettings::max_range)). In a depth
+    /// image those that were left out say that there is nothing before.
     pub out_of_range: f64,
     /// Behind a surface that it met.
     pub behind_returns: f64,

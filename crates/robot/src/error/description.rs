@@ -25,6 +25,9 @@ pub enum RobotFault {
         /// What the system said.
         reason: std::io::Error,
     },
+    /// A URDF in the place of an SRDF.
+    #[error("is a URDF, which does not say which links may touch: give the SRDF of the robot")]
+    NotSrdf,
     /// Not XML, or not of its schema.
     #[error(
         "cannot be understood: {reason}; numbers of one attribute are separated by spaces, and a .xacro \

@@ -2,7 +2,9 @@
 
 use anyhow::Result;
 use cloudtouch::paper::LeafClassifier;
-use cloudtouch::{Penetration, Placement, PoseDistribution, PoseGradient, Report, UnderPoses};
+use cloudtouch::{
+    Penetration, Placement, PoseDistribution, PoseGradient, Report, UnderPoses, Verdict,
+};
 use cloudtouch_cli::numbers::PoseStd;
 
 use super::question::Question;
@@ -42,6 +44,15 @@ pub(super) fn ask<P: body::Estimator>(
         }
         None => None,
     };
+    if report.verdict == Verdict::Free
+        && let Some(over) = &pose_uncertainty
+        && over.probability > arguments.asked.common.query_settings().reject
+    {
+        tracing::warn!(
+            "the verdict is of the pose given: over those that --pose-std allows, a collision has {:.3}",
+            over.probability
+        );
+    }
     let gradient = match arguments.gradient {
         true => query.slopes(scene, object, pose)?,
         false => None,
