@@ -3,7 +3,7 @@
 
 use crate::support;
 use crate::support::Inputs;
-use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 
 #[test]
 fn counts_what_a_cloud_holds() {
@@ -58,6 +58,29 @@ fn says_whether_a_mesh_is_closed_and_which_unit_it_may_have() {
 }
 
 /// Only meshes were told that they may be in millimetres.
+/// Two boxes that share an edge were called open, and only their surface to collide, where what is inside
+/// collides too.
+#[test]
+fn closed_parts_that_touch_are_not_called_open() {
+    let inputs = Inputs::new();
+    let cube = support::cube(0.1);
+    let corner = |by: f64| move |p: &Point3| p + Vector3::new(by, by, 0.0);
+    let vertices = [0.0, 0.2].iter().flat_map(|&by| cube.vertices().iter().map(corner(by)));
+    let count = cube.vertices().len() as u32;
+    let second = cube.triangles().iter().map(|t| t.map(|i| i + count));
+    let triangles = cube.triangles().iter().copied().chain(second);
+    let steps = TriangleMesh::new(vertices.collect(), triangles.collect()).unwrap();
+    cloudtouch_io::write_mesh_obj(inputs.path("steps.obj"), &steps).unwrap();
+    let text = inputs.run(&["info", "steps.obj"]).stdout();
+    assert!(
+        text.contains("closed: inside and outside are defined; its parts touch along"),
+        "{text}"
+    );
+    let text = inputs.run(&["query", "steps.obj", "box.obj"]).stdout();
+    assert!(text.contains("scene: closed mesh of 24 triangles"), "{text}");
+    assert!(text.contains("verdict                in collision"), "{text}");
+}
+
 #[test]
 fn a_cloud_in_millimetres_was_laser_scanned_from_afar() {
     let inputs = Inputs::new();

@@ -80,7 +80,7 @@ fn about(body: &Prepared, sensor: Option<String>) -> String {
             format!("cloud of {} points in m{sensor} ({})", cloud.len(), stages.join(", "))
         }
         Prepared::Mesh(mesh) => {
-            let kind = if mesh.is_watertight() { "watertight" } else { "open" };
+            let kind = mesh.kind();
             let (count, size) = (mesh.triangle_count(), mesh.size());
             format!("{kind} mesh of {count} triangles in m, {size:.3} m across")
         }

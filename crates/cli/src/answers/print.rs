@@ -59,7 +59,7 @@ pub(crate) fn about<C: PreparedCloud>(loaded: &Loaded<C>) -> String {
             )
         }
         Body::Mesh(mesh) => {
-            let kind = if mesh.is_watertight() { "watertight" } else { "open" };
+            let kind = mesh.kind();
             let count = mesh.triangle_count();
             format!("{kind} mesh of {count} triangles in {unit}, {:.3} m across", mesh.size())
         }

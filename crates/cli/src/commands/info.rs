@@ -150,14 +150,17 @@ fn describe_mesh(mesh: &TriangleMesh) -> String {
     let merged = mesh.merged().without_repeats();
     let open = merged.open_edges();
     let prepared = Mesh::prepare(mesh);
-    let closed = if prepared.is_err() {
-        "none: no triangle has an area, nothing collides with it".to_owned()
-    } else if prepared.is_ok_and(|mesh| mesh.is_watertight()) {
-        "watertight: inside and outside are defined".to_owned()
-    } else if open == 0 {
-        "closed, but part of it encloses no volume; only its surface collides".to_owned()
-    } else {
-        format!("open: {open} edges do not join two triangles; only its surface collides")
+    let closed = match prepared {
+        Err(_) => "none: no triangle has an area, nothing collides with it".to_owned(),
+        Ok(mesh) if mesh.is_watertight() => "watertight: inside and outside are defined".to_owned(),
+        Ok(_) if open == 0 => {
+            "closed, but part of it encloses no volume; only its surface collides".to_owned()
+        }
+        Ok(mesh) if mesh.is_closed() => format!(
+            "closed: inside and outside are defined; its parts touch along {open} edges that join more than two \
+             triangles"
+        ),
+        Ok(_) => format!("open: {open} edges do not join two triangles; only its surface collides"),
     };
     let mut lines = vec![
         format!(

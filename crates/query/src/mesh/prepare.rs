@@ -27,7 +27,7 @@ const SAMPLES: usize = 500;
 /// A triangle mesh, ready to be queried in any pose.
 ///
 /// Its surface is exact: its points have no covariance and count as on the wrong side with
-/// probability 0, ½ or 1. Where the mesh is watertight, points deep inside are found too; an open
+/// probability 0, ½ or 1. Where the mesh is closed, points deep inside are found too; an open
 /// mesh is a surface without an inside. Vertices that no triangle uses count for nothing.
 #[derive(Debug)]
 pub struct Mesh {
@@ -117,6 +117,15 @@ impl Mesh {
         self.watertight
     }
 
+    /// What kind of surface it has, in a word: watertight, closed or open.
+    pub fn kind(&self) -> &'static str {
+        match (self.watertight, self.closed) {
+            (true, _) => "watertight",
+            (false, true) => "closed",
+            (false, false) => "open",
+        }
+    }
+
     /// How many triangles there are after merging.
     pub fn triangle_count(&self) -> usize {
         self.surface.indices().len()
@@ -160,8 +169,9 @@ impl Mesh {
         (b - a).cross(&(c - a)).try_normalize(0.0)
     }
 
-    /// Whether the surface has no border, so that every place off it is on one side.
-    pub(crate) fn is_closed(&self) -> bool {
+    /// Whether its surface has no border, so that places inside are known to be: it may be watertight, or of
+    /// closed parts that touch along edges, or part of it a sheet with its own back face.
+    pub fn is_closed(&self) -> bool {
         self.closed
     }
 
