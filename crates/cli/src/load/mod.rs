@@ -4,15 +4,16 @@ mod geometry;
 pub(crate) mod path;
 pub(crate) mod pose;
 pub(crate) mod sensor_for;
+mod suited;
 mod text;
 
 use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use cloudtouch::geom::{Covariance, MeshError, PointCloud, Pose, TriangleMesh};
+use cloudtouch::geom::{MeshError, PointCloud, Pose, TriangleMesh};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, FilterSettings, Mesh, PrepareError, SelfMesh};
+use cloudtouch::{Cloud, Mesh, PrepareError, SelfMesh};
 use cloudtouch_cli::numbers::Rigid;
 use cloudtouch_io::{Geometry, LengthUnit, read_mesh_within};
 use serde::Serialize;
@@ -239,9 +240,9 @@ fn of_clouds<C: PreparedCloud>(
              --sensor per-point to use them"
         );
     }
-    check_max_range(name, first, &sensor, options)?;
+    suited::check_max_range(name, first, &sensor, options)?;
     if let Some(cell) = collision_map {
-        warn_of_small_cells(name, first, (&sensor, cell), options);
+        suited::warn_of_small_cells(name, first, (&sensor, cell), options);
     }
     let settings = options.settings.map(|file| &file.settings);
     let prepared = C::prepare(&scans, sensor, settings, |filter, sensor| {
@@ -262,55 +263,6 @@ fn of_clouds<C: PreparedCloud>(
     };
     let body = Body::Cloud(prepared.with_context(|| name.to_owned())?);
     Ok(Loaded { body, input, kinds })
-}
-
-/// Says so where the cells of a collision map are smaller than the noise stated for the points in them, in the
-/// median: it counts no more.
-fn warn_of_small_cells(
-    name: &str,
-    scan: &PointCloud,
-    (sensor, cell): (&SensorModel, f64),
-    options: &BodyOptions<'_>,
-) {
-    if options.common.sensor.is_none() {
-        return;
-    }
-    let returns: Vec<usize> =
-        (0..scan.len()).filter(|&row| PointCloud::is_return(&scan.points[row])).collect();
-    // What is wrong with the sensor is told when the cloud is prepared.
-    let Ok(noise) = sensor.covariances(&scan.select(&returns)) else { return };
-    let mut stds: Vec<f64> = noise.iter().map(Covariance::max_std).collect();
-    stds.sort_unstable_by(f64::total_cmp);
-    if stds.get(stds.len() / 2).is_some_and(|std| cell < *std) {
-        tracing::warn!(
-            "{name}: the cells of --collision-map {cell} are smaller than the noise of --sensor {sensor}, which \
-             counts no more: choose cells of several times the noise, or leave --collision-map out"
-        );
-    }
-}
-
-/// What is nearer to a camera or a laser scanner than this is left out where it is known to be, m: the
-/// default that `--min-range` tells.
-const LEFT_OUT: f64 = 0.1;
-
-/// Refuses a `--max-range` within the range that is left out without an option.
-fn check_max_range(
-    name: &str,
-    scan: &PointCloud,
-    sensor: &SensorModel,
-    options: &BodyOptions<'_>,
-) -> Result<()> {
-    let common = options.common;
-    let leaves_out = common.min_range.is_none()
-        && FilterSettings::for_sensor(sensor).min_range.is_none()
-        && (scan.is_image() || scan.sensor_pose.is_some());
-    match common.max_range.filter(|max| leaves_out && *max < LEFT_OUT) {
-        Some(max) => bail!(WrongUsage(format!(
-            "{name}: --max-range {max} leaves no point, for nearer than {LEFT_OUT} m to a {sensor} all are \
-             left out: give a larger one, or --min-range 0"
-        ))),
-        None => Ok(()),
-    }
 }
 
 fn robot(options: &BodyOptions<'_>) -> Result<Vec<SelfMesh>> {
