@@ -41,22 +41,21 @@ fn is_veil_in_image(
     least_cosine: f64,
 ) -> bool {
     let (row, column) = (index / width, index % width);
-    let next = |room: usize, at: &dyn Fn(usize) -> usize| {
-        let pixels = (1..=room.min(ACROSS_HOLES)).filter_map(|step| points.get(at(step)));
-        pixels.into_iter().find(|other| PointCloud::is_return(other))
-    };
     let point = &points[index];
     let ray = point - from;
-    let step = |other: Option<&Point3>| {
-        other.map_or(0.0, |other| along_ray(&ray, point, other, least_cosine))
+    // Of a pixel with so many others before it in its row or column, and so many after it, so far apart.
+    let is_between = |before: usize, after: usize, apart: usize| {
+        let next = |most: usize, at: fn(usize, usize) -> usize| {
+            (1..=most.min(ACROSS_HOLES))
+                .filter_map(|step| points.get(at(index, step * apart)))
+                .find(|other| PointCloud::is_return(other))
+                .map_or(0.0, |other| along_ray(&ray, point, other, least_cosine))
+        };
+        let backward = next(before, |index, by| index - by);
+        // PERF: of most pixels no step runs along the ray.
+        backward != 0.0 && backward * next(after, |index, by| index + by) < 0.0
     };
-    let across = [
-        next(column, &|by| index - by),
-        next(width - 1 - column, &|by| index + by),
-        next(row, &|by| index - by * width),
-        next(height - 1 - row, &|by| index + by * width),
-    ];
-    across.chunks(2).any(|sides| step(sides[0]) * step(sides[1]) < 0.0)
+    is_between(column, width - 1 - column, 1) || is_between(row, height - 1 - row, width)
 }
 
 /// +1 when the step from `point` to `other` runs along the ray away from the sensor, −1 towards it,
