@@ -39,6 +39,20 @@ fn files_that_cannot_be_read() {
     }
 }
 
+/// Of files other than clouds and meshes it was told what the system says, "os error 21".
+#[test]
+fn folders_in_the_place_of_other_files() {
+    let inputs = Inputs::new();
+    std::fs::create_dir(inputs.path("d.json")).unwrap();
+    for arguments in [
+        &["batch", "d.json"][..],
+        &["scene", "d.json"],
+        &["query", "floor.pcd", "box.obj", "--pose", "d.json"],
+    ] {
+        check(&inputs, arguments, &["d.json", "is a folder: give"]);
+    }
+}
+
 #[test]
 fn clouds_with_nothing_in_them() {
     let inputs = Inputs::new();

@@ -264,7 +264,11 @@ pub fn read_bytes(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, ReadErr
     let failed = |cause| ReadError::Io { path: path.to_owned(), cause };
     let too_large = || ReadError::TooLarge { path: path.to_owned(), limit };
     let file = File::open(path).map_err(failed)?;
-    let size = file.metadata().map_err(failed)?.len();
+    let about = file.metadata().map_err(failed)?;
+    if about.is_dir() {
+        return Err(failed(is_folder()));
+    }
+    let size = about.len();
     if size > limit {
         return Err(too_large());
     }
@@ -283,7 +287,15 @@ fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
+/// What is said of a folder in the place of a file.
+fn is_folder() -> io::Error {
+    io::Error::new(io::ErrorKind::IsADirectory, "it is a folder: give a file in it")
+}
+
 fn unsupported(path: &Path, supported: &'static str) -> ReadError {
+    if path.is_dir() {
+        return ReadError::Io { path: path.to_owned(), cause: is_folder() };
+    }
     ReadError::Extension { path: path.to_owned(), found: extension(path), supported }
 }
 

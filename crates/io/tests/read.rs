@@ -111,3 +111,11 @@ fn wrong_kinds_and_absent_files_are_told_apart() {
     assert!(read_mesh(&no_faces, unit).unwrap_err().to_string().contains("there are no faces"));
     assert_eq!(read_cloud(&no_faces).unwrap().len(), 3);
 }
+
+/// The extension of a folder was said not to be one that is read.
+#[test]
+fn a_folder_is_told_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let error = cloudtouch_io::read_cloud(folder.path()).unwrap_err().to_string();
+    assert!(error.contains("it is a folder: give a file in it"), "{error}");
+}
