@@ -1,46 +1,37 @@
 //! Rigid motions from matrices, as files and programs hold them.
 
-use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
+use nalgebra::{Matrix4, Rotation3, UnitQuaternion};
 
-use super::{Pose, PoseError};
-use crate::vectors::Matrix3;
+use super::error::{PoseError, ROUNDING};
+use crate::vectors::{Matrix3, Vector3};
 
-/// What counts as rounding in R Rᵀ = I: files often hold six to nine digits, and four may leave 1.7e-4.
-pub(super) const ROUNDING: f64 = 2e-4;
-
-impl Pose {
-    /// Checks a homogeneous matrix and takes the nearest rigid motion.
-    ///
-    /// # Errors
-    /// When an entry is not finite, the last row is not 0 0 0 1, or the rotation part scales,
-    /// shears or mirrors by more than the rounding of a text file (2e-4: four digits).
-    pub fn try_from_matrix(m: &Matrix4<f64>) -> Result<Self, PoseError> {
-        for row in 0..4 {
-            for column in 0..4 {
-                let value = m[(row, column)];
-                if !value.is_finite() {
-                    return Err(PoseError::NotFinite { row, column, value });
-                }
+/// The nearest rigid motion to a homogeneous matrix that is one but for rounding: where it moves the origin, and
+/// how it turns.
+pub(super) fn rigid(m: &Matrix4<f64>) -> Result<(Vector3, UnitQuaternion<f64>), PoseError> {
+    for row in 0..4 {
+        for column in 0..4 {
+            let value = m[(row, column)];
+            if !value.is_finite() {
+                return Err(PoseError::NotFinite { row, column, value });
             }
         }
-        let found = [m[(3, 0)], m[(3, 1)], m[(3, 2)], m[(3, 3)]];
-        if found.iter().zip([0.0, 0.0, 0.0, 1.0]).any(|(f, e)| (f - e).abs() > 1e-9) {
-            return Err(PoseError::LastRow { found });
-        }
-        let linear: Matrix3 = m.fixed_view::<3, 3>(0, 0).into();
-        let error = (linear * linear.transpose() - Matrix3::identity()).amax();
-        if error > ROUNDING {
-            return Err(PoseError::NotOrthonormal { error });
-        }
-        let determinant = linear.determinant();
-        if determinant < 0.0 {
-            return Err(PoseError::Mirrored { determinant });
-        }
-        let rotation = Rotation3::from_matrix_unchecked(nearest_rotation(linear));
-        let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
-        let translation = Translation3::new(m[(0, 3)], m[(1, 3)], m[(2, 3)]);
-        Ok(Self(Isometry3::from_parts(translation, rotation)))
     }
+    let found = [m[(3, 0)], m[(3, 1)], m[(3, 2)], m[(3, 3)]];
+    if found.iter().zip([0.0, 0.0, 0.0, 1.0]).any(|(f, e)| (f - e).abs() > 1e-9) {
+        return Err(PoseError::LastRow { found });
+    }
+    let linear: Matrix3 = m.fixed_view::<3, 3>(0, 0).into();
+    let error = (linear * linear.transpose() - Matrix3::identity()).amax();
+    if error > ROUNDING {
+        return Err(PoseError::NotOrthonormal { error });
+    }
+    let determinant = linear.determinant();
+    if determinant < 0.0 {
+        return Err(PoseError::Mirrored { determinant });
+    }
+    let rotation = Rotation3::from_matrix_unchecked(nearest_rotation(linear));
+    let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
+    Ok((Vector3::new(m[(0, 3)], m[(1, 3)], m[(2, 3)]), rotation))
 }
 
 /// The rotation nearest to a matrix that is one but for rounding: Newton's iteration for its polar factor, which
@@ -57,14 +48,13 @@ fn nearest_rotation(mut linear: Matrix3) -> Matrix3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vectors::{Point3, Vector3};
 
     /// How far the motion taken from a matrix is from it, with its entries rounded to so many digits.
     fn off_by(rotation: &Matrix3, digits: i32) -> f64 {
         let unit = 10_f64.powi(-digits);
         let rounded = rotation.map(|entry| (entry / unit).round() * unit);
-        let taken = Pose::try_from_matrix(&rounded.to_homogeneous()).unwrap();
-        (taken.rotation().to_rotation_matrix().matrix() - rotation).amax()
+        let (_, taken) = rigid(&rounded.to_homogeneous()).unwrap();
+        (taken.to_rotation_matrix().matrix() - rotation).amax()
     }
 
     #[test]
@@ -104,39 +94,5 @@ mod tests {
             }
         }
         assert_eq!(count, 24);
-    }
-
-    #[test]
-    fn takes_a_rounded_matrix_and_refuses_bad_ones() {
-        let pose = Pose::from_translation_rpy(Vector3::new(1.0, 2.0, 3.0), [0.1, -0.4, 2.0]);
-        let mut m = pose.isometry().to_homogeneous();
-        m.apply(|v| *v = (*v * 1e6).round() / 1e6);
-        let back = Pose::try_from_matrix(&m).unwrap();
-        let p = Point3::new(0.3, -0.2, 0.9);
-        assert!((back.transform_point(&p) - pose.transform_point(&p)).norm() < 1e-5);
-
-        let scaled = m.map_with_location(|r, c, v| if r < 3 && c < 3 { 2.0 * v } else { v });
-        assert!(matches!(Pose::try_from_matrix(&scaled), Err(PoseError::NotOrthonormal { .. })));
-        let mirrored = m.map_with_location(|r, c, v| if r < 3 && c == 0 { -v } else { v });
-        assert!(matches!(Pose::try_from_matrix(&mirrored), Err(PoseError::Mirrored { .. })));
-        assert!(matches!(Pose::try_from_matrix(&m.transpose()), Err(PoseError::LastRow { .. })));
-        // A scale along one axis, a shear, a rotation that is none, and a place that is nowhere; but
-        // one far away is a place.
-        for (row, column, value, is_fine) in [
-            (1, 1, 1.01, false),
-            (0, 2, 0.1, false),
-            (0, 0, 0.0, false),
-            (2, 3, f64::INFINITY, false),
-            (0, 3, 1e9, true),
-        ] {
-            let mut changed = Matrix4::identity();
-            changed[(row, column)] = value;
-            assert_eq!(Pose::try_from_matrix(&changed).is_ok(), is_fine, "{row} {column} {value}");
-        }
-        m[(0, 3)] = f64::NAN;
-        assert!(matches!(
-            Pose::try_from_matrix(&m),
-            Err(PoseError::NotFinite { row: 0, column: 3, .. })
-        ));
     }
 }

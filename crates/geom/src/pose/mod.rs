@@ -1,11 +1,12 @@
 //! Rigid motions, checked when they come from outside.
 
+mod error;
 mod matrix;
 
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix4, Quaternion, Translation3, UnitQuaternion};
 
-use self::matrix::ROUNDING;
-use crate::message::number;
+pub use self::error::PoseError;
+use self::matrix::rigid;
 use crate::vectors::{Point3, Vector3};
 
 /// A rigid motion that maps points of one frame into another: p ↦ R p + t.
@@ -13,49 +14,6 @@ use crate::vectors::{Point3, Vector3};
 /// Named for what it does, as in `scene_from_object`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose(Isometry3<f64>);
-
-/// Why a matrix is not a rigid motion.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PoseError {
-    /// An entry is NaN or infinite.
-    #[error("pose entry ({row}, {column}) is {}: every entry must be finite", number(*value))]
-    NotFinite {
-        /// Row of the entry, from 0.
-        row: usize,
-        /// Column of the entry, from 0.
-        column: usize,
-        /// What was found.
-        value: f64,
-    },
-    /// The last row is not 0 0 0 1.
-    #[error("the last row of the pose is {found:?}, not [0, 0, 0, 1]: is the matrix row-major?")]
-    LastRow {
-        /// What was found.
-        found: [f64; 4],
-    },
-    /// The 3×3 part stretches or shears.
-    #[error(
-        "the 3x3 part of the pose is not a rotation: R·Rᵀ differs from the identity by {error:.3e} \
-         (at most {ROUNDING:e} is taken as rounding); remove scale and shear"
-    )]
-    NotOrthonormal {
-        /// Largest entry of |R Rᵀ − I|.
-        error: f64,
-    },
-    /// The quaternion is not of length one.
-    #[error("the quaternion of the pose has the length {}: it must be 1", number(*length))]
-    QuaternionLength {
-        /// What was found.
-        length: f64,
-    },
-    /// The 3×3 part mirrors.
-    #[error("the 3x3 part of the pose mirrors (determinant {determinant:.3}): swap two axes back")]
-    Mirrored {
-        /// The determinant, about −1.
-        determinant: f64,
-    },
-}
 
 /// How far from one the length of a quaternion may be.
 const QUATERNION_ROUNDING: f64 = 1e-3;
@@ -118,6 +76,16 @@ impl Pose {
         Self::from_translation_rotation(isometry.translation.vector, isometry.rotation)
     }
 
+    /// Checks a homogeneous matrix and takes the nearest rigid motion.
+    ///
+    /// # Errors
+    /// When an entry is not finite, the last row is not 0 0 0 1, or the rotation part scales,
+    /// shears or mirrors by more than the rounding of a text file (2e-4: four digits).
+    pub fn try_from_matrix(m: &Matrix4<f64>) -> Result<Self, PoseError> {
+        let (offset, rotation) = rigid(m)?;
+        Ok(Self(Isometry3::from_parts(Translation3::from(offset), rotation)))
+    }
+
     /// The rotation.
     pub fn rotation(&self) -> &UnitQuaternion<f64> {
         &self.0.rotation
@@ -166,6 +134,40 @@ impl Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn takes_a_rounded_matrix_and_refuses_bad_ones() {
+        let pose = Pose::from_translation_rpy(Vector3::new(1.0, 2.0, 3.0), [0.1, -0.4, 2.0]);
+        let mut m = pose.isometry().to_homogeneous();
+        m.apply(|v| *v = (*v * 1e6).round() / 1e6);
+        let back = Pose::try_from_matrix(&m).unwrap();
+        let p = Point3::new(0.3, -0.2, 0.9);
+        assert!((back.transform_point(&p) - pose.transform_point(&p)).norm() < 1e-5);
+
+        let scaled = m.map_with_location(|r, c, v| if r < 3 && c < 3 { 2.0 * v } else { v });
+        assert!(matches!(Pose::try_from_matrix(&scaled), Err(PoseError::NotOrthonormal { .. })));
+        let mirrored = m.map_with_location(|r, c, v| if r < 3 && c == 0 { -v } else { v });
+        assert!(matches!(Pose::try_from_matrix(&mirrored), Err(PoseError::Mirrored { .. })));
+        assert!(matches!(Pose::try_from_matrix(&m.transpose()), Err(PoseError::LastRow { .. })));
+        // A scale along one axis, a shear, a rotation that is none, and a place that is nowhere; but
+        // one far away is a place.
+        for (row, column, value, is_fine) in [
+            (1, 1, 1.01, false),
+            (0, 2, 0.1, false),
+            (0, 0, 0.0, false),
+            (2, 3, f64::INFINITY, false),
+            (0, 3, 1e9, true),
+        ] {
+            let mut changed = Matrix4::identity();
+            changed[(row, column)] = value;
+            assert_eq!(Pose::try_from_matrix(&changed).is_ok(), is_fine, "{row} {column} {value}");
+        }
+        m[(0, 3)] = f64::NAN;
+        assert!(matches!(
+            Pose::try_from_matrix(&m),
+            Err(PoseError::NotFinite { row: 0, column: 3, .. })
+        ));
+    }
 
     #[test]
     fn quaternions_are_of_length_one() {

@@ -52,7 +52,9 @@ fn are_surely_none(points: &Neighborhoods, asked: &[usize]) -> bool {
         points.visit_within(&points.points()[**index], within[0].max(within[1]), |other| {
             let distance = other.squared_distance.sqrt();
             let is_other = distance > 0.0;
-            [0, 1].map(|k| counts[k] += usize::from(is_other && distance <= within[k]));
+            for (count, within) in counts.iter_mut().zip(within) {
+                *count += usize::from(is_other && distance <= within);
+            }
         });
         with_usual_step += usize::from(counts[0] >= third);
         maybe_in_clump += usize::from(counts[1] >= third);
