@@ -118,7 +118,7 @@ fn nearest_within(
 /// says it for all.
 fn holds_a_part(outer: &Mesh, inner: &Mesh, outer_from_inner: &Pose) -> bool {
     let is_inside = |vertex| outer.encloses(&outer_from_inner.transform_point(vertex));
-    outer.is_closed() && inner.vertices_of_parts().iter().any(is_inside)
+    outer.has_solids() && inner.vertices_of_parts().iter().any(is_inside)
 }
 
 fn parry_pose(pose: &Pose) -> math::Pose {

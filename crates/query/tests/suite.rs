@@ -27,6 +27,7 @@ mod margin;
 mod merge;
 mod mesh_input;
 mod mesh_inside;
+mod mesh_parts;
 mod mesh_sides;
 mod more_separation;
 mod motion;

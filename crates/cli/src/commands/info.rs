@@ -160,6 +160,10 @@ fn describe_mesh(mesh: &TriangleMesh) -> String {
             "closed: inside and outside are defined; its parts touch along {open} edges that join more than two \
              triangles"
         ),
+        Ok(mesh) if mesh.has_solids() => format!(
+            "partly closed: what its closed parts enclose is inside; of the rest, with {open} edges that do not \
+             join two triangles, only the surface collides"
+        ),
         Ok(_) => format!("open: {open} edges do not join two triangles; only its surface collides"),
     };
     let mut lines = vec![

@@ -1,5 +1,6 @@
 //! Triangle meshes prepared for queries: exact surfaces, with an inside where they are closed.
 
+mod around;
 mod cells;
 mod coverage;
 mod near;
@@ -9,6 +10,7 @@ mod prepare;
 mod project;
 mod side;
 mod sides;
+mod solids;
 mod subdivide;
 mod surface;
 mod winding;

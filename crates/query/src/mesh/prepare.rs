@@ -14,6 +14,7 @@ use crate::error::PrepareError;
 
 use super::cells::Cells;
 use super::parts::{Part, parts};
+use super::solids::Solids;
 use super::winding::Winding;
 
 /// Triangles in a leaf of the tree that is searched.
@@ -27,8 +28,8 @@ const SAMPLES: usize = 500;
 /// A triangle mesh, ready to be queried in any pose.
 ///
 /// Its surface is exact: its points have no covariance and count as on the wrong side with
-/// probability 0, ½ or 1. Where the mesh is closed, points deep inside are found too; an open
-/// mesh is a surface without an inside. Vertices that no triangle uses count for nothing.
+/// probability 0, ½ or 1. Points deep inside a closed part of it are found too; an open part is a
+/// surface without an inside, and takes nothing from that of others. Vertices that no triangle uses count for nothing.
 #[derive(Debug)]
 pub struct Mesh {
     /// What was subtracted from file coordinates, m: far offsets keep their millimetres.
@@ -44,6 +45,8 @@ pub struct Mesh {
     vertices_of_parts: Vec<Point3>,
     watertight: bool,
     closed: bool,
+    /// Whether some part of it is closed.
+    has_solids: bool,
     /// How far apart coordinates of the file are, m, where that may matter.
     pub(super) step: Option<f64>,
     /// On which side places are, once that is needed.
@@ -70,18 +73,13 @@ impl Mesh {
         let used: Vec<Point3> = mesh.used_vertices().map(|(_, vertex)| *vertex).collect();
         let origin = nalgebra::center(&low, &high).coords;
         let vertices = merged.vertices().iter().map(|p| p - origin).collect();
-        let mut merged = TriangleMesh::new(vertices, merged.triangles().to_vec())?;
+        let merged = TriangleMesh::new(vertices, merged.triangles().to_vec())?;
+        let Solids { triangles, is_solid } = Solids::of(&merged);
+        let merged = TriangleMesh::new(merged.vertices().to_vec(), triangles)?;
         let closed = merged.border_edges() == 0;
-        let mut watertight = false;
         let parts = parts(&merged);
-        if merged.open_edges() == 0 {
-            watertight = parts.iter().all(Part::has_inside);
-            if parts.iter().map(|part| part.volume).sum::<f64>() < 0.0 {
-                // Turned inside out as a whole: a common export slip that leaves no doubt.
-                let turned = merged.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-                merged = TriangleMesh::new(merged.vertices().to_vec(), turned)?;
-            }
-        }
+        let watertight = merged.open_edges() == 0 && parts.iter().all(Part::has_inside);
+        let has_solids = closed || is_solid.contains(&true);
         let surface = TriMesh::new(
             merged.vertices().iter().map(vector).collect(),
             merged.triangles().to_vec(),
@@ -92,7 +90,10 @@ impl Mesh {
         let missing = missing.into_iter().map(|of| of.map(corner)).collect();
         let triangles: Vec<_> = (0..merged.triangles().len()).map(|t| merged.corners(t)).collect();
         let tree = tree_of(triangles.iter().copied(), LEAF_TRIANGLES, 0.0)?;
-        let winding = Winding::new(triangles);
+        // What is open has no inside, and takes none away, but where there is nothing else.
+        let counts = |triangle: &usize| closed || !has_solids || is_solid[*triangle];
+        let counting = (0..triangles.len()).filter(counts).map(|t| triangles[t]).collect();
+        let winding = Winding::new(counting);
         let prepare_time = start.elapsed();
         Ok(Self {
             origin,
@@ -104,6 +105,7 @@ impl Mesh {
             vertices_of_parts: parts.iter().map(|part| part.vertex).collect(),
             watertight,
             closed,
+            has_solids,
             step: single_step(&used),
             cells: OnceLock::new(),
             samples: OnceLock::new(),
@@ -117,12 +119,13 @@ impl Mesh {
         self.watertight
     }
 
-    /// What kind of surface it has, in a word: watertight, closed or open.
+    /// What kind of surface it has, in a word or two: watertight, closed, partly closed or open.
     pub fn kind(&self) -> &'static str {
-        match (self.watertight, self.closed) {
-            (true, _) => "watertight",
-            (false, true) => "closed",
-            (false, false) => "open",
+        match (self.watertight, self.closed, self.has_solids) {
+            (true, ..) => "watertight",
+            (false, true, _) => "closed",
+            (false, false, true) => "partly closed",
+            (false, false, false) => "open",
         }
     }
 
@@ -173,6 +176,11 @@ impl Mesh {
     /// closed parts that touch along edges, or part of it a sheet with its own back face.
     pub fn is_closed(&self) -> bool {
         self.closed
+    }
+
+    /// Whether it has an inside: that of its closed parts.
+    pub fn has_solids(&self) -> bool {
+        self.has_solids
     }
 
     pub(crate) fn origin(&self) -> Vector3 {

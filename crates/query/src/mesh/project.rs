@@ -101,6 +101,6 @@ impl Mesh {
     /// Whether a place in the local frame is inside. A bucket surrounds more than three quarters of
     /// what it holds, and yet that is not inside it: an open mesh encloses nothing.
     pub(crate) fn encloses(&self, local: &Point3) -> bool {
-        self.is_closed() && self.side(local) == Side::Inside
+        self.has_solids() && self.side(local) == Side::Inside
     }
 }

@@ -4,11 +4,11 @@ use cloudtouch_geom::{Point3, Vector3};
 
 use super::cells::{Cell, Cells};
 use super::prepare::Mesh;
-use super::winding::{FarRadii, Winding};
+use super::winding::FarRadii;
 
 /// Wrapped around at least so often a place is inside, and at most so often outside: halfway between
 /// what a closed mesh has there and on its surface.
-const INSIDE: f64 = 0.75;
+pub(super) const INSIDE: f64 = 0.75;
 const OUTSIDE: f64 = 0.25;
 /// Sums this near to either limit are not relied on: twice their errors.
 const COARSE_DOUBT: f64 = 0.1;
@@ -35,14 +35,9 @@ impl Side {
 
 impl Mesh {
     /// How often the surface wraps around a place in the local frame, to within 0.01 off the
-    /// surface: a whole number for a closed mesh, −1 in a part that is turned inside out.
+    /// surface: a whole number for closed parts, which alone count where there are some.
     pub(crate) fn winding_number(&self, local: &Point3) -> f64 {
         self.winding.fast(local, FarRadii::FINE)
-    }
-
-    /// The same with the triangles that an open mesh lacks.
-    pub(crate) fn winding_number_when_filled(&self, local: &Point3) -> f64 {
-        self.winding_number(local) + Winding::of_triangles(&self.missing, local)
     }
 
     /// On which side of the mesh a place in the local frame is.
@@ -57,10 +52,10 @@ impl Mesh {
         }
     }
 
-    /// What is known of the surroundings of a place; `None` where the mesh is open.
+    /// What is known of the surroundings of a place; `None` where all of the mesh is open.
     pub(super) fn cell(&self, local: &Point3) -> Option<Cell> {
         let beyond = self.distance_to_box(local) > 0.0;
-        self.is_closed().then(|| if beyond { Cell::Outside(0) } else { self.cells().at(local) })
+        self.has_solids().then(|| if beyond { Cell::Outside(0) } else { self.cells().at(local) })
     }
 
     /// Whether a place in the local frame is inside, told at once; no too where it takes a closer look.
@@ -76,7 +71,7 @@ impl Mesh {
     /// How far (m) everything around a place within the box is outside, for certain; nothing is known of
     /// an open mesh.
     pub(super) fn clear_around(&self, local: &Point3) -> f64 {
-        if self.is_closed() { self.cells().clear_around(local) } else { 0.0 }
+        if self.has_solids() { self.cells().clear_around(local) } else { 0.0 }
     }
 
     fn cells(&self) -> &Cells {
@@ -155,7 +150,8 @@ mod tests {
         assert_at(&hollow, [0.0; 3], (0.0, Side::Outside));
         assert_at(&hollow, [0.4; 3], (1.0, Side::Inside));
         let turned = scene::assemble([shell(1.0, [0.0; 3], false), shell(0.5, [2.0; 3], true)]);
-        assert_at(&turned, [2.0; 3], (-1.0, Side::Inside));
+        // By itself it is no cavity.
+        assert_at(&turned, [2.0; 3], (1.0, Side::Inside));
     }
 
     #[test]

@@ -72,7 +72,7 @@ impl Found<'_> {
             |(body, other, own, others, other_from_a, is_a)| {
                 let BodyRef::Cloud(_) = body else { return None };
                 let solid = match other {
-                    BodyRef::Mesh(mesh) if mesh.is_closed() => Some((mesh, other_from_a)),
+                    BodyRef::Mesh(mesh) if mesh.has_solids() => Some((mesh, other_from_a)),
                     _ => None,
                 };
                 Some(Facing { own, others, solid, is_a })

@@ -55,7 +55,7 @@ fn nearly_surrounds(mesh: &Mesh, place: &Point3) -> bool {
         let [low, high] = mesh.corners_of_box();
         (0..3).all(|k| low[k] <= place[k] && place[k] <= high[k])
     };
-    !mesh.is_closed() && is_within() && mesh.winding_number_when_filled(place).abs() >= CLOSED
+    !mesh.is_closed() && is_within() && mesh.is_all_around(place, CLOSED)
 }
 
 /// The place of a body that is nearest to one, in its local frame.

@@ -93,7 +93,7 @@ fn deepest(
     is_enough: impl Fn(f64) -> bool,
 ) -> Looked {
     let mut looked = Looked::default();
-    if !mesh.is_closed() {
+    if !mesh.has_solids() {
         return looked;
     }
     let mut deepest = None;

@@ -43,7 +43,7 @@ fn deepest(
     stats: &mut Stats,
 ) -> f64 {
     let mut most = 0.0;
-    if !mesh.is_closed() {
+    if !mesh.has_solids() {
         return most;
     }
     let mesh_from_a = a_from_mesh.inverse();

@@ -1,0 +1,110 @@
+//! Which parts of a mesh are closed, and turned so that what they enclose is inside.
+//!
+//! A floor beside a box has no inside, and takes nothing away from that of the box; a part that was mirrored
+//! encloses as much as the others.
+
+use std::collections::{BTreeMap, HashMap};
+
+use cloudtouch_geom::{Point3, TriangleMesh, Vector3};
+
+use super::side::INSIDE;
+use super::winding::{FarRadii, Winding};
+
+/// Vertices of a part that tell whether it is within others, at most.
+const ASKED: usize = 64;
+
+/// The triangles of a mesh by its parts.
+pub(super) struct Solids {
+    /// All of them, closed parts turned outward but for cavities.
+    pub triangles: Vec<[u32; 3]>,
+    /// Of each whether its part is closed.
+    pub is_solid: Vec<bool>,
+}
+
+/// A part that is joined by edges of two triangles.
+#[derive(Default)]
+struct Piece {
+    triangles: Vec<usize>,
+    /// Twice three times what it encloses, m³; negative where it is turned inward.
+    volume: f64,
+}
+
+impl Solids {
+    /// Of a merged mesh with its triangles turned alike.
+    pub(super) fn of(mesh: &TriangleMesh) -> Self {
+        let mut triangles = mesh.triangles().to_vec();
+        let mut is_solid = vec![false; triangles.len()];
+        let closed: Vec<Piece> =
+            pieces(mesh).into_iter().filter(|piece| is_closed(mesh, piece)).collect();
+        for piece in &closed {
+            piece.triangles.iter().for_each(|&triangle| is_solid[triangle] = true);
+        }
+        let (inward, outward): (Vec<Piece>, Vec<Piece>) =
+            closed.into_iter().partition(|piece| piece.volume < 0.0);
+        if !inward.is_empty() {
+            let corners = outward.iter().flat_map(|piece| &piece.triangles);
+            let others = Winding::new(corners.map(|&triangle| mesh.corners(triangle)).collect());
+            for piece in inward.iter().filter(|piece| !is_within(mesh, piece, &others)) {
+                for &triangle in &piece.triangles {
+                    triangles[triangle].swap(1, 2);
+                }
+            }
+        }
+        Self { triangles, is_solid }
+    }
+}
+
+/// Whether a part is wholly within others, as a cavity is.
+fn is_within(mesh: &TriangleMesh, piece: &Piece, others: &Winding) -> bool {
+    let step = piece.triangles.len().div_ceil(ASKED).max(1);
+    let mut corners = piece.triangles.iter().step_by(step).flat_map(|&t| mesh.corners(t));
+    corners.all(|corner| others.fast(&corner, FarRadii::FINE).abs() >= INSIDE)
+}
+
+/// Whether the triangles of a part run along each edge equally often in both directions.
+fn is_closed(mesh: &TriangleMesh, piece: &Piece) -> bool {
+    let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
+    for &triangle in &piece.triangles {
+        let [a, b, c] = mesh.triangles()[triangle];
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            let sum = balance.entry((from.min(to), from.max(to))).or_default();
+            *sum += if from < to { 1 } else { -1 };
+        }
+    }
+    balance.values().all(|sum| *sum == 0)
+}
+
+fn pieces(mesh: &TriangleMesh) -> Vec<Piece> {
+    let mut at_edge: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
+    for (triangle, &[a, b, c]) in mesh.triangles().iter().enumerate() {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            at_edge.entry((from.min(to), from.max(to))).or_default().push(triangle);
+        }
+    }
+    let mut parent: Vec<usize> = (0..mesh.triangles().len()).collect();
+    for triangles in at_edge.values() {
+        if let [one, other] = triangles[..] {
+            let [one, other] = [one, other].map(|triangle| root(&mut parent, triangle));
+            parent[one.max(other)] = one.min(other);
+        }
+    }
+    let mut pieces: BTreeMap<usize, Piece> = BTreeMap::new();
+    for triangle in 0..parent.len() {
+        let name = root(&mut parent, triangle);
+        let [from, ..] = mesh.corners(name);
+        let [a, b, c]: [Vector3; 3] = mesh.corners(triangle).map(|corner: Point3| corner - from);
+        let piece = pieces.entry(name).or_default();
+        piece.triangles.push(triangle);
+        piece.volume += a.dot(&b.cross(&c));
+    }
+    pieces.into_values().collect()
+}
+
+/// What stands for the part of a triangle; shortens the way there for the next time.
+fn root(parent: &mut [usize], mut triangle: usize) -> usize {
+    while parent[triangle] != triangle {
+        parent[triangle] = parent[parent[triangle]];
+        triangle = parent[triangle];
+    }
+    triangle
+}

@@ -1,0 +1,96 @@
+//! Meshes of several parts: what one of them encloses is inside, whatever the others are and however they are
+//! turned.
+
+use crate::common::{ask, at, measured, mesh, prepare, query};
+use cloudtouch::geom::{Point3, Pose, TriangleMesh, Vector3};
+use cloudtouch::{Mesh, Mode, Verdict};
+use cloudtouch_testkit::scene;
+
+fn block(size: f64, centre: [f64; 3]) -> TriangleMesh {
+    scene::moved(&scene::cuboid([size; 3]), &Pose::from_translation(centre.into()))
+}
+
+fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
+    let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+    TriangleMesh::new(mesh.vertices().to_vec(), turned).unwrap()
+}
+
+/// A square floor at a height, its normals up.
+fn floor(height: f64) -> TriangleMesh {
+    let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
+    let vertices = corners.map(|[x, y]| Point3::new(x, y, height)).to_vec();
+    TriangleMesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]]).unwrap()
+}
+
+/// Verdicts on a small ball, as a cloud and as a mesh, at a place.
+fn of_a_ball_at(solid: &Mesh, place: [f64; 3]) -> [Verdict; 2] {
+    let ball = scene::sphere(0.03, 2);
+    let cloud = prepare(measured(&ball, 0.008, 0.001, 1), 0.001, Mode::Calibrated);
+    let [x, y, z] = place;
+    let of_cloud = ask(Mode::Calibrated, &cloud, solid, &at(-x, -y, -z));
+    let pose = Pose::from_translation(Vector3::from(place));
+    let of_mesh = query(Mode::Calibrated).run(solid, &mesh(&ball), &pose).unwrap();
+    [of_cloud.verdict, of_mesh.verdict]
+}
+
+const COLLIDES: [Verdict; 2] = [Verdict::InCollision; 2];
+const FREE: [Verdict; 2] = [Verdict::Free; 2];
+
+/// The floor took half a turn from the inside of what stands on it: it read free there.
+#[test]
+fn a_floor_takes_nothing_from_the_inside_of_a_box() {
+    for turned in [false, true] {
+        for height in [0.0, -0.05, -5.0] {
+            let floor = if turned { inside_out(&floor(height)) } else { floor(height) };
+            let solid = mesh(&scene::assemble([block(0.3, [0.0, 0.0, 0.15]), floor]));
+            assert_eq!(of_a_ball_at(&solid, [0.0, 0.0, 0.15]), COLLIDES, "{turned} {height}");
+            assert_eq!(of_a_ball_at(&solid, [0.5, 0.0, 0.15]), FREE, "{turned} {height}");
+        }
+    }
+}
+
+/// Of two boxes of which one was mirrored, what is in both read free.
+#[test]
+fn a_part_turned_inside_out_is_a_cavity_only_within_another() {
+    let one = block(0.4, [0.0; 3]);
+    for other in [block(0.4, [0.2; 3]), inside_out(&block(0.4, [0.2; 3]))] {
+        let solid = mesh(&scene::assemble([one.clone(), other]));
+        for place in [[0.1; 3], [0.3; 3], [-0.1; 3]] {
+            assert_eq!(of_a_ball_at(&solid, place), COLLIDES, "{place:?}");
+        }
+        assert_eq!(of_a_ball_at(&solid, [0.7, 0.0, 0.0]), FREE);
+    }
+    let hollow = mesh(&scene::assemble([one, inside_out(&block(0.3, [0.0; 3]))]));
+    assert_eq!(of_a_ball_at(&hollow, [0.0; 3]), FREE);
+}
+
+/// A room with its walls turned inward, and a cupboard in it: inside the cupboard it read free.
+#[test]
+fn a_cupboard_in_a_room_turned_inward_is_full() {
+    let room = inside_out(&block(4.0, [0.0; 3]));
+    let solid = mesh(&scene::assemble([room, block(0.5, [1.0, 0.0, 0.0])]));
+    assert_eq!(of_a_ball_at(&solid, [1.0, 0.0, 0.0]), COLLIDES);
+}
+
+/// Faces that do not share vertices, one of them turned round: the middle read free.
+#[test]
+fn a_box_of_separate_faces_of_which_one_is_turned_is_no_free_space() {
+    let whole = scene::cuboid([0.4; 3]);
+    for turned in [None, Some(0), Some(3)] {
+        let face = |k: usize| {
+            let [a, b, c] = whole.triangles()[k];
+            // A tenth of a millimetre outward.
+            let apart = |i: u32| {
+                let p = whole.vertices()[i as usize];
+                p + 1e-4 * whole.corners(k).iter().map(|q| q.coords).sum::<Vector3>().normalize()
+            };
+            let triangle = if turned == Some(k / 2) { [0, 2, 1] } else { [0, 1, 2] };
+            TriangleMesh::new([a, b, c].map(apart).to_vec(), vec![triangle]).unwrap()
+        };
+        let solid = mesh(&scene::assemble((0..12).map(face)));
+        for verdict in of_a_ball_at(&solid, [0.02, 0.01, 0.0]) {
+            assert_ne!(verdict, Verdict::Free, "{turned:?}");
+        }
+        assert_eq!(of_a_ball_at(&solid, [0.6, 0.0, 0.0]), FREE, "{turned:?}");
+    }
+}
