@@ -124,6 +124,8 @@ impl RobotChecker {
         let at_once = given[0].pairs.first().cloned();
         let mut stopped = at_once.map(|pair| Stopped::at(0, 0.0, Some(pair)));
         for (segment, ends) in path.windows(2).enumerate() {
+            // The first time known not to be free, and why: a stretch that ends there is not certain.
+            let mut not_free = given[segment + 1].pairs.first().cloned().map(|pair| (1.0, pair));
             // What is before comes first.
             let mut open = vec![[0.0, 1.0]];
             while let (None, Some([from, to])) = (&stopped, open.pop()) {
@@ -133,20 +135,21 @@ impl RobotChecker {
                 let pair = self.check_at(query, segment, &of(middle))?.pairs.into_iter().next();
                 let around = || self.around(query, &of(middle), [&of(from), &of(to)]);
                 let may_meet = |at_most: f64| at_most >= query.settings().reject;
-                if pair.is_none() && !around().any(|(_, at_most)| may_meet(at_most)) {
+                let ends_free = not_free.as_ref().is_none_or(|(time, _)| to < *time);
+                if pair.is_none() && ends_free && !around().any(|(_, at_most)| may_meet(at_most)) {
                     certified_free_until = (segment as f64 + to) / segments;
+                } else if to - from <= tolerance * segments && pair.is_none() && !ends_free {
+                    let known = not_free.take();
+                    stopped = known.map(|(time, pair)| Stopped::at(segment, time, Some(pair)));
                 } else if to - from <= tolerance * segments {
                     let least_sure = around().max_by(|(_, p), (_, q)| p.total_cmp(q));
                     let nearest = least_sure.filter(|_| pair.is_none());
                     let nearest = nearest.map(|(pair, at_most)| self.nearest(pair, at_most));
                     stopped = Some(Stopped { nearest, ..Stopped::at(segment, middle, pair) });
                 } else {
+                    not_free = pair.map(|pair| (middle, pair)).or(not_free);
                     open.extend([[middle, to], [from, middle]]);
                 }
-            }
-            if stopped.is_none() {
-                let pair = given[segment + 1].pairs.first().cloned();
-                stopped = pair.map(|pair| Stopped::at(segment, 1.0, Some(pair)));
             }
         }
         Ok(PathChecked { given, certified_free_until, stopped, later: None, looked_at })

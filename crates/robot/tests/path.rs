@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use crate::support::{Arm, STD, joints, query, wall};
-use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Verdict};
 use cloudtouch_robot::{PathError, RobotChecker, SURROUNDINGS, Touching};
@@ -179,4 +179,46 @@ fn what_the_hand_holds_goes_along_and_is_let_go() {
     assert!(checker.release("hand").is_err(), "a link is not held");
     assert!(Arc::ptr_eq(&checker.release("rod").unwrap(), &rod));
     assert_eq!(until(&checker), 1.0);
+}
+
+/// A cart that slides past the shadow of a thin post, seen by a depth camera: in the shadow each position is
+/// undecided, the middle of the path was found so, and yet the path was certified by what is on both sides of it.
+#[test]
+fn a_position_that_is_not_free_ends_what_is_certified() {
+    const SIDE: f64 = 0.05;
+    let urdf = format!(
+        "<robot name='cart'><link name='rail'/><link name='cart'><collision><geometry>\
+         <box size='{SIDE} {SIDE} {SIDE}'/></geometry></collision></link><joint name='x' type='prismatic'>\
+         <parent link='rail'/><child link='cart'/><origin xyz='0 0 3.45'/><axis xyz='1 0 0'/>\
+         <limit lower='-9' upper='9' effort='1' velocity='1'/></joint></robot>"
+    );
+    let (width, height, focal) = (640, 360, 400.0);
+    let ray = |pixel: usize, count: usize| (pixel as f64 - 0.5 * (count - 1) as f64) / focal;
+    let points = (0..width * height).map(|i| {
+        let [x, y] = [ray(i % width, width), ray(i / width, height)];
+        let depth = if x.abs() < 0.01 { 1.0 } else { 6.0 };
+        Point3::new(x * depth, y * depth, depth)
+    });
+    let image = PointCloud {
+        image_size: Some((width, height)),
+        ..PointCloud::from_points(points.collect())
+    };
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    let scan = Cloud::prepare(&image, &settings).unwrap().refined().unwrap();
+    let robot = Arm::default().of(&urdf).unwrap();
+    let touching = Touching::Surroundings;
+    let checker = RobotChecker::new(robot, Body::from(scan), Pose::identity(), touching).unwrap();
+    let at = |x: f64| BTreeMap::from([("x".to_owned(), x)]);
+    let first = (0..200).map(|k| -0.3 + 0.003 * f64::from(k));
+    let is_free = |x: f64| checker.check(&query(), &at(x)).unwrap().verdict() == Verdict::Free;
+    let shadow = first.into_iter().find(|&x| !is_free(x)).unwrap();
+    for [from, to] in [[-0.9, 0.9], [-1.1, 0.8], [-0.75, 1.05], [-0.8, 0.8]] {
+        let found = checker.check_path(&query(), &[at(from), at(to)], TOLERANCE).unwrap();
+        let until = from + (to - from) * found.certified_free_until;
+        assert_ne!(found.verdict(), Verdict::Free, "{from} to {to}");
+        assert!(
+            until < 0.0,
+            "{from} to {to} is certified until {until}, the shadow begins at {shadow}"
+        );
+    }
 }
