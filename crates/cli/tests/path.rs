@@ -191,3 +191,17 @@ fn bad_paths_are_named_with_what_to_do() {
     assert!(run.code() == 2 && run.stderr().contains("--margin"), "{}", run.stderr());
     assert!(path(&inputs, "gone.csv", &[]).stderr().contains("cannot read the path"));
 }
+
+/// Which way round was decided by the last digit, without a word.
+#[test]
+fn half_a_turn_between_two_poses_is_warned_of() {
+    let inputs = Inputs::new();
+    let told = |second: &str| {
+        inputs
+            .write("turn.csv", &format!("x,y,z,qw,qx,qy,qz\n0,0,0.5,1,0,0,0\n0,0,0.5,{second}\n"));
+        path(&inputs, "turn.csv", &[]).stderr()
+    };
+    assert!(told("0,0,0,1").contains("from pose 1 to the next it turns by half a turn"));
+    assert!(told("-0.0001,0,0,1").contains("give a pose between them"));
+    assert_eq!(told("0.1,0,0,0.99498744"), "");
+}

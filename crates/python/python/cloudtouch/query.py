@@ -208,7 +208,7 @@ class Query:
         ----------
         poses
             (M, 4, 4), M at least 2: the path goes from each to the next, the origin of ``b`` along a straight line, its
-            rotation by the shorter turn.
+            rotation by the shorter turn (of half a turn rounding decides which way round: give a pose between).
         tolerance
             Stretches this short, as a share of the path, are not looked at closer; what they leave open stays in the
             bounds. At least 1e-5.

@@ -18,7 +18,7 @@ pub struct Path {
 
 impl Path {
     /// From one pose to another: the origin of B along a straight line, its rotation by slerp, both at
-    /// constant speed and by the shorter turn.
+    /// constant speed and by the shorter turn; of half a turn rounding decides which way round.
     ///
     /// # Errors
     /// When a pose is not finite or beyond 1e10 m, or both are the same.
