@@ -15,6 +15,7 @@ pub mod obj;
 pub mod pcd;
 pub mod ply;
 pub mod pointcloud2;
+mod polygon;
 mod read;
 pub mod recording;
 mod recording_fault;

@@ -8,6 +8,7 @@ use std::{
 
 use cloudtouch_geom::{Point3, TriangleMesh};
 
+use crate::polygon::Polygons;
 use crate::{
     atomic::write_atomically,
     error::WriteError,
@@ -40,7 +41,7 @@ const PASSED_OVER: [&[u8]; 17] = [
 /// Reads a mesh from the bytes of an OBJ file.
 ///
 /// Faces are `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1, or backwards from the last vertex
-/// when negative; polygons become fans about their first corner. When the first line is nothing
+/// when negative; polygons become triangles within their outline. When the first line is nothing
 /// but two whole numbers, as some exporters write, they are taken for the counts of vertices and
 /// faces and must agree with what follows.
 ///
@@ -101,6 +102,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
             }
         }
     }
+    faces.polygons.cut(&vertices, &mut faces.triangles);
     TriangleMesh::new(vertices, faces.triangles)
         // Coordinates and indices were checked where they stand; no faces are all that is left.
         .map_err(|_| Place::Line(1).error(Fault::NoTriangles))
@@ -129,6 +131,7 @@ struct Faces {
     triangles: Vec<[u32; 3]>,
     /// Polygons, before they became triangles.
     count: usize,
+    polygons: Polygons,
     /// The highest vertex named, from 1, and where: it may be defined further down.
     highest: Option<(u32, Place)>,
 }
@@ -161,6 +164,7 @@ impl Faces {
             return Err(Place::Line(line).error(fault));
         }
         self.count += 1;
+        self.polygons.push(self.triangles.len() - (found - 2), found - 2);
         Ok(())
     }
 

@@ -71,3 +71,38 @@ fn faults_are_named_by_line_and_column() {
     assert!(matches!(face("v 1 nan 3"), (_, Fault::NotFinite { value }) if value.is_nan()));
     assert!(matches!(face("curv 0 1 1 2 3"), (Place::Line(5), Fault::BadEntry { .. })));
 }
+
+/// A polygon with a notch became a fan that covered it: what stood in the notch collided.
+#[test]
+fn a_polygon_covers_nothing_of_its_notch() {
+    let ell = [[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]];
+    for first in 0..6 {
+        // The face comes before its vertices.
+        let mut text = "f 1 2 3 4 5 6\n".to_owned();
+        let mut ply = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
+                       element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+            .to_owned();
+        for [x, y] in (0..6).map(|k| ell[(first + k) % 6]) {
+            text += &format!("v {x} {y} 0\n");
+            ply += &format!("{x} {y} 0\n");
+        }
+        ply += "6 0 1 2 3 4 5\n";
+        let of_obj = cloudtouch_io::obj::parse(text.as_bytes()).unwrap();
+        let cloudtouch_io::Geometry::Mesh(of_ply) =
+            cloudtouch_io::ply::parse(ply.as_bytes()).unwrap()
+        else {
+            panic!("no mesh");
+        };
+        for mesh in [of_obj, of_ply] {
+            let area = |t| {
+                let [a, b, c] = mesh.corners(t);
+                0.5 * (b - a).cross(&(c - a)).z
+            };
+            let areas: Vec<f64> = (0..4).map(area).collect();
+            assert!(
+                areas.iter().all(|area| *area > 0.0) && areas.iter().sum::<f64>() == 5.0,
+                "{areas:?}"
+            );
+        }
+    }
+}

@@ -6,6 +6,7 @@ use super::{
     body::Body,
     header::{self, Element, Header, Kind},
 };
+use crate::polygon::Polygons;
 use crate::{
     builder::{CloudBuilder, Row, find_columns},
     fault::{Fault, FormatError, Place},
@@ -19,7 +20,7 @@ use crate::{
 ///
 /// Of the vertices x, y, z are read, and of a cloud also cov_xx, cov_xy, cov_xz, cov_yy, cov_yz,
 /// cov_zz (m², all six or none); other properties and elements are passed over. Polygons become
-/// fans about their first corner. Points of a cloud may be NaN, vertices of a mesh may not.
+/// triangles within their outline. Points of a cloud may be NaN, vertices of a mesh may not.
 ///
 /// # Errors
 /// When the header is malformed, the file is shorter than it promises (found before memory is
@@ -62,14 +63,16 @@ pub(super) fn parse_body(
 
     let mut body = Body::new(bytes, lines, header.byte_order);
     let mut cloud = PointCloud::default();
-    let mut triangles = Vec::new();
+    let (mut triangles, mut polygons) = (Vec::new(), Polygons::default());
     // Rows without properties take no bytes: any number of them may be promised.
     let is_read = |e: &&Element| !e.properties.is_empty() || e.name == "vertex";
     for element in header.elements.iter().filter(is_read) {
         check_length(element, &body)?;
         match element.name.as_str() {
             "vertex" => cloud = read_vertices(element, &mut body, is_mesh, limits)?,
-            "face" => triangles = read_faces(element, &mut body, vertices, limits)?,
+            "face" => {
+                triangles = read_faces(element, &mut body, vertices, &mut polygons, limits)?;
+            }
             _ => skip(element, &mut body)?,
         }
     }
@@ -77,6 +80,7 @@ pub(super) fn parse_body(
     if !is_mesh {
         return Ok(Geometry::Cloud(cloud));
     }
+    polygons.cut(&cloud.points, &mut triangles);
     TriangleMesh::new(cloud.points, triangles)
         .map(Geometry::Mesh)
         // Coordinates and indices were checked where they stand; no faces are all that is left.
@@ -150,6 +154,7 @@ fn read_faces(
     element: &Element,
     body: &mut Body<'_>,
     vertices: usize,
+    polygons: &mut Polygons,
     limits: &ReadLimits,
 ) -> Result<Vec<[u32; 3]>, FormatError> {
     if element.count == 0 {
@@ -186,6 +191,7 @@ fn read_faces(
                         triangles.push([first, last, next]);
                         last = next;
                     }
+                    polygons.push(triangles.len() - (corners - 2), corners - 2);
                     limits.check_triangles(triangles.len(), body.place())?;
                 }
                 kind => skip_property(kind, body)?,
