@@ -18,6 +18,27 @@ const PASSED_OVER: [&[u8]; 8] = [
     b"safety_controller",
 ];
 
+/// What is read, with all its attributes where one that is not read may misplace a link or its shape.
+const ELEMENTS: [(&str, &[&str]); 16] = [
+    ("robot", &[]),
+    ("link", &[]),
+    ("joint", &[]),
+    ("collision", &[]),
+    ("visual", &[]),
+    ("geometry", &[]),
+    ("parent", &[]),
+    ("child", &[]),
+    ("origin", &["xyz", "rpy"]),
+    // Some exporters write a turn of the axis, which no reader takes.
+    ("axis", &["xyz", "rpy"]),
+    ("limit", &[]),
+    ("mimic", &["joint", "multiplier", "offset"]),
+    ("mesh", &["filename", "scale"]),
+    ("box", &["size"]),
+    ("cylinder", &["radius", "length"]),
+    ("sphere", &["radius"]),
+];
+
 /// The text of a URDF without these parts, and without what belongs to the namespaces of others.
 pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
     let fault = |reason: String| RobotFault::Xml { reason };
@@ -33,8 +54,8 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
                 continue;
             }
             Event::Empty(start) if is_passed_over(&start)? => continue,
-            Event::Start(start) => Event::Start(plain(&start)),
-            Event::Empty(start) => Event::Empty(plain(&start)),
+            Event::Start(start) => Event::Start(plain(&known(start)?)),
+            Event::Empty(start) => Event::Empty(plain(&known(start)?)),
             other => other,
         };
         writer.write_event(kept).map_err(|error| fault(error.to_string()))?;
@@ -54,6 +75,32 @@ fn is_passed_over(start: &BytesStart<'_>) -> Result<bool, RobotFault> {
     }
 }
 
+/// The same, unless its name or that of an attribute is a slip: what places a link would be passed over.
+fn known(start: BytesStart<'_>) -> Result<BytesStart<'_>, RobotFault> {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let name = text(start.name().as_ref());
+    let fault = |reason: String| Err(RobotFault::Xml { reason });
+    let Some((_, attributes)) = ELEMENTS.iter().find(|(known, _)| *known == name) else {
+        let is_meant = |known: &str| {
+            name.eq_ignore_ascii_case(known) || strsim::damerau_levenshtein(&name, known) == 1
+        };
+        return match ELEMENTS.iter().find(|(known, _)| is_meant(known)) {
+            Some((known, _)) => fault(format!("<{name}> is not known: write <{known}>")),
+            None => Ok(start),
+        };
+    };
+    let own = start.attributes().flatten().filter(|attribute| attribute.key.prefix().is_none());
+    let unknown = own.map(|attribute| text(attribute.key.as_ref()));
+    match unknown.into_iter().find(|own| {
+        !attributes.is_empty() && !attributes.contains(&own.as_str()) && !own.starts_with("xmlns")
+    }) {
+        Some(own) => {
+            fault(format!("`{own}` of <{name}> is not known: write {}", attributes.join(" or ")))
+        }
+        None => Ok(start),
+    }
+}
+
 /// Without attributes of other namespaces, such as a comment of xacro. How fast a joint may move, which
 /// the schema asks for and many leave out, is not asked about.
 fn plain(start: &BytesStart<'_>) -> BytesStart<'static> {
@@ -70,6 +117,31 @@ fn plain(start: &BytesStart<'_>) -> BytesStart<'static> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A link with its place misspelt was where its joint is, without a word.
+    #[test]
+    fn slips_in_what_places_a_link_are_refused() {
+        let within = |inner: &str| {
+            let text = format!(
+                "<robot name='a'><link name='b'><collision>{inner}</collision></link></robot>"
+            );
+            essential(&text).map_err(|error| error.to_string())
+        };
+        for (inner, told) in [
+            (
+                "<origin xyz='0 0 1' rpi='0 0 0'/>",
+                "`rpi` of <origin> is not known: write xyz or rpy",
+            ),
+            ("<origin quat_xyzw='0 0 1 0'/>", "`quat_xyzw` of <origin>"),
+            ("<orgin xyz='0 0 1'/>", "<orgin> is not known: write <origin>"),
+            ("<Origin xyz='0 0 1'/>", "write <origin>"),
+            ("<geometry><mesh filename='a' Scale='1 1 1'/></geometry>", "`Scale` of <mesh>"),
+        ] {
+            let error = within(inner).unwrap_err();
+            assert!(error.contains(told), "{error}");
+        }
+        assert!(within("<origin xyz='0 0 1'/><contact_coefficients mu='1'/>").is_ok());
+    }
 
     #[test]
     fn what_places_nothing_is_passed_over_and_an_unexpanded_file_refused() {
