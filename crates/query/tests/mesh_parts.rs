@@ -12,14 +12,14 @@ fn block(size: f64, centre: [f64; 3]) -> TriangleMesh {
 
 fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
     let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-    TriangleMesh::new(mesh.vertices().to_vec(), turned).unwrap()
+    TriangleMesh::new(mesh.vertices().to_vec(), turned).expect("the same vertices")
 }
 
 /// A square floor at a height, its normals up.
 fn floor(height: f64) -> TriangleMesh {
     let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
     let vertices = corners.map(|[x, y]| Point3::new(x, y, height)).to_vec();
-    TriangleMesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]]).unwrap()
+    TriangleMesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]]).expect("a square")
 }
 
 /// Verdicts on a small ball, as a cloud and as a mesh, at a place.
@@ -29,7 +29,7 @@ fn of_a_ball_at(solid: &Mesh, place: [f64; 3]) -> [Verdict; 2] {
     let [x, y, z] = place;
     let of_cloud = ask(Mode::Calibrated, &cloud, solid, &at(-x, -y, -z));
     let pose = Pose::from_translation(Vector3::from(place));
-    let of_mesh = query(Mode::Calibrated).run(solid, &mesh(&ball), &pose).unwrap();
+    let of_mesh = query(Mode::Calibrated).run(solid, &mesh(&ball), &pose).expect("good bodies");
     [of_cloud.verdict, of_mesh.verdict]
 }
 
@@ -85,7 +85,7 @@ fn a_box_of_separate_faces_of_which_one_is_turned_is_no_free_space() {
                 p + 1e-4 * whole.corners(k).iter().map(|q| q.coords).sum::<Vector3>().normalize()
             };
             let triangle = if turned == Some(k / 2) { [0, 2, 1] } else { [0, 1, 2] };
-            TriangleMesh::new([a, b, c].map(apart).to_vec(), vec![triangle]).unwrap()
+            TriangleMesh::new([a, b, c].map(apart).to_vec(), vec![triangle]).expect("a triangle")
         };
         let solid = mesh(&scene::assemble((0..12).map(face)));
         for verdict in of_a_ball_at(&solid, [0.02, 0.01, 0.0]) {

@@ -4,12 +4,8 @@ use cloudtouch_geom::{Point3, Vector3};
 
 use super::cells::{Cell, Cells};
 use super::prepare::Mesh;
-use super::winding::FarRadii;
+use super::winding::{FarRadii, INSIDE, OUTSIDE};
 
-/// Wrapped around at least so often a place is inside, and at most so often outside: halfway between
-/// what a closed mesh has there and on its surface.
-pub(super) const INSIDE: f64 = 0.75;
-const OUTSIDE: f64 = 0.25;
 /// Sums this near to either limit are not relied on: twice their errors.
 const COARSE_DOUBT: f64 = 0.1;
 const FINE_DOUBT: f64 = 0.02;

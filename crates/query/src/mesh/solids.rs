@@ -7,8 +7,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use cloudtouch_geom::{Point3, TriangleMesh, Vector3};
 
-use super::side::INSIDE;
-use super::winding::{FarRadii, Winding};
+use super::winding::{FarRadii, INSIDE, Winding};
 
 /// Vertices of a part that tell whether it is within others, at most.
 const ASKED: usize = 64;

@@ -6,6 +6,11 @@
 
 use cloudtouch_geom::{Point3, Vector3};
 
+/// Wrapped around at least so often a place is inside, and at most so often outside: halfway between
+/// what a closed mesh has there and on its surface.
+pub(super) const INSIDE: f64 = 0.75;
+pub(super) const OUTSIDE: f64 = 0.25;
+
 /// How many of its radii away a group counts as a dipole. The error falls with the square of it: in
 /// the middle of a torus, where all groups err the same way, it is 0.036 at 3 and 0.008 at 6; the
 /// latter takes three to seven times as long.
