@@ -47,8 +47,8 @@ pub(super) fn parts(mesh: &TriangleMesh) -> Vec<Part> {
     parts.into_values().collect()
 }
 
-/// What stands for the part of a vertex; shortens the way there for the next time.
-fn root(parent: &mut [usize], mut vertex: usize) -> usize {
+/// What stands for the part of a vertex, or of a triangle; shortens the way there for the next time.
+pub(super) fn root(parent: &mut [usize], mut vertex: usize) -> usize {
     while parent[vertex] != vertex {
         parent[vertex] = parent[parent[vertex]];
         vertex = parent[vertex];

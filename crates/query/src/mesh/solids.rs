@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use cloudtouch_geom::{Point3, TriangleMesh, Vector3};
 
+use super::parts::root;
 use super::winding::{FarRadii, INSIDE, Winding};
 
 /// Vertices of a part that tell whether it is within others, at most.
@@ -24,7 +25,7 @@ pub(super) struct Solids {
 #[derive(Default)]
 struct Piece {
     triangles: Vec<usize>,
-    /// Twice three times what it encloses, m³; negative where it is turned inward.
+    /// Six times what it encloses, m³; negative where it is turned inward.
     volume: f64,
 }
 
@@ -97,13 +98,4 @@ fn pieces(mesh: &TriangleMesh) -> Vec<Piece> {
         piece.volume += a.dot(&b.cross(&c));
     }
     pieces.into_values().collect()
-}
-
-/// What stands for the part of a triangle; shortens the way there for the next time.
-fn root(parent: &mut [usize], mut triangle: usize) -> usize {
-    while parent[triangle] != triangle {
-        parent[triangle] = parent[parent[triangle]];
-        triangle = parent[triangle];
-    }
-    triangle
 }
