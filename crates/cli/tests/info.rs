@@ -57,7 +57,6 @@ fn says_whether_a_mesh_is_closed_and_which_unit_it_may_have() {
     assert!(text.contains("open: 3 edges"), "{text}");
 }
 
-/// Only meshes were told that they may be in millimetres.
 /// Two boxes that share an edge were called open, and only their surface to collide, where what is inside
 /// collides too.
 #[test]
@@ -81,6 +80,7 @@ fn closed_parts_that_touch_are_not_called_open() {
     assert!(text.contains("verdict                in collision"), "{text}");
 }
 
+/// Only meshes were told that they may be in millimetres.
 #[test]
 fn a_cloud_in_millimetres_was_laser_scanned_from_afar() {
     let inputs = Inputs::new();

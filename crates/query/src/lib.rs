@@ -21,6 +21,7 @@ mod report;
 mod scene;
 mod search;
 mod shape;
+mod spiral;
 mod stats;
 
 pub use body::{Body, BodyRef};

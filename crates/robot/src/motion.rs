@@ -138,17 +138,17 @@ impl RobotChecker {
                 let ends_free = not_free.as_ref().is_none_or(|(time, _)| to < *time);
                 if pair.is_none() && ends_free && !around().any(|(_, at_most)| may_meet(at_most)) {
                     certified_free_until = (segment as f64 + to) / segments;
-                } else if to - from <= tolerance * segments && pair.is_none() && !ends_free {
-                    let known = not_free.take();
-                    stopped = known.map(|(time, pair)| Stopped::at(segment, time, Some(pair)));
-                } else if to - from <= tolerance * segments {
-                    let least_sure = around().max_by(|(_, p), (_, q)| p.total_cmp(q));
-                    let nearest = least_sure.filter(|_| pair.is_none());
-                    let nearest = nearest.map(|(pair, at_most)| self.nearest(pair, at_most));
-                    stopped = Some(Stopped { nearest, ..Stopped::at(segment, middle, pair) });
-                } else {
+                } else if to - from > tolerance * segments {
                     not_free = pair.map(|pair| (middle, pair)).or(not_free);
                     open.extend([[middle, to], [from, middle]]);
+                } else if let Some(pair) = pair {
+                    stopped = Some(Stopped::at(segment, middle, Some(pair)));
+                } else if let Some((time, pair)) = not_free.take_if(|_| !ends_free) {
+                    stopped = Some(Stopped::at(segment, time, Some(pair)));
+                } else {
+                    let least_sure = around().max_by(|(_, p), (_, q)| p.total_cmp(q));
+                    let nearest = least_sure.map(|(pair, at_most)| self.nearest(pair, at_most));
+                    stopped = Some(Stopped { nearest, ..Stopped::at(segment, middle, None) });
                 }
             }
         }

@@ -33,10 +33,6 @@ pub(super) fn warn_of_small_cells(
     }
 }
 
-/// What is nearer to a camera or a laser scanner than this is left out where it is known to be, m: the
-/// default that `--min-range` tells.
-const LEFT_OUT: f64 = 0.1;
-
 /// Refuses a `--max-range` within the range that is left out without an option.
 pub(super) fn check_max_range(
     name: &str,
@@ -44,14 +40,13 @@ pub(super) fn check_max_range(
     sensor: &SensorModel,
     options: &BodyOptions<'_>,
 ) -> Result<()> {
-    let common = options.common;
-    let leaves_out = common.min_range.is_none()
-        && FilterSettings::for_sensor(sensor).min_range.is_none()
-        && (scan.is_image() || scan.sensor_pose.is_some());
-    match common.max_range.filter(|max| leaves_out && *max < LEFT_OUT) {
-        Some(max) => bail!(WrongUsage(format!(
-            "{name}: --max-range {max} leaves no point, for nearer than {LEFT_OUT} m to a {sensor} all are \
-             left out: give a larger one, or --min-range 0"
+    let mut filter = FilterSettings::for_sensor(sensor);
+    options.common.change(&mut filter);
+    match filter.unstated_min_range(scan).filter(|least| filter.max_range < *least) {
+        Some(least) => bail!(WrongUsage(format!(
+            "{name}: --max-range {} leaves no point, for nearer than {least} m to a {sensor} all are left out: \
+             give a larger one, or --min-range 0",
+            filter.max_range
         ))),
         None => Ok(()),
     }

@@ -9,10 +9,19 @@ const NEAREST: f64 = 0.1;
 /// Returns that are nearer than this to the place of a sensor are at it, m.
 const AT_IT: f64 = 1e-6;
 
+impl FilterSettings {
+    /// How near to the sensor returns are left out though no [`Self::min_range`] is stated, m; `None` where one
+    /// is, or where the sensor stood is not known.
+    pub fn unstated_min_range(&self, cloud: &PointCloud) -> Option<f64> {
+        let is_known = cloud.is_image() || cloud.sensor_pose.is_some();
+        (self.min_range.is_none() && is_known).then_some(NEAREST)
+    }
+}
+
 pub(super) fn keep_in_range(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &FilterSettings) {
     let place = cloud.sensor_origin();
-    let is_known = cloud.is_image() || cloud.sensor_pose.is_some();
-    let min = settings.min_range.unwrap_or(if is_known { NEAREST } else { AT_IT });
+    let unstated = settings.unstated_min_range(cloud).unwrap_or(AT_IT);
+    let min = settings.min_range.unwrap_or(unstated);
     kept.retain(|&i| {
         let range = (cloud.points[i] - place).norm();
         range >= min && range <= settings.max_range

@@ -6,6 +6,7 @@ use parry3d_f64::query::{Ray, RayCast};
 use parry3d_f64::shape::Triangle;
 
 use super::prepare::Mesh;
+use crate::spiral::direction;
 
 /// Directions that are looked in, ...
 const DIRECTIONS: usize = 200;
@@ -21,20 +22,14 @@ impl Mesh {
             self.missing.iter().map(|corners| corners.map(|p| vector(p.coords)).into()).collect();
         let most_open = ((1.0 - share) * DIRECTIONS as f64) as usize;
         let is_open = |k: &usize| {
-            let ray = Ray::new(vector(place.coords), vector(direction(k * STEP % DIRECTIONS)));
+            let ray = Ray::new(
+                vector(place.coords),
+                vector(direction(k * STEP % DIRECTIONS, DIRECTIONS)),
+            );
             !self.surface().intersects_local_ray(&ray, f64::MAX)
                 && !missing.iter().any(|filled| filled.intersects_local_ray(&ray, f64::MAX))
         };
         // PERF: where much is open, a few directions tell.
         (0..DIRECTIONS).filter(is_open).nth(most_open).is_none()
     }
-}
-
-/// One of [`DIRECTIONS`] spread evenly, along a spiral from pole to pole.
-fn direction(k: usize) -> Vector3 {
-    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-    let z = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
-    let (sin, cos) = (golden * k as f64).sin_cos();
-    let across = (1.0 - z * z).sqrt();
-    Vector3::new(across * cos, across * sin, z)
 }

@@ -29,7 +29,8 @@ const SAMPLES: usize = 500;
 ///
 /// Its surface is exact: its points have no covariance and count as on the wrong side with
 /// probability 0, ½ or 1. Points deep inside a closed part of it are found too; an open part is a
-/// surface without an inside, and takes nothing from that of others. Vertices that no triangle uses count for nothing.
+/// surface without an inside, and takes nothing from that of others. Vertices that no triangle uses
+/// count for nothing.
 #[derive(Debug)]
 pub struct Mesh {
     /// What was subtracted from file coordinates, m: far offsets keep their millimetres.

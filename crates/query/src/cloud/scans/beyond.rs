@@ -3,10 +3,8 @@
 use cloudtouch_geom::{PointCloud, Vector3};
 
 use crate::cloud::preparation::Preparation;
+use crate::cloud::view::raster::CLEARLY;
 use crate::error::PrepareError;
-
-/// So many standard deviations before a return there may be the surface that it is of.
-const CLEARLY: f64 = 3.0;
 
 /// The rows of the returns beyond the range that is kept, in order, with their rays up to where that range ends
 /// or the surface may be, m.

@@ -30,7 +30,8 @@ impl Prepared {
 /// The edges at the points of a leaf: to each other once, and to points of other leaves, each of
 /// which has the same edge.
 ///
-/// They are thin along a unit vector. Only points that are among each other's nearest are joined, so that both leaves agree.
+/// Only points that are among each other's nearest are joined, so that both leaves agree. The leaf is thin along
+/// a unit vector.
 pub(crate) fn edges_of(
     cloud: &Prepared,
     indices: &[u32],

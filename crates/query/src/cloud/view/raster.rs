@@ -14,7 +14,7 @@ const CELL_PIXELS: f64 = 2.0;
 /// such places, and smaller ones are specks that hardly a surface hides in.
 const HOLE_CELLS: isize = 1;
 /// Standard deviations of the measured surface that count as clearly behind it.
-const CLEARLY: f64 = 3.0;
+pub(in crate::cloud) const CLEARLY: f64 = 3.0;
 /// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
 const PANORAMA: f64 = 0.17;
 /// Cells of a raster at most, and columns or rows: beyond, they become wider.

@@ -4,21 +4,16 @@ use cloudtouch_geom::{Pose, Vector3};
 use nalgebra::UnitQuaternion;
 
 use super::gradient::PoseGradient;
+use crate::spiral::direction;
 
 /// How many directions stand for all.
 const ALL: usize = 48;
 /// Directions around another.
 const AROUND: usize = 6;
 
-/// Unit vectors spread evenly in all directions, on a spiral whose turns are the golden angle apart.
+/// Unit vectors spread evenly in all directions.
 pub(super) fn sphere() -> impl Iterator<Item = Vector3> {
-    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-    (0..ALL).map(move |k| {
-        let z = 1.0 - (2 * k + 1) as f64 / ALL as f64;
-        let (sine, cosine) = (golden * k as f64).sin_cos();
-        let across = (1.0 - z * z).sqrt();
-        Vector3::new(across * cosine, across * sine, z)
-    })
+    (0..ALL).map(|k| direction(k, ALL))
 }
 
 /// The axes of the scene and of the object, both ways, in the frame of the scene.
