@@ -35,8 +35,7 @@ pub(crate) fn of_header(
     separator: Option<u8>,
     place: Place,
 ) -> Result<Vec<usize>, FormatError> {
-    // CloudCompare puts two slashes before its column names.
-    let line = line.strip_prefix(b"//").unwrap_or(line).trim_ascii_start();
+    let line = without_slashes(line);
     let names = names(line, separator).map_err(|fault| place.error(fault))?;
     find_columns(names.iter().map(String::as_str)).map_err(|fault| match fault {
         // Whoever meant a row of numbers is helped more by seeing what was taken for names.
@@ -67,8 +66,15 @@ pub(crate) fn of_comment(
     Ok(is_whole.then(|| find_columns(names.iter().map(String::as_str)).ok()).flatten())
 }
 
-fn count(line: &[u8]) -> usize {
+/// How many columns a line names.
+pub(crate) fn count(line: &[u8]) -> usize {
+    let line = without_slashes(line);
     joined(line, separator(line)).len()
+}
+
+/// CloudCompare puts two slashes before its column names.
+fn without_slashes(line: &[u8]) -> &[u8] {
+    line.strip_prefix(b"//").unwrap_or(line).trim_ascii_start()
 }
 
 /// The names as [`find_columns`] knows them.

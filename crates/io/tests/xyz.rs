@@ -156,6 +156,19 @@ fn faults_are_named_by_line_and_column() {
     );
 }
 
+#[test]
+fn an_empty_value_between_tabs_moved_the_others_to_its_left() {
+    let short = |line, found| (Place::Line(line), Fault::RowLength { expected: 4, found });
+    assert_eq!(error("x\ty\tz\ti\n1\t2\t3\t4\n1\t\t3\t4\n"), short(3, 3));
+    assert_eq!(error("# x\ty\tz\ti\n1 2 3 4\n\t2\t3\t4\n"), short(3, 3));
+    assert_eq!(error("1\t2\t3\t4\n\t2\t3\t4\n"), short(2, 3));
+    // Values with spaces in them, after the coordinates, are no matter.
+    assert_eq!(points("x y z name\n1 2 3 a lid\n").len(), 1);
+    assert_eq!(points("1 2 3 a lid\n1 2 3\n").len(), 2);
+    // Where commas show it, an empty value of another column is one.
+    assert_eq!(points("x,y,z,i\n1,2,3,\n1,2,3\n").len(), 2);
+}
+
 /// What Windows PowerShell redirects into a file was told to have no numbers in its first row.
 #[test]
 fn text_in_utf_16_is_told_as_such() {

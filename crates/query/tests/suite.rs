@@ -22,6 +22,7 @@ mod hard_leaf_problems;
 mod hidden;
 mod known_normals;
 mod large_faces;
+mod laser_place;
 mod limits;
 mod margin;
 mod merge;

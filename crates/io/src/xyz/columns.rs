@@ -2,7 +2,7 @@
 
 use crate::{
     builder::Row,
-    column_names::{of_comment, of_header, separator, values},
+    column_names::{count, of_comment, of_header, separator, values},
     fault::{FormatError, Place},
     text::{number, parse as parse_number},
 };
@@ -16,6 +16,9 @@ pub(super) struct Columns {
     pub places: Vec<usize>,
     /// The same in the order of the columns, each with its place in a [`Row`].
     wanted: Vec<(usize, usize)>,
+    /// How many values a row has at least. Between white space an empty one moves all that follow it: where
+    /// columns have names, or tabs between them, a row has as many as the first.
+    pub fewest: usize,
     /// Whether they have names: those without may be anything.
     pub is_named: bool,
     /// Whether the first row is the one that names them, and no point.
@@ -42,12 +45,11 @@ impl Columns {
         let places = named.unwrap_or_else(|| vec![0, 1, 2]);
         let mut wanted: Vec<(usize, usize)> = places.iter().copied().zip(0..).collect();
         wanted.sort_unstable();
-        Ok(Self { separator, places, wanted, is_named, is_header })
-    }
-
-    /// How many a row has at least.
-    pub(super) fn fewest(&self) -> usize {
-        self.wanted.last().map_or(0, |&(column, _)| column + 1)
+        let fewest = match separator {
+            None if is_named || first.contains(&b'\t') => count(first).max(3),
+            _ => wanted.last().map_or(0, |&(column, _)| column + 1),
+        };
+        Ok(Self { separator, places, wanted, fewest, is_named, is_header })
     }
 
     /// What a row has of these columns, and how many it has in all.

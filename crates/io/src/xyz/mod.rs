@@ -26,8 +26,8 @@ use self::unnamed::{refuse_a_count, refuse_many_columns};
 /// Other columns are passed over. `nan` is a missing return.
 ///
 /// # Errors
-/// When there is nothing but comments, a column is missing or named twice, a row is too short, a
-/// value is no number, a covariance is none, a row
+/// When there is nothing but comments, a column is missing or named twice, a row is too short (between tabs, or
+/// between white space under names: shorter than the first, for its empty values cannot be told), a value is no number, a covariance is none, a row
 /// without column names seems to hold several points, the first of four or more such columns counts the rows, or there are more points than the default [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
     parse_within(bytes, &ReadLimits::default())
@@ -52,7 +52,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
     let mut widest = (0, lines.place());
     while let Some(line) = pending.take().or_else(|| next_row(&mut lines)) {
         let (row, found) = columns.row(line, lines.number)?;
-        let expected = columns.fewest();
+        let expected = columns.fewest;
         if found < expected {
             let is_count = !columns.is_named && cloud.len() == 0 && found == 1;
             return Err(lines.place().error(match is_count {

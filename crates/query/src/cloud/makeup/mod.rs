@@ -1,6 +1,7 @@
 //! What a cloud is like as a whole: what queries look at before they believe it.
 
 pub(super) mod clumps;
+mod panorama;
 mod pinhole;
 pub(super) mod scatter;
 pub(super) mod spread;
@@ -11,7 +12,6 @@ use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::{Neighborhoods, SensorModel, SensorNoise, typical_of_spacings};
 
 use crate::cloud::makeup::clumps::{Clumps, clumps};
-use crate::cloud::makeup::pinhole::is_misplaced;
 use crate::cloud::makeup::scatter::Flattest;
 use crate::cloud::makeup::spread::{SAMPLE, Sample};
 use crate::filter::StageReport;
@@ -45,7 +45,7 @@ pub(crate) enum SensorDoubt {
     Layout,
     /// A camera, and no image.
     NoImage,
-    /// No camera at the place stated has such rows and columns.
+    /// No camera, or no laser scanner, at the place stated has such rows and columns.
     Misplaced,
     /// So large a share of the points was taken for the robot itself.
     Robot { share: f64 },
@@ -194,18 +194,21 @@ pub(super) fn sensor_doubts(
                 doubts.push(SensorDoubt::NoImage);
             }
         }
-        SensorModel::Lidar { .. } if cloud.is_image() => {
-            let forward = rays().filter_map(|ray| ray.try_normalize(0.0)).sum::<Vector3>();
-            let forward = forward.try_normalize(0.0).unwrap_or_else(Vector3::z);
-            if rays().all(|ray| ray.dot(&forward) >= BESIDE * ray.norm()) {
-                doubts.push(SensorDoubt::Layout);
-            }
+        SensorModel::Lidar { .. } if cloud.is_image() && is_ahead(rays()) => {
+            doubts.push(SensorDoubt::Layout);
         }
         _ => {}
     }
-    let is_laser = matches!(sensor, SensorModel::Lidar { .. });
-    if doubts.is_empty() && !is_laser && cloud.is_image() && is_misplaced(cloud, &place) {
-        doubts.push(SensorDoubt::Misplaced);
+    if doubts.is_empty() && cloud.is_image() {
+        let is_camera = matches!(sensor, SensorModel::Kinect | SensorModel::Stereo { .. });
+        let is_misplaced = if is_camera || is_ahead(rays()) {
+            pinhole::is_misplaced
+        } else {
+            panorama::is_misplaced
+        };
+        if is_misplaced(cloud, &place) {
+            doubts.push(SensorDoubt::Misplaced);
+        }
     }
     if *sensor == SensorModel::Kinect {
         let step = points.len().div_ceil(SAMPLE).max(1);
@@ -215,4 +218,11 @@ pub(super) fn sensor_doubts(
         }
     }
     doubts
+}
+
+/// Whether all of these lie ahead of a sensor, wherever it looks, as those of a camera do.
+fn is_ahead(mut rays: impl Iterator<Item = Vector3> + Clone) -> bool {
+    let forward = rays.clone().filter_map(|ray| ray.try_normalize(0.0)).sum::<Vector3>();
+    let forward = forward.try_normalize(0.0).unwrap_or_else(Vector3::z);
+    rays.all(|ray| ray.dot(&forward) >= BESIDE * ray.norm())
 }

@@ -142,7 +142,7 @@ pub enum Warning {
         /// Whose.
         body: Which,
     },
-    /// An image whose rows and columns no camera at the place stated for it has.
+    /// A cloud whose rows and columns no camera, or no laser scanner, at the place stated for it has.
     ImagePlace {
         /// Whose.
         body: Which,

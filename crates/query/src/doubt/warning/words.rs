@@ -79,7 +79,7 @@ impl Warning {
                 "the {body} is of a camera and has no image layout: what the camera did not see counts as empty;"
             ),
             Self::ImagePlace { body } => format!(
-                "the {body} has rows and columns as an image, which no camera at the place stated for it has:"
+                "the {body} has rows and columns as an image, which no sensor at the place stated for it has:"
             ),
             Self::SelfFilter { body, share } => {
                 part((100.0 * share, "points", body), "were taken for the robot and left out:")
