@@ -1,5 +1,6 @@
 //! All tests of this crate's interface, one module a behaviour: one program to link.
 
+mod around;
 mod bounds;
 mod change;
 mod common;

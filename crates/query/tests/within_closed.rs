@@ -48,6 +48,22 @@ fn free_and_enclosed(reports: &[Report]) -> [usize; 2] {
     [free.count(), reports.iter().filter(is_enclosed).count()]
 }
 
+/// Without noise no place about a point was asked whether it is inside, and no point was looked at: free.
+#[test]
+fn an_exact_cloud_within_a_mesh_read_free() {
+    let ball = PointCloud::from_points(measured(&scene::sphere(0.025, 4), 0.003, 0.0, 1));
+    let query = Query::new(QuerySettings::default()).unwrap();
+    for sensor in [SensorModel::Exact, SensorModel::Isotropic { std: 0.0 }] {
+        let fresh = Cloud::prepare(&ball, &CloudSettings::new(sensor)).unwrap();
+        for pose in [at(0.0, 0.0, 0.0), at(0.3, -0.2, 0.45)] {
+            let report = query.run(&fresh, &cube(1.0), &pose.inverse()).unwrap();
+            assert_eq!(report.verdict, Verdict::InCollision, "{pose:?} {report:?}");
+        }
+        let report = query.run(&fresh, &cube(1.0), &at(0.6, 0.0, 0.0)).unwrap();
+        assert_eq!(report.verdict, Verdict::Free, "{report:?}");
+    }
+}
+
 /// Of a large top 57 of 100 places read free, of a small one 72.
 #[test]
 fn a_body_within_a_table_top_read_free() {

@@ -44,8 +44,9 @@ impl RobotChecker {
                 None => self.scene.body(SURROUNDINGS).map(Into::into),
             };
             // What cannot be asked is not clear.
-            let found = a.ok().and_then(|a| query.within(a, &*parts[i].body, &a_from_b, way).ok());
-            found.map_or(1.0, |(_, within)| within.bounds[1])
+            let found =
+                a.ok().and_then(|a| query.bound_around(a, &*parts[i].body, &a_from_b, way).ok());
+            found.unwrap_or(1.0)
         };
         (0..parts.len()).flat_map(of_all).filter(may_touch).map(move |pair| (pair, at_most(pair)))
     }

@@ -70,8 +70,7 @@ pub(crate) fn by_kernel(
     };
 
     let sides = all.split_at(points.a.len());
-    let reading =
-        |solution: &_| read(&problem, solution, unit_box, sides, settings.distrusts_noise);
+    let reading = |solution: &_| read(&problem, solution, unit_box, sides, settings);
     let mut solution = loose.solve_watched(&problem, None, &mut look);
     let mut read = reading(&solution);
     if is_open(&solution) || read.is_at_limit {
@@ -114,17 +113,21 @@ fn read(
     solution: &Solution,
     unit_box: UnitBox,
     (a, b): (&[UncertainPoint], &[UncertainPoint]),
-    distrusts_noise: bool,
+    settings: &ClassifierSettings,
 ) -> Reading {
     let sure = |answer| Reading { answer, is_at_limit: false };
     if solution.status == Status::Collapsed {
         return sure(PairAnswer::Indistinct);
     }
+    // Cut short, or stuck: that probabilities may be read does not make them exact.
+    if solution.relative_gap > settings.relative_gap {
+        return sure(PairAnswer::Undecided);
+    }
     let Ok(classifier) = Classifier::new(problem, solution) else {
         return sure(PairAnswer::Undecided);
     };
     let surface = Surface::Kernel(classifier.outside(unit_box));
-    let std = if distrusts_noise {
+    let std = if settings.distrusts_noise {
         typical_std_across(&surface, a.iter().chain(b)) * unit_box.scale()
     } else {
         0.0

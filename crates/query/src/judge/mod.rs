@@ -5,6 +5,7 @@
 //! and one by which the classifier revises it where doubt is left. All are continuous, and monotone in what
 //! is evidence.
 
+mod bound;
 // Made by a command, a row a line.
 #[rustfmt::skip]
 mod fitted;

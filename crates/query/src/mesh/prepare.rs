@@ -39,7 +39,10 @@ pub struct Mesh {
     tree: Tree,
     /// The tree of the paper's path, once that is needed.
     paper_tree: OnceLock<Tree>,
+    /// Of what has an inside, or of all where nothing has.
     pub(super) winding: Winding,
+    /// Of the rest.
+    pub(super) sheets: Option<Winding>,
     /// Corners of the triangles that an open mesh lacks.
     pub(super) missing: Vec<[Point3; 3]>,
     /// One of each connected part.
@@ -93,8 +96,11 @@ impl Mesh {
         let tree = tree_of(triangles.iter().copied(), LEAF_TRIANGLES, 0.0)?;
         // What is open has no inside, and takes none away, but where there is nothing else.
         let counts = |triangle: &usize| closed || !has_solids || is_solid[*triangle];
-        let counting = (0..triangles.len()).filter(counts).map(|t| triangles[t]).collect();
-        let winding = Winding::new(counting);
+        let (counting, rest): (Vec<_>, Vec<_>) = (0..triangles.len()).partition(counts);
+        let winding_of =
+            |some: Vec<usize>| Winding::new(some.iter().map(|&t| triangles[t]).collect());
+        let sheets = (!rest.is_empty()).then(|| winding_of(rest));
+        let winding = winding_of(counting);
         let prepare_time = start.elapsed();
         Ok(Self {
             origin,
@@ -102,6 +108,7 @@ impl Mesh {
             tree,
             paper_tree: OnceLock::new(),
             winding,
+            sheets,
             missing,
             vertices_of_parts: parts.iter().map(|part| part.vertex).collect(),
             watertight,

@@ -65,8 +65,7 @@ impl Mesh {
         let to_box = self.distance_to_box(local);
         let [low, high] = self.corners_of_box();
         // The way on from the nearest place of the box turns by a right angle at least.
-        to_box >= distance
-            || to_box.hypot(self.clear_around(&local.sup(&low).inf(&high))) >= distance
+        to_box > distance || to_box.hypot(self.clear_around(&local.sup(&low).inf(&high))) > distance
     }
 
     /// Whether every place within a distance (m) of a straight way, in the local frame, is outside, as far

@@ -97,7 +97,7 @@ mod tests {
             let distance = mesh.distance(&place);
             let is_inside = mesh.encloses(&place);
             assert_eq!(sides.encloses(&place, distance), is_inside, "{place}");
-            let around = 0.05 * seed::unit(seed::derive(4, i, 0));
+            let around = (0.06 * seed::unit(seed::derive(4, i, 0)) - 0.01).max(0.0);
             let is_clear = distance > around && !is_inside;
             assert_eq!(sides.are_clear_around(&place, around), is_clear, "{place}");
             counts[usize::from(is_inside)] += 1;

@@ -4,7 +4,7 @@ use cloudtouch_geom::Point3;
 
 use super::prepare::Mesh;
 use super::subdivide::{MAX_DEPTH, halved};
-use super::winding::centroid;
+use super::winding::{Winding, centroid};
 
 impl Mesh {
     /// Calls `visit` with places and areas (m²) that stand for all the surface within `reach` (m) of a
@@ -18,25 +18,35 @@ impl Mesh {
         fine: f64,
         mut visit: impl FnMut(&Point3, f64),
     ) {
-        let groups = &self.winding.groups;
-        let mut at = 0;
-        while let Some(group) = groups.get(at) {
-            let beyond = reach + group.squared_radius.sqrt();
-            at = if (group.center - place).norm_squared() > beyond * beyond {
-                group.next
-            } else if 4.0 * group.squared_radius <= fine * fine {
-                visit(&group.center, group.size);
-                group.next
-            } else if group.is_leaf {
-                let [from, to] = group.range;
-                for triangle in &self.winding.triangles()[from..to] {
-                    visit_parts(*triangle, (place, reach), fine, MAX_DEPTH, &mut visit);
-                }
-                group.next
-            } else {
-                at + 1
-            };
+        for part in std::iter::once(&self.winding).chain(&self.sheets) {
+            visit_within(part, (place, reach), fine, &mut visit);
         }
+    }
+}
+
+fn visit_within(
+    part: &Winding,
+    (place, reach): (&Point3, f64),
+    fine: f64,
+    visit: &mut impl FnMut(&Point3, f64),
+) {
+    let mut at = 0;
+    while let Some(group) = part.groups.get(at) {
+        let beyond = reach + group.squared_radius.sqrt();
+        at = if (group.center - place).norm_squared() > beyond * beyond {
+            group.next
+        } else if 4.0 * group.squared_radius <= fine * fine {
+            visit(&group.center, group.size);
+            group.next
+        } else if group.is_leaf {
+            let [from, to] = group.range;
+            for triangle in &part.triangles()[from..to] {
+                visit_parts(*triangle, (place, reach), fine, MAX_DEPTH, visit);
+            }
+            group.next
+        } else {
+            at + 1
+        };
     }
 }
 
@@ -75,7 +85,7 @@ fn visit_parts(
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::TriangleMesh;
+    use cloudtouch_geom::{Pose, TriangleMesh, Vector3};
     use cloudtouch_testkit::scene;
     use proptest::prelude::*;
 
@@ -97,8 +107,7 @@ mod tests {
             let sheet = scene::subdivide_to_max_edge(&scene::plane_patch(0.8), edge);
             let parts = parts(&sheet, 10.0, 0.05);
             let area: f64 = parts.iter().map(|part| part.1).sum();
-            let middle =
-                parts.iter().map(|part| part.0.coords * part.1).sum::<cloudtouch_geom::Vector3>();
+            let middle = parts.iter().map(|part| part.0.coords * part.1).sum::<Vector3>();
             assert!((area - 0.64).abs() < 1e-9 && middle.norm() < 1e-9, "{edge}: {area} {middle}");
             // As exact as the sheet itself, about its middle.
             let square = |part: &(Point3, f64)| part.0.x * part.0.x * part.1;
@@ -107,6 +116,15 @@ mod tests {
             // As many as the sheet needs, however fine its triangles are.
             assert!((240..=2048).contains(&parts.len()), "{edge}: {}", parts.len());
         }
+    }
+
+    #[test]
+    fn a_sheet_beside_a_closed_part_was_left_out() {
+        let aside = Pose::from_translation(Vector3::new(0.0, 0.0, 0.5));
+        let block = scene::moved(&scene::cuboid([0.2; 3]), &aside);
+        let both = scene::assemble([scene::plane_patch(0.8), block]);
+        let area: f64 = parts(&both, 10.0, 0.05).iter().map(|part| part.1).sum();
+        assert!((area - (0.64 + 0.24)).abs() < 1e-9, "{area}");
     }
 
     proptest! {

@@ -7,7 +7,6 @@ use crate::classifier::Clock;
 use crate::doubt::unseen::knows_unseen;
 use crate::error::QueryError;
 use crate::exact::collide;
-use crate::judge::{JudgeOfPair, probability};
 use crate::mesh::Mesh;
 use crate::query::{Query, noise_over_spacing};
 use crate::record::CLEAR_DEVIATIONS;
@@ -31,9 +30,6 @@ const DOUBTED_WAY: f64 = 0.05;
 /// ... but no more often than this.
 const MOST_DOUBTED: usize = 201;
 
-/// What sums in another order may differ by, in log odds.
-const ROUNDING: f64 = 1e-9;
-
 impl Drifting<'_> {
     /// A bound on the probability of a collision at any pose on the way; 1 as soon as it would exceed
     /// `cut`, or when time is over.
@@ -52,8 +48,7 @@ impl Drifting<'_> {
         }
         // It keeps along the motion.
         let judge = settings.judge.for_noise(noise_over_spacing((a, b)));
-        let at_most =
-            |deviations, clearness| at_most(&judge, settings.prior, deviations, clearness);
+        let at_most = |deviations, clearness| judge.at_most(settings.prior, deviations, clearness);
         let is_above = |deviations: f64, clearness: f64| {
             at_most(deviations, clearness) > cut || clock.is_over()
         };
@@ -75,7 +70,7 @@ impl Drifting<'_> {
     pub(super) fn is_clear(&self, query: &Query, upper: f64) -> bool {
         let settings = query.settings();
         let judge = settings.judge.for_noise(noise_over_spacing(self.bodies));
-        upper <= at_most(&judge, settings.prior, CLEAR_DEVIATIONS, 0.0)
+        upper <= judge.at_most(settings.prior, CLEAR_DEVIATIONS, 0.0)
     }
 
     /// At how many poses, ends included and evenly apart, what lies where the pair is doubted is not passed over:
@@ -108,13 +103,4 @@ impl Drifting<'_> {
         }
         Ok(if collide(meshes, local)? { 1.0 } else { 0.0 })
     }
-}
-
-/// The probability where there are no fewer deviations and crossings are no clearer, whatever the
-/// extent is and a classifier says.
-fn at_most(judge: &JudgeOfPair, prior: f64, deviations: f64, clearness: f64) -> f64 {
-    let by_place = judge.log_odds_by_place(deviations, clearness.ln_1p());
-    let [_, by_geometry] = judge.with_any_extent(by_place);
-    let revised = judge.revise(by_geometry, f64::INFINITY).max(by_geometry);
-    probability(revised + ROUNDING, prior)
 }

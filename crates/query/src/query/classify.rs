@@ -27,7 +27,7 @@ pub(super) struct Misclassified {
     /// `None` where no classifier could tell.
     pub value: Option<f64>,
     pub bounds: [f64; 2],
-    /// Whether a patch was left to geometry: the noise is as large as it.
+    /// Whether a patch was left to geometry: the noise is as large as it, or it was not solved.
     is_indistinct: bool,
     /// What has that value.
     pub told_by: MisclassifiedBy,
@@ -59,13 +59,7 @@ impl Misclassified {
         Self { value: Some(value), bounds: [value; 2], told_by, ..Self::NOTHING }
     }
 
-    /// Of a patch of so many points that no solver could decide.
-    fn undecided(points: usize) -> Self {
-        let points = points as f64;
-        Self { value: Some(0.5 * points), bounds: [0.0, points], ..Self::NOTHING }
-    }
-
-    /// Of a patch of so many points that nothing separates and nothing joins.
+    /// Of a patch of so many points that nothing separates and nothing joins, or that no solver decided.
     fn indistinct(points: usize) -> Self {
         Self { bounds: [0.0, points as f64], is_indistinct: true, ..Self::NOTHING }
     }
@@ -145,8 +139,11 @@ pub(super) fn ask_classifier(
             PairAnswer::Separated { a, b, .. } => {
                 Misclassified::known(a.iter().chain(&b).sum(), patch)
             }
-            PairAnswer::Undecided => Misclassified::undecided(count),
             PairAnswer::Indistinct => Misclassified::indistinct(count),
+            PairAnswer::Undecided => {
+                stats.undecided += 1;
+                Misclassified::indistinct(count)
+            }
         };
         all = all.or_more(of_patch);
         let [.., most] = DOUBT_KNOTS;

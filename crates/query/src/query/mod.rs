@@ -1,6 +1,7 @@
 //! The default path: geometry first, the classifier in doubt, a fitted probability.
 
 mod any;
+mod around;
 mod batch;
 mod blur;
 mod classify;

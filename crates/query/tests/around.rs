@@ -1,0 +1,79 @@
+//! What no pose about a pose exceeds.
+
+use crate::common::{at, measured, uniform};
+use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{Body, Cloud, CloudSettings, Mesh, Query, QuerySettings};
+use cloudtouch_testkit::scene;
+
+/// A plate, and how far its corners are from its middle, m.
+const PLATE: [f64; 3] = [0.24, 0.2, 0.02];
+const RADIUS: f64 = 0.1566;
+
+fn cloud(shape: &TriangleMesh, std: f64, seed: u64) -> Body {
+    let points = PointCloud::from_points(measured(shape, 0.012, std, seed));
+    let settings = CloudSettings::new(SensorModel::Isotropic { std });
+    Body::Cloud(Cloud::prepare(&points, &settings).unwrap().refined().unwrap())
+}
+
+fn mesh(shape: &TriangleMesh) -> Body {
+    Body::Mesh(Mesh::prepare(shape).unwrap())
+}
+
+/// A turn by an angle about an axis of any length.
+fn turn(axis: Vector3, angle: f64) -> Pose {
+    let (sin, cos) = (0.5 * angle).sin_cos();
+    let [x, y, z] = (axis.normalize() * sin).into();
+    Pose::try_from_quaternion(Vector3::zeros(), [x, y, z, cos]).unwrap()
+}
+
+/// Poses about one that take no point within the radius farther than `way` metres: the one that lets down a corner
+/// of the plate as far as may be, and others.
+fn about(pose: &Pose, way: f64, stream: u64) -> impl Iterator<Item = Pose> {
+    let corner = turn(Vector3::new(-PLATE[1], PLATE[0], 0.0), way / RADIUS);
+    let any = move |index: u64| {
+        let draw = |k| 2.0 * uniform(stream + index, k) - 1.0;
+        let [axis, shift] = [0, 3].map(|k| Vector3::new(draw(k), draw(k + 1), draw(k + 2)));
+        let share = uniform(stream + index, 6);
+        let shift = Pose::from_translation(shift.normalize() * (way * (1.0 - share)));
+        shift.after(&turn(axis, share * way / RADIUS))
+    };
+    std::iter::once(corner).chain((0..12).map(any)).map(|near| pose.after(&near))
+}
+
+/// Flat faces along one another speak against a collision as a corner as near does not: tilted, a plate was likelier
+/// in collision than the margin that it moved by was to be kept.
+#[test]
+fn no_pose_about_one_is_likelier_than_is_told() {
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let mut close = 0;
+    for (is_mesh, std) in [(true, 0.001), (false, 0.001), (true, 0.0), (false, 0.006)] {
+        let plate = scene::cuboid(PLATE);
+        let table = cloud(&scene::plane_patch(0.6), std, 3);
+        let held = if is_mesh { mesh(&plate) } else { cloud(&plate, std, 5) };
+        for k in 0..30 {
+            let way = [0.004, 0.01, 0.03][k as usize % 3];
+            let gap = 0.012 * uniform(k, 9) + 1.5 * std;
+            let pose = at(0.01, 0.02, 0.5 * PLATE[2] + way + gap);
+            let bound = query.bound_around(&table, &held, &pose, way).unwrap();
+            for near in about(&pose, way, 100 * k) {
+                let found = query.run(&table, &held, &near).unwrap().collision_probability;
+                assert!(found <= bound, "{std} {way} {gap}: {found} beyond {bound}");
+                close += usize::from(bound < 2.0 * found && bound > 0.001);
+            }
+        }
+    }
+    assert!(close > 20, "{close}");
+}
+
+#[test]
+fn a_way_that_may_close_the_gap_bounds_nothing() {
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let table = cloud(&scene::plane_patch(0.6), 0.001, 3);
+    let bound = |way: f64| {
+        query.bound_around(&table, &mesh(&scene::cuboid(PLATE)), &at(0.0, 0.0, 0.05), way)
+    };
+    assert!(bound(0.01).unwrap() < 0.001);
+    assert_eq!(bound(0.05).unwrap(), 1.0);
+    assert!(bound(-0.01).is_err() && bound(f64::NAN).is_err());
+}
