@@ -13,18 +13,19 @@ const RADIUS: f64 = 0.1566;
 fn cloud(shape: &TriangleMesh, std: f64, seed: u64) -> Body {
     let points = PointCloud::from_points(measured(shape, 0.012, std, seed));
     let settings = CloudSettings::new(SensorModel::Isotropic { std });
-    Body::Cloud(Cloud::prepare(&points, &settings).unwrap().refined().unwrap())
+    let fresh = Cloud::prepare(&points, &settings).expect("a good cloud");
+    Body::Cloud(fresh.refined().expect("a good cloud"))
 }
 
 fn mesh(shape: &TriangleMesh) -> Body {
-    Body::Mesh(Mesh::prepare(shape).unwrap())
+    Body::Mesh(Mesh::prepare(shape).expect("a good mesh"))
 }
 
 /// A turn by an angle about an axis of any length.
 fn turn(axis: Vector3, angle: f64) -> Pose {
     let (sin, cos) = (0.5 * angle).sin_cos();
     let [x, y, z] = (axis.normalize() * sin).into();
-    Pose::try_from_quaternion(Vector3::zeros(), [x, y, z, cos]).unwrap()
+    Pose::try_from_quaternion(Vector3::zeros(), [x, y, z, cos]).expect("a rotation")
 }
 
 /// Poses about one that take no point within the radius farther than `way` metres: the one that lets down a corner

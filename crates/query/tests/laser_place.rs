@@ -28,7 +28,7 @@ fn panorama() -> PointCloud {
 
 /// What is answered of a box of 20 cm in the air beside the pillar.
 fn answer(scan: &PointCloud, sensor: SensorModel) -> (Verdict, Option<Undecided>) {
-    let cloud = Cloud::prepare(scan, &CloudSettings::new(sensor)).unwrap();
+    let cloud = Cloud::prepare(scan, &CloudSettings::new(sensor)).expect("a good cloud");
     let held = mesh(&scene::cuboid([0.2; 3]));
     let pose = Pose::from_translation(SCANNER + Vector3::new(-1.0, 0.8, 0.2));
     let report = query(Mode::Calibrated).run(&cloud, &held, &pose).expect("good bodies");
@@ -43,7 +43,7 @@ fn a_panorama_in_another_frame_is_not_believed_without_its_place() {
     let lidar = SensorModel::Lidar { range_std: 0.01, beam_rad: 0.001 };
     for sensor in [lidar, SensorModel::Isotropic { std: 0.01 }] {
         let doubted = (Verdict::Undecided, Some(Undecided::Sensor));
-        assert_eq!(answer(&elsewhere, sensor.clone()), doubted, "{sensor:?}");
-        assert_eq!(answer(&placed, sensor.clone()), (Verdict::Free, None), "{sensor:?}");
+        assert_eq!(answer(&elsewhere, sensor), doubted, "{sensor:?}");
+        assert_eq!(answer(&placed, sensor), (Verdict::Free, None), "{sensor:?}");
     }
 }

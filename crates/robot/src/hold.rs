@@ -9,7 +9,7 @@ use crate::carried::Carried;
 use crate::checker::{RobotChecker, SURROUNDINGS};
 
 impl RobotChecker {
-    /// Has a link hold a body at `link_from_body`, a pose from its file frame into that of the link: from then on
+    /// Attaches a body to a link at `link_from_body`, a pose from its file frame into that of the link: from then on
     /// it moves with the link, along paths too, and is asked about as the links are, but beside what holds it.
     ///
     /// The surroundings must not hold it any more. Other links that touch it, such as fingers, have to be

@@ -28,8 +28,8 @@ const LARGE_OBJECT_RATIO: f64 = 3.0;
 const EXCHANGED_RATIO: f64 = 3.0;
 /// The same of two meshes.
 const EXCHANGED_MESHES_RATIO: f64 = 20.0;
-/// An object is not so many sizes of the larger body away from it: in millimetres a pose is, of whatever lies
-/// a twenty-fifth of that size off.
+/// An object is not so many sizes of the larger body away from it. A pose given in millimetres is, unless the
+/// object lies within a twenty-fifth of that size.
 const FARTHEST_SIZES: f64 = 40.0;
 /// Coordinates of a mesh are not this part of either body apart, ...
 const COARSE: f64 = 0.02;

@@ -5,8 +5,8 @@ pub(crate) const MOST_DEVIATIONS: f64 = 6.0;
 /// Keeps the logarithm of no misclassified point finite.
 pub(super) const MISCLASSIFIED_FLOOR: f64 = 0.02;
 
-/// For which noise over spacing of two bodies there is a surface over geometry: the last two for clouds far
-/// denser than they are sharp, of whose many pieces the nearest is near by chance, and that before as at 2.
+/// For which noise over spacing of two bodies there is a surface over geometry. The last two serve clouds much
+/// denser than their noise, of whose many pieces the nearest is near by chance; the one before repeats that at 2.
 pub const NOISE_KNOTS: [f64; 6] = [0.0, 0.5, 2.0, 3.0, 5.0, 12.0];
 /// Where each of these has its values: deviations by rows, crossing by columns.
 pub const DEVIATION_KNOTS: [f64; 13] =

@@ -3,7 +3,8 @@
 use crate::body::BodyRef;
 
 /// Noise over spacing, both in the median of a body, of two bodies together. One number of a pair, so that
-/// it adds no jump along a path, and a cloud of which a part is denser is judged as a whole. More than twice only as far as points show it.
+/// it adds no jump along a path, and a cloud of which a part is denser is judged as a whole. Ratios above 2 count
+/// only as far as the scatter of the points confirms them.
 pub(crate) fn noise_over_spacing((a, b): (BodyRef<'_>, BodyRef<'_>)) -> f64 {
     of(a).hypot(of(b))
 }

@@ -16,9 +16,8 @@ const PRECISION: f64 = 1e-3;
 const FINEST: f64 = 1e-5;
 
 impl Query {
-    /// Between what distances (m) the surfaces lie with a probability of `share`, as likely to be
-    /// nearer than the first as farther than the second: the margins that the bounds of [`Self::within`]
-    /// leave so likely. The first is 0 where a collision alone is, or may be: where nothing is known of what
+    /// Between what distances (m) the surfaces lie with a probability of `share`: a central interval, its ends the
+    /// margins that the bounds of [`Self::within`] leave so likely. The first is 0 where a collision alone is, or may be: where nothing is known of what
     /// a camera did not see, nor of how far off it is.
     ///
     /// The nearest of many pieces that face each other count, so that surfaces are told nearer than they are:

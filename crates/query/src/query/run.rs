@@ -44,7 +44,7 @@ impl Query {
         Self { settings: QuerySettings { detail, ..self.settings }, ..*self }
     }
 
-    /// The same, asked no more than whether a probability is below this one.
+    /// The same query with both thresholds at this probability, and no more than its verdict.
     pub(super) fn deciding(&self, probability: f64) -> Self {
         let (accept, reject, detail) = (probability, probability, Detail::Verdict);
         Self { settings: QuerySettings { accept, reject, detail, ..self.settings }, ..*self }

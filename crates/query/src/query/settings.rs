@@ -63,8 +63,7 @@ pub struct QuerySettings {
     /// The clock is looked at before each leaf pair and each classifier, and while one is trained, so that the
     /// limit is exceeded by some milliseconds. Exception: the first query of a cloud that has more noise than
     /// spacing and is not [`refined`](crate::Cloud::refined) exceeds it once, by about 60 ms for each 40,000
-    /// points. In no case does a leaf pair take longer than Clarabel, which is not interrupted, and
-    /// `max_mesh_parts` allow: some seconds.
+    /// points. One patch can exceed it by seconds where it falls to Clarabel, which cannot be interrupted.
     pub deadline: Option<Duration>,
     /// What keeps a pair from reading as free beside the evidence.
     pub safeguards: Safeguards,

@@ -119,6 +119,7 @@ impl Evidence {
                 .then(p.clearance_m.total_cmp(&q.clearance_m))
                 .then(p.point.x.total_cmp(&q.point.x))
                 .then(p.point.y.total_cmp(&q.point.y))
+                .then(p.point.z.total_cmp(&q.point.z))
         });
         let spread = self
             .contacts

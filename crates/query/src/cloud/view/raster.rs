@@ -17,6 +17,8 @@ const HOLE_CELLS: isize = 1;
 pub(in crate::cloud) const CLEARLY: f64 = 3.0;
 /// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
 const PANORAMA: f64 = 0.17;
+/// One that lacks no more cells than that of a full turn goes all around.
+const LEAST_GAP_CELLS: f64 = 2.0;
 /// Cells of a raster at most, and columns or rows: beyond, they become wider.
 const MOST_CELLS: f64 = 1e7;
 const MOST_COLUMNS: f64 = 1e4;
@@ -46,6 +48,8 @@ pub(super) struct Raster {
     pitch: f64,
     /// Columns and rows.
     size: [usize; 2],
+    /// Whether the last column is beside the first.
+    is_round: bool,
     /// The range, m, clearly behind the farthest return of each cell; zero without one.
     clearly_behind: Vec<f64>,
     /// The range, m, clearly before the nearest return of each cell; infinite without one.
@@ -93,13 +97,21 @@ impl Raster {
         if !(pitch > 0.0 && pitch.is_finite()) {
             return None;
         }
+        let is_round =
+            matches!(lens, Lens::Panorama(_)) && extent[0] + LEAST_GAP_CELLS * pitch > TAU;
+        let columns = (TAU / pitch).floor().max(1.0);
+        let pitch = if is_round { TAU / columns } else { pitch };
         // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
         let low = low.map(|v| v - 0.5 * pitch);
-        let size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
+        let mut size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
+        if is_round {
+            size[0] = columns as usize;
+        }
         let cells = size[0] * size[1];
         let (clearly_behind, clearly_before) = (vec![0.0; cells], vec![f64::INFINITY; cells]);
         let is_open = vec![false; if beyond.is_empty() { 0 } else { cells }];
-        let mut raster = Self { lens, low, pitch, size, clearly_behind, clearly_before, is_open };
+        let mut raster =
+            Self { lens, low, pitch, size, is_round, clearly_behind, clearly_before, is_open };
         for (number, [before, behind], at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
                 raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
@@ -164,12 +176,15 @@ impl Raster {
     /// The cell of a place of the view; `None` outside of it.
     fn cell(&self, at: [f64; 2]) -> Option<[isize; 2]> {
         let [x, y] = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.pitch);
-        let is_within = |v: f64, axis: usize| v >= 0.0 && v < self.size[axis] as f64;
+        let is_within = |v: f64, axis: usize| {
+            self.is_round && axis == 0 || v >= 0.0 && v < self.size[axis] as f64
+        };
         // The whole part.
         (is_within(x, 0) && is_within(y, 1)).then_some([x as isize, y as isize])
     }
 
     fn index(&self, x: isize, y: isize) -> Option<usize> {
+        let x = if self.is_round { x.rem_euclid(self.size[0] as isize) } else { x };
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
         (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
     }
@@ -222,6 +237,40 @@ impl Lens {
             Self::Panorama(to_sensor) => {
                 let (range, ray) = (ray.norm(), to_sensor.transform_vector(ray));
                 (range > 0.0).then(|| [ray.y.atan2(ray.x).rem_euclid(TAU), (ray.z / range).asin()])
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a scanner in a ball of 5 m, with a thing 1 m away beside straight ahead, on the one side or the other.
+    fn raster(is_left: bool) -> Raster {
+        let ray = |i: usize| {
+            let (azimuth, up) = ((i % 360) as f64, (i / 360) as f64 - 20.0);
+            let is_thing = azimuth == if is_left { 1.0 } else { 359.0 };
+            let (sin, cos) = azimuth.to_radians().sin_cos();
+            let up = up.to_radians();
+            let range = if is_thing { 1.0 } else { 5.0 };
+            (Point3::new(cos * up.cos(), sin * up.cos(), up.sin()) * range, 0.01)
+        };
+        let turn = UnitQuaternion::identity();
+        Raster::new((&Point3::origin(), &turn), (0..360 * 41).map(ray), &[], 360 * 41).unwrap()
+    }
+
+    /// What was just right of straight ahead was not beside what was there, for azimuths begin there.
+    #[test]
+    fn the_last_column_of_a_panorama_is_beside_the_first() {
+        for is_left in [true, false] {
+            let raster = raster(is_left);
+            let side = if is_left { 1.0 } else { -1.0 };
+            for (degrees, is_past) in [(0.0, false), (side, false), (8.0 * side, true)] {
+                let (sin, cos) = f64::to_radians(degrees).sin_cos();
+                let ray = 3.0 * Vector3::new(cos, sin, 0.0);
+                assert_eq!(raster.looks_past(&ray, 0.01), is_past, "{is_left} {degrees}");
+                assert_ne!(raster.sight(&ray), Sight::OutsideView);
             }
         }
     }

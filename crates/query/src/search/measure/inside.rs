@@ -65,8 +65,7 @@ pub(crate) struct Looked {
 }
 
 /// Looks for points of a cloud inside the mesh it is asked about, until one is clearly so, the time is
-/// over or `is_enough` of the deviations between the bodies, which are no more than it is told whatever
-/// is between their surfaces; finds nothing where neither body is a mesh.
+/// over, or `is_enough` of an upper bound on the deviations, whatever the search between the surfaces finds; finds nothing where neither body is a mesh.
 pub(crate) fn look_inside(
     (a, b): (BodyRef<'_>, BodyRef<'_>),
     a_from_b: &Pose,
