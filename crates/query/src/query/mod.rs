@@ -7,6 +7,7 @@ mod blur;
 mod classify;
 mod estimate;
 mod interval;
+mod misclassified;
 mod patches;
 mod places;
 mod poses;

@@ -10,7 +10,8 @@ use crate::judge::{ContactEvidence, probability};
 use crate::search::{Found, Looked, WITH_EXTENT, WITHOUT_EXTENT, look_inside, search};
 use crate::stats::Stats;
 
-use super::classify::{Misclassified, ask_classifier};
+use super::classify::ask_classifier;
+use super::misclassified::Misclassified;
 use super::settings::Detail;
 use super::task::Task;
 

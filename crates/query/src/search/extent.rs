@@ -5,8 +5,8 @@ use cloudtouch_geom::{Pose, UncertainPoint, normal};
 use crate::body::BodyRef;
 use crate::mesh::Mesh;
 
-use super::compare::facet::Whitening;
 use super::compare::meeting::{deviations_by_pose, squared_deviations};
+use super::compare::whitening::Whitening;
 use super::run::Found;
 use super::visit::leaf::{Leaf, NoisyLeaf};
 use super::visit::leaves::Leaves;

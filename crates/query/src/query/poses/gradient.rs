@@ -4,12 +4,13 @@ use cloudtouch_geom::{Motion, Pose};
 use serde::Serialize;
 
 use super::gap_by_pose::gap_by_pose;
+use super::misclassified_by_pose::misclassified_by_pose;
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::exact::nearest_places;
 use crate::mesh::Mesh;
-use crate::query::classify::{MisclassifiedBy, misclassified_by_pose};
 use crate::query::estimate::exact;
+use crate::query::misclassified::MisclassifiedBy;
 use crate::query::places::spots::{Spot, ToldBy};
 use crate::query::run::Query;
 use crate::query::settings::Detail;

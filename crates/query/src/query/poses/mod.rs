@@ -3,6 +3,7 @@
 mod directions;
 mod gap_by_pose;
 pub(super) mod gradient;
+mod misclassified_by_pose;
 mod nearing;
 pub(super) mod penetration;
 pub(super) mod uncertain;

@@ -1,10 +1,12 @@
 //! A triangle of a mesh: an exact piece of surface.
 
-use cloudtouch_geom::{Covariance, Matrix3, Motion, Point3, Vector3};
+use cloudtouch_geom::{Motion, Point3, Vector3};
 
-use crate::cloud::{End, Surfel};
+use crate::cloud::Surfel;
 
-use super::meeting::{LEAST_STD, are_beyond, beyond_along};
+use super::meeting::{are_beyond, beyond_along};
+use super::triangle::nearest_to_origin;
+use super::whitening::Whitening;
 
 /// A triangle in the local frame of A.
 #[derive(Debug, Clone, Copy)]
@@ -112,91 +114,9 @@ impl Facet {
     }
 }
 
-/// Lengths in standard deviations of a piece of surface, in every direction.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::search) struct Whitening {
-    /// Symmetric square roots of the covariance and of its inverse.
-    root: Matrix3,
-    inverse: Matrix3,
-}
-
-impl Whitening {
-    pub(in crate::search) fn of(surfel: &Surfel) -> Self {
-        match surfel.normal {
-            Some(normal) if surfel.end != End::CutOff => {
-                Self::of_disc(&normal, &surfel.point.covariance)
-            }
-            _ => Self::of_any(&surfel.point.covariance),
-        }
-    }
-
-    /// Of one that is the same in all directions across a unit vector, as where a surface is known.
-    fn of_disc(normal: &Vector3, covariance: &Covariance) -> Self {
-        let across = covariance.variance_along(normal);
-        let along = 0.5 * (covariance.matrix().trace() - across);
-        let [across, along] = [across, along].map(|v| v.max(0.0).sqrt().max(LEAST_STD));
-        let of = |across: f64, along: f64| {
-            Matrix3::from_diagonal_element(along) + normal * normal.transpose() * (across - along)
-        };
-        Self { root: of(across, along), inverse: of(across.recip(), along.recip()) }
-    }
-
-    fn of_any(covariance: &Covariance) -> Self {
-        let (variances, axes) = covariance.eigen();
-        let stds = variances.map(|v| v.max(0.0).sqrt().max(LEAST_STD));
-        let along = |stds: Vector3| axes * Matrix3::from_diagonal(&stds) * axes.transpose();
-        Self { root: along(stds), inverse: along(stds.map(f64::recip)) }
-    }
-
-    pub(in crate::search) fn apply(&self, offset: &Vector3) -> Vector3 {
-        self.inverse * offset
-    }
-
-    /// Along a unit vector, m².
-    fn variance_along(&self, direction: &Vector3) -> f64 {
-        (self.root * direction).norm_squared()
-    }
-
-    fn undo(&self, whitened: &Vector3) -> Vector3 {
-        self.root * whitened
-    }
-}
-
-/// The place of a triangle nearest to the origin, by the regions of its corners, edges and inside
-/// (Ericson, Real-Time Collision Detection, 5.1.5).
-pub(in crate::search) fn nearest_to_origin([a, b, c]: &[Vector3; 3]) -> Vector3 {
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (-ab.dot(a), -ac.dot(a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return *a;
-    }
-    let (d3, d4) = (-ab.dot(b), -ac.dot(b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return *b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let (d5, d6) = (-ab.dot(c), -ac.dot(c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return *c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let sum = va + vb + vc;
-    a + ab * (vb / sum) + ac * (vc / sum)
-}
-
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{UncertainPoint, unit};
+    use cloudtouch_geom::{Covariance, UncertainPoint, unit};
     use cloudtouch_noise::Refined;
     use proptest::prelude::*;
 
@@ -213,16 +133,6 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
-
-        #[test]
-        fn no_place_of_a_triangle_is_nearer(
-            a in vector(), b in vector(), c in vector(), u in 0.0..1.0_f64, v in 0.0..1.0_f64,
-        ) {
-            let nearest = nearest_to_origin(&[a, b, c]).norm();
-            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
-            let other = a + (b - a) * u + (c - a) * v;
-            prop_assert!(nearest <= other.norm() + 1e-12);
-        }
 
         #[test]
         fn the_way_to_a_facet_ends_on_it_and_is_as_long_as_said(
@@ -289,20 +199,6 @@ mod tests {
         assert!(
             facet.pierced_by(&[Point3::new(0.2, 0.3, 1.0), Point3::new(0.2, 0.3, 2.0)]).is_none()
         );
-    }
-
-    #[test]
-    fn lengths_in_deviations_of_a_disc_are_those_of_any_covariance() {
-        for (normal, stds) in
-            [(Vector3::new(1.0, 2.0, -2.0) / 3.0, [0.01, 0.4]), (Vector3::y(), [0.3, 0.1])]
-        {
-            let covariance = Covariance::from_axis(&unit(&normal).unwrap(), stds[0], stds[1]);
-            let (disc, any) =
-                (Whitening::of_disc(&normal, &covariance), Whitening::of_any(&covariance));
-            assert!(
-                (disc.root - any.root).norm() < 1e-12 && (disc.inverse - any.inverse).norm() < 1e-9
-            );
-        }
     }
 
     #[test]

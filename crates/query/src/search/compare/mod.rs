@@ -2,3 +2,5 @@
 
 pub(super) mod facet;
 pub(super) mod meeting;
+pub(super) mod triangle;
+pub(super) mod whitening;

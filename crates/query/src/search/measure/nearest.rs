@@ -3,8 +3,8 @@
 use cloudtouch_geom::{Point3, UncertainPoint, Vector3};
 
 use crate::cloud::{Ball, Surfel};
-use crate::search::compare::facet::Whitening;
 use crate::search::compare::meeting::squared_deviations;
+use crate::search::compare::whitening::Whitening;
 use crate::search::visit::ends::ROUNDING;
 use crate::search::visit::leaf::{ExactLeaf, Leaf, NoisyLeaf};
 use crate::search::visit::side::Side;

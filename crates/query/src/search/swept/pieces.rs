@@ -12,8 +12,9 @@ use crate::cloud::Surfel;
 use super::track::{
     Approach, Direction, Drifting, SweptFacet, Track, directions, least_at, nearest_time,
 };
-use crate::search::compare::facet::{Whitening, nearest_to_origin};
 use crate::search::compare::meeting::{LEAST_STD, solve};
+use crate::search::compare::triangle::nearest_to_origin;
+use crate::search::compare::whitening::Whitening;
 
 /// The pieces of two clouds, that of B drifting along its track; `None` where they have `limit` or more.
 pub(super) fn between_discs(

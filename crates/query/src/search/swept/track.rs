@@ -4,7 +4,8 @@ use cloudtouch_geom::{Drift, Point3, Vector3};
 
 use crate::cloud::Ball;
 
-use crate::search::compare::facet::{Facet, nearest_to_origin};
+use crate::search::compare::facet::Facet;
+use crate::search::compare::triangle::nearest_to_origin;
 
 /// How often the nearest place of a facet and the time of it are looked for in turn.
 const TURNS: usize = 3;

@@ -14,8 +14,9 @@ use crate::mesh::Mesh;
 use crate::stats::Stats;
 
 use super::side::Side;
-use crate::search::compare::facet::{Facet, Whitening};
+use crate::search::compare::facet::Facet;
 use crate::search::compare::meeting::probability_at;
+use crate::search::compare::whitening::Whitening;
 
 /// A leaf in the local frame of A: noisy pieces of surface, or exact ones.
 #[derive(Debug)]

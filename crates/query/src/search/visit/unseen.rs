@@ -167,8 +167,8 @@ mod tests {
 
     use super::*;
     use crate::cloud::End;
-    use crate::search::compare::facet::Whitening;
     use crate::search::compare::meeting::squared_deviations;
+    use crate::search::compare::whitening::Whitening;
 
     fn vector(of: [f64; 3]) -> Vector3 {
         Vector3::from(of)
