@@ -199,9 +199,10 @@ fn half_a_turn_between_two_poses_is_warned_of() {
     let told = |second: &str| {
         inputs
             .write("turn.csv", &format!("x,y,z,qw,qx,qy,qz\n0,0,0.5,1,0,0,0\n0,0,0.5,{second}\n"));
-        path(&inputs, "turn.csv", &[]).stderr()
+        let text = path(&inputs, "turn.csv", &[]).stdout();
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
     };
     assert!(told("0,0,0,1").contains("from pose 1 to the next it turns by half a turn"));
     assert!(told("-0.0001,0,0,1").contains("give a pose between them"));
-    assert_eq!(told("0.1,0,0,0.99498744"), "");
+    assert!(!told("0.1,0,0,0.99498744").contains("half a turn"));
 }

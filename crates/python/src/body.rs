@@ -77,7 +77,8 @@ impl Body {
                 }
                 Some(Prepared::Mesh(_)) => Err(refused("a mesh does not change")),
                 None => Err(refused(
-                    "the cloud is being asked about by another thread: change it between queries",
+                    "the cloud is being asked about by another thread, or a robot holds it: change it between queries, or have \
+                     the robot hold it anew",
                 )),
             }
         })

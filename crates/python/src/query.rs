@@ -174,11 +174,8 @@ impl Query {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let poses: PyResult<Vec<Pose>> = all_rigid(&poses).into_iter().collect();
-        let path = match (&poses?[..], is_screw) {
-            ([from, to], true) => Path::screw(from, to),
-            (poses, _) => Path::through(poses),
-        };
-        let path = path.map_err(refused)?;
+        let join = if is_screw { Path::through_by_screws } else { Path::through };
+        let path = join(&poses?).map_err(refused)?;
         let swept =
             py.detach(|| self.checked.sweep(&*a, &*b, &path, tolerance)).map_err(refused)?;
         sweep::answer(py, &swept)

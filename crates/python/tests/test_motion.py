@@ -40,8 +40,16 @@ def test_a_screw_is_another_way(floor, plate):
     ends = [tilted(0.1), lifted(0.1)]
     straight, screw = (ct.Query().sweep(floor, plate, ends, screw=screw) for screw in (False, True))
     assert straight.most_probable.pose.shape == screw.most_probable.pose.shape == (4, 4)
-    with pytest.raises(ValueError, match="poses are 3: a screw is from one pose to another"):
-        ct.Query().sweep(floor, plate, [*ends, lifted(0.2)], screw=True)
+    on = ct.Query().sweep(floor, plate, [*ends, lifted(0.2)], screw=True)
+    assert on.verdict == screw.verdict
+
+
+def test_half_a_turn_is_warned_of(floor, plate):
+    turned = lifted(0.1)
+    turned[:2, :2] *= -1
+    swept = ct.Query().sweep(floor, plate, [lifted(0.2), lifted(0.1), turned])
+    (warning,) = swept.warnings
+    assert warning.startswith("from pose 2 to the next it turns by half a turn")
 
 
 def test_paths_that_are_none(floor, plate):

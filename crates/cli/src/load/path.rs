@@ -7,9 +7,6 @@ use cloudtouch_cli::files::path::{self, PathText};
 use super::text;
 use crate::doubt::Doubt;
 
-/// So near to half a turn (rad) an angle that is written with few digits may go either way round.
-const HALF_TURN_ROUNDING: f64 = 0.01;
-
 /// The poses of a file, each joined to the next by a screw or by a straight way and slerp; and what is
 /// to be doubted of them, which has been warned of.
 pub(crate) fn read(file: &std::path::Path, is_screw: bool) -> Result<(Path, Option<Doubt>)> {
@@ -19,16 +16,6 @@ pub(crate) fn read(file: &std::path::Path, is_screw: bool) -> Result<(Path, Opti
     let doubt = unnamed.as_ref().map(Doubt::of_unnamed);
     if let Some(doubt) = &doubt {
         tracing::warn!("{}: {}", file.display(), doubt.words);
-    }
-    for (number, pair) in (1..).zip(poses.windows(2)) {
-        let angle = pair[0].rotation().angle_to(pair[1].rotation());
-        if angle > std::f64::consts::PI - HALF_TURN_ROUNDING {
-            tracing::warn!(
-                "{}: from pose {number} to the next it turns by half a turn, and rounding decides which way \
-                 round: give a pose between them",
-                file.display()
-            );
-        }
     }
     let path = if is_screw { Path::through_by_screws(&poses) } else { Path::through(&poses) };
     Ok((path.with_context(named)?, doubt))

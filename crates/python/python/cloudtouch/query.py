@@ -208,23 +208,21 @@ class Query:
         ----------
         poses
             (M, 4, 4), M at least 2: the path goes from each to the next, the origin of ``b`` along a straight line, its
-            rotation by the shorter turn (of half a turn rounding decides which way round: give a pose between).
+            rotation by the shorter turn (of half a turn rounding decides which way round: ``warnings`` tell).
         tolerance
             Stretches this short, as a share of the path, are not looked at closer; what they leave open stays in the
             bounds. At least 1e-5.
         screw
-            The way between two poses is a screw, about one axis and along it, as a joint moves.
+            The way from each pose to the next is a screw, about one axis and along it, as a joint moves.
 
         Raises
         ------
         ValueError
-            ``poses`` has the wrong shape or type, or a screw is not between two poses.
+            ``poses`` has the wrong shape or type.
         CloudtouchError
             All poses are the same, ``tolerance`` is below 1e-5 or not below 1, and what :meth:`run` raises.
         """
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
-        if screw and len(matrices) != 2:
-            raise ValueError(f"poses are {len(matrices)}: a screw is from one pose to another")
         return Swept._of(self._query.sweep(*native_pair(a, b), matrices, screw, tolerance))
 
     def run_batch(

@@ -17,6 +17,8 @@ pub(super) struct Leg {
 
 /// Turns of less than this have no axis to speak of, rad.
 const NO_TURN: f64 = 1e-9;
+/// So near to half a turn, rad, one that is written with few digits may go either way round.
+const HALF_TURN_ROUNDING: f64 = 0.01;
 
 impl Leg {
     /// The origin of B along a straight line, its turn by slerp.
@@ -39,6 +41,11 @@ impl Leg {
         // The axis passes where the way across is the chord of the turn.
         let aside = 0.5 * (across + axis.cross(&across) / (0.5 * angle).tan());
         Self { from, to, pivot: (from.translation() + aside).into(), shift, turn }
+    }
+
+    /// Whether rounding decides which way round it turns.
+    pub(super) fn is_half_turn(&self) -> bool {
+        self.turn.norm() > std::f64::consts::PI - HALF_TURN_ROUNDING
     }
 
     /// The pose at a time from 0 to 1; at the ends to the bit.

@@ -3,6 +3,7 @@
 use cloudtouch_geom::Pose;
 
 use crate::check::coordinates::bad_entry;
+use crate::doubt::warning::Warning;
 use crate::error::QueryError;
 
 use super::leg::Leg;
@@ -70,6 +71,12 @@ impl Path {
     /// How many segments it has, one fewer than poses.
     pub fn segments(&self) -> usize {
         self.legs.len()
+    }
+
+    /// A warning of each segment of which rounding decides which way round it turns.
+    pub(super) fn warnings(&self) -> impl Iterator<Item = Warning> {
+        let half_turns = (1..).zip(&self.legs).filter(|(_, leg)| leg.is_half_turn());
+        half_turns.map(|(pose, _)| Warning::HalfTurn { pose })
     }
 
     /// The pose at a share of the path, from 0 to 1; at the ends beyond them. NaN gives a pose of NaN, which every

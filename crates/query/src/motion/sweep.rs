@@ -128,7 +128,7 @@ impl Sweep<'_> {
             verdict,
             undecided_by: (verdict == Verdict::Undecided)
                 .then(|| doubt.unwrap_or(Undecided::Bounds)),
-            warnings: tested.misgivings.into_warnings(),
+            warnings: self.path.warnings().chain(tested.misgivings.into_warnings()).collect(),
             most_probable: tested.most_probable,
             first: tested.first.map(|at| Reached { at, not_before }),
             certified_free_until: certified / segments,

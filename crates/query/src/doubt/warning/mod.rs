@@ -189,6 +189,11 @@ pub enum Warning {
         /// What is allowed.
         limit: f64,
     },
+    /// Two poses of a path are half a turn apart, or so nearly that rounding decides which way round it goes.
+    HalfTurn {
+        /// The first of the two, counted from 1.
+        pose: usize,
+    },
 }
 
 impl Warning {
@@ -213,7 +218,10 @@ impl Warning {
             | Self::SelfFilter { body, .. }
             | Self::Padding { body, .. }
             | Self::Unseen { body, .. } => Some(body),
-            Self::FarAway { .. } | Self::OutsideScene { .. } | Self::Exchanged { .. } => None,
+            Self::FarAway { .. }
+            | Self::OutsideScene { .. }
+            | Self::Exchanged { .. }
+            | Self::HalfTurn { .. } => None,
         }
     }
 
@@ -236,7 +244,8 @@ impl Warning {
             | Self::NoRobot { .. }
             | Self::Padding { .. }
             | Self::OutsideScene { .. }
-            | Self::Exchanged { .. } => None,
+            | Self::Exchanged { .. }
+            | Self::HalfTurn { .. } => None,
         }
     }
 }

@@ -105,6 +105,9 @@ impl Warning {
                 let lies = format!("lies where the sensor saw nothing (allowed: {limit:.0} %):");
                 part(((100.0 * share).ceil(), "surface", body), &lies)
             }
+            Self::HalfTurn { pose } => format!(
+                "from pose {pose} to the next it turns by half a turn, and rounding decides which way round:"
+            ),
         }
     }
 
@@ -152,6 +155,7 @@ impl Warning {
                  Or is one in another unit than metres?"
             }
             Self::Unseen { .. } => "look from elsewhere, or raise `max_unseen`",
+            Self::HalfTurn { .. } => "give a pose between them",
         }
     }
 }
