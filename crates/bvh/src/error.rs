@@ -50,16 +50,22 @@ pub enum TreeError {
         /// How many were given.
         count: usize,
     },
-    /// A refit was given another number of primitives than the tree has indices.
-    #[error("refit got {found} primitives for {expected} indices: pass one for each, or rebuild")]
+    /// Another number of primitives, or of what is set for each, was given than the tree has indices.
+    #[error(
+        "{found} were given for {expected} indices, removed ones included: pass one for each, or rebuild"
+    )]
     Count {
         /// How many indices the tree has, removed ones included.
         expected: usize,
-        /// How many primitives were given.
+        /// How many were given.
         found: usize,
     },
-    /// No primitive has this index, or it was removed.
-    #[error("the tree has no primitive {index}: it was never inserted, or already removed")]
+    /// No primitive has this index, it was removed, was named before in the same list, or has no extent where that is
+    /// replaced.
+    #[error(
+        "the tree has no primitive {index} that could be named here: it was never inserted, already removed, \
+         named before, or has no extent"
+    )]
     NoSuchPrimitive {
         /// The index asked for.
         index: usize,

@@ -11,6 +11,9 @@ mod surfaces;
 mod traverse;
 mod tree;
 
+/// Points, covariances and poses, of which primitives are made.
+pub use cloudtouch_geom as geom;
+
 pub use change::patch::Patched;
 pub use error::TreeError;
 pub use gap::{Gap, signed_gap};

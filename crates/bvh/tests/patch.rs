@@ -133,3 +133,17 @@ fn what_cannot_be_meant_leaves_the_tree_as_it_was() {
     assert_eq!(amended, TreeError::NoSuchPrimitive { index: 0 });
     agrees(&tree, &all).unwrap();
 }
+
+/// Above the leaves the bounds were those of the extents and covariances alone, and pairs that may touch were left out.
+#[test]
+fn bounds_set_after_extents_are_held_by_all_above() {
+    let all = bumpy_sheet(3, 200, Vector3::zeros());
+    let mut tree = small_leaves(all.clone());
+    tree.set_extents(vec![Covariance::zero(); all.len()]).unwrap();
+    let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.id()).collect();
+    let bounds = LeafBounds { std: 1.0, shift: 0.0, reach: 0.5 };
+    tree.set_bounds_of(&leaves, |_| bounds).unwrap();
+    tree.refit(&all).unwrap();
+    tree.validate().unwrap();
+    assert!(tree.root().unwrap().max_std() >= 1.0);
+}

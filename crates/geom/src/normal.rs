@@ -26,7 +26,8 @@ pub fn upper_tail(z: f64) -> f64 {
     cdf(-z)
 }
 
-/// Probability that a normal variable with this mean and standard deviation is below zero.
+/// Probability that a normal variable with this mean and standard deviation, whose sign does not matter, is below
+/// zero.
 ///
 /// A standard deviation of zero gives the step function: 1 below zero, ½ at zero, 0 above.
 pub fn below_zero(mean: f64, std: f64) -> f64 {
@@ -34,7 +35,7 @@ pub fn below_zero(mean: f64, std: f64) -> f64 {
         0.5
     } else {
         // A zero `std` divides to ±infinity, which is the step wanted.
-        cdf(-mean / std)
+        cdf(-mean / std.abs())
     }
 }
 
@@ -73,6 +74,13 @@ fn quantile_lower(probability: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_deviation_of_minus_nothing_is_none() {
+        for std in [0.0, -0.0] {
+            assert_eq!([-1.0, 0.0, 1.0].map(|mean| below_zero(mean, std)), [1.0, 0.5, 0.0]);
+        }
+    }
 
     #[test]
     fn tails_keep_relative_accuracy() {

@@ -25,6 +25,9 @@ mod text;
 mod unit;
 pub mod xyz;
 
+/// Points, clouds and meshes, which is what is read and written.
+pub use cloudtouch_geom as geom;
+
 pub use atomic::{abandon_unfinished, write_atomically};
 pub use depth::is_depth_image;
 pub use depth_camera::{CameraError, DepthCamera};

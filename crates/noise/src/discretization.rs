@@ -65,6 +65,26 @@ impl Discretization {
         check_at_most("discretization.neighbors", self.neighbors, MOST_NEIGHBORS)?;
         check_positive("discretization.width", self.width)
     }
+
+    /// How far (m) points count, given the k nearest neighbours in order of distance.
+    pub(crate) fn reach(&self, nearest: &[Neighbor]) -> f64 {
+        let Some(last) = nearest.last() else { return f64::INFINITY };
+        match self.summed {
+            Summed::Neighbors => last.squared_distance.sqrt(),
+            Summed::AllPoints => self.squared_reach(nearest).max(last.squared_distance).sqrt(),
+        }
+    }
+
+    /// τᵢ² for k neighbours of which this is the last, m².
+    fn squared_width(&self, nearest: &[Neighbor]) -> f64 {
+        let last = nearest.last().map_or(0.0, |last| last.squared_distance);
+        self.width.powi(2) * last / nearest.len() as f64
+    }
+
+    /// Where the weights are lost beside that of the point itself, m².
+    fn squared_reach(&self, nearest: &[Neighbor]) -> f64 {
+        self.squared_width(nearest) * LEAST_WEIGHT.ln().abs()
+    }
 }
 
 /// The discretization covariance Ψᵢ of point `index` (eq. 17), m²; `None` for a point without
@@ -95,8 +115,8 @@ pub(crate) fn sampling_error(
     nearest: &[Neighbor],
     settings: &Discretization,
 ) -> Option<Covariance> {
-    let (first, last) = (nearest.first()?, nearest.last()?);
-    let variance = settings.width.powi(2) * last.squared_distance / nearest.len() as f64;
+    let first = nearest.first()?;
+    let variance = settings.squared_width(nearest);
     let sum = |neighbors: &[Neighbor], of_point: f64, from: f64| {
         weighted_scatter(neighborhoods.points(), index, neighbors, variance, of_point, from)
     };
@@ -104,7 +124,7 @@ pub(crate) fn sampling_error(
         // Relative to the nearest, so that narrow weights do not all vanish; it cancels out.
         Summed::Neighbors => sum(nearest, 0.0, first.squared_distance),
         Summed::AllPoints => {
-            let all = neighborhoods.positions().within(index, variance * LEAST_WEIGHT.ln().abs());
+            let all = neighborhoods.positions().within(index, settings.squared_reach(nearest));
             sum(&all, 1.0, 0.0)
         }
     })

@@ -254,11 +254,12 @@ impl NoiseModel {
         index: usize,
         neighborhoods: &Neighborhoods,
         spacing_cap: f64,
-        scratch: &Scratch,
+        scratch: &mut Scratch,
     ) -> Option<Covariance> {
         let settings = &self.settings.discretization;
         let nearest = &scratch.neighbors[..scratch.neighbors.len().min(settings.neighbors)];
         let psi = sampling_error(neighborhoods, index, nearest, settings)?;
+        scratch.reach = scratch.reach.max(settings.reach(nearest));
         Some(if settings.is_capped { limited(psi, spacing_cap) } else { psi })
     }
 }

@@ -150,17 +150,19 @@ impl Neighborhoods {
     }
 
     /// Calls `visit` with the positions at most so far from a place, m, in an order that follows from the
-    /// cloud and the place; with none about a place that is not finite.
+    /// cloud and the place; with none within a negative distance, or about a place that is not finite.
     pub fn visit_within(&self, place: &Point3, distance: f64, visit: impl FnMut(Neighbor)) {
-        if is_finite(place) {
+        if is_finite(place) && distance >= 0.0 {
             self.positions.visit_within(place, distance * distance, visit);
         }
     }
 
     /// Whether any position is at most so far from a place, m, which is soon known where none is; not
-    /// about a place that is not finite.
+    /// within a negative distance, or about a place that is not finite.
     pub fn is_any_within(&self, place: &Point3, distance: f64) -> bool {
-        is_finite(place) && !self.positions.hits_within(place, distance * distance).is_empty()
+        is_finite(place)
+            && distance >= 0.0
+            && !self.positions.hits_within(place, distance * distance).is_empty()
     }
 
     /// [`Self::nearest`] into a buffer, whose old content is dropped.

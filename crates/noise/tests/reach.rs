@@ -15,28 +15,41 @@ fn sheet(count: u64) -> Vec<Point3> {
         .collect()
 }
 
+fn model(combination: Combination) -> NoiseModel {
+    NoiseModel::new(NoiseSettings { combination, ..NoiseSettings::default() }).unwrap()
+}
+
 #[test]
 fn points_beyond_the_reach_of_a_refinement_change_no_bit_of_it() {
-    let settings =
-        NoiseSettings { combination: Combination::SurfacePosterior, ..NoiseSettings::default() };
-    let model = NoiseModel::new(settings).unwrap();
     let points = sheet(1000);
     let noise = SensorNoise::uniform(Covariance::isotropic(1e-6), points.len());
-    let refined = |points: &[Point3], index: usize| {
-        let (near, mut scratch) =
-            (Neighborhoods::new(points.to_vec()).unwrap(), Scratch::default());
-        let refined = model.refine(index, &near, &noise, f64::INFINITY, &mut scratch);
-        (refined, scratch.reach())
-    };
-    for index in (0..points.len()).step_by(97) {
-        let (expected, reach) = refined(&points, index);
-        // Sixty neighbours of a spacing of 1 cm, at a corner on a quarter of the plane.
-        assert!((0.03..0.12).contains(&reach), "{reach}");
-        let is_beyond = |p: &Point3| (p - points[index]).norm() > reach * (1.0 + 1e-9);
-        let away = |p: &Point3| if is_beyond(p) { p + Vector3::z() } else { *p };
-        let changed: Vec<Point3> = points.iter().map(away).collect();
-        assert_eq!(refined(&changed, index), (expected, reach));
+    // The sums of eq. 17 run over points beyond the neighbours, too.
+    for combination in
+        [Combination::SurfacePosterior, Combination::Precision, Combination::Convolution]
+    {
+        let model = model(combination);
+        let refined = |points: &[Point3], index: usize| {
+            let (near, mut scratch) =
+                (Neighborhoods::new(points.to_vec()).unwrap(), Scratch::default());
+            let refined = model.refine(index, &near, &noise, f64::INFINITY, &mut scratch);
+            (refined, scratch.reach())
+        };
+        for index in (0..points.len()).step_by(97) {
+            let (expected, reach) = refined(&points, index);
+            // Sixty neighbours of a spacing of 1 cm, at a corner on a quarter of the plane; or weights of twelve.
+            assert!((0.03..0.2).contains(&reach), "{combination:?} {reach}");
+            let is_beyond = |p: &Point3| (p - points[index]).norm() > reach * (1.0 + 1e-9);
+            let away = |p: &Point3| if is_beyond(p) { p + Vector3::z() } else { *p };
+            let changed: Vec<Point3> = points.iter().map(away).collect();
+            assert_eq!(refined(&changed, index), (expected, reach), "{combination:?}");
+        }
     }
+}
+
+#[test]
+fn where_all_points_count_the_reach_has_no_end() {
+    let model = model(Combination::SurfacePosterior);
+    let points = sheet(1000);
     // Where the noise is far beyond the spacing, or there are too few neighbours, all of them count.
     let noise = SensorNoise::uniform(Covariance::isotropic(1e-2), points.len());
     let (near, mut scratch) = (Neighborhoods::new(points).unwrap(), Scratch::default());
@@ -54,5 +67,8 @@ fn whether_any_position_is_within_a_distance() {
     let place = near.points()[5] + Vector3::z();
     assert!(near.is_any_within(&place, 1.01) && !near.is_any_within(&place, 0.9));
     assert!(near.is_any_within(&near.points()[5], 0.0));
+    let mut count = 0;
+    near.visit_within(&near.points()[5], -1.0, |_| count += 1);
+    assert!(count == 0 && !near.is_any_within(&near.points()[5], -1.0));
     assert!(!near.is_any_within(&Point3::new(f64::NAN, 0.0, 0.0), 1.0));
 }

@@ -33,6 +33,7 @@ mod mesh_parts;
 mod mesh_sides;
 mod more_separation;
 mod motion;
+mod moving_rings;
 mod paper_explain;
 mod paper_leaves;
 mod paper_switches;

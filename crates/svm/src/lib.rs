@@ -16,7 +16,8 @@ mod solver;
 mod status;
 mod watch;
 
-/// The plain data that samples are made of.
+/// The plain data that samples are made of; and all that there is beside it.
+pub use cloudtouch_geom as geom;
 pub use cloudtouch_geom::{Covariance, Matrix3, Point3, UncertainPoint, UnitVector3, Vector3};
 
 pub use classifier::{Classifier, ClassifierError};

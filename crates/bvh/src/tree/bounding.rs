@@ -142,6 +142,10 @@ impl Tree {
         // PERF: the root of the largest, not the largest of the roots.
         let (mut reach, mut spread) = (Vector3::zeros(), Vector3::zeros());
         for &index in self.indices_of(id) {
+            if self.refined.get(index).is_some() {
+                // Bounds set since stand for covariances that are none of the primitive's.
+                return from_children;
+            }
             if let Some(extent) = self.extents.get(index as usize) {
                 reach = reach.sup(&variances_along(extent, axes));
             }

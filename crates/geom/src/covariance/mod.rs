@@ -11,6 +11,7 @@ mod symmetric;
 
 use crate::vectors::Matrix3;
 
+use made::not_negative;
 use symmetric::Symmetric;
 
 pub use axis_form::AxisForm;
@@ -40,7 +41,7 @@ impl Covariance {
     fn full(symmetric: Symmetric) -> Self {
         let Symmetric { xx, xy, xz, yy, yz, zz } = symmetric;
         let is_ball = xx == yy && yy == zz && [xy, xz, yz] == [0.0; 3];
-        Self(if is_ball { Form::Isotropic(xx) } else { Form::Full(symmetric) })
+        Self(if is_ball { Form::Isotropic(not_negative(xx)) } else { Form::Full(symmetric) })
     }
 
     /// The variance (m²) where it is the same in every direction, else `None`.
@@ -104,6 +105,28 @@ mod tests {
     use super::*;
     use crate::unit::unit;
     use crate::vectors::{UnitVector3, Vector3};
+
+    /// Its root is −0, by which what is on one side was on the other.
+    #[test]
+    fn a_variance_of_minus_nothing_is_none() {
+        let zero = Matrix3::zeros();
+        for covariance in [
+            Covariance::isotropic(-0.0),
+            Covariance::diagonal([-0.0; 3]),
+            Covariance::from_symmetric(&-zero),
+            Covariance::try_from_matrix(&-zero).unwrap(),
+        ] {
+            let std = covariance.std_along(&Vector3::z());
+            assert!(std == 0.0 && std.is_sign_positive(), "{covariance:?}");
+            assert!(covariance.max_std().is_sign_positive(), "{covariance:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_not_exact() {
+        let covariance = Covariance::diagonal([f64::NAN, 1.0, 2.0]);
+        assert!(covariance.std_along(&Vector3::x()).is_nan() && covariance.max_std().is_nan());
+    }
 
     fn any_covariance() -> impl Strategy<Value = Covariance> {
         let full =

@@ -2,6 +2,7 @@
 
 use super::{Covariance, Form};
 use crate::covariance::axis_form::AxisForm;
+use crate::covariance::made::not_negative;
 use crate::covariance::symmetric::Symmetric;
 use crate::vectors::{Matrix3, Vector3};
 
@@ -47,7 +48,7 @@ impl Covariance {
         match &self.0 {
             Form::Isotropic(variance) => variance * direction.norm_squared(),
             Form::Axis(axis) => axis.variance_along(direction),
-            Form::Full(symmetric) => symmetric.quadratic(direction).max(0.0),
+            Form::Full(symmetric) => not_negative(symmetric.quadratic(direction)),
         }
     }
 
@@ -102,7 +103,7 @@ fn in_order((values, axes): (Vector3, Matrix3)) -> (Vector3, Matrix3) {
     let mut order = [0, 1, 2];
     order.sort_by(|&i, &j| values[j].total_cmp(&values[i]));
     (
-        Vector3::from_fn(|k, _| values[order[k]].max(0.0)),
+        Vector3::from_fn(|k, _| not_negative(values[order[k]])),
         Matrix3::from_fn(|row, k| axes[(row, order[k])]),
     )
 }

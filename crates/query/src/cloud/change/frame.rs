@@ -27,6 +27,10 @@ impl Cloud {
     /// So the number of points is bounded by the surface there is, and the memory by that and the last
     /// 32 images, which tell what was seen to be empty. Filter stages are those of the frame.
     ///
+    /// A panorama, as of a turning laser scanner, removes what it sees through and nothing that it measures again,
+    /// for between its lines lies surface that it does not: the cloud grows with every frame. A
+    /// [collision map](crate::FilterSettings::collision_map) of its points, prepared anew from time to time, bounds it.
+    ///
     /// For the answers see [`Self::insert`].
     ///
     /// # Errors
@@ -64,6 +68,8 @@ impl Cloud {
             if looks_past(&place, std) {
                 return false;
             }
+            // What the lines of a panorama measure is no more than they: the next of them may be far off.
+            let Some(pixels) = pixels else { return true };
             let Some(near) = measured.nearest_to(&place, 1).first().copied() else { return true };
             let ray = place - camera;
             let pixel = pixels * ray.norm();

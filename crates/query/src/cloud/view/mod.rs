@@ -21,8 +21,8 @@ pub(super) struct Image {
     pub turn: UnitQuaternion<f64>,
     /// Which points are its.
     pub points: Range<usize>,
-    /// How many pixels are where these are, those without return too.
-    pub pixels: usize,
+    /// How many columns and rows of pixels are where these are, those without return too.
+    pub pixels: [usize; 2],
     /// The links of the robot that were taken out of it.
     pub robot: Vec<SelfMesh>,
     /// Rays of returns that were left out for their range, up to where they say that there is nothing, m.
@@ -43,18 +43,18 @@ impl Image {
             sensor_origin: kept.sensor_origin(),
             turn: *kept.from_sensor().rotation(),
             points: 0..kept.len(),
-            pixels: pixels_about(scan, looked_at).unwrap_or(kept.len()),
+            pixels: pixels_about(scan, looked_at).unwrap_or([kept.len(), 1]),
             robot,
             beyond: beyond.iter().map(|(_, ray)| *ray).collect(),
         }
     }
 }
 
-/// Pixels of the part of an image that these of its rows are in, with and without return.
+/// Columns and rows of the part of an image that these of its pixels are in, with and without return.
 fn pixels_about<'a>(
     image: &PointCloud,
     mut rows: impl Iterator<Item = &'a usize>,
-) -> Option<usize> {
+) -> Option<[usize; 2]> {
     let (width, _) = image.image_size?;
     let at = |row: &usize| [row / width, row % width];
     let first = at(rows.next()?);
@@ -63,7 +63,7 @@ fn pixels_about<'a>(
         [[0, 1].map(|k| low[k].min(at[k])), [0, 1].map(|k| high[k].max(at[k]))]
     };
     let [low, high] = rows.fold([first; 2], widen);
-    Some((high[0] - low[0] + 1) * (high[1] - low[1] + 1))
+    Some([1, 0].map(|k| high[k] - low[k] + 1))
 }
 
 /// Where the sensor stood, and the raster of its view once that is needed.
@@ -98,12 +98,12 @@ impl SingleView {
     }
 
     /// Whether the camera looked past places, each with a standard deviation of its own, in their
-    /// direction and in all around it; and how far apart its pixels are, per metre of distance. `None`
+    /// direction and in all around it; and how far apart its pixels are, per metre of distance, if it is no panorama. `None`
     /// where the measured points have no directions.
     pub(super) fn looks_past<'a>(
         &'a self,
         measured: (&[Point3], &SensorNoise),
-    ) -> Option<(impl Fn(&Point3, f64) -> bool + Sync + 'a, f64)> {
+    ) -> Option<(impl Fn(&Point3, f64) -> bool + Sync + 'a, Option<f64>)> {
         let raster = self.raster(measured)?;
         let looks_past =
             move |place: &Point3, std| raster.looks_past(&(place - self.image.sensor_origin), std);
@@ -186,7 +186,7 @@ mod tests {
                 sensor_origin: Point3::origin(),
                 turn: *turned.rotation(),
                 points: 0..points.len(),
-                pixels: points.len(),
+                pixels: [points.len(), 1],
                 robot: Vec::new(),
                 beyond: Arc::default(),
             };

@@ -50,6 +50,8 @@ pub(super) struct Raster {
     size: [usize; 2],
     /// Whether the last column is beside the first.
     is_round: bool,
+    /// How many columns and rows of cells it takes to reach a pixel beside one.
+    reach: [isize; 2],
     /// The range, m, clearly behind the farthest return of each cell; zero without one.
     clearly_behind: Vec<f64>,
     /// The range, m, clearly before the nearest return of each cell; infinite without one.
@@ -68,7 +70,7 @@ impl Raster {
         (origin, turn): (&Point3, &UnitQuaternion<f64>),
         measured: impl Iterator<Item = (Point3, f64)>,
         beyond: &[Vector3],
-        pixels: usize,
+        pixels: [usize; 2],
     ) -> Option<Self> {
         let ray = |(place, std): (Point3, f64)| {
             let ray = place - origin;
@@ -91,9 +93,10 @@ impl Raster {
         }
         let extent = [high[0] - low[0], high[1] - low[1]];
         let area = extent[0] * extent[1];
-        let pitch = (CELL_PIXELS * (area / pixels.max(placed.len()).max(1) as f64).sqrt())
-            .max((area / MOST_CELLS).sqrt())
-            .max(extent[0].max(extent[1]) / MOST_COLUMNS);
+        let pitch = (CELL_PIXELS
+            * (area / (pixels[0] * pixels[1]).max(placed.len()).max(1) as f64).sqrt())
+        .max((area / MOST_CELLS).sqrt())
+        .max(extent[0].max(extent[1]) / MOST_COLUMNS);
         if !(pitch > 0.0 && pitch.is_finite()) {
             return None;
         }
@@ -108,10 +111,24 @@ impl Raster {
             size[0] = columns as usize;
         }
         let cells = size[0] * size[1];
+        let steps = match lens {
+            Lens::Camera(_) => [pitch / CELL_PIXELS; 2],
+            Lens::Panorama(_) => steps_of_panorama(extent, pixels),
+        };
+        let reach = steps.map(|step| (step / pitch).ceil().max(1.0) as isize);
         let (clearly_behind, clearly_before) = (vec![0.0; cells], vec![f64::INFINITY; cells]);
         let is_open = vec![false; if beyond.is_empty() { 0 } else { cells }];
-        let mut raster =
-            Self { lens, low, pitch, size, is_round, clearly_behind, clearly_before, is_open };
+        let mut raster = Self {
+            lens,
+            low,
+            pitch,
+            size,
+            is_round,
+            reach,
+            clearly_behind,
+            clearly_before,
+            is_open,
+        };
         for (number, [before, behind], at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
                 raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
@@ -155,22 +172,34 @@ impl Raster {
         Sight::Hole
     }
 
-    /// Whether every return of the cell of a ray, where there is one, and of those around it is clearly
-    /// behind a place known this well.
+    /// Whether every return of the cell of a ray, where there is one, and of those around it, some of them on each
+    /// side, is clearly behind a place known this well.
     pub(super) fn looks_past(&self, ray: &Vector3, std: f64) -> bool {
         let Some([x, y]) = self.lens.project(ray).and_then(|at| self.cell(at)) else {
             return false;
         };
-        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
-        let cells = around.filter_map(|[x, y]| self.index(x, y));
-        let nearest = cells.map(|cell| self.clearly_before[cell]).fold(f64::INFINITY, f64::min);
-        let has_return = self.index(x, y).is_some_and(|cell| self.clearly_behind[cell] > 0.0);
-        has_return && ray.norm() + CLEARLY * std < nearest
+        let [columns, rows] = self.reach;
+        let mut nearest = f64::INFINITY;
+        // Here, left, right, above and below.
+        let mut has_return = [false; 5];
+        for dy in -rows..=rows {
+            for dx in -columns..=columns {
+                let cell = self.index(x + dx, y + dy);
+                if let Some(cell) = cell.filter(|&cell| self.clearly_behind[cell] > 0.0) {
+                    nearest = nearest.min(self.clearly_before[cell]);
+                    let is_of = [dx == 0 && dy == 0, dx < 0, dx > 0, dy < 0, dy > 0];
+                    for (has, is_of) in has_return.iter_mut().zip(is_of) {
+                        *has |= is_of;
+                    }
+                }
+            }
+        }
+        has_return == [true; 5] && ray.norm() + CLEARLY * std < nearest
     }
 
-    /// How far apart pixels are, per metre of distance.
-    pub(super) fn pixel(&self) -> f64 {
-        self.pitch / CELL_PIXELS
+    /// How far apart pixels are, per metre of distance; `None` of a panorama, whose lines may be far apart.
+    pub(super) fn pixel(&self) -> Option<f64> {
+        matches!(self.lens, Lens::Camera(_)).then_some(self.pitch / CELL_PIXELS)
     }
 
     /// The cell of a place of the view; `None` outside of it.
@@ -188,6 +217,15 @@ impl Raster {
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
         (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
     }
+}
+
+/// How far apart the pixels of a panorama are in azimuth and in elevation, rad: its lines, be they its rows or its
+/// columns, as makes these more alike.
+fn steps_of_panorama(extent: [f64; 2], [columns, rows]: [usize; 2]) -> [f64; 2] {
+    let of = |counts: [usize; 2]| [0, 1].map(|axis| extent[axis] / counts[axis].max(1) as f64);
+    let unlike = |[p, q]: [f64; 2]| (p / q).ln().abs();
+    let both = [of([columns, rows]), of([rows, columns])];
+    if unlike(both[1]) < unlike(both[0]) { both[1] } else { both[0] }
 }
 
 /// How directions become places of a view.
@@ -257,7 +295,7 @@ mod tests {
             (Point3::new(cos * up.cos(), sin * up.cos(), up.sin()) * range, 0.01)
         };
         let turn = UnitQuaternion::identity();
-        Raster::new((&Point3::origin(), &turn), (0..360 * 41).map(ray), &[], 360 * 41).unwrap()
+        Raster::new((&Point3::origin(), &turn), (0..360 * 41).map(ray), &[], [360, 41]).unwrap()
     }
 
     /// What was just right of straight ahead was not beside what was there, for azimuths begin there.
