@@ -99,7 +99,7 @@ impl Neighborhoods {
     }
 
     /// The `k` positions nearest to point `index` other than its own, fewer when there are fewer,
-    /// in order of distance, then index.
+    /// in order of distance, of what is as near (to 1e-7) in that of x, y and z.
     ///
     /// # Panics
     /// When `index` is out of range.
@@ -142,7 +142,7 @@ impl Neighborhoods {
     }
 
     /// The `k` positions nearest to any place, fewer when there are fewer, in order of distance,
-    /// then index. A place that is not finite has none.
+    /// as [`Self::nearest`] has them. A place that is not finite has none.
     pub fn nearest_to(&self, place: &Point3, k: usize) -> Vec<Neighbor> {
         let mut found = Vec::new();
         self.positions.search(place, k, false, &mut found);

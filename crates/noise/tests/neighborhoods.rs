@@ -7,22 +7,29 @@ use cloudtouch_noise::{
 };
 use proptest::prelude::*;
 
-/// The reference: every other position once, sorted by distance, then index.
+/// The reference: every other position once, sorted by distance, then by x, y and z.
 fn brute_force(
     points: &[Point3],
     place: &Point3,
     leave_out_place: bool,
     k: usize,
 ) -> Vec<Neighbor> {
-    let mut all: Vec<Neighbor> = (0..points.len())
+    let all: Vec<Neighbor> = (0..points.len())
         .filter(|&i| points[i].coords.iter().all(|v| v.is_finite()))
         .filter(|&i| !(0..i).any(|j| points[j] == points[i]))
         .filter(|&i| !(leave_out_place && points[i] == *place))
         .map(|index| Neighbor { index, squared_distance: (points[index] - place).norm_squared() })
         .collect();
-    all.sort_by(|a, b| {
-        a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
-    });
+    in_order(points, all, k)
+}
+
+/// The first k by distance, and of what is as near by x, y and z.
+fn in_order(points: &[Point3], mut all: Vec<Neighbor>, k: usize) -> Vec<Neighbor> {
+    let key = |near: &Neighbor| {
+        let [x, y, z] = points[near.index].coords.into();
+        [near.squared_distance, x, y, z]
+    };
+    all.sort_by(|a, b| key(a).partial_cmp(&key(b)).expect("finite places"));
     all.truncate(k);
     all
 }
@@ -48,6 +55,30 @@ fn check(index: &Neighborhoods, points: &[Point3], k: usize) {
         } else {
             assert!(index.nearest(i, k).is_empty());
             assert!(index.nearest_with(i, k, &mut scratch).is_empty());
+        }
+    }
+}
+
+#[test]
+fn where_a_grid_is_and_how_it_is_numbered_decided_which_of_its_ties_came_first() {
+    let grid: Vec<Point3> = (0..400_u32)
+        .map(|i| 0.02 * Point3::new((i % 20).into(), (i / 20).into(), ((i % 20) / 3).into()))
+        .collect();
+    let shift = Vector3::new(10.37, -3.3, 400_000.7);
+    let moved: Vec<Point3> = grid.iter().rev().map(|p| p + shift).collect();
+    let [here, there] =
+        [&grid, &moved].map(|points| Neighborhoods::new(points.clone()).expect("an index"));
+    let mut scratch = Scratch::default();
+    for i in 0..grid.len() {
+        for k in [8, 16, 30] {
+            let expected: Vec<usize> = here.nearest(i, k).iter().map(|near| near.index).collect();
+            let own = grid.len() - 1 - i;
+            for found in [there.nearest(own, k), there.nearest_with(own, k, &mut scratch).to_vec()]
+            {
+                let found: Vec<usize> =
+                    found.iter().map(|near| grid.len() - 1 - near.index).collect();
+                assert_eq!(found, expected, "{i} {k}");
+            }
         }
     }
 }
@@ -149,15 +180,11 @@ fn twenty_thousand_points_of_a_grid() {
 
 /// The reference without its quadratic search for duplicates.
 fn brute_force_fast(points: &[Point3], i: usize, k: usize) -> Vec<Neighbor> {
-    let mut all: Vec<Neighbor> = (0..points.len())
+    let all: Vec<Neighbor> = (0..points.len())
         .filter(|&j| j != i)
         .map(|j| Neighbor { index: j, squared_distance: (points[j] - points[i]).norm_squared() })
         .collect();
-    all.sort_by(|a, b| {
-        a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
-    });
-    all.truncate(k);
-    all
+    in_order(points, all, k)
 }
 
 /// A dense patch beside a sparse one, walked through and jumped about: blocks that are too small, too

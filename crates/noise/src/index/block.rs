@@ -6,6 +6,7 @@ use cloudtouch_geom::{Point3, bounding_box};
 
 use crate::finite::is_finite;
 use crate::index::positions::{Neighbor, Positions, in_order};
+use crate::index::ties::order_ties;
 use crate::lanes::{Kernel, Lanes, Machine, Stored, WIDTH, run};
 
 /// A block is made so wide that on a surface it holds about so many positions: enough for the
@@ -47,7 +48,7 @@ pub(crate) struct Block {
 
 impl Block {
     /// The `k` positions nearest to a place, without one at the place itself when it is left out, in
-    /// order of distance, then index; fewer when there are fewer. A place that is not finite has none.
+    /// order as [`Positions::search`] has them; fewer when there are fewer. A place that is not finite has none.
     pub(crate) fn nearest_into(
         &mut self,
         cloud: &Positions,
@@ -82,6 +83,7 @@ impl Block {
                 found.remove(own);
             }
         }
+        order_ties(cloud.points(), place, k, found);
         found.truncate(k);
         self.reach = found.last().map_or(0.0, |last| last.squared_distance.sqrt());
     }

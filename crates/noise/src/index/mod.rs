@@ -12,3 +12,4 @@ pub(crate) mod positions;
 pub(crate) mod spacing;
 pub(crate) mod spatial_order;
 pub(crate) mod thinned;
+pub(crate) mod ties;

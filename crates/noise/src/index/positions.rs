@@ -12,6 +12,7 @@ use crate::finite::is_finite;
 use crate::index::entries::{PointTree, Threads, tree_of};
 use crate::index::overlay::{GONE, Overlay};
 use crate::index::places::repeated;
+use crate::index::ties::{are_tied, order_ties, widened};
 
 /// Squares of differences of such coordinates, and sums of three, are still finite.
 const LARGEST_COORDINATE: f64 = 1e150;
@@ -216,7 +217,7 @@ impl Positions {
     }
 
     /// The `k` positions nearest to a place, with or without one at the place itself, in order of
-    /// distance, then index.
+    /// distance, of what is as near in that of x, y and z.
     pub(crate) fn search(
         &self,
         place: &Point3,
@@ -234,14 +235,15 @@ impl Positions {
         self.nearest(place, wanted, found);
         found.retain(is_taken);
         if let (Some(last), Some(next)) = (found.get(k - 1), found.get(k))
-            && last.squared_distance == next.squared_distance
+            && are_tied(last, next)
         {
             // Which of the tied ones the tree returned is its own affair, so all of them are
             // fetched.
-            *found = self.hits_within(place, last.squared_distance);
+            *found = self.hits_within(place, widened(last.squared_distance));
             found.retain(is_taken);
         }
         found.sort_unstable_by(in_order);
+        order_ties(&self.points, place, k, found);
         found.truncate(k);
     }
 }
