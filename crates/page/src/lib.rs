@@ -31,7 +31,7 @@ pub use page::Page;
 pub use shortlist::Shortlist;
 pub use view::{Asked, Standing, View};
 
-/// Points of all clouds of a page together; beyond it every cloud is thinned by the same share.
+/// Points of all clouds of a page together; beyond it clouds are thinned, large ones more than small ones.
 pub const MOST_POINTS: usize = 300_000;
 
 /// Triangles of all meshes of a page together; beyond it meshes are drawn coarser.

@@ -65,7 +65,8 @@ class Cloud:
         ``"per-point"``; of a file ``cloudtouch info FILE`` suggests one. State it as it is: twice the noise reads more touching surfaces as free, half of it stops more.
     sensor_pose
         (4, 4): from the frame of the sensor (of a camera x right, y down, z forward) into that of the points. Where
-        it is not given it counts as the identity, but nothing is concluded from where the sensor stood.
+        it is not given it counts as the identity, but nothing is concluded from where the sensor stood. Not for scans
+        from several places in one cloud: what lies between it and a return counts as empty.
     covariances
         (N, 3, 3), m^2: the noise of each point, for ``sensor="per-point"``.
     normals
@@ -250,7 +251,8 @@ class Cloud:
         """Brings the cloud up to date by what a camera sees now.
 
         Points that it sees through, or measures again, go, and its own come. What is hidden, in a hole of the image or
-        beside it stays as it was.
+        beside it stays as it was. A panorama, as of a turning laser scanner, takes away what it sees through and nothing
+        that it measures again: the cloud grows with every such frame.
 
         Parameters
         ----------

@@ -37,7 +37,7 @@ impl Query {
     ///
     /// The error of the pose moves all of a body together; that is why no noise of single points can
     /// stand for it. Without any uncertainty it is the plain answer, to the bit. Takes two queries where no
-    /// pose comes near, seven where all collide, and up to twenty-nine elsewhere: poses spread evenly along the
+    /// pose comes near, seven where all collide alike, and up to twenty-nine elsewhere: poses spread evenly along the
     /// motion that changes the clearance most, and some far out on it. On all threads of the pool.
     ///
     /// # Errors
