@@ -113,6 +113,23 @@ fn the_place_of_the_camera_places_a_depth_image() {
     }
 }
 
+/// The range that is left out of what a camera saw is on no command line.
+#[test]
+fn a_range_within_what_a_camera_does_not_see_leaves_no_point() {
+    let run = inputs().run(&[
+        "query",
+        "depth.png",
+        "cube.obj",
+        NUMBERS,
+        "--sensor=kinect",
+        "--max-range=0.05",
+    ]);
+    assert_eq!((run.code(), run.stdout().as_str()), (2, ""));
+    for part in ["depth.png: --max-range 0.05", "0.1 m", "--min-range 0"] {
+        assert!(run.stderr().contains(part), "{}", run.stderr());
+    }
+}
+
 #[test]
 fn every_command_reads_them() {
     let inputs = inputs();

@@ -4,7 +4,7 @@
 use cloudtouch_geom::{Covariance, Matrix3, Point3};
 
 use crate::error::NoiseError;
-use crate::index::positions::Neighbor;
+use crate::index::neighbor::Neighbor;
 use crate::neighborhoods::Neighborhoods;
 use crate::settings_error::{SettingsError, check_at_least_one, check_at_most, check_positive};
 

@@ -4,7 +4,7 @@ use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
 
 use crate::discretization::sampling_error;
 use crate::error::NoiseError;
-use crate::index::positions::Neighbor;
+use crate::index::neighbor::Neighbor;
 use crate::index::spacing::{SPACING_NEIGHBORS, spacing_around};
 use crate::index::spatial_order::in_spatial_order;
 use crate::limited::limited;

@@ -7,7 +7,8 @@ use cloudtouch_geom::Point3;
 use crate::error::NoiseError;
 use crate::finite::is_finite;
 use crate::index::density::{Density, densest_first};
-use crate::index::positions::{Neighbor, Positions};
+use crate::index::neighbor::Neighbor;
+use crate::index::positions::Positions;
 use crate::index::thinned::Thinned;
 use crate::scratch::Scratch;
 

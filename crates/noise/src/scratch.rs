@@ -3,7 +3,7 @@
 use cloudtouch_geom::Point3;
 
 use crate::index::block::Block;
-use crate::index::positions::Neighbor;
+use crate::index::neighbor::Neighbor;
 use crate::sensor::noise::SensorNoise;
 use crate::surface::patch::{NoiseLanes, Offsets, Patch, PatchNoise};
 

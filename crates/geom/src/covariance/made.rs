@@ -4,6 +4,7 @@ use super::{Covariance, Form};
 use crate::covariance::axis_form::AxisForm;
 use crate::covariance::error::CovarianceError;
 use crate::covariance::symmetric::Symmetric;
+use crate::covariance::variance::not_negative;
 use crate::vectors::{Matrix3, UnitVector3, Vector3};
 
 /// Relative size of what counts as rounding when a matrix is checked.
@@ -94,10 +95,4 @@ impl Covariance {
         }
         Self::full(symmetric)
     }
-}
-
-/// Zero for a negative number and for −0, of which a root divides to the other infinity; NaN stays NaN, so that it
-/// cannot pass for an exact point.
-pub(super) fn not_negative(value: f64) -> f64 {
-    if value <= 0.0 { 0.0 } else { value }
 }

@@ -8,11 +8,12 @@ mod jacobi_of_two;
 mod made;
 mod spread;
 mod symmetric;
+mod variance;
 
 use crate::vectors::Matrix3;
 
-use made::not_negative;
 use symmetric::Symmetric;
+use variance::not_negative;
 
 pub use axis_form::AxisForm;
 pub use error::CovarianceError;

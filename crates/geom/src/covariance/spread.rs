@@ -2,8 +2,8 @@
 
 use super::{Covariance, Form};
 use crate::covariance::axis_form::AxisForm;
-use crate::covariance::made::not_negative;
 use crate::covariance::symmetric::Symmetric;
+use crate::covariance::variance::not_negative;
 use crate::vectors::{Matrix3, Vector3};
 
 /// Relative slack of a largest variance, far above the rounding of eigenvalues.

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use cloudtouch_geom::{Point3, bounding_box};
 
 use crate::finite::is_finite;
-use crate::index::positions::{Neighbor, Positions, in_order};
+use crate::index::neighbor::{Neighbor, in_order};
+use crate::index::positions::Positions;
 use crate::index::ties::order_ties;
 use crate::lanes::{Kernel, Lanes, Machine, Stored, WIDTH, run};
 

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use crate::index::block::Block;
 use crate::index::held::{Held, NEAREST};
+use crate::index::neighbor::Neighbor;
 use crate::index::octree::{Cell, Octree};
-use crate::index::positions::{Neighbor, Positions};
+use crate::index::positions::Positions;
 use crate::index::spacing::{SPACING_NEIGHBORS, spacing_of_rank};
 
 /// How dense the samples are about a point.

@@ -5,6 +5,7 @@ pub(crate) mod density;
 mod entries;
 mod held;
 mod morton;
+pub(crate) mod neighbor;
 mod octree;
 mod overlay;
 pub(crate) mod places;

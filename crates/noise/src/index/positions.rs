@@ -1,6 +1,5 @@
 //! A k-d tree over the distinct positions of a cloud.
 
-use std::cmp::Ordering;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
@@ -10,6 +9,7 @@ use kiddo::SquaredEuclidean;
 use crate::error::NoiseError;
 use crate::finite::is_finite;
 use crate::index::entries::{PointTree, Threads, tree_of};
+use crate::index::neighbor::{Neighbor, in_order};
 use crate::index::overlay::{GONE, Overlay};
 use crate::index::places::repeated;
 use crate::index::ties::{are_tied, order_ties, widened};
@@ -19,15 +19,6 @@ const LARGEST_COORDINATE: f64 = 1e150;
 
 /// Positions whose squared distance (m²) is no more may be the same.
 const SAME_PLACE: f64 = 1e-300;
-
-/// A nearby point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Neighbor {
-    /// Its index in the cloud.
-    pub index: usize,
-    /// Its squared distance, m².
-    pub squared_distance: f64,
-}
 
 /// The distinct positions of a cloud, and which are nearest to a place.
 #[derive(Debug)]
@@ -246,10 +237,6 @@ impl Positions {
         order_ties(&self.points, place, k, found);
         found.truncate(k);
     }
-}
-
-pub(crate) fn in_order(a: &Neighbor, b: &Neighbor) -> Ordering {
-    a.squared_distance.total_cmp(&b.squared_distance).then(a.index.cmp(&b.index))
 }
 
 /// What a tree has under an item, where that is still there: under the index that it has `now`, if any

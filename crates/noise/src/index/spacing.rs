@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use cloudtouch_geom::Covariance;
 
-use crate::index::positions::Neighbor;
+use crate::index::neighbor::Neighbor;
 
 /// The neighbour whose distance gives the spacing: enough to average over direction, few enough
 /// to stay local.

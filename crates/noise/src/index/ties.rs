@@ -5,7 +5,7 @@
 
 use cloudtouch_geom::Point3;
 
-use crate::index::positions::Neighbor;
+use crate::index::neighbor::Neighbor;
 
 /// Squared distances that differ by no more than this share of themselves are the same.
 const TIED: f64 = 1e-7;

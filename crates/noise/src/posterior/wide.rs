@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use cloudtouch_geom::Point3;
 
-use crate::index::positions::Neighbor;
+use crate::index::neighbor::Neighbor;
 use crate::neighborhoods::Neighborhoods;
 use crate::scratch::Scratch;
 use crate::sensor::noise::SensorNoise;

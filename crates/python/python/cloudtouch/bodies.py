@@ -73,7 +73,7 @@ class Cloud:
         (N, 3), of any length and either sign. They are believed: leave out what was fitted to noisy points.
     min_range, max_range
         Points nearer to the sensor, or farther, are dropped, m. Where not given, those within 10 cm of a camera or
-        laser scanner, if an image or ``sensor_pose`` says where it stood.
+        laser scanner, if they have the rows and columns of an image.
     outliers
         (neighbors, deviations): drops points whose mean distance to so many neighbours is so many standard deviations
         above that of all.

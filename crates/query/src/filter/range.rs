@@ -11,10 +11,10 @@ const AT_IT: f64 = 1e-6;
 
 impl FilterSettings {
     /// How near to the sensor returns are left out though no [`Self::min_range`] is stated, m; `None` where one
-    /// is, or where the sensor stood is not known.
+    /// is, or where the sensor stood is not known: only the rows and columns of an image tell that it was there. A
+    /// place that is merely stated may be in the middle of what was measured.
     pub fn unstated_min_range(&self, cloud: &PointCloud) -> Option<f64> {
-        let is_known = cloud.is_image() || cloud.sensor_pose.is_some();
-        (self.min_range.is_none() && is_known).then_some(NEAREST)
+        (self.min_range.is_none() && cloud.is_image()).then_some(NEAREST)
     }
 }
 
