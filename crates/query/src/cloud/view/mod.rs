@@ -1,5 +1,6 @@
 //! A single depth image: what its camera did not look at, or not see, was never seen to be empty.
 
+mod lines;
 pub(super) mod range;
 pub(super) mod raster;
 

@@ -8,6 +8,8 @@ use std::f64::consts::TAU;
 use cloudtouch_geom::{Point3, Vector3};
 use nalgebra::UnitQuaternion;
 
+use super::lines::Lines;
+
 /// Edge of a raster's cell in pixels: no cell between measured pixels is left empty by chance.
 const CELL_PIXELS: f64 = 2.0;
 /// A place is in a hole when nothing was measured so many cells around its own: every hole eight pixels wide has
@@ -17,6 +19,8 @@ const HOLE_CELLS: isize = 1;
 pub(in crate::cloud) const CLEARLY: f64 = 3.0;
 /// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
 const PANORAMA: f64 = 0.17;
+/// Lines that are farther apart than so many of their pixels are lines.
+const APART: f64 = 1.5;
 /// One that lacks no more cells than that of a full turn goes all around.
 const LEAST_GAP_CELLS: f64 = 2.0;
 /// Cells of a raster at most, and columns or rows: beyond, they become wider.
@@ -58,6 +62,8 @@ pub(super) struct Raster {
     clearly_before: Vec<f64>,
     /// Of each cell whether what is farther was left out; empty where nothing was.
     is_open: Vec<bool>,
+    /// Of a panorama whose lines are farther apart than the pixels of one.
+    lines: Option<Lines>,
 }
 
 impl Raster {
@@ -128,6 +134,7 @@ impl Raster {
             clearly_behind,
             clearly_before,
             is_open,
+            lines: (steps[1] > APART * steps[0]).then(|| Lines::new(cells, steps[1])),
         };
         for (number, [before, behind], at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
@@ -135,6 +142,9 @@ impl Raster {
                 raster.clearly_before[cell] = raster.clearly_before[cell].min(before);
                 if number >= returns {
                     raster.is_open[cell] = true;
+                }
+                if let Some(lines) = &mut raster.lines {
+                    lines.add(cell, at[1], behind);
                 }
             }
         }
@@ -145,10 +155,16 @@ impl Raster {
         if self.lens.is_behind(ray) {
             return Sight::BehindCamera;
         }
-        let Some([x, y]) = self.lens.project(ray).and_then(|at| self.cell(at)) else {
+        let place = self.lens.project(ray).and_then(|at| Some((at, self.cell(at)?)));
+        let Some((at, [x, y])) = place else {
             return Sight::OutsideView;
         };
         let range = ray.norm();
+        if let Some(behind) = self.behind_lines(at[1], [x, y])
+            && range > behind
+        {
+            return Sight::BehindReturns;
+        }
         // The nearest ring of cells with a return tells; within a ring, the farthest return.
         for ring in 0..=HOLE_CELLS {
             let (mut farthest, mut is_open) = (0.0_f64, false);
@@ -170,6 +186,13 @@ impl Raster {
             }
         }
         Sight::Hole
+    }
+
+    /// The range clearly behind what two lines of a panorama have between them, where these are next to one another.
+    fn behind_lines(&self, elevation: f64, [x, y]: [isize; 2]) -> Option<f64> {
+        let rows = self.reach[1];
+        let cells = (y - rows..=y + rows).filter_map(|y| self.index(x, y));
+        self.lines.as_ref()?.behind(elevation, cells)
     }
 
     /// Whether every return of the cell of a ray, where there is one, and of those around it, some of them on each
@@ -222,7 +245,9 @@ impl Raster {
 /// How far apart the pixels of a panorama are in azimuth and in elevation, rad: its lines, be they its rows or its
 /// columns, as makes these more alike.
 fn steps_of_panorama(extent: [f64; 2], [columns, rows]: [usize; 2]) -> [f64; 2] {
-    let of = |counts: [usize; 2]| [0, 1].map(|axis| extent[axis] / counts[axis].max(1) as f64);
+    let of = |counts: [usize; 2]| {
+        [0, 1].map(|axis| extent[axis] / counts[axis].saturating_sub(1).max(1) as f64)
+    };
     let unlike = |[p, q]: [f64; 2]| (p / q).ln().abs();
     let both = [of([columns, rows]), of([rows, columns])];
     if unlike(both[1]) < unlike(both[0]) { both[1] } else { both[0] }

@@ -1,0 +1,66 @@
+//! A laser scanner with few rings over a floor: what lies between them, and what a map keeps of them as it moves.
+
+use crate::common::{at, mesh, uniform};
+use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+use cloudtouch::noise::{Neighborhoods, SensorModel};
+use cloudtouch::{Cloud, CloudSettings, Query, QuerySettings, Verdict};
+use cloudtouch_testkit::scene;
+
+fn settings() -> CloudSettings {
+    CloudSettings::new(SensorModel::Lidar { range_std: 0.01, beam_rad: 0.003 })
+}
+
+/// What 16 rings of a scanner 1.5 m above the floor of a hall measure.
+fn frame(x: f64) -> PointCloud {
+    let (rings, steps) = (16, 720);
+    let scanner = Vector3::new(x, 0.0, 1.5);
+    let seen = |i: usize| {
+        let up = f64::to_radians(-15.0 + 2.0 * (i / steps) as f64);
+        let round = std::f64::consts::TAU * (i % steps) as f64 / steps as f64;
+        let ray = Vector3::new(up.cos() * round.cos(), up.cos() * round.sin(), up.sin());
+        let wall = (0..2).map(|k| (9.0 - scanner[k] * ray[k].signum()) / ray[k].abs());
+        let floor = if ray.z < 0.0 { scanner.z / -ray.z } else { f64::INFINITY };
+        Point3::from(scanner + ray * wall.fold(floor, f64::min))
+    };
+    let points = (0..rings * steps).map(seen).collect();
+    let sensor_pose = Some(Pose::from_translation(scanner));
+    PointCloud { sensor_pose, image_size: Some((steps, rings)), ..PointCloud::from_points(points) }
+}
+
+/// Between two rings, decimetres apart on the floor, what was some centimetres under it counted as seen to be empty:
+/// what reached into it there read free.
+#[test]
+fn nothing_that_reaches_into_the_floor_between_two_rings_is_free() {
+    let cloud = Cloud::prepare(&frame(0.0), &settings()).unwrap();
+    let held = mesh(&scene::cuboid([0.2; 3]));
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let free = |depth: f64| {
+        let verdict = |k: u64| {
+            let (far, round) = (5.7 + 2.0 * uniform(k, 0), 6.28 * uniform(k, 1));
+            let pose = at(far * round.cos(), far * round.sin(), 0.1 - depth);
+            query.run(&cloud, &held, &pose).unwrap().verdict
+        };
+        (0..100).filter(|&k| verdict(k) == Verdict::Free).count()
+    };
+    assert_eq!(free(0.04), 0);
+    let above = free(-0.1);
+    assert!(above > 90, "{above}");
+}
+
+/// A scanner that creeps over a floor: each ring took for measured again what the ring before it had measured up to the
+/// mean of the steps along and across rings aside, and floor that was swept over was lost.
+#[test]
+fn rings_that_move_on_leave_what_they_measured() {
+    let frames: Vec<PointCloud> = (0..8).map(|k| frame(-1.0 + 0.05 * f64::from(k))).collect();
+    let mut map = Cloud::prepare(&frames[0], &settings()).unwrap();
+    for frame in &frames[1..] {
+        map.replace_frame(frame, &settings()).unwrap();
+    }
+    let kept = (0..map.len()).map(|i| map.point(i)).collect::<Vec<_>>();
+    let kept = Neighborhoods::new(kept).unwrap();
+    let measured = frames.iter().flat_map(|frame| &frame.points);
+    let floor: Vec<&Point3> = measured.filter(|p| p.z.abs() < 1e-6).collect();
+    let is_lost = |p: &&&Point3| kept.nearest_to(p, 1)[0].squared_distance > 0.01;
+    let lost = floor.iter().filter(is_lost).count();
+    assert!(floor.len() > 20_000 && lost < floor.len() / 100, "{lost} of {}", floor.len());
+}
