@@ -27,6 +27,16 @@ pub struct DepthImages {
     pub depth_scale: Option<f64>,
 }
 
+impl DepthImages {
+    /// The file of the intrinsics, if they are in one.
+    pub fn file(&self) -> Option<&Path> {
+        match &self.intrinsics {
+            Some(Intrinsics::File(file)) => Some(file),
+            _ => None,
+        }
+    }
+}
+
 impl Intrinsics {
     /// `FX,FY,CX,CY`, or else the name of a file.
     ///

@@ -325,6 +325,12 @@ pub enum Fault {
         /// All of them.
         vertices: usize,
     },
+    /// An OBJ has points beside its faces.
+    #[error(
+        "there are points (p) beside the faces: they would be lost; write them to a file of their own \
+         (PLY, PCD), or leave them out"
+    )]
+    PointsBesideFaces,
     /// There are more vertices than 32-bit indices can name.
     #[error("there are {found} vertices, at most 2^32 - 1 can be indexed: split the mesh")]
     TooManyVertices {

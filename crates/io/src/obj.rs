@@ -17,8 +17,8 @@ use crate::{
     text::{Lines, excerpt, finite_triple, parse as parse_number, words},
 };
 
-/// Keywords that say nothing about the surface: texture, normals, groups, material, lines, points.
-const PASSED_OVER: [&[u8]; 17] = [
+/// Keywords that say nothing about the surface: texture, normals, groups, material, lines.
+const PASSED_OVER: [&[u8]; 16] = [
     b"vt",
     b"vn",
     b"vp",
@@ -31,12 +31,14 @@ const PASSED_OVER: [&[u8]; 17] = [
     b"usemap",
     b"maplib",
     b"l",
-    b"p",
     b"lod",
     b"bevel",
     b"c_interp",
     b"d_interp",
 ];
+
+/// Keywords before numbers, whose lines a backslash continues; after names and in comments it is one of a path.
+const CONTINUED: [&[u8]; 7] = [b"v", b"vt", b"vn", b"vp", b"f", b"l", b"p"];
 
 /// Reads a mesh from the bytes of an OBJ file.
 ///
@@ -65,7 +67,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
     let mut lines = Lines::new(bytes);
     let mut vertices: Vec<Point3> = Vec::new();
     let mut faces = Faces::default();
-    let mut counts = None;
+    let (mut counts, mut points) = (None, None);
     while let Some(first) = lines.next_filled() {
         let whole = continued(first, &mut lines);
         let line = whole.split(|&b| b == b'#').next().unwrap_or_default();
@@ -80,6 +82,7 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
                 faces.push(line_words, vertices.len(), lines.number)?;
                 limits.check_triangles(faces.triangles.len(), lines.place())?;
             }
+            Some(b"p") => points = points.or_else(|| Some(lines.place())),
             Some(keyword) if PASSED_OVER.contains(&keyword) => {}
             Some(_) if lines.number == 1 && two_counts(line).is_some() => counts = two_counts(line),
             Some(_) => {
@@ -92,6 +95,9 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
         }
     }
     faces.check(vertices.len())?;
+    if let Some(place) = points.filter(|_| !faces.triangles.is_empty() || faces.count > 0) {
+        return Err(place.error(Fault::PointsBesideFaces));
+    }
     if let Some([promised_vertices, promised_faces]) = counts {
         for (what, promised, found) in [
             ("vertices", promised_vertices, vertices.len()),
@@ -111,6 +117,9 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
 /// A line together with those that a backslash at its end joins to it.
 fn continued<'a>(first: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
     let mut whole = Cow::Borrowed(first);
+    if !words(first).next().is_some_and(|keyword| CONTINUED.contains(&keyword)) {
+        return whole;
+    }
     while let Some(start) = whole.strip_suffix(b"\\") {
         let rest = lines.next().unwrap_or_default();
         whole = Cow::Owned([start, b" ", rest].concat());

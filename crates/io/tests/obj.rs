@@ -33,6 +33,22 @@ fn faces_are_read_in_every_notation() {
     assert_eq!(faces_first.vertices()[2], Point3::new(0.0, 1.0, 0.0));
 }
 
+/// The line after a path of Windows was taken for a part of it.
+#[test]
+fn a_backslash_ends_a_comment_or_a_name_like_any_other_letter() {
+    for before in ["# from C:\\parts\\", "mtllib C:\\parts\\", "o part\\", "g \\"] {
+        assert_eq!(triangles(&format!("{before}\nf 1 2 3\nf 1 3 4\n")), [[0, 1, 2], [0, 2, 3]]);
+    }
+    assert_eq!(triangles("f 1 2 \\\n3 4\nvn 0 0 \\\n1\n"), [[0, 1, 2], [0, 2, 3]]);
+}
+
+/// A scan beside a box was a box.
+#[test]
+fn points_beside_faces_are_not_lost_without_a_word() {
+    let found = error(VERTICES.to_owned() + "p 1 2\nf 1 2 3\np 4\n");
+    assert_eq!(found, (Place::Line(5), Fault::PointsBesideFaces));
+}
+
 #[test]
 fn a_first_line_of_counts_is_taken_at_its_word() {
     let with = |counts: &str| format!("{counts}\r\n{VERTICES}f 1 2 3 4\nf 1 2 3\n");

@@ -36,6 +36,12 @@ mod _native {
     #[pymodule_export]
     use crate::sensor::check_sensor;
 
+    #[pymodule_init]
+    fn init(_module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        crate::pool::note_process();
+        Ok(())
+    }
+
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "the name Python gives a version")]
     const __version__: &str = env!("CARGO_PKG_VERSION");

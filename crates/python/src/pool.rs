@@ -2,7 +2,7 @@
 
 use std::mem;
 use std::process;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -12,6 +12,9 @@ use crate::error::refused;
 /// The pool, with the process that started its threads.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
+/// The process that imported the package.
+static HOME: LazyLock<u32> = LazyLock::new(process::id);
+
 /// Does the work on all threads, and lets other Python threads run meanwhile.
 pub(crate) fn on_all_threads<T: Send>(
     py: Python<'_>,
@@ -19,6 +22,21 @@ pub(crate) fn on_all_threads<T: Send>(
 ) -> PyResult<T> {
     let pool = pool()?;
     Ok(py.detach(|| pool.install(work)))
+}
+
+/// Runs what mostly needs no other thread on this one, without the GIL. What does need others, such as the first
+/// query of a blurred cloud, takes those of rayon's global pool, which in a forked process may be its parent's: there
+/// it runs in the pool.
+pub(crate) fn on_this_thread<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    if process::id() == *HOME { Ok(py.detach(work)) } else { on_all_threads(py, work) }
+}
+
+/// Notes which process the package was imported in.
+pub(crate) fn note_process() {
+    LazyLock::force(&HOME);
 }
 
 /// As many threads as the machine has cores, or as `RAYON_NUM_THREADS` says.

@@ -16,7 +16,7 @@ use crate::arrays::{matrices, matrix};
 use crate::batch::{Row, columns};
 use crate::body::Body;
 use crate::error::{refused, refused_for};
-use crate::pool::on_all_threads;
+use crate::pool::{on_all_threads, on_this_thread};
 use crate::{page, sweep};
 
 /// Between so many poses Python is asked whether Ctrl-C was pressed.
@@ -77,7 +77,7 @@ impl Query {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        let report = py.detach(|| self.checked.run(&*a, &*b, &pose)).map_err(refused)?;
+        let report = on_this_thread(py, || self.checked.run(&*a, &*b, &pose))?.map_err(refused)?;
         answer::report(py, &report)
     }
 
@@ -92,7 +92,7 @@ impl Query {
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        let both = py.detach(|| self.checked.within(&*a, &*b, &pose, margin));
+        let both = on_this_thread(py, || self.checked.within(&*a, &*b, &pose, margin))?;
         let (report, within) = both.map_err(refused)?;
         Ok((answer::report(py, &report)?, answer::within(py, &within)?))
     }
@@ -108,7 +108,8 @@ impl Query {
     ) -> PyResult<[f64; 2]> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        py.detach(|| self.checked.clearance_interval(&*a, &*b, &pose, share)).map_err(refused)
+        on_this_thread(py, || self.checked.clearance_interval(&*a, &*b, &pose, share))?
+            .map_err(refused)
     }
 
     #[pyo3(signature = (a, b, pose, covariance, /))]
@@ -140,7 +141,7 @@ impl Query {
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        let both = py.detach(|| self.checked.gradient(&*a, &*b, &pose));
+        let both = on_this_thread(py, || self.checked.gradient(&*a, &*b, &pose))?;
         let (report, gradient) = both.map_err(refused)?;
         Ok((answer::report(py, &report)?, answer::gradient(py, &gradient)?))
     }
@@ -156,7 +157,7 @@ impl Query {
     ) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
         let pose = rigid(&matrix(&pose))?;
-        let both = py.detach(|| self.checked.penetration(&*a, &*b, &pose, probability));
+        let both = on_this_thread(py, || self.checked.penetration(&*a, &*b, &pose, probability))?;
         let (report, out) = both.map_err(refused)?;
         let out = out.map(|out| answer::penetration(py, &out)).transpose()?;
         Ok((answer::report(py, &report)?, out))
@@ -176,8 +177,8 @@ impl Query {
         let poses: PyResult<Vec<Pose>> = all_rigid(&poses).into_iter().collect();
         let join = if is_screw { Path::through_by_screws } else { Path::through };
         let path = join(&poses?).map_err(refused)?;
-        let swept =
-            py.detach(|| self.checked.sweep(&*a, &*b, &path, tolerance)).map_err(refused)?;
+        let swept = on_this_thread(py, || self.checked.sweep(&*a, &*b, &path, tolerance))?
+            .map_err(refused)?;
         sweep::answer(py, &swept)
     }
 

@@ -149,7 +149,7 @@ impl Scene {
         query: &Bound<'py, Query>,
     ) -> PyResult<Option<Pair<'py>>> {
         let (bodies, query) = (self.now(py)?, query.get().checked());
-        let found = py.detach(|| bodies.check_first(query));
+        let found = on_all_threads(py, || bodies.check_first(query))?;
         found.map(|found| pair(py, found)).transpose()
     }
 

@@ -64,6 +64,18 @@ def test_any_partition_has_the_same_bits(root, whole, order, cuts, keep):
         assert_same(checker(taken(table(), places)), taken(whole, places))
 
 
+def test_a_scene_that_is_a_mesh_is_one_in_a_ply_too(tmp_path):
+    """It was the cloud of its vertices, and free between them."""
+    corners = "-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n"
+    header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    faces = "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    (tmp_path / "table.ply").write_text(header + faces + corners + "3 0 1 2\n3 0 2 3\n")
+    write_points(tmp_path / "plate.xyz", sheet(seed=3))
+    row = {"scene": ["table.ply"], "object": ["plate.xyz"], "pose": [lifted(0.0)]}
+    answer = ct.PoseChecker(tmp_path, sensor="iso:0.001")(row)
+    assert list(answer["verdict"]) == ["in_collision"], answer
+
+
 def test_a_poisoned_row_is_an_error_in_its_place(root, whole):
     rows = table()
     poses: list = [pose.tolist() for pose in rows["pose"]]

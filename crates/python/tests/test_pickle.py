@@ -64,6 +64,38 @@ def ask(job):
     return query.run_batch(a, b, poses)
 
 
+def first_of_a_scene(job):
+    query, bodies = job
+    scene = ct.Scene()
+    for k, body in enumerate(bodies):
+        scene.add(f"body {k}", body, lifted(0.001 * k))
+    return scene.check_first(query).verdict
+
+
+@pytest.mark.parametrize("start", multiprocessing.get_all_start_methods())
+def test_a_scene_is_checked_in_a_worker(start, floor, plate):
+    """It waited for ever there."""
+    job = (ct.Query(), [floor, plate, plate])
+    here = first_of_a_scene(job)
+    with multiprocessing.get_context(start).Pool(1) as pool:
+        assert pool.map_async(first_of_a_scene, [job]).get(timeout=120) == here
+
+
+def first_query(job):
+    query, cloud, body = job
+    return query.run(cloud, body, lifted(0.01)).probability
+
+
+@pytest.mark.parametrize("start", multiprocessing.get_all_start_methods())
+def test_a_blurred_cloud_is_first_asked_in_a_worker(start, plate):
+    """What it computes on all threads there would wait for those of its parent."""
+    points = sheet(seed=6)
+    blurred = ct.Cloud(np.concatenate([points + 0.0001 * k for k in range(40)]), sensor="iso:0.02")
+    job = (ct.Query(), blurred, plate)
+    with multiprocessing.get_context(start).Pool(1) as pool:
+        assert pool.map_async(first_query, [job]).get(timeout=120) == first_query(job)
+
+
 @pytest.mark.parametrize("start", multiprocessing.get_all_start_methods())
 def test_workers_answer_as_their_parent_does(start, floor, plate):
     """A forked worker waited for ever for threads that only its parent has."""

@@ -36,7 +36,7 @@ fn nothing_that_reaches_into_the_floor_between_two_rings_is_free() {
     let query = Query::new(QuerySettings::default()).unwrap();
     let free = |depth: f64| {
         let verdict = |k: u64| {
-            let (far, round) = (5.7 + 2.0 * uniform(k, 0), 6.28 * uniform(k, 1));
+            let (far, round) = (5.7 + 2.0 * uniform(k, 0), std::f64::consts::TAU * uniform(k, 1));
             let pose = at(far * round.cos(), far * round.sin(), 0.1 - depth);
             query.run(&cloud, &held, &pose).unwrap().verdict
         };

@@ -272,6 +272,17 @@ fn a_body_far_behind_the_camera_is_undecided_though_boxes_rule_it_out() {
 /// Nor of sizes: one that is in millimetres beside the others is doubted with each, wherever they are, and
 /// so is one with nothing but a line of points.
 #[test]
+fn a_size_that_only_the_smaller_of_two_is_doubted_for_counts_too() {
+    let mut scene = Scene::default();
+    scene.add("a hall", mesh(&scene::cuboid([170.0; 3])), at(0.0, 0.0, 0.0)).unwrap();
+    scene.add("b house", mesh(&scene::cuboid([80.0; 3])), at(0.0, 150.0, 0.0)).unwrap();
+    scene.add("crate", mesh(&scene::cuboid([2.5; 3])), at(150.0, 0.0, 0.0)).unwrap();
+    let found = assert_same(&scene, &query());
+    let by = found.pairs[0].answer.as_ref().unwrap().undecided_by;
+    assert_eq!((names(&found), by), (vec![["a hall", "b house"]], Some(Undecided::Units)));
+}
+
+#[test]
 fn what_is_wrong_with_a_body_itself_counts_however_far_away_it_is() {
     let mut scene = Scene::default();
     scene.add("cube", mesh(&scene::cuboid([0.1; 3])), at(0.0, 0.0, 0.0)).unwrap();

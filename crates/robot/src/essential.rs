@@ -1,5 +1,6 @@
 //! What of a URDF places and shapes its links.
 
+use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, Writer};
 
@@ -39,6 +40,9 @@ const ELEMENTS: [(&str, &[&str]); 16] = [
     ("sphere", &["radius"]),
 ];
 
+/// Attributes that are numbers, of which readers pass over what is none.
+const NUMBERS: [&str; 4] = ["xyz", "rpy", "size", "scale"];
+
 /// The text of a URDF without these parts, and without what belongs to the namespaces of others.
 pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
     let fault = |reason: String| RobotFault::Xml { reason };
@@ -54,8 +58,8 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
                 continue;
             }
             Event::Empty(start) if is_passed_over(&start)? => continue,
-            Event::Start(start) => Event::Start(plain(&known(start)?)),
-            Event::Empty(start) => Event::Empty(plain(&known(start)?)),
+            Event::Start(start) => Event::Start(plain(&known(start)?)?),
+            Event::Empty(start) => Event::Empty(plain(&known(start)?)?),
             other => other,
         };
         writer.write_event(kept).map_err(|error| fault(error.to_string()))?;
@@ -89,29 +93,48 @@ fn known(start: BytesStart<'_>) -> Result<BytesStart<'_>, RobotFault> {
             None => Ok(start),
         };
     };
-    let own = start.attributes().flatten().filter(|attribute| attribute.key.prefix().is_none());
-    let unknown = own.map(|attribute| text(attribute.key.as_ref()));
-    match unknown.into_iter().find(|own| {
-        !attributes.is_empty() && !attributes.contains(&own.as_str()) && !own.starts_with("xmlns")
-    }) {
-        Some(own) => {
-            fault(format!("`{own}` of <{name}> is not known: write {}", attributes.join(" or ")))
+    for attribute in own_attributes(&start)? {
+        let own = text(attribute.key.as_ref());
+        if !attributes.is_empty()
+            && !attributes.contains(&own.as_str())
+            && !own.starts_with("xmlns")
+        {
+            let known = attributes.join(" or ");
+            return fault(format!("`{own}` of <{name}> is not known: write {known}"));
         }
-        None => Ok(start),
+        let value = text(&attribute.value);
+        let is_number = |word: &&str| word.parse::<f64>().is_ok();
+        if NUMBERS.contains(&own.as_str())
+            && let Some(word) = value.split_whitespace().find(|word| !is_number(word))
+        {
+            return fault(format!("`{own}` of <{name}> is `{value}`: `{word}` is not a number"));
+        }
     }
+    Ok(start)
+}
+
+/// The attributes that are of no other namespace.
+fn own_attributes<'a>(start: &'a BytesStart<'_>) -> Result<Vec<Attribute<'a>>, RobotFault> {
+    let fault = |error: &dyn std::fmt::Display| {
+        let name = String::from_utf8_lossy(start.name().as_ref()).into_owned();
+        RobotFault::Xml { reason: format!("the attributes of <{name}>: {error}") }
+    };
+    let all: Result<Vec<_>, _> = start.attributes().collect();
+    let mut all = all.map_err(|error| fault(&error))?;
+    all.retain(|attribute| attribute.key.prefix().is_none());
+    Ok(all)
 }
 
 /// Without attributes of other namespaces, such as a comment of xacro. How fast a joint may move, which
 /// the schema asks for and many leave out, is not asked about.
-fn plain(start: &BytesStart<'_>) -> BytesStart<'static> {
+fn plain(start: &BytesStart<'_>) -> Result<BytesStart<'static>, RobotFault> {
     let mut kept = start.to_owned();
     kept.clear_attributes();
-    let own = start.attributes().flatten().filter(|attribute| attribute.key.prefix().is_none());
-    kept.extend_attributes(own);
+    kept.extend_attributes(own_attributes(start)?);
     if kept.name().as_ref() == b"limit" && matches!(kept.try_get_attribute("velocity"), Ok(None)) {
         kept.push_attribute(("velocity", "0"));
     }
-    kept.into_owned()
+    Ok(kept.into_owned())
 }
 
 #[cfg(test)]
@@ -136,6 +159,11 @@ mod tests {
             ("<orgin xyz='0 0 1'/>", "<orgin> is not known: write <origin>"),
             ("<Origin xyz='0 0 1'/>", "write <origin>"),
             ("<geometry><mesh filename='a' Scale='1 1 1'/></geometry>", "`Scale` of <mesh>"),
+            // What is not well formed, or no number, was passed over: no turn, and up for down.
+            ("<origin xyz='0 0 1' rpy=1.57/>", "the attributes of <origin>"),
+            ("<origin xyz='0 0 0' xyz='0 0 1'/>", "the attributes of <origin>"),
+            ("<origin xyz='0 0 - 0.5'/>", "`xyz` of <origin> is `0 0 - 0.5`: `-` is not a number"),
+            ("<geometry><box size='1 2 3mm 4'/></geometry>", "`3mm` is not a number"),
         ] {
             let error = within(inner).unwrap_err();
             assert!(error.contains(told), "{error}");

@@ -26,6 +26,10 @@ impl RobotChecker {
     ) -> Result<(), SceneError> {
         let place = self.robot.tree.links.iter().position(|known| known == link);
         let place = place.ok_or_else(|| SceneError::UnknownName { name: link.to_owned() })?;
+        // Some links are in the scene by other names, one for each of their shapes, or not at all.
+        if self.robot.tree.links.iter().any(|known| known == name) {
+            return Err(SceneError::NameTaken { name: name.to_owned() });
+        }
         let body = body.into();
         self.scene.add(name, Arc::clone(&body), link_from_body)?;
         self.carried.push(Carried::held(name.to_owned(), place, link_from_body, body));

@@ -176,6 +176,7 @@ fn what_the_hand_holds_goes_along_and_is_let_go() {
     assert!((share - 0.1..share).contains(&until(&checker)), "{} {share}", until(&checker));
     assert!(checker.hold("rod", Arc::clone(&rod), "hand", ahead).is_err(), "the name is taken");
     assert!(checker.hold("bar", Arc::clone(&rod), "nobody", ahead).is_err());
+    assert!(checker.hold("hand", Arc::clone(&rod), "hand", ahead).is_err(), "a link has that name");
     assert!(checker.release("hand").is_err(), "a link is not held");
     assert!(Arc::ptr_eq(&checker.release("rod").unwrap(), &rod));
     assert_eq!(until(&checker), 1.0);

@@ -6,6 +6,7 @@ use anyhow::{Context as _, Result, bail, ensure};
 use cloudtouch_io::DepthCamera;
 use serde_json::{Map, Value};
 
+use crate::files::distortion;
 use crate::files::json::{as_written, shortened, without_bare_words};
 
 /// What a file says of a camera.
@@ -20,20 +21,6 @@ pub struct CameraFile {
 
 /// Names under which a 3 x 3 matrix stands: ROS, BOP, Open3D.
 const MATRICES: [&str; 4] = ["K", "k", "cam_K", "intrinsic_matrix"];
-/// Names of distortion: ROS, librealsense, OpenCV; lists, and coefficients one by one.
-const DISTORTION: [&str; 11] = [
-    "D",
-    "d",
-    "coeffs",
-    "distortion",
-    "distortion_coefficients",
-    "dist_coeffs",
-    "k1",
-    "k2",
-    "k3",
-    "p1",
-    "p2",
-];
 const FORMS: &str = "write {\"fx\": 525, \"fy\": 525, \"cx\": 319.5, \"cy\": 239.5}, or a 3 x 3 matrix as \
                      \"K\", \"cam_K\" or \"intrinsic_matrix\"";
 
@@ -130,7 +117,7 @@ fn of_object(fields: &Map<String, Value>) -> Result<CameraFile> {
     if let Some((other, _)) = others.iter().find(|(_, of_other)| of_other != numbers) {
         bail!("`{first}` and `{other}` say different intrinsics: leave out one of them");
     }
-    undistorted(fields)?;
+    distortion::check(fields)?;
     let CameraFile { mut camera, .. } = of_numbers(*numbers);
     camera.image_size = match size(fields, ["width", "height"])? {
         None => size(fields, ["image_width", "image_height"])?,
@@ -206,23 +193,6 @@ fn pinhole(name: &str, matrix: &[f64]) -> Result<[f64; 4]> {
         );
     }
     Ok([at(0, 0), at(1, 1), at(0, 2), at(1, 2)])
-}
-
-/// Refuses coefficients that are not zero: pixels would be taken to look where they do not.
-fn undistorted(fields: &Map<String, Value>) -> Result<()> {
-    for name in DISTORTION {
-        let Some(value) = fields.get(name) else { continue };
-        let list = value.get("data").unwrap_or(value);
-        let list = list.as_array().map_or(std::slice::from_ref(list), Vec::as_slice);
-        if let Some(found) = list.iter().find(|one| !one.is_null() && one.as_f64() != Some(0.0)) {
-            bail!(
-                "`{name}` has {}, a lens that distorts: rectify the image first, and give the intrinsics of \
-                 the rectified one without distortion (of a CameraInfo those in P)",
-                as_written(found)
-            );
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 pub mod case;
 mod case_fields;
+mod distortion;
 mod fields;
 pub mod intrinsics;
 pub mod joints;

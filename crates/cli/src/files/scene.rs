@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, anyhow, bail};
 use cloudtouch::geom::Pose;
 use cloudtouch_io::LengthUnit;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
@@ -62,12 +62,23 @@ struct RawFile<'a> {
 struct RawBody {
     name: Value,
     file: Value,
+    #[serde(default, deserialize_with = "given")]
     sensor: Option<Value>,
+    #[serde(default, deserialize_with = "given")]
     unit: Option<Value>,
+    #[serde(default, deserialize_with = "given")]
     intrinsics: Option<Value>,
+    #[serde(default, deserialize_with = "given")]
     depth_scale: Option<Value>,
+    #[serde(default, deserialize_with = "given")]
     pose: Option<Value>,
+    #[serde(default, deserialize_with = "given")]
     attached_to: Option<Value>,
+}
+
+/// What is there, `null` too: a pose that a program does not know is not the one that is left out.
+fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value>, D::Error> {
+    Value::deserialize(deserializer).map(Some)
 }
 
 /// Reads a scene file of at most `max_bytes`; paths in it are relative to its folder.

@@ -147,6 +147,10 @@ pub(crate) fn surroundings(
     let common = options.common;
     let units = Units::of(options);
     match geometry(path, units, &common.limits.read_limits())? {
+        (Geometry::Mesh(_), _) if !robot.is_empty() => bail!(WrongUsage(format!(
+            "{}: a mesh does not show the robot: leave --scan-joints out",
+            named(path)
+        ))),
         (Geometry::Mesh(mesh), _) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
         (Geometry::Cloud(cloud), kind) => {
             let (scans, sensor) = (vec![(cloud, kind)], common.scene_sensor());

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping
@@ -13,11 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from cloudtouch import _native
+from cloudtouch._native import CloudtouchError
 from cloudtouch.bodies import Cloud, Mesh, check_sensor
 from cloudtouch.query import Body, Query
 from cloudtouch.report import Batch
 
-#: Extensions that are read as meshes; a ``.ply`` is a cloud as a scene and a mesh as an object.
+#: Extensions that are read as meshes; a ``.ply`` is a mesh as an object, and as a scene if it has faces.
 MESHES = (".stl", ".obj")
 #: Columns that a row has to have.
 NEEDED = ("scene", "object", "pose")
@@ -128,8 +130,13 @@ class PoseChecker:
 
     def _read(self, name: str, *, is_scene: bool) -> Body:
         path, (unit, cloud_unit) = self._root / name, self._units
-        if path.suffix.lower() in MESHES or (path.suffix.lower() == ".ply" and not is_scene):
+        suffix = path.suffix.lower()
+        if suffix in MESHES or (suffix == ".ply" and not is_scene):
             return Mesh.read(path, unit=unit)
+        if suffix == ".ply":
+            # As a cloud a mesh would be its vertices, and free between them.
+            with contextlib.suppress(CloudtouchError):
+                return Mesh.read(path, unit=unit)
         sensor = self._sensors[0 if is_scene else 1]
         return Cloud.read(path, sensor=sensor, unit=cloud_unit, refined=is_scene)
 

@@ -27,7 +27,15 @@ class Page:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the file, over what stood there."""
-        Path(path).write_text(self.html, encoding="utf-8")
+        html, target = self.html, Path(path)
+        # Beside it first: what stood there is not lost to a full disk.
+        unfinished = target.with_name(target.name + ".partial")
+        try:
+            unfinished.write_text(html, encoding="utf-8")
+            unfinished.replace(target)
+        except BaseException:
+            unfinished.unlink(missing_ok=True)
+            raise
 
     def frame(self, height: int = 480) -> str:
         """A frame of so many pixels with the page in it, as a part of another page."""

@@ -22,8 +22,13 @@ pub(super) struct Part {
 impl Part {
     /// False for a sheet with its own back face.
     pub(super) fn has_inside(&self) -> bool {
-        self.volume.abs() > LEAST_VOLUME * self.area.powf(1.5)
+        encloses(self.volume, self.area)
     }
+}
+
+/// Whether a volume (m³) is one, beside the area (m²) of what encloses it.
+pub(super) fn encloses(volume: f64, area: f64) -> bool {
+    volume.abs() > LEAST_VOLUME * area.powf(1.5)
 }
 
 /// The parts of a merged mesh, joined by their vertices.

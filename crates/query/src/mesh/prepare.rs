@@ -51,6 +51,8 @@ pub struct Mesh {
     closed: bool,
     /// Whether some part of it is closed.
     has_solids: bool,
+    /// Of each triangle whether its normal leads out of a closed part with an inside.
+    leads_out: Vec<bool>,
     /// How far apart coordinates of the file are, m, where that may matter.
     pub(super) step: Option<f64>,
     /// On which side places are, once that is needed.
@@ -78,7 +80,7 @@ impl Mesh {
         let origin = nalgebra::center(&low, &high).coords;
         let vertices = merged.vertices().iter().map(|p| p - origin).collect();
         let merged = TriangleMesh::new(vertices, merged.triangles().to_vec())?;
-        let Solids { triangles, is_solid } = Solids::of(&merged);
+        let Solids { triangles, is_solid, leads_out } = Solids::of(&merged);
         let merged = TriangleMesh::new(merged.vertices().to_vec(), triangles)?;
         let closed = merged.border_edges() == 0;
         let parts = parts(&merged);
@@ -114,6 +116,7 @@ impl Mesh {
             watertight,
             closed,
             has_solids,
+            leads_out,
             step: single_step(&used),
             cells: OnceLock::new(),
             samples: OnceLock::new(),
@@ -172,6 +175,11 @@ impl Mesh {
     pub(crate) fn corners_of_box(&self) -> [Point3; 2] {
         let around = self.surface.local_aabb();
         [around.mins, around.maxs].map(|v| Point3::new(v.x, v.y, v.z))
+    }
+
+    /// Whether the normal of a triangle leads out of a part that has an inside.
+    pub(crate) fn leads_out(&self, triangle: u32) -> bool {
+        self.leads_out.get(triangle as usize).is_some_and(|&leads_out| leads_out)
     }
 
     /// Unit normal of a triangle, outward for a watertight mesh; `None` for a degenerate one.

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use cloudtouch_geom::{Point3, TriangleMesh, Vector3};
 
-use super::parts::root;
+use super::parts::{encloses, root};
 use super::winding::{FarRadii, INSIDE, Winding};
 
 /// Vertices of a part that tell whether it is within others, at most.
@@ -19,6 +19,9 @@ pub(super) struct Solids {
     pub triangles: Vec<[u32; 3]>,
     /// Of each whether its part is closed.
     pub is_solid: Vec<bool>,
+    /// Of each whether its part is closed and has an inside, as a sheet with its own back face has not: the normal of
+    /// such a triangle leads out of it.
+    pub leads_out: Vec<bool>,
 }
 
 /// A part that is joined by edges of two triangles.
@@ -27,6 +30,8 @@ struct Piece {
     triangles: Vec<usize>,
     /// Six times what it encloses, m³; negative where it is turned inward.
     volume: f64,
+    /// Of its triangles, m².
+    area: f64,
 }
 
 impl Solids {
@@ -34,10 +39,14 @@ impl Solids {
     pub(super) fn of(mesh: &TriangleMesh) -> Self {
         let mut triangles = mesh.triangles().to_vec();
         let mut is_solid = vec![false; triangles.len()];
+        let mut leads_out = vec![false; triangles.len()];
         let closed: Vec<Piece> =
             pieces(mesh).into_iter().filter(|piece| is_closed(mesh, piece)).collect();
         for piece in &closed {
-            piece.triangles.iter().for_each(|&triangle| is_solid[triangle] = true);
+            let has_inside = encloses(piece.volume / 6.0, piece.area);
+            for &triangle in &piece.triangles {
+                (is_solid[triangle], leads_out[triangle]) = (true, has_inside);
+            }
         }
         let (inward, outward): (Vec<Piece>, Vec<Piece>) =
             closed.into_iter().partition(|piece| piece.volume < 0.0);
@@ -50,7 +59,7 @@ impl Solids {
                 }
             }
         }
-        Self { triangles, is_solid }
+        Self { triangles, is_solid, leads_out }
     }
 }
 
@@ -96,6 +105,7 @@ fn pieces(mesh: &TriangleMesh) -> Vec<Piece> {
         let piece = pieces.entry(name).or_default();
         piece.triangles.push(triangle);
         piece.volume += a.dot(&b.cross(&c));
+        piece.area += 0.5 * (b - a).cross(&(c - a)).norm();
     }
     pieces.into_values().collect()
 }

@@ -5,6 +5,7 @@ use cloudtouch_geom::Pose;
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::ContactEvidence;
+use crate::record::CLEAR_DEVIATIONS;
 
 use super::run::Query;
 
@@ -14,7 +15,7 @@ impl Query {
     ///
     /// By the least gap of surface anywhere, less the way, taken for a contact of the likeliest shape of which a
     /// classifier says the worst: never too low but for what samples do not show, often too high. 1 where the way
-    /// may close a gap, where it reaches into what a depth image did not see, or when the deadline is over.
+    /// may leave less than three deviations of a gap, where it reaches into what a depth image did not see, or when the deadline is over.
     ///
     /// # Errors
     /// When the way is negative or not finite, and those of [`Self::run`].
@@ -31,11 +32,11 @@ impl Query {
             // Two meshes are exact.
             return Ok(upper);
         };
-        if within.deviations <= 0.0 {
+        // Nearer than that something may come through between samples on the way.
+        if within.deviations < CLEAR_DEVIATIONS {
             return Ok(1.0);
         }
         let judge = self.settings().judge.for_noise(noise_over_spacing);
-        // Where no way closes the gap nothing crosses.
         Ok(judge.at_most(self.settings().prior, within.deviations, 0.0).max(upper))
     }
 }

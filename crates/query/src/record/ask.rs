@@ -7,6 +7,7 @@ use cloudtouch_geom::{Pose, Vector3};
 use crate::check::coordinates::bad_entry;
 use crate::doubt::undecided::Undecided;
 use crate::error::QueryError;
+use crate::mode::Mode;
 use crate::report::Report;
 use crate::shape::Shape;
 use crate::stats::Stats;
@@ -79,8 +80,12 @@ impl Terms {
         }
         let stats: Stats = evidence.stats;
         let thresholds = Thresholds { accept: self.accept, reject: self.reject };
+        // Where a classifier only revises what geometry tells, one that is not solved leaves nothing out: it keeps
+        // the pair from being free.
+        let is_told = self.mode == Mode::Calibrated && estimate.probability >= self.reject;
+        let unsolved = if is_told { 0 } else { stats.undecided };
         let (verdict, undecided_by) =
-            thresholds.decide(estimate.probability, estimate.bounds[1], stats.undecided, doubt);
+            thresholds.decide(estimate.probability, estimate.bounds[1], unsolved, doubt);
         Report {
             collision_probability: estimate.probability,
             bounds: estimate.bounds,

@@ -65,14 +65,15 @@ impl Terms {
         (gravest, warnings)
     }
 
-    /// Whether A may be doubted wherever it lies beside a body no smaller than B: what it is like, how large
-    /// it is beside B, and what it did not see.
-    pub(crate) fn may_doubt(&self, (a, b): (Shape<'_>, Shape<'_>)) -> bool {
-        let is_of_a = |warning: &&Warning| warning.body() == Some(Which::A);
+    /// Whether one of the two may be doubted wherever they lie, A beside a body no smaller than B or B beside one no
+    /// larger than A: what it is like, how large it is beside the other, and what it did not see.
+    pub(crate) fn may_doubt(&self, (a, b): (Shape<'_>, Shape<'_>), which: Which) -> bool {
+        let is_of = |warning: &&Warning| warning.body() == Some(which);
         let warnings = doubts((a, b), None, None, self.are_alone, &self.safeguards);
         // Pairs that nobody looks at are clear of each other.
-        let mut of_a = warnings.iter().filter(is_of_a).filter(|warning| counts(warning, true));
-        knows_unseen(a) || of_a.any(|warning| self.reason(warning).is_some())
+        let mut of_it = warnings.iter().filter(is_of).filter(|warning| counts(warning, true));
+        let shape = if which == Which::A { a } else { b };
+        knows_unseen(shape) || of_it.any(|warning| self.reason(warning).is_some())
     }
 
     /// Why a pair with this warning does not read as free; `None` where it may.

@@ -11,6 +11,7 @@ use cloudtouch_geom::{Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::check::coordinates::{LARGEST_COORDINATE, bad_entry};
+use crate::doubt::warning::Which;
 use crate::judge::{MOST_DEVIATIONS, NOISE_KNOTS, probability};
 use crate::query::Query;
 use crate::record::Terms;
@@ -49,11 +50,21 @@ impl BroadPhase {
 
     /// Beyond this box (in the frame of the scene, m) a body meets nothing that is beyond its own; all of
     /// space for one whose pairs have to be looked at wherever it is. `smallest` is the smallest body of the
-    /// scene that has a size.
-    pub(super) fn zone(&self, shape: Shape<'_>, pose: &Pose, smallest: Shape<'_>) -> Corners {
+    /// scene that has a size, and `largest` the largest unless that is this one.
+    pub(super) fn zone(
+        &self,
+        shape: Shape<'_>,
+        pose: &Pose,
+        smallest: Shape<'_>,
+        largest: Option<Shape<'_>>,
+    ) -> Corners {
         // Two such poses are no farther from each other than can be reckoned with.
         let is_placed = pose.translation().norm() < 0.25 * LARGEST_COORDINATE;
-        if !is_placed || !self.nothing_is_free || self.terms.may_doubt((shape, smallest)) {
+        let may_doubt = || {
+            let as_smaller = |largest| self.terms.may_doubt((largest, shape), Which::B);
+            self.terms.may_doubt((shape, smallest), Which::A) || largest.is_some_and(as_smaller)
+        };
+        if !is_placed || !self.nothing_is_free || may_doubt() {
             return everywhere();
         }
         around(shape, pose)

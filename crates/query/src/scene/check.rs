@@ -110,11 +110,14 @@ impl Scene {
     fn candidates<'a>(&self, bodies: &[Member<'a>], broad: &BroadPhase) -> Vec<Candidate<'a>> {
         let smallest = bodies.iter().rfind(|of| of.size > 0.0).or(bodies.last());
         let Some(smallest) = smallest.map(|of| of.body.shape()) else { return Vec::new() };
-        let zone = |of: &Member<'_>| match of.beside.is_astray() {
+        let zone = |(k, of): (usize, &Member<'_>)| match of.beside.is_astray() {
             true => everywhere(),
-            false => broad.zone(of.body.shape(), &of.pose, smallest),
+            false => {
+                let largest = (k > 0).then(|| bodies[0].body.shape());
+                broad.zone(of.body.shape(), &of.pose, smallest, largest)
+            }
         };
-        let zones: Vec<Corners> = bodies.iter().map(zone).collect();
+        let zones: Vec<Corners> = bodies.iter().enumerate().map(zone).collect();
         let allowed: BTreeSet<[&str; 2]> =
             self.allowed.iter().map(|pair| pair.each_ref().map(String::as_str)).collect();
         let near = meeting(&zones).into_iter().map(|pair| pair.map(|k| &bodies[k]));

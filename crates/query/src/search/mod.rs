@@ -17,6 +17,7 @@ pub(crate) use compare::meeting::probability_at;
 pub(crate) use cross::crossing::Crossing;
 pub(crate) use measure::beyond::{least_beyond, may_be_within};
 pub(crate) use measure::inside::{Inside, Looked, look_inside};
+pub(crate) use measure::nearest::Nearest;
 pub(crate) use run::{Finding, Found, SOUGHT, WITH_EXTENT, WITHOUT_EXTENT, search};
 pub(crate) use swept::{greatest_depth, reach_of};
 pub(crate) use visit::leaf::{Leaf, NoisyLeaf};

@@ -67,7 +67,7 @@ fn check_files(
     let files = cases.flat_map(|case| [case.scene.as_path(), case.object.as_path()]);
     let settings = options.settings.map(|file| &file.path);
     let others = options.robot.iter().chain([&arguments.cases]).chain(settings);
-    let inputs = files.chain(others.map(PathBuf::as_path));
+    let inputs = files.chain(others.map(PathBuf::as_path)).chain(options.depth.file());
     let outputs = [Output::table(&arguments.jsonl), Output::of("html", &arguments.html)];
     output::check(&outputs, inputs, arguments.force)
 }

@@ -47,6 +47,7 @@ pub(super) fn check_files(arguments: &QueryArguments) -> Result<()> {
     ];
     let settings = options.settings.map(|file| &file.path);
     let inputs = inputs.chain(&arguments.pose.pose).chain(settings).map(PathBuf::as_path);
+    let inputs = inputs.chain(options.depth.file());
     output::check(&outputs, inputs, arguments.force)
 }
 

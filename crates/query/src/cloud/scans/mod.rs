@@ -190,6 +190,8 @@ impl Scans {
                 each.into()
             }
         };
+        // What was to be doubted of points that are gone says nothing of those that come.
+        let is_gone = kept.is_empty();
         Self {
             points: of(&self.points, kept),
             noise,
@@ -197,7 +199,9 @@ impl Scans {
             rows: if self.rows.is_empty() { Vec::new() } else { of(&self.rows, kept) },
             stages: self.stages.clone(),
             origins: self.origins.clone(),
-            sensor_doubts: self.sensor_doubts.clone(),
+            sensor_doubts: if is_gone { Vec::new() } else { self.sensor_doubts.clone() },
+            missing: if is_gone { 0.0 } else { self.missing },
+            step: self.step.filter(|_| !is_gone),
             images: self.images.clone(),
             ranges: self.ranges.clone(),
             ..*self

@@ -231,8 +231,8 @@ impl Raster {
         let is_within = |v: f64, axis: usize| {
             self.is_round && axis == 0 || v >= 0.0 && v < self.size[axis] as f64
         };
-        // The whole part.
-        (is_within(x, 0) && is_within(y, 1)).then_some([x as isize, y as isize])
+        // What is just left of the first column of a round one is in the last.
+        (is_within(x, 0) && is_within(y, 1)).then_some([x.floor() as isize, y.floor() as isize])
     }
 
     fn index(&self, x: isize, y: isize) -> Option<usize> {
@@ -310,11 +310,11 @@ mod tests {
     use super::*;
 
     /// Of a scanner in a ball of 5 m, with a thing 1 m away beside straight ahead, on the one side or the other.
-    fn raster(is_left: bool) -> Raster {
+    fn raster(is_left: bool, first: f64) -> Raster {
         let ray = |i: usize| {
             let (azimuth, up) = ((i % 360) as f64, (i / 360) as f64 - 20.0);
             let is_thing = azimuth == if is_left { 1.0 } else { 359.0 };
-            let (sin, cos) = azimuth.to_radians().sin_cos();
+            let (sin, cos) = (azimuth + first).to_radians().sin_cos();
             let up = up.to_radians();
             let range = if is_thing { 1.0 } else { 5.0 };
             (Point3::new(cos * up.cos(), sin * up.cos(), up.sin()) * range, 0.01)
@@ -326,11 +326,11 @@ mod tests {
     /// What was just right of straight ahead was not beside what was there, for azimuths begin there.
     #[test]
     fn the_last_column_of_a_panorama_is_beside_the_first() {
-        for is_left in [true, false] {
-            let raster = raster(is_left);
+        for (is_left, first) in [true, false].into_iter().flat_map(|is| [(is, 0.0), (is, 0.7)]) {
+            let raster = raster(is_left, first);
             let side = if is_left { 1.0 } else { -1.0 };
             for (degrees, is_past) in [(0.0, false), (side, false), (8.0 * side, true)] {
-                let (sin, cos) = f64::to_radians(degrees).sin_cos();
+                let (sin, cos) = f64::to_radians(degrees + first).sin_cos();
                 let ray = 3.0 * Vector3::new(cos, sin, 0.0);
                 assert_eq!(raster.looks_past(&ray, 0.01), is_past, "{is_left} {degrees}");
                 assert_ne!(raster.sight(&ray), Sight::OutsideView);

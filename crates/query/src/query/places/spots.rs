@@ -4,7 +4,7 @@
 use cloudtouch_geom::{Motion, Point3, Pose, Vector3};
 
 use crate::body::BodyRef;
-use crate::search::{Crossing, Finding, Found, Inside, Wrench, probability_at};
+use crate::search::{Crossing, Finding, Found, Inside, Nearest, Wrench, probability_at};
 
 /// A crossing less probable than this is told by the gap of the pieces nearest to it.
 const LIKELY: f64 = 0.5;
@@ -120,7 +120,7 @@ fn near((a, b): (BodyRef<'_>, BodyRef<'_>), index: usize, finding: &Finding) -> 
     });
     // Where a piece ends is known to half of what it reaches.
     let of_pieces = across[0].hypot(across[1]).hypot(0.5 * reach);
-    let normal = match outward(a, b, nearest.normals) {
+    let normal = match outward(a, b, nearest) {
         Some(known) if known.dot(&axis).abs() > ONE_PLANE => known,
         // Where the gap is less than what is known of it, the pieces say nothing of the direction.
         _ if axis.dot(&offset).abs() > of_pieces => axis * axis.dot(&offset).signum(),
@@ -153,15 +153,16 @@ pub(in crate::query) fn common_normal(finding: &Finding) -> Option<Vector3> {
     }
 }
 
-/// The direction from A to B by the outside of a closed mesh.
+/// The direction from A to B by the outside of what a mesh encloses.
 pub(in crate::query) fn outward(
     a: BodyRef<'_>,
     b: BodyRef<'_>,
-    [of_a, of_b]: [Option<Vector3>; 2],
+    nearest: &Nearest,
 ) -> Option<Vector3> {
+    let ([of_a, of_b], between) = (nearest.normals, nearest.between);
     match (a, b) {
-        (BodyRef::Mesh(mesh), _) if mesh.is_closed() => of_a,
-        (_, BodyRef::Mesh(mesh)) if mesh.is_closed() => of_b.map(|normal| -normal),
+        (BodyRef::Mesh(mesh), _) if mesh.leads_out(between[0]) => of_a,
+        (_, BodyRef::Mesh(mesh)) if mesh.leads_out(between[1]) => of_b.map(|normal| -normal),
         _ => None,
     }
 }

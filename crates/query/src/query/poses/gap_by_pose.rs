@@ -52,7 +52,7 @@ pub(super) fn gap_by_pose(
     let normals = normals(finding, a_moves);
     let axis = axis((a_moves, finding), normals, &offset, spot);
     let of_mesh = if a_moves { normals[0] } else { normals[1] };
-    let known = outward(a, b, finding.nearest.normals).and(of_mesh);
+    let known = outward(a, b, &finding.nearest).and(of_mesh);
     let normal = match known {
         Some(known) if known.value.dot(&axis.value).abs() > ONE_PLANE => known,
         _ => axis,
