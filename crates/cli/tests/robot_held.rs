@@ -83,15 +83,15 @@ fn slips_in_the_file_are_told_with_place_and_remedy() {
     let mut allowed = held();
     allowed["allowed"] = json!([["parcel", "hind"]]);
     let none = json!({"format": 1, "length_unit": "m", "bodies": []});
+    let mut loose = held();
+    loose["bodies"][0].as_object_mut().unwrap().remove("attached_to");
     for (file, parts) in [
         (
             with("attached_to", json!("hind")),
             ["body 1 `parcel`", "no link of the robot, of post, arm, hand"],
         ),
-        (
-            with("attached_to", Value::Null),
-            ["body 1 `parcel`", "give `attached_to`, the link that holds it"],
-        ),
+        (with("attached_to", Value::Null), ["body 1 `parcel`", "`attached_to` is null"]),
+        (loose, ["body 1 `parcel`", "give `attached_to`, the link that holds it"]),
         (with("name", json!("arm")), ["body 1 `arm`", "give the new one another name"]),
         (with("file", json!("gone.obj")), ["body 1 `parcel`", "gone.obj"]),
         (with("sensor", json!("iso:0.002")), ["body 1 `parcel`", "sensor"]),

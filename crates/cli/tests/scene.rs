@@ -123,7 +123,7 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         (with("file", json!(["box.obj"])), vec!["body 2 `box`", "`file` is [\"box.obj\"]"]),
         (with("unit", json!(1)), vec!["body 2 `box`", "`unit` is 1"]),
         // As programs write what they do not know: it was where no pose is given.
-        (with("pose", Value::Null), vec!["body 2 `box`", "`pose`"]),
+        (with("pose", Value::Null), vec!["body 2 `box`", "the pose is not", "null"]),
         (with("attached_to", Value::Null), vec!["body 2 `box`", "`attached_to` is null"]),
         (of_scene("bodies", json!([["a", "b"], 1])), vec!["body 1", "a JSON object"]),
         (with("sensor", json!("sonar")), vec!["body 2 `box`", "`sonar`"]),

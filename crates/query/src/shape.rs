@@ -50,6 +50,16 @@ impl<'a> Shape<'a> {
         (high - low).norm()
     }
 
+    /// Of the ball about the middle of its samples that holds them, if that is smaller: the same however the file is
+    /// turned, which the box is not.
+    pub(crate) fn breadth(&self) -> f64 {
+        let samples = self.samples();
+        let sum = samples.iter().map(|sample| sample.coords).sum::<Vector3>();
+        let middle = Point3::from(sum / samples.len().max(1) as f64);
+        let farthest = samples.iter().map(|sample| (sample - middle).norm()).fold(0.0, f64::max);
+        self.size().min(2.0 * farthest)
+    }
+
     /// Lowest and highest corner of the body along the axes of its local frame, m.
     pub(crate) fn corners(&self) -> [Point3; 2] {
         match self {

@@ -62,13 +62,9 @@ struct RawFile<'a> {
 struct RawBody {
     name: Value,
     file: Value,
-    #[serde(default, deserialize_with = "given")]
     sensor: Option<Value>,
-    #[serde(default, deserialize_with = "given")]
     unit: Option<Value>,
-    #[serde(default, deserialize_with = "given")]
     intrinsics: Option<Value>,
-    #[serde(default, deserialize_with = "given")]
     depth_scale: Option<Value>,
     #[serde(default, deserialize_with = "given")]
     pose: Option<Value>,

@@ -31,6 +31,8 @@ const EXCHANGED_MESHES_RATIO: f64 = 20.0;
 /// An object is not so many sizes of the larger body away from it. A pose given in millimetres is, unless the
 /// object lies within a twenty-fifth of that size.
 const FARTHEST_SIZES: f64 = 40.0;
+/// The diagonals of the boxes of one body, however it is turned, are within this factor (√3, and some).
+const TURNED: f64 = 1.8;
 /// Coordinates of a mesh are not this part of either body apart, ...
 const COARSE: f64 = 0.02;
 /// ... nor those of a cloud, whose points scatter anyway.
@@ -58,7 +60,11 @@ pub(crate) fn doubts(
     warnings.extend(units((a, b), are_alone));
     warnings.extend(bodies.into_iter().filter_map(|(body, shape, other)| match shape {
         Shape::Cloud(cloud) => {
-            scale(body, cloud, other.size(), middles.map(|of_other| of_other[body as usize]))
+            let Makeup { spacing, std, .. } = *cloud.makeup();
+            let (size, finest) = (other.size(), spacing.max(std));
+            // PERF: no box is wider than its turned one by more than that; mostly it is far larger.
+            let size = if TURNED * finest > size { other.breadth() } else { size };
+            scale(body, cloud, size, middles.map(|of_other| of_other[body as usize]))
         }
         Shape::Mesh(_) => None,
     }));

@@ -5,9 +5,12 @@ use cloudtouch_geom::Pose;
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::ContactEvidence;
-use crate::record::CLEAR_DEVIATIONS;
 
 use super::run::Query;
+
+/// Between samples on a grid a surface comes through another with up to two deviations between the nearest of their
+/// samples: nearer than this, it may on the way.
+const THROUGH_DEVIATIONS: f64 = 2.5;
 
 impl Query {
     /// A bound on the probability of a collision at any pose about this one at which no point of `b` is farther
@@ -15,7 +18,7 @@ impl Query {
     ///
     /// By the least gap of surface anywhere, less the way, taken for a contact of the likeliest shape of which a
     /// classifier says the worst: never too low but for what samples do not show, often too high. 1 where the way
-    /// may leave less than three deviations of a gap, where it reaches into what a depth image did not see, or when the deadline is over.
+    /// may leave less than two and a half deviations of a gap, where it reaches into what a depth image did not see, or when the deadline is over.
     ///
     /// # Errors
     /// When the way is negative or not finite, and those of [`Self::run`].
@@ -32,8 +35,7 @@ impl Query {
             // Two meshes are exact.
             return Ok(upper);
         };
-        // Nearer than that something may come through between samples on the way.
-        if within.deviations < CLEAR_DEVIATIONS {
+        if within.deviations < THROUGH_DEVIATIONS {
             return Ok(1.0);
         }
         let judge = self.settings().judge.for_noise(noise_over_spacing);
