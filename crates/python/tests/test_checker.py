@@ -71,7 +71,9 @@ def test_a_scene_that_is_a_mesh_is_one_in_a_ply_too(tmp_path):
     faces = "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
     (tmp_path / "table.ply").write_text(header + faces + corners + "3 0 1 2\n3 0 2 3\n")
     write_points(tmp_path / "plate.xyz", sheet(seed=3))
-    row = {"scene": ["table.ply"], "object": ["plate.xyz"], "pose": [lifted(0.0)]}
+    aslant = lifted(-0.1)
+    aslant[1:3, 1:3] = [[0.6, -0.8], [0.8, 0.6]]
+    row = {"scene": ["table.ply"], "object": ["plate.xyz"], "pose": [aslant]}
     answer = ct.PoseChecker(tmp_path, sensor="iso:0.001")(row)
     assert list(answer["verdict"]) == ["in_collision"], answer
 

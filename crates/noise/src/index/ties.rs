@@ -13,18 +13,30 @@ const TIED: f64 = 1e-7;
 const STEPS: f64 = 1e4;
 
 /// Whether the next in order is as near as this one.
+#[inline]
 pub(crate) fn are_tied(near: &Neighbor, next: &Neighbor) -> bool {
     next.squared_distance <= widened(near.squared_distance)
 }
 
 /// The squared distance of the farthest that is as near.
+#[inline]
 pub(crate) fn widened(squared_distance: f64) -> f64 {
     squared_distance * (1.0 + TIED)
 }
 
 /// Puts those that are as near as one another in order of x, y and z, those of the first `k` and those tied with
 /// the last of them; `found` is in order of distance.
+#[inline]
 pub(crate) fn order_ties(points: &[Point3], place: &Point3, k: usize, found: &mut [Neighbor]) {
+    // PERF: mostly none are.
+    let some = &found[..found.len().min(k + 1)];
+    if some.iter().zip(some.iter().skip(1)).any(|(near, next)| are_tied(near, next)) {
+        order_tied(points, place, k, found);
+    }
+}
+
+#[cold]
+fn order_tied(points: &[Point3], place: &Point3, k: usize, found: &mut [Neighbor]) {
     let mut from = 0;
     while from < k.min(found.len()) {
         let tied = found[from..].windows(2).take_while(|two| are_tied(&two[0], &two[1])).count();
