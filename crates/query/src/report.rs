@@ -19,7 +19,9 @@ pub struct Report {
     /// Probability that the two underlying surfaces collide.
     pub collision_probability: f64,
     /// Lower and upper bound on that probability under the same model: what was culled, left out
-    /// by an early stop, or not decided widens them. [`Self::collision_probability`] lies within.
+    /// by an early stop, or not decided widens them. [`Self::collision_probability`] lies within. In the
+    /// paper's mode pairs that were left out are bounded by a plane midway, which the surface of a kernel may bend
+    /// away from: an answer without the early stop may lie a little outside.
     pub bounds: [f64; 2],
     /// The decision at the thresholds of the query.
     pub verdict: Verdict,
