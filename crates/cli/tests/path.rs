@@ -205,4 +205,5 @@ fn half_a_turn_between_two_poses_is_warned_of() {
     assert!(told("0,0,0,1").contains("from pose 1 to the next it turns by half a turn"));
     assert!(told("-0.0001,0,0,1").contains("give a pose between them"));
     assert!(!told("0.1,0,0,0.99498744").contains("half a turn"));
+    assert_eq!(path(&inputs, "turn.csv", &[]).stderr(), "");
 }

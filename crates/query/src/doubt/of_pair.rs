@@ -60,11 +60,7 @@ pub(crate) fn doubts(
     warnings.extend(units((a, b), are_alone));
     warnings.extend(bodies.into_iter().filter_map(|(body, shape, other)| match shape {
         Shape::Cloud(cloud) => {
-            let Makeup { spacing, std, .. } = *cloud.makeup();
-            let (size, finest) = (other.size(), spacing.max(std));
-            // PERF: no box is wider than its turned one by more than that; mostly it is far larger.
-            let size = if TURNED * finest > size { other.breadth() } else { size };
-            scale(body, cloud, size, middles.map(|of_other| of_other[body as usize]))
+            scale(body, cloud, other, middles.map(|of_other| of_other[body as usize]))
         }
         Shape::Mesh(_) => None,
     }));
@@ -147,12 +143,15 @@ fn units((a, b): (Shape<'_>, Shape<'_>), are_alone: bool) -> Option<Warning> {
 fn scale(
     body: Which,
     cloud: &Prepared,
-    other_size_m: f64,
-    other: Option<Point3>,
+    other: Shape<'_>,
+    middle_of_other: Option<Point3>,
 ) -> Option<Warning> {
     let Makeup { spacing, std, .. } = *cloud.makeup();
-    let is_beyond = spacing.max(std) > other_size_m;
-    let near = other.filter(|_| is_beyond).and_then(|middle| cloud.scale_near(&middle));
+    let (size, finest) = (other.size(), spacing.max(std));
+    // PERF: no box is wider than its turned one by more than that; mostly it is far larger.
+    let other_size_m = if TURNED * finest > size { other.breadth() } else { size };
+    let is_beyond = finest > other_size_m;
+    let near = middle_of_other.filter(|_| is_beyond).and_then(|middle| cloud.scale_near(&middle));
     let [spacing_m, std_m] =
         near.map_or([spacing, std], |near| [near[0].min(spacing), near[1].min(std)]);
     if other_size_m == 0.0 {

@@ -174,6 +174,8 @@ pub(super) fn sensor_doubts(
     let place = cloud.sensor_origin();
     let rays = || points.iter().map(|p| p - place);
     let mut doubts = Vec::new();
+    let is_camera = matches!(sensor, SensorModel::Kinect | SensorModel::Stereo { .. });
+    let is_panorama = !is_camera && cloud.is_image() && !is_ahead(rays());
     match sensor {
         SensorModel::Kinect | SensorModel::Stereo { .. } => {
             let share = |axis: Vector3| {
@@ -194,18 +196,13 @@ pub(super) fn sensor_doubts(
                 doubts.push(SensorDoubt::NoImage);
             }
         }
-        SensorModel::Lidar { .. } if cloud.is_image() && is_ahead(rays()) => {
+        SensorModel::Lidar { .. } if cloud.is_image() && !is_panorama => {
             doubts.push(SensorDoubt::Layout);
         }
         _ => {}
     }
     if doubts.is_empty() && cloud.is_image() {
-        let is_camera = matches!(sensor, SensorModel::Kinect | SensorModel::Stereo { .. });
-        let is_misplaced = if is_camera || is_ahead(rays()) {
-            pinhole::is_misplaced
-        } else {
-            panorama::is_misplaced
-        };
+        let is_misplaced = if is_panorama { panorama::is_misplaced } else { pinhole::is_misplaced };
         if is_misplaced(cloud, &place) {
             doubts.push(SensorDoubt::Misplaced);
         }

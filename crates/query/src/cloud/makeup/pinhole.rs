@@ -48,7 +48,7 @@ pub(super) fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
 
 fn seen(image: &PointCloud, place: &Point3) -> Vec<Seen> {
     let Some((width, height)) = image.image_size else { return Vec::new() };
-    let returns = image.points.iter().enumerate().filter(|(_, p)| p.iter().all(|v| v.is_finite()));
+    let returns = image.points.iter().enumerate().filter(|(_, p)| PointCloud::is_return(p));
     let count = returns.clone().count();
     let half = 0.5 * width as f64;
     let pixel = |index: usize| {
@@ -128,7 +128,12 @@ mod tests {
         let kept: Vec<usize> =
             (0..width * height).filter(|i| (i % width).is_multiple_of(2)).collect();
         let points = kept.iter().map(|&i| image.points[i]);
-        let holed = points.enumerate().map(|(k, p)| if k % 7 < 3 { p * f64::NAN } else { p });
+        let holed = points.enumerate().map(|(k, p)| match k % 7 {
+            0 => p * f64::NAN,
+            // What some drivers write for none.
+            1 | 2 => Point3::new(3.4e38, 3.4e38, 3.4e38),
+            _ => p,
+        });
         let size = Some((width.div_ceil(2), height));
         let image = PointCloud { image_size: size, ..PointCloud::from_points(holed.collect()) };
         assert!(!is_misplaced(&image, &Point3::origin()));

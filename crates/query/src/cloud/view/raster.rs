@@ -160,11 +160,8 @@ impl Raster {
             return Sight::OutsideView;
         };
         let range = ray.norm();
-        if let Some(behind) = self.behind_lines(at[1], [x, y])
-            && range > behind
-        {
-            return Sight::BehindReturns;
-        }
+        let is_behind_lines =
+            || self.behind_lines(at[1], [x, y]).is_some_and(|behind| range > behind);
         // The nearest ring of cells with a return tells; within a ring, the farthest return.
         for ring in 0..=HOLE_CELLS {
             let (mut farthest, mut is_open) = (0.0_f64, false);
@@ -181,6 +178,7 @@ impl Raster {
                 return match range > farthest {
                     true if is_open => Sight::OutOfRange,
                     true => Sight::BehindReturns,
+                    false if is_behind_lines() => Sight::BehindReturns,
                     false => Sight::Seen,
                 };
             }
