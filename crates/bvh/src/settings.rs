@@ -59,6 +59,12 @@ impl TreeSettings {
         count > self.max_leaf_points
             || (count / 2 >= self.min_leaf_points && variation > self.max_variation)
     }
+
+    /// No tree over so many primitives has more nodes, where none is set apart for being far.
+    pub(crate) fn most_nodes(&self, count: usize) -> usize {
+        let least_leaf = self.min_leaf_points.min(self.max_leaf_points.div_ceil(2));
+        2 * (count / least_leaf).max(1)
+    }
 }
 
 /// Which node pairs with disjoint boxes are still descended.

@@ -260,7 +260,7 @@ fn a_tree_built_with_bounds_is_one_that_is_given_them() {
             let node = tree.node(id).unwrap();
             let bounds = [node.max_std(), node.shift(), node.reach(), node.coverage()];
             let along = node.std_along(&Vector3::new(0.6, 0.0, 0.8));
-            let shape = (*node.obb(), *node.moments());
+            let shape = (*node.obb(), node.moments());
             told.push((id, node.primitive_indices().to_vec(), bounds, along, shape));
             next.extend(node.children().into_iter().flatten());
         }

@@ -1,4 +1,4 @@
-//! Fits moments and box of a node to its primitives; used by build and refit alike, so
+//! Fits the box of a node to its primitives; used by build and refit alike, so
 //! that a refit tree has the boxes a builder would give the same partition.
 
 use cloudtouch_geom::{Point3, Vector3};
@@ -6,12 +6,11 @@ use cloudtouch_geom::{Point3, Vector3};
 use crate::{Moments, Obb, Tree};
 
 impl Tree {
-    /// Fits the root, which no sibling grows.
-    pub(crate) fn fit_root(&mut self) {
-        if let Some(root) = self.root {
-            let (moments, obb) = self.fitted(root);
-            self.set_shape(root, moments, obb);
-        }
+    /// Fits a node that no sibling grows, such as the root, and says what it holds.
+    pub(crate) fn fit(&mut self, id: u32) -> Moments {
+        let (moments, obb) = self.fitted(id);
+        self.set_shape(id, obb);
+        moments
     }
 
     /// Fits both children of a node.
@@ -19,8 +18,8 @@ impl Tree {
         let fitted = children.map(|child| self.fitted(child));
         let obb = &self.nodes[parent as usize].obb;
         let overlapping = overlapping(obb, fitted, self.settings.sibling_overlap);
-        for (child, (moments, obb)) in children.into_iter().zip(overlapping) {
-            self.set_shape(child, moments, obb);
+        for (child, (_, obb)) in children.into_iter().zip(overlapping) {
+            self.set_shape(child, obb);
         }
     }
 
@@ -33,25 +32,23 @@ impl Tree {
         self.indices_of(id).iter().map(|&i| self.primitives.corners(i))
     }
 
-    pub(crate) fn set_shape(&mut self, id: u32, moments: Moments, obb: Obb) {
+    pub(crate) fn moments_of(&self, id: u32) -> Moments {
+        Moments::of(self.corners_of(id))
+    }
+
+    pub(crate) fn set_shape(&mut self, id: u32, obb: Obb) {
         let node = &mut self.nodes[id as usize];
-        (node.moments, node.obb) = (moments, obb);
+        node.obb = obb;
         node.outside.take();
     }
 
-    /// Sums moments and bounds anew from a leaf (or a node just split) up to the root, and forgets
-    /// the coverages, leaving the boxes as they are.
+    /// Takes bounds anew from a leaf (or a node just split) up to the root, and forgets the coverages, leaving
+    /// the boxes as they are.
     pub(crate) fn update_up(&mut self, from: u32) {
         for id in self.path_up(from) {
-            let moments = match self.nodes[id as usize].children {
-                None => Moments::of(self.corners_of(id)),
-                Some([left, right]) => {
-                    self.nodes[left as usize].moments.merged(&self.nodes[right as usize].moments)
-                }
-            };
             let bounds = self.bounds_of(id);
             let node = &mut self.nodes[id as usize];
-            (node.moments, node.bounds) = (moments, bounds);
+            node.bounds = bounds;
             node.outside.take();
         }
     }

@@ -38,6 +38,9 @@ impl Grown {
     }
 }
 
+/// A node that is fitted, and the moments of what it holds.
+type Fitted = (NodeData, Moments);
+
 /// Where a node is parted.
 struct Cut {
     middle: usize,
@@ -59,23 +62,24 @@ impl<'a> Growth<'a> {
 
     /// Splits a fitted node, and its halves, as often as the settings ask for, and brings its parts in the
     /// order of the leaves.
-    pub(crate) fn grow(&self, top: NodeData, parts: &mut [Part], memory: &mut Memory) -> Grown {
+    pub(crate) fn grow(&self, top: Fitted, parts: &mut [Part], memory: &mut Memory) -> Grown {
         // Only all of them are asked for what is far, and what is left then: of a part its ends would be.
-        let is_all = top.parent.is_none();
+        let is_all = top.0.parent.is_none();
         self.grow_any(top, parts, is_all, memory)
     }
 
     fn grow_any(
         &self,
-        top: NodeData,
+        (top, moments): Fitted,
         parts: &mut [Part],
         is_all: bool,
         memory: &mut Memory,
     ) -> Grown {
         if parts.len() < self.least_shared {
-            return self.grow_small(top, parts, is_all, memory);
+            return self.grow_small((top, moments), parts, is_all, memory);
         }
-        let Some(Cut { middle, is_of_far }) = self.cut(&top, parts, is_all, memory) else {
+        let cut = self.cut((&top, &moments), parts, is_all, memory);
+        let Some(Cut { middle, is_of_far }) = cut else {
             return Grown::All(vec![top]);
         };
         let (low, high) = parts.split_at_mut(middle);
@@ -91,28 +95,31 @@ impl<'a> Growth<'a> {
     /// The same on this thread.
     fn grow_small(
         &self,
-        top: NodeData,
+        (top, moments): Fitted,
         parts: &mut [Part],
         is_all: bool,
         memory: &mut Memory,
     ) -> Grown {
         let start = top.start;
-        let mut nodes = vec![NodeData { parent: None, ..top }];
-        let mut stack = vec![(0, is_all)];
-        while let Some((id, is_all)) = stack.pop() {
+        // PERF: room for all, which to move would take longer than to fill.
+        let mut nodes = Vec::with_capacity(self.settings.most_nodes(parts.len()));
+        nodes.push(NodeData { parent: None, ..top });
+        let mut stack = vec![(0, moments, is_all)];
+        while let Some((id, moments, is_all)) = stack.pop() {
             let node = &nodes[id];
             let begin = (node.start - start) as usize;
             let own = &mut parts[begin..begin + node.count as usize];
-            let Some(Cut { middle, is_of_far }) = self.cut(node, own, is_all, memory) else {
+            let Some(Cut { middle, is_of_far }) = self.cut((node, &moments), own, is_all, memory)
+            else {
                 continue;
             };
             let (low, high) = own.split_at(middle);
             let fitted = fitted_halves([low, high], self.primitives, self.are_points);
-            let halves = self.halves(node, middle, fitted);
+            let [(low, of_low), (high, of_high)] = self.halves(node, middle, fitted);
             let first = nodes.len();
             nodes[id].children = Some([first as u32, first as u32 + 1]);
-            nodes.extend(halves.map(|half| NodeData { parent: Some(id as u32), ..half }));
-            stack.extend([(first, is_of_far), (first + 1, false)]);
+            nodes.extend([low, high].map(|half| NodeData { parent: Some(id as u32), ..half }));
+            stack.extend([(first, of_low, is_of_far), (first + 1, of_high, false)]);
         }
         Grown::All(nodes)
     }
@@ -120,17 +127,18 @@ impl<'a> Growth<'a> {
     /// Parts a node where the settings ask for that.
     fn cut(
         &self,
-        node: &NodeData,
+        (node, moments): (&NodeData, &Moments),
         parts: &mut [Part],
         is_all: bool,
         memory: &mut Memory,
     ) -> Option<Cut> {
-        if !self.settings.asks_to_split(parts.len(), node.fitted_variation()) {
+        let axes = &node.obb.axes;
+        if !self.settings.asks_to_split(parts.len(), moments.variation_by(axes)) {
             return None;
         }
-        let (axis, mean) = (node.obb.axes.column(0).into_owned(), node.moments.mean);
-        let far = if is_all { set_far_apart(parts, &mean, memory) } else { None };
-        let middle = far.unwrap_or_else(|| halve(parts, &axis, &mean, memory));
+        let (axis, mean) = (axes.column(0).into_owned(), &moments.mean);
+        let far = if is_all { set_far_apart(parts, mean, memory) } else { None };
+        let middle = far.unwrap_or_else(|| halve(parts, &axis, mean, memory));
         Some(Cut { middle, is_of_far: far.is_some() })
     }
 
@@ -139,10 +147,10 @@ impl<'a> Growth<'a> {
     }
 
     /// Leaves over both parts of a node.
-    fn halves(&self, node: &NodeData, middle: usize, fitted: [(Moments, Obb); 2]) -> [NodeData; 2] {
+    fn halves(&self, node: &NodeData, middle: usize, fitted: [(Moments, Obb); 2]) -> [Fitted; 2] {
         let [first, second] = overlapping(&node.obb, fitted, self.settings.sibling_overlap);
         let count = middle as u32;
-        let leaf = |start, count, (moments, obb)| NodeData::leaf(start, count, moments, obb);
+        let leaf = |start, count, (moments, obb)| (NodeData::leaf(start, count, obb), moments);
         [leaf(node.start, count, first), leaf(node.start + count, node.count - count, second)]
     }
 }

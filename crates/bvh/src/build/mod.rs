@@ -97,8 +97,8 @@ impl Tree {
         if !self.order.is_empty() {
             let root = self.new_node(None, 0, self.order.len() as u32);
             self.root = Some(root);
-            self.fit_root();
-            self.partition(root, least_shared);
+            let moments = self.fit(root);
+            self.partition(root, moments, least_shared);
         }
         self.nodes.shrink_to_fit();
         self.spread_when_built = self.spread();
@@ -107,17 +107,17 @@ impl Tree {
     /// Splits a fitted leaf, and its halves, as often as the settings ask for; then sets the
     /// bounds of what is below it.
     pub(crate) fn subdivide(&mut self, leaf: u32) {
-        self.partition(leaf, ALONE);
+        self.partition(leaf, self.moments_of(leaf), ALONE);
         self.update_bounds(Some(leaf));
     }
 
-    fn partition(&mut self, leaf: u32, least_shared: usize) {
+    fn partition(&mut self, leaf: u32, moments: Moments, least_shared: usize) {
         let top = self.nodes[leaf as usize].clone();
         let mut parts = parts_of(&self.primitives, self.indices_of(leaf));
         let growth =
             Growth::new(&self.primitives, &self.settings, self.indices_of(leaf), least_shared);
         let start = top.start as usize;
-        let grown = growth.grow(top, &mut parts, &mut Memory::default());
+        let grown = growth.grow((top, moments), &mut parts, &mut Memory::default());
         let slots = self.order[start..].iter_mut();
         slots.zip(&parts).for_each(|(slot, part)| *slot = part.index);
         self.graft(leaf, grown);
@@ -177,8 +177,9 @@ impl Tree {
         }
     }
 
-    pub(crate) fn should_split(&self, id: u32, variation: f64) -> bool {
-        self.settings.asks_to_split(self.nodes[id as usize].count as usize, variation)
+    pub(crate) fn should_split(&self, id: u32) -> bool {
+        let moments = self.moments_of(id);
+        self.settings.asks_to_split(moments.count, moments.variation())
     }
 
     /// A leaf over a range of `order`, not fitted yet.
@@ -188,7 +189,7 @@ impl Tree {
             axes: Matrix3::identity(),
             half_extents: Vector3::zeros(),
         };
-        self.add(NodeData { parent, ..NodeData::leaf(start, count, Moments::NONE, obb) })
+        self.add(NodeData { parent, ..NodeData::leaf(start, count, obb) })
     }
 
     /// Gives a node the name of one that is not in use any more, if there is one.

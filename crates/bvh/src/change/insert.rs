@@ -32,7 +32,7 @@ impl Tree {
             include(&mut self.nodes[id as usize].obb, &primitive);
         }
         self.update_up(leaf);
-        if self.should_split(leaf, self.nodes[leaf as usize].moments.variation()) {
+        if self.should_split(leaf) {
             self.subdivide(leaf);
             self.update_up(leaf);
         }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use cloudtouch_geom::Covariance;
 
 use crate::change::insert::include;
-use crate::{LeafBounds, Moments, Node, NodeId, Primitive, Tree, TreeError};
+use crate::{LeafBounds, Node, NodeId, Primitive, Tree, TreeError};
 
 /// A primitive that is gone.
 const GONE: u32 = u32::MAX;
@@ -69,14 +69,14 @@ impl Tree {
                 continue;
             }
             self.fit_leaf(leaf);
-            if self.should_split(leaf, self.nodes[leaf as usize].moments.variation()) {
+            if self.should_split(leaf) {
                 self.subdivide(leaf);
             }
             let below = self.preorder(Some(leaf)).into_iter();
             leaves.extend(below.filter(|&id| self.nodes[id as usize].children.is_none()));
             above.push(leaf);
         }
-        self.sum_up(&above);
+        self.forget_coverages(&above);
         Ok(Patched { stale, leaves: leaves.into_iter().map(NodeId).collect() })
     }
 
@@ -103,7 +103,7 @@ impl Tree {
         leaves.sort_unstable();
         leaves.dedup();
         leaves.iter().for_each(|&leaf| self.fit_leaf(leaf));
-        self.sum_up(&leaves);
+        self.forget_coverages(&leaves);
         Ok(())
     }
 
@@ -213,28 +213,15 @@ impl Tree {
     }
 
     fn fit_leaf(&mut self, leaf: u32) {
-        let (moments, obb) = self.fitted(leaf);
-        self.set_shape(leaf, moments, obb);
+        self.fit(leaf);
         self.nodes[leaf as usize].bounds = self.bounds_of(leaf);
     }
 
-    /// Sums the moments of all nodes above these anew, and forgets their coverages.
-    fn sum_up(&mut self, from: &[u32]) {
-        let mut is_above = vec![false; self.nodes.len()];
+    /// Forgets the coverages of these nodes and of all above them.
+    fn forget_coverages(&mut self, from: &[u32]) {
         for &id in from {
-            let mut next = Some(id);
-            while let Some(id) = next.filter(|&id| !is_above[id as usize]) {
-                is_above[id as usize] = true;
-                next = self.nodes[id as usize].parent;
-            }
-        }
-        for id in self.preorder(self.root).into_iter().rev().filter(|&id| is_above[id as usize]) {
-            if let Some([left, right]) = self.nodes[id as usize].children {
-                let [left, right] = [left, right].map(|child| &self.nodes[child as usize].moments);
-                let moments: Moments = left.merged(right);
-                let node = &mut self.nodes[id as usize];
-                node.moments = moments;
-                node.outside.take();
+            for above in self.path_up(id) {
+                self.nodes[above as usize].outside.take();
             }
         }
     }

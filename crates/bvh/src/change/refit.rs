@@ -30,7 +30,9 @@ impl Tree {
     /// Fits every node to the primitives as they are: undoes the slack that insertions and
     /// removals leave in the boxes of the nodes they pass.
     pub fn tighten(&mut self) {
-        self.fit_root();
+        if let Some(root) = self.root {
+            self.fit(root);
+        }
         for id in self.preorder(self.root) {
             if let Some(children) = self.nodes[id as usize].children {
                 self.fit_children(id, children);

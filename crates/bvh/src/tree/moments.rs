@@ -53,20 +53,6 @@ impl Moments {
         Self { count, mean, covariance }
     }
 
-    /// The moments of both sets together (Chan's update).
-    pub(crate) fn merged(&self, other: &Self) -> Self {
-        let count = self.count + other.count;
-        let share = other.count as f64 / count as f64;
-        let offset = other.mean - self.mean;
-        let between = offset * offset.transpose() * (share * (1.0 - share));
-        let within = self.covariance.matrix() * (1.0 - share) + other.covariance.matrix() * share;
-        Self {
-            count,
-            mean: self.mean + offset * share,
-            covariance: Covariance::from_symmetric(&(within + between)),
-        }
-    }
-
     /// The variation σ_n = σ₁/(σ₁+σ₂+σ₃) with σ₁ the smallest eigenvalue of the covariance.
     ///
     /// 0 for positions on a plane (or a line, or one point), 1/3 for an even spread.
@@ -74,6 +60,13 @@ impl Moments {
         let (values, _) = self.covariance.eigen();
         let total = values.sum();
         if total > 0.0 { values[2] / total } else { 0.0 }
+    }
+
+    /// The same where its axes are known: the last is that of the smallest eigenvalue.
+    pub(crate) fn variation_by(&self, axes: &Matrix3) -> f64 {
+        let total = self.covariance.std_bound().powi(2);
+        let smallest = self.covariance.variance_along(&axes.column(2).into_owned());
+        if total > 0.0 { smallest / total } else { 0.0 }
     }
 
     /// Unit axes as columns, right-handed, from the largest variance to the smallest.
@@ -116,17 +109,6 @@ mod tests {
                 Primitive::point(UncertainPoint::exact(p))
             })
             .collect()
-    }
-
-    #[test]
-    fn merging_equals_computing_at_once() {
-        let all = points(70, Vector3::zeros());
-        let indices: Vec<u32> = (0..70).collect();
-        let whole = of(&all, &indices);
-        let merged = of(&all, &indices[..13]).merged(&of(&all, &indices[13..]));
-        assert_eq!(merged.count, 70);
-        assert!((merged.mean - whole.mean).norm() < 1e-14);
-        assert!((merged.covariance.matrix() - whole.covariance.matrix()).amax() < 1e-14);
     }
 
     #[test]

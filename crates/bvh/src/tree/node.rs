@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 
 use cloudtouch_geom::Pose;
 
+use crate::Obb;
 use crate::tree::bounds::SpreadBounds;
-use crate::{Moments, Obb};
 
 /// Names a node of one tree; stable until that node is split, removed or rebuilt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -22,7 +22,6 @@ impl NodeId {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct NodeData {
     pub(crate) obb: Obb,
-    pub(crate) moments: Moments,
     /// 1 − P_cov, computed when first asked for: it takes a pass over all points of the node, and
     /// `Certified` never asks.
     pub(crate) outside: OnceLock<f64>,
@@ -38,10 +37,9 @@ pub(crate) struct NodeData {
 
 impl NodeData {
     /// A leaf over a range of the order, without bounds, that nothing is above.
-    pub(crate) fn leaf(start: u32, count: u32, moments: Moments, obb: Obb) -> Self {
+    pub(crate) fn leaf(start: u32, count: u32, obb: Obb) -> Self {
         Self {
             obb,
-            moments,
             outside: OnceLock::new(),
             bounds: SpreadBounds::NONE,
             parent: None,
@@ -50,15 +48,6 @@ impl NodeData {
             count,
             in_use: true,
         }
-    }
-
-    /// The variation of a node whose box was just fitted: its last axis is that of the smallest
-    /// eigenvalue, which need not be computed again.
-    pub(crate) fn fitted_variation(&self) -> f64 {
-        let covariance = &self.moments.covariance;
-        let total = covariance.std_bound().powi(2);
-        let smallest = covariance.variance_along(&self.obb.axes.column(2).into_owned());
-        if total > 0.0 { smallest / total } else { 0.0 }
     }
 }
 

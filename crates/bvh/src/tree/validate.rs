@@ -81,11 +81,6 @@ impl Tree {
             let inside = corners.iter().all(|corner| node.obb.contains(corner));
             self.require(id, inside, "a corner lies outside the box")?;
         }
-        self.require(id, node.moments.count == node.count as usize, "the moments miscount")?;
-        let inside = node.obb.to_local(&node.moments.mean);
-        let slack = ROUNDING * (node.obb.radius() + node.obb.centre.coords.amax());
-        let central = (0..3).all(|k| inside[k].abs() <= node.obb.half_extents[k] + slack);
-        self.require(id, central, "the mean lies outside the box")?;
         let below = self.indices_of(id).iter().map(|&i| self.primitives.get(i));
         let kept =
             node.outside.get().is_none_or(|&kept| kept == fraction_outside(below, &node.obb));

@@ -50,9 +50,9 @@ impl<'a> Node<'a> {
         &self.data().obb
     }
 
-    /// Mean and spread of the positions of its primitives.
-    pub fn moments(&self) -> &'a Moments {
-        &self.data().moments
+    /// Mean and spread of the positions of its primitives, in a pass over them.
+    pub fn moments(&self) -> Moments {
+        self.tree.moments_of(self.id)
     }
 
     /// P_cov = 1 − Σ w_i P_out(x_i) / Σ w_i, in \[0, 1\]: the part of the surface expected inside

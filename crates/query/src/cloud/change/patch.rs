@@ -16,7 +16,7 @@ use crate::cloud::pieces::Pieces;
 use crate::cloud::prepared::{Prepared, makeup_of};
 use crate::cloud::primitives::measured_point;
 use crate::cloud::scans::Scans;
-use crate::cloud::surface::slots::{LazySurface, slots, spacing_cap};
+use crate::cloud::surface::slots::{LazySurface, spacing_cap};
 use crate::cloud::view::SingleView;
 use crate::error::PrepareError;
 
@@ -129,13 +129,18 @@ impl Prepared {
         surface.edges = mem::take(&mut old.edges);
         surface.leaves.resize_with(tree.node_slots(), Default::default);
         surface.edges.resize_with(tree.node_slots(), Default::default);
-        surface.ended = slots(tree.node_slots());
-        surface.shared = slots(tree.node_slots());
         let after = after(before, old.spacing_caps.len());
-        if (0..).zip(before).any(|(index, before)| before.is_some_and(|before| before != index)) {
-            surface.leaves.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|leaf| {
+        let mut numbered = (0..).zip(before);
+        let is_renumbered =
+            numbered.any(|(index, before)| before.is_some_and(|before| before != index));
+        surface.leaves.par_iter_mut().filter_map(|slot| slot.get_mut()).for_each(|leaf| {
+            // Where a piece ends others tell, of which some may be lost.
+            leaf.ended.take();
+            if is_renumbered {
                 leaf.surfels.iter_mut().for_each(|s| s.index = after[s.index as usize]);
-            });
+            }
+        });
+        if is_renumbered {
             let edges = surface.edges.par_iter_mut().filter_map(|slot| slot.get_mut());
             edges.for_each(|leaf| leaf.renumber(&after));
         }

@@ -68,19 +68,19 @@ impl Prepared {
 
     /// The surface at the points of a leaf as far as it goes, where all of it was told.
     pub(crate) fn known_ended(&self, id: NodeId) -> Option<&[Surfel]> {
-        self.surface.ended.get(id.index())?.get().map(|surfels| &surfels[..])
+        self.known_leaf(id)?.ended.get().map(|surfels| &surfels[..])
     }
 
     /// The surface at the points of a leaf as far as it goes.
     pub(crate) fn ended_leaf(&self, id: NodeId, scratch: &mut Scratch) -> &[Surfel] {
-        match self.surface.ended.get(id.index()) {
-            Some(slot) => slot.get_or_init(|| {
-                let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
-                self.told_together(pieces, scratch)
-            }),
-            // What a refined cloud holds has ended.
-            None => self.leaf(id).0,
+        let (leaf, _) = self.leaf_surface(id, scratch);
+        if self.is_refined() {
+            return &leaf.surfels;
         }
+        leaf.ended.get_or_init(|| {
+            let pieces = self.tree.leaf(id).map_or(&[][..], |leaf| leaf.primitive_indices());
+            self.told_together(pieces, scratch)
+        })
     }
 
     /// The pieces about one that may end there.

@@ -41,7 +41,6 @@ impl Prepared {
         let basis =
             |slot: OnceLock<Box<Fitted>>| slot.into_inner().map_or(Basis::UNKNOWN, |f| f.basis);
         self.surface.bases = slots.into_iter().map(basis).collect();
-        self.surface.ended = Vec::new();
         self.surface.fitted.take();
         self.tree = self.fitted_tree()?;
         self.enclose_again();

@@ -79,10 +79,8 @@ pub(in crate::cloud) struct LazySurface {
     /// Of each what it rests on, once all leaves hold theirs.
     pub bases: Vec<Basis>,
     pub leaves: Vec<OnceLock<Box<LeafSurface>>>,
-    /// Of leaves with all that ends cut off, where all of it was asked for.
-    pub ended: Vec<OnceLock<Vec<Surfel>>>,
-    /// Of leaves with what they share.
-    pub shared: Vec<OnceLock<Vec<Surfel>>>,
+    /// Of leaves with what they share, for those who ask for that.
+    pub shared: OnceLock<Vec<OnceLock<Vec<Surfel>>>>,
     pub edges: Vec<OnceLock<Box<LeafEdges>>>,
     /// What the spacing of each of them is limited to, m.
     pub spacing_caps: Vec<f64>,
@@ -98,8 +96,7 @@ impl LazySurface {
             fits: slots(spacing_caps.len()),
             bases: Vec::new(),
             leaves: slots(tree.node_slots()),
-            ended: slots(tree.node_slots()),
-            shared: slots(tree.node_slots()),
+            shared: OnceLock::new(),
             edges: slots(tree.node_slots()),
             spacing_caps,
             fitted: OnceLock::new(),
@@ -112,8 +109,7 @@ impl LazySurface {
             fits: Vec::new(),
             bases: Vec::new(),
             leaves: Vec::new(),
-            ended: Vec::new(),
-            shared: Vec::new(),
+            shared: OnceLock::new(),
             edges: Vec::new(),
             spacing_caps: Vec::new(),
             fitted: OnceLock::new(),

@@ -136,7 +136,7 @@ impl<'a> NoisyLeaf<'a> {
             None => prepared.leaf_surface(id, side.scratch()),
         };
         stats.leaves_prepared += usize::from(computed);
-        let LeafSurface { surfels, ball, slab } = leaf;
+        let LeafSurface { surfels, ball, slab, .. } = leaf;
         let surfels = prepared.known_ended(id).unwrap_or(surfels);
         let count = surfels.len();
         let may_end = surfels.iter().any(Surfel::may_end);
