@@ -19,6 +19,14 @@ pub enum Primitives {
         /// How far any of them may be from there, m².
         covariance: Covariance,
     },
+    /// Points of weight 1 that have a covariance each, in lists as long as one another that others may hold
+    /// too.
+    Points {
+        /// Where the points are expected, m.
+        means: Arc<Vec<Point3>>,
+        /// How far each may be from there, m².
+        covariances: Arc<Vec<Covariance>>,
+    },
     /// Each with what it has of its own.
     Each(Vec<Primitive>),
 }
@@ -26,7 +34,7 @@ pub enum Primitives {
 impl Primitives {
     pub(crate) fn len(&self) -> usize {
         match self {
-            Self::Alike { means, .. } => means.len(),
+            Self::Alike { means, .. } | Self::Points { means, .. } => means.len(),
             Self::Each(all) => all.len(),
         }
     }
@@ -48,6 +56,13 @@ impl Primitives {
                     .enumerate()
                     .try_for_each(|(index, mean)| check_coordinates(slice::from_ref(mean), index))
             }
+            Self::Points { means, covariances } => {
+                if means.len() != covariances.len() {
+                    let (expected, found) = (means.len(), covariances.len());
+                    return Err(TreeError::Count { expected, found });
+                }
+                (0..means.len()).try_for_each(|index| self.get(index as u32).check(index))
+            }
             Self::Each(all) => {
                 all.iter().enumerate().try_for_each(|(index, primitive)| primitive.check(index))
             }
@@ -60,6 +75,10 @@ impl Primitives {
                 mean: means[index as usize],
                 covariance: *covariance,
             }),
+            Self::Points { means, covariances } => Primitive::point(UncertainPoint {
+                mean: means[index as usize],
+                covariance: covariances[index as usize],
+            }),
             Self::Each(all) => all[index as usize],
         }
     }
@@ -67,7 +86,9 @@ impl Primitives {
     /// See [`Primitive::corners`].
     pub(crate) fn corners(&self, index: u32) -> &[Point3] {
         match self {
-            Self::Alike { means, .. } => slice::from_ref(&means[index as usize]),
+            Self::Alike { means, .. } | Self::Points { means, .. } => {
+                slice::from_ref(&means[index as usize])
+            }
             Self::Each(all) => all[index as usize].corners(),
         }
     }
@@ -76,6 +97,7 @@ impl Primitives {
     pub(crate) fn covariance(&self, index: u32) -> Option<&Covariance> {
         match self {
             Self::Alike { covariance, .. } => Some(covariance),
+            Self::Points { covariances, .. } => Some(&covariances[index as usize]),
             Self::Each(all) => all[index as usize].covariance(),
         }
     }
@@ -83,7 +105,7 @@ impl Primitives {
     /// Whether it is a point.
     pub(crate) fn is_point(&self, index: u32) -> bool {
         match self {
-            Self::Alike { .. } => true,
+            Self::Alike { .. } | Self::Points { .. } => true,
             Self::Each(all) => matches!(all[index as usize], Primitive::Point { .. }),
         }
     }
@@ -94,6 +116,10 @@ impl Primitives {
             Self::Alike { means, .. } => {
                 Arc::make_mut(means)[index as usize] = primitive.centroid()
             }
+            Self::Points { means, covariances } => {
+                Arc::make_mut(means)[index as usize] = primitive.centroid();
+                Arc::make_mut(covariances)[index as usize] = covariance_of(&primitive);
+            }
             Self::Each(all) => all[index as usize] = primitive,
         }
     }
@@ -102,6 +128,10 @@ impl Primitives {
         self.make_room_for(&primitive);
         match self {
             Self::Alike { means, .. } => Arc::make_mut(means).push(primitive.centroid()),
+            Self::Points { means, covariances } => {
+                Arc::make_mut(means).push(primitive.centroid());
+                Arc::make_mut(covariances).push(covariance_of(&primitive));
+            }
             Self::Each(all) => all.push(primitive),
         }
     }
@@ -113,24 +143,35 @@ impl Primitives {
             Self::Alike { means, .. } => {
                 *means = Arc::new(before.iter().map(|before| means[index(before)]).collect());
             }
+            Self::Points { means, covariances } => {
+                *means = Arc::new(before.iter().map(|before| means[index(before)]).collect());
+                *covariances =
+                    Arc::new(before.iter().map(|before| covariances[index(before)]).collect());
+            }
             Self::Each(all) => *all = before.iter().map(|before| all[index(before)]).collect(),
         }
     }
 
     /// Lists each by itself, should this one differ from the others by more than its place.
     fn make_room_for(&mut self, primitive: &Primitive) {
-        let Self::Alike { covariance: of_all, .. } = self else { return };
-        let is_alike = match primitive {
-            Primitive::Point { point, weight } => {
+        let is_like_all = match (&*self, primitive) {
+            (Self::Each(_), _) => true,
+            (Self::Alike { covariance, .. }, Primitive::Point { point, weight }) => {
                 let own = point.covariance.isotropic_variance();
-                *weight == 1.0 && own.is_some() && own == of_all.isotropic_variance()
+                *weight == 1.0 && own.is_some() && own == covariance.isotropic_variance()
             }
-            Primitive::Triangle(_) => false,
+            (Self::Points { .. }, Primitive::Point { weight, .. }) => *weight == 1.0,
+            (_, Primitive::Triangle(_)) => false,
         };
-        if !is_alike {
+        if !is_like_all {
             *self = Self::Each(self.iter().collect());
         }
     }
+}
+
+/// That of a point.
+fn covariance_of(primitive: &Primitive) -> Covariance {
+    primitive.covariance().copied().unwrap_or(Covariance::zero())
 }
 
 #[cfg(test)]
@@ -147,6 +188,8 @@ mod tests {
     fn points_that_are_alike_read_as_if_each_were_listed() {
         let means = Arc::new(vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0)]);
         let kept = means.clone();
+        let covariances = Arc::new(vec![Covariance::isotropic(0.5); 2]);
+        let mut points = Primitives::Points { means: means.clone(), covariances };
         let mut all = Primitives::Alike { means, covariance: Covariance::isotropic(0.5) };
         let mut listed = Primitives::Each(vec![at(0.0), at(1.0)]);
         let other = Primitive::Triangle([Point3::origin(); 3]);
@@ -155,7 +198,7 @@ mod tests {
             weight: 2.0,
         };
         for step in 0..6 {
-            for primitives in [&mut all, &mut listed] {
+            for primitives in [&mut all, &mut points, &mut listed] {
                 match step {
                     0 => primitives.push(at(5.0)),
                     1 => primitives.set(0, at(7.0)),
@@ -166,12 +209,15 @@ mod tests {
                 }
             }
             assert_eq!(matches!(all, Primitives::Alike { .. }), step < 3);
-            assert!(all.iter().eq(listed.iter()), "{step}");
-            for index in 0..all.len() as u32 {
-                let own = all.get(index);
-                assert_eq!(all.corners(index), own.corners());
-                assert_eq!(all.covariance(index), own.covariance());
-                assert_eq!(all.is_point(index), own.covariance().is_some());
+            assert_eq!(matches!(points, Primitives::Points { .. }), step < 3);
+            for primitives in [&all, &points] {
+                assert!(primitives.iter().eq(listed.iter()), "{step}");
+                for index in 0..primitives.len() as u32 {
+                    let own = primitives.get(index);
+                    assert_eq!(primitives.corners(index), own.corners());
+                    assert_eq!(primitives.covariance(index), own.covariance());
+                    assert_eq!(primitives.is_point(index), own.covariance().is_some());
+                }
             }
         }
         assert_eq!(*kept, [Point3::origin(), Point3::new(1.0, 0.0, 0.0)]);

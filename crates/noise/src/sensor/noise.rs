@@ -1,19 +1,21 @@
 //! The position noise of every point of a cloud, stored once where it is the same for all.
 
 use std::ops::Index;
+use std::sync::Arc;
 
 use cloudtouch_geom::Covariance;
 
 /// One covariance Σᵢ for each point of a cloud, m², in its frame.
 ///
-/// Noise that is the same everywhere takes no room per point; else each point has its own.
+/// Noise that is the same everywhere takes no room per point; else each point has its own, in a list that copies
+/// share.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensorNoise(Form);
 
 #[derive(Debug, Clone, PartialEq)]
 enum Form {
     Uniform { covariance: Covariance, points: usize },
-    Each(Vec<Covariance>),
+    Each(Arc<Vec<Covariance>>),
 }
 
 impl SensorNoise {
@@ -43,6 +45,14 @@ impl SensorNoise {
         }
     }
 
+    /// The noise of each point, in a list that others may hold too; `None` where it is stored once for all.
+    pub fn shared(&self) -> Option<Arc<Vec<Covariance>>> {
+        match &self.0 {
+            Form::Uniform { .. } => None,
+            Form::Each(all) => Some(all.clone()),
+        }
+    }
+
     /// The noise of every point in order.
     pub fn iter(&self) -> impl Iterator<Item = &Covariance> {
         (0..self.len()).map(|index| &self[index])
@@ -51,7 +61,7 @@ impl SensorNoise {
 
 impl From<Vec<Covariance>> for SensorNoise {
     fn from(all: Vec<Covariance>) -> Self {
-        Self(Form::Each(all))
+        Self(Form::Each(Arc::new(all)))
     }
 }
 

@@ -1,6 +1,8 @@
 //! What a tree holds of a cloud whose surface is not computed: points as they were measured, and bounds on
 //! what refinement may do to them.
 
+use std::sync::Arc;
+
 use cloudtouch_bvh::{LeafBounds, Node, Primitive, Primitives};
 use cloudtouch_geom::{Covariance, UncertainPoint};
 use cloudtouch_noise::{Neighborhoods, NoiseModel, Scratch, SensorNoise};
@@ -21,14 +23,20 @@ pub(super) fn primitives_of(
     sensor: &SensorNoise,
     weigh: Option<Weight<'_>>,
 ) -> Primitives {
-    if let (Some(covariance), None) = (sensor.as_uniform(), weigh) {
-        let means = pieces.neighborhoods(points).shared_points();
-        return Primitives::Alike { means, covariance: *covariance };
+    let indices = || pieces.indices(points).into_iter();
+    if let Some(weigh) = weigh {
+        let measured = |index| measured_point(index, points, sensor, weigh(points, index));
+        return Primitives::Each(indices().map(measured).collect());
     }
-    let weight = |index| weigh.map_or(1.0, |weigh| weigh(points, index));
-    let indices = pieces.indices(points).into_iter();
-    let primitives = indices.map(|index| measured_point(index, points, sensor, weight(index)));
-    Primitives::Each(primitives.collect())
+    let means = pieces.neighborhoods(points).shared_points();
+    match (sensor.as_uniform(), sensor.shared()) {
+        (Some(covariance), _) => Primitives::Alike { means, covariance: *covariance },
+        (None, Some(covariances)) if pieces.is_each() => Primitives::Points { means, covariances },
+        _ => {
+            let covariances = indices().map(|index| sensor[index]).collect();
+            Primitives::Points { means, covariances: Arc::new(covariances) }
+        }
+    }
 }
 
 /// A point as it was measured.

@@ -20,6 +20,9 @@ pub(super) fn moved(noise: SensorNoise, motion: &MotionNoise, points: &[Point3])
 
 /// The noise of several lists of points, one after the other; stored once where all have the same.
 pub(super) fn joined(parts: &[&SensorNoise]) -> SensorNoise {
+    if let [one] = parts {
+        return (*one).clone();
+    }
     let first = parts.first().and_then(|part| part.as_uniform());
     match first.filter(|first| parts.iter().all(|part| part.as_uniform() == Some(first))) {
         Some(same) => SensorNoise::uniform(*same, parts.iter().map(|part| part.len()).sum()),
