@@ -123,10 +123,10 @@ pub(crate) fn halve(
     sorted.resize(sorted.len().max(parts.len()), Part::default());
     let (mut below, mut above) = (0, 0);
     for (place, &along) in along.iter().enumerate() {
-        let part = parts[place];
-        let is_below = is_less((along, part.index), least_above);
+        let is_below = is_less((along, parts[place].index), least_above);
         // PERF: without a branch, which would be wrong half of the time.
-        (parts[below], sorted[above]) = (part, part);
+        sorted[above] = parts[place];
+        parts[below] = sorted[above];
         below += usize::from(is_below);
         above += usize::from(!is_below);
     }
