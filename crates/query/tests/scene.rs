@@ -39,6 +39,24 @@ fn query() -> Query {
     Query::new(QuerySettings::default()).unwrap()
 }
 
+/// Beside a rod, whose box is smaller and which is longer than samples are apart, a ball that is smaller than that
+/// was ruled out by its box.
+#[test]
+fn a_cloud_that_is_too_coarse_for_one_body_is_so_whatever_others_there_are() {
+    let place = |k: usize| 0.12 * k as f64 - 1.2;
+    let wall = (0..400).map(|i| Point3::new(place(i % 20), place(i / 20), 0.0)).collect();
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.005 });
+    let wall = Cloud::prepare(&PointCloud::from_points(wall), &settings).unwrap();
+    let mut scene = Scene::default();
+    scene.add("wall", wall, Pose::identity()).unwrap();
+    scene.add("ball", mesh(&scene::sphere(0.05, 2)), at(0.0, 0.0, 1.0)).unwrap();
+    scene.add("rod", mesh(&scene::cuboid([0.14, 0.02, 0.02])), at(0.5, 0.0, 1.0)).unwrap();
+    let checked = assert_same(&scene, &query());
+    assert_eq!(names(&checked), [["wall", "ball"]]);
+    let by = checked.pairs[0].answer.as_ref().unwrap().undecided_by;
+    assert_eq!(by, Some(Undecided::Sparse));
+}
+
 /// A scan without the rows and columns of its camera: what that did not see counts as empty.
 fn without_layout() -> Cloud {
     let points =

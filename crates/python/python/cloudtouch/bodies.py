@@ -227,8 +227,9 @@ class Cloud:
     def insert(self, points: Any, *, sensor: str | None = None, **others: Any) -> Change:
         """Adds another scan of the same frame, behind the points that there are.
 
-        A changed cloud answers as one made of the same points does, to the bit as long as the middle of the box around
-        them stays, else up to rounding. What is kept is the surface where nothing near has changed.
+        A changed cloud answers as one made of the same points does, up to rounding, but near lonely samples, where it may
+        differ by a tenth and more. After :meth:`rebuild` it does to the bit, as long as the middle of the box around them
+        stays. What is kept is the surface where nothing near has changed.
 
         Parameters
         ----------

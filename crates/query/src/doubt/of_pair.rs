@@ -172,6 +172,15 @@ fn scale(
     }
 }
 
+/// Beside no body of this size or larger, m, is the cloud too coarse, whatever the other is like ([`scale`]); 0 of a
+/// mesh.
+pub(crate) fn coarse_beside(shape: Shape<'_>) -> f64 {
+    match shape {
+        Shape::Cloud(cloud) => TURNED * cloud.makeup().spacing.max(cloud.makeup().std),
+        Shape::Mesh(_) => 0.0,
+    }
+}
+
 fn sensors(body: Which, cloud: &Makeup) -> impl Iterator<Item = Warning> + '_ {
     cloud.sensor_doubts.iter().filter_map(move |doubt| match *doubt {
         SensorDoubt::Beside { share } => Some(Warning::SensorPose { body, share }),

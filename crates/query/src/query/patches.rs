@@ -134,6 +134,10 @@ fn of_mesh(
     place: &Point3,
     max_parts: usize,
 ) -> Result<Vec<Point3>, SubdivisionError> {
+    // One point alone has no spacing to sample a mesh by, and tells no side.
+    if seed.spacing <= 0.0 {
+        return Ok(Vec::new());
+    }
     // The place is on the mesh as a rule: so far there are more samples than are wanted.
     let radius = seed.reach.min(MESH_SPACINGS * seed.spacing);
     let mut triangles = Vec::new();

@@ -11,6 +11,7 @@ use cloudtouch_geom::{Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::check::coordinates::{LARGEST_COORDINATE, bad_entry};
+use crate::doubt::of_pair::coarse_beside;
 use crate::doubt::warning::Which;
 use crate::judge::{MOST_DEVIATIONS, NOISE_KNOTS, probability};
 use crate::query::Query;
@@ -50,13 +51,14 @@ impl BroadPhase {
 
     /// Beyond this box (in the frame of the scene, m) a body meets nothing that is beyond its own; all of
     /// space for one whose pairs have to be looked at wherever it is. `smallest` is the smallest body of the
-    /// scene that has a size, and `largest` the largest unless that is this one.
-    pub(super) fn zone(
+    /// scene that has a size, `largest` the largest unless that is this one, and `others` are all but this one.
+    pub(super) fn zone<'a>(
         &self,
         shape: Shape<'_>,
         pose: &Pose,
         smallest: Shape<'_>,
         largest: Option<Shape<'_>>,
+        mut others: impl Iterator<Item = Shape<'a>>,
     ) -> Corners {
         // Two such poses are no farther from each other than can be reckoned with.
         let is_placed = pose.translation().norm() < 0.25 * LARGEST_COORDINATE;
@@ -64,7 +66,14 @@ impl BroadPhase {
             let as_smaller = |largest| self.terms.may_doubt((largest, shape), Which::B);
             self.terms.may_doubt((shape, smallest), Which::A) || largest.is_some_and(as_smaller)
         };
-        if !is_placed || !self.nothing_is_free || may_doubt() {
+        // That of the smallest box need not be the body that a coarse cloud tells least of.
+        let coarse = coarse_beside(shape);
+        let mut is_coarse = || {
+            others.any(|other| {
+                other.size() < coarse && self.terms.may_doubt((shape, other), Which::A)
+            })
+        };
+        if !is_placed || !self.nothing_is_free || may_doubt() || is_coarse() {
             return everywhere();
         }
         around(shape, pose)

@@ -114,7 +114,9 @@ impl Scene {
             true => everywhere(),
             false => {
                 let largest = (k > 0).then(|| bodies[0].body.shape());
-                broad.zone(of.body.shape(), &of.pose, smallest, largest)
+                let others = bodies.iter().enumerate().filter(|(place, _)| *place != k);
+                let others = others.map(|(_, other)| other.body.shape());
+                broad.zone(of.body.shape(), &of.pose, smallest, largest, others)
             }
         };
         let zones: Vec<Corners> = bodies.iter().enumerate().map(zone).collect();

@@ -199,9 +199,10 @@ mod tests {
         fn what_is_kept_and_what_is_computed_is_the_surface_of_a_fresh_cloud(
             seed in any::<u64>(),
             changes in prop::collection::vec((0..700_usize, 1..40_usize, -0.03..0.03_f64), 1..5),
-            is_refined in any::<bool>(),
+            is_refined in any::<bool>(), kind in 0..4_u8,
         ) {
-            let by = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
+            let sensor = if kind & 2 == 2 { SensorModel::PerPoint } else { SensorModel::Isotropic { std: 0.001 } };
+            let by = CloudSettings::new(sensor);
             // A sheet of 30 cm, one half of it wavy and one folded, with corners that keep the middle of its box
             // where it is.
             let at = |i: u64| {
@@ -211,12 +212,27 @@ mod tests {
             };
             let corners = [-1.0, 1.0].map(|side| Point3::new(side, side, side));
             let mut points: Vec<Point3> = corners.into_iter().chain((0..900).map(at)).collect();
-            let made = |points: &[Point3]| {
-                let scan = PointCloud::from_points(points.to_vec());
+            let mut ids: Vec<u64> = (0..points.len() as u64).collect();
+            let mut next = 10_000;
+            let given = |points: &[Point3], ids: &[u64]| {
+                let mut scan = PointCloud::from_points(points.to_vec());
+                if kind & 1 == 1 {
+                    let normal = |&i: &u64| cloudtouch_geom::UnitVector3::new_normalize(Vector3::new(
+                        0.4 * unit(seed ^ 1, i), 0.4 * unit(seed ^ 2, i), 1.0));
+                    scan.normals = Some(ids.iter().map(normal).collect());
+                }
+                if kind & 2 == 2 {
+                    let one = |&i: &u64| cloudtouch_geom::Covariance::isotropic(1e-6 * (1.2 + unit(seed ^ 3, i)));
+                    scan.covariances = Some(ids.iter().map(one).collect());
+                }
+                scan
+            };
+            let made = |points: &[Point3], ids: &[u64]| {
+                let scan = given(points, ids);
                 let cloud = Cloud::prepare(&scan, &by).unwrap();
                 if is_refined { cloud.refined().unwrap() } else { cloud }
             };
-            let mut changed = made(&points);
+            let mut changed = made(&points, &ids);
             let mut scratch = Scratch::default();
             for (first, count, by_m) in changes {
                 for piece in (0..changed.len() as u32).step_by(2) {
@@ -234,9 +250,17 @@ mod tests {
                 changed.remove(&gone).unwrap();
                 for &index in gone.iter().rev() {
                     points.remove(index);
+                    ids.remove(index);
                 }
+                // And some come.
+                let new: Vec<u64> = (0..count as u64).map(|k| next + k).collect();
+                next += count as u64;
+                let places: Vec<Point3> = new.iter().map(|&i| at(i)).collect();
+                changed.insert(&given(&places, &new), &by).unwrap();
+                points.extend(places);
+                ids.extend(new);
             }
-            let fresh = made(&points);
+            let fresh = made(&points, &ids);
             let [changed, fresh] = [&changed.prepared, &fresh.prepared];
             prop_assert_eq!(changed.tree.validate(), Ok(()));
             let is_whole = |piece| ![changed, fresh].iter().any(|cloud| is_limited(cloud, piece));
@@ -255,7 +279,7 @@ mod tests {
                     kept += 1;
                 }
             }
-            prop_assert!(2 * kept > points.len() && cut_off > 0, "{kept}, {cut_off} of them ending");
+            prop_assert!(2 * kept > points.len() && (kind & 1 == 1 || cut_off > 0), "{kept}, {cut_off} of them ending");
             prop_assert_eq!(edges(changed, is_whole), edges(fresh, is_whole));
         }
     }
