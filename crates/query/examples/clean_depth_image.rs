@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let settings =
         FilterSettings { robot: vec![hand], ..FilterSettings::for_sensor(&SensorModel::Kinect) };
 
-    let filtered = filter(&image(), &settings)?;
+    let filtered = filter(&image(), &settings, &SensorModel::Kinect)?;
     for stage in &filtered.stages {
         println!("{:12} {:5} of {:5}", stage.stage, stage.removed, stage.before);
     }

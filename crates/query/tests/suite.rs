@@ -26,6 +26,7 @@ mod large_faces;
 mod laser_place;
 mod laser_rings;
 mod limits;
+mod low_angle;
 mod margin;
 mod merge;
 mod mesh_input;

@@ -78,6 +78,6 @@ pub fn sensor_of(observation: &Observation) -> SensorModel {
 
 /// The cloud as ours cleans it: rows without a return are left out.
 fn cleaned(observation: &Observation) -> Result<PointCloud> {
-    let settings = FilterSettings::for_sensor(&sensor_of(observation));
-    Ok(filter(&observation.cloud, &settings)?.cloud)
+    let sensor = sensor_of(observation);
+    Ok(filter(&observation.cloud, &FilterSettings::for_sensor(&sensor), &sensor)?.cloud)
 }

@@ -3,6 +3,7 @@
 
 mod collision_map;
 mod duplicates;
+mod going_on;
 mod outliers;
 mod range;
 mod self_points;
@@ -10,6 +11,7 @@ mod settings;
 mod veil;
 
 use cloudtouch_geom::PointCloud;
+use cloudtouch_noise::SensorModel;
 use serde::Serialize;
 
 use crate::error::FilterError;
@@ -46,19 +48,25 @@ pub struct Filtered {
 ///
 /// Rows with a coordinate that is NaN, infinite or beyond ±1e30 m always go: missing returns. A stage that has nothing to work with (no
 /// image layout and no neighbours, for instance) removes nothing. Every stage can only remove
-/// points, so each can hide a true obstacle; the counts tell how many points that concerns.
+/// points, so each can hide a true obstacle; the counts tell how many points that concerns. The `sensor` tells how far a
+/// surface may be off a line for noise, by which steep surfaces and veils are told apart.
 ///
 /// # Errors
 /// When a setting is out of range, or the cloud does not have a covariance for each point or a point
 /// for each pixel; see [`FilterError`].
-pub fn filter(cloud: &PointCloud, settings: &FilterSettings) -> Result<Filtered, FilterError> {
-    Ok(filter_and_tell(cloud, settings)?.0)
+pub fn filter(
+    cloud: &PointCloud,
+    settings: &FilterSettings,
+    sensor: &SensorModel,
+) -> Result<Filtered, FilterError> {
+    Ok(filter_and_tell(cloud, settings, sensor)?.0)
 }
 
 /// The same, with the rows that were taken for the robot.
 pub(crate) fn filter_and_tell(
     cloud: &PointCloud,
     settings: &FilterSettings,
+    sensor: &SensorModel,
 ) -> Result<(Filtered, Vec<usize>), FilterError> {
     settings.validate()?;
     check_lengths(cloud)?;
@@ -77,7 +85,7 @@ pub(crate) fn filter_and_tell(
         });
     }
     if let Some(veil) = &settings.veil {
-        run.stage("veil", |cloud, kept| veil::drop_veil(cloud, kept, veil));
+        run.stage("veil", |cloud, kept| veil::drop_veil(cloud, kept, veil, sensor));
     }
     if let Some(outliers) = &settings.outliers {
         run.stage("outliers", |cloud, kept| outliers::drop_outliers(cloud, kept, outliers));

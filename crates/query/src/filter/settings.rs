@@ -95,13 +95,13 @@ impl FilterSettings {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VeilSettings {
     /// A point is veil when it continues, within this angle (radians) of its viewing ray, towards
-    /// a nearer neighbour on one side and a farther one on the other.
+    /// a nearer neighbour on one side and a farther one on the other, and no surface goes on so.
     pub max_angle: f64,
 }
 
 impl Default for VeilSettings {
     fn default() -> Self {
-        // A surface tilted to within 10° of the ray returns little light to a camera.
+        // Few surfaces are as steep, and those go on.
         Self { max_angle: 10_f64.to_radians() }
     }
 }

@@ -2,60 +2,139 @@
 //! depth in between, where nothing is.
 //!
 //! In an image, such a point continues along its viewing ray: one neighbour is nearer, the opposite
-//! one farther, and both steps run almost along the ray. On a true surface that steep to the ray a
-//! camera gets hardly any return. Beside veils pixels often have no return at all: then the next one
+//! one farther, and both steps run almost along the ray. So do those of a surface seen at a low angle, which
+//! [goes on](super::going_on) past them. Beside veils pixels often have no return at all: then the next one
 //! within a few pixels is the neighbour. Without an image layout the neighbours are the nearest points,
 //! and a veil point is one whose neighbourhood is a line along the ray.
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Vector3};
-use cloudtouch_noise::Neighborhoods;
+use cloudtouch_noise::{Neighborhoods, SensorModel};
 use rayon::prelude::*;
 
 use super::VeilSettings;
+use super::going_on::goes_on;
 
 /// A neighbour is at most so many pixels away: those between gave no return.
-const ACROSS_HOLES: usize = 3;
+const ACROSS_HOLES: isize = 3;
 /// Neighbours that decide whether an unorganised neighbourhood is a line along the ray.
 const LINE_NEIGHBORS: usize = 10;
 /// A neighbourhood counts as a line when its largest variance is this many times the next.
 const LINE_RATIO: f64 = 9.0;
 
-pub(super) fn drop_veil(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
+pub(super) fn drop_veil(
+    cloud: &PointCloud,
+    kept: &mut Vec<usize>,
+    settings: &VeilSettings,
+    sensor: &SensorModel,
+) {
     match cloud.image_size {
         Some((width, height)) if width > 1 && height > 1 => {
-            let (from, least_cosine) = (cloud.sensor_origin(), settings.max_angle.cos());
-            let size = (width, height);
-            let is_kept =
-                |&i: &usize| !is_veil_in_image(&cloud.points, i, size, &from, least_cosine);
-            *kept = std::mem::take(kept).into_par_iter().filter(is_kept).collect();
+            drop_veil_of_image(&Image { cloud, size: [width, height] }, kept, settings, sensor);
         }
         _ => drop_veil_lines(cloud, kept, settings),
     }
 }
 
-fn is_veil_in_image(
-    points: &[Point3],
-    index: usize,
-    (width, height): (usize, usize),
-    from: &Point3,
-    least_cosine: f64,
-) -> bool {
-    let (row, column) = (index / width, index % width);
-    let point = &points[index];
-    let ray = point - from;
-    // Of a pixel with so many others before it in its row or column, and so many after it, so far apart.
-    let is_between = |before: usize, after: usize, apart: usize| {
-        let next = |most: usize, at: fn(usize, usize) -> usize| {
-            (1..=most.min(ACROSS_HOLES))
-                .filter_map(|step| points.get(at(index, step * apart)))
-                .find(|other| PointCloud::is_return(other))
+/// A line of pixels through one.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    /// How many pixels are before it and after it on the line.
+    before: usize,
+    after: usize,
+    /// How far apart two of them are in the list of all.
+    apart: usize,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Image<'a> {
+    cloud: &'a PointCloud,
+    /// Columns and rows.
+    size: [usize; 2],
+}
+
+fn drop_veil_of_image(
+    image: &Image<'_>,
+    kept: &mut Vec<usize>,
+    settings: &VeilSettings,
+    sensor: &SensorModel,
+) {
+    let least_cosine = settings.max_angle.cos();
+    let steep = |&index: &usize| {
+        let lines = image.lines(index).map(|line| image.is_steep(index, line, least_cosine));
+        (lines != [false; 2]).then_some((index, lines))
+    };
+    let steep: Vec<(usize, [bool; 2])> = kept.par_iter().filter_map(steep).collect();
+    let stds = ranges_stds(image.cloud, steep.iter().map(|(index, _)| *index), sensor);
+    let is_veil = |(&(index, is_steep), std): (&(usize, [bool; 2]), f64)| {
+        let lines = image.lines(index).into_iter().zip(is_steep).filter(|(_, is_steep)| *is_steep);
+        lines.into_iter().any(|(line, _)| !image.goes_on(index, line, std)).then_some(index)
+    };
+    let mut veil = steep.iter().zip(stds).filter_map(is_veil).peekable();
+    // Both are in order.
+    kept.retain(|index| veil.next_if_eq(index).is_none());
+}
+
+/// The standard deviation of the range of each of these returns, m; none of those whose noise is not known.
+fn ranges_stds(
+    cloud: &PointCloud,
+    indices: impl Iterator<Item = usize>,
+    sensor: &SensorModel,
+) -> Vec<f64> {
+    let returns = cloud.select(&indices.collect::<Vec<_>>());
+    let from = cloud.sensor_origin();
+    let std = |(place, noise): (&Point3, &Covariance)| {
+        (place - from).try_normalize(0.0).map_or(0.0, |ray| noise.std_along(&ray))
+    };
+    match sensor.covariances(&returns) {
+        Ok(noise) => returns.points.iter().zip(noise.iter()).map(std).collect(),
+        // Whoever prepares the cloud is told what is wrong.
+        Err(_) => vec![0.0; returns.len()],
+    }
+}
+
+impl Image<'_> {
+    /// Its row and its column.
+    fn lines(&self, index: usize) -> [Line; 2] {
+        let [width, height] = self.size;
+        let (row, column) = (index / width, index % width);
+        [
+            Line { before: column, after: width - 1 - column, apart: 1 },
+            Line { before: row, after: height - 1 - row, apart: width },
+        ]
+    }
+
+    /// The return so many pixels on along a line, if there is one.
+    fn on(&self, index: usize, line: Line, places: isize) -> Option<&Point3> {
+        let (most, far) =
+            (if places < 0 { line.before } else { line.after }, places.unsigned_abs());
+        let other = index.checked_add_signed(places * line.apart as isize)?;
+        let place = self.cloud.points.get(other).filter(|_| far <= most)?;
+        PointCloud::is_return(place).then_some(place)
+    }
+
+    /// Whether a return lies between a nearer and a farther one of a line, both almost along its ray.
+    fn is_steep(&self, index: usize, line: Line, least_cosine: f64) -> bool {
+        let point = &self.cloud.points[index];
+        let ray = point - self.cloud.sensor_origin();
+        let next = |sign: isize| {
+            (1..=ACROSS_HOLES)
+                .find_map(|step| self.on(index, line, sign * step))
                 .map_or(0.0, |other| along_ray(&ray, point, other, least_cosine))
         };
-        let backward = next(before, |index, by| index - by);
+        let backward = next(-1);
         // PERF: of most pixels no step runs along the ray.
-        backward != 0.0 && backward * next(after, |index, by| index + by) < 0.0
-    };
-    is_between(column, width - 1 - column, 1) || is_between(row, height - 1 - row, width)
+        backward != 0.0 && backward * next(1) < 0.0
+    }
+
+    /// Whether the surface of a return goes on along a line, given how well ranges are known, m.
+    fn goes_on(&self, index: usize, line: Line, std: f64) -> bool {
+        let from = self.cloud.sensor_origin();
+        let inverse_range = |places| {
+            let range = (self.on(index, line, places)? - from).norm();
+            (range > 0.0).then(|| 1.0 / range)
+        };
+        goes_on(inverse_range, std)
+    }
 }
 
 /// +1 when the step from `point` to `other` runs along the ray away from the sensor, −1 towards it,

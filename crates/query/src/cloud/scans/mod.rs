@@ -90,7 +90,8 @@ impl Scans {
         rows_before: usize,
     ) -> Result<Self, PrepareError> {
         by.validate()?;
-        let (Filtered { cloud: kept, rows, stages }, of_robot) = filter_and_tell(scan, by.filter)?;
+        let (Filtered { cloud: kept, rows, stages }, of_robot) =
+            filter_and_tell(scan, by.filter, by.sensor)?;
         if kept.is_empty() {
             return Err(nothing_left(scan.len(), &stages));
         }
