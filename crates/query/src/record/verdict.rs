@@ -25,8 +25,8 @@ impl Thresholds {
         let undecided = (Verdict::Undecided, Some(doubt.unwrap_or(of_search)));
         if probability > self.accept {
             (Verdict::InCollision, None)
-        } else if doubt.is_some_and(|reason| reason != Undecided::Unseen) {
-            // The number itself means nothing. Unseen space only keeps a pair from being free.
+        } else if doubt.is_some() {
+            // The number says nothing of what was not seen, or nothing at all.
             undecided
         } else if upper < self.reject && unsolved == 0 {
             (Verdict::Free, None)
@@ -60,7 +60,8 @@ mod tests {
             (0.3, 0.3, 1, None, undecided(Unsolved)),
             // Doubts widen the upper bound to 1.
             (0.05, 1.0, 0, Some(Unseen), undecided(Unseen)),
-            (0.3, 1.0, 0, Some(Unseen), (Verdict::Uncertain, None)),
+            (0.3, 1.0, 0, Some(Unseen), undecided(Unseen)),
+            (0.51, 1.0, 0, Some(Unseen), (Verdict::InCollision, None)),
             (0.3, 1.0, 0, Some(Enclosed), undecided(Enclosed)),
             (0.51, 1.0, 1, Some(Enclosed), (Verdict::InCollision, None)),
             (f64::NAN, f64::NAN, 0, None, (Verdict::Uncertain, None)),
