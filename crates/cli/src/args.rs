@@ -43,6 +43,7 @@ Sensor specs (metres, pixels, radians):
   axes:SX,SY,SZ                           one along each axis of the file
   stereo:BASELINE,FOCAL_PX,DISPARITY_STD  a stereo camera; depth noise grows with z squared
   kinect                                  a structured-light depth camera
+  tof:STD,PER_METRE                       a time-of-flight camera; range noise grows with the range
   lidar:RANGE_STD,BEAM_RAD                a laser scanner
   grid:RESOLUTION                         points rounded to the cells of a grid
   per-point                               the covariance columns of the file";

@@ -12,7 +12,7 @@ pub enum NoiseError {
     /// The sensor has a name nobody knows.
     #[error(
         "unknown sensor `{spec}`: use exact, iso:STD, axes:SX,SY,SZ, \
-         stereo:BASELINE,FOCAL_PX,DISPARITY_STD, kinect, lidar:RANGE_STD,BEAM_RAD, \
+         stereo:BASELINE,FOCAL_PX,DISPARITY_STD, kinect, tof:STD,PER_METRE, lidar:RANGE_STD,BEAM_RAD, \
          grid:RESOLUTION or per-point"
     )]
     UnknownSensor {

@@ -42,7 +42,7 @@ pub use representatives::Representatives;
 pub use scratch::Scratch;
 pub use sensor::model::SensorModel;
 pub use sensor::noise::SensorNoise;
-pub use sensor::ranging::{Kinect, Lidar, StereoCamera};
+pub use sensor::ranging::{Kinect, Lidar, StereoCamera, TimeOfFlight};
 pub use sensor::{Sensor, along_ray, position_noise};
 pub use settings::{Combination, NoiseSettings};
 pub use settings_error::SettingsError;

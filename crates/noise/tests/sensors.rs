@@ -30,6 +30,9 @@ fn models_match_their_closed_forms_on_the_axis() {
     check("stereo:0.1,500,0.25", ahead, diagonal([0.002, 0.002, 0.02]));
     // 0.0012 + 0.0019 · 1.6² = 0.006064; 0.0014 · 2 = 0.0028.
     check("kinect", ahead, diagonal([0.0028, 0.0028, 0.006064]));
+    // 0.001 + 0.002 · 2 along the ray, 0.001 · 2 across it.
+    check("tof:0.001,0.002", ahead, diagonal([0.002, 0.002, 0.005]));
+    check("tof:0.001,0.002", [0.0, -2.0, 0.0], diagonal([0.002, 0.005, 0.002]));
     // A footprint of 2 · 0.004 = 8 mm has a standard deviation of 2 mm.
     check("lidar:0.02,0.004", [0.0, -2.0, 0.0], diagonal([0.002, 0.02, 0.002]));
     check("grid:0.01", ahead, diagonal([0.01 / 12.0_f64.sqrt(); 3]));
@@ -63,7 +66,7 @@ fn points_behind_and_beside_a_camera_are_as_noisy_as_ones_it_could_see() {
 
 #[test]
 fn a_point_at_the_sensor_has_finite_noise() {
-    for sensor in ["kinect", "stereo:0.1,500,0.25", "lidar:0.02,0.004"] {
+    for sensor in ["kinect", "stereo:0.1,500,0.25", "tof:0.001,0.002", "lidar:0.02,0.004"] {
         assert!(at(sensor, Point3::origin()).is_finite(), "{sensor}");
     }
     let lidar = at("lidar:0.02,0.004", Point3::origin());

@@ -226,6 +226,7 @@ pub(crate) struct CloudArguments<'py> {
     normals: Option<Rows<'py>>,
     min_range: Option<f64>,
     max_range: Option<f64>,
+    keep_veil: bool,
     outliers: Option<(usize, f64)>,
     collision_map: Option<f64>,
     robot: Vec<(Bound<'py, Body>, PyReadonlyArray2<'py, f64>, f64)>,
@@ -238,6 +239,7 @@ impl CloudArguments<'_> {
         let filter = &mut settings.filter;
         filter.min_range = self.min_range.or(filter.min_range);
         filter.max_range = self.max_range.unwrap_or(filter.max_range);
+        filter.veil = filter.veil.filter(|_| !self.keep_veil);
         let outliers = |(neighbors, deviations)| OutlierSettings { neighbors, deviations };
         filter.outliers = self.outliers.map(outliers).or(filter.outliers);
         for (link, pose, padding) in &self.robot {

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use cloudtouch::geom::{Point3, PointCloud, TriangleMesh};
-use cloudtouch::noise::{Neighborhoods, typical_spacing};
+use cloudtouch::noise::{Neighborhoods, SensorModel, typical_spacing};
 use cloudtouch::{FilterSettings, Mesh, filter};
 use cloudtouch_io::{DepthCamera, Geometry, is_depth_image};
 use cloudtouch_page::words;
@@ -78,7 +78,7 @@ fn describe_cloud(cloud: &PointCloud) -> Result<String> {
 
 /// `remedy` is for what is too large to be in metres.
 fn describe_scan(cloud: &PointCloud, remedy: &str) -> Result<String> {
-    let cleaned = filter(cloud, &FilterSettings::default())?;
+    let cleaned = filter(cloud, &FilterSettings::default(), &SensorModel::Exact)?;
     let removed =
         |stage: &str| cleaned.stages.iter().find(|s| s.stage == stage).map_or(0, |s| s.removed);
     let mut lines = vec![

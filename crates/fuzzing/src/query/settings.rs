@@ -133,7 +133,7 @@ fn tree(u: &mut Unstructured<'_>) -> Result<TreeSettings> {
 }
 
 fn sensor(u: &mut Unstructured<'_>) -> Result<SensorModel> {
-    Ok(match u.arbitrary::<u8>()? % 8 {
+    Ok(match u.arbitrary::<u8>()? % 9 {
         0 => SensorModel::PerPoint,
         1 => SensorModel::Exact,
         2 => SensorModel::Isotropic { std: number(u)?.abs() },
@@ -147,6 +147,10 @@ fn sensor(u: &mut Unstructured<'_>) -> Result<SensorModel> {
         6 => SensorModel::Lidar {
             range_std: setting(u, 0.02, 0.0, 1.0)?,
             beam_rad: setting(u, 0.003, 0.0, 1.0)?,
+        },
+        7 => SensorModel::TimeOfFlight {
+            std: setting(u, 0.001, 0.0, 1.0)?,
+            per_metre: setting(u, 0.001, 0.0, 1.0)?,
         },
         _ => SensorModel::Grid { resolution: setting(u, 0.05, 0.0, 1.0)? },
     })

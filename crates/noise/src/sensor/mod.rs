@@ -14,8 +14,8 @@ use crate::sensor::noise::SensorNoise;
 
 /// A sensor whose error depends on where a point is as it sees it.
 ///
-/// [`StereoCamera`](crate::StereoCamera), [`Kinect`](crate::Kinect) and [`Lidar`](crate::Lidar) are
-/// three; implement it for another one. [`SensorModel`](crate::SensorModel) gathers the known ones
+/// [`StereoCamera`](crate::StereoCamera), [`Kinect`](crate::Kinect), [`TimeOfFlight`](crate::TimeOfFlight) and
+/// [`Lidar`](crate::Lidar) are four; implement it for another one. [`SensorModel`](crate::SensorModel) gathers the known ones
 /// under their text forms; a cloud whose noise comes from elsewhere brings it as
 /// [`PointCloud::covariances`] and is read with [`SensorModel::PerPoint`](crate::SensorModel::PerPoint).
 ///

@@ -5,7 +5,7 @@ use cloudtouch_geom::{Covariance, PointCloud};
 use crate::error::{NoiseError, check_value_not_negative, check_value_positive};
 use crate::finite::is_finite;
 use crate::sensor::noise::SensorNoise;
-use crate::sensor::ranging::{Kinect, Lidar, StereoCamera};
+use crate::sensor::ranging::{Kinect, Lidar, StereoCamera, TimeOfFlight};
 use crate::sensor::{Sensor, checked_pose, position_noise};
 
 /// How a sensor errs: the position noise Σᵢ of a point (§3.2 of the paper).
@@ -41,6 +41,13 @@ pub enum SensorModel {
     },
     /// `kinect`: see [`Kinect`].
     Kinect,
+    /// `tof:STD,PER_METRE`: see [`TimeOfFlight`].
+    TimeOfFlight {
+        /// Standard deviation of a range close by, m.
+        std: f64,
+        /// What each metre of range adds to it, m.
+        per_metre: f64,
+    },
     /// `lidar:RANGE_STD,BEAM_RAD`: see [`Lidar`].
     Lidar {
         /// Standard deviation of the range, m.
@@ -59,6 +66,11 @@ pub enum SensorModel {
 }
 
 impl SensorModel {
+    /// Whether it is a camera, which sees only what is before it.
+    pub fn is_camera(&self) -> bool {
+        matches!(self, Self::Stereo { .. } | Self::Kinect | Self::TimeOfFlight { .. })
+    }
+
     /// Checks the values of the model.
     ///
     /// # Errors
@@ -77,6 +89,7 @@ impl SensorModel {
                 StereoCamera { baseline, focal_px, disparity_std }.validate()
             }
             Self::Kinect => Kinect.validate(),
+            Self::TimeOfFlight { std, per_metre } => TimeOfFlight { std, per_metre }.validate(),
             Self::Lidar { range_std, beam_rad } => Lidar { range_std, beam_rad }.validate(),
             Self::Grid { resolution } => check_value_positive("the grid resolution", resolution),
         }
@@ -102,6 +115,9 @@ impl SensorModel {
                 position_noise(&StereoCamera { baseline, focal_px, disparity_std }, cloud)
             }
             Self::Kinect => position_noise(&Kinect, cloud),
+            Self::TimeOfFlight { std, per_metre } => {
+                position_noise(&TimeOfFlight { std, per_metre }, cloud)
+            }
             Self::Lidar { range_std, beam_rad } => {
                 position_noise(&Lidar { range_std, beam_rad }, cloud)
             }

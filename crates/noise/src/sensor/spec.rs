@@ -12,8 +12,8 @@ impl FromStr for SensorModel {
     type Err = NoiseError;
 
     /// Reads `exact`, `iso:STD`, `axes:SX,SY,SZ`, `stereo:BASELINE,FOCAL_PX,DISPARITY_STD`,
-    /// `kinect`, `lidar:RANGE_STD,BEAM_RAD`, `grid:RESOLUTION` or `per-point`, in metres, pixels
-    /// and radians.
+    /// `kinect`, `tof:STD,PER_METRE`, `lidar:RANGE_STD,BEAM_RAD`, `grid:RESOLUTION` or `per-point`, in
+    /// metres, pixels and radians.
     fn from_str(spec: &str) -> Result<Self, NoiseError> {
         let (name, values) = match spec.trim().split_once(':') {
             Some((name, values)) => (name, Some(values)),
@@ -40,6 +40,10 @@ impl FromStr for SensorModel {
             "kinect" => {
                 let [] = numbers(spec, values, "kinect")?;
                 Self::Kinect
+            }
+            "tof" => {
+                let [std, per_metre] = numbers(spec, values, "tof:STD,PER_METRE")?;
+                Self::TimeOfFlight { std, per_metre }
             }
             "lidar" => {
                 let [range_std, beam_rad] = numbers(spec, values, "lidar:RANGE_STD,BEAM_RAD")?;
@@ -70,6 +74,9 @@ impl fmt::Display for SensorModel {
                 write!(f, "stereo:{}", listed([*baseline, *focal_px, *disparity_std]))
             }
             Self::Kinect => write!(f, "kinect"),
+            Self::TimeOfFlight { std, per_metre } => {
+                write!(f, "tof:{}", listed([*std, *per_metre]))
+            }
             Self::Lidar { range_std, beam_rad } => {
                 write!(f, "lidar:{}", listed([*range_std, *beam_rad]))
             }
@@ -141,6 +148,8 @@ mod tests {
             ),
             (small(), small())
                 .prop_map(|(range_std, beam_rad)| SensorModel::Lidar { range_std, beam_rad }),
+            (small(), small())
+                .prop_map(|(std, per_metre)| SensorModel::TimeOfFlight { std, per_metre }),
             positive().prop_map(|resolution| SensorModel::Grid { resolution }),
         ]
     }
@@ -188,6 +197,8 @@ mod tests {
             ("iso:5mm", &["`5mm` is not a number", "iso:STD"]),
             ("kinect:1", &["`kinect:1`", "0 values are needed, 1"]),
             ("lidar:0.1,0.2,0.3", &["lidar:RANGE_STD,BEAM_RAD", "2 values are needed, 3"]),
+            ("tof:0.001", &["tof:STD,PER_METRE", "2 values are needed, 1"]),
+            ("tof:0.001,-1", &["a metre adds", "-1", "not negative"]),
             ("iso:-0.1", &["standard deviation", "-0.1", "not negative"]),
             ("axes:0,0,inf", &["along z", "inf", "finite"]),
             // Its square is no number: a point was blamed.

@@ -61,7 +61,7 @@ class Cloud:
         Open3D cloud.
     sensor
         What measured it, and how noisy that is: ``"kinect"``, ``"stereo:BASELINE_M,FOCAL_PX,DISPARITY_STD_PX"``,
-        ``"lidar:RANGE_STD_M,BEAM_RAD"``, ``"iso:STD_M"``, ``"axes:SX,SY,SZ"``, ``"grid:RESOLUTION_M"``, ``"exact"`` or
+        ``"tof:STD_M,PER_METRE"``, ``"lidar:RANGE_STD_M,BEAM_RAD"``, ``"iso:STD_M"``, ``"axes:SX,SY,SZ"``, ``"grid:RESOLUTION_M"``, ``"exact"`` or
         ``"per-point"``; of a file ``cloudtouch info FILE`` suggests one. State it as it is: twice the noise reads more touching surfaces as free, half of it stops more.
     sensor_pose
         (4, 4): from the frame of the sensor (of a camera x right, y down, z forward) into that of the points. Where
@@ -74,6 +74,9 @@ class Cloud:
     min_range, max_range
         Points nearer to the sensor, or farther, are dropped, m. Where not given, those within 10 cm of a camera or
         laser scanner, if they have the rows and columns of an image.
+    keep_veil
+        Keeps the points that float between a near and a far surface at the edges of a camera's image, which are dropped
+        otherwise (``removed["veil"]`` says how many).
     outliers
         (neighbors, deviations): drops points whose mean distance to so many neighbours is so many standard deviations
         above that of all.
@@ -109,6 +112,7 @@ class Cloud:
         normals: npt.ArrayLike | None = None,
         min_range: float | None = None,
         max_range: float | None = None,
+        keep_veil: bool = False,
         outliers: tuple[int, float] | None = None,
         collision_map: float | None = None,
         robot: Iterable[SeenLink] = (),
@@ -123,6 +127,7 @@ class Cloud:
                 normals=normals,
                 min_range=min_range,
                 max_range=max_range,
+                keep_veil=keep_veil,
                 outliers=outliers,
                 collision_map=collision_map,
                 robot=robot,
@@ -485,6 +490,7 @@ def _scan(
     normals: npt.ArrayLike | None = None,
     min_range: float | None = None,
     max_range: float | None = None,
+    keep_veil: bool = False,
     outliers: tuple[int, float] | None = None,
     collision_map: float | None = None,
     robot: Iterable[SeenLink] = (),
@@ -514,6 +520,7 @@ def _scan(
         "normals": optional(normals, "normals", count, 3),
         "min_range": min_range,
         "max_range": max_range,
+        "keep_veil": keep_veil,
         "outliers": outliers,
         "collision_map": collision_map,
         "robot": [replace(link, pose=optional(link.pose, "robot", 4, 4)) for link in robot],

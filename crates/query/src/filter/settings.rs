@@ -46,7 +46,7 @@ impl FilterSettings {
     /// The stages that suit a kind of sensor: of cameras and laser scanners what they cannot have seen so
     /// near is dropped (see [`Self::min_range`]), and cameras draw veils at depth edges.
     pub fn for_sensor(sensor: &SensorModel) -> Self {
-        let camera = matches!(sensor, SensorModel::Stereo { .. } | SensorModel::Kinect);
+        let camera = sensor.is_camera();
         let ranging = camera || matches!(sensor, SensorModel::Lidar { .. });
         Self {
             min_range: if ranging { None } else { Some(0.0) },

@@ -174,10 +174,10 @@ pub(super) fn sensor_doubts(
     let place = cloud.sensor_origin();
     let rays = || points.iter().map(|p| p - place);
     let mut doubts = Vec::new();
-    let is_camera = matches!(sensor, SensorModel::Kinect | SensorModel::Stereo { .. });
+    let is_camera = sensor.is_camera();
     let is_panorama = !is_camera && cloud.is_image() && !is_ahead(rays());
     match sensor {
-        SensorModel::Kinect | SensorModel::Stereo { .. } => {
+        _ if is_camera => {
             let share = |axis: Vector3| {
                 let is_beside = |ray: &Vector3| ray.dot(&axis) < BESIDE * ray.norm();
                 rays().filter(is_beside).count() as f64 / points.len().max(1) as f64

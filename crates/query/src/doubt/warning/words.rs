@@ -136,7 +136,7 @@ impl Warning {
                  (`sensor_pose`, VIEWPOINT of a PCD)"
             }
             Self::SensorRange { .. } => "another sensor, or another unit?",
-            Self::SensorLayout { .. } => "kinect or stereo?",
+            Self::SensorLayout { .. } => "kinect, stereo or tof?",
             Self::NoImage { .. } => "give the organised cloud",
             Self::ImagePlace { .. } => {
                 "give the points without the layout, or, if they are in another frame, say where it stood \
