@@ -67,7 +67,8 @@ pub enum CameraError {
         /// Columns and rows that the intrinsics are of.
         stated: (usize, usize),
     },
-    /// The principal point lies by half of the image or more beside it.
+    /// The principal point lies by half of the image or more beside it, or at its last corner, where that of an image
+    /// twice as large is.
     #[error(
         "{name} is {}, and the image has {pixels} {along}: a camera looks into its image, so give the \
          intrinsics of this image, not of another size or of a colour camera",
@@ -103,6 +104,8 @@ pub enum CameraError {
 
 /// Beside the image by so many of its sizes the principal point is that of another.
 const MOST_ASIDE: f64 = 0.5;
+/// Where it is so many sizes along both sides, the intrinsics are of an image twice as large.
+const CORNER: f64 = 0.9;
 /// Focal lengths in sizes of the image: a view of 161 degrees, where a lens bends what it sees, and one of
 /// a twentieth of a degree.
 const FOCAL_LENGTHS: std::ops::Range<f64> = 1.0 / 12.0..1000.0;
@@ -144,7 +147,7 @@ impl DepthCamera {
     ///
     /// # Errors
     /// As [`Self::validate`]; when the intrinsics are of another size, the principal point lies half an image
-    /// or more beside it, or the view is wider than 161 degrees or narrower than a twentieth of one.
+    /// or more beside it or at its last corner, or the view is wider than 161 degrees or narrower than a twentieth of one.
     pub fn validate_for(&self, width: usize, height: usize) -> Result<(), CameraError> {
         self.validate()?;
         if let Some(stated) = self.image_size.filter(|stated| *stated != (width, height)) {
@@ -154,12 +157,15 @@ impl DepthCamera {
             (["fx", "cx"], [self.fx, self.cx], width, "columns"),
             (["fy", "cy"], [self.fy, self.cy], height, "rows"),
         ];
+        let is_at_corner =
+            axes.iter().all(|(_, [_, point], pixels, _)| *point >= CORNER * *pixels as f64);
         for ([of_length, of_point], [length, point], pixels, along) in axes {
             let size = pixels as f64;
             if !FOCAL_LENGTHS.contains(&(length / size)) {
                 return Err(CameraError::View { name: of_length, value: length, pixels, along });
             }
-            if point <= -MOST_ASIDE * size || point >= (1.0 + MOST_ASIDE) * size {
+            let is_aside = point <= -MOST_ASIDE * size || point >= (1.0 + MOST_ASIDE) * size;
+            if is_aside || is_at_corner {
                 return Err(CameraError::LooksAside {
                     name: of_point,
                     value: point,

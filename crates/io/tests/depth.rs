@@ -170,10 +170,13 @@ fn files_are_named_in_every_error() {
     for part in ["frame.PNG: byte 16: ", "4 x 3 pixels", "of 640 x 480"] {
         assert!(message.contains(part), "{message}");
     }
-    let aside = DepthCamera { cx: 6.0, ..CAMERA };
-    let error = read_depth_image(&path, &aside).unwrap_err();
-    let ReadError::Format { problem, .. } = error else { panic!("{error}") };
-    assert!(matches!(problem.fault, Fault::Camera(CameraError::LooksAside { name: "cx", .. })));
+    // Those of an image twice as large were taken without a word.
+    let twice = DepthCamera { cx: 3.9, cy: 2.9, ..CAMERA };
+    for aside in [DepthCamera { cx: 6.0, ..CAMERA }, twice] {
+        let error = read_depth_image(&path, &aside).unwrap_err();
+        let ReadError::Format { problem, .. } = error else { panic!("{error}") };
+        assert!(matches!(problem.fault, Fault::Camera(CameraError::LooksAside { name: "cx", .. })));
+    }
 
     let small = ReadLimits { bytes: 20, ..ReadLimits::default() };
     let message = read_depth_image_within(&path, &CAMERA, &small).unwrap_err().to_string();

@@ -56,7 +56,7 @@ class Query:
         accept: float = 0.9,
         reject: float = 0.1,
         prior: float = 0.5,
-        max_unseen: float = 0.05,
+        max_unseen: float = 0.02,
         max_missing: float = 0.25,
         doubt_units: bool = True,
         stop_above: float = 0.999,

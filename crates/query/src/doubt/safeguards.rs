@@ -20,9 +20,9 @@ pub struct Safeguards {
 }
 
 impl Default for Safeguards {
-    /// 5 % unseen: the fingers of a gripper. A quarter missing. Units are doubted.
+    /// 2 % unseen: the tip of a finger. A quarter missing. Units are doubted.
     fn default() -> Self {
-        Self { max_unseen: 0.05, max_missing: 0.25, doubt_units: true }
+        Self { max_unseen: 0.02, max_missing: 0.25, doubt_units: true }
     }
 }
 
