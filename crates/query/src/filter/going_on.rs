@@ -24,9 +24,15 @@ pub(super) fn goes_on(inverse_range: impl Fn(isize) -> Option<f64>, std: f64) ->
     let side = |sign: isize| {
         let places = (1..=REACH as isize).map(move |step| sign * step);
         let returns = places.filter_map(|place| Some((place as f64, inverse_range(place)?)));
-        returns.take(MOST).collect::<Vec<_>>()
+        let (mut found, mut count) = ([(0.0, 0.0); MOST], 0);
+        for (slot, sample) in found.iter_mut().zip(returns) {
+            *slot = sample;
+            count += 1;
+        }
+        (found, count)
     };
     let (before, after) = (side(-1), side(1));
+    let (before, after) = (&before.0[..before.1], &after.0[..after.1]);
     let std = std * own * own;
     WINDOWS.iter().any(|&[back, on]| {
         if before.len() < back || after.len() < on {

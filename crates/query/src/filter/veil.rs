@@ -59,8 +59,10 @@ fn drop_veil_of_image(
     sensor: &SensorModel,
 ) {
     let least_cosine = settings.max_angle.cos();
+    let from = image.cloud.sensor_origin();
     let steep = |&index: &usize| {
-        let lines = image.lines(index).map(|line| image.is_steep(index, line, least_cosine));
+        let ray = image.cloud.points[index] - from;
+        let lines = image.lines(index).map(|line| image.is_steep(index, line, &ray, least_cosine));
         (lines != [false; 2]).then_some((index, lines))
     };
     let steep: Vec<(usize, [bool; 2])> = kept.par_iter().filter_map(steep).collect();
@@ -104,6 +106,7 @@ impl Image<'_> {
     }
 
     /// The return so many pixels on along a line, if there is one.
+    #[inline]
     fn on(&self, index: usize, line: Line, places: isize) -> Option<&Point3> {
         let (most, far) =
             (if places < 0 { line.before } else { line.after }, places.unsigned_abs());
@@ -113,16 +116,15 @@ impl Image<'_> {
     }
 
     /// Whether a return lies between a nearer and a farther one of a line, both almost along its ray.
-    fn is_steep(&self, index: usize, line: Line, least_cosine: f64) -> bool {
+    fn is_steep(&self, index: usize, line: Line, ray: &Vector3, least_cosine: f64) -> bool {
         let point = &self.cloud.points[index];
-        let ray = point - self.cloud.sensor_origin();
+        // PERF: without roots, for of most pixels no step runs along the ray.
+        let least = least_cosine * least_cosine * ray.norm_squared();
         let next = |sign: isize| {
-            (1..=ACROSS_HOLES)
-                .find_map(|step| self.on(index, line, sign * step))
-                .map_or(0.0, |other| along_ray(&ray, point, other, least_cosine))
+            let other = (1..=ACROSS_HOLES).find_map(|step| self.on(index, line, sign * step));
+            other.map_or(0.0, |other| along_ray(ray, &(other - point), least))
         };
         let backward = next(-1);
-        // PERF: of most pixels no step runs along the ray.
         backward != 0.0 && backward * next(1) < 0.0
     }
 
@@ -137,12 +139,11 @@ impl Image<'_> {
     }
 }
 
-/// +1 when the step from `point` to `other` runs along the ray away from the sensor, −1 towards it,
-/// 0 when it does not run along the ray.
-fn along_ray(ray: &Vector3, point: &Point3, other: &Point3, least_cosine: f64) -> f64 {
-    let step = other - point;
-    let cosine = step.dot(ray) / (step.norm() * ray.norm());
-    if cosine.abs() > least_cosine { cosine.signum() } else { 0.0 }
+/// +1 when a step runs along the ray away from the sensor, −1 towards it, 0 when it does not run along the ray: when
+/// the square of its cosine times that of the ray's length, m², is less than `least`.
+fn along_ray(ray: &Vector3, step: &Vector3, least: f64) -> f64 {
+    let along = step.dot(ray);
+    if along * along > least * step.norm_squared() { along.signum() } else { 0.0 }
 }
 
 fn drop_veil_lines(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
