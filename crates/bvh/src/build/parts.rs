@@ -163,8 +163,9 @@ fn nth(mut rank: usize, along: &[f64], parts: &[Part], told: &mut Vec<Key>) -> K
             told.push((along, part.index));
         }
     }
-    let in_order =
-        |a: &Key, b: &Key| if is_less(*a, *b) { Ordering::Less } else { Ordering::Greater };
+    let in_order = |(one, index): &Key, (other, other_index): &Key| {
+        one.partial_cmp(other).unwrap_or(Ordering::Equal).then(index.cmp(other_index))
+    };
     *told.select_nth_unstable_by(rank, in_order).1
 }
 

@@ -68,8 +68,9 @@ fn drop_veil_of_image(
     let steep: Vec<(usize, [bool; 2])> = kept.par_iter().filter_map(steep).collect();
     let stds = ranges_stds(image.cloud, steep.iter().map(|(index, _)| *index), sensor);
     let is_veil = |(&(index, is_steep), std): (&(usize, [bool; 2]), f64)| {
-        let lines = image.lines(index).into_iter().zip(is_steep).filter(|(_, is_steep)| *is_steep);
-        lines.into_iter().any(|(line, _)| !image.goes_on(index, line, std)).then_some(index)
+        let mut lines = image.lines(index).into_iter().zip(is_steep);
+        let is_off = |(line, is_steep)| is_steep && !image.goes_on(index, line, std);
+        lines.any(is_off).then_some(index)
     };
     let mut veil = steep.iter().zip(stds).filter_map(is_veil).peekable();
     // Both are in order.
