@@ -1,10 +1,10 @@
 //! Surfaces seen at a low angle: steep along the rays as veils are, but they go on.
 
 /// A surface passes through the pixel and so many returns before and after it, or through more on one side: at its end it
-/// goes on to the other.
-const WINDOWS: [[usize; 2]; 3] = [[3, 3], [5, 1], [1, 5]];
+/// goes on to the other, and its last return has none of it beyond.
+const WINDOWS: [[usize; 2]; 5] = [[3, 3], [5, 1], [1, 5], [6, 0], [0, 6]];
 /// How many returns are looked for on each side, ...
-const MOST: usize = 5;
+const MOST: usize = 6;
 /// ... and how many pixels away the last of them may be.
 const REACH: usize = 8;
 /// Of a window's returns.
@@ -108,7 +108,10 @@ mod tests {
         // One return after it is of it, then a wall.
         ranges[11..].fill(9.0);
         assert!(of_ranges(&ranges, 0.0));
-        ranges[9..].fill(f64::NAN);
+        // The last return of it is of it too.
+        ranges[9..].fill(9.0);
+        assert!(of_ranges(&ranges, 0.0));
+        ranges[8] = 5.0;
         assert!(!of_ranges(&ranges, 0.0));
     }
 }

@@ -58,6 +58,8 @@ pub(super) struct Raster {
     reach: [isize; 2],
     /// The range, m, clearly behind the farthest return of each cell; zero without one.
     clearly_behind: Vec<f64>,
+    /// The range, m, clearly behind the nearest return of each cell; infinite without one.
+    behind_nearest: Vec<f64>,
     /// The range, m, clearly before the nearest return of each cell; infinite without one.
     clearly_before: Vec<f64>,
     /// Of each cell whether what is farther was left out; empty where nothing was.
@@ -132,6 +134,7 @@ impl Raster {
             is_round,
             reach,
             clearly_behind,
+            behind_nearest: vec![f64::INFINITY; cells],
             clearly_before,
             is_open,
             lines: (steps[1] > APART * steps[0]).then(|| Lines::new(cells, steps[1])),
@@ -139,6 +142,7 @@ impl Raster {
         for (number, [before, behind], at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
                 raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
+                raster.behind_nearest[cell] = raster.behind_nearest[cell].min(behind);
                 raster.clearly_before[cell] = raster.clearly_before[cell].min(before);
                 if number >= returns {
                     raster.is_open[cell] = true;
@@ -162,14 +166,18 @@ impl Raster {
         let range = ray.norm();
         let is_behind_lines =
             || self.behind_lines(at[1], [x, y]).is_some_and(|behind| range > behind);
-        // The nearest ring of cells with a return tells; within a ring, the farthest return.
+        // The nearest ring of cells with a return tells: of the cell itself the nearest return, since what hides behind
+        // the rim of something is behind part of a cell only; of those around, across specks, the farthest.
         for ring in 0..=HOLE_CELLS {
             let (mut farthest, mut is_open) = (0.0_f64, false);
             for dy in -ring..=ring {
                 let step = if dy.abs() == ring { 1 } else { 2 * ring.max(1) };
                 for dx in (-ring..=ring).step_by(step as usize) {
                     if let Some(cell) = self.index(x + dx, y + dy) {
-                        farthest = farthest.max(self.clearly_behind[cell]);
+                        let behind = self.clearly_behind[cell];
+                        let told =
+                            if ring == 0 { self.behind_nearest[cell].min(behind) } else { behind };
+                        farthest = farthest.max(told);
                         is_open |= self.is_open.get(cell).is_some_and(|&is_open| is_open);
                     }
                 }
