@@ -343,4 +343,28 @@ mod tests {
             }
         }
     }
+
+    /// Of a cell half before a thing and half past it, what is behind the thing counted as seen.
+    #[test]
+    fn what_hides_behind_a_rim_is_behind_it() {
+        for rim in [20, 21] {
+            let ray = |column: usize, row: usize| {
+                Vector3::new((column as f64 - 19.5) / 40.0, (row as f64 - 14.5) / 40.0, 1.0)
+            };
+            let depth = |column| if column < rim { 1.0 } else { 2.0 };
+            let pixels = (0..30).flat_map(|row| (0..40).map(move |column| (column, row)));
+            let measured = pixels.map(|(c, r)| (Point3::from(ray(c, r) * depth(c)), 0.001));
+            let turn = UnitQuaternion::identity();
+            let raster = Raster::new((&Point3::origin(), &turn), measured, &[], [40, 30]).unwrap();
+            for column in 0..40 {
+                let sight = raster.sight(&(ray(column, 14) * 1.5));
+                let is_past = column > rim + 1;
+                let is_right = if column < rim { sight == Sight::BehindReturns } else { true };
+                assert!(
+                    is_right && (!is_past || sight == Sight::Seen),
+                    "{rim} {column}: {sight:?}"
+                );
+            }
+        }
+    }
 }
