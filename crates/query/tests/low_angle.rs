@@ -1,7 +1,7 @@
 //! Surfaces that a camera sees at a low angle.
 
 use crate::common::{mesh, query};
-use cloudtouch::geom::{PointCloud, Pose, Vector3};
+use cloudtouch::geom::{PointCloud, Pose, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{Cloud, CloudSettings, Mode, Verdict};
 use cloudtouch_testkit::camera::DepthCamera;
@@ -59,5 +59,39 @@ fn a_board_at_a_low_angle_was_taken_for_veil() {
                 assert!(is_right, "{height} m, {place:?}, {down}: {p} {:?}", report.verdict);
             }
         }
+    }
+}
+
+/// Beside rows without a return, written as the place of the camera, 213 returns were taken for veil, and such an image
+/// moved to the frame of the world was doubted.
+#[test]
+fn the_place_of_the_camera_for_no_return_is_no_neighbor() {
+    let frame = along_a_board(0.3, 4);
+    let world_from_camera =
+        Pose::from_translation_rpy(Vector3::new(1.3, -0.4, 0.7), [0.3, 2.0, -0.5]);
+    let lost = |index: usize| seed::unit(seed::derive(5, index as u64, 0)) < 0.3;
+    let written = |pose: Pose, none: Vector3| {
+        let mut image = PointCloud { sensor_pose: Some(pose), ..frame.clone() };
+        for (index, point) in image.points.iter_mut().enumerate() {
+            let place = if lost(index) { none.into() } else { *point };
+            *point = pose.transform_point(&place);
+            // As a driver writes it.
+            point.coords.apply(|value| *value = f64::from(*value as f32));
+        }
+        Cloud::prepare(&image, &CloudSettings::new(STEREO)).unwrap()
+    };
+    let none = Vector3::repeat(f64::NAN);
+    for pose in [Pose::identity(), world_from_camera] {
+        let [with_nan, with_zeros] = [none, Vector3::zeros()].map(|none| written(pose, none));
+        let veil = |cloud: &Cloud| {
+            let stages = cloud.filter_stages().iter();
+            stages.filter(|stage| stage.stage == "veil").map(|stage| stage.removed).sum::<usize>()
+        };
+        assert_eq!(veil(&with_zeros), veil(&with_nan));
+        let finger = mesh(&scene::cuboid([0.02, 0.12, 0.02]));
+        let there = pose.after(&Pose::from_translation(Vector3::new(0.0, 0.1, 0.8)));
+        let [a, b] = [&with_nan, &with_zeros]
+            .map(|cloud| query(Mode::Calibrated).run(cloud, &finger, &there).unwrap().verdict);
+        assert_eq!(a, b);
     }
 }

@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use crate::error::FilterError;
 
+pub(crate) use range::is_return_to;
 pub use self_points::SelfMesh;
 pub(crate) use self_points::beyond_noise;
 pub use settings::{FilterSettings, OutlierSettings, VeilSettings};

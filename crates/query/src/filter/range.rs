@@ -1,6 +1,6 @@
 //! Range limits: returns too near or too far to be trusted.
 
-use cloudtouch_geom::PointCloud;
+use cloudtouch_geom::{Point3, PointCloud};
 
 use super::FilterSettings;
 
@@ -8,6 +8,13 @@ use super::FilterSettings;
 const NEAREST: f64 = 0.1;
 /// Returns that are nearer than this to the place of a sensor are at it, m.
 const AT_IT: f64 = 1e-6;
+
+/// Whether a row of an image is a return that the sensor there saw: some drivers write the place of the sensor for none,
+/// which may be rounded.
+pub(crate) fn is_return_to(place: &Point3, p: &Point3) -> bool {
+    const ROUNDED: f64 = 1e-3;
+    PointCloud::is_return(p) && (p - place).norm_squared() > ROUNDED * ROUNDED
+}
 
 impl FilterSettings {
     /// How near to the sensor returns are left out though no [`Self::min_range`] is stated, m; `None` where one

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::VeilSettings;
 use super::going_on::goes_on;
+use super::range::is_return_to;
 
 /// A neighbour is at most so many pixels away: those between gave no return.
 const ACROSS_HOLES: isize = 3;
@@ -113,7 +114,7 @@ impl Image<'_> {
             (if places < 0 { line.before } else { line.after }, places.unsigned_abs());
         let other = index.checked_add_signed(places * line.apart as isize)?;
         let place = self.cloud.points.get(other).filter(|_| far <= most)?;
-        PointCloud::is_return(place).then_some(place)
+        is_return_to(&self.cloud.sensor_origin(), place).then_some(place)
     }
 
     /// Whether a return lies between a nearer and a farther one of a line, both almost along its ray.
@@ -134,7 +135,7 @@ impl Image<'_> {
         let from = self.cloud.sensor_origin();
         let inverse_range = |places| {
             let range = (self.on(index, line, places)? - from).norm();
-            (range > 0.0).then(|| 1.0 / range)
+            Some(1.0 / range)
         };
         goes_on(inverse_range, std)
     }

@@ -3,6 +3,8 @@
 use cloudtouch_geom::{Matrix3, Point3, PointCloud, Vector3};
 use nalgebra::SymmetricEigen;
 
+use crate::filter::is_return_to;
+
 /// Lines that are looked at, at most, and returns of each.
 const LINES: usize = 50;
 const OF_A_LINE: usize = 40;
@@ -36,7 +38,7 @@ fn lines(
 ) -> Vec<Vec<Vector3>> {
     let seen = |line: usize| -> Vec<Vector3> {
         let returns = (0..size.1).map(|k| image.points[index(line, k)]);
-        let returns: Vec<_> = returns.filter(PointCloud::is_return).collect();
+        let returns: Vec<_> = returns.filter(|p| is_return_to(place, p)).collect();
         let some = returns.iter().step_by(returns.len().div_ceil(OF_A_LINE).max(1));
         some.filter_map(|p| (p - place).try_normalize(0.0)).collect()
     };

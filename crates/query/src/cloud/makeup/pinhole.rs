@@ -3,6 +3,8 @@
 use cloudtouch_geom::{Matrix3, Point3, PointCloud, Vector3};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
+use crate::filter::is_return_to;
+
 /// Pixels that are looked at, at most, and at least for an answer.
 const SAMPLE: usize = 1000;
 const LEAST: usize = 50;
@@ -48,7 +50,7 @@ pub(super) fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
 
 fn seen(image: &PointCloud, place: &Point3) -> Vec<Seen> {
     let Some((width, height)) = image.image_size else { return Vec::new() };
-    let returns = image.points.iter().enumerate().filter(|(_, p)| PointCloud::is_return(p));
+    let returns = image.points.iter().enumerate().filter(|(_, p)| is_return_to(place, p));
     let count = returns.clone().count();
     let half = 0.5 * width as f64;
     let pixel = |index: usize| {
