@@ -149,7 +149,8 @@ fn scale(
     let Makeup { spacing, std, .. } = *cloud.makeup();
     let (size, finest) = (other.size(), spacing.max(std));
     // PERF: no box is wider than its turned one by more than that; mostly it is far larger.
-    let other_size_m = if TURNED * finest > size { other.breadth() } else { size };
+    let may_be_coarse = size < coarse_beside(Shape::Cloud(cloud));
+    let other_size_m = if may_be_coarse { other.breadth() } else { size };
     let is_beyond = finest > other_size_m;
     let near = middle_of_other.filter(|_| is_beyond).and_then(|middle| cloud.scale_near(&middle));
     let [spacing_m, std_m] =
