@@ -63,16 +63,25 @@ pub fn filter(
     Ok(filter_and_tell(cloud, settings, sensor)?.0)
 }
 
-/// The same, with the rows that were taken for the robot.
+/// Rows that went, of those a view has to know, in order.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Removed {
+    /// What was taken for the robot.
+    pub robot: Vec<usize>,
+    /// What was taken for veil.
+    pub veil: Vec<usize>,
+}
+
+/// The same, with what went.
 pub(crate) fn filter_and_tell(
     cloud: &PointCloud,
     settings: &FilterSettings,
     sensor: &SensorModel,
-) -> Result<(Filtered, Vec<usize>), FilterError> {
+) -> Result<(Filtered, Removed), FilterError> {
     settings.validate()?;
     check_lengths(cloud)?;
     let mut run = Run { cloud, kept: (0..cloud.len()).collect(), stages: Vec::new() };
-    let mut of_robot = Vec::new();
+    let mut removed = Removed::default();
     run.stage("missing", |cloud, kept| kept.retain(|&i| PointCloud::is_return(&cloud.points[i])));
     if settings.min_range != Some(0.0) || settings.max_range.is_finite() {
         run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
@@ -82,11 +91,13 @@ pub(crate) fn filter_and_tell(
     }
     if !settings.robot.is_empty() {
         run.stage("robot", |cloud, kept| {
-            of_robot = self_points::keep_outside(cloud, kept, &settings.robot);
+            removed.robot = self_points::keep_outside(cloud, kept, &settings.robot);
         });
     }
     if let Some(veil) = &settings.veil {
-        run.stage("veil", |cloud, kept| veil::drop_veil(cloud, kept, veil, sensor));
+        run.stage("veil", |cloud, kept| {
+            removed.veil = veil::drop_veil(cloud, kept, veil, sensor);
+        });
     }
     if let Some(outliers) = &settings.outliers {
         run.stage("outliers", |cloud, kept| outliers::drop_outliers(cloud, kept, outliers));
@@ -101,7 +112,7 @@ pub(crate) fn filter_and_tell(
         let removed = before - filtered.len();
         stages.push(StageReport { stage: "collision map", before, removed });
     }
-    Ok((Filtered { cloud: filtered, rows, stages }, of_robot))
+    Ok((Filtered { cloud: filtered, rows, stages }, removed))
 }
 
 fn check_lengths(cloud: &PointCloud) -> Result<(), FilterError> {

@@ -22,15 +22,16 @@ const LINE_NEIGHBORS: usize = 10;
 /// A neighbourhood counts as a line when its largest variance is this many times the next.
 const LINE_RATIO: f64 = 9.0;
 
+/// Returns the rows that go.
 pub(super) fn drop_veil(
     cloud: &PointCloud,
     kept: &mut Vec<usize>,
     settings: &VeilSettings,
     sensor: &SensorModel,
-) {
+) -> Vec<usize> {
     match cloud.image_size {
         Some((width, height)) if width > 1 && height > 1 => {
-            drop_veil_of_image(&Image { cloud, size: [width, height] }, kept, settings, sensor);
+            drop_veil_of_image(&Image { cloud, size: [width, height] }, kept, settings, sensor)
         }
         _ => drop_veil_lines(cloud, kept, settings),
     }
@@ -58,7 +59,7 @@ fn drop_veil_of_image(
     kept: &mut Vec<usize>,
     settings: &VeilSettings,
     sensor: &SensorModel,
-) {
+) -> Vec<usize> {
     let least_cosine = settings.max_angle.cos();
     let from = image.cloud.sensor_origin();
     let steep = |&index: &usize| {
@@ -75,7 +76,7 @@ fn drop_veil_of_image(
     };
     let mut veil = steep.iter().zip(stds).filter_map(is_veil).peekable();
     // Both are in order.
-    kept.retain(|index| veil.next_if_eq(index).is_none());
+    kept.extract_if(.., |index| veil.next_if_eq(index).is_some()).collect()
 }
 
 /// The standard deviation of the range of each of these returns, m; none of those whose noise is not known.
@@ -148,9 +149,13 @@ fn along_ray(ray: &Vector3, step: &Vector3, least: f64) -> f64 {
     if along * along > least * step.norm_squared() { along.signum() } else { 0.0 }
 }
 
-fn drop_veil_lines(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSettings) {
+fn drop_veil_lines(
+    cloud: &PointCloud,
+    kept: &mut Vec<usize>,
+    settings: &VeilSettings,
+) -> Vec<usize> {
     let points: Vec<Point3> = kept.iter().map(|&i| cloud.points[i]).collect();
-    let Ok(neighborhoods) = Neighborhoods::new(points) else { return };
+    let Ok(neighborhoods) = Neighborhoods::new(points) else { return Vec::new() };
     let points = neighborhoods.points();
     let veil: Vec<bool> = (0..points.len())
         .into_par_iter()
@@ -167,9 +172,6 @@ fn drop_veil_lines(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &VeilSet
             variances[0] > LINE_RATIO * variances[1] && cosine > settings.max_angle.cos()
         })
         .collect();
-    let mut position = 0;
-    kept.retain(|_| {
-        position += 1;
-        !veil[position - 1]
-    });
+    let mut is_veil = veil.into_iter();
+    kept.extract_if(.., |_| is_veil.next() == Some(true)).collect()
 }

@@ -90,7 +90,7 @@ impl Scans {
         rows_before: usize,
     ) -> Result<Self, PrepareError> {
         by.validate()?;
-        let (Filtered { cloud: kept, rows, stages }, of_robot) =
+        let (Filtered { cloud: kept, rows, stages }, removed) =
             filter_and_tell(scan, by.filter, by.sensor)?;
         if kept.is_empty() {
             return Err(nothing_left(scan.len(), &stages));
@@ -105,13 +105,13 @@ impl Scans {
         };
         let mut sensor_doubts = sensor_doubts(scan, by.sensor, &kept.points);
         sensor_doubts.extend(robot_doubt(&stages));
-        sensor_doubts.extend(padded(&scan.select(&of_robot), by)?);
+        sensor_doubts.extend(padded(&scan.select(&removed.robot), by)?);
         let (mut images, mut ranges) = (Vec::new(), Vec::new());
         if scan.is_image() {
             // A robot that no return came from is elsewhere, and makes nothing known.
-            let robot = if of_robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
+            let robot = if removed.robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
             let beyond = beyond_range(scan, by)?;
-            images.push(Image::of(scan, (&kept, &rows), robot, &beyond));
+            images.push(Image::of(scan, (&kept, &rows), robot, (&beyond, &removed.veil)));
         } else {
             ranges.push(Range { sensor_origin: scan.sensor_origin(), most: by.filter.max_range });
         }

@@ -28,25 +28,29 @@ pub(super) struct Image {
     pub robot: Vec<SelfMesh>,
     /// Rays of returns that were left out for their range, up to where they say that there is nothing, m.
     pub beyond: Arc<[Vector3]>,
+    /// Rays of what was taken for veil, up to where that was, m: nobody saw past it, whatever it is.
+    pub veil: Arc<[Vector3]>,
 }
 
 impl Image {
-    /// Of an organised cloud, given what was kept of it, from which rows, the links that were taken out, and rows
-    /// and rays of what was too far.
+    /// Of an organised cloud, given what was kept of it, from which rows, the links that were taken out, rows
+    /// and rays of what was too far, and the rows of what was taken for veil.
     pub(super) fn of(
         scan: &PointCloud,
         (kept, rows): (&PointCloud, &[usize]),
         robot: Vec<SelfMesh>,
-        beyond: &[(usize, Vector3)],
+        (beyond, veil): (&[(usize, Vector3)], &[usize]),
     ) -> Self {
-        let looked_at = rows.iter().chain(beyond.iter().map(|(row, _)| row));
+        let looked_at = rows.iter().chain(beyond.iter().map(|(row, _)| row)).chain(veil);
+        let sensor_origin = kept.sensor_origin();
         Self {
-            sensor_origin: kept.sensor_origin(),
+            sensor_origin,
             turn: *kept.from_sensor().rotation(),
             points: 0..kept.len(),
             pixels: pixels_about(scan, looked_at).unwrap_or([kept.len(), 1]),
             robot,
             beyond: beyond.iter().map(|(_, ray)| *ray).collect(),
+            veil: veil.iter().map(|&row| scan.points[row] - sensor_origin).collect(),
         }
     }
 }
@@ -113,9 +117,10 @@ impl SingleView {
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
         let raster = self.raster.get_or_init(|| {
-            let Image { sensor_origin, turn, points: own, pixels, beyond, .. } = &self.image;
+            let Image { sensor_origin, turn, points: own, pixels, beyond, veil, .. } = &self.image;
             let own = own.clone().map(|index| (points[index], noise[index].std_bound()));
-            Raster::new((sensor_origin, turn), own, beyond, *pixels).map(Arc::new)
+            let veil = veil.iter().map(|ray| (sensor_origin + ray, 0.0));
+            Raster::new((sensor_origin, turn), own.chain(veil), beyond, *pixels).map(Arc::new)
         });
         raster.as_deref()
     }
@@ -128,8 +133,13 @@ impl SingleView {
         shift: &Vector3,
     ) -> Option<Self> {
         let _looked = self.sight(measured)?;
-        let settled =
-            Self::new(Image { points: 0..0, beyond: Arc::default(), ..self.image.clone() }, shift);
+        let none = Image {
+            points: 0..0,
+            beyond: Arc::default(),
+            veil: Arc::default(),
+            ..self.image.clone()
+        };
+        let settled = Self::new(none, shift);
         Some(Self { raster: self.raster.clone(), ..settled })
     }
 }
@@ -190,6 +200,7 @@ mod tests {
                 pixels: [points.len(), 1],
                 robot: Vec::new(),
                 beyond: Arc::default(),
+                veil: Arc::default(),
             };
             let view = SingleView::new(image, &Vector3::zeros());
             let sight = view.sight((&points, &noise)).expect("points with directions");
