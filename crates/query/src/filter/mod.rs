@@ -4,6 +4,7 @@
 mod collision_map;
 mod duplicates;
 mod going_on;
+mod lines;
 mod outliers;
 mod range;
 mod self_points;

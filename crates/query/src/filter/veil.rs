@@ -13,10 +13,17 @@ use rayon::prelude::*;
 
 use super::VeilSettings;
 use super::going_on::goes_on;
-use super::range::is_return_to;
+use super::lines::{Image, Line};
 
+/// Along rows and along columns.
+const ALONG: [[isize; 2]; 2] = [[1, 0], [0, 1]];
 /// A neighbour is at most so many pixels away: those between gave no return.
 const ACROSS_HOLES: isize = 3;
+/// Aslant: along one of these a rod goes on that is too thin to do so along a row or a column.
+const ASLANT: [[isize; 2]; 10] =
+    [[1, 1], [1, -1], [1, 2], [1, -2], [2, 1], [2, -1], [1, 3], [1, -3], [3, 1], [3, -1]];
+/// A rod too thin to go on along a line is at most so many pixels wide.
+const THIN: isize = 8;
 /// Neighbours that decide whether an unorganised neighbourhood is a line along the ray.
 const LINE_NEIGHBORS: usize = 10;
 /// A neighbourhood counts as a line when its largest variance is this many times the next.
@@ -37,23 +44,6 @@ pub(super) fn drop_veil(
     }
 }
 
-/// A line of pixels through one.
-#[derive(Debug, Clone, Copy)]
-struct Line {
-    /// How many pixels are before it and after it on the line.
-    before: usize,
-    after: usize,
-    /// How far apart two of them are in the list of all.
-    apart: usize,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Image<'a> {
-    cloud: &'a PointCloud,
-    /// Columns and rows.
-    size: [usize; 2],
-}
-
 fn drop_veil_of_image(
     image: &Image<'_>,
     kept: &mut Vec<usize>,
@@ -64,15 +54,25 @@ fn drop_veil_of_image(
     let from = image.cloud.sensor_origin();
     let steep = |&index: &usize| {
         let ray = image.cloud.points[index] - from;
-        let lines = image.lines(index).map(|line| image.is_steep(index, line, &ray, least_cosine));
+        let lines =
+            ALONG.map(|step| image.is_steep(index, image.line(index, step), &ray, least_cosine));
         (lines != [false; 2]).then_some((index, lines))
     };
     let steep: Vec<(usize, [bool; 2])> = kept.par_iter().filter_map(steep).collect();
     let stds = ranges_stds(image.cloud, steep.iter().map(|(index, _)| *index), sensor);
     let is_veil = |(&(index, is_steep), std): (&(usize, [bool; 2]), f64)| {
-        let mut lines = image.lines(index).into_iter().zip(is_steep);
-        let is_off = |(line, is_steep)| is_steep && !image.goes_on(index, line, std);
-        lines.any(is_off).then_some(index)
+        let along = ALONG.iter().zip(is_steep).filter(|(_, is_steep)| *is_steep);
+        let lines = along.map(|(step, _)| image.line(index, *step));
+        let mut ends = lines.filter(|line| !image.goes_on(index, *line, std)).peekable();
+        ends.peek()?;
+        let ray = image.cloud.points[index] - from;
+        let is_thin = ends.all(|line| image.is_before_both_sides(index, line, &ray));
+        let mut aslant = ASLANT.iter().map(|step| image.line(index, *step));
+        let is_rod = is_thin
+            && aslant.any(|line| {
+                image.is_steep(index, line, &ray, least_cosine) && image.goes_on(index, line, std)
+            });
+        (!is_rod).then_some(index)
     };
     let mut veil = steep.iter().zip(stds).filter_map(is_veil).peekable();
     // Both are in order.
@@ -98,26 +98,6 @@ fn ranges_stds(
 }
 
 impl Image<'_> {
-    /// Its row and its column.
-    fn lines(&self, index: usize) -> [Line; 2] {
-        let [width, height] = self.size;
-        let (row, column) = (index / width, index % width);
-        [
-            Line { before: column, after: width - 1 - column, apart: 1 },
-            Line { before: row, after: height - 1 - row, apart: width },
-        ]
-    }
-
-    /// The return so many pixels on along a line, if there is one.
-    #[inline]
-    fn on(&self, index: usize, line: Line, places: isize) -> Option<&Point3> {
-        let (most, far) =
-            (if places < 0 { line.before } else { line.after }, places.unsigned_abs());
-        let other = index.checked_add_signed(places * line.apart as isize)?;
-        let place = self.cloud.points.get(other).filter(|_| far <= most)?;
-        is_return_to(&self.cloud.sensor_origin(), place).then_some(place)
-    }
-
     /// Whether a return lies between a nearer and a farther one of a line, both almost along its ray.
     fn is_steep(&self, index: usize, line: Line, ray: &Vector3, least_cosine: f64) -> bool {
         let point = &self.cloud.points[index];
@@ -129,6 +109,16 @@ impl Image<'_> {
         };
         let backward = next(-1);
         backward != 0.0 && backward * next(1) < 0.0
+    }
+
+    /// Whether what a return is on is thin: on either side of a line something farther is not many pixels away, as beside
+    /// a rod and not beside a veil, one side of which is the nearer surface.
+    fn is_before_both_sides(&self, index: usize, line: Line, ray: &Vector3) -> bool {
+        let (from, own) = (self.cloud.sensor_origin(), ray.norm_squared());
+        let is_farther = |places| {
+            self.on(index, line, places).is_some_and(|other| (other - from).norm_squared() > own)
+        };
+        [-1, 1].into_iter().all(|sign| (1..=THIN).any(|step| is_farther(sign * step)))
     }
 
     /// Whether the surface of a return goes on along a line, given how well ranges are known, m.
