@@ -161,6 +161,33 @@ fn a_dark_thing_among_missing_returns_was_taken_for_empty_space() {
     }
 }
 
+/// Cells of a collision map are wider than pixels. By them alone no hole of the image was found between them, and what was
+/// in one read free; with a largest range besides, pixels were counted where returns are beyond it only.
+#[test]
+fn a_collision_map_closed_the_holes_of_its_image() {
+    let mut image = view();
+    let (width, _) = image.image_size.expect("an image");
+    // 13 pixels wide.
+    let (columns, rows) = (118..131, 53..66);
+    for (row, point) in image.points.iter_mut().enumerate() {
+        if columns.contains(&(row % width)) && rows.contains(&(row / width)) {
+            *point = Point3::new(f64::NAN, f64::NAN, f64::NAN);
+        }
+    }
+    let ball = mesh(&scene::sphere(0.05, 2));
+    let pose = at(1.5 * (124.5 - 80.0) / 140.0, 1.5 * (59.5 - 60.0) / 140.0, 1.5);
+    for (resolution, max_range) in [(0.03, f64::INFINITY), (0.06, f64::INFINITY), (0.03, 2.5)] {
+        let mut settings = CloudSettings::new(SensorModel::Grid { resolution });
+        settings.filter.collision_map = Some(resolution);
+        settings.filter.max_range = max_range;
+        let map = Cloud::prepare(&image, &settings).expect("a good image");
+        let query = Query::new(QuerySettings::default()).expect("valid settings");
+        let ask = |pose: &Pose| query.run(&map, &ball, pose).expect("an answer");
+        check(&ask(&pose), false, (resolution, max_range));
+        check(&ask(&at(-0.6, 0.0, 1.5)), true, (resolution, max_range));
+    }
+}
+
 /// Where the block hides half of the ball in the end, and nothing of it halfway there.
 fn into_the_shadow() -> Path {
     Path::linear(&at(-0.9, 0.2, 2.5), &at(-0.5, 0.2, 2.5)).expect("two poses")

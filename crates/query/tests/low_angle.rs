@@ -87,7 +87,7 @@ fn before_a_wall(
     let [thing, wall] = [thing, &wall].map(ExactMesh::new);
     let image = camera.scan(&[&thing, &wall], &Pose::identity(), 3);
     let sensor = SensorModel::Stereo { baseline: BASELINE, focal_px, disparity_std };
-    Cloud::prepare(&image, &CloudSettings::new(sensor)).unwrap()
+    Cloud::prepare(&image, &CloudSettings::new(sensor)).expect("a usable image")
 }
 
 /// Of 480 fingers across rods of three to six pixels 26 were free.

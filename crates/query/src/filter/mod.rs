@@ -71,6 +71,8 @@ pub(crate) struct Removed {
     pub robot: Vec<usize>,
     /// What was taken for veil.
     pub veil: Vec<usize>,
+    /// What cells of a collision map stand for.
+    pub mapped: Vec<usize>,
 }
 
 /// The same, with what went.
@@ -109,9 +111,9 @@ pub(crate) fn filter_and_tell(
     if let Some(resolution) = settings.collision_map {
         let before = filtered.len();
         filtered = collision_map::cell_centers(&filtered, resolution)?;
-        rows.clear();
-        let removed = before - filtered.len();
-        stages.push(StageReport { stage: "collision map", before, removed });
+        removed.mapped = std::mem::take(&mut rows);
+        let stage = "collision map";
+        stages.push(StageReport { stage, before, removed: before - filtered.len() });
     }
     Ok((Filtered { cloud: filtered, rows, stages }, removed))
 }

@@ -44,15 +44,16 @@ impl Cloud {
             return Err(ChangeError::NotAnImage);
         }
         let added = Scans::of(&[(frame, settings.preparation())])?;
-        let kept = self.not_seen_by(&added)?;
+        let cell = settings.filter.collision_map.unwrap_or(0.0);
+        let kept = self.not_seen_by(&added, cell)?;
         let stages = added.stages.clone();
         let change = self.keep_and_append(&kept, Some(added))?;
         self.prepared.forget_frames(MOST_VIEWS, stages);
         Ok(change)
     }
 
-    /// The points that a frame neither sees through nor measures again.
-    fn not_seen_by(&self, frame: &Scans) -> Result<Vec<u32>, PrepareError> {
+    /// The points that a frame neither sees through nor measures again, be it by cells this wide, m.
+    fn not_seen_by(&self, frame: &Scans, cell: f64) -> Result<Vec<u32>, PrepareError> {
         let own = &self.prepared.scans;
         let all = || Ok((0..own.points.len() as u32).collect());
         let Some(image) = frame.images.first() else { return all() };
@@ -72,7 +73,7 @@ impl Cloud {
             let Some(pixels) = pixels else { return true };
             let Some(near) = measured.nearest_to(&place, 1).first().copied() else { return true };
             let ray = place - camera;
-            let pixel = pixels * ray.norm();
+            let pixel = (pixels * ray.norm()).max(cell);
             let noise = std.hypot(frame.noise[near.index].max_std());
             let offset = frame.points[near.index] - place;
             let along = ray.try_normalize(0.0).map_or(0.0, |ray| ray.dot(&offset));

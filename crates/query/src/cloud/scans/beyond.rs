@@ -1,10 +1,14 @@
-//! What returns of a depth image say that are left out because they are far: that there is nothing before.
+//! What returns of a depth image say that are no points: that there is nothing before them.
 
-use cloudtouch_geom::{PointCloud, Vector3};
+use cloudtouch_geom::{Covariance, PointCloud, Vector3};
 
 use crate::cloud::preparation::Preparation;
+use crate::cloud::view::OtherReturn;
 use crate::cloud::view::raster::CLEARLY;
 use crate::error::PrepareError;
+use crate::filter::Removed;
+
+use super::noise::moved;
 
 /// The rows of the returns beyond the range that is kept, in order, with their rays up to where that range ends
 /// or the surface may be, m.
@@ -35,4 +39,24 @@ pub(super) fn beyond_range(
         (empty > 0.0).then(|| (row, ray * (empty / range)))
     });
     Ok(rays.collect())
+}
+
+/// Returns that went and still say how far was seen: those that became cells of a collision map, which are wider than
+/// pixels, so that no hole of the image would be found between them; and veils, past which nobody saw, be they
+/// veils or not.
+pub(super) fn other_returns(
+    image: &PointCloud,
+    removed: &Removed,
+    by: Preparation<'_>,
+) -> Result<Vec<OtherReturn>, PrepareError> {
+    let from = image.sensor_origin();
+    let told = |&row: &usize, std: f64| OtherReturn { row, ray: image.points[row] - from, std };
+    let mut all: Vec<_> = removed.veil.iter().map(|row| told(row, 0.0)).collect();
+    if !removed.mapped.is_empty() {
+        let returns = image.select(&removed.mapped);
+        let noise = moved(by.sensor.covariances(&returns)?, &by.motion, &returns.points);
+        let stds = noise.iter().map(Covariance::std_bound);
+        all.extend(removed.mapped.iter().zip(stds).map(|(row, std)| told(row, std)));
+    }
+    Ok(all)
 }

@@ -14,7 +14,7 @@ use crate::check::coordinates::check_points;
 use crate::error::PrepareError;
 use crate::filter::{Filtered, StageReport, filter_and_tell};
 
-use self::beyond::beyond_range;
+use self::beyond::{beyond_range, other_returns};
 use self::noise::{coarse_step, joined, moved, padded};
 use self::refused::{check_for_repeats, checked, nothing_left};
 use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
@@ -111,7 +111,8 @@ impl Scans {
             // A robot that no return came from is elsewhere, and makes nothing known.
             let robot = if removed.robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
             let beyond = beyond_range(scan, by)?;
-            images.push(Image::of(scan, (&kept, &rows), robot, (&beyond, &removed.veil)));
+            let others = other_returns(scan, &removed, by)?;
+            images.push(Image::of(scan, (&kept, &rows), robot, (&beyond, &others)));
         } else {
             ranges.push(Range { sensor_origin: scan.sensor_origin(), most: by.filter.max_range });
         }

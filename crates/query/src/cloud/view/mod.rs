@@ -28,29 +28,41 @@ pub(super) struct Image {
     pub robot: Vec<SelfMesh>,
     /// Rays of returns that were left out for their range, up to where they say that there is nothing, m.
     pub beyond: Arc<[Vector3]>,
-    /// Rays of what was taken for veil, up to where that was, m: nobody saw past it, whatever it is.
-    pub veil: Arc<[Vector3]>,
+    /// Returns that are none of the points.
+    pub others: Arc<[OtherReturn]>,
+}
+
+/// A return that is no point of the cloud and still says how far was seen.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OtherReturn {
+    /// Its row in the image.
+    pub row: usize,
+    /// From the sensor to it, m.
+    pub ray: Vector3,
+    /// An upper bound of its standard deviations, m.
+    pub std: f64,
 }
 
 impl Image {
-    /// Of an organised cloud, given what was kept of it, from which rows, the links that were taken out, rows
-    /// and rays of what was too far, and the rows of what was taken for veil.
+    /// Of an organised cloud, given what was kept of it, from which rows (none of a collision map), the links that were
+    /// taken out, and rows and rays of what was too far and of others that are no points.
     pub(super) fn of(
         scan: &PointCloud,
         (kept, rows): (&PointCloud, &[usize]),
         robot: Vec<SelfMesh>,
-        (beyond, veil): (&[(usize, Vector3)], &[usize]),
+        (beyond, others): (&[(usize, Vector3)], &[OtherReturn]),
     ) -> Self {
-        let looked_at = rows.iter().chain(beyond.iter().map(|(row, _)| row)).chain(veil);
-        let sensor_origin = kept.sensor_origin();
+        let looked_at = (rows.iter())
+            .chain(beyond.iter().map(|(row, _)| row))
+            .chain(others.iter().map(|other| &other.row));
         Self {
-            sensor_origin,
+            sensor_origin: kept.sensor_origin(),
             turn: *kept.from_sensor().rotation(),
-            points: 0..kept.len(),
+            points: 0..rows.len(),
             pixels: pixels_about(scan, looked_at).unwrap_or([kept.len(), 1]),
             robot,
             beyond: beyond.iter().map(|(_, ray)| *ray).collect(),
-            veil: veil.iter().map(|&row| scan.points[row] - sensor_origin).collect(),
+            others: others.into(),
         }
     }
 }
@@ -117,10 +129,11 @@ impl SingleView {
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
         let raster = self.raster.get_or_init(|| {
-            let Image { sensor_origin, turn, points: own, pixels, beyond, veil, .. } = &self.image;
+            let Image { sensor_origin, turn, points: own, pixels, beyond, others, .. } =
+                &self.image;
             let own = own.clone().map(|index| (points[index], noise[index].std_bound()));
-            let veil = veil.iter().map(|ray| (sensor_origin + ray, 0.0));
-            Raster::new((sensor_origin, turn), own.chain(veil), beyond, *pixels).map(Arc::new)
+            let others = others.iter().map(|other| (sensor_origin + other.ray, other.std));
+            Raster::new((sensor_origin, turn), own.chain(others), beyond, *pixels).map(Arc::new)
         });
         raster.as_deref()
     }
@@ -136,7 +149,7 @@ impl SingleView {
         let none = Image {
             points: 0..0,
             beyond: Arc::default(),
-            veil: Arc::default(),
+            others: Arc::default(),
             ..self.image.clone()
         };
         let settled = Self::new(none, shift);
@@ -200,7 +213,7 @@ mod tests {
                 pixels: [points.len(), 1],
                 robot: Vec::new(),
                 beyond: Arc::default(),
-                veil: Arc::default(),
+                others: Arc::default(),
             };
             let view = SingleView::new(image, &Vector3::zeros());
             let sight = view.sight((&points, &noise)).expect("points with directions");
