@@ -84,6 +84,19 @@ pub enum CameraError {
         /// `columns` or `rows`.
         along: &'static str,
     },
+    /// The view is wide, and the principal point a quarter of the way through it, as with the intrinsics of an image half
+    /// as large.
+    #[error(
+        "cx is {} and cy {}, a quarter of an image of {} x {} pixels: so they are of one half as large; give \
+         those of this image, each of them twice as large. Of a part of a larger image give one that begins elsewhere",
+        number(point.0), number(point.1), size.0, size.1
+    )]
+    OfHalf {
+        /// `cx` and `cy`.
+        point: (f64, f64),
+        /// Columns and rows of the image.
+        size: (usize, usize),
+    },
     /// The focal length makes a view that no pinhole camera has.
     #[error(
         "{name} is {}, and the image has {pixels} {along}, a view of {} degrees: give it in pixels, \
@@ -106,6 +119,10 @@ pub enum CameraError {
 const MOST_ASIDE: f64 = 0.5;
 /// Where it is so many sizes along both sides, the intrinsics are of an image twice as large.
 const CORNER: f64 = 0.9;
+/// Where it is at so many sizes along both sides, and the focal length at most this many of the longer, a view of 71
+/// degrees, they are of an image half as large: parts of an image are seen at narrower angles.
+const QUARTER: std::ops::RangeInclusive<f64> = 0.235..=0.265;
+const WIDE: f64 = 0.7;
 /// Focal lengths in sizes of the image: a view of 161 degrees, where a lens bends what it sees, and one of
 /// a twentieth of a degree.
 const FOCAL_LENGTHS: std::ops::Range<f64> = 1.0 / 12.0..1000.0;
@@ -147,7 +164,8 @@ impl DepthCamera {
     ///
     /// # Errors
     /// As [`Self::validate`]; when the intrinsics are of another size, the principal point lies half an image
-    /// or more beside it or at its last corner, or the view is wider than 161 degrees or narrower than a twentieth of one.
+    /// or more beside it, at its last corner or, in a wide view, at a quarter of both sides, or the view is wider than
+    /// 161 degrees or narrower than a twentieth of one.
     pub fn validate_for(&self, width: usize, height: usize) -> Result<(), CameraError> {
         self.validate()?;
         if let Some(stated) = self.image_size.filter(|stated| *stated != (width, height)) {
@@ -173,6 +191,13 @@ impl DepthCamera {
                     along,
                 });
             }
+        }
+        let is_at_quarter = |(_, [_, point], pixels, _): &(_, [f64; 2], usize, _)| {
+            QUARTER.contains(&(point / *pixels as f64))
+        };
+        let is_wide = self.fx <= WIDE * width.max(height) as f64;
+        if self.image_size.is_none() && is_wide && axes.iter().all(is_at_quarter) {
+            return Err(CameraError::OfHalf { point: (self.cx, self.cy), size: (width, height) });
         }
         Ok(())
     }

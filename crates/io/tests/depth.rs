@@ -177,6 +177,14 @@ fn files_are_named_in_every_error() {
         let ReadError::Format { problem, .. } = error else { panic!("{error}") };
         assert!(matches!(problem.fault, Fault::Camera(CameraError::LooksAside { name: "cx", .. })));
     }
+    // Those of one half as large too, and places in the image were off by half and more.
+    let half = DepthCamera::new(300.0, 300.0, 159.5, 119.5);
+    let refused = half.validate_for(640, 480).unwrap_err();
+    assert!(matches!(refused, CameraError::OfHalf { .. }), "{refused}");
+    assert!(half.validate_for(320, 240).is_ok());
+    // A part of a larger image, and one that says its size.
+    assert!(DepthCamera { fx: 600.0, ..half }.validate_for(640, 480).is_ok());
+    assert!(DepthCamera { image_size: Some((640, 480)), ..half }.validate_for(640, 480).is_ok());
 
     let small = ReadLimits { bytes: 20, ..ReadLimits::default() };
     let message = read_depth_image_within(&path, &CAMERA, &small).unwrap_err().to_string();

@@ -24,7 +24,9 @@ pub struct FilterSettings {
     pub veil: Option<VeilSettings>,
     /// Drops points that are unusually far from their neighbours.
     pub outliers: Option<OutlierSettings>,
-    /// Replaces points by the centres of the occupied cells of a grid of this resolution, m.
+    /// Replaces points by the centres of the occupied cells of a grid of this resolution, m. Their noise is that of
+    /// [`SensorModel::Grid`]: state it, else cells count as known as well as returns. What was seen to be empty is still
+    /// told by the returns.
     pub collision_map: Option<f64>,
 }
 
