@@ -1,10 +1,12 @@
 //! A single depth image leaves space unseen: an object there does not read as free.
 
+use std::sync::Arc;
+
 use crate::common::{MODES, Scan, ask, at, mesh, scan};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, Mode, Path, Query, QuerySettings, Report, Verdict, Warning,
+    Cloud, CloudSettings, Mode, Path, Query, QuerySettings, Report, SelfMesh, Verdict, Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -186,6 +188,29 @@ fn a_collision_map_closed_the_holes_of_its_image() {
         check(&ask(&pose), false, (resolution, max_range));
         check(&ask(&at(-0.6, 0.0, 1.5)), true, (resolution, max_range));
     }
+}
+
+/// Behind a rod of the robot four pixels wide, in a hole so narrow that its neighbours tell, all counted as seen.
+#[test]
+fn what_hides_behind_a_thin_link_was_taken_for_empty_space() {
+    let rod = scene::cuboid([0.014, 0.4, 0.014]);
+    let there = at(0.1, 0.0, 0.5);
+    let parts =
+        [scene::moved(&rod, &there), scene::moved(&scene::plane_patch(6.0), &at(0.0, 0.0, 3.0))];
+    let [link, wall] = parts.each_ref().map(ExactMesh::new);
+    let camera = DepthCamera { veil_probability: 0.0, ..DepthCamera::default() };
+    let image = camera.scan(&[&link, &wall], &Pose::identity(), 1);
+    let mut settings = CloudSettings::new(SensorModel::Kinect);
+    let link = SelfMesh { mesh: Arc::new(mesh(&rod)), cloud_from_link: there, padding: 0.02 };
+    settings.filter.robot = vec![link];
+    let cloud = Cloud::prepare(&image, &settings).expect("a good image");
+    let query = Query::new(QuerySettings::default()).expect("valid settings");
+    let bar = mesh(&scene::cuboid([0.02, 0.2, 0.02]));
+    for (x, is_seen) in [(0.2, false), (0.4, true)] {
+        check(&query.run(&cloud, &bar, &at(x, 0.0, 1.0)).expect("an answer"), is_seen, x);
+    }
+    // Where the rod itself was there was nothing else.
+    check(&query.run(&cloud, &mesh(&rod), &there).expect("an answer"), true, "the rod");
 }
 
 /// Where the block hides half of the ball in the end, and nothing of it halfway there.

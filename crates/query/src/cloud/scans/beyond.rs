@@ -42,8 +42,8 @@ pub(super) fn beyond_range(
 }
 
 /// Returns that went and still say how far was seen: those that became cells of a collision map, which are wider than
-/// pixels, so that no hole of the image would be found between them; and veils, past which nobody saw, be they
-/// veils or not.
+/// pixels, so that no hole of the image would be found between them; and what was taken for veil or for the robot, past
+/// which nobody saw, whatever it is.
 pub(super) fn other_returns(
     image: &PointCloud,
     removed: &Removed,
@@ -51,7 +51,8 @@ pub(super) fn other_returns(
 ) -> Result<Vec<OtherReturn>, PrepareError> {
     let from = image.sensor_origin();
     let told = |&row: &usize, std: f64| OtherReturn { row, ray: image.points[row] - from, std };
-    let mut all: Vec<_> = removed.veil.iter().map(|row| told(row, 0.0)).collect();
+    let opaque = removed.veil.iter().chain(&removed.robot);
+    let mut all: Vec<_> = opaque.map(|row| told(row, 0.0)).collect();
     if !removed.mapped.is_empty() {
         let returns = image.select(&removed.mapped);
         let noise = moved(by.sensor.covariances(&returns)?, &by.motion, &returns.points);
