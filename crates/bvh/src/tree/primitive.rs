@@ -71,11 +71,7 @@ impl Primitive {
     pub(crate) fn check(&self, index: usize) -> Result<(), TreeError> {
         check_coordinates(self.corners(), index)?;
         if let Self::Point { point, weight } = self {
-            for value in point.covariance.upper_triangle() {
-                if !(-MAX_VARIANCE..=MAX_VARIANCE).contains(&value) {
-                    return Err(TreeError::Covariance { index, value });
-                }
-            }
+            check_covariance(&point.covariance, index)?;
             if !(weight.is_finite() && *weight >= 0.0) {
                 return Err(TreeError::Weight { index, value: *weight });
             }
@@ -86,12 +82,27 @@ impl Primitive {
 
 /// Refuses corners that no box could hold.
 pub(crate) fn check_coordinates(corners: &[Point3], index: usize) -> Result<(), TreeError> {
-    for &value in corners.iter().flat_map(|corner| corner.iter()) {
-        if !(-MAX_COORDINATE..=MAX_COORDINATE).contains(&value) {
-            return Err(TreeError::Coordinate { index, value });
-        }
+    let coordinates = corners.iter().flat_map(|corner| corner.iter().copied());
+    match first_beyond(coordinates, MAX_COORDINATE) {
+        Some(value) => Err(TreeError::Coordinate { index, value }),
+        None => Ok(()),
     }
-    Ok(())
+}
+
+/// Refuses noise that no box could hold.
+pub(crate) fn check_covariance(covariance: &Covariance, index: usize) -> Result<(), TreeError> {
+    match first_beyond(covariance.upper_triangle().into_iter(), MAX_VARIANCE) {
+        Some(value) => Err(TreeError::Covariance { index, value }),
+        None => Ok(()),
+    }
+}
+
+/// The first of these that is no number or larger, whatever its sign.
+fn first_beyond(mut values: impl Iterator<Item = f64> + Clone, most: f64) -> Option<f64> {
+    let is_within = |value: f64| value.abs() <= most;
+    // PERF: without a branch for each; as a rule all are within.
+    let all_are = values.clone().fold(true, |all, value| all & is_within(value));
+    if all_are { None } else { values.find(|value| !is_within(*value)) }
 }
 
 /// The centroid of a point or of the three corners of a triangle.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use cloudtouch_geom::{Covariance, Point3, UncertainPoint};
 
-use crate::tree::primitive::check_coordinates;
+use crate::tree::primitive::{check_coordinates, check_covariance};
 use crate::{Primitive, TreeError};
 
 /// Primitives by index, in the frame of a tree.
@@ -61,7 +61,12 @@ impl Primitives {
                     let (expected, found) = (means.len(), covariances.len());
                     return Err(TreeError::Count { expected, found });
                 }
-                (0..means.len()).try_for_each(|index| self.get(index as u32).check(index))
+                means.iter().zip(covariances.iter()).enumerate().try_for_each(
+                    |(index, (mean, noise))| {
+                        check_coordinates(slice::from_ref(mean), index)?;
+                        check_covariance(noise, index)
+                    },
+                )
             }
             Self::Each(all) => {
                 all.iter().enumerate().try_for_each(|(index, primitive)| primitive.check(index))
