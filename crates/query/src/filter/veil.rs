@@ -3,9 +3,10 @@
 //!
 //! In an image, such a point continues along its viewing ray: one neighbour is nearer, the opposite
 //! one farther, and both steps run almost along the ray. So do those of a surface seen at a low angle, which
-//! [goes on](super::going_on) past them. Beside veils pixels often have no return at all: then the next one
-//! within a few pixels is the neighbour. Without an image layout the neighbours are the nearest points,
-//! and a veil point is one whose neighbourhood is a line along the ray.
+//! [goes on](super::going_on) past them, along a row or a column or, where a rod is too thin for that, aslant.
+//! Beside veils pixels often have no return at all: then the next one within a few pixels is the neighbour.
+//! Without an image layout the neighbours are the nearest points, and a veil point is one whose neighbourhood
+//! is a line along the ray.
 
 use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Vector3};
 use cloudtouch_noise::{Neighborhoods, SensorModel};

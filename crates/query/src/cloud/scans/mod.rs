@@ -1,8 +1,8 @@
 //! What sensors delivered, made ready: scans filtered, each with the noise of its sensor, and put
 //! together in one frame.
 
-mod beyond;
 mod noise;
+mod others;
 mod refused;
 
 use std::mem;
@@ -14,8 +14,8 @@ use crate::check::coordinates::check_points;
 use crate::error::PrepareError;
 use crate::filter::{Filtered, StageReport, filter_and_tell};
 
-use self::beyond::{beyond_range, other_returns};
 use self::noise::{coarse_step, joined, moved, padded};
+use self::others::{beyond_range, other_returns};
 use self::refused::{check_for_repeats, checked, nothing_left};
 use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
 use super::preparation::Preparation;
