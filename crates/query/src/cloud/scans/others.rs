@@ -6,7 +6,7 @@ use crate::cloud::preparation::Preparation;
 use crate::cloud::view::OtherReturn;
 use crate::cloud::view::raster::CLEARLY;
 use crate::error::PrepareError;
-use crate::filter::Removed;
+use crate::filter::{Removed, is_return_to};
 
 use super::noise::moved;
 
@@ -51,7 +51,9 @@ pub(super) fn other_returns(
 ) -> Result<Vec<OtherReturn>, PrepareError> {
     let from = image.sensor_origin();
     let told = |&row: &usize, std: f64| OtherReturn { row, ray: image.points[row] - from, std };
-    let opaque = removed.veil.iter().chain(&removed.robot);
+    // Rows at the place of the sensor, which may be in the robot, have no direction.
+    let is_return = |row: &&usize| is_return_to(&from, &image.points[**row]);
+    let opaque = removed.veil.iter().chain(&removed.robot).filter(is_return);
     let mut all: Vec<_> = opaque.map(|row| told(row, 0.0)).collect();
     if !removed.mapped.is_empty() {
         let returns = image.select(&removed.mapped);
