@@ -119,7 +119,8 @@ pub struct Clearance {
     /// them.
     pub std: f64,
     /// Whether the overlap may be deeper than `mean` says: of surfaces that cross no more than half a
-    /// spacing is told.
+    /// spacing is told. Where noise is about as large as the spacing, chance makes surfaces cross that are apart,
+    /// and this shows no overlap.
     pub is_bound: bool,
 }
 
