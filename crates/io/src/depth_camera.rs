@@ -119,9 +119,10 @@ pub enum CameraError {
 const MOST_ASIDE: f64 = 0.5;
 /// Where it is so many sizes along both sides, the intrinsics are of an image twice as large.
 const CORNER: f64 = 0.9;
-/// Where it is at so many sizes along both sides, and the focal length at most this many of the longer, a view of 71
-/// degrees, they are of an image half as large: parts of an image are seen at narrower angles.
+/// Where it is at so many sizes along both sides, they are of an image half as large, ...
 const QUARTER: std::ops::RangeInclusive<f64> = 0.235..=0.265;
+/// ... if the focal length is at most so many of the longer, a view of 71 degrees: parts of an image are seen at narrower
+/// angles.
 const WIDE: f64 = 0.7;
 /// Focal lengths in sizes of the image: a view of 161 degrees, where a lens bends what it sees, and one of
 /// a twentieth of a degree.

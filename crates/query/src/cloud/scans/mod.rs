@@ -14,7 +14,7 @@ use crate::check::coordinates::check_points;
 use crate::error::PrepareError;
 use crate::filter::{Filtered, StageReport, filter_and_tell};
 
-use self::noise::{coarse_step, joined, moved, padded};
+use self::noise::{coarse_step, joined, noise_of, padded};
 use self::others::{beyond_range, other_returns};
 use self::refused::{check_for_repeats, checked, nothing_left};
 use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
@@ -98,7 +98,7 @@ impl Scans {
         // By their rows in the file; the cells of a collision map have none.
         let row = |i: usize| rows_before + rows.get(i).copied().unwrap_or(i);
         check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
-        let noise = moved(by.sensor.covariances(&kept)?, &by.motion, &kept.points);
+        let noise = noise_of(&kept, by)?;
         let normals = match (&kept.normals, by.noise.combination) {
             (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),
             _ => None,
@@ -112,7 +112,7 @@ impl Scans {
             let robot = if removed.robot.is_empty() { Vec::new() } else { by.filter.robot.clone() };
             let beyond = beyond_range(scan, by)?;
             let others = other_returns(scan, &removed, by)?;
-            images.push(Image::of(scan, (&kept, &rows), robot, (&beyond, &others)));
+            images.push(Image::of(scan, (&kept, &rows), robot, &beyond, &others));
         } else {
             ranges.push(Range { sensor_origin: scan.sensor_origin(), most: by.filter.max_range });
         }

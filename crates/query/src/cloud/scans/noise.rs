@@ -9,8 +9,15 @@ use crate::cloud::preparation::Preparation;
 use crate::error::PrepareError;
 use crate::filter::beyond_noise;
 
-/// Σ of points that may have moved since they were seen.
-pub(super) fn moved(noise: SensorNoise, motion: &MotionNoise, points: &[Point3]) -> SensorNoise {
+/// Σ of returns, which may have moved since they were seen.
+pub(super) fn noise_of(
+    returns: &PointCloud,
+    by: Preparation<'_>,
+) -> Result<SensorNoise, PrepareError> {
+    Ok(moved(by.sensor.covariances(returns)?, &by.motion, &returns.points))
+}
+
+fn moved(noise: SensorNoise, motion: &MotionNoise, points: &[Point3]) -> SensorNoise {
     if *motion == MotionNoise::default() {
         return noise;
     }
@@ -47,7 +54,7 @@ pub(super) fn padded(
     if of_robot.is_empty() {
         return Ok(None);
     }
-    let noise = moved(by.sensor.covariances(of_robot)?, &by.motion, &of_robot.points);
+    let noise = noise_of(of_robot, by)?;
     let points = of_robot.points.iter().zip(noise.iter().map(Covariance::max_std_at_most));
     let share = beyond_noise(points, &by.filter.robot);
     Ok((share > MOST).then_some(SensorDoubt::Padding { share }))

@@ -8,7 +8,7 @@ use crate::cloud::view::raster::CLEARLY;
 use crate::error::PrepareError;
 use crate::filter::{Removed, is_return_to};
 
-use super::noise::moved;
+use super::noise::noise_of;
 
 /// The rows of the returns beyond the range that is kept, in order, with their rays up to where that range ends
 /// or the surface may be, m.
@@ -41,23 +41,22 @@ pub(super) fn beyond_range(
     Ok(rays.collect())
 }
 
-/// Returns that went and still say how far was seen: those that became cells of a collision map, which are wider than
+/// The rows of returns that went and still say how far was seen: those that became cells of a collision map, which are wider than
 /// pixels, so that no hole of the image would be found between them; and what was taken for veil or for the robot, past
 /// which nobody saw, whatever it is.
 pub(super) fn other_returns(
     image: &PointCloud,
     removed: &Removed,
     by: Preparation<'_>,
-) -> Result<Vec<OtherReturn>, PrepareError> {
+) -> Result<Vec<(usize, OtherReturn)>, PrepareError> {
     let from = image.sensor_origin();
-    let told = |&row: &usize, std: f64| OtherReturn { row, ray: image.points[row] - from, std };
+    let told = |&row: &usize, std: f64| (row, OtherReturn { ray: image.points[row] - from, std });
     // Rows at the place of the sensor, which may be in the robot, have no direction.
     let is_return = |row: &&usize| is_return_to(&from, &image.points[**row]);
     let opaque = removed.veil.iter().chain(&removed.robot).filter(is_return);
     let mut all: Vec<_> = opaque.map(|row| told(row, 0.0)).collect();
     if !removed.mapped.is_empty() {
-        let returns = image.select(&removed.mapped);
-        let noise = moved(by.sensor.covariances(&returns)?, &by.motion, &returns.points);
+        let noise = noise_of(&image.select(&removed.mapped), by)?;
         let stds = noise.iter().map(Covariance::std_bound);
         all.extend(removed.mapped.iter().zip(stds).map(|(row, std)| told(row, std)));
     }

@@ -35,8 +35,6 @@ pub(super) struct Image {
 /// A return that is no point of the cloud and still says how far was seen.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OtherReturn {
-    /// Its row in the image.
-    pub row: usize,
     /// From the sensor to it, m.
     pub ray: Vector3,
     /// An upper bound of its standard deviations, m.
@@ -45,16 +43,17 @@ pub(super) struct OtherReturn {
 
 impl Image {
     /// Of an organised cloud, given what was kept of it, from which rows (none of a collision map), the links that were
-    /// taken out, and rows and rays of what was too far and of others that are no points.
+    /// taken out, and the rows of what was too far, with their rays, and of others that are no points.
     pub(super) fn of(
         scan: &PointCloud,
         (kept, rows): (&PointCloud, &[usize]),
         robot: Vec<SelfMesh>,
-        (beyond, others): (&[(usize, Vector3)], &[OtherReturn]),
+        beyond: &[(usize, Vector3)],
+        others: &[(usize, OtherReturn)],
     ) -> Self {
         let looked_at = (rows.iter())
             .chain(beyond.iter().map(|(row, _)| row))
-            .chain(others.iter().map(|other| &other.row));
+            .chain(others.iter().map(|(row, _)| row));
         Self {
             sensor_origin: kept.sensor_origin(),
             turn: *kept.from_sensor().rotation(),
@@ -62,7 +61,7 @@ impl Image {
             pixels: pixels_about(scan, looked_at).unwrap_or([kept.len(), 1]),
             robot,
             beyond: beyond.iter().map(|(_, ray)| *ray).collect(),
-            others: others.into(),
+            others: others.iter().map(|(_, other)| *other).collect(),
         }
     }
 }
