@@ -3,6 +3,7 @@
 use cloudtouch_geom::Point3;
 
 use crate::error::NoiseError;
+use crate::index::density::Density;
 use crate::index::positions::Positions;
 use crate::index::spacing::is_noisy;
 use crate::neighborhoods::Neighborhoods;
@@ -13,6 +14,8 @@ const REACH_SPACINGS: f64 = 2.0;
 /// ... or up to this part of the standard deviation of the noise, which hides steps so short, and for
 /// none beyond the whole of it.
 const REACH_STD: f64 = 0.2;
+/// The surface of a point is up to so many standard deviations of its noise away.
+const SURFACE_STDS: f64 = 2.0;
 /// The part of a sample of the points that has to be noisy.
 const NOISY_SHARE: f64 = 0.05;
 
@@ -117,8 +120,29 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> (Vec<u32>, Vec<f64>) {
         }
     }
     chosen.sort_unstable();
-    let spacings = chosen.iter().map(|&index| densities[index as usize].spacing).collect();
+    let spacing = |&index: &u32| spacing_near(index as usize, &densities, cloud, sensor);
+    let spacings = chosen.iter().map(spacing).collect();
     (chosen, spacings)
+}
+
+/// How far apart samples are about a point or, where these are so many that the nearest of them are all noise, about the
+/// surface that it is of, m. A point that noise took off that surface is itself among few.
+fn spacing_near(
+    index: usize,
+    densities: &[Density],
+    cloud: &Neighborhoods,
+    sensor: &SensorNoise,
+) -> f64 {
+    let (own, noise) = (densities[index].spacing, &sensor[index]);
+    if is_noisy(noise, own) {
+        return own;
+    }
+    let mut least = own;
+    let reach = SURFACE_STDS * noise.max_std();
+    cloud.positions().visit_within(&cloud.points()[index], reach * reach, |near| {
+        least = least.min(densities[near.index].spacing);
+    });
+    if is_noisy(noise, least) { least } else { own }
 }
 
 #[cfg(test)]

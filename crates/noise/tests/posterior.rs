@@ -219,7 +219,7 @@ fn what_lies_along_rays_at_an_edge_is_no_surface_known_across_them() {
     let sensor = Point3::new(1.2, -0.9, 0.7);
     let exact = seen(edges, &sensor);
     assert!(exact.len() > 3000);
-    for (spec, most) in [("lidar:0.01,0.001", 1.5), ("lidar:0.03,0.003", 1.8)] {
+    for spec in ["lidar:0.01,0.001", "lidar:0.03,0.003"] {
         let model_of: SensorModel = spec.parse().expect("a spec");
         let cloud = |points| PointCloud {
             sensor_pose: Some(Pose::from_translation(sensor.coords)),
@@ -236,7 +236,7 @@ fn what_lies_along_rays_at_an_edge_is_no_surface_known_across_them() {
             Some(distance_to_cuboid(&of.point.mean, edges) / std)
         });
         let found = root_mean_square(ratio);
-        assert!((0.7..most).contains(&found), "{spec}: {found}");
+        assert!((0.7..1.0).contains(&found), "{spec}: {found}");
     }
 }
 

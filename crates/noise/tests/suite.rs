@@ -3,6 +3,7 @@
 mod bounds;
 mod common;
 mod degenerate;
+mod dense;
 mod ends;
 mod neighborhoods;
 mod outline;

@@ -108,8 +108,7 @@ pub(crate) fn posterior(
 /// w² V + u (o + (1 − o) u³) s² along the normal, u = (1 − w)², o the part of its own noise, less of
 /// it where the noise is small beside the spacing, never more than s². Across it the disc of the spacing is
 /// widened by the noise where fits to other neighbourhoods face elsewhere: what is along the normal
-/// of the one is across that of the other. Where the noise has a direction, such as that of a ray, so much of what
-/// it has there more than along the normal comes to that along it.
+/// of the one is across that of the other.
 ///
 /// Noise also takes samples past the end of a surface, where it goes on as far as its neighbours can tell, but
 /// that these are on one side. Along the surface the point moves `back` by what it was displaced there, in the mean.
@@ -134,8 +133,7 @@ fn given_surface(
     let stays_noisy = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
     let blur = blur(noise.sqrt(), around);
     let stated = if is_trusted { error.sharp + (1.0 - error.sharp) * blur } else { 1.0 };
-    let elsewhere = (error.slant * surface.tilt).min(1.0) * beyond(own, std, noise);
-    let along = (stated * (weight * weight * prior + stays_noisy)).min(noise) + elsewhere;
+    let along = (stated * (weight * weight * prior + stays_noisy)).min(noise);
     let turned = (error.turn * surface.tilt).min(1.0) * std;
     let across = (settings.disc_std * spacing).hypot(turned);
     let normal = surface.normal.into_inner();
@@ -156,14 +154,6 @@ fn blur(std: f64, spacing: f64) -> f64 {
 fn limited(vector: Vector3, most: f64) -> Vector3 {
     let squared = vector.norm_squared();
     if squared <= most { vector } else { vector * (most.max(0.0) / squared).sqrt() }
-}
-
-/// By how much the variance of noise with this largest standard deviation (m) is beyond one along some direction, m².
-fn beyond(noise: &Covariance, std: f64, along: f64) -> f64 {
-    match noise.isotropic_variance() {
-        Some(_) => 0.0,
-        None => (std.powi(2) - along).max(0.0),
-    }
 }
 
 /// V: how far a surface may be off, given the variance of the noise along its normal.

@@ -48,9 +48,6 @@ pub struct SurfaceError {
     pub own_noise: f64,
     /// How soon normals that differ let the noise be in every direction: of their squared sine.
     pub turn: f64,
-    /// How soon they let what the noise has in its largest direction count along the normal: of the same. Samples
-    /// that were displaced along their rays past an edge look like a surface that the rays lie in.
-    pub slant: f64,
     /// Of the variance along the normal that the other factors come to, where the noise is nothing
     /// beside the spacing; it rises to all of it where the noise is a quarter of the spacing. Misfits
     /// no larger than the noise, which the others allow for, are rare where the noise is small. Not of a point
@@ -83,7 +80,6 @@ impl Default for SurfaceError {
             doubt: 2.21,
             own_noise: 0.9,
             turn: 90.0,
-            slant: 8.0,
             sharp: 0.5,
         }
     }
@@ -106,7 +102,6 @@ impl PosteriorSettings {
             doubt,
             own_noise,
             turn,
-            slant,
             sharp,
         } = self.surface_error;
         for (name, value) in [
@@ -124,7 +119,6 @@ impl PosteriorSettings {
             ("posterior.surface_error.doubt", doubt),
             ("posterior.surface_error.own_noise", own_noise),
             ("posterior.surface_error.turn", turn),
-            ("posterior.surface_error.slant", slant),
             ("posterior.surface_error.sharp", sharp),
         ] {
             check_not_negative(name, value)?;

@@ -58,7 +58,7 @@ pub(crate) fn wide_surface(
         if found.is_some() {
             wide.hidden *= FRAC_1_SQRT_2;
         }
-        if found.is_none_or(|narrower| wide.expected_error < WIDER * narrower.expected_error) {
+        if found.is_none_or(|narrower| wide.relative_error < WIDER * narrower.relative_error) {
             found = Some(wide);
         }
     }

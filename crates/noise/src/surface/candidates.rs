@@ -110,5 +110,5 @@ fn least_squares<S: Machine>(machine: S, voters: &Patch) -> Option<Plane> {
             *sum += product;
         }
     }
-    plane_of_sums(voters.len() as f64, sums(first), sums(second))
+    plane_of_sums((voters.len() as f64, sums(first), sums(second)), voters.whitening())
 }

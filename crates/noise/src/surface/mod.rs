@@ -38,6 +38,9 @@ pub(crate) struct Surface {
     pub(crate) height: f64,
     /// What noise and misfit were expected to leave of error when the neighbourhood was chosen, m².
     pub(crate) expected_error: f64,
+    /// The same as a part of the variance that the point has along the normal: by that, fits that face elsewhere are
+    /// compared. Across rays little is to be known, and little says nothing.
+    pub(crate) relative_error: f64,
     /// The variance that the noise of the neighbours gives that height, m².
     pub(crate) leverage: f64,
     /// The variance of a misfit that residuals may hide, m².
@@ -114,7 +117,7 @@ fn fitted<S: Machine>(machine: S, patch: &Patch) -> Option<Surface> {
         {
             plane = refined;
             *trial = Some(surface);
-            if best.is_none_or(|b| is_better(surface.expected_error, b.expected_error)) {
+            if best.is_none_or(|b| is_better(surface.relative_error, b.relative_error)) {
                 best = Some(surface);
             }
         }
@@ -207,6 +210,7 @@ fn measured<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -> Option<Surf
         normal,
         height: height * normal.dot(&frame.normal),
         expected_error: error.expected(),
+        relative_error: error.expected() / patch.own_variance(&normal),
         leverage: error.leverage,
         hidden: error.chance,
         bend: error.bend,

@@ -1,6 +1,6 @@
 //! The neighbourhood of one point as the surface fit sees it.
 
-use cloudtouch_geom::{Covariance, Vector3};
+use cloudtouch_geom::{Covariance, Matrix3, Vector3};
 
 use crate::lanes::{Lanes, Machine, Stored, WIDTH};
 
@@ -90,6 +90,8 @@ pub(crate) struct Patch<'a> {
     own_noise: &'a Covariance,
     /// The least variance a residual is judged by, m².
     floor: f64,
+    /// Makes the noise of the point the same in all directions, where it is not.
+    whitening: Option<Matrix3>,
     /// The precision of all along all normals, where neither matters, 1/m².
     same: Option<f64>,
 }
@@ -165,7 +167,11 @@ impl<'a> Patch<'a> {
             PatchNoise::Uniform(noise) => noise.isotropic_variance().map(|v| 1.0 / v.max(floor)),
             PatchNoise::Each(_) => None,
         };
-        Self { offsets, count: offsets.len(), noise, own_noise, floor, same }
+        let whitening = match own_noise.isotropic_variance() {
+            Some(_) => None,
+            None => whitening(own_noise, floor),
+        };
+        Self { offsets, count: offsets.len(), noise, own_noise, floor, whitening, same }
     }
 
     /// The first `count` neighbours only, if there are as many.
@@ -219,6 +225,11 @@ impl<'a> Patch<'a> {
         }
     }
 
+    /// A matrix that makes the noise of the point the same in all directions; `None` where it is.
+    pub(crate) fn whitening(&self) -> Option<&Matrix3> {
+        self.whitening.as_ref()
+    }
+
     /// Σᵢ of the point itself.
     pub(crate) fn own_noise(&self) -> &'a Covariance {
         self.own_noise
@@ -244,6 +255,12 @@ impl<'a> Patch<'a> {
     pub(crate) fn isotropic_own_variance(&self) -> Option<f64> {
         self.own_noise.isotropic_variance().map(|variance| variance.max(self.floor))
     }
+}
+
+/// L⁻¹, L Lᵀ being a covariance and no less than the `floor` in all directions, m².
+fn whitening(noise: &Covariance, floor: f64) -> Option<Matrix3> {
+    let noise = noise.matrix() + Matrix3::from_diagonal_element(floor);
+    noise.cholesky()?.l().try_inverse()
 }
 
 /// By how many lanes of a group hold a neighbour, less one.

@@ -45,13 +45,19 @@ pub(crate) fn reweighted<S: Machine>(machine: S, patch: &Patch, plane: &Plane) -
             *sum += product;
         }
     }
-    plane_of_sums(total.sum(), sums(first), sums(second))
+    plane_of_sums((total.sum(), sums(first), sums(second)), patch.whitening())
 }
 
 /// The plane of least squares, from the sum of weights, of weighted vectors, and of their products
 /// xx, xy, xz, yy, yz, zz.
+///
+/// Distances are in units of the noise, which `whitening` makes the same in all directions: a layer that noise along rays
+/// makes deeper than it is wide is no surface that the rays lie in.
 #[inline(always)]
-pub(crate) fn plane_of_sums(total: f64, first: [f64; 3], second: [f64; 6]) -> Option<Plane> {
+pub(crate) fn plane_of_sums(
+    (total, first, second): (f64, [f64; 3], [f64; 6]),
+    whitening: Option<&Matrix3>,
+) -> Option<Plane> {
     let per_weight = 1.0 / total;
     let centre = Vector3::from(first) * per_weight;
     let [xx, xy, xz, yy, yz, zz] = second;
@@ -62,7 +68,13 @@ pub(crate) fn plane_of_sums(total: f64, first: [f64; 3], second: [f64; 6]) -> Op
         return None;
     }
     // Nobody agreeing makes this NaN, which has no smallest axis.
-    let normal = smallest_axis(&scatter)?;
+    let normal = match whitening {
+        None => smallest_axis(&scatter)?,
+        Some(whitening) => {
+            let axis = smallest_axis(&(whitening * scatter * whitening.transpose()))?;
+            (whitening.transpose() * axis).normalize()
+        }
+    };
     Some(Plane { normal, height: normal.dot(&centre) })
 }
 
@@ -122,7 +134,14 @@ mod tests {
             second += place * place.transpose() * weight;
         }
         let centre = first / total;
-        let normal = smallest_axis(&(second / total - centre * centre.transpose()))?;
+        let scatter = second / total - centre * centre.transpose();
+        // As large in all directions as the noise of the point is, its first neighbour's.
+        let noise = (noise[0].matrix() + Matrix3::identity() * floor).symmetric_eigen();
+        let scale =
+            Matrix3::from_diagonal(&noise.eigenvalues.map(|variance| 1.0 / variance.sqrt()));
+        let whitening = noise.eigenvectors * scale * noise.eigenvectors.transpose();
+        let normal = whitening * smallest_axis(&(whitening * scatter * whitening))?;
+        let normal = normal.normalize();
         Some(Plane { normal, height: normal.dot(&centre) })
     }
 
