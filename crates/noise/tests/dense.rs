@@ -10,10 +10,10 @@ use crate::common::{gaussian, isotropic, model, noisy, plane, root_mean_square};
 
 /// The points that stand for all where there are some, by index, and what they become.
 fn refined(points: &[Point3], sensor: &SensorNoise) -> Vec<(usize, Refined)> {
-    let cloud = Neighborhoods::new(points.to_vec()).unwrap();
+    let cloud = Neighborhoods::new(points.to_vec()).expect("an index");
     let sample: Vec<usize> = (0..points.len()).step_by(37).collect();
     let spacings = spacings_at(&cloud, sample.iter().copied());
-    let chosen = Representatives::choose(&cloud, sensor, (&sample, &spacings)).unwrap();
+    let chosen = Representatives::choose(&cloud, sensor, (&sample, &spacings)).expect("an index");
     let chosen = chosen.expect("samples denser than their noise");
     let model = model(Combination::SurfacePosterior);
     let mut scratch = Scratch::default();

@@ -19,16 +19,15 @@ const VOTERS: usize = 19;
 /// The plane with the most support among the nearest neighbours; `None` when they are too few or
 /// all on one line with the point.
 ///
-/// That is the least-squares plane where it misses nobody and noise is the same in all directions. Else
-/// candidates are laid through three places, so that one of them is likely to lie in one face even where
-/// two meet: the point and two neighbours, or three neighbours, since the point itself may be the outlier.
+/// That is the least-squares plane where it misses nobody. Else candidates are laid through three places, so that one of
+/// them is likely to lie in one face even where two meet: the point and two neighbours, or three neighbours, since the
+/// point itself may be the outlier.
 #[inline(always)]
 pub(crate) fn best_candidate<S: Machine>(machine: S, patch: &Patch) -> Option<Plane> {
     let voters = patch.nearest(VOTERS);
     let mut vote = Vote::new(machine, &voters);
     if let Some(plane) = least_squares(machine, &voters) {
-        // Along a noisy direction nothing misses a plane, and that says little for it.
-        if vote.same.is_some() && vote.is_unanimous(&plane) {
+        if vote.is_unanimous(&plane) {
             return Some(plane);
         }
         vote.consider(plane);

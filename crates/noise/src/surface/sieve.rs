@@ -1,7 +1,5 @@
 //! Which planes cannot win a vote: told of four at a time, and of nearly all.
 
-use std::f64::consts::LN_2;
-
 use cloudtouch_geom::Vector3;
 
 use crate::lanes::{Lanes, Machine, Stored, WIDTH};
@@ -11,26 +9,19 @@ use crate::surface::vote::{CUT, OWN_VOTES, Vote};
 const ROUNDING: f64 = 1e-9;
 
 impl<S: Machine> Vote<'_, S> {
-    /// The least that planes through three places each can cost: no more than [`Self::disagreement`], and less by a
-    /// hundredth of the voters' most at most, but for the tails of what is missed. Of three places on one line it
-    /// says nothing.
+    /// The least that planes through three places each can cost: no more than [`Self::disagreement`], and less by no more
+    /// than the tails of what is missed. Of three places on one line it says nothing.
     #[inline(always)]
     pub(super) fn least_costs(&self, places: [[Vector3; 3]; WIDTH]) -> Stored {
-        let Self { machine, voters, scale, .. } = *self;
+        let Self { machine, voters, .. } = *self;
         let [a, b, c] = [0, 1, 2].map(|corner| {
             [0, 1, 2].map(|axis| Lanes::load(machine, places.map(|plane| plane[corner][axis])))
         });
         let normal = cross(minus(b, a), minus(c, a));
         let inverse_square = dot(normal, normal).inverse();
-        let (inverse, narrowness) = match self.same {
-            Some((variance, narrowness)) => {
-                (inverse_square * (1.0 / variance), Lanes::splat(machine, narrowness))
-            }
-            None => {
-                let variance = self.variances(normal, inverse_square);
-                let narrowness = variance.stored().map(|variance| log_at_least(variance / scale));
-                (variance.inverse() * inverse_square, Lanes::load(machine, narrowness))
-            }
+        let inverse = match self.same {
+            Some(variance) => inverse_square * (1.0 / variance),
+            None => self.variances(normal, inverse_square).inverse() * inverse_square,
         };
         // In standard deviations.
         let scaling = inverse.sqrt();
@@ -39,16 +30,15 @@ impl<S: Machine> Vote<'_, S> {
         let (most, all) = (Lanes::splat(machine, CUT * CUT), voters.len() as f64);
         let own = below * below;
         let beyond = (own - most * OWN_VOTES).not_negative();
-        let spare = most - narrowness;
         let mut spared = Lanes::zero(machine);
         for voter in 0..voters.len() {
             let place: [f64; 3] = voters.offset(voter).into();
             let [p, q, r] = place.map(|entry| Lanes::splat(machine, entry));
             let above = x.times_plus(p, y.times_plus(q, z.times_plus(r, below)));
             let less = Lanes::zero(machine) - above;
-            spared += less.times_plus(above, spare).not_negative();
+            spared += less.times_plus(above, most).not_negative();
         }
-        (own - beyond + most * all - spared - spare * (ROUNDING * all)).stored()
+        (own - beyond + most * all - spared - most * (ROUNDING * all)).stored()
     }
 
     /// The variances of the point along normals that are not of unit length, m².
@@ -75,16 +65,6 @@ fn dot<S: Machine>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
 fn cross<S: Machine>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
     let across = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
     [across(1, 2), across(2, 0), across(0, 1)]
-}
-
-/// No more than the natural logarithm, and less by .06 at most: the chord between powers of two, which a number's
-/// bits are.
-#[inline(always)]
-fn log_at_least(number: f64) -> f64 {
-    if number < f64::MIN_POSITIVE {
-        return f64::NEG_INFINITY;
-    }
-    LN_2 * (number.to_bits() as f64 / (1_u64 << 52) as f64 - 1023.0)
 }
 
 #[cfg(test)]
@@ -140,19 +120,12 @@ mod tests {
             let planes = [[origin, places[0], places[3]], [origin, places[2], places[7]],
                 [places[0], places[1], places[2]], [places[3], places[5], places[6]]];
             let [least, costs] = run(Costs(&patch, planes));
-            // All misses' tails, the point's among them, and what the chord may lack.
-            let voters = places.len() as f64;
-            let most = 0.1 * (voters + OWN_VOTES) + 0.06 * voters + 1e-6;
+            // All misses' tails, the point's among them.
+            let most = 0.1 * (places.len() as f64 + OWN_VOTES) + 1e-6;
             for (least, cost) in least.into_iter().zip(costs) {
                 prop_assert!(least <= cost, "{} of {}", least, cost);
                 prop_assert!(cost <= least + most, "{} of {}", least, cost);
             }
         }
-    }
-
-    #[test]
-    fn the_logarithm_of_what_is_no_variance_is_the_least() {
-        assert_eq!(log_at_least(0.0), f64::NEG_INFINITY);
-        assert_eq!(log_at_least(1.0), 0.0);
     }
 }
