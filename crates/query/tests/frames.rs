@@ -91,6 +91,38 @@ fn space_seen_from_elsewhere_counts_as_seen() {
     assert_eq!(report.undecided_by, Some(Undecided::Unseen));
 }
 
+/// Frames from before a thing was put down say nothing of what is within it and behind it: its inside read free for as
+/// long as one of them was remembered.
+#[test]
+fn what_is_behind_a_thing_that_came_is_not_known_by_frames_from_before() {
+    let (wall, block) = (wall(), block());
+    let by = settings();
+    // A camera that moves to the right and turns to the left as it goes.
+    let here = |k: u64| {
+        let aside = Vector3::new(0.02 * k as f64, 0.0, 0.0);
+        Pose::from_translation_rpy(aside, [0.0, -0.01 * k as f64, 0.0])
+    };
+    let mut cloud = Cloud::prepare(&frame(&[&wall], &here(0), 1), &by).unwrap();
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let ball = mesh(&scene::sphere(0.08, 2));
+    let asked = |cloud: &Cloud, x: f64, z: f64| query.run(cloud, &ball, &at(x, 0.0, z)).unwrap();
+    for k in 1..4 {
+        cloud.replace_frame(&frame(&[&wall], &here(k), k), &by).unwrap();
+    }
+    assert_eq!(asked(&cloud, 0.0, 1.5).verdict, Verdict::Free);
+    for k in 4..9 {
+        cloud.replace_frame(&frame(&[&wall, &block], &here(k), k), &by).unwrap();
+        for z in [1.5, 1.9] {
+            let report = asked(&cloud, 0.0, z);
+            assert_eq!(report.undecided_by, Some(Undecided::Unseen), "{k}, {z}: {report:?}");
+        }
+        // Beside it nothing is hidden, and it is no reason to forget what was seen to be empty.
+        assert_eq!(asked(&cloud, -0.6, 1.5).verdict, Verdict::Free, "{k}");
+    }
+    cloud.replace_frame(&frame(&[&wall], &here(9), 9), &by).unwrap();
+    assert_eq!(asked(&cloud, 0.0, 1.5).verdict, Verdict::Free);
+}
+
 #[test]
 fn a_camera_that_keeps_still_adds_nothing_for_ever() {
     let (wall, block) = (wall(), block());

@@ -10,21 +10,28 @@ fn settings() -> CloudSettings {
     CloudSettings::new(SensorModel::Lidar { range_std: 0.01, beam_rad: 0.003 })
 }
 
-/// What 16 rings of a scanner 1.5 m above the floor of a hall measure.
-fn frame(x: f64) -> PointCloud {
-    let (rings, steps) = (16, 720);
-    let scanner = Vector3::new(x, 0.0, 1.5);
+/// What rings of a scanner over the floor of a hall measure, at these elevations (rad), `steps` each.
+fn scan(pose: Pose, elevations: &[f64], steps: usize) -> PointCloud {
+    let scanner = pose.translation();
     let seen = |i: usize| {
-        let up = f64::to_radians(-15.0 + 2.0 * (i / steps) as f64);
+        let up = elevations[i / steps];
         let round = std::f64::consts::TAU * (i % steps) as f64 / steps as f64;
         let ray = Vector3::new(up.cos() * round.cos(), up.cos() * round.sin(), up.sin());
         let wall = (0..2).map(|k| (9.0 - scanner[k] * ray[k].signum()) / ray[k].abs());
         let floor = if ray.z < 0.0 { scanner.z / -ray.z } else { f64::INFINITY };
         Point3::from(scanner + ray * wall.fold(floor, f64::min))
     };
+    let rings = elevations.len();
     let points = (0..rings * steps).map(seen).collect();
-    let sensor_pose = Some(Pose::from_translation(scanner));
-    PointCloud { sensor_pose, image_size: Some((steps, rings)), ..PointCloud::from_points(points) }
+    let image_size = Some((steps, rings));
+    PointCloud { sensor_pose: Some(pose), image_size, ..PointCloud::from_points(points) }
+}
+
+/// What 16 rings 1.5 m above the floor measure.
+fn frame(x: f64) -> PointCloud {
+    let elevations: Vec<f64> =
+        (0..16).map(|ring| f64::to_radians(-15.0 + 2.0 * f64::from(ring))).collect();
+    scan(at(x, 0.0, 1.5), &elevations, 720)
 }
 
 /// Between two rings, decimetres apart on the floor, what was some centimetres under it counted as seen to be empty:
@@ -63,4 +70,27 @@ fn rings_that_move_on_leave_what_they_measured() {
     let is_lost = |p: &&&Point3| kept.nearest_to(p, 1)[0].squared_distance > 0.01;
     let lost = floor.iter().filter(is_lost).count();
     assert!(floor.len() > 20_000 && lost < floor.len() / 100, "{lost} of {}", floor.len());
+}
+
+/// Up to a cell and a half past the last of a raster's rows counted as seen, and half of one before the first. With the
+/// scanner hung upside down the last is the lowest: what reached into the floor just inside the innermost ring read free.
+#[test]
+fn nothing_that_reaches_into_the_floor_inside_the_innermost_ring_is_free() {
+    let rod = mesh(&scene::cylinder(0.02, 0.4, 24));
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let elevations: Vec<f64> = (0..32).map(|ring| -0.5 + 1.1 * f64::from(ring) / 31.0).collect();
+    let innermost = 1.1 / f64::tan(0.5);
+    for roll in [0.0, std::f64::consts::PI] {
+        let pose = Pose::from_translation_rpy(Vector3::new(0.0, 0.0, 1.1), [roll, 0.0, 0.0]);
+        let cloud = Cloud::prepare(&scan(pose, &elevations, 1800), &settings()).unwrap();
+        let verdict = |k: u64| {
+            let round = std::f64::consts::TAU * uniform(k, 0);
+            // Its surface ends before the ring.
+            let far = innermost - 0.021 - 0.3 * uniform(k, 1);
+            let pose = at(far * round.cos(), far * round.sin(), 0.2 - 0.03 - 0.06 * uniform(k, 2));
+            query.run(&cloud, &rod, &pose).unwrap().verdict
+        };
+        let free = (0..300).filter(|&k| verdict(k) == Verdict::Free).count();
+        assert_eq!(free, 0, "turned by {roll}");
+    }
 }

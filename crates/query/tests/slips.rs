@@ -408,7 +408,7 @@ fn a_turn_that_is_not_believed_was_passed_over_in_silence() {
 fn a_laser_scanner_with_the_image_of_a_camera_is_warned_of() {
     let sensor = SensorModel::Lidar { range_std: 0.02, beam_rad: 0.003 };
     let cloud = Scan::of(&image(), sensor, Mode::Calibrated).expect("a cloud");
-    let report = ask(Mode::Calibrated, &cloud, &mesh(&tool()), &at(0.6, 0.0, 1.2));
+    let report = ask(Mode::Calibrated, &cloud, &mesh(&tool()), &at(0.4, 0.0, 1.2));
     assert!(matches!(report.warnings[..], [Warning::SensorLayout { .. }]), "{report:?}");
 }
 

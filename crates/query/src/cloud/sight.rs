@@ -3,19 +3,19 @@
 use cloudtouch_geom::Point3;
 
 use super::prepared::Prepared;
-use super::view::range;
 use super::view::raster::Sight;
+use super::view::{Seeing, range};
 
 impl Prepared {
     /// What its scans know of places in the local frame: of depth images the one that knows most tells, and
     /// without any how far returns were kept. `None` where nothing says what was not seen.
     pub(crate) fn sight(&self) -> Option<impl Fn(&Point3) -> Sight + '_> {
         let measured = (self.points(), self.sensor());
-        let images: Vec<_> = self.views.iter().filter_map(|view| view.sight(measured)).collect();
+        let images: Vec<_> = self.views.iter().filter_map(|view| view.over(measured)).collect();
         let is_seen = !images.is_empty();
         let by_range = self.views.is_empty() && self.knows_unseen();
         let sight = move |place: &Point3| {
-            let by_image = images.iter().map(|sight| sight(place)).min();
+            let by_image = best_of(&images, place);
             by_image.unwrap_or_else(|| range::sight(&self.scans.ranges, &(place + self.origin)))
         };
         (by_range || is_seen).then_some(sight)
@@ -27,4 +27,24 @@ impl Prepared {
         let all_end = !ranges.is_empty() && ranges.iter().all(|range| range.most.is_finite());
         !self.views.is_empty() || all_end
     }
+}
+
+/// What the image tells that knows most of a place; `None` without any. An older one knows nothing of what is behind a
+/// thing that came since: it looked past where the thing is.
+fn best_of(images: &[Seeing], place: &Point3) -> Option<Sight> {
+    let (mut best, mut hiding) = (None, None);
+    for image in images.iter().rev() {
+        let sight = image.sight(place);
+        if sight == Sight::Seen {
+            if hiding.is_some_and(|(thing, std)| image.looks_past(&thing, std)) {
+                continue;
+            }
+            return Some(sight);
+        }
+        if sight == Sight::BehindReturns && image.is_later() && hiding.is_none() {
+            hiding = image.hiding(place);
+        }
+        best = Some(best.map_or(sight, |best: Sight| best.min(sight)));
+    }
+    best
 }

@@ -44,7 +44,10 @@ impl Cloud {
         if !frame.is_image() {
             return Err(ChangeError::NotAnImage);
         }
-        let added = Scans::of(&[(frame, settings.preparation())])?;
+        let mut added = Scans::of(&[(frame, settings.preparation())])?;
+        for image in &mut added.images {
+            image.is_later = true;
+        }
         let cell = settings.filter.collision_map.unwrap_or(0.0);
         let kept = self.not_seen_by(&added, cell)?;
         let stages = added.stages.clone();
@@ -60,18 +63,16 @@ impl Cloud {
         let Some(image) = frame.images.first() else { return all() };
         let camera = image.sensor_origin;
         let view = SingleView::new(image.clone(), &Vector3::zeros());
-        let Some((looks_past, pixels)) = view.looks_past((&frame.points, &frame.noise)) else {
-            return all();
-        };
+        let Some(seeing) = view.over((&frame.points, &frame.noise)) else { return all() };
         let measured = Neighborhoods::new(frame.points.clone())?;
         let stays = |&index: &u32| {
             let place = own.points[index as usize];
             let std = own.noise[index as usize].max_std();
-            if looks_past(&place, std) {
+            if seeing.looks_past(&place, std) {
                 return false;
             }
             // What the lines of a panorama measure is no more than they: the next of them may be far off.
-            let Some(pixels) = pixels else { return true };
+            let Some(pixels) = seeing.pixel() else { return true };
             let Some(near) = measured.nearest_to(&place, 1).first().copied() else { return true };
             let ray = place - camera;
             let pixel = (pixels * ray.norm()).max(cell);

@@ -1,6 +1,7 @@
 //! A single depth image: what its camera did not look at, or not see, was never seen to be empty.
 
 mod lines;
+mod past;
 pub(super) mod range;
 pub(super) mod raster;
 
@@ -30,6 +31,8 @@ pub(super) struct Image {
     pub beyond: Arc<[Vector3]>,
     /// Returns that are none of the points.
     pub others: Arc<[OtherReturn]>,
+    /// Whether it is of the scene as it was after all images before it.
+    pub is_later: bool,
 }
 
 /// A return that is no point of the cloud and still says how far was seen.
@@ -62,6 +65,7 @@ impl Image {
             robot,
             beyond: beyond.iter().map(|(_, ray)| *ray).collect(),
             others: others.iter().map(|(_, other)| *other).collect(),
+            is_later: false,
         }
     }
 }
@@ -98,32 +102,10 @@ impl SingleView {
         Self { image: Image { sensor_origin, robot, ..image }, raster: OnceLock::new() }
     }
 
-    /// What is known of places by the image, all in the cloud's local frame, given what it measured and
-    /// with which noise; `None` where the measured points have no directions. Where the robot itself was
-    /// there was nothing else, whatever the camera saw.
-    pub(crate) fn sight<'a>(
-        &'a self,
-        measured: (&[Point3], &SensorNoise),
-    ) -> Option<impl Fn(&Point3) -> Sight + 'a> {
-        let raster = self.raster(measured)?;
-        Some(move |place: &Point3| {
-            let sight = raster.sight(&(place - self.image.sensor_origin));
-            let was_robot = || self.image.robot.iter().any(|link| link.held(place));
-            if sight != Sight::Seen && was_robot() { Sight::Seen } else { sight }
-        })
-    }
-
-    /// Whether the camera looked past places, each with a standard deviation of its own, in their
-    /// direction and in all around it; and how far apart its pixels are, per metre of distance, if it is no panorama. `None`
-    /// where the measured points have no directions.
-    pub(super) fn looks_past<'a>(
-        &'a self,
-        measured: (&[Point3], &SensorNoise),
-    ) -> Option<(impl Fn(&Point3, f64) -> bool + Sync + 'a, Option<f64>)> {
-        let raster = self.raster(measured)?;
-        let looks_past =
-            move |place: &Point3, std| raster.looks_past(&(place - self.image.sensor_origin), std);
-        Some((looks_past, raster.pixel()))
+    /// The view over its raster, given what it measured and with which noise; `None` where the measured points have no
+    /// directions.
+    pub(crate) fn over<'a>(&'a self, measured: (&[Point3], &SensorNoise)) -> Option<Seeing<'a>> {
+        Some(Seeing { image: &self.image, raster: self.raster(measured)? })
     }
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
@@ -144,7 +126,7 @@ impl SingleView {
         measured: (&[Point3], &SensorNoise),
         shift: &Vector3,
     ) -> Option<Self> {
-        let _looked = self.sight(measured)?;
+        let _made = self.raster(measured)?;
         let none = Image {
             points: 0..0,
             beyond: Arc::default(),
@@ -153,6 +135,45 @@ impl SingleView {
         };
         let settled = Self::new(none, shift);
         Some(Self { raster: self.raster.clone(), ..settled })
+    }
+}
+
+/// A view with its raster, all in the cloud's local frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seeing<'a> {
+    image: &'a Image,
+    raster: &'a Raster,
+}
+
+impl Seeing<'_> {
+    /// What is known of a place by the image. Where the robot itself was there was nothing else, whatever the camera
+    /// saw.
+    pub(crate) fn sight(&self, place: &Point3) -> Sight {
+        let sight = self.raster.sight(&(place - self.image.sensor_origin));
+        let was_robot = || self.image.robot.iter().any(|link| link.held(place));
+        if sight != Sight::Seen && was_robot() { Sight::Seen } else { sight }
+    }
+
+    /// Whether the camera looked past a place with this standard deviation (m), in its direction and in all around it.
+    pub(super) fn looks_past(&self, place: &Point3, std: f64) -> bool {
+        self.raster.looks_past(&(place - self.image.sensor_origin), std)
+    }
+
+    /// Where what hides a place is, and its standard deviation, m; `None` where nothing does, or not all around.
+    pub(super) fn hiding(&self, place: &Point3) -> Option<(Point3, f64)> {
+        let ray = place - self.image.sensor_origin;
+        let [range, std] = self.raster.hiding(&ray)?;
+        Some((self.image.sensor_origin + ray.normalize() * range, std))
+    }
+
+    /// Whether it is of the scene as it was after all images before it.
+    pub(super) fn is_later(&self) -> bool {
+        self.image.is_later
+    }
+
+    /// How far apart its pixels are, per metre of distance, if it is no panorama.
+    pub(super) fn pixel(&self) -> Option<f64> {
+        self.raster.pixel()
     }
 }
 
@@ -213,16 +234,17 @@ mod tests {
                 robot: Vec::new(),
                 beyond: Arc::default(),
                 others: Arc::default(),
+                is_later: false,
             };
             let view = SingleView::new(image, &Vector3::zeros());
-            let sight = view.sight((&points, &noise)).expect("points with directions");
+            let seeing = view.over((&points, &noise)).expect("points with directions");
             for index in 0..700 {
                 let unit = |k: u64| 2.0 * seed::unit(seed::derive(7, index, k)) - 1.0;
                 let place = Point3::new(2.0 * unit(0), 1.5 * unit(1), 1.5 + 2.0 * unit(2));
                 let Some(sure) = by_every_ray(&seen, &place, 1.0 / camera.focal_px) else {
                     continue;
                 };
-                let found = sight(&turned.transform_point(&place));
+                let found = seeing.sight(&turned.transform_point(&place));
                 let agrees = match sure {
                     // Where nothing was measured the reference does not tell a hole from the rim.
                     Sight::Hole => matches!(found, Sight::Hole | Sight::OutsideView),

@@ -47,21 +47,23 @@ pub(crate) enum Sight {
 /// How far was seen in each direction of a view.
 #[derive(Debug)]
 pub(super) struct Raster {
-    lens: Lens,
+    pub(super) lens: Lens,
     low: [f64; 2],
     pitch: f64,
     /// Columns and rows.
     size: [usize; 2],
+    /// Cells up to half of one past the outermost pixels: the last of a row or a column may reach beyond.
+    span: [f64; 2],
     /// Whether the last column is beside the first.
     is_round: bool,
     /// How many columns and rows of cells it takes to reach a pixel beside one.
-    reach: [isize; 2],
+    pub(super) reach: [isize; 2],
     /// The range, m, clearly behind the farthest return of each cell; zero without one.
-    clearly_behind: Vec<f64>,
+    pub(super) clearly_behind: Vec<f64>,
     /// The range, m, clearly behind the nearest return of each cell; infinite without one.
-    behind_nearest: Vec<f64>,
+    pub(super) behind_nearest: Vec<f64>,
     /// The range, m, clearly before the nearest return of each cell; infinite without one.
-    clearly_before: Vec<f64>,
+    pub(super) clearly_before: Vec<f64>,
     /// Of each cell whether what is farther was left out; empty where nothing was.
     is_open: Vec<bool>,
     /// Of a panorama whose lines are farther apart than the pixels of one.
@@ -114,7 +116,8 @@ impl Raster {
         let pitch = if is_round { TAU / columns } else { pitch };
         // A pixel's surface reaches beyond its middle: half a cell around the outermost ones.
         let low = low.map(|v| v - 0.5 * pitch);
-        let mut size = extent.map(|side| (side / pitch + 1.0).ceil() as usize);
+        let span = extent.map(|side| side / pitch + 1.0);
+        let mut size = span.map(|cells| cells.ceil() as usize);
         if is_round {
             size[0] = columns as usize;
         }
@@ -131,6 +134,7 @@ impl Raster {
             low,
             pitch,
             size,
+            span,
             is_round,
             reach,
             clearly_behind,
@@ -201,47 +205,21 @@ impl Raster {
         self.lines.as_ref()?.behind(elevation, cells)
     }
 
-    /// Whether every return of the cell of a ray, where there is one, and of those around it, some of them on each
-    /// side, is clearly behind a place known this well.
-    pub(super) fn looks_past(&self, ray: &Vector3, std: f64) -> bool {
-        let Some([x, y]) = self.lens.project(ray).and_then(|at| self.cell(at)) else {
-            return false;
-        };
-        let [columns, rows] = self.reach;
-        let mut nearest = f64::INFINITY;
-        // Here, left, right, above and below.
-        let mut has_return = [false; 5];
-        for dy in -rows..=rows {
-            for dx in -columns..=columns {
-                let cell = self.index(x + dx, y + dy);
-                if let Some(cell) = cell.filter(|&cell| self.clearly_behind[cell] > 0.0) {
-                    nearest = nearest.min(self.clearly_before[cell]);
-                    let is_of = [dx == 0 && dy == 0, dx < 0, dx > 0, dy < 0, dy > 0];
-                    for (has, is_of) in has_return.iter_mut().zip(is_of) {
-                        *has |= is_of;
-                    }
-                }
-            }
-        }
-        has_return == [true; 5] && ray.norm() + CLEARLY * std < nearest
-    }
-
     /// How far apart pixels are, per metre of distance; `None` of a panorama, whose lines may be far apart.
     pub(super) fn pixel(&self) -> Option<f64> {
         matches!(self.lens, Lens::Camera(_)).then_some(self.pitch / CELL_PIXELS)
     }
 
     /// The cell of a place of the view; `None` outside of it.
-    fn cell(&self, at: [f64; 2]) -> Option<[isize; 2]> {
+    pub(super) fn cell(&self, at: [f64; 2]) -> Option<[isize; 2]> {
         let [x, y] = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.pitch);
-        let is_within = |v: f64, axis: usize| {
-            self.is_round && axis == 0 || v >= 0.0 && v < self.size[axis] as f64
-        };
+        let is_within =
+            |v: f64, axis: usize| self.is_round && axis == 0 || v >= 0.0 && v < self.span[axis];
         // What is just left of the first column of a round one is in the last.
         (is_within(x, 0) && is_within(y, 1)).then_some([x.floor() as isize, y.floor() as isize])
     }
 
-    fn index(&self, x: isize, y: isize) -> Option<usize> {
+    pub(super) fn index(&self, x: isize, y: isize) -> Option<usize> {
         let x = if self.is_round { x.rem_euclid(self.size[0] as isize) } else { x };
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
         (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
@@ -261,7 +239,7 @@ fn steps_of_panorama(extent: [f64; 2], [columns, rows]: [usize; 2]) -> [f64; 2] 
 
 /// How directions become places of a view.
 #[derive(Debug)]
-enum Lens {
+pub(super) enum Lens {
     /// A camera: forward is where the points lie, right and down are as nearly as can be those of its rows and
     /// columns, so that its view is a rectangle of the raster in every frame.
     Camera([Vector3; 3]),
@@ -297,7 +275,7 @@ impl Lens {
     }
 
     /// `None` for a direction that no view of this kind has.
-    fn project(&self, ray: &Vector3) -> Option<[f64; 2]> {
+    pub(super) fn project(&self, ray: &Vector3) -> Option<[f64; 2]> {
         match self {
             Self::Camera([right, down, forward]) => {
                 let depth = ray.dot(forward);
