@@ -2,12 +2,13 @@
 #![allow(clippy::unwrap_used, reason = "what cannot be unwrapped fails the test")]
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::common::{at, mesh, uniform};
 use cloudtouch::geom::{Covariance, Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, FilterSettings, Judge, Query, QuerySettings, Undecided, Verdict,
+    Cloud, CloudSettings, FilterSettings, Judge, Query, QuerySettings, SelfMesh, Undecided, Verdict,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -121,6 +122,24 @@ fn what_is_behind_a_thing_that_came_is_not_known_by_frames_from_before() {
     }
     cloud.replace_frame(&frame(&[&wall], &here(9), 9), &by).unwrap();
     assert_eq!(asked(&cloud, 0.0, 1.5).verdict, Verdict::Free);
+}
+
+/// The robot's own arm comes and goes; what earlier frames saw where it is now is still there.
+#[test]
+fn what_is_behind_the_robot_is_known_by_frames_from_before() {
+    let (wall, block) = (wall(), block());
+    let mut by = settings();
+    let mut cloud = Cloud::prepare(&frame(&[&wall], &Pose::identity(), 1), &by).unwrap();
+    let link = Arc::new(mesh(&scene::cuboid([0.5; 3])));
+    let cloud_from_link = at(0.0, 0.0, 1.5);
+    by.filter.robot = vec![SelfMesh { mesh: link, cloud_from_link, padding: 0.05 }];
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let ball = mesh(&scene::sphere(0.08, 2));
+    for k in 2..5 {
+        cloud.replace_frame(&frame(&[&wall, &block], &Pose::identity(), k), &by).unwrap();
+        let report = query.run(&cloud, &ball, &at(0.0, 0.0, 2.0)).unwrap();
+        assert_eq!(report.verdict, Verdict::Free, "{k}: {report:?}");
+    }
 }
 
 #[test]

@@ -213,6 +213,37 @@ fn what_hides_behind_a_thin_link_was_taken_for_empty_space() {
     check(&query.run(&cloud, &mesh(&rod), &there).expect("an answer"), true, "the rod");
 }
 
+/// A rod nearer than returns are kept, and so narrow that its neighbours tell: it, and all behind it, counted as seen.
+#[test]
+fn what_is_nearer_than_returns_are_kept_was_taken_for_empty_space() {
+    for pixels in [2.0, 4.0] {
+        let width = 0.45 * pixels / 140.0;
+        let rod = scene::cuboid([width, 0.6, width]);
+        let there = at(0.1, 0.0, 0.45);
+        let wall = scene::moved(&scene::plane_patch(6.0), &at(0.0, 0.0, 3.0));
+        let [near, wall] = [scene::moved(&rod, &there), wall].map(|part| ExactMesh::new(&part));
+        let camera = DepthCamera { veil_probability: 0.0, ..DepthCamera::default() };
+        let mut image = camera.scan(&[&near, &wall], &Pose::identity(), 1);
+        // A speck is no thing.
+        image.points[60 * 160 + 30] = Point3::new(-0.1, 0.0, 0.3);
+        let mut settings = CloudSettings::new(SensorModel::Kinect);
+        settings.filter.min_range = Some(0.55);
+        let cloud = Cloud::prepare(&image, &settings).expect("a good image");
+        let query = Query::new(QuerySettings::default()).expect("valid settings");
+        let bar = mesh(&scene::cuboid([0.02, 0.2, 0.02]));
+        let speck = -1.0 * (80.0 - 30.0) / 140.0;
+        for (pose, is_seen) in [
+            (there, false),
+            (at(0.1 / 0.45, 0.0, 1.0), false),
+            (at(0.4, 0.0, 1.0), true),
+            (at(speck, 0.0, 1.0), true),
+        ] {
+            let report = query.run(&cloud, &bar, &pose).expect("an answer");
+            check(&report, is_seen, (pixels, pose.translation()));
+        }
+    }
+}
+
 /// Where the block hides half of the ball in the end, and nothing of it halfway there.
 fn into_the_shadow() -> Path {
     Path::linear(&at(-0.9, 0.2, 2.5), &at(-0.5, 0.2, 2.5)).expect("two poses")

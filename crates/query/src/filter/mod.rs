@@ -67,6 +67,8 @@ pub fn filter(
 /// Rows that went, of those a view has to know, in order.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Removed {
+    /// What was nearer than was said to be near enough, but for specks.
+    pub near: Vec<usize>,
     /// What was taken for the robot.
     pub robot: Vec<usize>,
     /// What was taken for veil.
@@ -88,6 +90,7 @@ pub(crate) fn filter_and_tell(
     run.stage("missing", |cloud, kept| kept.retain(|&i| PointCloud::is_return(&cloud.points[i])));
     if settings.min_range != Some(0.0) || settings.max_range.is_finite() {
         run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
+        removed.near = range::too_near(cloud, settings);
     }
     if settings.drop_duplicates {
         run.stage("duplicates", duplicates::keep_first);

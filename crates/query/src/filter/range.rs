@@ -34,3 +34,23 @@ pub(super) fn keep_in_range(cloud: &PointCloud, kept: &mut Vec<usize>, settings:
         range >= min && range <= settings.max_range
     });
 }
+
+/// The rows of an image that are nearer than what was said to be near enough, in order, but for single pixels, as specks
+/// are: things were there, however thin, and what is behind them nobody saw.
+pub(super) fn too_near(cloud: &PointCloud, settings: &FilterSettings) -> Vec<usize> {
+    let (Some((width, height)), Some(min)) = (cloud.image_size, settings.min_range) else {
+        return Vec::new();
+    };
+    let place = cloud.sensor_origin();
+    let is_near = |p: &Point3| is_return_to(&place, p) && (p - place).norm() < min;
+    let near: Vec<bool> = cloud.points.iter().map(is_near).collect();
+    let has_other = |row: usize| {
+        let (x, y) = (row % width, row / width);
+        let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+        let mut others = around(y, height)
+            .flat_map(|y| around(x, width).map(move |x| y * width + x))
+            .filter(|&other| other != row);
+        others.any(|other| near[other])
+    };
+    (0..near.len()).filter(|&row| near[row] && has_other(row)).collect()
+}

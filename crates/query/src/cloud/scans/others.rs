@@ -3,7 +3,7 @@
 use cloudtouch_geom::{Covariance, PointCloud, Vector3};
 
 use crate::cloud::preparation::Preparation;
-use crate::cloud::view::OtherReturn;
+use crate::cloud::view::{AT_SENSOR, OtherReturn};
 use crate::cloud::view::raster::CLEARLY;
 use crate::error::PrepareError;
 use crate::filter::{Removed, is_return_to};
@@ -42,8 +42,8 @@ pub(super) fn beyond_range(
 }
 
 /// The rows of returns that went and still say how far was seen: those that became cells of a collision map, which are wider than
-/// pixels, so that no hole of the image would be found between them; and what was taken for veil or for the robot, past
-/// which nobody saw, whatever it is.
+/// pixels, so that no hole of the image would be found between them; what was taken for veil or for the robot, past
+/// which nobody saw, whatever it is; and what is nearer than returns are kept.
 pub(super) fn other_returns(
     image: &PointCloud,
     removed: &Removed,
@@ -55,6 +55,12 @@ pub(super) fn other_returns(
     let is_return = |row: &&usize| is_return_to(&from, &image.points[**row]);
     let opaque = removed.veil.iter().chain(&removed.robot).filter(is_return);
     let mut all: Vec<_> = opaque.map(|row| told(row, 0.0)).collect();
+    // How far away these are is not to be trusted, so that nothing is known there from the sensor on.
+    let near = removed.near.iter().map(|row| {
+        let ray = (image.points[*row] - from).normalize() * AT_SENSOR;
+        (*row, OtherReturn { ray, std: 0.0 })
+    });
+    all.extend(near);
     if !removed.mapped.is_empty() {
         let noise = noise_of(&image.select(&removed.mapped), by)?;
         let stds = noise.iter().map(Covariance::std_bound);

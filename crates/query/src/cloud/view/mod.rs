@@ -15,6 +15,9 @@ use nalgebra::UnitQuaternion;
 use crate::cloud::view::raster::{Raster, Sight};
 use crate::filter::SelfMesh;
 
+/// How far away what is too near to be trusted counts as seen, m.
+pub(super) const AT_SENSOR: f64 = 1e-3;
+
 /// A scan that is a depth image.
 #[derive(Debug, Clone)]
 pub(super) struct Image {
@@ -159,11 +162,14 @@ impl Seeing<'_> {
         self.raster.looks_past(&(place - self.image.sensor_origin), std)
     }
 
-    /// Where what hides a place is, and its standard deviation, m; `None` where nothing does, or not all around.
+    /// Where what hides a place is, and its standard deviation, m; `None` where nothing does, or not all around, or the
+    /// robot, or what is too near to be trusted.
     pub(super) fn hiding(&self, place: &Point3) -> Option<(Point3, f64)> {
         let ray = place - self.image.sensor_origin;
-        let [range, std] = self.raster.hiding(&ray)?;
-        Some((self.image.sensor_origin + ray.normalize() * range, std))
+        let [range, std] = self.raster.hiding(&ray).filter(|[range, _]| *range > AT_SENSOR)?;
+        let thing = self.image.sensor_origin + ray.normalize() * range;
+        let is_robot = self.image.robot.iter().any(|link| link.held(&thing));
+        (!is_robot).then_some((thing, std))
     }
 
     /// Whether it is of the scene as it was after all images before it.
