@@ -231,7 +231,7 @@ fn what_is_nearer_than_returns_are_kept_was_taken_for_empty_space() {
         let cloud = Cloud::prepare(&image, &settings).expect("a good image");
         let query = Query::new(QuerySettings::default()).expect("valid settings");
         let bar = mesh(&scene::cuboid([0.02, 0.2, 0.02]));
-        let speck = -1.0 * (80.0 - 30.0) / 140.0;
+        let speck = (30.0 - 80.0) / 140.0;
         for (pose, is_seen) in [
             (there, false),
             (at(0.1 / 0.45, 0.0, 1.0), false),
