@@ -59,6 +59,10 @@ impl NoiseModel {
     /// the other combinations a point without neighbours keeps Σᵢ, to which `Convolution` adds the
     /// cap unless it is infinite. A point that is not finite has no neighbours.
     ///
+    /// Where the noise exceeds the spacing of the cloud, refine [`Representatives`]
+    /// ([`refine_representative`](Self::refine_representative)): here a point that noise took off its surface is taken for
+    /// one of few, and stays too far off.
+    ///
     /// # Panics
     /// When `index` or the length of `sensor` does not belong to the cloud, or a covariance of `sensor` that it needs is
     /// not finite.

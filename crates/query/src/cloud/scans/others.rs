@@ -3,8 +3,8 @@
 use cloudtouch_geom::{Covariance, PointCloud, Vector3};
 
 use crate::cloud::preparation::Preparation;
-use crate::cloud::view::{AT_SENSOR, OtherReturn};
 use crate::cloud::view::raster::CLEARLY;
+use crate::cloud::view::{AT_SENSOR, OtherReturn};
 use crate::error::PrepareError;
 use crate::filter::{Removed, is_return_to};
 

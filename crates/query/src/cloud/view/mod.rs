@@ -166,7 +166,8 @@ impl Seeing<'_> {
     /// robot, or what is too near to be trusted.
     pub(super) fn hiding(&self, place: &Point3) -> Option<(Point3, f64)> {
         let ray = place - self.image.sensor_origin;
-        let [range, std] = self.raster.hiding(&ray).filter(|[range, _]| *range > AT_SENSOR)?;
+        let [range, std] =
+            self.raster.hiding(&ray).filter(|[range, _]| *range > 2.0 * AT_SENSOR)?;
         let thing = self.image.sensor_origin + ray.normalize() * range;
         let is_robot = self.image.robot.iter().any(|link| link.held(&thing));
         (!is_robot).then_some((thing, std))
