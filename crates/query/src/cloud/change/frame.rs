@@ -26,7 +26,8 @@ impl Cloud {
     /// and a pixel, or a cell of the collision map that the settings ask for. What is hidden behind returns,
     /// in a hole of the image or beside it by more than that stays as it was.
     /// So the number of points is bounded by the surface there is, and the memory by that and the last
-    /// 32 images, which tell what was seen to be empty. Filter stages are those of the frame.
+    /// 32 images, which tell what was seen to be empty; those from before a thing came tell nothing of what is within and
+    /// behind it. Filter stages are those of the frame.
     ///
     /// A panorama, as of a turning laser scanner, removes what it sees through and nothing that it measures again,
     /// for between its lines lies surface that it does not: the cloud grows with every frame. A
