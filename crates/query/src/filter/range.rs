@@ -3,9 +3,12 @@
 use cloudtouch_geom::{Point3, PointCloud};
 
 use super::FilterSettings;
+use super::lines::Image;
 
 /// No camera and no laser scanner sees nearer, m.
 const NEAREST: f64 = 0.1;
+/// Columns and rows from a pixel to those beside it, to one side each.
+const AROUND: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 /// Returns that are nearer than this to the place of a sensor are at it, m.
 const AT_IT: f64 = 1e-6;
 
@@ -41,16 +44,19 @@ pub(super) fn too_near(cloud: &PointCloud, settings: &FilterSettings) -> Vec<usi
     let (Some((width, height)), Some(min)) = (cloud.image_size, settings.min_range) else {
         return Vec::new();
     };
+    let image = &Image { cloud, size: [width, height] };
     let place = cloud.sensor_origin();
-    let is_near = |p: &Point3| is_return_to(&place, p) && (p - place).norm() < min;
-    let near: Vec<bool> = cloud.points.iter().map(is_near).collect();
-    let has_other = |row: usize| {
-        let (x, y) = (row % width, row / width);
-        let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
-        let mut others = around(y, height)
-            .flat_map(|y| around(x, width).map(move |x| y * width + x))
-            .filter(|&other| other != row);
-        others.any(|other| near[other])
+    let is_near = |p: &Point3| (p - place).norm() < min;
+    let beside = |index: usize| {
+        let around = move |step| {
+            let line = image.line(index, step);
+            [-1, 1].map(|side| image.on(index, line, side))
+        };
+        AROUND.into_iter().flat_map(around).flatten()
     };
-    (0..near.len()).filter(|&row| near[row] && has_other(row)).collect()
+    let is_thing = |&index: &usize| {
+        let point = &cloud.points[index];
+        is_near(point) && is_return_to(&place, point) && beside(index).any(is_near)
+    };
+    (0..cloud.len()).filter(is_thing).collect()
 }

@@ -8,23 +8,14 @@ impl Raster {
     /// Whether every return of the cell of a ray, where there is one, and of those around it, some of them on each
     /// side, is clearly behind a place known this well.
     pub(super) fn looks_past(&self, ray: &Vector3, std: f64) -> bool {
-        let Some([x, y]) = self.lens.project(ray).and_then(|at| self.cell(at)) else {
-            return false;
-        };
-        let [columns, rows] = self.reach;
         let mut nearest = f64::INFINITY;
         // Here, left, right, above and below.
         let mut has_return = [false; 5];
-        for dy in -rows..=rows {
-            for dx in -columns..=columns {
-                let cell = self.index(x + dx, y + dy);
-                if let Some(cell) = cell.filter(|&cell| self.clearly_behind[cell] > 0.0) {
-                    nearest = nearest.min(self.clearly_before[cell]);
-                    let is_of = [dx == 0 && dy == 0, dx < 0, dx > 0, dy < 0, dy > 0];
-                    for (has, is_of) in has_return.iter_mut().zip(is_of) {
-                        *has |= is_of;
-                    }
-                }
+        for ([dx, dy], cell) in self.around(ray) {
+            nearest = nearest.min(self.clearly_before[cell]);
+            let is_of = [dx == 0 && dy == 0, dx < 0, dx > 0, dy < 0, dy > 0];
+            for (has, is_of) in has_return.iter_mut().zip(is_of) {
+                *has |= is_of;
             }
         }
         has_return == [true; 5] && ray.norm() + CLEARLY * std < nearest
@@ -33,22 +24,30 @@ impl Raster {
     /// How far away what hides a place is, and its standard deviation, m; `None` where some of what is around the
     /// place's direction does not hide it, such as at the rim of a thing or about a speck.
     pub(super) fn hiding(&self, ray: &Vector3) -> Option<[f64; 2]> {
-        let [x, y] = self.lens.project(ray).and_then(|at| self.cell(at))?;
-        let [columns, rows] = self.reach;
         let range = ray.norm();
         let (mut before, mut behind) = (f64::INFINITY, f64::INFINITY);
-        for dy in -rows..=rows {
-            for dx in -columns..=columns {
-                let cell = self.index(x + dx, y + dy);
-                if let Some(cell) = cell.filter(|&cell| self.clearly_behind[cell] > 0.0) {
-                    if range <= self.behind_nearest[cell] {
-                        return None;
-                    }
-                    before = before.min(self.clearly_before[cell]);
-                    behind = behind.min(self.behind_nearest[cell]);
-                }
+        for (_, cell) in self.around(ray) {
+            if range <= self.behind_nearest[cell] {
+                return None;
             }
+            before = before.min(self.clearly_before[cell]);
+            behind = behind.min(self.behind_nearest[cell]);
         }
         behind.is_finite().then(|| [0.5 * (before + behind), 0.5 * (behind - before) / CLEARLY])
+    }
+
+    /// The cells with returns among that of a ray and those around it, each with how far right and below it is; none
+    /// beside the view.
+    fn around(&self, ray: &Vector3) -> impl Iterator<Item = ([isize; 2], usize)> {
+        let [columns, rows] = self.reach;
+        let middle = self.lens.project(ray).and_then(|at| self.cell(at));
+        middle.into_iter().flat_map(move |[x, y]| {
+            let steps =
+                (-rows..=rows).flat_map(move |dy| (-columns..=columns).map(move |dx| [dx, dy]));
+            steps.filter_map(move |[dx, dy]| {
+                let cell = self.index(x + dx, y + dy)?;
+                (self.clearly_behind[cell] > 0.0).then_some(([dx, dy], cell))
+            })
+        })
     }
 }
