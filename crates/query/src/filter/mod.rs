@@ -5,6 +5,7 @@ mod collision_map;
 mod duplicates;
 mod going_on;
 mod lines;
+mod near;
 mod outliers;
 mod range;
 mod self_points;
@@ -90,7 +91,7 @@ pub(crate) fn filter_and_tell(
     run.stage("missing", |cloud, kept| kept.retain(|&i| PointCloud::is_return(&cloud.points[i])));
     if settings.min_range != Some(0.0) || settings.max_range.is_finite() {
         run.stage("range", |cloud, kept| range::keep_in_range(cloud, kept, settings));
-        removed.near = range::too_near(cloud, settings);
+        removed.near = near::too_near(cloud, settings);
     }
     if settings.drop_duplicates {
         run.stage("duplicates", duplicates::keep_first);

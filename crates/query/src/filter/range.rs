@@ -3,12 +3,9 @@
 use cloudtouch_geom::{Point3, PointCloud};
 
 use super::FilterSettings;
-use super::lines::Image;
 
 /// No camera and no laser scanner sees nearer, m.
 const NEAREST: f64 = 0.1;
-/// Columns and rows from a pixel to those beside it, to one side each.
-const AROUND: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 /// Returns that are nearer than this to the place of a sensor are at it, m.
 const AT_IT: f64 = 1e-6;
 
@@ -36,27 +33,4 @@ pub(super) fn keep_in_range(cloud: &PointCloud, kept: &mut Vec<usize>, settings:
         let range = (cloud.points[i] - place).norm();
         range >= min && range <= settings.max_range
     });
-}
-
-/// The rows of an image that are nearer than what was said to be near enough, in order, but for single pixels, as specks
-/// are: things were there, however thin, and what is behind them nobody saw.
-pub(super) fn too_near(cloud: &PointCloud, settings: &FilterSettings) -> Vec<usize> {
-    let (Some((width, height)), Some(min)) = (cloud.image_size, settings.min_range) else {
-        return Vec::new();
-    };
-    let image = &Image { cloud, size: [width, height] };
-    let place = cloud.sensor_origin();
-    let is_near = |p: &Point3| (p - place).norm() < min;
-    let beside = |index: usize| {
-        let around = move |step| {
-            let line = image.line(index, step);
-            [-1, 1].map(|side| image.on(index, line, side))
-        };
-        AROUND.into_iter().flat_map(around).flatten()
-    };
-    let is_thing = |&index: &usize| {
-        let point = &cloud.points[index];
-        is_near(point) && is_return_to(&place, point) && beside(index).any(is_near)
-    };
-    (0..cloud.len()).filter(is_thing).collect()
 }
