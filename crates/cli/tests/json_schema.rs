@@ -32,8 +32,15 @@ const EVIDENCE: [&str; 5] =
     ["deviations", "crossing", "extent", "misclassified", "noise_over_spacing"];
 const PLACEMENT: [&str; 4] = ["scene_box", "object_box", "box_gap_m", "nearest_m"];
 const INPUT: [&str; 4] = ["file", "unit", "sensor", "sensor_because"];
-const UNSEEN: [&str; 6] =
-    ["body", "behind_camera", "outside_view", "hole", "out_of_range", "behind_returns"];
+const UNSEEN: [&str; 7] = [
+    "body",
+    "behind_camera",
+    "outside_view",
+    "hole",
+    "out_of_range",
+    "behind_returns",
+    "close_behind",
+];
 const WARNING: [&str; 3] = ["code", "values", "words"];
 const STATS: [&str; 9] = [
     "nodes_visited",

@@ -79,7 +79,7 @@ fn nearest(bodies: (&Mesh, &Mesh), a_from_b: &Pose) -> Result<Option<[Point3; 2]
 }
 
 /// One sample in so many is measured for a first guess of a distance, ...
-const MEASURED: usize = 10;
+const MEASURED: usize = 40;
 /// ... and so often a place goes to the nearest of the other surface and back.
 const TURNS: usize = 3;
 /// Of a guess, for rounding.

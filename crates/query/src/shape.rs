@@ -8,8 +8,10 @@ use cloudtouch_geom::{Point3, Pose, Vector3};
 use crate::cloud::Prepared;
 use crate::mesh::Mesh;
 
-/// Points of a cloud that stand for all of it, at most.
+/// Places that stand for the whole surface, at most, ...
 const SAMPLES: usize = 500;
+/// ... and where small parts of it matter.
+const DENSE_SAMPLES: usize = 2000;
 
 /// A prepared cloud of either path, or a mesh.
 #[derive(Debug, Clone, Copy)]
@@ -76,14 +78,20 @@ impl<'a> Shape<'a> {
 
     /// At most some hundred places that stand for the whole surface, in the local frame, m.
     pub(crate) fn samples(&self) -> Vec<Point3> {
-        match self {
-            Self::Cloud(cloud) => {
-                let points = cloud.points();
-                let step = points.len().div_ceil(SAMPLES).max(1);
-                points.iter().step_by(step).copied().collect()
-            }
-            Self::Mesh(mesh) => mesh.samples().to_vec(),
-        }
+        self.spread(SAMPLES).collect()
+    }
+
+    /// At most some thousand of them.
+    pub(crate) fn dense_samples(&self) -> impl Iterator<Item = Point3> + 'a {
+        self.spread(DENSE_SAMPLES)
+    }
+
+    fn spread(&self, most: usize) -> impl Iterator<Item = Point3> + 'a {
+        let places = match self {
+            Self::Cloud(cloud) => cloud.points(),
+            Self::Mesh(mesh) => mesh.samples(),
+        };
+        places.iter().step_by(places.len().div_ceil(most).max(1)).copied()
     }
 
     pub(crate) fn origin(&self) -> Vector3 {

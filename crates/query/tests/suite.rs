@@ -3,6 +3,7 @@
 mod around;
 mod bounds;
 mod change;
+mod close_behind;
 mod common;
 mod contacts;
 mod crossing_pieces;

@@ -27,7 +27,8 @@ class Query:
     prior
         Which share of the poses asked about collides, before anything is known of them: between 0 and 1.
     max_unseen
-        Share of a body's surface that may lie where a depth image saw nothing, 0 to 1; beyond, nothing is free.
+        Share of a body's surface that may lie where a depth image saw nothing, 0 to 1; beyond, nothing is free. Of what
+        is less than 3 cm behind what it saw, and may be inside it, a tenth of that. 1 takes the unseen for empty.
     max_missing
         Share of the rows of a cloud without image layout that may have no return, 0 to 1.
     doubt_units

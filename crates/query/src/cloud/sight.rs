@@ -41,7 +41,7 @@ fn best_of(images: &[Seeing], place: &Point3) -> Option<Sight> {
             }
             return Some(sight);
         }
-        if sight == Sight::BehindReturns && image.is_later() && hiding.is_none() {
+        if sight.is_behind() && image.is_later() && hiding.is_none() {
             hiding = image.hiding(place);
         }
         best = Some(best.map_or(sight, |best: Sight| best.min(sight)));

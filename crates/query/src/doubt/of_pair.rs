@@ -67,10 +67,7 @@ pub(crate) fn doubts(
     warnings.extend(bodies.into_iter().flat_map(|(body, shape, _)| of_sensor(body, shape)));
     warnings.extend(exchanged(a, b).filter(|_| are_alone));
     warnings.extend(a_from_b.and_then(|a_from_b| apart((a, b), a_from_b)));
-    let share = unseen.map_or(0.0, Unseen::share);
-    if let Some(Unseen { body, .. }) = unseen.filter(|_| share > limits.max_unseen) {
-        warnings.push(Warning::Unseen { body: *body, share, limit: limits.max_unseen });
-    }
+    warnings.extend(unseen.and_then(|unseen| limits.exceeded_by(unseen)));
     warnings
 }
 

@@ -2,14 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::doubt::unseen::Unseen;
+use crate::doubt::warning::Warning;
 use crate::error::SettingsError;
+
+/// Surface close behind what was seen counts for so many times as much as what is in its shadow
+/// (docs/decisions/0049-close-behind-what-was-seen.md).
+const CLOSE_BEHIND: f64 = 10.0;
 
 /// Limits beyond which a pair that would read as free, or between the thresholds, is undecided.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Safeguards {
     /// Share of a body's surface that may lie where a single depth image saw nothing, 0 to 1; 1 never
-    /// objects.
+    /// objects. Of what is [`Unseen::close_behind`] a tenth of it.
     pub max_unseen: f64,
     /// Share of the rows of a cloud without image layout that may have no return, 0 to 1; 1 never
     /// objects.
@@ -38,5 +44,19 @@ impl Safeguards {
             }
         }
         Ok(())
+    }
+
+    /// What is to be said of surface that was not seen, where it is more than may be.
+    pub(crate) fn exceeded_by(&self, unseen: &Unseen) -> Option<Warning> {
+        let Self { max_unseen, .. } = *self;
+        let Unseen { body, close_behind, .. } = *unseen;
+        if unseen.share() > max_unseen {
+            Some(Warning::Unseen { body, share: unseen.share(), limit: max_unseen })
+        } else if CLOSE_BEHIND * close_behind > max_unseen && max_unseen < 1.0 {
+            let limit = max_unseen / CLOSE_BEHIND;
+            Some(Warning::CloseBehind { body, share: close_behind, limit })
+        } else {
+            None
+        }
     }
 }

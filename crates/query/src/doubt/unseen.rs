@@ -1,7 +1,7 @@
 //! Space that was never seen: an object where a single depth image saw nothing may be inside
 //! something, and no search of what was measured can tell.
 
-use cloudtouch_geom::{Pose, Vector3};
+use cloudtouch_geom::{Point3, Pose, Vector3};
 use serde::Serialize;
 
 use crate::cloud::{Prepared, Sight};
@@ -26,6 +26,9 @@ pub struct Unseen {
     pub out_of_range: f64,
     /// Behind a surface that it met.
     pub behind_returns: f64,
+    /// Of these, behind by no more than 3 cm beyond what noise may do: rather inside what it met than in the shadow
+    /// of it.
+    pub close_behind: f64,
 }
 
 impl Unseen {
@@ -36,9 +39,37 @@ impl Unseen {
 }
 
 /// How much of one body lies where the other, a single depth image, saw nothing. Of two images the
-/// larger one looks at the smaller; `None` without any. `a_from_b` maps local frames.
-pub(crate) fn unseen(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> Option<Unseen> {
-    unseen_around((a, b), a_from_b, 1, &[Vector3::zeros()])
+/// larger one looks at the smaller; `None` without any. `a_from_b` maps local frames; `is_clear` says that the
+/// surfaces are known to be apart.
+pub(crate) fn unseen(
+    a: Shape<'_>,
+    b: Shape<'_>,
+    a_from_b: &Pose,
+    is_clear: bool,
+) -> Option<Unseen> {
+    let at = |samples: Samples| unseen_around((a, b), a_from_b, samples, &[Vector3::zeros()]);
+    // PERF: of what is apart and in sight there is hardly a part so small that it needs more.
+    at(Samples::Usual)
+        .filter(|unseen| is_clear && unseen.share() == 0.0)
+        .or_else(|| at(Samples::Dense))
+}
+
+/// At how many places of a body is looked.
+#[derive(Debug, Clone, Copy)]
+enum Samples {
+    Few,
+    Usual,
+    Dense,
+}
+
+impl Samples {
+    fn of(self, body: Shape<'_>) -> Vec<Point3> {
+        match self {
+            Self::Few => body.samples().into_iter().step_by(LOOKED_AROUND).collect(),
+            Self::Usual => body.samples(),
+            Self::Dense => body.dense_samples().collect(),
+        }
+    }
 }
 
 /// Distances that are looked at about a place, from the first on each so many times as far as the one before, m.
@@ -61,7 +92,7 @@ pub(crate) fn unseen_within(
         around.extend(directions().map(|direction| distance * direction));
         distance *= FARTHER;
     }
-    unseen_around((a, b), a_from_b, LOOKED_AROUND, &around)
+    unseen_around((a, b), a_from_b, Samples::Few, &around)
 }
 
 /// Toward the middles of the faces of a cube and its corners.
@@ -77,11 +108,11 @@ fn directions() -> impl Iterator<Item = Vector3> {
 fn unseen_around(
     (a, b): (Shape<'_>, Shape<'_>),
     a_from_b: &Pose,
-    step: usize,
+    samples: Samples,
     around: &[Vector3],
 ) -> Option<Unseen> {
-    let of_b = || look(image(a)?, (b, Which::B), a_from_b, step, around);
-    let of_a = || look(image(b)?, (a, Which::A), &a_from_b.inverse(), step, around);
+    let of_b = || look(image(a)?, (b, Which::B), a_from_b, samples, around);
+    let of_a = || look(image(b)?, (a, Which::A), &a_from_b.inverse(), samples, around);
     if knows_unseen(a) && knows_unseen(b) && a.size() < b.size() {
         of_a()
     } else {
@@ -101,29 +132,45 @@ fn image(body: Shape<'_>) -> Option<&Prepared> {
     }
 }
 
-/// Looks at one in `step` samples of a body, each with what is `around` it: the least known of it counts.
+/// Looks at samples of a body, each with what is `around` it: the least known of it counts.
 fn look(
     image: &Prepared,
     (other, body): (Shape<'_>, Which),
     image_from_other: &Pose,
-    step: usize,
+    samples: Samples,
     around: &[Vector3],
 ) -> Option<Unseen> {
     let sight = image.sight()?;
-    let samples: Vec<_> = other.samples().into_iter().step_by(step).collect();
-    let mut counts = [0_usize; 5];
+    let samples = samples.of(other);
+    let mut counts = [0_usize; 6];
     for sample in &samples {
         let place = image_from_other.transform_point(sample);
-        match around.iter().map(|offset| sight(&(place + offset))).max() {
-            None | Some(Sight::Seen) => {}
-            Some(Sight::BehindCamera) => counts[0] += 1,
-            Some(Sight::OutsideView) => counts[1] += 1,
-            Some(Sight::Hole) => counts[2] += 1,
-            Some(Sight::BehindReturns) => counts[3] += 1,
-            Some(Sight::OutOfRange) => counts[4] += 1,
+        let mut least = Sight::Seen;
+        let mut is_close = false;
+        for offset in around {
+            let sight = sight(&(place + offset));
+            least = least.max(sight);
+            is_close |= sight == Sight::CloseBehind;
         }
+        match least {
+            Sight::Seen => {}
+            Sight::BehindCamera => counts[0] += 1,
+            Sight::OutsideView => counts[1] += 1,
+            Sight::Hole => counts[2] += 1,
+            Sight::CloseBehind | Sight::BehindReturns => counts[3] += 1,
+            Sight::OutOfRange => counts[4] += 1,
+        }
+        counts[5] += usize::from(is_close);
     }
-    let [behind_camera, outside_view, hole, behind_returns, out_of_range] =
+    let [behind_camera, outside_view, hole, behind_returns, out_of_range, close_behind] =
         counts.map(|count| count as f64 / samples.len().max(1) as f64);
-    Some(Unseen { body, behind_camera, outside_view, hole, out_of_range, behind_returns })
+    Some(Unseen {
+        body,
+        behind_camera,
+        outside_view,
+        hole,
+        out_of_range,
+        behind_returns,
+        close_behind,
+    })
 }

@@ -23,7 +23,7 @@ const LEAF_TRIANGLES: usize = 16;
 const PAPER_LEAF_TRIANGLES: usize = 8;
 
 /// Places that stand for the surface where only its whole extent matters.
-const SAMPLES: usize = 500;
+const SAMPLES: usize = 2000;
 
 /// A triangle mesh, ready to be queried in any pose.
 ///
@@ -161,7 +161,7 @@ impl Mesh {
         (self.surface.vertices().iter().map(in_file).collect(), self.surface.indices())
     }
 
-    /// Some hundred places on the surface in the local frame, m, each for the same area.
+    /// Some thousand places on the surface in the local frame, m, each for the same area.
     pub(crate) fn samples(&self) -> &[Point3] {
         self.samples.get_or_init(|| self.spread(SAMPLES))
     }

@@ -126,7 +126,7 @@ impl Query {
         let found = least_beyond((a, b), &local, margin, &clock)?;
         // Where nothing was seen something may be that is as near.
         let unseen = || unseen_within(a.shape(), b.shape(), &local, margin);
-        let hides = |unseen: Unseen| unseen.share() > settings.safeguards.max_unseen;
+        let hides = |unseen: Unseen| settings.safeguards.exceeded_by(&unseen).is_some();
         let is_known = found.is_complete && (high == 1.0 || !unseen().is_some_and(hides));
         let high = if is_known { high } else { 1.0 };
         Ok(at_least(of(found.deviations), high, found.deviations.min(deviations)))

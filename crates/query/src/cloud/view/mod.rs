@@ -259,13 +259,14 @@ mod tests {
                     Sight::BehindCamera => {
                         matches!(found, Sight::BehindCamera | Sight::OutsideView)
                     }
+                    Sight::BehindReturns => found.is_behind(),
                     sure => found == sure,
                 };
                 assert!(agrees, "{place}: {found:?}, but {sure:?} by every ray");
                 told[match sure {
                     Sight::Seen => 0,
                     Sight::BehindCamera => 1,
-                    Sight::BehindReturns => 2,
+                    Sight::CloseBehind | Sight::BehindReturns => 2,
                     Sight::Hole | Sight::OutsideView | Sight::OutOfRange => 3,
                 }] += 1;
             }

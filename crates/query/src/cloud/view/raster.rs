@@ -19,6 +19,10 @@ const HOLE_CELLS: isize = 1;
 pub(in crate::cloud) const CLEARLY: f64 = 3.0;
 /// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
 const PANORAMA: f64 = 0.17;
+/// A surface recedes across a cell when it did so before it at this part of the rate: of two directions one has half.
+const STEADY: f64 = 0.4;
+/// What is no farther behind a return, m, may be inside the thing it came from: few things on a table are thicker.
+const CLOSE: f64 = 0.03;
 /// Lines that are farther apart than so many of their pixels are lines.
 const APART: f64 = 1.5;
 /// One that lacks no more cells than that of a full turn goes all around.
@@ -32,6 +36,8 @@ const MOST_COLUMNS: f64 = 1e4;
 pub(crate) enum Sight {
     /// It looked there and beyond, and met nothing on the way.
     Seen,
+    /// All that it met around there is before the place, and some of it close before.
+    CloseBehind,
     /// It met a surface before the place.
     BehindReturns,
     /// No return came from there.
@@ -42,6 +48,13 @@ pub(crate) enum Sight {
     OutsideView,
     /// The place is behind the camera's back.
     BehindCamera,
+}
+
+impl Sight {
+    /// Whether something was met before the place.
+    pub(crate) fn is_behind(self) -> bool {
+        matches!(self, Self::CloseBehind | Self::BehindReturns)
+    }
 }
 
 /// How far was seen in each direction of a view.
@@ -170,8 +183,9 @@ impl Raster {
         let range = ray.norm();
         let is_behind_lines =
             || self.behind_lines(at[1], [x, y]).is_some_and(|behind| range > behind);
-        // The nearest ring of cells with a return tells: of the cell itself the nearest return, since what hides behind
-        // the rim of something is behind part of a cell only; of those around, across specks, the farthest.
+        // The nearest ring of cells with a return tells: of the cell itself the nearest return that a surface may end
+        // at, since what hides behind the rim of something is behind part of a cell only; of those around, across specks,
+        // the farthest.
         for ring in 0..=HOLE_CELLS {
             let (mut farthest, mut is_open) = (0.0_f64, false);
             for dy in -ring..=ring {
@@ -179,8 +193,7 @@ impl Raster {
                 for dx in (-ring..=ring).step_by(step as usize) {
                     if let Some(cell) = self.index(x + dx, y + dy) {
                         let behind = self.clearly_behind[cell];
-                        let told =
-                            if ring == 0 { self.behind_nearest[cell].min(behind) } else { behind };
+                        let told = if ring == 0 { self.behind_rim(range, [x, y]) } else { behind };
                         farthest = farthest.max(told);
                         is_open |= self.is_open.get(cell).is_some_and(|&is_open| is_open);
                     }
@@ -189,6 +202,7 @@ impl Raster {
             if farthest > 0.0 {
                 return match range > farthest {
                     true if is_open => Sight::OutOfRange,
+                    true if self.is_close_behind(range, [x, y]) => Sight::CloseBehind,
                     true => Sight::BehindReturns,
                     false if is_behind_lines() => Sight::BehindReturns,
                     false => Sight::Seen,
@@ -196,6 +210,31 @@ impl Raster {
             }
         }
         Sight::Hole
+    }
+
+    /// The range behind which something is hidden by part of a cell at least: behind the nearest return there, unless a
+    /// surface recedes from before the cell to beyond it.
+    fn behind_rim(&self, range: f64, [x, y]: [isize; 2]) -> f64 {
+        let Some(cell) = self.index(x, y) else { return 0.0 };
+        let [nearest, farthest] = [self.behind_nearest[cell], self.clearly_behind[cell]];
+        let recedes = || {
+            let before = nearest - STEADY * (farthest - nearest);
+            let beside =
+                [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| self.index(x + dx, y + dy));
+            beside.into_iter().flatten().any(|cell| self.behind_nearest[cell] <= before)
+        };
+        if nearest < range && range <= farthest && recedes() {
+            farthest
+        } else {
+            nearest.min(farthest)
+        }
+    }
+
+    /// Whether a range is behind all returns of a cell, by so little that it may be inside what they came from. The
+    /// nearest alone would be passed by what lies on a surface that is seen at a low angle.
+    fn is_close_behind(&self, range: f64, [x, y]: [isize; 2]) -> bool {
+        let behind = self.index(x, y).map_or(0.0, |cell| self.clearly_behind[cell]);
+        range > behind && range <= behind + CLOSE
     }
 
     /// The range clearly behind what two lines of a panorama have between them, where these are next to one another.

@@ -189,6 +189,15 @@ pub enum Warning {
         /// What is allowed.
         limit: f64,
     },
+    /// Surface of a body lies close behind what the depth image of the other saw, and may be inside it.
+    CloseBehind {
+        /// Whose surface.
+        body: Which,
+        /// Share of it, 0 to 1.
+        share: f64,
+        /// What is allowed.
+        limit: f64,
+    },
     /// Two poses of a path are half a turn apart, or so nearly that rounding decides which way round it goes.
     HalfTurn {
         /// The first of the two, counted from 1.
@@ -217,7 +226,8 @@ impl Warning {
             | Self::ImagePlace { body }
             | Self::SelfFilter { body, .. }
             | Self::Padding { body, .. }
-            | Self::Unseen { body, .. } => Some(body),
+            | Self::Unseen { body, .. }
+            | Self::CloseBehind { body, .. } => Some(body),
             Self::FarAway { .. }
             | Self::OutsideScene { .. }
             | Self::Exchanged { .. }
@@ -237,7 +247,7 @@ impl Warning {
             Self::SensorPose { .. } | Self::SensorRange { .. } | Self::ImagePlace { .. } => {
                 Some(Undecided::Sensor)
             }
-            Self::Unseen { .. } => Some(Undecided::Unseen),
+            Self::Unseen { .. } | Self::CloseBehind { .. } => Some(Undecided::Unseen),
             Self::SensorTurn { .. }
             | Self::SensorLayout { .. }
             | Self::NoImage { .. }

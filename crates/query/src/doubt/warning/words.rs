@@ -105,6 +105,13 @@ impl Warning {
                 let lies = format!("lies where the sensor saw nothing (allowed: {limit:.0} %):");
                 part(((100.0 * share).ceil(), "surface", body), &lies)
             }
+            Self::CloseBehind { body, share, limit } => {
+                let [share, limit] = [share, limit].map(|part| 100.0 * part);
+                format!(
+                    "{share:.1} % of the surface of the {body} lies less than 3 cm behind what the sensor saw, and \
+                     may be inside it (allowed: {limit:.1} %):"
+                )
+            }
             Self::HalfTurn { pose } => format!(
                 "from pose {pose} to the next it turns by half a turn, and rounding decides which way round:"
             ),
@@ -154,7 +161,9 @@ impl Warning {
                 "are the two exchanged? The scene comes first, and the pose leads from the object into it. \
                  Or is one in another unit than metres?"
             }
-            Self::Unseen { .. } => "look from elsewhere, or raise `max_unseen`",
+            Self::Unseen { .. } | Self::CloseBehind { .. } => {
+                "look from elsewhere, or raise `max_unseen`"
+            }
             Self::HalfTurn { .. } => "give a pose between them",
         }
     }
