@@ -314,6 +314,15 @@ pub enum Fault {
     /// There are no triangles in what should be a mesh.
     #[error("there are no faces: read it as a point cloud, or export it as a mesh")]
     NoTriangles,
+    /// There are faces in what should be a cloud.
+    #[error(
+        "a cloud has no triangles, and {found} would be lost: read it as a mesh, or write its vertices to a file \
+         of their own"
+    )]
+    FacesOfCloud {
+        /// How many there are.
+        found: usize,
+    },
     /// Points and faces in one file, and more points than corners of faces.
     #[error(
         "{loose} of {vertices} vertices belong to no face: a file is a cloud or a mesh, so leave out the \

@@ -27,7 +27,7 @@ use crate::{
 /// Reads a point cloud in metres: `.pcd`, `.ply`, `.xyz`, `.txt` or `.csv`; with the feature `mcap`
 /// also a scan of a recording, see [`read_scan_within`].
 ///
-/// Rows without a return stay as NaN rows. Of a PLY with faces the vertices are taken.
+/// Rows without a return stay as NaN rows. A PLY with faces is a mesh: what is between its vertices would be lost.
 ///
 /// # Errors
 /// When the file cannot be opened, has another extension, or is malformed; see [`Fault`].
@@ -46,11 +46,12 @@ pub fn read_cloud_within(
     let path = path.as_ref();
     let parse: Parser<PointCloud> = match extension(path).as_str() {
         "pcd" => pcd::parse_within,
-        "ply" => |bytes, limits| {
-            Ok(match ply::parse_within(bytes, limits)? {
-                Geometry::Cloud(cloud) => cloud,
-                Geometry::Mesh(mesh) => PointCloud::from_points(mesh.vertices().to_vec()),
-            })
+        "ply" => |bytes, limits| match ply::parse_within(bytes, limits)? {
+            Geometry::Cloud(cloud) => Ok(cloud),
+            Geometry::Mesh(mesh) => {
+                let found = mesh.triangles().len();
+                Err(Place::Line(1).error(Fault::FacesOfCloud { found }))
+            }
         },
         "xyz" | "txt" | "csv" => xyz::parse_within,
         "mcap" => return Ok(read_scan_within(path, limits)?.scan.cloud),

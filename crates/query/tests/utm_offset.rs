@@ -1,5 +1,7 @@
 //! Clouds in map coordinates (metres east and north, in the millions) keep their millimetres.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::common::{AnyQuery, Asked, MODES, Scan, assert_sound, at, measured, mesh, prepare};
 use crate::slips::{check, scan, table, tool};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
@@ -110,4 +112,29 @@ fn coordinates_of_a_map_in_single_precision_read_free() {
     let ball = in_file(&scene::sphere(2.0, 3));
     let report = ask(Mode::Calibrated, &as_measured, &ball, &at(0.0, 0.0, 5.0));
     assert_eq!(report.undecided_by, Some(Undecided::Rounded), "{report:?}");
+}
+
+/// A truck 12 cm in a wall read `free`: half a metre is little beside a truck, and much beside a noise of 5 mm.
+#[test]
+fn coordinates_rounded_more_coarsely_than_the_noise_read_free_beside_large_things() {
+    let map = Vector3::new(512_345.0, 5_403_210.0, 300.0);
+    let turned = Pose::from_translation_rpy(map + Vector3::y() * 0.22, [FRAC_PI_2, 0.0, 0.0]);
+    let wall = measured(&scene::plane_patch(20.0), 0.2, 0.005, 1);
+    let in_map: Vec<Point3> = wall.iter().map(|p| turned.transform_point(p)).collect();
+    let single: Vec<Point3> = in_map.iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
+    let truck = mesh(&scene::cuboid([6.0, 3.0, 3.0]));
+    let at_face = |face: f64| Pose::from_translation(map + Vector3::y() * (0.22 + 1.5 + face));
+    let ask = |points: &[Point3], std: f64, face: f64| {
+        let cloud = prepare(points.to_vec(), std, Mode::Calibrated);
+        ask(Mode::Calibrated, &cloud, &truck, &at_face(face))
+    };
+    assert_eq!(ask(&in_map, 0.005, -0.12).verdict, Verdict::InCollision);
+    for face in [-0.12, 0.1, 0.6] {
+        let report = ask(&single, 0.005, face);
+        assert_eq!(report.undecided_by, Some(Undecided::Rounded), "{face}: {report:?}");
+    }
+    assert_eq!(ask(&single, 0.005, 4.0).verdict, Verdict::Free);
+    // Who says so is believed.
+    let said = ask(&single, 0.15, 4.0);
+    assert!(!said.warnings.iter().any(|w| matches!(w, Warning::Rounded { .. })), "{said:?}");
 }

@@ -35,8 +35,12 @@ const FARTHEST_SIZES: f64 = 40.0;
 const TURNED: f64 = 1.8;
 /// Coordinates of a mesh are not this part of either body apart, ...
 const COARSE: f64 = 0.02;
-/// ... nor those of a cloud, whose points scatter anyway.
+/// ... nor those of a cloud, whose points scatter anyway, ...
 const COARSE_CLOUD: f64 = 0.1;
+/// ... and beside a body no farther away than so many steps, ...
+const NEAR_STEPS: f64 = 2.0;
+/// ... which rounding by this part of a step in the mean tells apart from the noise.
+const ROUNDING_STD: f64 = 0.289;
 /// Noise beyond this part of the other body had better be there: its fingers are a tenth of it.
 const LARGE_NOISE: f64 = 0.05;
 
@@ -56,7 +60,9 @@ pub(crate) fn doubts(
     let mut warnings: Vec<Warning> =
         bodies.into_iter().flat_map(|(body, shape, _)| of_surface(body, shape, limits)).collect();
     let smaller = a.size().min(b.size());
-    warnings.extend(bodies.into_iter().filter_map(|(body, shape, _)| coarse(body, shape, smaller)));
+    let gap = a_from_b.map_or(0.0, |a_from_b| box_gap(a, b, a_from_b));
+    let sizes = (smaller, gap);
+    warnings.extend(bodies.into_iter().filter_map(|(body, shape, _)| coarse(body, shape, sizes)));
     warnings.extend(units((a, b), are_alone));
     warnings.extend(bodies.into_iter().filter_map(|(body, shape, other)| match shape {
         Shape::Cloud(cloud) => {
@@ -71,13 +77,20 @@ pub(crate) fn doubts(
     warnings
 }
 
-/// Coordinates that are farther apart than they should be, beside a body of such a size, m.
-fn coarse(body: Which, shape: Shape<'_>, smaller: f64) -> Option<Warning> {
-    let (step, part) = match shape {
-        Shape::Mesh(mesh) => (mesh.rounded_to(), COARSE),
-        Shape::Cloud(cloud) => (cloud.makeup().step, COARSE_CLOUD),
+/// Coordinates that are farther apart than they should be, beside a body of such a size and so far away, m.
+fn coarse(body: Which, shape: Shape<'_>, (smaller, gap): (f64, f64)) -> Option<Warning> {
+    let is_coarse = |step: &f64| match shape {
+        Shape::Mesh(_) => *step > COARSE * smaller,
+        Shape::Cloud(cloud) => {
+            let is_noise = ROUNDING_STD * step <= cloud.makeup().std;
+            *step > COARSE_CLOUD * smaller || !is_noise && gap <= NEAR_STEPS * step
+        }
     };
-    let step_m = step.filter(|step| *step > part * smaller)?;
+    let step = match shape {
+        Shape::Mesh(mesh) => mesh.rounded_to(),
+        Shape::Cloud(cloud) => cloud.makeup().step,
+    };
+    let step_m = step.filter(is_coarse)?;
     Some(Warning::Rounded { body, step_m })
 }
 
