@@ -6,6 +6,8 @@ use cloudtouch_io::{Fault, LengthUnit, ReadError};
 use cloudtouch_robot::{RobotError, RobotFault};
 use serde_json::Value;
 
+const SENSOR_POSE: &str = "--sensor-pose, in a scene file `sensor_pose`";
+
 /// A warning with the option that mends it.
 pub(crate) fn warning(warning: &Warning) -> String {
     with(warning.to_string(), of_warning(warning))
@@ -13,7 +15,7 @@ pub(crate) fn warning(warning: &Warning) -> String {
 
 /// Why there is no decision, and which option tells what is missing.
 pub(crate) fn undecided(by: Undecided) -> String {
-    with(by.to_string(), (by == Undecided::Enclosed).then_some("--sensor-pose"))
+    with(by.to_string(), (by == Undecided::Enclosed).then_some(SENSOR_POSE))
 }
 
 /// The same where `--sensor-pose` may have been given, which need not be said twice.
@@ -60,7 +62,7 @@ pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
         }
         Warning::Sparse { .. } => "--cloud-unit mm, --unit mm, --depth-scale",
         Warning::SensorPose { .. } | Warning::SensorTurn { .. } | Warning::ImagePlace { .. } => {
-            "--sensor-pose"
+            SENSOR_POSE
         }
         Warning::SensorRange { .. } => "--sensor auto, --cloud-unit, --depth-scale",
         Warning::SensorLayout { .. } => "--sensor auto",

@@ -194,3 +194,32 @@ fn sensors_without_a_cloud_were_passed_over() {
     scene(&inputs, &of_bodies(&[own, body("box", "box.obj", 0.5)]), &["--sensor=iso:0.03"])
         .quiet(0);
 }
+
+/// What is undecided for want of it could not be told where the sensor stood.
+#[test]
+fn where_a_sensor_stood_decides_whether_a_cloud_is_hollow() {
+    let inputs = Inputs::new();
+    let of_sphere = |k: u32| {
+        let (z, turn) = (1.0 - (f64::from(k) + 0.5) / 1000.0, 2.4 * f64::from(k));
+        let (sin, cos) = turn.sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        format!("{} {} {z}\n", across * cos, across * sin)
+    };
+    inputs.write("shell.xyz", &(0..2000).map(of_sphere).collect::<String>());
+    let mut shell = json!({"name": "shell", "file": "shell.xyz", "sensor": "iso:0.005"});
+    let box_within = body("box", "box.obj", 0.5);
+    let file = of_bodies(&[shell.clone(), box_within.clone()]);
+    let text = scene(&inputs, &file, &[]).quiet(0).stdout();
+    assert!(text.contains("undecided") && text.contains("in a scene file `sensor_pose`"), "{text}");
+    let pose = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
+    shell["sensor_pose"] = json!(pose);
+    let file = of_bodies(&[shell.clone(), box_within.clone()]);
+    let text = scene(&inputs, &file, &[]).quiet(0).stdout();
+    assert!(text.contains("free: 0 of 1 pairs"), "{text}");
+    shell["sensor_pose"] = json!(pose[..3]);
+    let run = scene(&inputs, &of_bodies(&[shell, box_within]), &[]);
+    assert_eq!(run.code(), 1);
+    for part in ["body 1 `shell`", "`sensor_pose`", "the pose has 3 rows"] {
+        assert!(run.stderr().contains(part), "{}", run.stderr());
+    }
+}

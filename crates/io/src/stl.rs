@@ -14,6 +14,11 @@ const HEADER: usize = 84;
 /// Bytes of a triangle: normal, three corners, two spare bytes.
 const RECORD: usize = 50;
 
+/// How it begins.
+const BEGINNING: &str = "\"solid\" or a binary header";
+/// How files begin that are of other formats for certain: nearly any bytes are a binary header.
+const OTHERS: [&[u8]; 6] = [b"ply\n", b"ply\r", b"# .PCD", b"glTF", b"PK\x03\x04", b"\x89PNG"];
+
 /// Reads a mesh from the bytes of an STL file.
 ///
 /// A file is ascii when its first kilobyte is plain text: binary files may begin with `solid` too,
@@ -36,6 +41,10 @@ pub fn parse(bytes: &[u8]) -> Result<TriangleMesh, FormatError> {
 pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, FormatError> {
     if bytes.is_empty() {
         return Err(Place::Byte(0).error(Fault::Empty));
+    }
+    if let Some(other) = OTHERS.iter().find(|other| bytes.starts_with(other)) {
+        let found = String::from_utf8_lossy(other.trim_ascii_end()).into_owned();
+        return Err(Place::Line(1).error(Fault::WrongMagic { expected: BEGINNING, found }));
     }
     let corners = if is_binary(bytes) {
         binary_corners(bytes, limits)?
@@ -111,7 +120,7 @@ fn ascii_corners(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3>, Forma
         match (keyword.as_slice(), facet) {
             (b"solid", None) if !solid => solid = true,
             (_, None) if !solid => {
-                let expected = "\"solid\" or a binary header";
+                let expected = BEGINNING;
                 let found = excerpt(line);
                 return Err(place.error(Fault::WrongMagic { expected, found }));
             }

@@ -112,3 +112,13 @@ fn ascii_faults_are_named_by_line() {
     assert_eq!(error("solid\nendsolid\n"), (Place::Byte(0), Fault::NoTriangles));
     assert!(matches!(error("solid\nendsolid\nsolid\n").1, Fault::UnexpectedEnd { .. }));
 }
+
+/// They were read as binary, with a count of triangles that no file has.
+#[test]
+fn files_of_other_formats_are_told_by_how_they_begin() {
+    for begin in ["ply\nformat binary_little_endian 1.0\n", "# .PCD v0.7\n", "PK\x03\x04"] {
+        let bytes = [begin.as_bytes(), &[0; 200]].concat();
+        let message = stl::parse(&bytes).unwrap_err().to_string();
+        assert!(message.contains("is the file extension right?"), "{message}");
+    }
+}

@@ -249,6 +249,10 @@ impl CloudArguments<'_> {
             filter.robot.push(SelfMesh { mesh, cloud_from_link, padding: *padding });
         }
         if let Some(resolution) = self.collision_map {
+            if resolution <= 0.0 {
+                let why = format!("cells of {resolution} m: give their edge, such as 0.02");
+                return Err(refused_for("collision_map", why));
+            }
             filter.collision_map = Some(resolution);
             settings.sensor = SensorModel::Grid { resolution };
         }

@@ -83,3 +83,17 @@ def test_bad_files_are_named(tmp_path, name, text, words):
 def test_units_are_known(tmp_path):
     with pytest.raises(ct.CloudtouchError, match="km.*is not a unit of length: use m, cm, mm or in"):
         ct.Mesh.read(tmp_path / "any.stl", unit="km")
+
+
+def test_what_a_file_holds_is_refused_by_its_name(tmp_path):
+    (tmp_path / "empty.xyz").write_text("nan nan nan\n" * 20)
+    with pytest.raises(ct.CloudtouchError, match=r"empty\.xyz: "):
+        ct.Cloud.read(tmp_path / "empty.xyz", sensor="iso:0.001")
+    # Between its vertices it read free.
+    corners = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+    header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    (tmp_path / "part.ply").write_text(header + faces + corners)
+    with pytest.raises(ct.CloudtouchError, match=r"part\.ply: .*read it as a mesh"):
+        ct.Cloud.read(tmp_path / "part.ply", sensor="iso:0.001")
+    assert len(ct.Mesh.read(tmp_path / "part.ply")) == 1

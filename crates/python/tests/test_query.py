@@ -90,6 +90,37 @@ def test_settings_out_of_range_are_named(settings, says):
         ct.Query(**settings)
 
 
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        ({"reject": "0.1"}, "reject is '0.1': give a number"),
+        ({"prior": None}, "prior is of the type NoneType: give a number"),
+        ({"deadline": [1.0, 2.0]}, "deadline is of the type list: give a number"),
+        ({"max_contacts": -1}, "max_contacts is -1: give a whole number"),
+        ({"doubt_units": "no"}, "doubt_units is 'no': give True or False"),
+    ],
+)
+def test_settings_of_another_type_are_named(settings, says):
+    with pytest.raises(TypeError, match=says):
+        ct.Query(**settings)
+
+
+def test_filters_of_another_type_are_named():
+    points = np.random.default_rng(0).normal(size=(50, 3))
+    for arguments, says in [
+        ({"outliers": 8}, r"outliers is 8: give two numbers, such as \(8, 3.0\)"),
+        ({"outliers": (-1, 1.0)}, r"outliers\[0\] is -1: give a whole number"),
+        ({"keep_veil": 1}, "keep_veil is 1: give True or False"),
+        ({"max_range": "far"}, "max_range is 'far': give a number"),
+        ({"refined": None}, "refined is of the type NoneType"),
+        ({"robot": [points]}, "robot has a ndarray: give what Robot.seen returns"),
+    ]:
+        with pytest.raises(TypeError, match=says):
+            ct.Cloud(points, sensor="exact", **arguments)
+    # As numpy has them.
+    ct.Cloud(points, sensor="exact", outliers=(np.int64(8), np.float32(3)), keep_veil=np.True_, max_range=np.float32(9))
+
+
 def test_sensors_and_filters_out_of_range_are_named():
     points = np.random.default_rng(0).normal(size=(50, 3))
     for arguments, says in [
@@ -101,7 +132,7 @@ def test_sensors_and_filters_out_of_range_are_named():
         ({"sensor": "exact", "sensor_pose": np.diag([1.0, 1, -1, 1])}, "sensor_pose: .*mirrors"),
         ({"sensor": "exact", "min_range": 2.0, "max_range": 1.0}, "range"),
         ({"sensor": "exact", "outliers": (0, 1.0)}, "neighbo"),
-        ({"sensor": "exact", "collision_map": 0.0}, "resolution"),
+        ({"sensor": "exact", "collision_map": 0.0}, "collision_map: cells of 0 m"),
     ]:
         with pytest.raises(ct.CloudtouchError, match=says):
             ct.Cloud(points, **arguments)

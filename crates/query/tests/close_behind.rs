@@ -1,5 +1,7 @@
 //! What a camera did not see close behind a surface that it met is rather inside the thing than in its shadow.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::common::{at, mesh};
 use cloudtouch::geom::{PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
@@ -72,7 +74,8 @@ fn a_peg_in_sight_or_deep_in_the_shadow_is_not_close_behind() {
 /// nearest return counted as hidden, and a block 8 mm over the table was `undecided`.
 #[test]
 fn what_stands_over_a_table_seen_at_a_low_angle_is_not_behind_it() {
-    let camera = Pose::from_translation_rpy(Vector3::new(-1.2, 0.0, 0.25), [-1.77, 0.0, -1.5708]);
+    let camera =
+        Pose::from_translation_rpy(Vector3::new(-1.2, 0.0, 0.25), [-1.77, 0.0, -FRAC_PI_2]);
     let table = ExactMesh::new(&scene::plane_patch(3.0));
     let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.001 });
     let image = DepthCamera::default().scan(&[&table], &camera, 5);

@@ -12,7 +12,7 @@ use super::parse::parse_milliseconds;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Caution")]
 pub(crate) struct CautionArguments {
-    /// Undecided when more of an object is unseen, or a tenth of this close behind a return, 0 to 1 [default: 0.02]
+    /// Undecided when more of an object is unseen, 0 to 1 [default: 0.02]
     #[arg(long, value_name = "SHARE", value_parser = numbers::share, allow_negative_numbers = true)]
     pub max_unseen: Option<f64>,
     /// Undecided when more rows are missing, 0 to 1 [default: 0.25]

@@ -38,7 +38,7 @@ pub(crate) struct CommonArguments {
     /// Calibrated: share of your poses that collide, above 0 and below 1 [0.5]
     #[arg(long, value_name = "P", value_parser = parse_fraction, allow_negative_numbers = true, help_heading = "Estimate")]
     pub prior: Option<f64>,
-    /// Drop points nearer to the sensor [camera, lidar with a place: 0.1]
+    /// Drop points nearer to the sensor [images of a camera or lidar: 0.1]
     #[arg(long, value_name = "METRES", value_parser = parse_length, allow_negative_numbers = true, help_heading = "Cleaning")]
     pub min_range: Option<f64>,
     /// Drop points farther from the sensor

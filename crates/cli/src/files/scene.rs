@@ -33,6 +33,8 @@ pub struct BodyEntry {
     pub file: PathBuf,
     /// The spec of its sensor, as in the options.
     pub sensor: Option<String>,
+    /// Where that stood in the frame of a cloud, m; what the file says where it is not given.
+    pub sensor_pose: Option<Pose>,
     /// In which its coordinates are.
     pub unit: Option<LengthUnit>,
     /// What is said of it as a depth image.
@@ -63,6 +65,8 @@ struct RawBody {
     name: Value,
     file: Value,
     sensor: Option<Value>,
+    #[serde(default, deserialize_with = "given")]
+    sensor_pose: Option<Value>,
     unit: Option<Value>,
     intrinsics: Option<Value>,
     depth_scale: Option<Value>,
@@ -188,6 +192,7 @@ fn body(value: Value, text: &str, folder: &Path) -> Result<BodyEntry> {
         name,
         file: folder.join(fields::file("file", raw.file)?),
         sensor: text("sensor", raw.sensor)?,
+        sensor_pose: raw.sensor_pose.map(matrix).transpose().context("`sensor_pose`")?,
         unit: unit?,
         depth,
         pose: raw.pose.map(matrix).transpose()?.unwrap_or_default(),

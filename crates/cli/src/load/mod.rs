@@ -89,7 +89,7 @@ pub(crate) fn body<C: PreparedCloud>(
     bodies(&[path], role, sensor, options)
 }
 
-/// Reads a file that says its unit, and prepares it as an object.
+/// Reads a file that says its unit, and prepares it as a body of a scene.
 pub(crate) fn body_in<C: PreparedCloud>(
     path: &Path,
     unit: Option<LengthUnit>,
@@ -101,7 +101,7 @@ pub(crate) fn body_in<C: PreparedCloud>(
         Some(unit) => Units { meshes: unit, clouds: unit, ..usual },
         None => usual,
     };
-    bodies_in(&[path], units, Role::Object, sensor, options)
+    bodies_in(&[path], units, Role::Scene, sensor, options)
 }
 
 /// Reads files and prepares them as one body: several scans of one frame, or one mesh.

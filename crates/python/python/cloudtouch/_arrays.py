@@ -27,7 +27,7 @@ def rows_of(value: Any) -> Any:
     return value.to_dict("records") if hasattr(value, "columns") and hasattr(value, "to_dict") else value
 
 
-def points(value: Any, name: str) -> tuple[npt.NDArray[Any], tuple[int, int] | None]:
+def points(value: Any, name: str, *, of_image: bool = True) -> tuple[npt.NDArray[Any], tuple[int, int] | None]:
     """Rows of x, y and z, and width and height where they are those of an image."""
     array = np.asarray(value) if not isinstance(value, np.ma.MaskedArray) else _refuse_mask(name)
     fields = _fields(value, array)
@@ -43,9 +43,8 @@ def points(value: Any, name: str) -> tuple[npt.NDArray[Any], tuple[int, int] | N
         if array.shape[2] == 3:
             array = array.reshape(-1, 3)
     if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(
-            f"{name} has the shape {array.shape}: give (N, 3), or (height, width, 3) for a depth image"
-        )
+        images = ", or (height, width, 3) for a depth image" if of_image else ""
+        raise ValueError(f"{name} has the shape {array.shape}: give (N, 3){images}")
     return _readable(array, name), image_size
 
 

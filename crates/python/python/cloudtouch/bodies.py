@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from cloudtouch import _arrays, _depth, _native
+from cloudtouch import _arrays, _depth, _given, _native
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +174,8 @@ class Cloud:
             rows = rows.reshape(height, width, 3)
         if sensor == "per-point":
             others.setdefault("covariances", covariances)
-        return cls(rows, sensor=sensor, sensor_pose=pose if sensor_pose is None else sensor_pose, **others)
+        with _naming(path):
+            return cls(rows, sensor=sensor, sensor_pose=pose if sensor_pose is None else sensor_pose, **others)
 
     @classmethod
     def from_depth(
@@ -402,7 +404,7 @@ class Mesh:
         _refuse_file(vertices, "vertices", "Mesh.read({})")
         if triangles is None:
             vertices, triangles = _faces(vertices)
-        rows, image_size = _arrays.points(vertices, "vertices")
+        rows, image_size = _arrays.points(vertices, "vertices", of_image=False)
         if image_size is not None:
             raise ValueError("vertices has three dimensions: give (V, 3)")
         self._body = _native.mesh(rows, _arrays.indices(triangles, "triangles"))
@@ -416,7 +418,9 @@ class Mesh:
         CloudtouchError
             The file cannot be read, is malformed or has another extension, with place and remedy.
         """
-        return cls(*_native.read_mesh(path, unit))
+        vertices, triangles = _native.read_mesh(path, unit)
+        with _naming(path):
+            return cls(vertices, triangles)
 
     @property
     def vertices(self) -> npt.NDArray[np.float64]:
@@ -518,14 +522,34 @@ def _scan(
         "image_size": image_size,
         "covariances": optional(covariances, "covariances", count, 3, 3),
         "normals": optional(normals, "normals", count, 3),
-        "min_range": min_range,
-        "max_range": max_range,
-        "keep_veil": keep_veil,
-        "outliers": outliers,
-        "collision_map": collision_map,
-        "robot": [replace(link, pose=optional(link.pose, "robot", 4, 4)) for link in robot],
-        "refined": refined,
+        "min_range": _given.optional_number(min_range, "min_range"),
+        "max_range": _given.optional_number(max_range, "max_range"),
+        "keep_veil": _given.flag(keep_veil, "keep_veil"),
+        "outliers": _given.count_and_number(outliers, "outliers"),
+        "collision_map": _given.optional_number(collision_map, "collision_map"),
+        "robot": [replace(link, pose=optional(link.pose, "robot", 4, 4)) for link in _links(robot)],
+        "refined": _given.flag(refined, "refined"),
     }
+
+
+def _links(robot: Any) -> list[SeenLink]:
+    try:
+        links = list(robot)
+    except TypeError:
+        links = [robot]
+    for link in links:
+        if not isinstance(link, SeenLink):
+            raise TypeError(f"robot has a {type(link).__name__}: give what Robot.seen returns, or a list of SeenLink")
+    return links
+
+
+@contextlib.contextmanager
+def _naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """What is found of a file once it is read names it too."""
+    try:
+        yield
+    except _native.CloudtouchError as error:
+        raise _native.CloudtouchError(f"{os.fspath(path)}: {error}") from None
 
 
 def _told(arguments: dict[str, Any]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from cloudtouch import _arrays, _native
+from cloudtouch import _arrays, _given, _native
 from cloudtouch.bodies import Cloud, Mesh, native_pair
 from cloudtouch.motion import Gradient, Penetration, Swept, UnderPoses
 from cloudtouch.page import Page
@@ -66,15 +66,15 @@ class Query:
     ) -> None:
         self._set(
             {
-                "accept": accept,
-                "reject": reject,
-                "prior": prior,
-                "max_unseen": max_unseen,
-                "max_missing": max_missing,
-                "doubt_units": doubt_units,
-                "stop_above": stop_above,
-                "deadline": deadline,
-                "max_contacts": max_contacts,
+                "accept": _given.number(accept, "accept"),
+                "reject": _given.number(reject, "reject"),
+                "prior": _given.number(prior, "prior"),
+                "max_unseen": _given.number(max_unseen, "max_unseen"),
+                "max_missing": _given.number(max_missing, "max_missing"),
+                "doubt_units": _given.flag(doubt_units, "doubt_units"),
+                "stop_above": _given.number(stop_above, "stop_above"),
+                "deadline": _given.optional_number(deadline, "deadline"),
+                "max_contacts": _given.count(max_contacts, "max_contacts"),
             }
         )
 
@@ -118,7 +118,7 @@ class Query:
             ``margin`` is negative or not finite, and what :meth:`run` raises.
         """
         matrix = _arrays.numbers(pose, "pose", (4, 4))
-        report, within = self._query.within(*native_pair(a, b), matrix, margin)
+        report, within = self._query.within(*native_pair(a, b), matrix, _given.number(margin, "margin"))
         return Report._of(report), Within(**within)
 
     def clearance_interval(self, a: Body, b: Body, pose: npt.ArrayLike, share: float = 0.9) -> tuple[float, float]:

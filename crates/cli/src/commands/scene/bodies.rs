@@ -7,6 +7,7 @@ use std::sync::Arc;
 use anyhow::{Context as _, Result, anyhow, ensure};
 use cloudtouch::Cloud;
 use cloudtouch_cli::files::scene::BodyEntry;
+use cloudtouch_cli::numbers::Rigid;
 use cloudtouch_io::{LengthUnit, is_depth_image};
 use rayon::prelude::*;
 
@@ -18,8 +19,8 @@ use crate::sensor::SensorChoice;
 use crate::unused;
 use crate::usage::WrongUsage;
 
-/// A file, the unit it is said to be in, the sensor that saw it, by its spec, and what is said of it as a
-/// depth image, spelt out.
+/// A file, the unit it is said to be in, the sensor that saw it, by its spec, and where that stood and what is said
+/// of it as a depth image, spelt out.
 type BodyKey = (PathBuf, Option<LengthUnit>, String, String);
 
 /// What several bodies of a scene may share.
@@ -127,14 +128,15 @@ fn place(index: usize, entry: &BodyEntry) -> String {
 
 fn key(common: &CommonArguments, (index, entry): (usize, &BodyEntry)) -> Result<BodyKey> {
     let place = || place(index, entry);
-    let BodyEntry { file, sensor, unit, depth, .. } = entry;
+    let BodyEntry { file, sensor, sensor_pose, unit, depth, .. } = entry;
     load::check(file).with_context(place)?;
     check_image(entry).with_context(place)?;
     let sensor = match sensor {
         Some(spec) => spec.parse::<SensorChoice>().map_err(|error| anyhow!("{error}")),
         None => Ok(common.scene_sensor()),
     };
-    Ok((file.clone(), *unit, sensor.with_context(place)?.to_string(), format!("{depth:?}")))
+    let seen = format!("{sensor_pose:?} {depth:?}");
+    Ok((file.clone(), *unit, sensor.with_context(place)?.to_string(), seen))
 }
 
 fn load(
@@ -144,7 +146,8 @@ fn load(
 ) -> Result<Loaded<Cloud>> {
     let sensor = sensor.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))?;
     let usual = common.bodies();
-    let options = BodyOptions { depth: entry.depth.or(&usual.depth), ..usual };
+    let (sensor_pose, depth) = (entry.sensor_pose.map(Rigid), entry.depth.or(&usual.depth));
+    let options = BodyOptions { sensor_pose, depth, ..usual };
     load::body_in::<Cloud>(path, *unit, sensor, &options)
 }
 
