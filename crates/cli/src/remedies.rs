@@ -66,6 +66,7 @@ pub(crate) fn of_warning(warning: &Warning) -> Option<&'static str> {
         }
         Warning::SensorRange { .. } => "--sensor auto, --cloud-unit, --depth-scale",
         Warning::SensorLayout { .. } => "--sensor auto",
+        Warning::TakenForRobot { .. } => "--padding, in query --robot-padding",
         Warning::Unseen { .. } | Warning::CloseBehind { .. } => "--max-unseen",
         _ => return None,
     })

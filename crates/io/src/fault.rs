@@ -160,7 +160,7 @@ pub enum Fault {
         expected: &'static str,
     },
     /// A row has too few values, or more than its header says.
-    #[error("the row has {found} of {expected} values: is the file cut off, or the row spoilt?")]
+    #[error("the row has {found} values, expected {expected}: is the file cut off?")]
     RowLength {
         /// Values needed.
         expected: usize,

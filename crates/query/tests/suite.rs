@@ -51,6 +51,7 @@ mod slips;
 mod solved_tightly;
 mod sparse_frames;
 mod swap;
+mod taken_for_robot;
 mod thin_mesh;
 mod uncertain_pose;
 mod utm_offset;

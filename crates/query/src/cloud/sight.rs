@@ -21,6 +21,25 @@ impl Prepared {
         (by_range || is_seen).then_some(sight)
     }
 
+    /// Of the surface of the robot in one of its images, or of a link, the share that the camera looked past, where that
+    /// is more than of a robot that is there.
+    pub(crate) fn robot_passed(&self) -> Option<f64> {
+        let measured = (self.points(), self.sensor());
+        let of_each = self.views.iter().filter_map(|view| view.robot_passed(measured));
+        of_each.max_by(f64::total_cmp)
+    }
+
+    /// Whether anything was taken for the robot that may be of something beside it.
+    pub(crate) fn was_more_taken(&self) -> bool {
+        !self.scans.taken.is_empty()
+    }
+
+    /// Whether such a thing may be at a place in the local frame.
+    pub(crate) fn may_be_taken(&self, place: &Point3) -> bool {
+        let place = place + self.origin;
+        self.scans.taken.iter().any(|taken| taken.may_be_at(&place))
+    }
+
     /// Whether it may know that places were not seen.
     pub(crate) fn knows_unseen(&self) -> bool {
         let ranges = &self.scans.ranges;

@@ -5,6 +5,7 @@ use cloudtouch_geom::{Point3, Pose};
 
 use crate::cloud::{Clumps, Makeup, Overstated, Prepared, SensorDoubt};
 use crate::doubt::safeguards::Safeguards;
+use crate::doubt::taken::taken_for_robot;
 use crate::doubt::unseen::Unseen;
 use crate::doubt::warning::{Warning, Which};
 use crate::placement::box_gap;
@@ -75,6 +76,8 @@ pub(crate) fn doubts(
     warnings.extend(a_from_b.and_then(|a_from_b| apart((a, b), a_from_b)));
     warnings.extend(unseen.and_then(|unseen| limits.exceeded_by(unseen)));
     warnings
+        .extend(a_from_b.and_then(|a_from_b| taken_for_robot((a, b), a_from_b, limits.max_unseen)));
+    warnings
 }
 
 /// Coordinates that are farther apart than they should be, beside a body of such a size and so far away, m.
@@ -117,16 +120,18 @@ fn of_surface(body: Which, shape: Shape<'_>, limits: &Safeguards) -> impl Iterat
 /// How its points lie, and whether its sensor can have seen them; nothing of a mesh.
 fn of_sensor(body: Which, shape: Shape<'_>) -> impl Iterator<Item = Warning> {
     let cloud = match shape {
-        Shape::Cloud(cloud) => Some(cloud.makeup()),
+        Shape::Cloud(cloud) => Some(cloud),
         Shape::Mesh(_) => None,
     };
     cloud.into_iter().flat_map(move |cloud| {
-        let clumps = cloud.clumps.map(|Clumps { across, apart }| Warning::Clumps {
+        let makeup = cloud.makeup();
+        let clumps = makeup.clumps.map(|Clumps { across, apart }| Warning::Clumps {
             body,
             across_m: across,
             apart_m: apart,
         });
-        clumps.into_iter().chain(sensors(body, cloud))
+        let elsewhere = cloud.robot_passed().map(|share| Warning::RobotElsewhere { body, share });
+        clumps.into_iter().chain(elsewhere).chain(sensors(body, makeup))
     })
 }
 

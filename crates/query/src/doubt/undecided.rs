@@ -27,8 +27,8 @@ pub enum Undecided {
     Rounded,
     /// The points of a cloud span no surface: they are on a line, or are one.
     NoSurface,
-    /// Too many rows of a cloud without image layout have no return, or were taken for the robot itself: what
-    /// is there is not known.
+    /// Too many rows of a cloud without image layout have no return, or were taken for the robot itself, which was
+    /// elsewhere, or where something is beside it: what is there is not known.
     Missing,
     /// The sensor stated for a cloud cannot have seen it.
     Sensor,

@@ -10,6 +10,7 @@ mod outliers;
 mod range;
 mod self_points;
 mod settings;
+mod taken;
 mod veil;
 
 use cloudtouch_geom::PointCloud;
@@ -20,8 +21,8 @@ use crate::error::FilterError;
 
 pub(crate) use range::is_return_to;
 pub use self_points::SelfMesh;
-pub(crate) use self_points::beyond_noise;
 pub use settings::{FilterSettings, OutlierSettings, VeilSettings};
+pub(crate) use taken::Taken;
 
 /// How many points one stage took away.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

@@ -32,6 +32,22 @@ impl SelfMesh {
         Self { mesh: self.mesh.clone(), cloud_from_link: moved, padding: self.padding }
     }
 
+    /// Places of its surface in the frame of the cloud.
+    pub(crate) fn samples(&self) -> impl Iterator<Item = Point3> + '_ {
+        let cloud_from_local =
+            self.cloud_from_link.after(&Pose::from_translation(self.mesh.origin()));
+        self.mesh.samples().iter().map(move |sample| cloud_from_local.transform_point(sample))
+    }
+
+    /// Tells how far a place in the frame of the cloud is from the link, m: 0 inside of it, infinite beyond a distance.
+    pub(super) fn distances(&self) -> impl Fn(&Point3, f64) -> f64 + '_ {
+        let link_from_cloud = self.cloud_from_link.inverse();
+        move |place, most| {
+            let away = self.mesh.distance_within(&link_from_cloud.transform_point(place), most);
+            away.map_or(f64::INFINITY, |away| away.max(0.0))
+        }
+    }
+
     /// Tells whether a place in the frame of the cloud is inside the link or so near to it, m; for many places.
     fn nearness(&self) -> impl Fn(&Point3, f64) -> bool + '_ {
         let link_from_cloud = self.cloud_from_link.inverse();
@@ -52,24 +68,4 @@ pub(super) fn keep_outside(
         links.iter().any(|(is_within, padding)| is_within(&cloud.points[*i], *padding))
     };
     kept.extract_if(.., is_robot).collect()
-}
-
-/// Of points that were removed, each with its standard deviation, m, the share that is farther from every link
-/// than its noise can tell.
-pub(crate) fn beyond_noise<'a>(
-    removed: impl Iterator<Item = (&'a Point3, f64)>,
-    robot: &[SelfMesh],
-) -> f64 {
-    /// Standard deviations that no noise reaches.
-    const DEVIATIONS: f64 = 6.0;
-    let links: Vec<_> = robot.iter().map(|link| (link.nearness(), link.padding)).collect();
-    let (mut all, mut beyond) = (0_usize, 0_usize);
-    for (point, std) in removed {
-        all += 1;
-        let reach = DEVIATIONS * std;
-        let is_near =
-            links.iter().any(|(is_within, padding)| is_within(point, reach.min(*padding)));
-        beyond += usize::from(!is_near);
-    }
-    beyond as f64 / all.max(1) as f64
 }

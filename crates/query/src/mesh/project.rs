@@ -31,8 +31,15 @@ impl Mesh {
 
     /// Whether a point (file frame) is inside or within `padding` metres of the surface.
     pub(crate) fn is_within(&self, point: &Point3, padding: f64) -> bool {
+        self.distance_within(point, padding).is_some()
+    }
+
+    /// How far a place is from the surface, m, less than zero inside, where it is no farther than that.
+    pub(crate) fn distance_within(&self, point: &Point3, most: f64) -> Option<f64> {
         let local = point - self.origin();
-        self.distance_to_box(&local) <= padding && self.project(&local).signed_distance <= padding
+        let is_near = self.distance_to_box(&local) <= most;
+        let away = is_near.then(|| self.project(&local).signed_distance);
+        away.filter(|away| *away <= most)
     }
 
     /// The nearest surface point to a point in the local frame.

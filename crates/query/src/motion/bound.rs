@@ -4,6 +4,7 @@ use cloudtouch_geom::{Drift, Pose};
 
 use crate::body::BodyRef;
 use crate::classifier::Clock;
+use crate::doubt::taken::knows_taken;
 use crate::doubt::unseen::knows_unseen;
 use crate::error::QueryError;
 use crate::exact::collide;
@@ -77,7 +78,7 @@ impl Drifting<'_> {
     /// of a depth image, which may have seen nothing anywhere, no point of B gets far from one to the next.
     pub(super) fn poses_to_doubt(&self) -> usize {
         let (a, b) = (self.bodies.0.shape(), self.bodies.1.shape());
-        if !knows_unseen(a) && !knows_unseen(b) {
+        if ![a, b].into_iter().any(|body| knows_unseen(body) || knows_taken(body)) {
             return LEAST_DOUBTED;
         }
         let local = a.local_from(&b, &self.a_from_b);

@@ -4,6 +4,7 @@ use cloudtouch_geom::Pose;
 
 use crate::doubt::enclosed::is_enclosed;
 use crate::doubt::of_pair::doubts;
+use crate::doubt::taken::knows_taken;
 use crate::doubt::undecided::Undecided;
 use crate::doubt::unseen::Unseen;
 use crate::doubt::unseen::{knows_unseen, unseen};
@@ -73,7 +74,9 @@ impl Terms {
         // Pairs that nobody looks at are clear of each other.
         let mut of_it = warnings.iter().filter(is_of).filter(|warning| counts(warning, true));
         let shape = if which == Which::A { a } else { b };
-        knows_unseen(shape) || of_it.any(|warning| self.reason(warning).is_some())
+        knows_unseen(shape)
+            || knows_taken(shape)
+            || of_it.any(|warning| self.reason(warning).is_some())
     }
 
     /// Why a pair with this warning does not read as free; `None` where it may.

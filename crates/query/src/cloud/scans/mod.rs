@@ -12,7 +12,7 @@ use cloudtouch_noise::{Combination, SensorNoise};
 
 use crate::check::coordinates::check_points;
 use crate::error::PrepareError;
-use crate::filter::{Filtered, StageReport, filter_and_tell};
+use crate::filter::{Filtered, StageReport, Taken, filter_and_tell};
 
 use self::noise::{coarse_step, joined, noise_of, padded};
 use self::others::{beyond_range, other_returns};
@@ -43,6 +43,8 @@ pub(super) struct Scans {
     pub step: Option<f64>,
     /// Signs that a sensor did not see its scan.
     pub sensor_doubts: Vec<SensorDoubt>,
+    /// What was taken for the robot and may be of something beside it.
+    pub taken: Vec<Taken>,
     /// Scans that are depth images and were not looked through yet.
     pub images: Vec<Image>,
     /// How far the others tell.
@@ -78,6 +80,7 @@ impl Scans {
             missing: 0.0,
             step: None,
             sensor_doubts: Vec::new(),
+            taken: Vec::new(),
             images: Vec::new(),
             ranges: Vec::new(),
         }
@@ -105,7 +108,8 @@ impl Scans {
         };
         let mut sensor_doubts = sensor_doubts(scan, by.sensor, &kept.points);
         sensor_doubts.extend(robot_doubt(&stages));
-        sensor_doubts.extend(padded(&scan.select(&removed.robot), by)?);
+        let (taken, doubt) = padded(&scan.select(&removed.robot), &kept.points, by)?;
+        sensor_doubts.extend(doubt);
         let (mut images, mut ranges) = (Vec::new(), Vec::new());
         if scan.is_image() {
             // A robot that no return came from is elsewhere, and makes nothing known.
@@ -124,6 +128,7 @@ impl Scans {
             step: coarse_step(&kept.points, &noise),
             noise,
             sensor_doubts,
+            taken: taken.into_iter().collect(),
             images,
             ranges,
             points: kept.points,
@@ -138,6 +143,10 @@ impl Scans {
         let kind = mem::discriminant::<SensorDoubt>;
         let later = &others.sensor_doubts;
         self.sensor_doubts.retain(|doubt| !later.iter().any(|other| kind(other) == kind(doubt)));
+        if others.images.iter().any(|image| image.is_later) {
+            // The robot is elsewhere by now, and what was beside it was seen or is beside it still.
+            self.taken.clear();
+        }
         self.noise = joined(&[&self.noise, &others.noise]);
         self.add(others);
     }
@@ -171,6 +180,7 @@ impl Scans {
         self.missing = self.missing.max(others.missing);
         self.step = self.step.into_iter().chain(others.step).max_by(f64::total_cmp);
         self.sensor_doubts.extend(others.sensor_doubts);
+        self.taken.extend(others.taken);
         append(&mut self.points, others.points);
     }
 
@@ -204,6 +214,7 @@ impl Scans {
             sensor_doubts: if is_gone { Vec::new() } else { self.sensor_doubts.clone() },
             missing: if is_gone { 0.0 } else { self.missing },
             step: self.step.filter(|_| !is_gone),
+            taken: if is_gone { Vec::new() } else { self.taken.clone() },
             images: self.images.clone(),
             ranges: self.ranges.clone(),
             ..*self

@@ -7,7 +7,7 @@ use crate::check::rounded::single_step;
 use crate::cloud::makeup::SensorDoubt;
 use crate::cloud::preparation::Preparation;
 use crate::error::PrepareError;
-use crate::filter::beyond_noise;
+use crate::filter::Taken;
 
 /// Σ of returns, which may have moved since they were seen.
 pub(super) fn noise_of(
@@ -44,18 +44,20 @@ pub(super) fn coarse_step(points: &[Point3], noise: &SensorNoise) -> Option<f64>
     (step > most).then_some(step)
 }
 
-/// Points taken for the robot of which too many are farther from it than their noise tells.
+/// What was taken for the robot and is rather of something beside it; and a sign where too many points are farther
+/// from it than their noise tells.
 pub(super) fn padded(
     of_robot: &PointCloud,
+    kept: &[Point3],
     by: Preparation<'_>,
-) -> Result<Option<SensorDoubt>, PrepareError> {
+) -> Result<(Option<Taken>, Option<SensorDoubt>), PrepareError> {
     /// Cables and joints that are a little off leave fewer.
     const MOST: f64 = 0.5;
     if of_robot.is_empty() {
-        return Ok(None);
+        return Ok((None, None));
     }
     let noise = noise_of(of_robot, by)?;
     let points = of_robot.points.iter().zip(noise.iter().map(Covariance::max_std_at_most));
-    let share = beyond_noise(points, &by.filter.robot);
-    Ok((share > MOST).then_some(SensorDoubt::Padding { share }))
+    let (taken, share) = Taken::of(points, kept, &by.filter.robot);
+    Ok((taken, (share > MOST).then_some(SensorDoubt::Padding { share })))
 }

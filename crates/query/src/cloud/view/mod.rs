@@ -12,7 +12,7 @@ use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::SensorNoise;
 use nalgebra::UnitQuaternion;
 
-use crate::cloud::view::raster::{Raster, Sight};
+use crate::cloud::view::raster::{CLEARLY, Raster, Sight};
 use crate::filter::SelfMesh;
 
 /// How far away what is too near to be trusted counts as seen, m.
@@ -95,6 +95,7 @@ pub(crate) struct SingleView {
     /// In the cloud's local frame.
     image: Image,
     raster: OnceLock<Option<Arc<Raster>>>,
+    robot_passed: OnceLock<Option<f64>>,
 }
 
 impl SingleView {
@@ -102,13 +103,20 @@ impl SingleView {
     pub(super) fn new(image: Image, origin: &Vector3) -> Self {
         let sensor_origin = image.sensor_origin - origin;
         let robot = image.robot.iter().map(|link| link.seen_from(origin)).collect();
-        Self { image: Image { sensor_origin, robot, ..image }, raster: OnceLock::new() }
+        let image = Image { sensor_origin, robot, ..image };
+        Self { image, raster: OnceLock::new(), robot_passed: OnceLock::new() }
     }
 
     /// The view over its raster, given what it measured and with which noise; `None` where the measured points have no
     /// directions.
     pub(crate) fn over<'a>(&'a self, measured: (&[Point3], &SensorNoise)) -> Option<Seeing<'a>> {
         Some(Seeing { image: &self.image, raster: self.raster(measured)? })
+    }
+
+    /// As [`Seeing::robot_passed`], told when first asked for.
+    pub(super) fn robot_passed(&self, measured: (&[Point3], &SensorNoise)) -> Option<f64> {
+        let tell = || self.over(measured).and_then(|seeing| seeing.robot_passed());
+        if self.image.robot.is_empty() { None } else { *self.robot_passed.get_or_init(tell) }
     }
 
     fn raster(&self, (points, noise): (&[Point3], &SensorNoise)) -> Option<&Raster> {
@@ -137,7 +145,8 @@ impl SingleView {
             ..self.image.clone()
         };
         let settled = Self::new(none, shift);
-        Some(Self { raster: self.raster.clone(), ..settled })
+        let (raster, robot_passed) = (self.raster.clone(), self.robot_passed.clone());
+        Some(Self { raster, robot_passed, ..settled })
     }
 }
 
@@ -171,6 +180,31 @@ impl Seeing<'_> {
         let thing = self.image.sensor_origin + ray.normalize() * range;
         let is_robot = self.image.robot.iter().any(|link| link.held(&thing));
         (!is_robot).then_some((thing, std))
+    }
+
+    /// Of the surface of the robot, or of a link, that the camera could have seen, the share that it looked past by more
+    /// than collision meshes are larger than links are; `None` where that is no more than of a robot that is there.
+    fn robot_passed(&self) -> Option<f64> {
+        /// A third of that, m.
+        const LARGER: f64 = 0.05 / CLEARLY;
+        /// Of all links, and of one: hulls of open grippers have much that nothing is in.
+        const MOST: [f64; 2] = [0.4, 0.8];
+        /// Fewer samples tell nothing.
+        const LEAST: usize = 100;
+        let of_link = |link: &SelfMesh| {
+            let rays = link.samples().map(|place| place - self.image.sensor_origin);
+            rays.fold([0; 2], |[passed, met], ray| match self.raster.looks_past(&ray, LARGER) {
+                true => [passed + 1, met],
+                false => [passed, met + usize::from(self.raster.sight(&ray) == Sight::Seen)],
+            })
+        };
+        let links: Vec<[usize; 2]> = self.image.robot.iter().map(of_link).collect();
+        let all = links.iter().fold([0; 2], |[p, m], [q, n]| [p + q, m + n]);
+        let told = |[passed, met]: [usize; 2], most: f64| {
+            let share = passed as f64 / (passed + met).max(LEAST) as f64;
+            (share > most).then_some(share)
+        };
+        told(all, MOST[0]).or_else(|| links.into_iter().find_map(|link| told(link, MOST[1])))
     }
 
     /// Whether it is of the scene as it was after all images before it.

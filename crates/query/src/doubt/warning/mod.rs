@@ -198,6 +198,23 @@ pub enum Warning {
         /// What is allowed.
         limit: f64,
     },
+    /// Surface of a body lies where points of the other were taken for the robot, though farther from it than their noise
+    /// tells and with others beside them that stayed.
+    TakenForRobot {
+        /// Whose surface.
+        body: Which,
+        /// Share of it, 0 to 1.
+        share: f64,
+        /// What is allowed.
+        limit: f64,
+    },
+    /// The camera of a depth image looked past most of where the robot is said to have been.
+    RobotElsewhere {
+        /// Which body.
+        body: Which,
+        /// Share of the surface of the robot, or of one of its links, that it could have seen, 0 to 1.
+        share: f64,
+    },
     /// Two poses of a path are half a turn apart, or so nearly that rounding decides which way round it goes.
     HalfTurn {
         /// The first of the two, counted from 1.
@@ -227,7 +244,9 @@ impl Warning {
             | Self::SelfFilter { body, .. }
             | Self::Padding { body, .. }
             | Self::Unseen { body, .. }
-            | Self::CloseBehind { body, .. } => Some(body),
+            | Self::CloseBehind { body, .. }
+            | Self::TakenForRobot { body, .. }
+            | Self::RobotElsewhere { body, .. } => Some(body),
             Self::FarAway { .. }
             | Self::OutsideScene { .. }
             | Self::Exchanged { .. }
@@ -239,7 +258,10 @@ impl Warning {
     pub(crate) fn undecides(&self) -> Option<Undecided> {
         match self {
             Self::NoSurface { .. } => Some(Undecided::NoSurface),
-            Self::Missing { .. } | Self::SelfFilter { .. } => Some(Undecided::Missing),
+            Self::Missing { .. }
+            | Self::SelfFilter { .. }
+            | Self::TakenForRobot { .. }
+            | Self::RobotElsewhere { .. } => Some(Undecided::Missing),
             Self::Units { .. } | Self::FarAway { .. } => Some(Undecided::Units),
             Self::Sparse { .. } | Self::Clumps { .. } => Some(Undecided::Sparse),
             Self::Noise { .. } | Self::NoiseOverstated { .. } => Some(Undecided::Noise),

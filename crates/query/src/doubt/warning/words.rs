@@ -112,6 +112,18 @@ impl Warning {
                      may be inside it (allowed: {limit:.1} %):"
                 )
             }
+            Self::TakenForRobot { body, share, limit } => {
+                let [share, limit] = [share, limit].map(|part| 100.0 * part);
+                format!(
+                    "{share:.1} % of the surface of the {body} lies where points were taken for the robot that are \
+                     farther from it than noise tells, beside others that were not (allowed: {limit:.1} %):"
+                )
+            }
+            Self::RobotElsewhere { body, share } => format!(
+                "the camera of the {body} looked past {:.0} % of the surface of the robot, or of a link, where that is said \
+                 to have been:",
+                100.0 * share
+            ),
             Self::HalfTurn { pose } => format!(
                 "from pose {pose} to the next it turns by half a turn, and rounding decides which way round:"
             ),
@@ -155,6 +167,10 @@ impl Warning {
             Self::NoRobot { .. } => {
                 "if the sensor saw it, its base, its joints or a unit are wrong"
             }
+            Self::TakenForRobot { .. } => {
+                "look again from where the robot is farther from it, or make the padding smaller"
+            }
+            Self::RobotElsewhere { .. } => "check its base and its joints at that time",
             Self::Padding { .. } => "check its pose, its joints and the padding (metres)",
             Self::OutsideScene { .. } => "is the pose object to scene, in metres?",
             Self::Exchanged { .. } => {

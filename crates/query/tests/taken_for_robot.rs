@@ -1,0 +1,79 @@
+//! What a self filter takes for the robot is the robot, or nothing reads as free there.
+
+use std::sync::Arc;
+
+use crate::common::{at, measured, mesh};
+use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
+use cloudtouch::noise::SensorModel;
+use cloudtouch::{
+    Cloud, CloudSettings, Query, QuerySettings, Report, SelfMesh, Undecided, Verdict, Warning,
+};
+use cloudtouch_testkit::camera::DepthCamera;
+use cloudtouch_testkit::exact::ExactMesh;
+use cloudtouch_testkit::scene;
+
+const BAR: [f64; 3] = [0.4, 0.06, 0.06];
+
+/// A bar that is said to have been there when the scan was taken.
+fn link(cloud_from_link: Pose, padding: f64) -> SelfMesh {
+    SelfMesh { mesh: Arc::new(mesh(&scene::cuboid(BAR))), cloud_from_link, padding }
+}
+
+fn prepared(scan: &PointCloud, std: f64, robot: Vec<SelfMesh>) -> Cloud {
+    let mut settings = CloudSettings::new(SensorModel::Isotropic { std });
+    settings.filter.robot = robot;
+    Cloud::prepare(scan, &settings).expect("a good scan")
+}
+
+fn ask(cloud: &Cloud, pose: &Pose) -> Report {
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    query.run(cloud, &mesh(&scene::cuboid(BAR)), pose).expect("an answer")
+}
+
+/// The bar was 6 mm over a table, which was taken for it within its padding; lowered into it, it read `free`.
+#[test]
+fn a_table_beside_the_robot_was_taken_for_it() {
+    let over = |gap: f64| at(0.0, 0.0, gap + 0.5 * BAR[2]);
+    let seen_top = scene::moved(&scene::cuboid([BAR[0], BAR[1], 1e-4]), &over(0.006 + 0.03));
+    let mut points: Vec<Point3> = measured(&scene::plane_patch(1.2), 0.01, 0.002, 1);
+    points.extend(measured(&seen_top, 0.01, 0.002, 2));
+    let scan = PointCloud::from_points(points);
+    let cloud = prepared(&scan, 0.002, vec![link(over(0.006), 0.02)]);
+    for gap in [-0.004, -0.008] {
+        let report = ask(&cloud, &over(gap));
+        assert_eq!(report.undecided_by, Some(Undecided::Missing), "{gap}: {report:?}");
+        let says = |w: &Warning| matches!(w, Warning::TakenForRobot { share, .. } if *share > 0.01);
+        assert!(report.warnings.iter().any(says), "{gap}: {report:?}");
+    }
+    for gap in [0.006, 0.012, 0.05] {
+        assert_eq!(ask(&cloud, &over(gap)).verdict, Verdict::Free, "{gap}");
+    }
+    // By three standard deviations all that goes is the robot's.
+    let close = prepared(&scan, 0.002, vec![link(over(0.006), 0.005)]);
+    assert_ne!(ask(&close, &over(-0.008)).verdict, Verdict::Free);
+}
+
+/// Joints from another time cut the robot's shape out of what really is there, and it read `free` in it.
+#[test]
+fn a_robot_that_was_not_where_it_is_said_to_have_been_is_noticed() {
+    let floor = scene::moved(&scene::plane_patch(4.0), &at(0.0, 0.0, 2.0));
+    let carton = scene::moved(&scene::cuboid([0.3; 3]), &at(0.3, 0.0, 1.5));
+    let bar = scene::moved(&scene::cuboid(BAR), &at(0.0, 0.0, 1.45));
+    let [floor, carton, bar] = [floor, carton, bar].map(|part| ExactMesh::new(&part));
+    let camera = DepthCamera::default();
+    let image = |parts: &[&ExactMesh]| camera.scan(parts, &Pose::identity(), 3);
+    let (with_robot, without) = (image(&[&floor, &carton, &bar]), image(&[&floor, &carton]));
+    // With its end 5 cm in the carton, in a scan without it.
+    let inside = at(0.0, 0.0, 1.45);
+    let stale = ask(&prepared(&without, 0.003, vec![link(inside, 0.012)]), &inside);
+    assert_eq!(stale.undecided_by, Some(Undecided::Missing), "{stale:?}");
+    let says = |w: &Warning| matches!(w, Warning::RobotElsewhere { .. });
+    assert!(stale.warnings.iter().any(says), "{stale:?}");
+    // A mesh that is fatter than what it stands for is no sign of it.
+    let fat = Vector3::new(0.0, 0.0, -0.02);
+    for pose in [inside, at(0.0, 0.0, 1.45).after(&Pose::from_translation(fat))] {
+        let report =
+            ask(&prepared(&with_robot, 0.003, vec![link(pose, 0.03)]), &at(-0.5, 0.0, 1.4));
+        assert!(!report.warnings.iter().any(says), "{report:?}");
+    }
+}
