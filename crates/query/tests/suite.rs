@@ -48,6 +48,7 @@ mod rigid_motion;
 mod scale;
 mod scene;
 mod slips;
+mod slips_of_sensors;
 mod solved_tightly;
 mod sparse_frames;
 mod swap;

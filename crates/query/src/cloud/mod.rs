@@ -37,4 +37,4 @@ pub(crate) use surface::leaf::LeafSurface;
 pub(crate) use surface::onward::Onward;
 pub(crate) use surface::slab::Slab;
 pub(crate) use surface::surfel::{End, Surfel};
-pub(crate) use view::raster::Sight;
+pub(crate) use view::seen::Sight;

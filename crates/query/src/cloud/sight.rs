@@ -3,7 +3,7 @@
 use cloudtouch_geom::Point3;
 
 use super::prepared::Prepared;
-use super::view::raster::Sight;
+use super::view::seen::Sight;
 use super::view::{Seeing, range};
 
 impl Prepared {

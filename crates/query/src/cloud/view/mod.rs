@@ -1,9 +1,12 @@
 //! A single depth image: what its camera did not look at, or not see, was never seen to be empty.
 
+mod lens;
 mod lines;
 mod past;
 pub(super) mod range;
 pub(super) mod raster;
+mod robot;
+pub(super) mod seen;
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -12,7 +15,8 @@ use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::SensorNoise;
 use nalgebra::UnitQuaternion;
 
-use crate::cloud::view::raster::{CLEARLY, Raster, Sight};
+use crate::cloud::view::raster::Raster;
+use crate::cloud::view::seen::Sight;
 use crate::filter::SelfMesh;
 
 /// How far away what is too near to be trusted counts as seen, m.
@@ -180,31 +184,6 @@ impl Seeing<'_> {
         let thing = self.image.sensor_origin + ray.normalize() * range;
         let is_robot = self.image.robot.iter().any(|link| link.held(&thing));
         (!is_robot).then_some((thing, std))
-    }
-
-    /// Of the surface of the robot, or of a link, that the camera could have seen, the share that it looked past by more
-    /// than collision meshes are larger than links are; `None` where that is no more than of a robot that is there.
-    fn robot_passed(&self) -> Option<f64> {
-        /// A third of that, m.
-        const LARGER: f64 = 0.05 / CLEARLY;
-        /// Of all links, and of one: hulls of open grippers have much that nothing is in.
-        const MOST: [f64; 2] = [0.4, 0.8];
-        /// Fewer samples tell nothing.
-        const LEAST: usize = 100;
-        let of_link = |link: &SelfMesh| {
-            let rays = link.samples().map(|place| place - self.image.sensor_origin);
-            rays.fold([0; 2], |[passed, met], ray| match self.raster.looks_past(&ray, LARGER) {
-                true => [passed + 1, met],
-                false => [passed, met + usize::from(self.raster.sight(&ray) == Sight::Seen)],
-            })
-        };
-        let links: Vec<[usize; 2]> = self.image.robot.iter().map(of_link).collect();
-        let all = links.iter().fold([0; 2], |[p, m], [q, n]| [p + q, m + n]);
-        let told = |[passed, met]: [usize; 2], most: f64| {
-            let share = passed as f64 / (passed + met).max(LEAST) as f64;
-            (share > most).then_some(share)
-        };
-        told(all, MOST[0]).or_else(|| links.into_iter().find_map(|link| told(link, MOST[1])))
     }
 
     /// Whether it is of the scene as it was after all images before it.

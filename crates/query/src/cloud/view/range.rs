@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Point3;
 
-use super::raster::Sight;
+use super::seen::Sight;
 
 /// Up to where a scan without image layout tells, in the frame of its file: a depth image tells itself.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,61 @@
+//! How directions become places of a view.
+
+use std::f64::consts::TAU;
+
+use cloudtouch_geom::Vector3;
+use nalgebra::UnitQuaternion;
+
+/// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
+const PANORAMA: f64 = 0.17;
+
+/// How directions become places of a view.
+#[derive(Debug)]
+pub(super) enum Lens {
+    /// A camera: forward is where the points lie, right and down are as nearly as can be those of its rows and
+    /// columns, so that its view is a rectangle of the raster in every frame.
+    Camera([Vector3; 3]),
+    /// All around the vertical of the sensor: by azimuth and elevation, from its frame.
+    Panorama(UnitQuaternion<f64>),
+}
+
+impl Lens {
+    /// Of rays and how long they are, m.
+    pub(super) fn of<'a>(
+        rays: impl Iterator<Item = (&'a Vector3, f64)> + Clone,
+        turn: &UnitQuaternion<f64>,
+    ) -> Option<Self> {
+        let rays = || rays.clone().filter(|(_, range)| *range > 0.0);
+        let directions = rays().map(|(ray, range)| ray / range);
+        let forward = directions.sum::<Vector3>().try_normalize(0.0)?;
+        if rays().any(|(ray, range)| ray.dot(&forward) < PANORAMA * range) {
+            return Some(Self::Panorama(turn.inverse()));
+        }
+        // A camera looks along its z; one whose turn is stated otherwise, as in a frame with x forward, still has
+        // an axis aside.
+        let local = turn.inverse_transform_vector(&forward);
+        let right = if local.x.abs() < local.z.abs() { Vector3::x() } else { Vector3::y() };
+        let down = forward.cross(&turn.transform_vector(&right)).normalize();
+        Some(Self::Camera([down.cross(&forward), down, forward]))
+    }
+
+    pub(super) fn is_behind(&self, ray: &Vector3) -> bool {
+        match self {
+            Self::Camera([_, _, forward]) => ray.dot(forward) <= 0.0,
+            Self::Panorama(_) => false,
+        }
+    }
+
+    /// `None` for a direction that no view of this kind has.
+    pub(super) fn project(&self, ray: &Vector3) -> Option<[f64; 2]> {
+        match self {
+            Self::Camera([right, down, forward]) => {
+                let depth = ray.dot(forward);
+                (depth > 0.0).then(|| [ray.dot(right) / depth, ray.dot(down) / depth])
+            }
+            Self::Panorama(to_sensor) => {
+                let (range, ray) = (ray.norm(), to_sensor.transform_vector(ray));
+                (range > 0.0).then(|| [ray.y.atan2(ray.x).rem_euclid(TAU), (ray.z / range).asin()])
+            }
+        }
+    }
+}
