@@ -1,9 +1,8 @@
 //! What was taken for the robot, and is rather of something beside it.
 
-use std::collections::HashMap;
-
 use cloudtouch_geom::Point3;
 
+use super::beside::Near;
 use super::self_points::SelfMesh;
 
 /// Standard deviations that noise hardly brings a point off a link.
@@ -16,10 +15,10 @@ const GOES_ON: f64 = 1.5;
 #[derive(Debug, Clone)]
 pub(crate) struct Taken {
     links: Vec<SelfMesh>,
-    /// As wide as the largest padding.
-    cells: Cells,
-    /// Each with the distance, m, from all links from which on it may be what is there.
-    points: HashMap<[i64; 3], Vec<(Point3, f64)>>,
+    /// Which of them are within the largest padding of a place.
+    near: Near,
+    /// Of each the distance, m, from all links from which on it may be what is there.
+    from: Vec<f64>,
 }
 
 impl Taken {
@@ -33,83 +32,45 @@ impl Taken {
         /// Standard deviations that no noise reaches.
         const DEVIATIONS: f64 = 6.0;
         let widest = robot.iter().map(|link| link.padding).fold(0.0, f64::max);
-        let cells = Cells { width: widest };
-        let mut points: HashMap<_, Vec<_>> = HashMap::new();
-        let (mut all, mut beyond) = (0_usize, 0_usize);
         let links: Vec<_> = robot.iter().map(|link| (link.distances(), link.padding)).collect();
+        let (mut all, mut beyond) = (0_usize, 0_usize);
+        let mut points = Vec::new();
         for (point, std) in removed {
             all += 1;
-            let away = links.iter().map(|(distance, padding)| distance(point, *padding));
-            let away = away.fold(f64::INFINITY, f64::min);
+            let mut away = f64::INFINITY;
+            for (distance, padding) in &links {
+                away = away.min(distance(point, *padding));
+                if away <= CLEARLY * std {
+                    break;
+                }
+            }
             beyond += usize::from(away > DEVIATIONS * std);
             if away > CLEARLY * std {
-                let entry = (*point, away - CLEARLY * std);
-                points.entry(cells.of(point)).or_default().push(entry);
+                points.push((*point, away - CLEARLY * std));
             }
         }
-        cells.keep_beside(&mut points, kept);
-        let taken = (!points.is_empty()).then(|| Self { links: robot.to_vec(), cells, points });
+        let places = |points: &[(Point3, f64)]| points.iter().map(|(at, _)| *at).collect();
+        let mut is_beside =
+            Near::of(places(&points), GOES_ON * widest).with_any_of(kept).into_iter();
+        points.retain(|_| is_beside.next() == Some(true));
+        let taken = (!points.is_empty()).then(|| Self {
+            links: robot.to_vec(),
+            near: Near::of(places(&points), widest),
+            from: points.iter().map(|(_, from)| *from).collect(),
+        });
         (taken, beyond as f64 / all.max(1) as f64)
     }
 
     /// Whether something may be at a place near the robot, which the filter took for it.
     pub(crate) fn may_be_at(&self, place: &Point3) -> bool {
-        let near = |width: f64| {
-            let cells = Cells::around(self.cells.of(place)).filter_map(|at| self.points.get(&at));
-            cells.flatten().filter(move |(point, _)| (point - place).norm() <= width)
-        };
-        if near(self.cells.width).next().is_none() {
+        let from = self.near.to(place).map(|index| self.from[index as usize]);
+        let from = from.fold(f64::INFINITY, f64::min);
+        if from == f64::INFINITY {
             return false;
         }
         let away = self.links.iter().map(|link| link.distances()(place, link.padding));
         let away = away.fold(f64::INFINITY, f64::min);
-        away.is_finite() && near(self.cells.width).any(|(_, from)| away >= *from)
-    }
-}
-
-/// A grid of cubes.
-#[derive(Debug, Clone, Copy)]
-struct Cells {
-    width: f64,
-}
-
-impl Cells {
-    fn of(self, place: &Point3) -> [i64; 3] {
-        [0, 1, 2].map(|k| (place[k] / self.width).floor() as i64)
-    }
-
-    /// A cell and all that touch it.
-    fn around([x, y, z]: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
-        let steps = || -1..=1;
-        steps().flat_map(move |dx| {
-            steps().flat_map(move |dy| steps().map(move |dz| [x + dx, y + dy, z + dz]))
-        })
-    }
-
-    /// Keeps those with a point that stayed nearby.
-    fn keep_beside(self, points: &mut HashMap<[i64; 3], Vec<(Point3, f64)>>, kept: &[Point3]) {
-        let within = GOES_ON * self.width;
-        let wide = Self { width: within };
-        let mut beside: HashMap<[i64; 3], Vec<Point3>> = HashMap::new();
-        for (point, _) in points.values().flatten() {
-            Self::around(wide.of(point)).for_each(|at| {
-                beside.entry(at).or_default();
-            });
-        }
-        if beside.is_empty() {
-            return;
-        }
-        for point in kept {
-            if let Some(cell) = beside.get_mut(&wide.of(point)) {
-                cell.push(*point);
-            }
-        }
-        let stays = |(point, _): &(Point3, f64)| {
-            let near = Self::around(wide.of(point)).filter_map(|at| beside.get(&at)).flatten();
-            near.into_iter().any(|kept| (kept - point).norm() <= within)
-        };
-        points.values_mut().for_each(|of_cell| of_cell.retain(stays));
-        points.retain(|_, of_cell| !of_cell.is_empty());
+        away.is_finite() && away >= from
     }
 }
 
