@@ -41,7 +41,7 @@ impl Terms {
         is_clear: bool,
         may_be_free: bool,
     ) -> Doubts {
-        let unseen = unseen(a, b, local, is_clear);
+        let unseen = unseen(a, b, local, may_be_free, is_clear);
         let warnings =
             doubts((a, b), Some(local), unseen.as_ref(), self.are_alone, &self.safeguards);
         let gravest = || {

@@ -12,7 +12,7 @@ impl Raster {
         // Here, left, right, above and below.
         let mut has_return = [false; 5];
         for ([dx, dy], cell) in self.around(ray) {
-            nearest = nearest.min(self.clearly_before[cell]);
+            nearest = nearest.min(self.cells[cell].clearly_before);
             let is_of = [dx == 0 && dy == 0, dx < 0, dx > 0, dy < 0, dy > 0];
             for (has, is_of) in has_return.iter_mut().zip(is_of) {
                 *has |= is_of;
@@ -27,11 +27,11 @@ impl Raster {
         let range = ray.norm();
         let (mut before, mut behind) = (f64::INFINITY, f64::INFINITY);
         for (_, cell) in self.around(ray) {
-            if range <= self.behind_nearest[cell] {
+            if range <= self.cells[cell].behind_nearest {
                 return None;
             }
-            before = before.min(self.clearly_before[cell]);
-            behind = behind.min(self.behind_nearest[cell]);
+            before = before.min(self.cells[cell].clearly_before);
+            behind = behind.min(self.cells[cell].behind_nearest);
         }
         behind.is_finite().then(|| [0.5 * (before + behind), 0.5 * (behind - before) / CLEARLY])
     }
@@ -46,7 +46,7 @@ impl Raster {
                 (-rows..=rows).flat_map(move |dy| (-columns..=columns).map(move |dx| [dx, dy]));
             steps.filter_map(move |[dx, dy]| {
                 let cell = self.index(x + dx, y + dy)?;
-                (self.clearly_behind[cell] > 0.0).then_some(([dx, dy], cell))
+                (self.cells[cell].clearly_behind > 0.0).then_some(([dx, dy], cell))
             })
         })
     }

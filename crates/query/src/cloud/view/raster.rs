@@ -37,16 +37,34 @@ pub(super) struct Raster {
     is_round: bool,
     /// How many columns and rows of cells it takes to reach a pixel beside one.
     pub(super) reach: [isize; 2],
-    /// The range, m, clearly behind the farthest return of each cell; zero without one.
-    pub(super) clearly_behind: Vec<f64>,
-    /// The range, m, clearly behind the nearest return of each cell; infinite without one.
-    pub(super) behind_nearest: Vec<f64>,
-    /// The range, m, clearly before the nearest return of each cell; infinite without one.
-    pub(super) clearly_before: Vec<f64>,
+    // PERF: what is told of a cell is looked up at once.
+    pub(super) cells: Vec<Cell>,
     /// Of each cell whether what is farther was left out; empty where nothing was.
     pub(super) is_open: Vec<bool>,
     /// Of a panorama whose lines are farther apart than the pixels of one.
     pub(super) lines: Option<Lines>,
+}
+
+/// What was met in a cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cell {
+    /// The range, m, clearly behind the farthest return; zero without one.
+    pub(super) clearly_behind: f64,
+    /// The range, m, clearly behind the nearest return; infinite without one.
+    pub(super) behind_nearest: f64,
+    /// The range, m, clearly before the nearest return; infinite without one.
+    pub(super) clearly_before: f64,
+}
+
+impl Cell {
+    const EMPTY: Self =
+        Self { clearly_behind: 0.0, behind_nearest: f64::INFINITY, clearly_before: f64::INFINITY };
+
+    fn add(&mut self, [before, behind]: [f64; 2]) {
+        self.clearly_behind = self.clearly_behind.max(behind);
+        self.behind_nearest = self.behind_nearest.min(behind);
+        self.clearly_before = self.clearly_before.min(before);
+    }
 }
 
 impl Raster {
@@ -100,14 +118,13 @@ impl Raster {
         if is_round {
             size[0] = columns as usize;
         }
-        let cells = size[0] * size[1];
+        let count = size[0] * size[1];
         let steps = match lens {
             Lens::Camera(_) => [pitch / CELL_PIXELS; 2],
             Lens::Panorama(_) => steps_of_panorama(extent, pixels),
         };
         let reach = steps.map(|step| (step / pitch).ceil().max(1.0) as isize);
-        let (clearly_behind, clearly_before) = (vec![0.0; cells], vec![f64::INFINITY; cells]);
-        let is_open = vec![false; if beyond.is_empty() { 0 } else { cells }];
+        let is_open = vec![false; if beyond.is_empty() { 0 } else { count }];
         let mut raster = Self {
             lens,
             low,
@@ -116,17 +133,13 @@ impl Raster {
             span,
             is_round,
             reach,
-            clearly_behind,
-            behind_nearest: vec![f64::INFINITY; cells],
-            clearly_before,
+            cells: vec![Cell::EMPTY; count],
             is_open,
-            lines: (steps[1] > APART * steps[0]).then(|| Lines::new(cells, steps[1])),
+            lines: (steps[1] > APART * steps[0]).then(|| Lines::new(count, steps[1])),
         };
         for (number, [before, behind], at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
-                raster.clearly_behind[cell] = raster.clearly_behind[cell].max(behind);
-                raster.behind_nearest[cell] = raster.behind_nearest[cell].min(behind);
-                raster.clearly_before[cell] = raster.clearly_before[cell].min(before);
+                raster.cells[cell].add([before, behind]);
                 if number >= returns {
                     raster.is_open[cell] = true;
                 }

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Vector3;
 
-use super::raster::Raster;
+use super::raster::{Cell, Raster};
 
 /// A place is in a hole when nothing was measured so many cells around its own: every hole eight pixels wide has
 /// such places, and smaller ones are specks that hardly a surface hides in.
@@ -60,7 +60,7 @@ impl Raster {
                 let step = if dy.abs() == ring { 1 } else { 2 * ring.max(1) };
                 for dx in (-ring..=ring).step_by(step as usize) {
                     if let Some(cell) = self.index(x + dx, y + dy) {
-                        let behind = self.clearly_behind[cell];
+                        let behind = self.cells[cell].clearly_behind;
                         let told = if ring == 0 { self.behind_rim(range, [x, y]) } else { behind };
                         farthest = farthest.max(told);
                         is_open |= self.is_open.get(cell).is_some_and(|&is_open| is_open);
@@ -84,12 +84,12 @@ impl Raster {
     /// surface recedes from before the cell to beyond it.
     fn behind_rim(&self, range: f64, [x, y]: [isize; 2]) -> f64 {
         let Some(cell) = self.index(x, y) else { return 0.0 };
-        let [nearest, farthest] = [self.behind_nearest[cell], self.clearly_behind[cell]];
+        let Cell { behind_nearest: nearest, clearly_behind: farthest, .. } = self.cells[cell];
         let recedes = || {
             let before = nearest - STEADY * (farthest - nearest);
             let beside =
                 [[1, 0], [-1, 0], [0, 1], [0, -1]].map(|[dx, dy]| self.index(x + dx, y + dy));
-            beside.into_iter().flatten().any(|cell| self.behind_nearest[cell] <= before)
+            beside.into_iter().flatten().any(|cell| self.cells[cell].behind_nearest <= before)
         };
         if nearest < range && range <= farthest && recedes() {
             farthest
@@ -101,7 +101,7 @@ impl Raster {
     /// Whether a range is behind all returns of a cell, by so little that it may be inside what they came from. The
     /// nearest alone would be passed by what lies on a surface that is seen at a low angle.
     fn is_close_behind(&self, range: f64, [x, y]: [isize; 2]) -> bool {
-        let behind = self.index(x, y).map_or(0.0, |cell| self.clearly_behind[cell]);
+        let behind = self.index(x, y).map_or(0.0, |cell| self.cells[cell].clearly_behind);
         range > behind && range <= behind + CLOSE
     }
 
