@@ -1,7 +1,6 @@
 //! The cleaning pipeline of the paper's section 3: what a sensor delivers in, what a query should
 //! see out, with a count for every stage.
 
-mod beside;
 mod collision_map;
 mod duplicates;
 mod going_on;

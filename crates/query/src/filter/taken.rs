@@ -1,8 +1,10 @@
 //! What was taken for the robot, and is rather of something beside it.
 
-use cloudtouch_geom::Point3;
+use std::sync::Arc;
 
-use super::beside::Near;
+use cloudtouch_geom::{Point3, Vector3, bounding_box};
+use cloudtouch_noise::{Neighbor, Neighborhoods, NoiseError};
+
 use super::self_points::SelfMesh;
 
 /// Standard deviations that noise hardly brings a point off a link.
@@ -15,23 +17,29 @@ const GOES_ON: f64 = 1.5;
 #[derive(Debug, Clone)]
 pub(crate) struct Taken {
     links: Vec<SelfMesh>,
-    /// Which of them are within the largest padding of a place.
-    near: Near,
-    /// Of each the distance, m, from all links from which on it may be what is there.
+    /// The largest of their paddings, m.
+    padding: f64,
+    points: Arc<Neighborhoods>,
+    /// The box around all places within that padding of the points.
+    around: [Point3; 2],
+    /// Of each point the distance, m, from all links from which on it may be what is there.
     from: Vec<f64>,
 }
 
 impl Taken {
     /// Of points that a filter removed, each with its standard deviation, m, and those that it kept; and the share of
     /// the removed that is farther from every link than any noise brings them. Nothing where none is to be told.
+    ///
+    /// # Errors
+    /// When there are too many of them.
     pub(crate) fn of<'a>(
         removed: impl Iterator<Item = (&'a Point3, f64)>,
         kept: &[Point3],
         robot: &[SelfMesh],
-    ) -> (Option<Self>, f64) {
+    ) -> Result<(Option<Self>, f64), NoiseError> {
         /// Standard deviations that no noise reaches.
         const DEVIATIONS: f64 = 6.0;
-        let widest = robot.iter().map(|link| link.padding).fold(0.0, f64::max);
+        let padding = robot.iter().map(|link| link.padding).fold(0.0, f64::max);
         let links: Vec<_> = robot.iter().map(|link| (link.distances(), link.padding)).collect();
         let (mut all, mut beyond) = (0_usize, 0_usize);
         let mut points = Vec::new();
@@ -49,22 +57,22 @@ impl Taken {
                 points.push((*point, away - CLEARLY * std));
             }
         }
-        let places = |points: &[(Point3, f64)]| points.iter().map(|(at, _)| *at).collect();
-        let mut is_beside =
-            Near::of(places(&points), GOES_ON * widest).with_any_of(kept).into_iter();
-        points.retain(|_| is_beside.next() == Some(true));
-        let taken = (!points.is_empty()).then(|| Self {
-            links: robot.to_vec(),
-            near: Near::of(places(&points), widest),
-            from: points.iter().map(|(_, from)| *from).collect(),
-        });
-        (taken, beyond as f64 / all.max(1) as f64)
+        let share = beyond as f64 / all.max(1) as f64;
+        let points = going_on(points, kept, GOES_ON * padding)?;
+        let places: Vec<Point3> = points.iter().map(|(at, _)| *at).collect();
+        let Some(around) = around(&places, padding) else { return Ok((None, share)) };
+        let from = points.iter().map(|(_, from)| *from).collect();
+        let points = Arc::new(Neighborhoods::new(places)?);
+        Ok((Some(Self { links: robot.to_vec(), padding, points, around, from }), share))
     }
 
     /// Whether something may be at a place near the robot, which the filter took for it.
     pub(crate) fn may_be_at(&self, place: &Point3) -> bool {
-        let from = self.near.to(place).map(|index| self.from[index as usize]);
-        let from = from.fold(f64::INFINITY, f64::min);
+        let mut from = f64::INFINITY;
+        if is_in(&self.around, place) {
+            let take = |near: Neighbor| from = from.min(self.from[near.index]);
+            self.points.visit_within(place, self.padding, take);
+        }
         if from == f64::INFINITY {
             return false;
         }
@@ -72,6 +80,34 @@ impl Taken {
         let away = away.fold(f64::INFINITY, f64::min);
         away.is_finite() && away >= from
     }
+}
+
+/// Those of some points that others are so near to, m.
+fn going_on(
+    mut points: Vec<(Point3, f64)>,
+    others: &[Point3],
+    within: f64,
+) -> Result<Vec<(Point3, f64)>, NoiseError> {
+    let places: Vec<Point3> = points.iter().map(|(at, _)| *at).collect();
+    let Some(around) = around(&places, within) else { return Ok(points) };
+    let places = Neighborhoods::new(places)?;
+    let mut goes_on = vec![false; points.len()];
+    for other in others.iter().filter(|other| is_in(&around, other)) {
+        places.visit_within(other, within, |near| goes_on[near.index] = true);
+    }
+    let mut goes_on = goes_on.into_iter();
+    points.retain(|_| goes_on.next() == Some(true));
+    Ok(points)
+}
+
+/// The box around all places so near to some points, m; `None` of none.
+fn around(points: &[Point3], within: f64) -> Option<[Point3; 2]> {
+    let margin = Vector3::repeat(within);
+    bounding_box(points).map(|(low, high)| [low - margin, high + margin])
+}
+
+fn is_in([low, high]: &[Point3; 2], place: &Point3) -> bool {
+    (0..3).all(|k| low[k] <= place[k] && place[k] <= high[k])
 }
 
 #[cfg(test)]
@@ -108,7 +144,7 @@ mod tests {
         let link = bar(0.008);
         let [removed, kept] = table(&link);
         let with_std = removed.iter().map(|point| (point, 0.001));
-        let (taken, share) = Taken::of(with_std, &kept, &[link]);
+        let (taken, share) = Taken::of(with_std, &kept, &[link]).unwrap();
         let taken = taken.unwrap();
         assert_eq!(share, 1.0);
         let at = |z: f64| taken.may_be_at(&Point3::new(0.1, 0.03, z));
@@ -124,7 +160,9 @@ mod tests {
         let [removed, kept] = table(&link);
         let own = [Point3::new(0.0, 0.0, 0.078)];
         let of = |removed: &[Point3], std: f64, kept: &[Point3]| {
-            Taken::of(removed.iter().map(|point| (point, std)), kept, std::slice::from_ref(&link)).0
+            Taken::of(removed.iter().map(|point| (point, std)), kept, std::slice::from_ref(&link))
+                .unwrap()
+                .0
         };
         assert!(of(&removed, 0.01, &kept).is_none());
         assert!(of(&removed, 0.001, &[]).is_none());

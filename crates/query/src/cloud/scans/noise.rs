@@ -58,6 +58,6 @@ pub(super) fn padded(
     }
     let noise = noise_of(of_robot, by)?;
     let points = of_robot.points.iter().zip(noise.iter().map(Covariance::max_std_at_most));
-    let (taken, share) = Taken::of(points, kept, &by.filter.robot);
+    let (taken, share) = Taken::of(points, kept, &by.filter.robot)?;
     Ok((taken, (share > MOST).then_some(SensorDoubt::Padding { share })))
 }
