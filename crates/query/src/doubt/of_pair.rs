@@ -61,8 +61,8 @@ pub(crate) fn doubts(
     let mut warnings: Vec<Warning> =
         bodies.into_iter().flat_map(|(body, shape, _)| of_surface(body, shape, limits)).collect();
     let smaller = a.size().min(b.size());
-    let gap = a_from_b.map_or(0.0, |a_from_b| box_gap(a, b, a_from_b));
-    let sizes = (smaller, gap);
+    let gap = a_from_b.map(|a_from_b| box_gap(a, b, a_from_b));
+    let sizes = (smaller, gap.unwrap_or(0.0));
     warnings.extend(bodies.into_iter().filter_map(|(body, shape, _)| coarse(body, shape, sizes)));
     warnings.extend(units((a, b), are_alone));
     warnings.extend(bodies.into_iter().filter_map(|(body, shape, other)| match shape {
@@ -73,10 +73,9 @@ pub(crate) fn doubts(
     }));
     warnings.extend(bodies.into_iter().flat_map(|(body, shape, _)| of_sensor(body, shape)));
     warnings.extend(exchanged(a, b).filter(|_| are_alone));
-    warnings.extend(a_from_b.and_then(|a_from_b| apart((a, b), a_from_b)));
+    warnings.extend(gap.and_then(|gap| apart((a, b), gap)));
     warnings.extend(unseen.and_then(|unseen| limits.exceeded_by(unseen)));
-    warnings
-        .extend(a_from_b.and_then(|a_from_b| taken_for_robot((a, b), a_from_b, limits.max_unseen)));
+    warnings.extend(a_from_b.and_then(|a_from_b| taken_for_robot((a, b), a_from_b, limits)));
     warnings
 }
 
@@ -224,8 +223,7 @@ fn exchanged(a: Shape<'_>, b: Shape<'_>) -> Option<Warning> {
     is_larger.then_some(Warning::Exchanged { size_m, other_size_m })
 }
 
-fn apart((a, b): (Shape<'_>, Shape<'_>), a_from_b: &Pose) -> Option<Warning> {
-    let gap_m = box_gap(a, b, a_from_b);
+fn apart((a, b): (Shape<'_>, Shape<'_>), gap_m: f64) -> Option<Warning> {
     let larger = a.size().max(b.size());
     if larger > 0.0 && gap_m > FARTHEST_SIZES * larger {
         Some(Warning::FarAway { gap_m, size_m: larger })

@@ -6,9 +6,9 @@ use crate::doubt::unseen::Unseen;
 use crate::doubt::warning::Warning;
 use crate::error::SettingsError;
 
-/// Surface close behind what was seen counts for so many times as much as what is in its shadow
+/// Surface where something rather is counts for so many times as much as what is in a shadow
 /// (docs/decisions/0049-close-behind-what-was-seen.md).
-const CLOSE_BEHIND: f64 = 10.0;
+const RATHER_THERE: f64 = 10.0;
 
 /// Limits beyond which a pair that would read as free, or between the thresholds, is undecided.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -48,15 +48,16 @@ impl Safeguards {
 
     /// What is to be said of surface that was not seen, where it is more than may be.
     pub(crate) fn exceeded_by(&self, unseen: &Unseen) -> Option<Warning> {
-        let Self { max_unseen, .. } = *self;
-        let Unseen { body, close_behind, .. } = *unseen;
-        if unseen.share() > max_unseen {
-            Some(Warning::Unseen { body, share: unseen.share(), limit: max_unseen })
-        } else if CLOSE_BEHIND * close_behind > max_unseen && max_unseen < 1.0 {
-            let limit = max_unseen / CLOSE_BEHIND;
-            Some(Warning::CloseBehind { body, share: close_behind, limit })
-        } else {
-            None
+        let Unseen { body, close_behind: share, .. } = *unseen;
+        if unseen.share() > self.max_unseen {
+            return Some(Warning::Unseen { body, share: unseen.share(), limit: self.max_unseen });
         }
+        let limit = self.most_rather_there().filter(|limit| share > *limit)?;
+        Some(Warning::CloseBehind { body, share, limit })
+    }
+
+    /// How much of a surface may lie where something rather is, as a share; `None` where nothing objects.
+    pub(crate) fn most_rather_there(&self) -> Option<f64> {
+        (self.max_unseen < 1.0).then_some(self.max_unseen / RATHER_THERE)
     }
 }

@@ -3,28 +3,24 @@
 use cloudtouch_geom::Pose;
 
 use crate::cloud::Prepared;
+use crate::doubt::safeguards::Safeguards;
 use crate::doubt::warning::{Warning, Which};
 use crate::shape::Shape;
-
-/// So little of a surface may be there, as a share of what may be unseen.
-const SHARE: f64 = 0.1;
 
 /// What is to be said where more of one body lies where points of the other were taken for the robot, though farther
 /// from it than their noise tells.
 pub(crate) fn taken_for_robot(
     (a, b): (Shape<'_>, Shape<'_>),
     a_from_b: &Pose,
-    max_unseen: f64,
+    limits: &Safeguards,
 ) -> Option<Warning> {
+    let limit = limits.most_rather_there()?;
     let told = |cloud: Shape<'_>, other: Shape<'_>, body: Which, cloud_from_other: &Pose| {
         let Shape::Cloud(cloud) = cloud else { return None };
-        let (share, limit) = (share(cloud, other, cloud_from_other)?, SHARE * max_unseen);
-        (share > limit).then_some(Warning::TakenForRobot { body, share, limit })
+        let share = share(cloud, other, cloud_from_other).filter(|share| *share > limit)?;
+        Some(Warning::TakenForRobot { body, share, limit })
     };
-    let is_asked = max_unseen < 1.0;
-    let of_b = || told(a, b, Which::B, a_from_b);
-    let of_a = || told(b, a, Which::A, &a_from_b.inverse());
-    is_asked.then(|| of_b().or_else(of_a)).flatten()
+    told(a, b, Which::B, a_from_b).or_else(|| told(b, a, Which::A, &a_from_b.inverse()))
 }
 
 /// Whether a body may say so of a place.
