@@ -4,9 +4,9 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TreeError {
-    /// A coordinate is NaN, infinite, or so large that its square leaves the range of `f64`.
+    /// A coordinate is NaN, infinite, or so large that the side of a box leaves the range of `f32`.
     #[error(
-        "primitive {index} has the coordinate {value}: coordinates must be finite and below 1e100 \
+        "primitive {index} has the coordinate {value}: coordinates must be finite and below 1e37 \
          in magnitude; drop missing returns before building"
     )]
     Coordinate {

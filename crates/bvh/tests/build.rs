@@ -4,7 +4,7 @@ use crate::common;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use crate::common::{bumpy_sheet, degenerate_clouds, noisy};
+use crate::common::{bumpy_sheet, degenerate_clouds, is_kept, noisy};
 use cloudtouch_bvh::{
     LeafBounds, Node, NodeId, Primitive, Primitives, Tree, TreeError, TreeSettings, Visit,
 };
@@ -93,7 +93,7 @@ fn without_an_overlap_siblings_keep_to_what_they_hold() {
     let sheet = |x: f64| bumpy_sheet(3, 300, Vector3::new(x, 0.0, 0.0));
     let tree = Tree::build([sheet(0.0), sheet(3.0)].concat(), &settings).unwrap();
     let root = tree.root().unwrap();
-    let [left, right] = root.children().unwrap().map(|id| *tree.node(id).unwrap().obb());
+    let [left, right] = root.children().unwrap().map(|id| tree.node(id).unwrap().obb());
     let axis = root.obb().axes.column(0).into_owned();
     let apart = axis.dot(&(right.centre - left.centre)).abs();
     assert!(apart - left.half_width_along(&axis) - right.half_width_along(&axis) > 0.5);
@@ -158,7 +158,7 @@ fn bounds_cover_every_point_in_every_direction() {
         .collect();
     let tree = Tree::build(cloud, &TreeSettings::default()).unwrap();
     tree.visit_nodes(|node| {
-        assert!((node.max_std() - 0.05).abs() < 1e-12);
+        assert!(is_kept(node.max_std(), 0.05));
         for direction in [Vector3::x(), Vector3::y(), Vector3::z(), Vector3::new(0.8, 0.0, -0.6)] {
             let bound = node.std_along(&direction);
             assert!(bound >= needle.std_along(&direction) - 1e-15 && bound <= node.max_std());
@@ -169,7 +169,7 @@ fn bounds_cover_every_point_in_every_direction() {
     for leaf in tree.leaves() {
         for k in 0..3 {
             let axis = leaf.obb().axes.column(k).into_owned();
-            assert!((leaf.std_along(&axis) - needle.std_along(&axis)).abs() < 1e-12);
+            assert!((leaf.std_along(&axis) - needle.std_along(&axis)).abs() < 1e-8);
         }
     }
 }
@@ -260,7 +260,7 @@ fn a_tree_built_with_bounds_is_one_that_is_given_them() {
             let node = tree.node(id).unwrap();
             let bounds = [node.max_std(), node.shift(), node.reach(), node.coverage()];
             let along = node.std_along(&Vector3::new(0.6, 0.0, 0.8));
-            let shape = (*node.obb(), node.moments());
+            let shape = (node.obb(), node.moments());
             told.push((id, node.primitive_indices().to_vec(), bounds, along, shape));
             next.extend(node.children().into_iter().flatten());
         }

@@ -135,5 +135,6 @@ fn the_bound_of_what_was_culled_is_reported() {
         })
         .find(|outcome| outcome.culled == 1)
         .expect("one of fifty draws culls");
-    assert!((culled.culled_bound - expected).abs() < 1e-9);
+    // Sides and deviations are rounded up to single precision.
+    assert!(culled.culled_bound >= expected && culled.culled_bound - expected < 1e-6);
 }

@@ -16,8 +16,8 @@ impl Tree {
     /// Fits both children of a node.
     pub(crate) fn fit_children(&mut self, parent: u32, children: [u32; 2]) {
         let fitted = children.map(|child| self.fitted(child));
-        let obb = &self.nodes[parent as usize].obb;
-        let overlapping = overlapping(obb, fitted, self.settings.sibling_overlap);
+        let obb = self.nodes[parent as usize].obb.unpacked();
+        let overlapping = overlapping(&obb, fitted, self.settings.sibling_overlap);
         for (child, (_, obb)) in children.into_iter().zip(overlapping) {
             self.set_shape(child, obb);
         }
@@ -37,20 +37,17 @@ impl Tree {
     }
 
     pub(crate) fn set_shape(&mut self, id: u32, obb: Obb) {
-        let node = &mut self.nodes[id as usize];
-        node.obb = obb;
-        node.outside.take();
+        self.nodes[id as usize].obb = (&obb).into();
+        self.coverages.forget();
     }
 
     /// Takes bounds anew from a leaf (or a node just split) up to the root, and forgets the coverages, leaving
     /// the boxes as they are.
     pub(crate) fn update_up(&mut self, from: u32) {
         for id in self.path_up(from) {
-            let bounds = self.bounds_of(id);
-            let node = &mut self.nodes[id as usize];
-            node.bounds = bounds;
-            node.outside.take();
+            self.set_bounds(id);
         }
+        self.coverages.forget();
     }
 }
 

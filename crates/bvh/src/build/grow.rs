@@ -2,7 +2,7 @@
 
 use crate::build::fit::overlapping;
 use crate::build::parts::{Memory, Part, fitted_halves, fitted_parts, halve, set_far_apart};
-use crate::tree::node::NodeData;
+use crate::tree::node::{Link, NodeData};
 use crate::{Moments, Obb, Primitives, TreeSettings};
 
 /// Halves of a node of fewer are not worth a thread of their own, ...
@@ -64,7 +64,7 @@ impl<'a> Growth<'a> {
     /// order of the leaves.
     pub(crate) fn grow(&self, top: Fitted, parts: &mut [Part], memory: &mut Memory) -> Grown {
         // Only all of them are asked for what is far, and what is left then: of a part its ends would be.
-        let is_all = top.0.parent.is_none();
+        let is_all = top.0.parent == Link::NONE;
         self.grow_any(top, parts, is_all, memory)
     }
 
@@ -103,7 +103,7 @@ impl<'a> Growth<'a> {
         let start = top.start;
         // PERF: room for all, which to move would take longer than to fill.
         let mut nodes = Vec::with_capacity(self.settings.most_nodes(parts.len()));
-        nodes.push(NodeData { parent: None, ..top });
+        nodes.push(top.under(Link::NONE));
         let mut stack = vec![(0, moments, is_all)];
         while let Some((id, moments, is_all)) = stack.pop() {
             let node = &nodes[id];
@@ -117,8 +117,8 @@ impl<'a> Growth<'a> {
             let fitted = fitted_halves([low, high], self.primitives, self.are_points);
             let [(low, of_low), (high, of_high)] = self.halves(node, middle, fitted);
             let first = nodes.len();
-            nodes[id].children = Some([first as u32, first as u32 + 1]);
-            nodes.extend([low, high].map(|half| NodeData { parent: Some(id as u32), ..half }));
+            nodes[id].set_children(Some([first as u32, first as u32 + 1]));
+            nodes.extend([low, high].map(|half| half.under((id as u32).into())));
             stack.extend([(first, of_low, is_of_far), (first + 1, of_high, false)]);
         }
         Grown::All(nodes)
@@ -148,9 +148,10 @@ impl<'a> Growth<'a> {
 
     /// Leaves over both parts of a node.
     fn halves(&self, node: &NodeData, middle: usize, fitted: [(Moments, Obb); 2]) -> [Fitted; 2] {
-        let [first, second] = overlapping(&node.obb, fitted, self.settings.sibling_overlap);
+        let [first, second] =
+            overlapping(&node.obb.unpacked(), fitted, self.settings.sibling_overlap);
         let count = middle as u32;
-        let leaf = |start, count, (moments, obb)| (NodeData::leaf(start, count, obb), moments);
+        let leaf = |start, count, (moments, obb)| (NodeData::leaf(start, count, &obb), moments);
         [leaf(node.start, count, first), leaf(node.start + count, node.count - count, second)]
     }
 }

@@ -10,7 +10,8 @@ use cloudtouch_geom::{Matrix3, Point3, Vector3};
 use crate::build::grow::{ALONE, Grown, Growth, LEAST_SHARED};
 use crate::build::parts::{Memory, parts_of};
 use crate::tree::bounds_list::BoundsList;
-use crate::tree::node::NodeData;
+use crate::tree::coverage::Coverages;
+use crate::tree::node::{Link, NodeData};
 use crate::{LeafBounds, Moments, Node, Obb, Primitive, Primitives, Tree, TreeError, TreeSettings};
 
 /// Indices are 32 bit.
@@ -70,9 +71,10 @@ impl Tree {
             primitives,
             refined: BoundsList::default(),
             extents: Vec::new(),
-            leaf_of: vec![None; count],
+            leaf_of: vec![Link::NONE; count],
             order: (0..count as u32).collect(),
             nodes: Vec::new(),
+            coverages: Coverages::default(),
             free: Vec::new(),
             root: None,
             spread_when_built: 0.0,
@@ -85,6 +87,7 @@ impl Tree {
     pub fn rebuild(&mut self) {
         self.nodes.clear();
         self.free.clear();
+        self.coverages.forget();
         // The order of indices, so that the result is that of a build and not of the history.
         self.order.sort_unstable();
         self.grow(ALONE);
@@ -95,7 +98,7 @@ impl Tree {
     fn grow(&mut self, least_shared: usize) {
         self.root = None;
         if !self.order.is_empty() {
-            let root = self.new_node(None, 0, self.order.len() as u32);
+            let root = self.new_node(0, self.order.len() as u32);
             self.root = Some(root);
             let moments = self.fit(root);
             self.partition(root, moments, least_shared);
@@ -112,7 +115,7 @@ impl Tree {
     }
 
     fn partition(&mut self, leaf: u32, moments: Moments, least_shared: usize) {
-        let top = self.nodes[leaf as usize].clone();
+        let top = self.nodes[leaf as usize];
         let mut parts = parts_of(&self.primitives, self.indices_of(leaf));
         let growth =
             Growth::new(&self.primitives, &self.settings, self.indices_of(leaf), least_shared);
@@ -130,10 +133,10 @@ impl Tree {
         match grown {
             Grown::Halves(halves) => {
                 let (top, halves) = *halves;
-                let mut add =
-                    |half: &Grown| self.add(NodeData { parent: Some(leaf), ..half.top().clone() });
+                let mut add = |half: &Grown| self.add(half.top().under(leaf.into()));
                 let names = [add(&halves[0]), add(&halves[1])];
-                self.nodes[leaf as usize] = NodeData { parent, children: Some(names), ..top };
+                self.nodes[leaf as usize] = top.under(parent);
+                self.nodes[leaf as usize].set_children(Some(names));
                 let [first, second] = halves;
                 self.graft(names[1], second);
                 self.graft(names[0], first);
@@ -162,17 +165,17 @@ impl Tree {
     fn rename(&mut self, id: u32, names: &[u32]) {
         let name = |own: u32| names[own as usize];
         let node = &mut self.nodes[id as usize];
-        node.parent = node.parent.map(name);
-        node.children = node.children.map(|children| children.map(name));
+        node.parent = node.parent.get().map_or(Link::NONE, |parent| Link::from(name(parent)));
+        node.set_children(node.children().map(|children| children.map(name)));
         self.tell_leaf(id);
     }
 
     /// Tells what a leaf holds where it is.
     fn tell_leaf(&mut self, id: u32) {
         let node = &self.nodes[id as usize];
-        if node.children.is_none() {
+        if node.is_leaf() {
             for &index in &self.order[node.start as usize..][..node.count as usize] {
-                self.leaf_of[index as usize] = Some(id);
+                self.leaf_of[index as usize] = Link::from(id);
             }
         }
     }
@@ -183,17 +186,18 @@ impl Tree {
     }
 
     /// A leaf over a range of `order`, not fitted yet.
-    pub(crate) fn new_node(&mut self, parent: Option<u32>, start: u32, count: u32) -> u32 {
+    pub(crate) fn new_node(&mut self, start: u32, count: u32) -> u32 {
         let obb = Obb {
             centre: Point3::origin(),
             axes: Matrix3::identity(),
             half_extents: Vector3::zeros(),
         };
-        self.add(NodeData { parent, ..NodeData::leaf(start, count, obb) })
+        self.add(NodeData::leaf(start, count, &obb))
     }
 
     /// Gives a node the name of one that is not in use any more, if there is one.
     fn add(&mut self, node: NodeData) -> u32 {
+        self.coverages.forget();
         if let Some(id) = self.free.pop() {
             self.nodes[id as usize] = node;
             id

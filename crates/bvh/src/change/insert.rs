@@ -1,5 +1,6 @@
 //! Insertion into the leaf whose box, and whose ancestors' boxes, grow least.
 
+use crate::tree::node::Link;
 use crate::{Obb, Primitive, Tree, TreeError};
 
 impl Tree {
@@ -19,17 +20,17 @@ impl Tree {
             return Err(TreeError::TooMany { count: index + 1 });
         }
         self.primitives.push(primitive);
-        self.leaf_of.push(None);
+        self.leaf_of.push(Link::NONE);
         let Some(root) = self.root else {
             self.order.push(index as u32);
             self.rebuild();
             return Ok(index);
         };
         let leaf = self.leaf_of_least_growth(root, &primitive);
-        self.leaf_of[index] = Some(leaf);
+        self.leaf_of[index] = Link::from(leaf);
         self.make_room(leaf, index as u32);
         for id in self.path_up(leaf) {
-            include(&mut self.nodes[id as usize].obb, &primitive);
+            self.nodes[id as usize].resize(|obb| include(obb, &primitive));
         }
         self.update_up(leaf);
         if self.should_split(leaf) {
@@ -42,14 +43,14 @@ impl Tree {
     /// Goes down to the child whose squared diagonal grows least, the smaller one if equal.
     pub(crate) fn leaf_of_least_growth(&self, root: u32, primitive: &Primitive) -> u32 {
         let cost = |id: u32| {
-            let obb = self.nodes[id as usize].obb;
+            let obb = self.nodes[id as usize].obb.unpacked();
             let mut grown = obb;
             include(&mut grown, primitive);
             let before = obb.half_extents.norm_squared();
             (grown.half_extents.norm_squared() - before, before)
         };
         let mut id = root;
-        while let Some([left, right]) = self.nodes[id as usize].children {
+        while let Some([left, right]) = self.nodes[id as usize].children() {
             let ((left_growth, left_size), (right_growth, right_size)) = (cost(left), cost(right));
             let by_growth = left_growth.total_cmp(&right_growth);
             id =

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use cloudtouch_geom::Covariance;
 
 use crate::change::insert::include;
+use crate::tree::node::Link;
 use crate::{LeafBounds, Node, NodeId, Primitive, Tree, TreeError};
 
 /// A primitive that is gone.
@@ -56,16 +57,16 @@ impl Tree {
         let mut changed = self.renumber(before, &after, &new, added);
         for &index in &new {
             let leaf = self.leaf_of_least_growth(root, &self.primitives.get(index));
-            self.leaf_of[index as usize] = Some(leaf);
+            self.leaf_of[index as usize] = Link::from(leaf);
             changed.entry(leaf).or_default().push(index);
             self.raise(index);
         }
         self.relay(&after, &changed);
         let stale = changed.keys().map(|&leaf| NodeId(leaf)).collect();
-        let (mut leaves, mut above) = (Vec::new(), Vec::new());
+        let mut leaves = Vec::new();
         for &leaf in changed.keys() {
             if self.nodes[leaf as usize].count == 0 {
-                above.extend(self.detach(leaf));
+                self.detach(leaf);
                 continue;
             }
             self.fit_leaf(leaf);
@@ -73,10 +74,9 @@ impl Tree {
                 self.subdivide(leaf);
             }
             let below = self.preorder(Some(leaf)).into_iter();
-            leaves.extend(below.filter(|&id| self.nodes[id as usize].children.is_none()));
-            above.push(leaf);
+            leaves.extend(below.filter(|&id| self.nodes[id as usize].is_leaf()));
         }
-        self.forget_coverages(&above);
+        self.coverages.forget();
         Ok(Patched { stale, leaves: leaves.into_iter().map(NodeId).collect() })
     }
 
@@ -98,12 +98,12 @@ impl Tree {
             self.primitives.set(*index, *primitive);
             self.extents[*index as usize] = *extent;
             self.raise(*index);
-            leaves.extend(self.leaf_of[*index as usize]);
+            leaves.extend(self.leaf_of[*index as usize].get());
         }
         leaves.sort_unstable();
         leaves.dedup();
         leaves.iter().for_each(|&leaf| self.fit_leaf(leaf));
-        self.forget_coverages(&leaves);
+        self.coverages.forget();
         Ok(())
     }
 
@@ -127,11 +127,10 @@ impl Tree {
             let indices = self.indices_of(leaf).to_vec();
             self.refined.set(&indices, bounds, count);
             // All primitives of the leaf bring the same, in every direction: so do they above it.
-            let of_leaf = self.bounds_of(leaf);
-            self.nodes[leaf as usize].bounds = of_leaf;
+            self.set_bounds(leaf);
+            let of_leaf = self.nodes[leaf as usize].bounds.unpacked();
             for id in self.path_up(leaf) {
-                let node = &mut self.nodes[id as usize];
-                node.bounds = node.bounds.max(&of_leaf);
+                self.nodes[id as usize].raise(&of_leaf);
             }
         }
         Ok(())
@@ -163,12 +162,12 @@ impl Tree {
             before.iter().map(|index| one(index).unwrap_or(fresh)).collect()
         }
         let gone = after.iter().zip(&self.leaf_of).filter(|(after, _)| **after == GONE);
-        let changed = gone.filter_map(|(_, leaf)| Some(((*leaf)?, Vec::new()))).collect();
+        let changed = gone.filter_map(|(_, leaf)| Some((leaf.get()?, Vec::new()))).collect();
         self.primitives.renumber(before);
         for (&index, primitive) in new.iter().zip(added) {
             self.primitives.set(index, *primitive);
         }
-        self.leaf_of = of(&self.leaf_of, before, None);
+        self.leaf_of = of(&self.leaf_of, before, Link::NONE);
         self.refined.renumber(before);
         if !self.extents.is_empty() {
             self.extents = of(&self.extents, before, Covariance::zero());
@@ -182,7 +181,7 @@ impl Tree {
         let mut order = Vec::with_capacity(self.primitives.len());
         for &id in &nodes {
             let start = order.len();
-            if self.nodes[id as usize].children.is_none() {
+            if self.nodes[id as usize].is_leaf() {
                 let kept = self.indices_of(id).iter().map(|&index| after[index as usize]);
                 order.extend(kept.filter(|&index| index != GONE));
                 order.extend(changed.get(&id).into_iter().flatten());
@@ -191,7 +190,7 @@ impl Tree {
             (node.start, node.count) = (start as u32, (order.len() - start) as u32);
         }
         for &id in nodes.iter().rev() {
-            if let Some(children) = self.nodes[id as usize].children {
+            if let Some(children) = self.nodes[id as usize].children() {
                 let counts = children.map(|child| self.nodes[child as usize].count);
                 self.nodes[id as usize].count = counts.iter().sum();
             }
@@ -203,26 +202,17 @@ impl Tree {
     fn raise(&mut self, index: u32) {
         let primitive = self.primitives.get(index);
         let mut next = self.leaf_of[index as usize];
-        while let Some(id) = next {
+        while let Some(id) = next.get() {
             let bounds = self.bounds_of_primitive(index, &self.nodes[id as usize].obb.axes);
             let node = &mut self.nodes[id as usize];
-            include(&mut node.obb, &primitive);
-            node.bounds = node.bounds.max(&bounds);
+            node.resize(|obb| include(obb, &primitive));
+            node.raise(&bounds);
             next = node.parent;
         }
     }
 
     fn fit_leaf(&mut self, leaf: u32) {
         self.fit(leaf);
-        self.nodes[leaf as usize].bounds = self.bounds_of(leaf);
-    }
-
-    /// Forgets the coverages of these nodes and of all above them.
-    fn forget_coverages(&mut self, from: &[u32]) {
-        for &id in from {
-            for above in self.path_up(id) {
-                self.nodes[above as usize].outside.take();
-            }
-        }
+        self.set_bounds(leaf);
     }
 }

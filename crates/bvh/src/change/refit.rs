@@ -34,7 +34,7 @@ impl Tree {
             self.fit(root);
         }
         for id in self.preorder(self.root) {
-            if let Some(children) = self.nodes[id as usize].children {
+            if let Some(children) = self.nodes[id as usize].children() {
                 self.fit_children(id, children);
             }
         }
@@ -58,7 +58,7 @@ impl Tree {
     ///
     /// Squared diagonals instead of areas or volumes, which vanish for flat and thin boxes.
     pub(crate) fn spread(&self) -> f64 {
-        let squared_radius = |id: u32| self.nodes[id as usize].obb.half_extents.norm_squared();
+        let squared_radius = |id: u32| f64::from(self.nodes[id as usize].obb.squared_radius());
         let Some(root) = self.root.map(squared_radius).filter(|&squared| squared > 0.0) else {
             return 0.0;
         };

@@ -1,5 +1,6 @@
 //! Removal; a leaf that becomes empty gives its parent's place to its sibling.
 
+use crate::tree::node::Link;
 use crate::{Primitive, Tree, TreeError};
 
 impl Tree {
@@ -11,14 +12,10 @@ impl Tree {
     /// # Errors
     /// [`TreeError::NoSuchPrimitive`] when the index was never given out or is already removed.
     pub fn remove(&mut self, index: usize) -> Result<Primitive, TreeError> {
-        let leaf = self
-            .leaf_of
-            .get(index)
-            .copied()
-            .flatten()
-            .ok_or(TreeError::NoSuchPrimitive { index })?;
+        let leaf = self.leaf_of.get(index).and_then(|leaf| leaf.get());
+        let leaf = leaf.ok_or(TreeError::NoSuchPrimitive { index })?;
         let primitive = self.primitives.get(index as u32);
-        self.leaf_of[index] = None;
+        self.leaf_of[index] = Link::NONE;
         self.refined.clear(index as u32);
         self.close_gap(leaf, index as u32);
         if self.nodes[leaf as usize].count > 0 {
@@ -52,31 +49,31 @@ impl Tree {
     pub(crate) fn detach(&mut self, leaf: u32) -> Option<u32> {
         let parent = self.nodes[leaf as usize].parent;
         self.release(leaf);
-        let Some(parent) = parent else {
+        let Some(parent) = parent.get() else {
             self.root = None;
             return None;
         };
         let grandparent = self.nodes[parent as usize].parent;
-        let siblings = self.nodes[parent as usize].children.unwrap_or([leaf; 2]);
+        let siblings = self.nodes[parent as usize].children().unwrap_or([leaf; 2]);
         let sibling = if siblings[0] == leaf { siblings[1] } else { siblings[0] };
         self.release(parent);
         self.nodes[sibling as usize].parent = grandparent;
-        match grandparent {
+        match grandparent.get() {
             None => self.root = Some(sibling),
             Some(above) => {
-                if let Some(children) = &mut self.nodes[above as usize].children {
-                    for child in children.iter_mut().filter(|child| **child == parent) {
-                        *child = sibling;
-                    }
-                }
+                let above = &mut self.nodes[above as usize];
+                let moved_up = |child| if child == parent { sibling } else { child };
+                above.set_children(above.children().map(|children| children.map(moved_up)));
             }
         }
-        grandparent
+        grandparent.get()
     }
 
     fn release(&mut self, id: u32) {
         let node = &mut self.nodes[id as usize];
-        (node.in_use, node.children, node.parent) = (false, None, None);
+        (node.count, node.parent) = (0, Link::NONE);
+        node.set_children(None);
         self.free.push(id);
+        self.coverages.forget();
     }
 }

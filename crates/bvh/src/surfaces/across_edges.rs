@@ -5,17 +5,17 @@ use crate::tree::node::NodeData;
 
 /// Whether the boxes of the surfaces are apart along one of the nine directions across an edge of
 /// each; `rounding` is what the pose may misplace a box by, m.
-pub(crate) fn edges_part_surfaces(a: Placed<'_>, b: Placed<'_>, rounding: f64) -> bool {
+pub(crate) fn edges_part_surfaces(a: &NodeData, b: Placed<'_>, rounding: f64) -> bool {
     let dot = |p: &Array, q: &Array| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-    let r = a.axes.map(|of_a| b.axes.map(|of_b| dot(&of_b, &of_a)));
-    let way = [0, 1, 2].map(|k| b.centre[k] - a.centre[k]);
-    let t = a.axes.map(|axis| dot(&way, &axis));
-    let size = a.node.obb.half_extents.sum()
-        + b.node.obb.half_extents.sum()
-        + (t[0].abs() + t[1].abs() + t[2].abs());
-    let slack = a.node.bounds.shift + b.node.bounds.shift + rounding + 8.0 * f64::EPSILON * size;
-    let surface = |node: &NodeData| Array::from(node.obb.half_extents + node.bounds.axis_reach);
-    let (half_a, half_b) = (surface(a.node), surface(b.node));
+    let axes: [Array; 3] = a.obb.axes.into();
+    let r = axes.map(|of_a| b.axes.map(|of_b| dot(&of_b, &of_a)));
+    let way = [0, 1, 2].map(|k| b.centre[k] - a.obb.centre[k]);
+    let t = axes.map(|axis| dot(&way, &axis));
+    let [half_a, half_b] = [a, b.node].map(|node| node.obb.half_extents());
+    let [bounds_a, bounds_b] = [a, b.node].map(|node| node.bounds.unpacked());
+    let size = half_a.sum() + half_b.sum() + (t[0].abs() + t[1].abs() + t[2].abs());
+    let slack = bounds_a.shift + bounds_b.shift + rounding + 8.0 * f64::EPSILON * size;
+    let (half_a, half_b) = (half_a + bounds_a.axis_reach, half_b + bounds_b.axis_reach);
     for i in 0..3 {
         let (i1, i2) = ((i + 1) % 3, (i + 2) % 3);
         for j in 0..3 {

@@ -3,7 +3,6 @@
 //! This is the innermost loop of every search. A node that is split has two halves, and both are tested
 //! at once: each number of a test stands for one of them in either lane.
 
-use cloudtouch_geom::Vector3;
 use wide::f64x2;
 
 use crate::surfaces::carried::{Carried, Loss};
@@ -45,7 +44,7 @@ struct Losses {
 }
 
 impl Losses {
-    fn of([one, other]: [&Loss; 2]) -> Self {
+    fn of([one, other]: [Loss; 2]) -> Self {
         Self {
             room: side_by_side([&one.room, &other.room]),
             std: side_by_side([&one.std, &other.std]),
@@ -66,21 +65,40 @@ struct Boxes {
 }
 
 impl Boxes {
+    /// Where they were built.
     #[inline(always)]
-    fn of([one, other]: [Placed<'_>; 2]) -> Self {
-        let vectors = |of: fn(&NodeData) -> &Vector3| {
-            side_by_side([of(one.node).as_ref(), of(other.node).as_ref()])
-        };
-        let numbers = |of: fn(&NodeData) -> f64| Two::new([of(one.node), of(other.node)]);
+    fn at_home([one, other]: [&NodeData; 2]) -> Self {
+        let centre = [one, other].map(|node| node.obb.centre.coords.as_ref());
+        let [p, q]: [&[Array; 3]; 2] = [one.obb.axes.as_ref(), other.obb.axes.as_ref()];
+        let axis = |k: usize| side_by_side([&p[k], &q[k]]);
+        Self::of([one, other], side_by_side(centre), [axis(0), axis(1), axis(2)])
+    }
+
+    #[inline(always)]
+    fn moved([one, other]: [Placed<'_>; 2]) -> Self {
         let axis = |k: usize| side_by_side([&one.axes[k], &other.axes[k]]);
+        let centre = side_by_side([one.centre, other.centre]);
+        Self::of([one.node, other.node], centre, [axis(0), axis(1), axis(2)])
+    }
+
+    #[inline(always)]
+    fn of(nodes: [&NodeData; 2], centre: Each, axes: [Each; 3]) -> Self {
+        let fours = |of: fn(&NodeData) -> [f32; 4]| {
+            let [p, q] = nodes.map(|node| of(node).map(f64::from));
+            [0, 1, 2, 3].map(|k| Two::new([p[k], q[k]]))
+        };
+        let [hx, hy, hz, _] = fours(|node| node.obb.half_extents);
+        let [sx, sy, sz, max_std] = fours(|node| node.bounds.std);
+        let [rx, ry, rz, _] = fours(|node| node.bounds.reach);
+        let [one, other] = nodes;
         Self {
-            centre: side_by_side([one.centre, other.centre]),
-            axes: [axis(0), axis(1), axis(2)],
-            half: vectors(|node| &node.obb.half_extents),
-            std: vectors(|node| &node.bounds.axis_std),
-            reach: vectors(|node| &node.bounds.axis_reach),
-            max_std: numbers(|node| node.bounds.max_std),
-            shift: numbers(|node| node.bounds.shift),
+            centre,
+            axes,
+            half: [hx, hy, hz],
+            std: [sx, sy, sz],
+            reach: [rx, ry, rz],
+            max_std,
+            shift: Two::new([one.bounds.shift(), other.bounds.shift()]),
         }
     }
 }
@@ -100,13 +118,13 @@ pub(crate) struct Asked {
 /// Bounds by the six normals of the faces of two boxes, in two tests at once; B may drift from where it is.
 #[inline(always)]
 pub(crate) fn by_faces(
-    a: [Placed<'_>; 2],
+    a: [&NodeData; 2],
     b: [Placed<'_>; 2],
     carried: Option<[&Carried; 2]>,
     asked: Asked,
 ) -> [Apart; 2] {
     match carried {
-        None => by_faces_less(Boxes::of(a), Boxes::of(b), None, asked),
+        None => by_faces_less(Boxes::at_home(a), Boxes::moved(b), None, asked),
         Some(carried) => by_faces_of_drifting(a, b, carried, asked),
     }
 }
@@ -114,14 +132,15 @@ pub(crate) fn by_faces(
 /// Apart from the loop of a search at rest, which stays short.
 #[inline(never)]
 fn by_faces_of_drifting(
-    a: [Placed<'_>; 2],
+    a: [&NodeData; 2],
     b: [Placed<'_>; 2],
     [one, other]: [&Carried; 2],
     asked: Asked,
 ) -> [Apart; 2] {
-    let along_a = Losses::of([&one.along(a[0].axes), &other.along(a[1].axes)]);
-    let along_b = Losses::of([&one.along_own, &other.along_own]);
-    by_faces_less(Boxes::of(a), Boxes::of(b), Some([along_a, along_b]), asked)
+    let along_a =
+        Losses::of([(one, a[0]), (other, a[1])].map(|(b, a)| b.along(&a.obb.axes.into())));
+    let along_b = Losses::of([one.along_own, other.along_own]);
+    by_faces_less(Boxes::at_home(a), Boxes::moved(b), Some([along_a, along_b]), asked)
 }
 
 #[inline(always)]
@@ -218,7 +237,7 @@ impl Found {
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{Covariance, Motion, Point3, Pose, UncertainPoint, seed};
+    use cloudtouch_geom::{Covariance, Motion, Point3, Pose, UncertainPoint, Vector3, seed};
     use proptest::prelude::*;
 
     use super::*;
@@ -239,7 +258,7 @@ mod tests {
     /// The root and its two halves.
     fn nodes(tree: &Tree) -> [&NodeData; 3] {
         let root = tree.root.unwrap();
-        let [left, right] = tree.nodes[root as usize].children.unwrap();
+        let [left, right] = tree.nodes[root as usize].children().unwrap();
         [root, left, right].map(|node| &tree.nodes[node as usize])
     }
 
@@ -247,18 +266,18 @@ mod tests {
 
     /// Normal by normal, as it is said.
     fn one_by_one(a: &NodeData, b: &NodeData, a_from_b: &Pose, margin: f64) -> Apart {
-        let moved = b.obb.transformed(a_from_b);
-        let size = (moved.centre - a.obb.centre).norm() + a.obb.radius() + b.obb.radius();
+        let (home, moved) = (a.obb.unpacked(), b.obb.unpacked().transformed(a_from_b));
+        let size = (moved.centre - home.centre).norm() + home.radius() + moved.radius();
         let mut apart =
             Apart { deviations: 0.0, points: f64::NEG_INFINITY, surfaces: f64::NEG_INFINITY };
-        for normal in a.obb.axes.column_iter().chain(moved.axes.column_iter()) {
+        for normal in home.axes.column_iter().chain(moved.axes.column_iter()) {
             let n: Vector3 = normal.into();
-            let points = n.dot(&(moved.centre - a.obb.centre)).abs()
-                - a.obb.half_width_along(&n)
+            let points = n.dot(&(moved.centre - home.centre)).abs()
+                - home.half_width_along(&n)
                 - moved.half_width_along(&n)
                 - 1e-14 * size;
-            let spreads = [(&a.bounds, &a.obb.axes), (&b.bounds, &moved.axes)];
-            let [of_a, of_b] = spreads.map(|(bounds, axes)| bounds.std_along(axes, &n));
+            let spreads = [(a.bounds.unpacked(), home.axes), (b.bounds.unpacked(), moved.axes)];
+            let [of_a, of_b] = spreads.map(|(bounds, axes)| bounds.std_along(&axes, &n));
             let reach = spreads.map(|(bounds, axes)| axes.tr_mul(&n).abs().dot(&bounds.axis_reach));
             let deviations = (points - margin).max(0.0) / of_a.hypot(of_b);
             apart.deviations = apart.deviations.max(deviations);
@@ -282,10 +301,10 @@ mod tests {
             let (a, b) = (tree(1, std), tree(2, std));
             let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
             let ([a, ..], [_, one, other]) = (nodes(&a), nodes(&b));
-            let moved = [one, other].map(|b| MovedBox::new(&b.obb, &Motion::from(&pose)));
+            let moved = [one, other].map(|b| MovedBox::new(&b.obb.unpacked(), &Motion::from(&pose)));
             let placed = [Placed::moved(one, &moved[0]), Placed::moved(other, &moved[1])];
             let ask = |enough| {
-                by_faces([Placed::at_home(a); 2], placed, None, Asked { margin, rounding: 0.0, enough })
+                by_faces([a; 2], placed, None, Asked { margin, rounding: 0.0, enough })
             };
             for (early, full) in ask(enough).into_iter().zip(ask(ALL)) {
                 prop_assert!(early.deviations <= full.deviations && early.surfaces <= full.surfaces);
@@ -308,11 +327,10 @@ mod tests {
             let (a, b) = (tree(1, std), tree(2, 0.3 * std));
             let pose = Pose::from_translation_rpy(Vector3::from(offset), angles);
             let ([root, one, other], [b, ..]) = (nodes(&a), nodes(&b));
-            let moved = MovedBox::new(&b.obb, &Motion::from(&pose));
+            let moved = MovedBox::new(&b.obb.unpacked(), &Motion::from(&pose));
             let asked = Asked { margin, rounding: 0.0, enough: ALL };
             for halves in [[one, other], [other, root]] {
-                let placed = halves.map(Placed::at_home);
-                let found = by_faces(placed, [Placed::moved(b, &moved); 2], None, asked);
+                let found = by_faces(halves, [Placed::moved(b, &moved); 2], None, asked);
                 for (half, found) in halves.into_iter().zip(found) {
                     let known = one_by_one(half, b, &pose, margin);
                     prop_assert!((found.points - known.points).abs() < 1e-12);

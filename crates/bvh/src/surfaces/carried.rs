@@ -21,9 +21,9 @@ pub(crate) struct Carried {
 impl Carried {
     /// Of a box of B in the frame of A.
     pub(crate) fn new(b: &NodeData, moved: &MovedBox, drift: &Drift) -> Self {
-        let half_axes = Matrix3::from(moved.axes) * Matrix3::from_diagonal(&b.obb.half_extents);
-        let SpreadBounds { max_std, max_reach, .. } = b.bounds;
-        let around = b.bounds.shift + max_reach;
+        let half_axes = Matrix3::from(moved.axes) * Matrix3::from_diagonal(&b.obb.half_extents());
+        let SpreadBounds { max_std, max_reach, shift, .. } = b.bounds.unpacked();
+        let around = shift + max_reach;
         let of_box = drift.of_box(&Point3::from(moved.centre), &half_axes, around);
         let none = Loss { room: [0.0; 3], std: [0.0; 3], reach: [0.0; 3] };
         let mut carried = Self { drift: *drift, of_box, max_std, max_reach, along_own: none };

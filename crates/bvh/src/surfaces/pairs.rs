@@ -72,7 +72,7 @@ impl<'a> Pairs<'a> {
         if recent.0 != b {
             *recent = (b, self.moved.len() as u32);
             let of_b = &self.b.nodes[b as usize];
-            let moved = MovedBox::new(&of_b.obb, &self.a_from_b);
+            let moved = MovedBox::new(&of_b.obb.unpacked(), &self.a_from_b);
             self.carried.extend(self.sought.drift.map(|drift| Carried::new(of_b, &moved, &drift)));
             self.moved.push(moved);
         }
@@ -169,7 +169,7 @@ impl<'a> Pairs<'a> {
             enough: (within.max(outcome.deviations), outcome.apart.max(0.0)),
         };
         by_faces(
-            [Placed::at_home(a.0), Placed::at_home(b.0)],
+            [a.0, b.0],
             [Placed::moved(a.1, &self.moved[boxes[0]]), Placed::moved(b.1, &self.moved[boxes[1]])],
             carried.map(|(one, other)| [one, other]),
             asked,
@@ -194,10 +194,9 @@ impl<'a> Pairs<'a> {
         }
         let beyond = points - self.sought.margin;
         let urgency = if beyond < 0.0 {
-            let [size_of_a, size_of_b] =
-                [of_a, of_b].map(|node| node.obb.half_extents.norm_squared());
+            let [size_of_a, size_of_b] = [of_a, of_b].map(|node| node.obb.squared_radius());
             // A box without size is overlapped as much as can be.
-            (beyond / size_of_a.min(size_of_b).sqrt()).max(f64::MIN)
+            (beyond / f64::from(size_of_a.min(size_of_b).sqrt())).max(f64::MIN)
         } else {
             deviations
         };
@@ -206,12 +205,12 @@ impl<'a> Pairs<'a> {
     }
 
     /// The pairs one step down, by splitting the larger node; none of two leaves.
+    #[inline(always)]
     pub(crate) fn narrower(&mut self, pair: &Queued<Waiting>) -> Option<[Tested; 2]> {
         let (a, b) = pair.nodes();
         let (of_a, of_b) = self.nodes((a, b));
-        let a_is_larger =
-            || of_a.obb.half_extents.norm_squared() >= of_b.obb.half_extents.norm_squared();
-        match (of_a.children, of_b.children) {
+        let a_is_larger = || of_a.obb.squared_radius() >= of_b.obb.squared_radius();
+        match (of_a.children(), of_b.children()) {
             (Some(children), below_b) if below_b.is_none() || a_is_larger() => {
                 let box_of_b = pair.item.box_of_b;
                 Some(children.map(|child| Tested { nodes: (child, b), box_of_b }))
@@ -224,6 +223,7 @@ impl<'a> Pairs<'a> {
 
     /// Whether the boxes of the surfaces overlap: what the normals of their faces leave open, the
     /// directions across two edges decide.
+    #[inline(always)]
     pub(crate) fn may_cross(&self, pair: &Queued<Waiting>) -> bool {
         let Waiting { box_of_b, may_cross, surfaces, .. } = pair.item;
         may_cross || self.overlap(pair.nodes(), box_of_b, surfaces)
@@ -237,7 +237,7 @@ impl<'a> Pairs<'a> {
         let (a, b) = self.nodes(nodes);
         let b = Placed::moved(b, &self.moved[box_of_b as usize]);
         // What a drift does across two edges is not known: not to tell is the safe side.
-        self.sought.drift.is_some() || !edges_part_surfaces(Placed::at_home(a), b, self.rounding)
+        self.sought.drift.is_some() || !edges_part_surfaces(a, b, self.rounding)
     }
 }
 

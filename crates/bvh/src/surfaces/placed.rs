@@ -1,4 +1,4 @@
-//! Where the boxes of two nodes are in one frame.
+//! Where the box of a node is in the frame of another tree.
 
 use cloudtouch_geom::Motion;
 
@@ -8,7 +8,7 @@ use crate::tree::node::NodeData;
 /// A place, or a direction.
 pub(crate) type Array = [f64; 3];
 
-/// A node, and where its box is in the frame of A.
+/// A node of B, and where its box is in the frame of A.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placed<'a> {
     pub(crate) node: &'a NodeData,
@@ -17,12 +17,6 @@ pub(crate) struct Placed<'a> {
 }
 
 impl<'a> Placed<'a> {
-    /// Where it was built.
-    #[inline]
-    pub(crate) fn at_home(node: &'a NodeData) -> Self {
-        Self { node, centre: node.obb.centre.coords.as_ref(), axes: node.obb.axes.as_ref() }
-    }
-
     #[inline]
     pub(crate) fn moved(node: &'a NodeData, moved: &'a MovedBox) -> Self {
         Self { node, centre: &moved.centre, axes: &moved.axes }

@@ -6,7 +6,7 @@ use crate::gap::signed_gap_up_to;
 use crate::traverse::leakage::{
     Side, gap_aware_probability, gap_of, paper_probability, plane_deviations,
 };
-use crate::tree::node::{NodeData, pose_rounding};
+use crate::tree::node::pose_rounding;
 use crate::{Traversal, TraversalSettings, Tree};
 
 /// What is known of a pair of nodes.
@@ -55,26 +55,27 @@ impl<'a> Examiner<'a> {
     /// or more deviations is not wanted.
     pub(crate) fn examine(&self, (id_a, id_b): (u32, u32), within: f64) -> Examined {
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
-        let slack = a.bounds.shift + b.bounds.shift + self.rounding;
+        let [box_a, box_b] = [a, b].map(|node| node.obb.unpacked());
+        let [spread_a, spread_b] = [a, b].map(|node| node.bounds.unpacked());
+        let slack = spread_a.shift + spread_b.shift + self.rounding;
         let enough = match self.settings.kind {
             Traversal::Certified => {
                 let deviations = within.min(self.settings.cull_deviations);
-                gap_of(deviations, a.bounds.max_std.max(b.bounds.max_std)) + slack
+                gap_of(deviations, spread_a.max_std.max(spread_b.max_std)) + slack
             }
             // What is drawn depends on the gap.
             Traversal::Paper | Traversal::GapAware => f64::INFINITY,
         };
-        let between = signed_gap_up_to(&a.obb, &b.obb.moved(&self.a_from_b), enough);
+        let between = signed_gap_up_to(&box_a, &box_b.moved(&self.a_from_b), enough);
         let gap = between.signed - slack;
         let axis = between.axis;
         let axis_in_b = self.a_from_b.vector_back(&axis);
-        let std_a = a.bounds.std_along(&a.obb.axes, &axis);
-        let std_b = b.bounds.std_along(&b.obb.axes, &axis_in_b);
+        let std_a = spread_a.std_along(&box_a.axes, &axis);
+        let std_b = spread_b.std_along(&box_b.axes, &axis_in_b);
         let deviations =
             if gap < 0.0 { f64::NEG_INFINITY } else { plane_deviations(gap, std_a.max(std_b)) };
-        let reach = |node: &NodeData| node.obb.radius() + node.bounds.shift;
-        let size = reach(a).min(reach(b));
-        let urgency = if gap < 0.0 && size > 0.0 { gap / size } else { gap };
+        let size = (box_a.radius() + spread_a.shift).min(box_b.radius() + spread_b.shift);
+        let urgency = if gap < 0.0 && size > 0.0 { (gap / size).max(f64::MIN) } else { gap };
         // Coverages take a pass over all points, so only the rules that need them ask.
         let sides = || {
             let outside_a = self.a.fraction_outside(id_a);
@@ -106,8 +107,8 @@ impl<'a> Examiner<'a> {
     pub(crate) fn narrower_pairs(&self, pair: &Examined) -> Option<[(u32, u32); 2]> {
         let (id_a, id_b) = (pair.a, pair.b);
         let (a, b) = (&self.a.nodes[id_a as usize], &self.b.nodes[id_b as usize]);
-        let a_is_larger = a.obb.radius() >= b.obb.radius();
-        match (a.children, b.children) {
+        let a_is_larger = a.obb.squared_radius() >= b.obb.squared_radius();
+        match (a.children(), b.children()) {
             (Some(children), None) => Some(children.map(|child| (child, id_b))),
             (None, Some(children)) => Some(children.map(|child| (id_a, child))),
             (Some(children), Some(_)) if a_is_larger => Some(children.map(|child| (child, id_b))),

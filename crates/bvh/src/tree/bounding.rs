@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::tree::bounds::{SpreadBounds, variances_along};
 use crate::tree::bounds_list::BoundsList;
+use crate::tree::packed::PackedBounds;
 use crate::{LeafBounds, Node, Tree, TreeError};
 
 impl Tree {
@@ -12,7 +13,7 @@ impl Tree {
     ///
     /// From then on these bounds stand for the covariances of the points wherever a bound is
     /// wanted (not in the coverage, which describes the points as given). They stay with the
-    /// primitives through [`Self::refit`], splits and [`Self::rebuild`]; a primitive inserted
+    /// primitives through [`Self::refit`], splits and [`Self::rebuild`], rounded up to single precision; a primitive inserted
     /// later has its own covariance and no shift until they are set again. `bounds_of` is called on all
     /// threads of the pool.
     ///
@@ -53,12 +54,12 @@ impl Tree {
             let own = &order[node.start as usize..][..node.count as usize];
             refined.set(own, *bounds, primitives.len());
             // PERF: those of all its primitives are the same, which need not be looked up for each.
-            let of_all = SpreadBounds::of(None, Some(*bounds), None, &node.obb.axes);
-            node.bounds = SpreadBounds::NONE.max(&of_all);
+            let of_all = SpreadBounds::of(None, Some(*bounds), None, &Matrix3::identity());
+            node.bounds = PackedBounds::from(&of_all);
         }
         for id in self.preorder(self.root).into_iter().rev() {
-            if self.nodes[id as usize].children.is_some() {
-                self.nodes[id as usize].bounds = self.bounds_of(id);
+            if !self.nodes[id as usize].is_leaf() {
+                self.set_bounds(id);
             }
         }
     }
@@ -95,21 +96,26 @@ impl Tree {
     /// Recomputes the bounds of everything below `from` and of itself, children before parents.
     pub(crate) fn update_bounds(&mut self, from: Option<u32>) {
         for &id in self.preorder(from).iter().rev() {
-            self.nodes[id as usize].bounds = self.bounds_of(id);
+            self.set_bounds(id);
         }
+    }
+
+    /// Takes the bounds of a node anew.
+    pub(crate) fn set_bounds(&mut self, id: u32) {
+        self.nodes[id as usize].bounds = (&self.bounds_of(id)).into();
     }
 
     /// The same of all nodes, leaves on all threads of the pool.
     pub(crate) fn update_all_bounds(&mut self) {
         let (leaves, inner): (Vec<u32>, Vec<u32>) = (self.preorder(self.root).into_iter())
-            .partition(|&id| self.nodes[id as usize].children.is_none());
+            .partition(|&id| self.nodes[id as usize].is_leaf());
         let of_leaves: Vec<SpreadBounds> =
             leaves.par_iter().map(|&leaf| self.bounds_of(leaf)).collect();
         for (leaf, bounds) in leaves.into_iter().zip(of_leaves) {
-            self.nodes[leaf as usize].bounds = bounds;
+            self.nodes[leaf as usize].bounds = (&bounds).into();
         }
         for id in inner.into_iter().rev() {
-            self.nodes[id as usize].bounds = self.bounds_of(id);
+            self.set_bounds(id);
         }
     }
 
@@ -120,7 +126,7 @@ impl Tree {
     pub(crate) fn bounds_of(&self, id: u32) -> SpreadBounds {
         let node = &self.nodes[id as usize];
         let axes = &node.obb.axes;
-        let Some(children) = node.children else {
+        let Some(children) = node.children() else {
             let mut bounds = SpreadBounds::NONE;
             let mut last = None;
             for &index in self.indices_of(id) {
@@ -134,7 +140,7 @@ impl Tree {
             return bounds;
         };
         let from_children = (children.map(|child| &self.nodes[child as usize]).iter())
-            .map(|child| child.bounds.turned(&child.obb.axes, axes))
+            .map(|child| child.bounds.unpacked().turned(&child.obb.axes, axes))
             .fold(SpreadBounds::NONE, |all, one| all.max(&one));
         if self.extents.is_empty() {
             return from_children;

@@ -13,10 +13,10 @@ pub struct LeafBounds {
     /// The largest standard deviation (m) any of the points may have after refinement, in any
     /// direction; infinite when nothing is known.
     pub std: f64,
-    /// How far (m) the mean of any of the points may move; finite.
+    /// How far (m) the mean of any of the points may move; finite, as single precision has it.
     pub shift: f64,
     /// How far (m) the surface that any of the points stands for may reach from its mean, in any
-    /// direction; finite.
+    /// direction; as finite.
     pub reach: f64,
 }
 
@@ -24,7 +24,7 @@ impl LeafBounds {
     /// Refuses what bounds nothing.
     pub(crate) fn check(&self, leaf: usize) -> Result<(), TreeError> {
         let Self { std, shift, reach } = *self;
-        let is_length = |value: f64| value >= 0.0 && value.is_finite();
+        let is_length = |value: f64| (0.0..f64::from(f32::MAX)).contains(&value);
         if std >= 0.0 && is_length(shift) && is_length(reach) {
             Ok(())
         } else {

@@ -1,11 +1,36 @@
 //! Coverage: how much of a node's surface is expected to lie inside its box (section 5).
 
+use std::sync::OnceLock;
+
 use cloudtouch_geom::normal;
 
 use crate::{Obb, Primitive};
 
 /// Beyond this many standard deviations a tail (below 1e-18) changes no sum of weights.
 const NEGLIGIBLE: f64 = 9.0;
+
+/// The coverages of nodes that were asked for: each takes a pass over all points of its node, and
+/// [`Certified`](crate::Traversal::Certified) never asks.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Coverages(OnceLock<Vec<OnceLock<f64>>>);
+
+impl Coverages {
+    /// 1 − P_cov of one of so many nodes, computed when first asked for.
+    pub(crate) fn outside(&self, node: u32, count: usize, compute: impl FnOnce() -> f64) -> f64 {
+        let all = self.0.get_or_init(|| vec![OnceLock::new(); count]);
+        *all[node as usize].get_or_init(compute)
+    }
+
+    /// What was computed of a node.
+    pub(crate) fn known(&self, node: u32) -> Option<f64> {
+        self.0.get()?.get(node as usize)?.get().copied()
+    }
+
+    /// Of nodes that are, or hold, something else now.
+    pub(crate) fn forget(&mut self) {
+        self.0.take();
+    }
+}
 
 /// 1 − P_cov = Σ w_i P_out(x_i) / Σ w_i, in \[0, 1\]; the largest P_out when every weight is zero,
 /// 0 when there is no primitive.

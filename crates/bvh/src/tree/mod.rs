@@ -3,10 +3,11 @@
 mod bounding;
 pub(crate) mod bounds;
 pub(crate) mod bounds_list;
-mod coverage;
+pub(crate) mod coverage;
 pub(crate) mod moments;
 pub(crate) mod node;
 pub(crate) mod obb;
+pub(crate) mod packed;
 pub(crate) mod primitive;
 pub(crate) mod primitives;
 mod validate;
@@ -16,8 +17,8 @@ pub(crate) mod visit;
 use cloudtouch_geom::Covariance;
 
 use crate::tree::bounds_list::BoundsList;
-use crate::tree::coverage::fraction_outside;
-use crate::tree::node::NodeData;
+use crate::tree::coverage::{Coverages, fraction_outside};
+use crate::tree::node::{Link, NodeData};
 use crate::{NodeId, Primitive, Primitives, TreeSettings};
 
 /// An oriented bounding box tree over uncertain points and exact triangles, in one frame.
@@ -33,11 +34,12 @@ pub struct Tree {
     pub(crate) refined: BoundsList,
     /// By index: how far the surface of a primitive reaches; shorter when none was set.
     pub(crate) extents: Vec<Covariance>,
-    /// By index: the leaf that holds a primitive, `None` once removed.
-    pub(crate) leaf_of: Vec<Option<u32>>,
+    /// By index: the leaf that holds a primitive, none once removed.
+    pub(crate) leaf_of: Vec<Link>,
     /// A permutation of the present indices; every node owns a contiguous range of it.
     pub(crate) order: Vec<u32>,
     pub(crate) nodes: Vec<NodeData>,
+    pub(crate) coverages: Coverages,
     /// Slots of `nodes` that are not in use.
     pub(crate) free: Vec<u32>,
     pub(crate) root: Option<u32>,
@@ -73,7 +75,7 @@ impl Tree {
 
     /// The leaf that holds this primitive; `None` when there is none or it was removed.
     pub fn leaf_of(&self, index: usize) -> Option<NodeId> {
-        self.leaf_of.get(index).copied().flatten().map(NodeId)
+        self.leaf_of.get(index)?.get().map(NodeId)
     }
 
     /// A number larger than [`NodeId::index`] of every node.
@@ -89,10 +91,9 @@ impl Tree {
 
     /// 1 − P_cov of a node.
     pub(crate) fn fraction_outside(&self, id: u32) -> f64 {
-        let node = &self.nodes[id as usize];
-        *node.outside.get_or_init(|| {
+        self.coverages.outside(id, self.nodes.len(), || {
             let below = self.indices_of(id).iter().map(|&i| self.primitives.get(i));
-            fraction_outside(below, &node.obb)
+            fraction_outside(below, &self.nodes[id as usize].obb.unpacked())
         })
     }
 
@@ -102,7 +103,7 @@ impl Tree {
         let mut stack: Vec<u32> = from.into_iter().collect();
         while let Some(id) = stack.pop() {
             visited.push(id);
-            if let Some([left, right]) = self.nodes[id as usize].children {
+            if let Some([left, right]) = self.nodes[id as usize].children() {
                 stack.extend([right, left]);
             }
         }
@@ -111,6 +112,6 @@ impl Tree {
 
     /// A node and its ancestors, bottom up.
     pub(crate) fn path_up(&self, from: u32) -> Vec<u32> {
-        std::iter::successors(Some(from), |&id| self.nodes[id as usize].parent).collect()
+        std::iter::successors(Some(from), |&id| self.nodes[id as usize].parent.get()).collect()
     }
 }

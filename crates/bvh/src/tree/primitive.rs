@@ -6,10 +6,10 @@ use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3};
 
 use crate::TreeError;
 
-/// Larger coordinates could overflow when squared twice.
-const MAX_COORDINATE: f64 = 1e100;
+/// A box over larger coordinates may have sides that single precision does not hold.
+const MAX_COORDINATE: f64 = 1e37;
 /// The square of [`MAX_COORDINATE`].
-const MAX_VARIANCE: f64 = 1e200;
+const MAX_VARIANCE: f64 = 1e74;
 
 /// One thing a tree holds, in the frame of the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]

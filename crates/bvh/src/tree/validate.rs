@@ -4,6 +4,7 @@ use cloudtouch_geom::Matrix3;
 
 use crate::tree::bounds::SpreadBounds;
 use crate::tree::coverage::fraction_outside;
+use crate::tree::node::Link;
 use crate::{Tree, TreeError};
 
 /// Relative rounding allowed where a rule compares sums computed in different order.
@@ -19,7 +20,7 @@ impl Tree {
     /// public functions never gives one.
     pub fn validate(&self) -> Result<(), TreeError> {
         let nodes = self.preorder(self.root);
-        let in_use = self.nodes.iter().filter(|node| node.in_use).count();
+        let in_use = self.nodes.iter().filter(|node| node.count > 0).count();
         self.require(0, nodes.len() == in_use, "nodes in use and reachable nodes differ")?;
         self.require(
             0,
@@ -32,11 +33,15 @@ impl Tree {
             self.require(0, !twice, "a primitive is listed twice")?;
         }
         for (index, leaf) in self.leaf_of.iter().enumerate() {
-            self.require(0, leaf.is_some() == seen[index], "a present primitive is not listed")?;
+            self.require(
+                0,
+                leaf.get().is_some() == seen[index],
+                "a present primitive is not listed",
+            )?;
         }
         if let Some(root) = self.root {
             let node = &self.nodes[root as usize];
-            self.require(root, node.parent.is_none(), "the root has a parent")?;
+            self.require(root, node.parent == Link::NONE, "the root has a parent")?;
             let everything = node.start == 0 && node.count as usize == self.order.len();
             self.require(root, everything, "the root does not span all primitives")?;
         } else {
@@ -56,15 +61,16 @@ impl Tree {
 
     fn validate_links(&self, id: u32) -> Result<(), TreeError> {
         let node = &self.nodes[id as usize];
-        self.require(id, node.in_use && node.count > 0, "an empty or released node is reachable")?;
-        let Some([left, right]) = node.children else {
+        self.require(id, node.count > 0, "an empty or released node is reachable")?;
+        let Some([left, right]) = node.children() else {
             let small = node.count as usize <= self.settings.max_leaf_points;
             self.require(id, small, "a leaf holds more than max_leaf_points")?;
-            let named = self.indices_of(id).iter().all(|&i| self.leaf_of[i as usize] == Some(id));
+            let named =
+                self.indices_of(id).iter().all(|&i| self.leaf_of[i as usize] == Link::from(id));
             return self.require(id, named, "leaf_of names another leaf");
         };
         let (first, second) = (&self.nodes[left as usize], &self.nodes[right as usize]);
-        let linked = first.parent == Some(id) && second.parent == Some(id);
+        let linked = first.parent == Link::from(id) && second.parent == Link::from(id);
         self.require(id, linked, "a child names another parent")?;
         let halves = first.start == node.start
             && first.start + first.count == second.start
@@ -73,32 +79,32 @@ impl Tree {
     }
 
     fn validate_shape(&self, id: u32) -> Result<(), TreeError> {
-        let node = &self.nodes[id as usize];
-        let unit = (node.obb.axes.tr_mul(&node.obb.axes) - Matrix3::identity()).amax() < ROUNDING;
+        let obb = self.nodes[id as usize].obb.unpacked();
+        let unit = (obb.axes.tr_mul(&obb.axes) - Matrix3::identity()).amax() < ROUNDING;
         self.require(id, unit, "the box axes are not orthonormal")?;
         for &index in self.indices_of(id) {
             let corners = self.primitives.corners(index);
-            let inside = corners.iter().all(|corner| node.obb.contains(corner));
+            let inside = corners.iter().all(|corner| obb.contains(corner));
             self.require(id, inside, "a corner lies outside the box")?;
         }
         let below = self.indices_of(id).iter().map(|&i| self.primitives.get(i));
         let kept =
-            node.outside.get().is_none_or(|&kept| kept == fraction_outside(below, &node.obb));
+            self.coverages.known(id).is_none_or(|kept| kept == fraction_outside(below, &obb));
         self.require(id, kept, "the coverage kept is that of other points")
     }
 
     fn validate_bounds(&self, id: u32) -> Result<(), TreeError> {
         let node = &self.nodes[id as usize];
-        let axes = &node.obb.axes;
+        let (axes, bounds) = (&node.obb.axes, node.bounds.unpacked());
         for &index in self.indices_of(id) {
-            let covered = covers(&node.bounds, &self.bounds_of_primitive(index, axes));
+            let covered = covers(&bounds, &self.bounds_of_primitive(index, axes));
             self.require(id, covered, "a primitive exceeds the bounds of its node")?;
         }
-        let from_children = node.children.filter(|_| self.extents.is_empty());
+        let from_children = node.children().filter(|_| self.extents.is_empty());
         for child in from_children.into_iter().flatten() {
             let child = &self.nodes[child as usize];
-            let turned = child.bounds.turned(&child.obb.axes, axes);
-            self.require(id, covers(&node.bounds, &turned), "a child exceeds its parent's bounds")?;
+            let turned = child.bounds.unpacked().turned(&child.obb.axes, axes);
+            self.require(id, covers(&bounds, &turned), "a child exceeds its parent's bounds")?;
         }
         Ok(())
     }

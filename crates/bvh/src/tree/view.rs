@@ -2,6 +2,7 @@
 
 use cloudtouch_geom::Vector3;
 
+use crate::tree::bounds::SpreadBounds;
 use crate::tree::node::NodeData;
 use crate::{Moments, NodeId, Obb, Tree};
 
@@ -13,7 +14,10 @@ impl Tree {
 
     /// A node by name; `None` when it is not, or no longer, in the tree.
     pub fn node(&self, id: NodeId) -> Option<Node<'_>> {
-        self.nodes.get(id.index()).filter(|node| node.in_use).map(|_| Node { tree: self, id: id.0 })
+        self.nodes
+            .get(id.index())
+            .filter(|node| node.count > 0)
+            .map(|_| Node { tree: self, id: id.0 })
     }
 
     /// A leaf by name; `None` when the name is not, or no longer, that of a leaf.
@@ -39,6 +43,10 @@ impl<'a> Node<'a> {
         &self.tree.nodes[self.id as usize]
     }
 
+    fn bounds(&self) -> SpreadBounds {
+        self.data().bounds.unpacked()
+    }
+
     /// Its name in the tree.
     pub fn id(&self) -> NodeId {
         NodeId(self.id)
@@ -46,8 +54,8 @@ impl<'a> Node<'a> {
 
     /// The box that holds all its primitives, in the frame of the tree. [`Self::shift`] is not
     /// part of it.
-    pub fn obb(&self) -> &'a Obb {
-        &self.data().obb
+    pub fn obb(&self) -> Obb {
+        self.data().obb.unpacked()
     }
 
     /// Mean and spread of the positions of its primitives, in a pass over them.
@@ -66,39 +74,39 @@ impl<'a> Node<'a> {
 
     /// The largest standard deviation (m) of any of its points in any direction; never too small.
     pub fn max_std(&self) -> f64 {
-        self.data().bounds.max_std
+        self.bounds().max_std
     }
 
     /// A bound on the standard deviation (m) of its points along a unit vector; never too small,
     /// and at most [`Self::max_std`].
     pub fn std_along(&self, direction: &Vector3) -> f64 {
-        self.data().bounds.std_along(&self.obb().axes, direction)
+        self.bounds().std_along(&self.data().obb.axes, direction)
     }
 
     /// How far (m) the means of its points may still move; see [`Tree::set_leaf_bounds`].
     pub fn shift(&self) -> f64 {
-        self.data().bounds.shift
+        self.bounds().shift
     }
 
     /// A bound on how far (m) the surface its points stand for reaches from their means; see
     /// [`LeafBounds::reach`](crate::LeafBounds::reach) and [`Tree::set_extents`].
     pub fn reach(&self) -> f64 {
-        self.data().bounds.max_reach
+        self.bounds().max_reach
     }
 
     /// Whether it has no children.
     pub fn is_leaf(&self) -> bool {
-        self.data().children.is_none()
+        self.data().is_leaf()
     }
 
     /// The node it is a child of; `None` for the root.
     pub fn parent(&self) -> Option<NodeId> {
-        self.data().parent.map(NodeId)
+        self.data().parent.get().map(NodeId)
     }
 
     /// Its two children; `None` for a leaf.
     pub fn children(&self) -> Option<[NodeId; 2]> {
-        self.data().children.map(|pair| pair.map(NodeId))
+        self.data().children().map(|pair| pair.map(NodeId))
     }
 
     /// Indices of all primitives below it, at least one.

@@ -21,7 +21,7 @@ impl Tree {
         let mut stack: Vec<Node<'_>> = self.root().into_iter().collect();
         while let Some(node) = stack.pop() {
             if visit(node) == Visit::Descend
-                && let Some([left, right]) = self.nodes[node.id as usize].children
+                && let Some([left, right]) = self.nodes[node.id as usize].children()
             {
                 stack.extend([right, left].map(|id| Node { tree: self, id }));
             }

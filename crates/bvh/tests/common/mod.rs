@@ -137,6 +137,11 @@ pub(crate) fn pair_probability(p: &Primitive, q: &Primitive) -> f64 {
     normal::below_zero(0.5 * distance, p.std_along(&along).max(q.std_along(&along)))
 }
 
+/// Whether a bound is kept as stated, but that it is rounded up to single precision.
+pub(crate) fn is_kept(bound: f64, stated: f64) -> bool {
+    bound >= stated && bound <= stated * (1.0 + f64::from(f32::EPSILON))
+}
+
 /// The largest [`pair_probability`] over two lists of primitives.
 pub(crate) fn flat_answer<'a>(
     a: impl IntoIterator<Item = &'a Primitive>,

@@ -121,7 +121,7 @@ impl Prepared {
             neighborhoods,
             pieces,
             noise,
-            around: tree.root().map(|root| *root.obb()),
+            around: tree.root().map(|root| root.obb()),
             tree,
             surface,
             makeup,

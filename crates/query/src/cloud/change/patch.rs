@@ -101,7 +101,7 @@ impl Prepared {
         let old = self.take_surface(before, &patched);
         let lost = self.lost(&old, before, &changed, &patched);
         let kept = self.regrow(old, before, &patched, &lost)?;
-        self.around = self.tree.root().map(|root| *root.obb());
+        self.around = self.tree.root().map(|root| root.obb());
         Ok(kept)
     }
 

@@ -66,7 +66,7 @@ impl<'a> Discs<'a> {
         let mut is_crossed = false;
         cloud.tree().visit_nodes(|node| {
             let reach = node.shift() + radius / DISC_SPACINGS * node.reach();
-            if is_crossed || !way.may_pass(node.obb(), reach) {
+            if is_crossed || !way.may_pass(&node.obb(), reach) {
                 return Visit::Prune;
             }
             if node.is_leaf() {

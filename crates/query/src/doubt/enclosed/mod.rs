@@ -28,7 +28,7 @@ pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
     let of = |body: Shape<'_>| {
         let obb = match body {
             Shape::Cloud(cloud) => cloud.around().copied(),
-            Shape::Mesh(mesh) => mesh.tree().root().map(|root| *root.obb()),
+            Shape::Mesh(mesh) => mesh.tree().root().map(|root| root.obb()),
         };
         obb.map_or((Point3::origin(), 0.0), |obb| (obb.centre, obb.radius()))
     };

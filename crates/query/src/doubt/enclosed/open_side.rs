@@ -17,7 +17,7 @@ pub(super) fn has_open_side(tree: &Tree, (points, near): (&[Point3], f64), place
     Side::all(near).any(|side| {
         let mut is_open = true;
         tree.visit_nodes(|node| {
-            if !is_open || !side.may_hold(node.obb(), place) {
+            if !is_open || !side.may_hold(&node.obb(), place) {
                 return Visit::Prune;
             }
             let mut all = node.primitive_indices().iter();
