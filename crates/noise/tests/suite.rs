@@ -1,6 +1,7 @@
 //! All tests of this crate's interface, one module a behaviour: one program to link.
 
 mod bounds;
+mod chance;
 mod common;
 mod degenerate;
 mod dense;

@@ -28,6 +28,11 @@ use crate::surface::{Surface, fit_surface};
 /// [`SurfaceError::sharp`]: crate::SurfaceError::sharp
 const SHARP: f64 = 0.25;
 
+/// Where noise is not small beside the spacing, a point up to so many standard deviations off may be there by chance, ...
+const CHANCE_OFFSET: f64 = 4.0;
+/// ... if no neighbour is so many off on the same side.
+const BESIDE_OFFSET: f64 = 3.0;
+
 /// The point given its measurement and the surface of its neighbours, which are in `scratch` where every point stands
 /// for itself; `None` where there is no surface to be fitted. `around` is how far apart samples are about it, m, and
 /// `spacing_cap` the most that its own spacing may be, m.
@@ -121,8 +126,10 @@ fn given_surface(
     let error = &settings.surface_error;
     let noise = own.variance_along(&surface.normal);
     let mut prior = variance_of(surface, error, noise);
-    let is_trusted = surface.height.powi(2)
-        <= settings.trusted_offset.powi(2) * patch.own_variance(&surface.normal);
+    let own_variance = patch.own_variance(&surface.normal);
+    let blur = blur(noise.sqrt(), around);
+    let is_trusted = surface.height.powi(2) <= settings.trusted_offset.powi(2) * own_variance
+        || (blur == 1.0 && is_chance(surface, patch, own_variance + prior.min(noise)));
     if !is_trusted {
         prior += surface.height.powi(2);
     }
@@ -131,7 +138,6 @@ fn given_surface(
     let shift = (weight * surface.height).clamp(-most, most);
     let stays = (1.0 - weight).powi(2);
     let stays_noisy = stays * (error.own_noise + (1.0 - error.own_noise) * stays.powi(3)) * noise;
-    let blur = blur(noise.sqrt(), around);
     let stated = if is_trusted { error.sharp + (1.0 - error.sharp) * blur } else { 1.0 };
     let along = (stated * (weight * weight * prior + stays_noisy)).min(noise);
     let turned = (error.turn * surface.tilt).min(1.0) * std;
@@ -143,6 +149,15 @@ fn given_surface(
         mean: measured + normal * shift + back,
         covariance: disc(&surface.normal, along, across, apart, settings),
     }
+}
+
+/// Whether a point may well be so far off its surface by chance: there is no other as far on that side, of which a thing
+/// there would have more than one. `variance` is that of the heights of points above the surface, m².
+fn is_chance(surface: &Surface, patch: &Patch, variance: f64) -> bool {
+    let within = |height: f64, stds: f64| height * height <= stds * stds * variance;
+    let height = |rank: usize| surface.height - surface.normal.dot(&patch.offset(rank));
+    let is_beside = |height: f64| height * surface.height > 0.0 && !within(height, BESIDE_OFFSET);
+    within(surface.height, CHANCE_OFFSET) && !(0..patch.len()).map(height).any(is_beside)
 }
 
 /// How far noise of this standard deviation (m) is from small beside a spacing (m), up to 1.
