@@ -46,6 +46,23 @@ def test_a_page_of_a_scene_shows_the_pair_that_collides(floor, table):
     assert "All in all: free" in scene.page(ct.Query()).frame(300)
 
 
+def test_a_page_that_cannot_be_written_named_a_file_that_nobody_asked_for(tmp_path, floor, table):
+    page = ct.Query().page(floor, table, lifted(0.1))
+    (tmp_path / "folder.html").mkdir()
+    (tmp_path / "file").write_text("")
+    for place, kind in [
+        ("gone/page.html", FileNotFoundError),
+        ("folder.html", IsADirectoryError),
+        ("file/page.html", NotADirectoryError),
+    ]:
+        with pytest.raises(kind) as error:
+            page.save(tmp_path / place)
+        assert error.value.filename == str(tmp_path / place) and ".partial" not in str(error.value)
+    assert sorted(found.name for found in tmp_path.iterdir()) == ["file", "folder.html"]
+    with pytest.raises(TypeError, match="^path is 5: give the name of a file"):
+        page.save(5)
+
+
 def test_poses_of_a_page(floor, table):
     with pytest.raises(ValueError, match="poses has the shape"):
         ct.Query().page(floor, table, np.eye(3))

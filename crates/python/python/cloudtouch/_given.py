@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +16,7 @@ def number(value: Any, name: str) -> float:
             raise TypeError
         return float(value)
     except (TypeError, ValueError):
-        raise TypeError(f"{name} is {_told(value)}: give a number") from None
+        raise TypeError(f"{name} is {told(value)}: give a number") from None
 
 
 def optional_number(value: Any, name: str) -> float | None:
@@ -26,14 +28,28 @@ def count(value: Any, name: str) -> int:
     """A whole number that is not negative."""
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and value >= 0:
         return int(value)
-    raise TypeError(f"{name} is {_told(value)}: give a whole number, 0 or more")
+    raise TypeError(f"{name} is {told(value)}: give a whole number, 0 or more")
+
+
+def text(value: Any, name: str) -> str:
+    """A name."""
+    if isinstance(value, str):
+        return value
+    raise TypeError(f"{name} is {told(value)}: give a str")
+
+
+def folder(value: Any, name: str) -> Path:
+    """The path of a folder."""
+    if isinstance(value, (str, os.PathLike)):
+        return Path(value)
+    raise TypeError(f"{name} is {told(value)}: give the path of a folder, a str")
 
 
 def flag(value: Any, name: str) -> bool:
     """Yes or no."""
     if isinstance(value, (bool, np.bool_)):
         return bool(value)
-    raise TypeError(f"{name} is {_told(value)}: give True or False")
+    raise TypeError(f"{name} is {told(value)}: give True or False")
 
 
 def count_and_number(value: Any, name: str) -> tuple[int, float] | None:
@@ -43,9 +59,11 @@ def count_and_number(value: Any, name: str) -> tuple[int, float] | None:
     try:
         first, second = value
     except (TypeError, ValueError):
-        raise TypeError(f"{name} is {_told(value)}: give two numbers, such as (8, 3.0)") from None
+        raise TypeError(f"{name} is {told(value)}: give two numbers, such as (8, 3.0)") from None
     return count(first, f"{name}[0]"), number(second, f"{name}[1]")
 
 
-def _told(value: Any) -> str:
-    return f"{value!r}" if isinstance(value, (str, bytes, bool, int, float)) else f"of the type {type(value).__name__}"
+def told(value: Any) -> str:
+    """It, or its type where it may be long."""
+    is_short = value is None or isinstance(value, (str, bytes, bool, int, float))
+    return f"{value!r}" if is_short else f"of the type {type(value).__name__}"

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from pathlib import Path
 from typing import Callable, Optional
+
+from cloudtouch import _given
 
 
 class Page:
@@ -27,14 +30,20 @@ class Page:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the file, over what stood there."""
+        if not isinstance(path, (str, os.PathLike)):
+            raise TypeError(f"path is {_given.told(path)}: give the name of a file, a str")
         html, target = self.html, Path(path)
         # Beside it first: what stood there is not lost to a full disk.
         unfinished = target.with_name(target.name + ".partial")
         try:
             unfinished.write_text(html, encoding="utf-8")
             unfinished.replace(target)
-        except BaseException:
-            unfinished.unlink(missing_ok=True)
+        except BaseException as error:
+            # The error that counts is the first.
+            with contextlib.suppress(OSError):
+                unfinished.unlink()
+            if isinstance(error, OSError):
+                raise OSError(error.errno, error.strerror, os.fspath(target)) from None
             raise
 
     def frame(self, height: int = 480) -> str:
