@@ -60,6 +60,28 @@ def test_files_meshes_and_half_precision_are_refused_with_what_to_give():
         ct.Mesh(points.astype(np.float16), faces)
 
 
+def test_what_makes_no_array_was_told_in_words_of_numpy(floor, plate):
+    """Neither the argument was named nor what to give."""
+    ragged = [[1.0, 2, 3], [1, 2]]
+    triangles = [[0, 1, 2], [0, 1]]
+    for ask, says in [
+        (lambda: ct.Cloud(ragged, sensor="exact"), "^points makes no array .*: give rows of equally many numbers"),
+        (lambda: ct.Cloud(sheet(), sensor="exact", normals=ragged), "^normals makes no array"),
+        (lambda: ct.Mesh(np.eye(3), triangles), "^triangles makes no array"),
+        (lambda: ct.Query().run(floor, plate, ragged), "^pose makes no array"),
+        (lambda: ct.Query().sweep(floor, plate, [np.eye(4), np.eye(3)]), "^poses makes no array"),
+    ]:
+        with pytest.raises(ValueError, match=says):
+            ask()
+    for ask, says in [
+        (lambda: ct.Query().run(floor, plate, "pose.txt"), "^pose is 'pose.txt': give an array of numbers"),
+        (lambda: ct.Query().run(floor, plate, None), "^pose is None: give an array of numbers"),
+        (lambda: ct.Cloud(None, sensor="exact"), "^points is None"),
+    ]:
+        with pytest.raises(TypeError, match=says):
+            ask()
+
+
 def test_read_only_arrays_are_read_and_arrays_are_not_kept(plate):
     points = sheet(seed=3)
     points.flags.writeable = False

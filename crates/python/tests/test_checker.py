@@ -169,6 +169,16 @@ def test_what_no_row_can_be_answered_with_was_told_in_each_row(root):
     ]:
         with pytest.raises(ct.CloudtouchError, match=says):
             ct.PoseChecker(root, **arguments)
+    for given, says in [
+        ([1, 2], "^root is of the type list: give the path of a folder"),
+        (None, "^root is None: give the path of a folder"),
+    ]:
+        with pytest.raises(TypeError, match=says):
+            ct.PoseChecker(given, sensor="exact")
+    with pytest.raises(TypeError, match="^keep is 'all': give a whole number"):
+        ct.PoseChecker(root, sensor="exact", keep="all")
+    with pytest.raises(TypeError, match="^query is of the type Query: give its settings by name"):
+        ct.PoseChecker(root, sensor="exact", query=ct.Query())
     with pytest.raises(TypeError, match="^sensor is 0.002: give a str"):
         ct.PoseChecker(root, sensor=0.002)
     with pytest.raises(ValueError, match="^root is .*gone: there is no such folder"):

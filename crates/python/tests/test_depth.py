@@ -104,7 +104,22 @@ def test_what_is_no_depth_image_is_refused(depth, intrinsics, scale, message):
         ct.Cloud.from_depth(depth, intrinsics, sensor="kinect", depth_scale=scale)
 
 
+def test_files_in_the_place_of_arrays_are_named():
+    for depth, intrinsics, scale, message in [
+        (steps(), "cam.json", None, r"^intrinsics is 'cam.json': give the numbers, \(fx, fy, cx, cy\)"),
+        (steps(), None, None, "^intrinsics is None"),
+        ("depth.png", CAMERA, None, r"^depth is 'depth.png', the name of a file: .* cv2.imread\('depth.png'"),
+        (steps(), CAMERA, "0.001", "^depth_scale is '0.001': give a number"),
+    ]:
+        with pytest.raises(TypeError, match=message):
+            ct.Cloud.from_depth(depth, intrinsics, sensor="kinect", depth_scale=scale)
+    with pytest.raises(ValueError, match="^intrinsics has the type <U2: give numbers"):
+        ct.Cloud.from_depth(steps(), ["60", "60", "31", "23"], sensor="kinect")
+
+
 def test_a_file_of_a_depth_image_is_told_how_to_be_read(tmp_path):
     (tmp_path / "depth.png").write_bytes(b"\x89PNG\r\n\x1a\n")
     with pytest.raises(ct.CloudtouchError, match="from_depth"):
         ct.Cloud.read(tmp_path / "depth.png", sensor="kinect")
+    with pytest.raises(ct.CloudtouchError, match="from_depth"):
+        ct.Cloud.read(bytes(tmp_path / "depth.png"), sensor="kinect")

@@ -243,6 +243,15 @@ def test_wrong_positions_and_files_are_told(robot, folder, floor_under):
         ct.Robot(folder / "arm.urdf")
     with pytest.raises(ct.CloudtouchError, match="gone.urdf: cannot be read"):
         ct.Robot(folder / "gone.urdf")
+    for ask, says in [
+        (lambda: checker.check(None, at(0.0)), "^query is None: give a cloudtouch.Query"),
+        (lambda: checker.page(None, at(0.0)), "^query is None"),
+        (lambda: checker.check_path("q", [at(0.0), at(0.1)]), "^query is 'q'"),
+        (lambda: checker.allow(5), "^a is 5: give a str"),
+        (lambda: checker.release(None), "^name is None: give a str"),
+    ]:
+        with pytest.raises(TypeError, match=says):
+            ask()
     with pytest.raises(TypeError, match="does not pickle"):
         pickle.dumps(robot)
 

@@ -73,6 +73,24 @@ def test_wrong_names_and_poses_are_told(scene, floor):
             add("floor", np.zeros((5, 3)))
 
 
+def test_arguments_of_another_type_are_named(scene, floor):
+    query = ct.Query()
+    for ask, says in [
+        (lambda: scene.add(5, floor), "^name is 5: give a str"),
+        (lambda: scene.replace(None, floor), "^name is None: give a str"),
+        (lambda: scene.set_pose(5, np.eye(4)), "^name is 5"),
+        (lambda: scene.attach("plate", 5), "^to is 5"),
+        (lambda: scene.allow("plate", ["floor"]), "^b is of the type list"),
+        (lambda: scene.allow("plate", "floor", "no"), "^may_touch is 'no': give True or False"),
+        (lambda: scene.check(None), "^query is None: give a cloudtouch.Query"),
+        (lambda: scene.check_first({"reject": 0.1}), "^query is of the type dict"),
+        (lambda: scene.page(None), "^query is None"),
+        (lambda: scene.page(query, title=5), "^title is 5"),
+    ]:
+        with pytest.raises(TypeError, match=says):
+            ask()
+
+
 @pytest.mark.parametrize("height", [0.056, 0.058])
 def test_a_gradient_is_that_of_differences(table, parcel, height):
     query, step = ct.Query(), 1e-6

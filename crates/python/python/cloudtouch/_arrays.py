@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from cloudtouch import _given
 
 #: As numpy writes a shape, of which the first number is free.
 FREE = -1
@@ -27,9 +30,19 @@ def rows_of(value: Any) -> Any:
     return value.to_dict("records") if hasattr(value, "columns") and hasattr(value, "to_dict") else value
 
 
+def array_of(value: Any, name: str) -> npt.NDArray[Any]:
+    """What a user gave as an array, whatever its shape and type."""
+    if value is None or isinstance(value, (str, bytes, os.PathLike)):
+        raise TypeError(f"{name} is {_given.told(value)}: give an array of numbers")
+    try:
+        return np.asarray(value)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} makes no array ({error}): give rows of equally many numbers") from None
+
+
 def points(value: Any, name: str, *, of_image: bool = True) -> tuple[npt.NDArray[Any], tuple[int, int] | None]:
     """Rows of x, y and z, and width and height where they are those of an image."""
-    array = np.asarray(value) if not isinstance(value, np.ma.MaskedArray) else _refuse_mask(name)
+    array = array_of(value, name) if not isinstance(value, np.ma.MaskedArray) else _refuse_mask(name)
     fields = _fields(value, array)
     if fields is not None:
         missing = [field for field in "xyz" if field not in fields]
@@ -62,7 +75,7 @@ def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.flo
     """Numbers of one shape, in double precision."""
     if isinstance(value, np.ma.MaskedArray):
         _refuse_mask(name)
-    array = np.asarray(value)
+    array = array_of(value, name)
     fits = array.ndim == len(shape) and all(n in (FREE, m) for n, m in zip(shape, array.shape))
     if not fits:
         wanted = str(shape).replace(str(FREE), "N")
@@ -72,7 +85,7 @@ def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.flo
 
 def indices(value: Any, name: str) -> npt.NDArray[np.uint32]:
     """Three indices of vertices a row."""
-    array = np.asarray(value)
+    array = array_of(value, name)
     if array.size == 0:
         array = np.empty((0, 3), dtype=np.uint32)
     if array.ndim != 2 or array.shape[1] != 3:
@@ -87,7 +100,7 @@ def indices(value: Any, name: str) -> npt.NDArray[np.uint32]:
 
 def places(value: Any, name: str, count: int) -> list[int]:
     """Which of so many rows, by indices or by a truth value each."""
-    array = np.asarray(value)
+    array = array_of(value, name)
     if array.size == 0 and array.ndim == 1 and array.dtype.kind != "b":
         array = array.astype(np.int64)
     if array.ndim != 1 or (array.dtype.kind == "b" and len(array) != count):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cloudtouch import _arrays, _native
+from cloudtouch import _arrays, _given, _native
 
 #: Of 16 bits the largest number, which some cameras store where nothing came back.
 NO_RETURN = 65535
@@ -15,6 +16,7 @@ NO_RETURN = 65535
 
 def points(depth: Any, intrinsics: npt.ArrayLike, depth_scale: float | None) -> npt.NDArray[np.float64]:
     """(height, width, 3): places in the optical frame of the camera, m, NaN where nothing came back."""
+    depth_scale = _given.optional_number(depth_scale, "depth_scale")
     metres = _metres(depth, depth_scale)
     height, width = metres.shape
     fx, fy, cx, cy = camera = _pinhole(intrinsics)
@@ -32,7 +34,12 @@ def placed(image: npt.NDArray[np.float64], pose: npt.ArrayLike) -> npt.NDArray[n
 def _metres(depth: Any, depth_scale: float | None) -> npt.NDArray[np.float64]:
     if isinstance(depth, np.ma.MaskedArray):
         raise ValueError("depth is a masked array: give depth.filled(0), 0 for no return")
-    array = np.asarray(depth)
+    if isinstance(depth, (str, os.PathLike)):
+        path = os.fspath(depth)
+        raise TypeError(
+            f"depth is {path!r}, the name of a file: give its array, such as cv2.imread({path!r}, cv2.IMREAD_UNCHANGED)"
+        )
+    array = _arrays.array_of(depth, "depth")
     if array.ndim == 3 and array.shape[2] == 1:
         array = array[:, :, 0]
     if array.ndim != 2 or min(array.shape) < 2:
@@ -54,7 +61,16 @@ def _metres(depth: Any, depth_scale: float | None) -> npt.NDArray[np.float64]:
 
 
 def _pinhole(intrinsics: npt.ArrayLike) -> tuple[float, float, float, float]:
-    array = np.asarray(intrinsics, dtype=np.float64)
+    if isinstance(intrinsics, (str, os.PathLike)):
+        path = os.fspath(intrinsics)
+        raise TypeError(
+            f"intrinsics is {path!r}: give the numbers, (fx, fy, cx, cy) in pixels or (3, 3); `cloudtouch --intrinsics` "
+            "alone reads files"
+        )
+    array = _arrays.array_of(intrinsics, "intrinsics")
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"intrinsics has the type {array.dtype}: give numbers, (fx, fy, cx, cy) in pixels or (3, 3)")
+    array = array.astype(np.float64)
     if array.shape == (4,):
         fx, fy, cx, cy = array.tolist()
         return fx, fy, cx, cy

@@ -13,7 +13,7 @@ from typing import Any, Generic, Hashable, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from cloudtouch import _native
+from cloudtouch import _given, _native
 from cloudtouch._native import CloudtouchError
 from cloudtouch.bodies import Cloud, Mesh, check_sensor
 from cloudtouch.query import Body, Query
@@ -68,16 +68,18 @@ class PoseChecker:
         query: Mapping[str, Any] | None = None,
         keep: int = 4,
     ) -> None:
-        self._root = Path(root)
+        self._root = _given.folder(root, "root")
         if not self._root.is_dir():
             raise ValueError(f"root is {root}: there is no such folder: give the one that the paths start from")
         self._sensors = (sensor, sensor if object_sensor is None else object_sensor)
         for stated, name in zip(self._sensors, ("sensor", "object_sensor")):
             check_sensor(stated, name)
         self._units = (unit, cloud_unit)
+        if query is not None and not isinstance(query, Mapping):
+            raise TypeError(f'query is {_given.told(query)}: give its settings by name, such as {{"reject": 0.05}}')
         self._query = Query(**(query or {}))
-        self._scenes: _Kept[Body] = _Kept(keep)
-        self._objects: _Kept[Body] = _Kept(keep)
+        self._scenes: _Kept[Body] = _Kept(_given.count(keep, "keep"))
+        self._objects: _Kept[Body] = _Kept(self._scenes.limit)
 
     def __call__(self, rows: Any) -> Any:
         """The columns of ``rows``, and those of :class:`Batch` beside them.

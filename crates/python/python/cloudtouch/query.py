@@ -288,3 +288,10 @@ class Query:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._set(state)
+
+
+def native_query(query: Any, name: str = "query") -> _native.Query:
+    """What the compiled half knows of a query; ``name`` is that of the argument."""
+    if not isinstance(query, Query):
+        raise TypeError(f"{name} is {_given.told(query)}: give a cloudtouch.Query")
+    return query._query

@@ -11,10 +11,10 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from cloudtouch import _arrays, _native
+from cloudtouch import _arrays, _given, _native
 from cloudtouch.bodies import Mesh, SeenLink, native_body
 from cloudtouch.page import Page
-from cloudtouch.query import Body, Query
+from cloudtouch.query import Body, Query, native_query
 from cloudtouch.report import Floats, Verdict
 from cloudtouch.scene import Checked, PairAnswer
 
@@ -248,7 +248,7 @@ class RobotChecker:
         CloudtouchError
             One of them has no shape that is checked.
         """
-        self._checker.allow(a, b)
+        self._checker.allow(_given.text(a, "a"), _given.text(b, "b"))
 
     def hold(self, name: str, body: Body, link: str, link_from_body: npt.ArrayLike | None = None) -> None:
         """Have a link hold a body, as it is now: it moves with the link from then on, along paths too.
@@ -269,7 +269,8 @@ class RobotChecker:
             No link has that name, something else has the name of the body, or the pose is no rigid motion.
         """
         pose = np.eye(4) if link_from_body is None else _arrays.numbers(link_from_body, "link_from_body", (4, 4))
-        self._checker.hold(name, native_body(body, "body"), link, pose)
+        names = _given.text(name, "name"), _given.text(link, "link")
+        self._checker.hold(names[0], native_body(body, "body"), names[1], pose)
 
     def release(self, name: str) -> None:
         """Let go of a body that is held.
@@ -279,7 +280,7 @@ class RobotChecker:
         CloudtouchError
             Nothing of that name is held.
         """
-        self._checker.release(name)
+        self._checker.release(_given.text(name, "name"))
 
     def boxes(self, joints: Positions) -> dict[str, Floats]:
         """Where the surroundings, each link and what is held are, to see whether the base is where you meant.
@@ -310,7 +311,7 @@ class RobotChecker:
         CloudtouchError
             A joint is unknown, left out, not finite or beyond its limits.
         """
-        return Checked._of(*self._checker.check(query._query, self._robot._named(joints, "joints")))
+        return Checked._of(*self._checker.check(native_query(query), self._robot._named(joints, "joints")))
 
     def page(self, query: Query, joints: Positions, *, title: str = "cloudtouch") -> Page:
         """The robot in its surroundings and what :meth:`check` finds, as by :meth:`Scene.page`.
@@ -323,7 +324,8 @@ class RobotChecker:
             As :meth:`check`, when the page is shown or written.
         """
         named = self._robot._named(joints, "joints")
-        return Page(lambda height: self._checker.page(query._query, named, title, height))
+        asked, words = native_query(query), _given.text(title, "title")
+        return Page(lambda height: self._checker.page(asked, named, words, height))
 
     def check_path(self, query: Query, path: Iterable[Positions], *, tolerance: float = 0.001) -> PathChecked:
         """How far along a path every position is free, nothing between those given left out.
@@ -344,9 +346,9 @@ class RobotChecker:
         CloudtouchError
             There are fewer than two, ``tolerance`` is below 1e-5 or above 1, or as :meth:`check`.
         """
-        rows = _arrays.rows_of(path)
+        asked, rows = native_query(query), _arrays.rows_of(path)
         positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(rows)]
-        given, until, (stopped, later), looked_at, verdict = self._checker.check_path(query._query, positions, tolerance)
+        given, until, (stopped, later), looked_at, verdict = self._checker.check_path(asked, positions, tolerance)
         checked = tuple(Checked._of(*at) for at in given)
         return PathChecked(checked, until, _place(stopped), _place(later), looked_at, verdict)
 

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple, Optional
 import numpy as np
 import numpy.typing as npt
 
-from cloudtouch import _arrays, _native
+from cloudtouch import _arrays, _given, _native
 from cloudtouch.bodies import native_body
 from cloudtouch.page import Page
-from cloudtouch.query import Body, Query
+from cloudtouch.query import Body, Query, native_query
 from cloudtouch.report import Floats, Report, Verdict
 
 
@@ -116,31 +116,32 @@ class Scene:
 
     def add(self, name: str, body: Body, pose: npt.ArrayLike | None = None) -> None:
         """Adds a body; at the origin where no pose is given."""
-        self._scene.add(name, native_body(body, "body"), _matrix(pose))
+        self._scene.add(_given.text(name, "name"), native_body(body, "body"), _matrix(pose))
 
     def replace(self, name: str, body: Body) -> None:
         """Puts another body in the place of one, such as a new scan of the same thing."""
-        self._scene.replace(name, native_body(body, "body"))
+        self._scene.replace(_given.text(name, "name"), native_body(body, "body"))
 
     def remove(self, name: str) -> None:
         """Removes a body that no other is attached to."""
-        self._scene.remove(name)
+        self._scene.remove(_given.text(name, "name"))
 
     def set_pose(self, name: str, pose: npt.ArrayLike) -> None:
         """Moves a body, and what is attached to it."""
-        self._scene.set_pose(name, _matrix(pose))
+        self._scene.set_pose(_given.text(name, "name"), _matrix(pose))
 
     def attach(self, name: str, to: str) -> None:
         """From now on the first moves with the second, from where both are."""
-        self._scene.attach(name, to)
+        self._scene.attach(_given.text(name, "name"), _given.text(to, "to"))
 
     def detach(self, name: str) -> None:
         """It stays where it is, and moves by itself."""
-        self._scene.detach(name)
+        self._scene.detach(_given.text(name, "name"))
 
     def allow(self, a: str, b: str, may_touch: bool = True) -> None:
         """Whether two bodies may touch: such pairs are not asked about."""
-        self._scene.allow(a, b, may_touch)
+        names = _given.text(a, "a"), _given.text(b, "b")
+        self._scene.allow(*names, _given.flag(may_touch, "may_touch"))
 
     @property
     def names(self) -> list[str]:
@@ -157,16 +158,17 @@ class Scene:
 
     def check(self, query: Query) -> Checked:
         """All pairs that do not read as free, the worst first, on all cores."""
-        return Checked._of(*self._scene.check(query._query))
+        return Checked._of(*self._scene.check(native_query(query)))
 
     def check_first(self, query: Query) -> PairAnswer | None:
         """One pair that does not read as free, or ``None`` where all do: sooner known."""
-        found = self._scene.check_first(query._query)
+        found = self._scene.check_first(native_query(query))
         return None if found is None else PairAnswer._of(found)
 
     def page(self, query: Query, *, title: str = "cloudtouch") -> Page:
         """All bodies and what :meth:`check` finds, to look at: a notebook shows it, :meth:`Page.save` writes it."""
-        return Page(lambda height: self._scene.page(query._query, title, height))
+        asked, words = native_query(query), _given.text(title, "title")
+        return Page(lambda height: self._scene.page(asked, words, height))
 
     def __len__(self) -> int:
         """How many bodies there are."""
