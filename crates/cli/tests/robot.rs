@@ -46,15 +46,22 @@ fn robot(inputs: &Inputs, joints: &Value, more: &[&str]) -> Run {
 fn a_link_may_touch_the_scan() {
     let inputs = inputs();
     let down = json!({"shoulder": 0.7});
-    let free = robot(&inputs, &down, &["--may-touch=arm", "--json", "--exit-code"]);
-    // There is no other link with a shape.
+    let none = robot(&inputs, &down, &["--may-touch=arm", "--json", "--exit-code"]);
+    // There is no other link with a shape: nothing is checked, and it read as free.
     assert!(
-        free.code() == 0 && free.stderr().contains("none was asked about"),
+        none.code() == 30 && none.stderr().contains("none was asked about"),
         "{}",
-        free.stderr()
+        none.stderr()
     );
-    let answer = free.json_lines().remove(0);
-    assert_eq!([&answer["verdict"], &answer["may_touch"]], [&json!("free"), &json!(["arm"])]);
+    let answer = none.json_lines().remove(0);
+    assert_eq!([&answer["verdict"], &answer["undecided_by"]], ["undecided", "unchecked"]);
+    assert_eq!(answer["may_touch"], json!(["arm"]));
+    let path = json!([{"shoulder": 0.7}, {"shoulder": 0.8}]);
+    let none = robot(&inputs, &path, &["--may-touch=arm", "--json", "--exit-code"]);
+    let answer = none.json_lines().remove(0);
+    assert_eq!((none.code(), &answer["certified_free_until"]), (30, &json!(0.0)), "{answer}");
+    let text = robot(&inputs, &path, &["--may-touch=arm"]).stdout();
+    assert!(text.contains("undecided: all pairs may touch"), "{text}");
     let text = robot(&inputs, &down, &["--may-touch", "arm"]).stdout();
     assert!(text.contains("may touch the scan     arm\n"), "{text}");
     let slip = robot(&inputs, &down, &["--may-touch=am"]);

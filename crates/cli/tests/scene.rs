@@ -76,8 +76,13 @@ fn what_is_attached_is_placed_by_what_carries_it_and_allowed_pairs_may_touch() {
     assert_eq!((pairs(&answer).len(), &answer["counts"]["allowed"]), (0, &json!(1)));
     let all = json!([["load", "floor"], ["carrier", "floor"], ["carrier", "load"]]);
     file["allowed"] = all;
+    // Nothing was checked, and it read as free.
     let run = scene(&inputs, &file, &["--exit-code"]);
-    assert!(run.code() == 0 && run.stderr().contains("none was asked about"), "{}", run.stderr());
+    assert!(run.code() == 30 && run.stderr().contains("none was asked about"), "{}", run.stderr());
+    let text = run.stdout();
+    assert!(text.contains("undecided: all pairs may touch") && !text.contains("free"), "{text}");
+    let answer = scene(&inputs, &file, &["--json"]).json_lines().remove(0);
+    assert_eq!([&answer["verdict"], &answer["undecided_by"]], ["undecided", "unchecked"]);
 }
 
 #[test]

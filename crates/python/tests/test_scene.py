@@ -91,6 +91,17 @@ def test_arguments_of_another_type_are_named(scene, floor):
             ask()
 
 
+def test_a_scene_in_which_all_may_touch_read_as_free(floor, plate):
+    scene = ct.Scene()
+    assert scene.check(ct.Query()).verdict == "undecided"
+    scene.add("floor", floor)
+    scene.add("plate", plate, lifted(0.5))
+    assert scene.check(ct.Query()).verdict == "free"
+    scene.allow("floor", "plate")
+    found = scene.check(ct.Query())
+    assert found.verdict == "undecided" and found.pairs == ()
+
+
 @pytest.mark.parametrize("height", [0.056, 0.058])
 def test_a_gradient_is_that_of_differences(table, parcel, height):
     query, step = ct.Query(), 1e-6

@@ -218,6 +218,24 @@ fn what_is_attached_moves_along_and_stays_when_let_go() {
     assert_eq!(scene.check(&query()).verdict(), Verdict::Free);
 }
 
+/// It read as free, though nothing was checked.
+#[test]
+fn a_scene_in_which_all_may_touch_is_undecided() {
+    let mut scene = Scene::default();
+    assert_eq!(scene.check(&query()).verdict(), Verdict::Undecided);
+    let cube = Arc::new(mesh(&scene::cuboid([0.1; 3])));
+    scene.add("hand", Arc::clone(&cube), at(0.0, 0.0, 0.0)).unwrap();
+    assert_eq!(scene.check(&query()).verdict(), Verdict::Undecided);
+    scene.add("cup", cube, at(0.5, 0.0, 0.0)).unwrap();
+    assert_eq!(scene.check(&query()).verdict(), Verdict::Free);
+    scene.allow("hand", "cup").unwrap();
+    let found = scene.check(&query());
+    assert!(found.is_unchecked() && found.pairs.is_empty());
+    assert_eq!(found.verdict(), Verdict::Undecided);
+    scene.forbid("hand", "cup").unwrap();
+    assert_eq!(scene.check(&query()).verdict(), Verdict::Free);
+}
+
 #[test]
 fn contacts_are_told_in_the_frame_of_the_scene() {
     let wall = cloud(&scene::cuboid([0.4, 0.4, 0.1]), 0.01, 0.001, 1);

@@ -15,9 +15,9 @@ pub struct PathChecked {
     /// What is found at each of the positions given, as [`RobotChecker::check`].
     pub given: Vec<Checked>,
     /// Share of the path, 0 to 1 and the same for every segment, up to which every position is free,
-    /// between those given too.
+    /// between those given too; 0 where no pair was checked.
     pub certified_free_until: f64,
-    /// What is there, where that is not the end.
+    /// What is there, where that is not the end; `None` where no pair was checked.
     pub stopped: Option<Stopped>,
     /// The first collision found beyond, where none was found there or at a position given: of sixteen
     /// positions in each segment, so that there may be others.
@@ -58,9 +58,12 @@ const LATER: usize = 16;
 
 impl PathChecked {
     /// Free where the whole path is certified; else the worst verdict found, and undecided where none
-    /// but free was.
+    /// but free was, or [no pair was checked](Checked::is_unchecked).
     pub fn verdict(&self) -> Verdict {
-        let Some(stopped) = &self.stopped else { return Verdict::Free };
+        let Some(stopped) = &self.stopped else {
+            let is_unchecked = self.given.iter().any(Checked::is_unchecked);
+            return if is_unchecked { Verdict::Undecided } else { Verdict::Free };
+        };
         let found: Vec<Verdict> = (self.given.iter().map(Checked::verdict))
             .chain(stopped.pair.as_ref().map(PairAnswer::verdict))
             .chain(self.later.iter().flat_map(|at| &at.pair).map(PairAnswer::verdict))
@@ -119,6 +122,11 @@ impl RobotChecker {
         tolerance: f64,
     ) -> Result<PathChecked, PathError> {
         let mut looked_at = given.len();
+        // Which pairs may touch is the same at all of them.
+        if given.iter().any(Checked::is_unchecked) {
+            let (stopped, later) = (None, None);
+            return Ok(PathChecked { given, certified_free_until: 0.0, stopped, later, looked_at });
+        }
         let segments = (path.len() - 1) as f64;
         let mut certified_free_until = 0.0;
         let at_once = given[0].pairs.first().cloned();

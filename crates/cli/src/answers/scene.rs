@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use anyhow::Result;
 use cloudtouch::geom::Point3;
-use cloudtouch::{BodyWarning, Checked, Outside, PairAnswer, Report, Verdict};
+use cloudtouch::{BodyWarning, Checked, Outside, PairAnswer, Report, Undecided, Verdict};
 use serde::Serialize;
 
 use crate::answers::print::{self, one_line, probability};
@@ -16,19 +16,34 @@ use crate::remedies;
 /// Of many bodies far from all others no more are named.
 const OUTSIDE_TOLD: usize = 3;
 
-/// Says so where all pairs were left out: nothing was looked at, and the answer is free all the same.
+/// Why a scene is undecided of which no pair was checked, for programs.
+const UNCHECKED: &str = "unchecked";
+
+/// The same for people.
+pub(crate) const NONE_ASKED: &str =
+    "all pairs may touch by what was said, so that none was asked about";
+
+/// Says so where all pairs were left out: nothing was looked at.
 pub(crate) fn warn_of_nothing_asked(checked: &Checked) {
-    if checked.allowed == checked.count {
-        tracing::warn!(
-            "all pairs may touch by what was said, so that none was asked about: free says nothing"
-        );
+    if checked.is_unchecked() {
+        tracing::warn!("{NONE_ASKED}: name fewer in `allowed`, --srdf or --may-touch");
     }
+}
+
+/// Why an answer is undecided: by its worst pair, where that has an answer.
+fn undecided_by(checked: &Checked) -> Option<&'static str> {
+    if checked.is_unchecked() {
+        return Some(UNCHECKED);
+    }
+    let worst = checked.pairs.first()?.answer.as_ref().ok()?;
+    worst.undecided_by.map(Undecided::code)
 }
 
 /// What a scene answers, in JSON.
 #[derive(Serialize)]
 pub(crate) struct Line<'a> {
     verdict: Verdict,
+    undecided_by: Option<&'static str>,
     threshold: f64,
     pairs: Vec<Pair<'a>>,
     counts: Counts,
@@ -93,6 +108,7 @@ pub(crate) fn line<'a>(checked: &'a Checked, threshold: f64, bodies: Bodies<'a>)
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
     Line {
         verdict: checked.verdict(),
+        undecided_by: undecided_by(checked),
         threshold,
         pairs: checked.pairs.iter().map(Pair::from).collect(),
         counts: Counts { pairs: count, allowed, ruled_out, asked },
@@ -119,6 +135,9 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
         }
     }
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
+    if checked.is_unchecked() {
+        return text + &format!("{}: {NONE_ASKED} ({allowed} left out)", checked.verdict());
+    }
     let _ = write!(
         text,
         "{}: {} of {count} pairs may be at or above {}; {asked} asked, {ruled_out} ruled out by their \

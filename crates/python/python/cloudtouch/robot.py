@@ -190,7 +190,7 @@ class PathChecked:
     looked_at: int
     """How many positions were asked about."""
     verdict: Verdict
-    """``"free"`` where the whole path is; else the worst that was found."""
+    """``"free"`` where the whole path is; ``"undecided"`` where no pair was checked; else the worst that was found."""
 
 
 class RobotChecker:

@@ -83,8 +83,10 @@ class Checked:
 
     @property
     def verdict(self) -> Verdict:
-        """The worst of any pair."""
-        return self.pairs[0].verdict if self.pairs else "free"
+        """The worst of any pair; ``"undecided"`` where none was checked, for all may touch or there are fewer than two bodies."""
+        if self.pairs:
+            return self.pairs[0].verdict
+        return "undecided" if self.allowed == self.count else "free"
 
     @classmethod
     def _of(

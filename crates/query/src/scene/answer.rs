@@ -90,9 +90,16 @@ impl fmt::Display for Outside {
 
 impl Checked {
     /// The worst verdict of any pair: free where none is left, undecided where one has no answer and
-    /// none is in collision.
+    /// none is in collision, and where [none was checked](Self::is_unchecked).
     pub fn verdict(&self) -> Verdict {
-        self.pairs.first().map_or(Verdict::Free, PairAnswer::verdict)
+        let without = if self.is_unchecked() { Verdict::Undecided } else { Verdict::Free };
+        self.pairs.first().map_or(without, PairAnswer::verdict)
+    }
+
+    /// Whether there was no pair to check: all may touch by what was said, or there are fewer than two bodies.
+    /// Nothing is known then.
+    pub fn is_unchecked(&self) -> bool {
+        self.allowed == self.count
     }
 }
 

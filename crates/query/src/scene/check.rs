@@ -62,8 +62,8 @@ impl Scene {
         checked
     }
 
-    /// One pair of bodies that does not read as free, or `None` where all do: the pairs are asked one
-    /// after the other, those whose boxes overlap most first, and those after it are not. Which one is
+    /// One pair of bodies that does not read as free, or `None` where all do, or all may touch: the pairs are asked
+    /// one after the other, those whose boxes overlap most first, and those after it are not. Which one is
     /// found depends on nothing but the scene.
     ///
     /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest. A deadline is that of each pair;
