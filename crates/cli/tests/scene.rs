@@ -222,9 +222,20 @@ fn where_a_sensor_stood_decides_whether_a_cloud_is_hollow() {
     let text = scene(&inputs, &file, &[]).quiet(0).stdout();
     assert!(text.contains("free: 0 of 1 pairs"), "{text}");
     shell["sensor_pose"] = json!(pose[..3]);
-    let run = scene(&inputs, &of_bodies(&[shell, box_within]), &[]);
+    let run = scene(&inputs, &of_bodies(&[shell.clone(), box_within.clone()]), &[]);
     assert_eq!(run.code(), 1);
     for part in ["body 1 `shell`", "`sensor_pose`", "the pose has 3 rows"] {
         assert!(run.stderr().contains(part), "{}", run.stderr());
     }
+    // It was refused as an option, which the command does not have.
+    shell["sensor_pose"] = json!(pose);
+    let mut of_mesh = box_within;
+    of_mesh["sensor_pose"] = json!(pose);
+    let run = scene(&inputs, &of_bodies(&[shell, of_mesh]), &[]);
+    let error = run.stderr();
+    for part in ["body 2 `box`", "`sensor_pose` is of a cloud", "box.obj is a mesh", "leave it out"]
+    {
+        assert!(error.contains(part) && !error.contains("--sensor-pose"), "{error}");
+    }
+    assert_eq!(run.code(), 1);
 }

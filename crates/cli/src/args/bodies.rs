@@ -48,6 +48,8 @@ pub(crate) struct BodyOptions<'a> {
     pub depth: DepthImages,
     pub object_sensor: Option<SensorChoice>,
     pub sensor_pose: Option<Rigid>,
+    /// Whether a scene file says that, and no option.
+    pub is_of_file: bool,
     pub collision_map: Option<f64>,
     /// Links in the scene's frame, and how near to them points go.
     pub robot: &'a [PathBuf],
@@ -64,6 +66,7 @@ impl CommonArguments {
             depth: self.depth.images(),
             object_sensor: None,
             sensor_pose: None,
+            is_of_file: false,
             collision_map: None,
             robot: &[],
             robot_padding: 0.0,

@@ -21,6 +21,7 @@ use serde::Serialize;
 use crate::args::{BodyOptions, Refine};
 use crate::body::{Body, PreparedCloud};
 use crate::sensor::{Chosen, SensorChoice};
+use crate::unused;
 use crate::usage::WrongUsage;
 
 pub(crate) use geometry::{Kind, Units, check, geometry};
@@ -166,10 +167,12 @@ fn of_mesh<C>(
     mesh: &TriangleMesh,
     options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
+    let is_placed = options.sensor_pose.is_some();
+    ensure!(!(is_placed && options.is_of_file), unused::of_a_mesh("sensor_pose", &named(path)));
     let of_clouds = [
         ("--robot", !options.robot.is_empty()),
         ("--collision-map", options.collision_map.is_some()),
-        ("--sensor-pose", options.sensor_pose.is_some()),
+        ("--sensor-pose", is_placed),
     ];
     if role == Role::Scene
         && let Some((option, _)) = of_clouds.iter().find(|(_, is_given)| *is_given)

@@ -147,7 +147,7 @@ fn load(
     let sensor = sensor.parse::<SensorChoice>().map_err(|error| anyhow!("{error}"))?;
     let usual = common.bodies();
     let (sensor_pose, depth) = (entry.sensor_pose.map(Rigid), entry.depth.or(&usual.depth));
-    let options = BodyOptions { sensor_pose, depth, ..usual };
+    let options = BodyOptions { sensor_pose, is_of_file: true, depth, ..usual };
     load::body_in::<Cloud>(path, *unit, sensor, &options)
 }
 
