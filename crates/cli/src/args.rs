@@ -18,7 +18,8 @@ mod robot;
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{ArgMatches, Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use cloudtouch_io::LengthUnit;
 
 pub(crate) use answer::{AnswerArguments, exit_code};
@@ -85,13 +86,16 @@ pub(crate) struct Arguments {
 impl Arguments {
     /// Reads the command line, or ends with what is wrong with it.
     pub(crate) fn read() -> Self {
-        let end = |error| others::told(commas::told(error), &Self::command()).exit();
-        let matches = Self::command().try_get_matches().unwrap_or_else(end);
-        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+        let tool = Self::command();
+        let end = |error| others::told(commas::told(error), &tool).exit();
+        let matches = tool.clone().try_get_matches().unwrap_or_else(end);
+        let read = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+        read.check().unwrap_or_else(|message| refused(tool, &matches, message).exit());
+        read
     }
 
     /// Refuses options that contradict one another; the message names them.
-    pub(crate) fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), String> {
         if let Some(common) = self.common() {
             common.check()?;
         }
@@ -126,6 +130,14 @@ impl Arguments {
             _ => tracing::Level::TRACE,
         }
     }
+}
+
+/// The error of options that contradict one another: as for any other wrong use, with the usage of the command.
+fn refused(mut tool: clap::Command, matches: &ArgMatches, message: String) -> clap::Error {
+    // The names of all commands begin with that of the tool from here on.
+    tool.build();
+    let command = matches.subcommand_name().and_then(|name| tool.find_subcommand(name));
+    command.unwrap_or(&tool).clone().error(ErrorKind::ArgumentConflict, message)
 }
 
 #[derive(Debug, Subcommand)]

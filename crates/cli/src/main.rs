@@ -22,8 +22,6 @@ mod usage;
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
-use clap::CommandFactory as _;
-use clap::error::ErrorKind;
 use cloudtouch_cli::sensor;
 
 use args::{Arguments, Command};
@@ -31,10 +29,6 @@ use usage::WrongUsage;
 
 fn main() -> ExitCode {
     let arguments = Arguments::read();
-    if let Err(message) = arguments.check() {
-        // As for any other wrong use: to standard error, with code 2.
-        Arguments::command().error(ErrorKind::ArgumentConflict, message).exit();
-    }
     tracing_subscriber::fmt()
         .with_max_level(arguments.log_level())
         .with_writer(std::io::stderr)

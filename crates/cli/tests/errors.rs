@@ -126,6 +126,25 @@ fn options_that_cannot_be_meant() {
     }
 }
 
+/// It was that of the tool, which takes no such options.
+#[test]
+fn the_usage_told_is_that_of_the_command() {
+    let inputs = Inputs::new();
+    for (command, more) in [
+        ("query floor.pcd box.obj", "--seed=3"),
+        ("query floor.pcd box.obj", "--min-range=5 --max-range=1"),
+        ("path floor.pcd box.obj --poses=p.csv", "--min-range=5 --max-range=1"),
+        ("scene s.json", "--min-range=5 --max-range=1"),
+        ("robot floor.pcd r.urdf --joints=j.json", "--min-range=5 --max-range=1"),
+        ("batch cases.json", "--pooling=max"),
+    ] {
+        let arguments: Vec<&str> = command.split(' ').chain(more.split(' ')).collect();
+        let run = inputs.run(&arguments);
+        let usage = format!("Usage: cloudtouch {} ", arguments[0]);
+        assert!(run.code() == 2 && run.stderr().contains(&usage), "{}", run.stderr());
+    }
+}
+
 /// A negative one was taken for an option, or made links thinner than they are.
 #[test]
 fn a_padding_below_zero_was_taken() {
