@@ -8,6 +8,7 @@ mod caution;
 mod commas;
 mod common;
 mod depth;
+mod equals;
 mod limits;
 mod mode;
 mod others;
@@ -87,7 +88,7 @@ impl Arguments {
     /// Reads the command line, or ends with what is wrong with it.
     pub(crate) fn read() -> Self {
         let tool = Self::command();
-        let end = |error| others::told(commas::told(error), &tool).exit();
+        let end = |error| equals::told(others::told(commas::told(error), &tool), &tool).exit();
         let matches = tool.clone().try_get_matches().unwrap_or_else(end);
         let read = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         read.check().unwrap_or_else(|message| refused(tool, &matches, message).exit());

@@ -126,6 +126,24 @@ fn options_that_cannot_be_meant() {
     }
 }
 
+/// The number was unexpected, and nothing said what to write.
+#[test]
+fn numbers_behind_options_that_take_none_there() {
+    let inputs = Inputs::new();
+    for (more, tip) in [
+        (["--penetration", "0.2"], "--penetration is written with `=`: --penetration=0.2"),
+        (["--gradient", "1"], "--gradient takes no value: leave 1 out"),
+    ] {
+        for arguments in [
+            [&["query", "floor.pcd", "box.obj"], &more[..]].concat(),
+            [&["query"], &more[..], &["floor.pcd", "box.obj"]].concat(),
+        ] {
+            let run = inputs.run(&arguments);
+            assert!(run.code() == 2 && run.stderr().contains(tip), "{}", run.stderr());
+        }
+    }
+}
+
 /// It was that of the tool, which takes no such options.
 #[test]
 fn the_usage_told_is_that_of_the_command() {
