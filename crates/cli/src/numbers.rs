@@ -58,7 +58,8 @@ pub struct PoseStd(pub [f64; 6]);
 /// When there are not six finite numbers, one is negative, a length is beyond 1e10 m, or an angle beyond
 /// half a turn.
 pub fn pose_std(text: &str) -> Result<PoseStd, String> {
-    let stds: [f64; 6] = numbers(text, "six, as in 0.005,0.005,0.005,0.01,0.01,0.01")?;
+    let stds: [f64; 6] =
+        numbers(text, "six, three in m and three in rad, as in 0.005,0.005,0.005,0.01,0.01,0.01")?;
     if let Some(std) = stds.iter().find(|std| **std < 0.0) {
         return Err(format!("{std} is negative: a standard deviation is 0 or more"));
     }
@@ -155,7 +156,9 @@ fn numbers<const N: usize>(text: &str, form: &str) -> Result<[f64; N], String> {
     if let Some(separated) = separated(text) {
         return Err(format!("numbers are separated by commas: write {separated}"));
     }
-    let numbers = text.split(',').map(finite).collect::<Result<Vec<f64>, String>>()?;
+    let told = |why| format!("{why}: write {form}");
+    let numbers =
+        text.split(',').map(finite).collect::<Result<Vec<f64>, String>>().map_err(told)?;
     let count = numbers.len();
     numbers.try_into().map_err(|_| format!("{count} numbers are given: write {form}"))
 }
@@ -211,7 +214,9 @@ mod tests {
             (triple("1,2,nan").map(|_| ()), "`nan` is not finite"),
             (triple("0.1 0 0.7").map(|_| ()), "write 0.1,0,0.7"),
             (rigid("1, 2 3 0 0 0 1").map(|_| ()), "write 1,2,3,0,0,0,1"),
-            (triple("a man").map(|_| ()), "`a man` is not a number"),
+            (triple("a man").map(|_| ()), "`a man` is not a number: write three, as in"),
+            (pose_std("1,1,1,1,1,x").map(|_| ()), "`x` is not a number: write six, three in m"),
+            (pose_std("0.1,0.1,0.1").map(|_| ()), "3 numbers are given: write six, three in m and"),
             (quaternion("0,0,0").map(|_| ()), "write four"),
             (quaternion("0,0,0,2").map(|_| ()), "length"),
             (rigid("1,2,3,4").map(|_| ()), "4 numbers are given: write three, or seven"),

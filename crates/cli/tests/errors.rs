@@ -112,6 +112,10 @@ fn options_that_cannot_be_meant() {
         (["--reject", "-1"], &["-1", "--reject <B>"][..]),
         (["--margin", "-0.1"], &["-0.1", "--margin <METRES>"]),
         (["--pose-std", "-1,0,0,0,0,0"], &["-1 is negative"]),
+        (
+            ["--pose-std", "1,0,x,0,0,0"],
+            &["`x` is not a number", "six, three in m and three in rad"],
+        ),
         (["--sensor", "Kinect"], &["unknown sensor `Kinect`", "write `kinect`"]),
         (["--sensor", "realsense"], &["unknown sensor `realsense`", "or auto", "stereo:BASELINE"]),
         (["--sensor", "stereo:90,570,0.2"], &["90 m", "in millimetres?"]),
