@@ -35,6 +35,8 @@ pub(crate) fn error(error: &anyhow::Error) -> String {
             of_robot(fault)
         } else if let Some(PrepareError::NoiseBeyondSize { .. }) = cause.downcast_ref() {
             Some("--cloud-unit mm, --depth-scale".to_owned())
+        } else if let Some(PrepareError::CoordinateRange { index, .. }) = cause.downcast_ref() {
+            Some(format!("counted from 1, as rows are: {}", index + 1))
         } else {
             of_file(cause.downcast_ref()?)
         }
@@ -126,12 +128,18 @@ mod tests {
         let other = |name: &str| cloudtouch_io::check_extension(name).unwrap_err();
         let millimetres = cloudtouch_io::xyz::parse(b"x (mm),y (mm),z (mm)").unwrap_err();
         let millimetres = ReadError::Format { path: "a.csv".into(), problem: millimetres.into() };
+        let beyond = PrepareError::CoordinateRange { index: 3, value: 1e20 };
         let noise = PrepareError::NoiseBeyondSize { std: 5.0, size: 1.0 };
         for (told, option) in [
             (anyhow::Error::from(large()), " (--max-bytes)"),
             (of_robot(RobotFault::Mesh { link: link(), error: large() }).into(), " (--max-bytes)"),
             (of_robot(unknown).into(), "`packages` (--package mine=FOLDER)"),
             (noise.into(), " (--cloud-unit mm, --depth-scale)"),
+            (
+                beyond.into(),
+                "point 3 has the coordinate 1e20, beyond 1e10 m: check the unit, or remove the point \
+                (counted from 1, as rows are: 4)",
+            ),
             (other("cases.json").into(), " (cloudtouch scene FILE, cloudtouch batch FILE)"),
             (other("arm.urdf").into(), " (cloudtouch robot SCAN URDF)"),
             (other("scan.las").into(), " with CloudCompare or PDAL"),

@@ -87,6 +87,18 @@ mod tests {
                 "line 1 of the path: `x,y,z,roll,pitch,yaw`: name the columns",
             ),
             ("x,y,z,qx,qy,qz,w\n", "name the columns x,y,z,qw,qx,qy,qz"),
+            ("x,y,z,qx,qy,qz,w\n", "qx,qy,qz,qw: unknown `w`; missing `qw`"),
+            ("x,y,z,qw,qx,qy,qz,gripper\n", ": unknown `gripper`"),
+            ("tx,y,z,qw,qx,qy,qz,QZ\n", ": twice `qz`"),
+            ("tx,x,y,z,qw,qx,qy,qz\n", ": twice `x`"),
+            ("t,x,y,z,qw,qx,qy\n", ": missing `qz`"),
+            (
+                "0,0,0,1,0,0,0\n0,0,0,1,a,0,0",
+                "line 2 of the path: `a` is not a finite number (column 5, qx)",
+            ),
+            ("t,z,y,x,qw,qx,qy,qz\n0,a,0,0,1,0,0,0", "`a` is not a finite number (column 2, z)"),
+            ("t,z,y,x,qw,qx,qy,qz\na,0,0,0,1,0,0,0", "`a` is not a finite number (column 1)"),
+            ("0,0,0,1,0,0", "a quaternion; 6 are given"),
             (
                 "0 0 0 1 0 0 0",
                 "separated by commas, or by spaces or semicolons below a line that names the columns",

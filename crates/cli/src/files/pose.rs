@@ -1,7 +1,7 @@
 //! A pose as sixteen numbers in a text.
 
-use anyhow::{Context as _, Result, bail};
-use cloudtouch::geom::Pose;
+use anyhow::{Context as _, Result, anyhow, bail};
+use cloudtouch::geom::{Pose, PoseError};
 use nalgebra::Matrix4;
 
 /// No message quotes more of a word.
@@ -14,7 +14,7 @@ const EXCERPT: usize = 40;
 /// When there are not sixteen numbers, or they are no rigid motion.
 pub fn parse(text: &str) -> Result<Pose> {
     let separator = |c: char| c.is_whitespace() || "[](),;".contains(c);
-    let mut numbers = Vec::new();
+    let (mut numbers, mut lines) = (Vec::new(), Vec::new());
     for (line, content) in text.trim_start_matches('\u{feff}').lines().enumerate() {
         let content = content.split('#').next().unwrap_or_default();
         for word in content.split(separator).filter(|w| !w.is_empty()) {
@@ -26,12 +26,19 @@ pub fn parse(text: &str) -> Result<Pose> {
                 )
             })?;
             numbers.push(number);
+            lines.push(line + 1);
         }
     }
     if numbers.len() != 16 {
         bail!("found {} numbers: a pose is a 4x4 row-major matrix, 16 numbers", numbers.len());
     }
-    Ok(Pose::try_from_matrix(&Matrix4::from_row_slice(&numbers))?)
+    Pose::try_from_matrix(&Matrix4::from_row_slice(&numbers)).map_err(|error| match error {
+        // Its rows count from 0, and stand in any line.
+        PoseError::NotFinite { row, column, .. } => {
+            anyhow!("line {}: {error}", lines[4 * row + column])
+        }
+        other => other.into(),
+    })
 }
 
 #[cfg(test)]
@@ -55,5 +62,7 @@ mod tests {
         assert!(format!("{error:#}").contains("line 2: `one`"), "{error:#}");
         assert!(parse("1 2 3").unwrap_err().to_string().contains("found 3 numbers"));
         assert!(parse("2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1").is_err());
+        let error = parse("# x\n\n1 0 0 0\n0 1 nan 0\n0 0 1 0\n0 0 0 1\n").unwrap_err();
+        assert!(error.to_string().contains("line 4: pose entry (1, 2) is NaN"), "{error}");
     }
 }

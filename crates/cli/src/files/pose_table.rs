@@ -79,14 +79,43 @@ fn header(content: &str) -> Result<Order> {
     named(content).with_context(|| {
         let given: String = content.chars().take(EXCERPT).collect();
         let columns = COLUMNS.join(",");
-        format!("`{given}`: name the columns {columns}, in any order, such as x,y,z,qx,qy,qz,qw")
+        let wrong = wrong(content);
+        format!(
+            "`{given}`: name the columns {columns}, in any order, such as x,y,z,qx,qy,qz,qw: {wrong}"
+        )
     })
+}
+
+/// Which names are no columns, there twice or left out.
+fn wrong(content: &str) -> String {
+    let as_column = |name: String| match PLACES.iter().position(|place| *place == name) {
+        Some(index) => COLUMNS[index].to_owned(),
+        None => name,
+    };
+    let names: Vec<String> = names(content).map(as_column).collect();
+    let known = |name: &str| COLUMNS.iter().chain(&TIMES).any(|of| *of == name);
+    let list = |label: &str, names: Vec<&str>| {
+        let quoted = names.into_iter().map(|name| name.chars().take(EXCERPT).collect::<String>());
+        let quoted = quoted.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        (!quoted.is_empty()).then(|| format!("{label} {quoted}"))
+    };
+    let unknown = names.iter().filter(|name| !known(name)).map(String::as_str).collect();
+    let again = |(place, name): &(usize, &String)| known(name) && names[..*place].contains(name);
+    let twice = names.iter().enumerate().filter(again).map(|(_, name)| name.as_str()).collect();
+    let is_missing = |column: &&&str| !names.iter().any(|name| name == **column);
+    let missing = COLUMNS.iter().filter(is_missing).copied().collect();
+    let all = [list("unknown", unknown), list("twice", twice), list("missing", missing)];
+    all.into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+/// In lower case and without quotes.
+fn names(content: &str) -> impl Iterator<Item = String> {
+    cells(content).map(|name| name.trim_matches('"').to_lowercase())
 }
 
 /// The columns where these are all that is named.
 fn named(content: &str) -> Option<Order> {
-    let names: Vec<String> =
-        cells(content).map(|name| name.trim_matches('"').to_lowercase()).collect();
+    let names: Vec<String> = names(content).collect();
     let place_of = |wanted: &str| names.iter().position(|name| name == wanted);
     let mut places = [0; 7];
     for (index, column) in COLUMNS.into_iter().enumerate() {
@@ -117,20 +146,28 @@ fn of_unnamed(content: &str) -> Result<Pose> {
 }
 
 fn of_row(content: &str, order: &Order) -> Result<Pose> {
-    let number = |word: &str| -> Result<f64> {
+    let number = |(place, word): (usize, &str)| -> Result<f64> {
         match word.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
             _ => {
                 let word: String = word.chars().take(EXCERPT).collect();
-                bail!("`{word}` is not a finite number; write it like -0.25 or 1e-3")
+                let column = order.places.iter().position(|of| *of == place);
+                let name = column.map_or(String::new(), |of| format!(", {}", COLUMNS[of]));
+                bail!(
+                    "`{word}` is not a finite number (column {}{name}); write it like -0.25 or 1e-3",
+                    place + 1
+                )
             }
         }
     };
-    let numbers = cells(content).map(number).collect::<Result<Vec<f64>>>()?;
+    let numbers = cells(content).enumerate().map(number).collect::<Result<Vec<f64>>>()?;
     if numbers.len() != order.count {
         let times = if order.count > COLUMNS.len() { " and a time, as the header has" } else { "" };
         let (count, columns) = (order.count, COLUMNS.join(","));
-        bail!("write {count} numbers, {columns}{times}: metres and a quaternion");
+        bail!(
+            "write {count} numbers, {columns}{times}: metres and a quaternion; {} are given",
+            numbers.len()
+        );
     }
     let [x, y, z, w, i, j, k] = order.places.map(|place| numbers[place]);
     Ok(Pose::try_from_quaternion(Vector3::new(x, y, z), [w, i, j, k])?)

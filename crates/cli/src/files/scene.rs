@@ -84,7 +84,7 @@ fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value>, D:
 /// Reads a scene file of at most `max_bytes`; paths in it are relative to its folder.
 ///
 /// # Errors
-/// When the file is larger or no scene file; the message names the body, by its place from 0 and its
+/// When the file is larger or no scene file; the message names the body, by its place from 1 and its
 /// name, and the field.
 pub fn read(path: &Path, max_bytes: u64) -> Result<SceneFile> {
     let named = || path.display().to_string();
