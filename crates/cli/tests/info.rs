@@ -40,6 +40,21 @@ fn a_cloud_without_any_return_is_no_error() {
     cloudtouch_io::write_cloud_pcd(inputs.path("nan.pcd"), &cloud).unwrap();
     let text = inputs.run(&["info", "nan.pcd"]).quiet(0).stdout();
     assert!(text.contains("missing     3 "), "{text}");
+    // Nothing was said of it.
+    assert!(text.contains("box         none: no row is a point"), "{text}");
+}
+
+/// A box of 100000000000000000000 m was told, and a sensor that suits it.
+#[test]
+fn coordinates_that_every_query_refuses_were_passed_over() {
+    let inputs = Inputs::new();
+    inputs.write("far.xyz", "0 0 1\nnan 0 0\n1 0 1\n1e20 2 3\n-1e11 0 0\n");
+    let text = inputs.run(&["info", "far.xyz"]).quiet(0).stdout();
+    assert!(text.contains("too far     2 of 5 rows beyond 1e10 m"), "{text}");
+    assert!(text.contains("the first of them row 4:") && !text.contains("sensor"), "{text}");
+    inputs.write("far.obj", "v 0 0 0\nv 1e20 0 0\nv 0 1 0\nf 1 2 3\n");
+    let text = inputs.run(&["info", "far.obj"]).quiet(0).stdout();
+    assert!(text.contains("surface     refused: ") && text.contains("beyond 1e10 m"), "{text}");
 }
 
 #[test]

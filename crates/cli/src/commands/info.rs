@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 use cloudtouch::geom::{Point3, PointCloud, TriangleMesh};
 use cloudtouch::noise::{Neighborhoods, SensorModel, typical_spacing};
-use cloudtouch::{FilterSettings, Mesh, filter};
+use cloudtouch::{FilterSettings, LARGEST_COORDINATE, Mesh, PrepareError, filter};
 use cloudtouch_io::{DepthCamera, Geometry, is_depth_image};
 use cloudtouch_page::words;
 
@@ -86,7 +86,21 @@ fn describe_scan(cloud: &PointCloud, remedy: &str) -> Result<String> {
         format!("missing     {} (NaN or infinite)", removed("missing")),
         format!("duplicates  {}", removed("duplicates")),
     ];
-    if let Some((low, high)) = cloud.bounding_box() {
+    if cleaned.cloud.points.is_empty() {
+        lines.push(
+            "box         none: no row is a point, and nothing can be asked about it".to_owned(),
+        );
+    }
+    let is_beyond = |p: &Point3| PointCloud::is_return(p) && p.coords.amax() > LARGEST_COORDINATE;
+    if let Some(row) = cloud.points.iter().position(is_beyond) {
+        let count = cloud.points.iter().filter(|p| is_beyond(p)).count();
+        lines.push(format!(
+            "too far     {count} of {} rows beyond 1e10 m, which a query refuses, the first of them row {}:\n            \
+             correct or remove them, or give the unit",
+            cloud.len(),
+            row + 1
+        ));
+    } else if let Some((low, high)) = cloud.bounding_box() {
         lines.push(format!("box         {} to {} m", triple(&low), triple(&high)));
         let center = nalgebra::center(&low, &high);
         let local: Vec<Point3> =
@@ -151,6 +165,7 @@ fn describe_mesh(mesh: &TriangleMesh) -> String {
     let open = merged.open_edges();
     let prepared = Mesh::prepare(mesh);
     let closed = match prepared {
+        Err(error @ PrepareError::CoordinateRange { .. }) => format!("refused: {error}"),
         Err(_) => "none: no triangle has an area, nothing collides with it".to_owned(),
         Ok(mesh) if mesh.is_watertight() => "watertight: inside and outside are defined".to_owned(),
         Ok(_) if open == 0 => {
