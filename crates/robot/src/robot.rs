@@ -70,6 +70,9 @@ impl Robot {
     }
 
     fn parse(text: &str, sources: Sources<'_>) -> Result<Self, RobotFault> {
+        if text.trim().is_empty() {
+            return Err(RobotFault::Empty);
+        }
         let urdf = urdf_rs::read_from_string(&essential(text)?)
             .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
         let tree = Tree::try_from_urdf(&urdf)?;

@@ -25,6 +25,9 @@ struct Disabled {
 /// The pairs of links that an SRDF says not to check. What else it says (groups, poses, defaults to
 /// disable) is passed over, which leaves more to be checked, never less.
 pub(crate) fn disabled_pairs(text: &str) -> Result<Vec<[String; 2]>, RobotFault> {
+    if text.trim().is_empty() {
+        return Err(RobotFault::Empty);
+    }
     let srdf: Srdf = quick_xml::de::from_str(text)
         .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
     if srdf.disabled.is_empty() && !srdf.links.is_empty() {

@@ -68,6 +68,7 @@ fn what_is_wrong_is_named_with_file_value_and_remedy() {
         ),
         (two_links(BOX, FIXED).replace("collision", "visual"), vec!["no link has <collision>"]),
         ("<robot name='x'".to_owned(), vec!["cannot be understood", "xacro"]),
+        (" \n".to_owned(), vec!["is empty", "give a file that describes the robot"]),
     ] {
         let error = arm.of(&urdf).unwrap_err().to_string();
         for part in parts.iter().chain(&["arm.urdf: "]) {

@@ -28,6 +28,9 @@ pub enum RobotFault {
     /// A URDF in the place of an SRDF.
     #[error("is a URDF, which does not say which links may touch: give the SRDF of the robot")]
     NotSrdf,
+    /// Nothing is in it.
+    #[error("is empty: give a file that describes the robot in a <robot> element")]
+    Empty,
     /// Not XML, or not of its schema.
     #[error(
         "cannot be understood: {reason}; numbers of one attribute are separated by spaces, and a .xacro \
