@@ -92,6 +92,19 @@ pub enum Fault {
         /// What can be used.
         expected: &'static str,
     },
+    /// A PCD header counts its points in two ways that differ.
+    #[error(
+        "POINTS is {points}, and WIDTH times HEIGHT is {width} times {height}: correct what is wrong; the points \
+         of no image have WIDTH {points} and HEIGHT 1"
+    )]
+    PointCount {
+        /// What POINTS says.
+        points: usize,
+        /// What WIDTH says.
+        width: usize,
+        /// What HEIGHT says, 1 without.
+        height: usize,
+    },
     /// Something that can be there once is there twice.
     #[error("{entry} appears a second time: keep one")]
     Repeated {

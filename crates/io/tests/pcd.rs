@@ -245,9 +245,9 @@ fn bad_headers_are_named_by_line() {
         ("VERSION", "COUNT 1 0 1", 2, bad("COUNT", "0", "a whole number from 1")),
         ("VERSION", "COUNT 1 2 1", 3, bad("COUNT", "2", "1 for coordinates and covariances")),
         ("WIDTH", "WIDTH -1", 6, bad("WIDTH", "-1", "a whole number from 0")),
-        ("HEIGHT", "HEIGHT 2", 9, bad("POINTS", "1", "WIDTH times HEIGHT")),
+        ("HEIGHT", "HEIGHT 2", 9, Fault::PointCount { points: 1, width: 1, height: 2 }),
         ("HEIGHT", "WIDTH 2", 7, Fault::Repeated { entry: "WIDTH".into() }),
-        ("POINTS", "POINTS 2", 9, bad("POINTS", "2", "WIDTH times HEIGHT")),
+        ("POINTS", "POINTS 2", 9, Fault::PointCount { points: 2, width: 1, height: 1 }),
         ("DATA", "DATA zipped", 10, bad("DATA", "zipped", "ascii, binary or binary_compressed")),
     ];
     for (starts, replacement, line, fault) in cases {

@@ -227,9 +227,10 @@ fn sizes_of_cloud(entries: &Entries<'_>) -> Result<(usize, Option<(usize, usize)
         (None, Some(pixels)) => pixels,
         (Some(points), Some(pixels)) if points == pixels => points,
         (None, None) => entries.require("POINTS")?.single("a whole number from 0")?,
-        (Some(_), _) => {
-            let entry = entries.require("POINTS")?;
-            return Err(entry.bad(entry.text, "WIDTH times HEIGHT"));
+        (Some(points), _) => {
+            let (width, height) = (width.unwrap_or_default(), height.unwrap_or(1));
+            let place = entries.require("POINTS")?.place();
+            return Err(place.error(Fault::PointCount { points, width, height }));
         }
     };
     let image_size = width.zip(height).filter(|&(w, h)| w > 1 && h > 1);
