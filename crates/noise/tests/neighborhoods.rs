@@ -7,7 +7,7 @@ use cloudtouch_noise::{
 };
 use proptest::prelude::*;
 
-/// The reference: every other position once, sorted by distance, then by x, y and z.
+/// The reference: every other position once, [in order](in_order).
 fn brute_force(
     points: &[Point3],
     place: &Point3,
@@ -20,16 +20,22 @@ fn brute_force(
         .filter(|&i| !(leave_out_place && points[i] == *place))
         .map(|index| Neighbor { index, squared_distance: (points[index] - place).norm_squared() })
         .collect();
-    in_order(points, all, k)
+    in_order(points, place, all, k)
 }
 
-/// The first k by distance, and of what is as near by x, y and z.
-fn in_order(points: &[Point3], mut all: Vec<Neighbor>, k: usize) -> Vec<Neighbor> {
-    let key = |near: &Neighbor| {
-        let [x, y, z] = points[near.index].coords.into();
-        [near.squared_distance, x, y, z]
+/// The first k of what is about a place, by distance, and of what is as near as the next, but for rounding, by x, y
+/// and z of the way there.
+fn in_order(points: &[Point3], place: &Point3, mut all: Vec<Neighbor>, k: usize) -> Vec<Neighbor> {
+    all.sort_by(|a, b| a.squared_distance.total_cmp(&b.squared_distance));
+    let way = |near: &Neighbor| {
+        let steps = 1e4 / near.squared_distance.sqrt();
+        let way = ((points[near.index] - place) * steps).map(|v| v.round() as i64);
+        (<[i64; 3]>::from(way), near.index)
     };
-    all.sort_by(|a, b| key(a).partial_cmp(&key(b)).expect("finite places"));
+    let is_tied = |near: &Neighbor, next: &Neighbor| {
+        next.squared_distance <= near.squared_distance * (1.0 + 1e-7)
+    };
+    all.chunk_by_mut(is_tied).for_each(|tied| tied.sort_by_key(way));
     all.truncate(k);
     all
 }
@@ -87,6 +93,17 @@ fn where_a_grid_is_and_how_it_is_numbered_decided_which_of_its_ties_came_first()
 fn lattice_points() -> impl Strategy<Value = Vec<Point3>> {
     let coordinate = prop_oneof![9 => (-3..4_i32).prop_map(f64::from), 1 => Just(f64::NAN)];
     prop::collection::vec(prop::array::uniform3(coordinate).prop_map(Point3::from), 0..80)
+}
+
+/// Once in some ten thousand neighbours two are as near but for a part in ten million.
+#[test]
+fn what_is_nearly_as_near_comes_by_its_direction() {
+    let points = [[0.5983, -0.7713, 0.9361], [0.9594, -0.4552, 0.4470], [0.6, -0.1, 0.0]];
+    let mut points = points.map(Point3::from).to_vec();
+    // As far from the second as the first is, and a hair nearer.
+    let way = points[0] - points[1];
+    points[2] = points[1] - way * (1.0 - 2e-8);
+    check_all(&points, 1);
 }
 
 proptest! {
@@ -184,7 +201,7 @@ fn brute_force_fast(points: &[Point3], i: usize, k: usize) -> Vec<Neighbor> {
         .filter(|&j| j != i)
         .map(|j| Neighbor { index: j, squared_distance: (points[j] - points[i]).norm_squared() })
         .collect();
-    in_order(points, all, k)
+    in_order(points, &points[i], all, k)
 }
 
 /// A dense patch beside a sparse one, walked through and jumped about: blocks that are too small, too
