@@ -41,11 +41,15 @@ impl Page<'static> {
 
 fn summary(checked: &Checked) -> Vec<Fact> {
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
-    let pairs = format!(
-        "{} of {count} pairs do not read as free; {asked} asked, {ruled_out} ruled out by their boxes, \
-         {allowed} left out",
-        checked.pairs.len()
-    );
+    let pairs = if checked.is_unchecked() {
+        format!("none was asked about: all may touch by what was said, {allowed} left out")
+    } else {
+        format!(
+            "{} of {count} pairs do not read as free; {asked} asked, {ruled_out} ruled out by their boxes, \
+             {allowed} left out",
+            checked.pairs.len()
+        )
+    };
     let without = checked.pairs.iter().filter_map(|pair| {
         let error = pair.answer.as_ref().err()?;
         Some(Fact::new(format!("No answer: {}", names(pair)), error.to_string()))
