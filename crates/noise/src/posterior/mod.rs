@@ -1,5 +1,6 @@
 //! The point given its measurement and a surface fitted to its neighbours.
 
+mod chance;
 mod displaced;
 pub(crate) mod settings;
 mod spacing;
@@ -11,6 +12,7 @@ use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3};
 
 use crate::index::spacing::is_noisy;
 use crate::neighborhoods::Neighborhoods;
+use crate::posterior::chance::is_chance;
 use crate::posterior::displaced::displaced;
 use crate::posterior::settings::{PosteriorSettings, SurfaceError};
 use crate::posterior::spacing::{beside_end, tangential_spacing};
@@ -27,11 +29,6 @@ use crate::surface::{Surface, fit_surface};
 ///
 /// [`SurfaceError::sharp`]: crate::SurfaceError::sharp
 const SHARP: f64 = 0.25;
-
-/// Where noise is not small beside the spacing, a point up to so many standard deviations off may be there by chance, ...
-const CHANCE_OFFSET: f64 = 4.0;
-/// ... if no neighbour is so many off on the same side.
-const BESIDE_OFFSET: f64 = 3.0;
 
 /// The point given its measurement and the surface of its neighbours, which are in `scratch` where every point stands
 /// for itself; `None` where there is no surface to be fitted. `around` is how far apart samples are about it, m, and
@@ -149,15 +146,6 @@ fn given_surface(
         mean: measured + normal * shift + back,
         covariance: disc(&surface.normal, along, across, apart, settings),
     }
-}
-
-/// Whether a point may well be so far off its surface by chance: there is no other as far on that side, of which a thing
-/// there would have more than one. `variance` is that of the heights of points above the surface, m².
-fn is_chance(surface: &Surface, patch: &Patch, variance: f64) -> bool {
-    let within = |height: f64, stds: f64| height * height <= stds * stds * variance;
-    let height = |rank: usize| surface.height - surface.normal.dot(&patch.offset(rank));
-    let is_beside = |height: f64| height * surface.height > 0.0 && !within(height, BESIDE_OFFSET);
-    within(surface.height, CHANCE_OFFSET) && !(0..patch.len()).map(height).any(is_beside)
 }
 
 /// How far noise of this standard deviation (m) is from small beside a spacing (m), up to 1.
