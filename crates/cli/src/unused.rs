@@ -67,11 +67,6 @@ pub(crate) fn of_images(option: &str) -> WrongUsage {
     WrongUsage(format!("{option} is for depth images (.png), and no file is one: leave it out"))
 }
 
-/// What is wrong with a sensor that a file gives a mesh.
-pub(crate) fn of_a_mesh(field: &str, file: &str) -> String {
-    format!("`{field}` is of a cloud, and {file} is a mesh, which has no sensor: leave it out")
-}
-
 /// Why an option about clouds is refused where nothing of this role is one.
 fn of_clouds(option: &str, role: &str) -> WrongUsage {
     WrongUsage(format!("{option} is for clouds, and no {role} is one: leave it out"))

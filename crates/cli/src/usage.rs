@@ -16,3 +16,8 @@ impl std::error::Error for WrongUsage {}
 
 /// As the command line's own parser gives it.
 pub(crate) const EXIT_CODE: u8 = 2;
+
+/// What is wrong with a sensor that a file gives a mesh.
+pub(crate) fn of_a_mesh(field: &str, file: &str) -> String {
+    format!("`{field}` is of a cloud, and {file} is a mesh, which has no sensor: leave it out")
+}

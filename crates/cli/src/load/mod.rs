@@ -21,8 +21,7 @@ use serde::Serialize;
 use crate::args::{BodyOptions, Refine};
 use crate::body::{Body, PreparedCloud};
 use crate::sensor::{Chosen, SensorChoice};
-use crate::unused;
-use crate::usage::WrongUsage;
+use crate::usage::{self, WrongUsage};
 
 pub(crate) use geometry::{Kind, Units, check, geometry};
 
@@ -168,7 +167,7 @@ fn of_mesh<C>(
     options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
     let is_placed = options.sensor_pose.is_some();
-    ensure!(!(is_placed && options.is_of_file), unused::of_a_mesh("sensor_pose", &named(path)));
+    ensure!(!(is_placed && options.is_of_file), usage::of_a_mesh("sensor_pose", &named(path)));
     let of_clouds = [
         ("--robot", !options.robot.is_empty()),
         ("--collision-map", options.collision_map.is_some()),

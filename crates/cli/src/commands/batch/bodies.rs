@@ -13,7 +13,7 @@ use crate::load::sensor_for::SensorsFor;
 use crate::load::{self, Input, Loaded, Role};
 use crate::progress::progress_bar;
 use crate::sensor::SensorChoice;
-use crate::{remedies, unused};
+use crate::{remedies, unused, usage};
 
 /// A file in a role seen by a sensor (by its spec, which names it fully).
 pub(super) type BodyKey = (PathBuf, Role, String);
@@ -93,7 +93,7 @@ pub(super) fn warn_of_sensors_of_meshes<'a, C: PreparedCloud>(
         let fields = ["scene_sensor", "object_sensor"].into_iter().zip(given);
         fields.zip(keys(arguments, options, case)).find_map(|((field, is_given), key)| {
             let body = bodies.get(&key)?.as_ref().ok()?;
-            (is_given && body.is_mesh()).then(|| unused::of_a_mesh(field, &body.input.file))
+            (is_given && body.is_mesh()).then(|| usage::of_a_mesh(field, &body.input.file))
         })
     });
     if let Some(words) = found {

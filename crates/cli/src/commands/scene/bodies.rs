@@ -17,7 +17,7 @@ use crate::body::Body;
 use crate::load::{self, Input, Kind, Loaded, Role};
 use crate::sensor::SensorChoice;
 use crate::unused;
-use crate::usage::WrongUsage;
+use crate::usage::{self, WrongUsage};
 
 /// A file, the unit it is said to be in, the sensor that saw it, by its spec, and where that stood and what is said
 /// of it as a depth image, spelt out.
@@ -92,7 +92,7 @@ impl<'a> FileBodies<'a> {
                 !prepared.is_mesh() || entry.sensor.is_none(),
                 "{}: {}",
                 place(index, entry),
-                unused::of_a_mesh("sensor", &prepared.input.file)
+                usage::of_a_mesh("sensor", &prepared.input.file)
             );
         }
         Ok(())
