@@ -94,7 +94,7 @@ def test_settings_out_of_range_are_named(settings, says):
     ("settings", "says"),
     [
         ({"reject": "0.1"}, "reject is '0.1': give a number"),
-        ({"prior": None}, "prior is of the type NoneType: give a number"),
+        ({"prior": None}, "prior is None: give a number"),
         ({"deadline": [1.0, 2.0]}, "deadline is of the type list: give a number"),
         ({"max_contacts": -1}, "max_contacts is -1: give a whole number"),
         ({"doubt_units": "no"}, "doubt_units is 'no': give True or False"),
@@ -112,7 +112,7 @@ def test_filters_of_another_type_are_named():
         ({"outliers": (-1, 1.0)}, r"outliers\[0\] is -1: give a whole number"),
         ({"keep_veil": 1}, "keep_veil is 1: give True or False"),
         ({"max_range": "far"}, "max_range is 'far': give a number"),
-        ({"refined": None}, "refined is of the type NoneType"),
+        ({"refined": None}, "refined is None: give True or False"),
         ({"robot": [points]}, "robot has a ndarray: give what Robot.seen returns"),
     ]:
         with pytest.raises(TypeError, match=says):
