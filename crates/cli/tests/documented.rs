@@ -6,7 +6,8 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
-const PAGES: [&str; 4] = ["README.md", "docs/use.md", "docs/scenes.md", "docs/robot.md"];
+const PAGES: [&str; 5] =
+    ["README.md", "crates/cli/README.md", "docs/use.md", "docs/scenes.md", "docs/robot.md"];
 
 /// A command on files of the repository, and the lines below it.
 struct Shown<'a> {

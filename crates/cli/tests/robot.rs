@@ -60,8 +60,10 @@ fn a_link_may_touch_the_scan() {
     let none = robot(&inputs, &path, &["--may-touch=arm", "--json", "--exit-code"]);
     let answer = none.json_lines().remove(0);
     assert_eq!((none.code(), &answer["certified_free_until"]), (30, &json!(0.0)), "{answer}");
-    let text = robot(&inputs, &path, &["--may-touch=arm"]).stdout();
+    let text = robot(&inputs, &path, &["--may-touch=arm", "--html=o.html"]).stdout();
     assert!(text.contains("undecided: all pairs may touch"), "{text}");
+    let page = std::fs::read_to_string(inputs.path("o.html")).unwrap();
+    assert!(page.contains("all pairs may touch"), "free for certain until 0 %, it said");
     let text = robot(&inputs, &down, &["--may-touch", "arm"]).stdout();
     assert!(text.contains("may touch the scan     arm\n"), "{text}");
     let slip = robot(&inputs, &down, &["--may-touch=am"]);

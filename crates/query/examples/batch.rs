@@ -49,3 +49,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!(free > 30 && runs[0][99].verdict == Verdict::InCollision);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn it_finds_what_it_says() -> Result<(), Box<dyn std::error::Error>> {
+        super::main()
+    }
+}

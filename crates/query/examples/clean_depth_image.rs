@@ -54,3 +54,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!(filtered.cloud.points.iter().all(|p| (p.z - 1.0).abs() < 0.1 || p.z == 2.0));
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn it_finds_what_it_says() -> Result<(), Box<dyn std::error::Error>> {
+        super::main()
+    }
+}

@@ -57,3 +57,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert_eq!(ask("palm in the rim   ", 0.0, 0.01)?, Verdict::InCollision);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn it_finds_what_it_says() -> Result<(), Box<dyn std::error::Error>> {
+        super::main()
+    }
+}

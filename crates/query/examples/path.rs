@@ -40,3 +40,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert_eq!(swept.verdict, Verdict::InCollision);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn it_finds_what_it_says() -> Result<(), Box<dyn std::error::Error>> {
+        super::main()
+    }
+}

@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let query = Query::new(QuerySettings::default())?;
     println!("  gap    P      in            verdict");
     let mut answers = Vec::new();
-    for gap in [0.04, 0.001, -0.02] {
+    for gap in [0.04, 0.001, -0.04] {
         let floor_from_bowl = Pose::from_translation(Vector3::new(0.0, 0.0, gap));
         let report = query.run(&floor, &bowl, &floor_from_bowl)?;
         let (p, [lower, upper]) = (report.collision_probability, report.bounds);
@@ -39,4 +39,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("contact at {:.3}, normal {:.2}", contact.point, contact.normal_a_to_b);
     assert!(contact.normal_a_to_b.z > 0.9);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn it_finds_what_it_says() -> Result<(), Box<dyn std::error::Error>> {
+        super::main()
+    }
 }
