@@ -57,12 +57,16 @@ pub struct Nearest {
 const LATER: usize = 16;
 
 impl PathChecked {
+    /// Whether there was no pair to check at any position: which may touch is the same at all of them.
+    pub fn is_unchecked(&self) -> bool {
+        self.given.iter().any(Checked::is_unchecked)
+    }
+
     /// Free where the whole path is certified; else the worst verdict found, and undecided where none
-    /// but free was, or [no pair was checked](Checked::is_unchecked).
+    /// but free was, or [no pair was checked](Self::is_unchecked).
     pub fn verdict(&self) -> Verdict {
         let Some(stopped) = &self.stopped else {
-            let is_unchecked = self.given.iter().any(Checked::is_unchecked);
-            return if is_unchecked { Verdict::Undecided } else { Verdict::Free };
+            return if self.is_unchecked() { Verdict::Undecided } else { Verdict::Free };
         };
         let found: Vec<Verdict> = (self.given.iter().map(Checked::verdict))
             .chain(stopped.pair.as_ref().map(PairAnswer::verdict))
@@ -122,7 +126,6 @@ impl RobotChecker {
         tolerance: f64,
     ) -> Result<PathChecked, PathError> {
         let mut looked_at = given.len();
-        // Which pairs may touch is the same at all of them.
         if given.iter().any(Checked::is_unchecked) {
             let (stopped, later) = (None, None);
             return Ok(PathChecked { given, certified_free_until: 0.0, stopped, later, looked_at });

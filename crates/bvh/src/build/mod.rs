@@ -87,7 +87,6 @@ impl Tree {
     pub fn rebuild(&mut self) {
         self.nodes.clear();
         self.free.clear();
-        self.coverages.forget();
         // The order of indices, so that the result is that of a build and not of the history.
         self.order.sort_unstable();
         self.grow(ALONE);

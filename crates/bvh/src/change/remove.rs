@@ -74,6 +74,5 @@ impl Tree {
         (node.count, node.parent) = (0, Link::NONE);
         node.set_children(None);
         self.free.push(id);
-        self.coverages.forget();
     }
 }

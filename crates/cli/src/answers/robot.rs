@@ -186,7 +186,7 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
         let of = if pairs.is_empty() { String::new() } else { format!(": {pairs}") };
         let _ = writeln!(text, "position {:<13} {}{of}", index + 1, at.verdict());
     }
-    let _ = if checked.given.iter().any(Checked::is_unchecked) {
+    let _ = if checked.is_unchecked() {
         write!(text, "{}: {}", checked.verdict(), scene::NONE_ASKED)
     } else {
         write!(text, "{}: {} positions looked at", checked.verdict(), checked.looked_at)

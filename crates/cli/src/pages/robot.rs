@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use cloudtouch::{Checked, PairAnswer, Scene};
+use cloudtouch::{PairAnswer, Scene};
 use cloudtouch_cli::files::joints::Joints;
 use cloudtouch_page::{Cast, Fact, MOST_VIEWS, Page, View};
 use cloudtouch_robot::{PathChecked, RobotChecker, SURROUNDINGS, Stopped};
@@ -59,7 +59,7 @@ pub(crate) fn write(
     let cast = cast(&first.scene, Some(SURROUNDINGS), taken_for)?;
     let views = shown.iter().map(|shown| shown.view(&cast)).collect::<Result<Vec<_>>>()?;
     let gravest = |shown: &Shown<'_>| shown.worst.is_some_and(|w| w.verdict() == checked.verdict());
-    let until = if checked.given.iter().any(Checked::is_unchecked) {
+    let until = if checked.is_unchecked() {
         answers::scene::NONE_ASKED.to_owned()
     } else {
         let until = answers::path::percent(checked.certified_free_until);
