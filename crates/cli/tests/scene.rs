@@ -74,6 +74,13 @@ fn what_is_attached_is_placed_by_what_carries_it_and_allowed_pairs_may_touch() {
     file["allowed"] = json!([["load", "floor"]]);
     let answer = scene(&inputs, &file, &["--json", "--exit-code"]).quiet(0).json_lines().remove(0);
     assert_eq!((pairs(&answer).len(), &answer["counts"]["allowed"]), (0, &json!(1)));
+    file["allowed"] = json!([["load", "floor"], ["carrier", "floor"]]);
+    // Of the floor nothing was checked, and that went without a word.
+    let words = "nothing was asked about floor: all its pairs may touch by what was said";
+    let text = scene(&inputs, &file, &[]).quiet(0).stdout();
+    assert!(text.contains(words) && text.contains("free: 0 of 3 pairs"), "{text}");
+    let answer = scene(&inputs, &file, &["--json"]).quiet(0).json_lines().remove(0);
+    assert_eq!(answer["unchecked"], json!(["floor"]));
     let all = json!([["load", "floor"], ["carrier", "floor"], ["carrier", "load"]]);
     file["allowed"] = all;
     // Nothing was checked, and it read as free.

@@ -34,9 +34,9 @@ struct Named {
 /// Names of two bodies, and their report or why there is none.
 pub(crate) type Pair<'py> = (String, String, Option<Bound<'py, PyDict>>, Option<String>);
 
-/// Pairs that are not free; pairs there are, allowed, ruled out and asked.
+/// Pairs that are not free; pairs there are, allowed, ruled out and asked; bodies unchecked, outside, warned of.
 pub(crate) type Found<'py> =
-    (Vec<Pair<'py>>, [usize; 4], Vec<(String, f64, f64)>, Vec<(String, String)>);
+    (Vec<Pair<'py>>, [usize; 4], Vec<String>, Vec<(String, f64, f64)>, Vec<(String, String)>);
 
 impl Scene {
     /// What a thread that panicked left is whole: each change is made at once or not at all.
@@ -172,11 +172,12 @@ pub(crate) fn box_of(of: [Point3; 2]) -> [[f64; 3]; 2] {
 
 /// All pairs that are not free, the worst first.
 pub(crate) fn found(py: Python<'_>, checked: Checked) -> PyResult<Found<'_>> {
-    let Checked { pairs, count, allowed, ruled_out, asked, outside, warnings, .. } = checked;
+    let Checked { pairs, count, allowed, unchecked, ruled_out, asked, outside, warnings, .. } =
+        checked;
     let pairs: PyResult<_> = pairs.into_iter().map(|found| pair(py, found)).collect();
     let outside = outside.into_iter().map(|of| (of.name, of.gap_m, of.size_m)).collect();
     let warnings = warnings.into_iter().map(|of| (of.name, of.warning.to_string())).collect();
-    Ok((pairs?, [count, allowed, ruled_out, asked], outside, warnings))
+    Ok((pairs?, [count, allowed, ruled_out, asked], unchecked, outside, warnings))
 }
 
 pub(crate) fn pair(py: Python<'_>, found: PairAnswer) -> PyResult<Pair<'_>> {

@@ -50,7 +50,11 @@ def test_what_is_attached_moves_along(scene):
     scene.set_pose("table", lifted(0.9))
     assert [{pair.a, pair.b} for pair in scene.check(ct.Query()).pairs] == [{"floor", "plate"}]
     scene.allow("floor", "plate")
-    assert scene.check(ct.Query()).verdict == "free" and scene.check(ct.Query()).allowed == 1
+    found = scene.check(ct.Query())
+    assert found.verdict == "free" and found.allowed == 1 and found.unchecked == ()
+    scene.allow("floor", "table")
+    assert scene.check(ct.Query()).unchecked == ("floor",)
+    scene.allow("floor", "table", False)
     scene.allow("plate", "floor", False)
     scene.detach("plate")
     scene.set_pose("table", lifted(2.0))

@@ -47,6 +47,8 @@ mod regressions;
 mod rigid_motion;
 mod scale;
 mod scene;
+mod scene_changes;
+mod scene_may_touch;
 mod slips;
 mod slips_of_sensors;
 mod solved_tightly;

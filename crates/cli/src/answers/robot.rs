@@ -18,6 +18,7 @@ use crate::remedies;
 #[derive(Serialize)]
 struct Line<'a> {
     verdict: Verdict,
+    undecided_by: Option<&'static str>,
     threshold: f64,
     certified_free_until: f64,
     stopped: Option<Stopped<'a>>,
@@ -121,6 +122,7 @@ pub(crate) fn path_line(
     });
     let line = Line {
         verdict: checked.verdict(),
+        undecided_by: undecided_by(checked),
         threshold,
         certified_free_until: checked.certified_free_until,
         stopped: checked.stopped.as_ref().map(Stopped::from),
@@ -132,6 +134,19 @@ pub(crate) fn path_line(
     // Those of the positions have theirs.
     let others = [&checked.stopped, &checked.later].into_iter().flatten();
     scene::told(&line, others.filter_map(|at| at.pair.as_ref()), &[])
+}
+
+/// Why a path is undecided: by the first pair found on it that is, where one is.
+fn undecided_by(checked: &PathChecked) -> Option<&'static str> {
+    if checked.verdict() != Verdict::Undecided {
+        return None;
+    }
+    if checked.is_unchecked() {
+        return Some(scene::UNCHECKED);
+    }
+    let given = checked.given.iter().flat_map(|at| at.pairs.first());
+    let mut found = given.chain(checked.stopped.iter().flat_map(|at| &at.pair));
+    found.find_map(|pair| Some(pair.answer.as_ref().ok()?.undecided_by?.code()))
 }
 
 /// The worst pair in a few lines, above the table of all.

@@ -17,7 +17,7 @@ use crate::remedies;
 const OUTSIDE_TOLD: usize = 3;
 
 /// Why a scene is undecided of which no pair was checked, for programs.
-const UNCHECKED: &str = "unchecked";
+pub(crate) const UNCHECKED: &str = "unchecked";
 
 /// The same for people.
 pub(crate) const NONE_ASKED: &str =
@@ -47,6 +47,7 @@ pub(crate) struct Line<'a> {
     threshold: f64,
     pairs: Vec<Pair<'a>>,
     counts: Counts,
+    unchecked: &'a [String],
     outside: &'a [Outside],
     warnings: &'a [BodyWarning],
     boxes: BTreeMap<&'a str, [Point3; 2]>,
@@ -112,6 +113,7 @@ pub(crate) fn line<'a>(checked: &'a Checked, threshold: f64, bodies: Bodies<'a>)
         threshold,
         pairs: checked.pairs.iter().map(Pair::from).collect(),
         counts: Counts { pairs: count, allowed, ruled_out, asked },
+        unchecked: &checked.unchecked,
         outside: &checked.outside,
         warnings: &checked.warnings,
         boxes: bodies.boxes,
@@ -172,7 +174,18 @@ pub(crate) fn warnings(checked: &Checked) -> impl Iterator<Item = String> {
         format!("{name}: {}", remedies::warning(warning))
     };
     let far = checked.outside.iter().take(OUTSIDE_TOLD).map(Outside::to_string);
-    checked.warnings.iter().map(warned).chain(far)
+    checked.warnings.iter().map(warned).chain(far).chain(unchecked(checked))
+}
+
+/// Of whom nothing was asked, where it was of others.
+fn unchecked(checked: &Checked) -> Option<String> {
+    let names = &checked.unchecked;
+    if names.is_empty() || checked.is_unchecked() {
+        return None;
+    }
+    let their = if names.len() == 1 { "its" } else { "their" };
+    let names = names.join(", ");
+    Some(format!("nothing was asked about {names}: all {their} pairs may touch by what was said"))
 }
 
 fn names(pair: &PairAnswer) -> String {

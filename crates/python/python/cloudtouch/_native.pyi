@@ -96,7 +96,7 @@ def refused(message: str, count: int, /) -> dict[str, Any]: ...
 
 Pair = tuple[str, str, Optional[dict[str, Any]], Optional[str]]
 Place = tuple[int, float, Optional[Pair], Optional[tuple[str, str, float]]]
-Found = tuple[list[Pair], list[int], list[tuple[str, float, float]], list[tuple[str, str]]]
+Found = tuple[list[Pair], list[int], list[str], list[tuple[str, float, float]], list[tuple[str, str]]]
 Boxes = list[tuple[str, list[list[float]]]]
 
 @final

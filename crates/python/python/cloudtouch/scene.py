@@ -76,6 +76,8 @@ class Checked:
     """Pairs known to be free by their boxes alone."""
     asked: int
     """Pairs that were asked about."""
+    unchecked: tuple[str, ...]
+    """Bodies of which no pair was checked: all they could be in may touch. The verdict is of the others."""
     outside: tuple[Outside, ...]
     """Bodies farther from the rest than either is large: free, but perhaps by a pose in another unit."""
     warnings: tuple[BodyWarning, ...]
@@ -93,13 +95,15 @@ class Checked:
         cls,
         pairs: list[tuple[str, str, dict[str, Any] | None, str | None]],
         counts: list[int],
+        unchecked: list[str],
         outside: list[tuple[str, float, float]],
         warnings: list[tuple[str, str]],
     ) -> Checked:
         count, allowed, ruled_out, asked = counts
         far = tuple(Outside(*of) for of in outside)
         told = tuple(BodyWarning(*of) for of in warnings)
-        return cls(tuple(map(PairAnswer._of, pairs)), count, allowed, ruled_out, asked, far, told)
+        found = tuple(map(PairAnswer._of, pairs))
+        return cls(found, count, allowed, ruled_out, asked, tuple(unchecked), far, told)
 
 
 class Scene:

@@ -33,6 +33,9 @@ pub struct Checked {
     pub count: usize,
     /// Of these, pairs that may touch by what was said.
     pub allowed: usize,
+    /// Bodies of which no pair was checked, by their names: all they could be in may touch by what was said. The
+    /// verdict is of the others.
+    pub unchecked: Vec<String>,
     /// Pairs known to be free by their boxes alone.
     pub ruled_out: usize,
     /// Pairs that were asked about.

@@ -50,6 +50,7 @@ impl Scene {
         let mut checked = Checked {
             count,
             allowed,
+            unchecked: self.unchecked(),
             ruled_out,
             asked: asked.len(),
             pairs: asked,

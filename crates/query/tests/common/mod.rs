@@ -5,6 +5,7 @@ use cloudtouch::noise::SensorModel;
 use cloudtouch::{Mesh, Mode, Report};
 
 mod paths;
+pub(crate) mod scenes;
 
 pub(crate) use cloudtouch_testkit::measured::measured;
 pub(crate) use paths::{AnyQuery, Asked, MODES, Scan};
