@@ -92,6 +92,21 @@ fn what_is_attached_is_placed_by_what_carries_it_and_allowed_pairs_may_touch() {
     assert_eq!([&answer["verdict"], &answer["undecided_by"]], ["undecided", "unchecked"]);
 }
 
+/// The table had the verdict of a pair, and only JSON why and what mends it.
+#[test]
+fn what_mends_a_pair_is_told_below_the_table() {
+    let inputs = Inputs::new();
+    // A coarse floor says nothing of what fits between its samples.
+    let coarse: String = (0..400)
+        .map(|k| format!("{} {} 0\n", 0.5 * f64::from(k % 20), 0.5 * f64::from(k / 20)))
+        .collect();
+    inputs.write("coarse.xyz", &coarse);
+    let file = of_bodies(&[body("coarse", "coarse.xyz", 0.0), body("box", "box.obj", 0.4)]);
+    let text = scene(&inputs, &file, &[]).quiet(0).stdout();
+    let warned = "warning                coarse / box: points of the scene are ";
+    assert!(text.contains("undecided") && text.matches(warned).count() == 1, "{text}");
+}
+
 #[test]
 fn units_sensors_and_the_threshold_are_those_of_the_file() {
     let inputs = Inputs::new();

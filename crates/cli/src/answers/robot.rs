@@ -149,10 +149,9 @@ fn undecided_by(checked: &PathChecked) -> Option<&'static str> {
     found.find_map(|pair| Some(pair.answer.as_ref().ok()?.undecided_by?.code()))
 }
 
-/// The worst pair in a few lines, above the table of all.
+/// The worst pair in a few lines, above the table of all and what is to be said of them.
 pub(crate) fn worst(checked: &Checked) -> String {
-    let told = |pair| described("worst pair", pair, Some(checked));
-    checked.pairs.first().map_or(String::new(), told)
+    checked.pairs.first().map_or(String::new(), |pair| described("worst pair", pair))
 }
 
 /// Where the robot is beside what was scanned.
@@ -176,7 +175,7 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
         let _ =
             writeln!(text, "then                   segment {}, t = {:.3}", at.segment + 1, at.t);
         if let Some(pair) = &at.pair {
-            text += &described("worst pair there", pair, checked.given.first());
+            text += &warned(pair, checked);
         } else if let Some(near) = &at.nearest {
             let (a, b) = (one_line(&near.a), one_line(&near.b));
             let at_most = probability(near.at_most);
@@ -189,8 +188,7 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
     if let Some(at) = &checked.later {
         let _ =
             writeln!(text, "later                  segment {}, t = {:.3}", at.segment + 1, at.t);
-        let told = |pair| described("worst pair there", pair, checked.given.first());
-        text += &at.pair.as_ref().map_or(String::new(), told);
+        text += &at.pair.as_ref().map_or(String::new(), |pair| warned(pair, checked));
     }
     let far = checked.given.iter().find(|at| !at.outside.is_empty());
     text += &far.or(checked.given.first()).map(scene::doubts).unwrap_or_default();
@@ -209,8 +207,7 @@ pub(crate) fn path_text(checked: &PathChecked) -> String {
     text
 }
 
-/// A pair, without what is told of its bodies by themselves.
-fn described(label: &str, pair: &PairAnswer, told: Option<&Checked>) -> String {
+fn described(label: &str, pair: &PairAnswer) -> String {
     let mut text =
         format!("{label:<22} {} / {}: {}\n", one_line(&pair.a), one_line(&pair.b), pair.verdict());
     let Ok(report) = &pair.answer else { return text };
@@ -221,12 +218,16 @@ fn described(label: &str, pair: &PairAnswer, told: Option<&Checked>) -> String {
         let p = contact.point;
         let _ = writeln!(text, "contact                {:.3} {:.3} {:.3} m", p.x, p.y, p.z);
     }
-    let known = |warning: &Warning| {
-        told.is_some_and(|told| told.warnings.iter().any(|of| of.warning == *warning))
-    };
-    for warning in report.warnings.iter().filter(|warning| !known(warning)) {
-        text += &labelled("warning", &remedies::warning(warning));
-        text += "\n";
-    }
     text
+}
+
+/// A pair on a path with what is to be said of it, without what is told of its bodies by themselves.
+fn warned(pair: &PairAnswer, of: &PathChecked) -> String {
+    let known = |warning: &Warning| {
+        of.given.first().is_some_and(|at| at.warnings.iter().any(|of| of.warning == *warning))
+    };
+    let warnings = pair.answer.iter().flat_map(|report| &report.warnings);
+    let line = |warning| labelled("warning", &remedies::warning(warning)) + "\n";
+    let lines = warnings.filter(|warning| !known(warning)).map(line);
+    described("worst pair there", pair) + &lines.collect::<String>()
 }

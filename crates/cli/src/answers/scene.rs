@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use anyhow::Result;
 use cloudtouch::geom::Point3;
-use cloudtouch::{BodyWarning, Checked, Outside, PairAnswer, Report, Undecided, Verdict};
+use cloudtouch::{BodyWarning, Checked, Outside, PairAnswer, Report, Undecided, Verdict, Warning};
 use serde::Serialize;
 
 use crate::answers::print::{self, one_line, probability};
@@ -15,6 +15,9 @@ use crate::remedies;
 
 /// Of many bodies far from all others no more are named.
 const OUTSIDE_TOLD: usize = 3;
+
+/// Of the warnings of pairs no more are told: JSON has all.
+const WARNINGS_TOLD: usize = 6;
 
 /// Why a scene is undecided of which no pair was checked, for programs.
 pub(crate) const UNCHECKED: &str = "unchecked";
@@ -135,6 +138,7 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
         for (name, pair) in names.iter().zip(&checked.pairs) {
             let _ = writeln!(text, "{name:<width$}  {}", row(pair));
         }
+        text += &of_pairs(checked);
     }
     let Checked { count, allowed, ruled_out, asked, .. } = *checked;
     if checked.is_unchecked() {
@@ -149,6 +153,24 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
         probability(threshold),
     );
     text
+}
+
+/// What is to be said of the pairs of the table, beyond what is of their bodies; the same of several once, at the
+/// worst of them.
+fn of_pairs(checked: &Checked) -> String {
+    let mut told: Vec<(&PairAnswer, &Warning)> = Vec::new();
+    for pair in &checked.pairs {
+        for warning in pair.answer.iter().flat_map(|report| &report.warnings) {
+            let known = checked.warnings.iter().any(|of| of.warning == *warning);
+            if !known && told.iter().all(|(_, other)| *other != warning) {
+                told.push((pair, warning));
+            }
+        }
+    }
+    let line = |(pair, warning): &(&PairAnswer, &Warning)| {
+        labelled("warning", &format!("{}: {}", names(pair), remedies::warning(warning))) + "\n"
+    };
+    told.iter().take(WARNINGS_TOLD).map(line).collect()
 }
 
 /// Where a body lies in the frame of the scene.
