@@ -129,7 +129,7 @@ mod tests {
         let millimetres = cloudtouch_io::xyz::parse(b"x (mm),y (mm),z (mm)").unwrap_err();
         let millimetres = ReadError::Format { path: "a.csv".into(), problem: millimetres.into() };
         let beyond = PrepareError::CoordinateRange { index: 3, value: 1e20 };
-        let noise = PrepareError::NoiseBeyondSize { std: 5.0, size: 1.0 };
+        let noise = PrepareError::NoiseBeyondSize { std: 5.0, size: 1.0, range: None };
         for (told, option) in [
             (anyhow::Error::from(large()), " (--max-bytes)"),
             (of_robot(RobotFault::Mesh { link: link(), error: large() }).into(), " (--max-bytes)"),

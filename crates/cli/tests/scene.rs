@@ -156,6 +156,10 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         (with("sensor", json!("sonar")), vec!["body 2 `box`", "`sonar`"]),
         (with("unit", json!("miles")), vec!["body 2 `box`", "miles"]),
         (with("pose", json!([[1, 0, 0, 0]])), vec!["body 2 `box`", "1 rows", "4x4"]),
+        (
+            with("pose", json!([[1, 0, 0, 0], [0, 1, 0, 3e11], [0, 0, 1, 0], [0, 0, 0, 1]])),
+            vec!["body 2 `box`", "(1, 3) is 3e11", "in metres"],
+        ),
         (with("pose", json!("here")), vec!["body 2 `box`", "four rows of four numbers"]),
         (with("atached_to", json!("floor")), vec!["body 2 `box`", "`atached_to`", "`attached_to`"]),
         (

@@ -229,6 +229,8 @@ fn bad_headers_are_named_by_line() {
         ("FIELDS", "FIELDS x y", 4, bad("SIZE", "4 4 4", per_field)),
         ("SIZE", "SIZE 4 4", 4, bad("SIZE", "4 4", per_field)),
         ("SIZE", "SIZE 4 4 four", 4, bad("SIZE", "four", "1, 2, 4 or 8")),
+        // It was told of the line of types.
+        ("SIZE", "SIZE 4 4 3", 4, bad("SIZE", "3", "1, 2, 4 or 8")),
         (
             "SIZE",
             "SIZE 4 4 2",

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use crate::common::scenes::{cloud, mesh, names, query};
 use crate::common::{at, measured, timeless, uniform};
-use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
+use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Body, Checked, Cloud, CloudSettings, Mesh, PairAnswer, Query, QueryError, QuerySettings,
-    Report, Safeguards, Scene, SceneError, Undecided, Verdict, Warning,
+    Body, Checked, Cloud, CloudSettings, PairAnswer, Query, QueryError, QuerySettings, Report,
+    Safeguards, Scene, Undecided, Verdict, Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;

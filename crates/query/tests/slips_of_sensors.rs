@@ -7,8 +7,8 @@ use crate::slips::{NOISE, check, table, tool};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, FilterSettings, Mode, PaperCloud, PaperCloudSettings, Report, Safeguards,
-    SelfMesh, Undecided, Unseen, Verdict, Warning,
+    Cloud, CloudSettings, FilterSettings, Mode, PaperCloud, PaperCloudSettings, PrepareError,
+    Report, Safeguards, SelfMesh, Undecided, Unseen, Verdict, Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -50,6 +50,19 @@ fn what_the_camera_did_not_see_read_free() {
     let before = look(&at(0.6, 0.0, 1.2), Mode::Calibrated);
     assert_eq!((before.verdict, before.warnings.len()), (Verdict::Free, 0), "{before:?}");
     assert_eq!(before.unseen.expect("an image").share(), 0.0);
+}
+
+/// Where the sensor stood was in millimetres: only its noise was told of. A million times as far it was believed.
+#[test]
+fn a_place_of_the_sensor_that_cannot_be_meant_is_told_as_one() {
+    let from = |z: f64| PointCloud { sensor_pose: Some(at(0.0, 0.0, z)), ..table() };
+    for mode in MODES {
+        let error = Scan::of(&from(2000.0), SensorModel::Kinect, mode).unwrap_err();
+        let told = matches!(error, PrepareError::NoiseBeyondSize { range: Some(range), .. } if range > 1e3);
+        assert!(told && error.to_string().contains("stood 2000 m from its points"), "{error}");
+        let error = Scan::of(&from(1e12), NOISE, mode).unwrap_err();
+        assert!(matches!(error, PrepareError::SensorPose { value: 1e12 }), "{error}");
+    }
 }
 
 /// The base of the robot was wrong: nothing of the image lies on it, and space behind the block counted as seen

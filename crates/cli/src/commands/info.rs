@@ -111,6 +111,14 @@ fn describe_scan(cloud: &PointCloud, remedy: &str) -> Result<String> {
             .count();
         let spacing = typical_spacing(&Neighborhoods::new(local)?, SPACING_SAMPLE);
         lines.push(format!("spacing     {} (median)", words::length(spacing)));
+        if cloud.sensor_pose.is_some() {
+            let origin = cloud.sensor_origin();
+            let from = words::length((origin - center).norm());
+            lines.push(format!(
+                "viewpoint   {} m, {from} from the middle of the box",
+                triple(&origin)
+            ));
+        }
         let size = (high - low).norm();
         // A map in metres has its points as far apart, far from its origin.
         let is_map = low.coords.amax().min(high.coords.amax()) > MAP_COORDINATE;

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use anyhow::{Context, Result, anyhow, bail};
+use cloudtouch::LARGEST_COORDINATE;
 use cloudtouch::geom::Pose;
+use cloudtouch::geom::message::number;
 use nalgebra::Matrix4;
 use serde_json::Value;
 
@@ -19,7 +21,16 @@ pub(crate) fn matrix(value: Value) -> Result<Pose> {
         bail!("the pose has {} rows: it must be 4x4", rows.len());
     }
     let entries = rows.concat();
-    Ok(Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?)
+    let pose = Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?;
+    for (row, length) in pose.translation().iter().enumerate() {
+        if length.abs() > LARGEST_COORDINATE {
+            let length = number(*length);
+            bail!(
+                "({row}, 3) is {length}: a pose is in metres, and at most {LARGEST_COORDINATE:e} m"
+            );
+        }
+    }
+    Ok(pose)
 }
 
 /// The first entry of a list of rows that is no number, with its place, as the file has it.

@@ -119,7 +119,8 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<Header, FormatError> {
     let names = entries.require("FIELDS")?;
     let fields = words(names.text).count();
     let positive = "a whole number from 1";
-    let sizes = entries.require("SIZE")?.per_field(fields, "1, 2, 4 or 8", parse::<usize>)?;
+    let size = |word: &[u8]| parse(word).filter(|size| [1, 2, 4, 8].contains(size));
+    let sizes = entries.require("SIZE")?.per_field(fields, "1, 2, 4 or 8", size)?;
     let types = entries.require("TYPE")?;
     let letters = types.per_field(fields, "I, U or F", |w| (w.len() == 1).then(|| w[0]))?;
     let counts = match entries.get("COUNT") {

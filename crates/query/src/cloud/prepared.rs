@@ -277,7 +277,10 @@ pub(super) fn makeup_of(
     let makeup =
         Makeup::new(corners, (points, &all.noise, sample), (all.missing, all.step), doubts);
     if makeup.std > MOST_NOISE * makeup.size() && makeup.size() > 0.0 {
-        return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size() });
+        let middle = nalgebra::center(&low, &high);
+        let range =
+            all.origins.iter().map(|origin| (origin - middle).norm()).max_by(f64::total_cmp);
+        return Err(PrepareError::NoiseBeyondSize { std: makeup.std, size: makeup.size(), range });
     }
     Ok(makeup)
 }

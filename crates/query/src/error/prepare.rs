@@ -37,17 +37,29 @@ pub enum PrepareError {
         /// What was found, m.
         value: f64,
     },
+    /// The sensor is said to have stood where doubles do not tell micrometres apart.
+    #[error(
+        "the pose of the sensor contains {}: every entry must be finite, and at most 1e10 m; check its unit",
+        number(*value)
+    )]
+    SensorPose {
+        /// What was found.
+        value: f64,
+    },
     /// The noise is so large beside the cloud that its points say nothing.
     #[error(
         "the noise is {} m (standard deviation) and the cloud {} m across: give the sensor's noise in \
-         metres, such as iso:0.005 for 5 mm, and the unit of the cloud",
-        rounded(*std), rounded(*size)
+         metres, such as iso:0.005 for 5 mm, and the unit of the cloud{}",
+        rounded(*std), rounded(*size), sensor_place(*range)
     )]
     NoiseBeyondSize {
         /// Median of the standard deviations, each the largest of its point, m.
         std: f64,
         /// Diagonal of the box around the points, m.
         size: f64,
+        /// How far from the middle of that box the sensor is said to have stood, if anything is said, m; the
+        /// farthest of several.
+        range: Option<f64>,
     },
     /// A given normal is not of length one.
     #[error(
@@ -96,4 +108,14 @@ fn nothing_left(before: usize, stages: &str) -> String {
         "no point is left of {before} after filtering ({stages}): loosen the filter, or check the file and \
          its unit"
     )
+}
+
+/// Noise that grows with the range is large where the sensor is not where it is said to be.
+fn sensor_place(range: Option<f64>) -> String {
+    range.map_or(String::new(), |range| {
+        format!(
+            "; the sensor is said to have stood {} m from its points: check that too",
+            rounded(range)
+        )
+    })
 }

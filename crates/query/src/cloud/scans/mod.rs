@@ -10,7 +10,7 @@ use std::mem;
 use cloudtouch_geom::{Covariance, Point3, PointCloud, UnitVector3};
 use cloudtouch_noise::{Combination, SensorNoise};
 
-use crate::check::coordinates::check_points;
+use crate::check::coordinates::{bad_entry, check_points};
 use crate::error::PrepareError;
 use crate::filter::{Filtered, StageReport, Taken, filter_and_tell};
 
@@ -93,6 +93,9 @@ impl Scans {
         rows_before: usize,
     ) -> Result<Self, PrepareError> {
         by.validate()?;
+        if let Some(value) = scan.sensor_pose.as_ref().and_then(bad_entry) {
+            return Err(PrepareError::SensorPose { value });
+        }
         let (Filtered { cloud: kept, rows, stages }, removed) =
             filter_and_tell(scan, by.filter, by.sensor)?;
         if kept.is_empty() {
