@@ -33,8 +33,9 @@ pub(crate) fn error(error: &anyhow::Error) -> String {
     let option = error.chain().find_map(|cause| {
         if let Some(RobotError { fault, .. }) = cause.downcast_ref() {
             of_robot(fault)
-        } else if let Some(PrepareError::NoiseBeyondSize { .. }) = cause.downcast_ref() {
-            Some("--cloud-unit mm, --depth-scale".to_owned())
+        } else if let Some(PrepareError::NoiseBeyondSize { range, .. }) = cause.downcast_ref() {
+            let place = if range.is_some() { ", --sensor-pose" } else { "" };
+            Some(format!("--cloud-unit mm, --depth-scale{place}"))
         } else if let Some(PrepareError::CoordinateRange { index, .. }) = cause.downcast_ref() {
             Some(format!("counted from 1, as rows are: {}", index + 1))
         } else {

@@ -169,7 +169,7 @@ fn an_answer_about_columns_without_names_says_how_they_were_read() {
 fn bad_paths_are_named_with_what_to_do() {
     let inputs = Inputs::new();
     for (name, text, part) in [
-        ("one.csv", csv(&[0.5]), "a path through 1 poses: give at least two"),
+        ("one.csv", csv(&[0.5]), "a path through one pose: give at least two"),
         ("still.json", json(&[0.5, 0.5]), "all 2 poses of the path are the same"),
         ("short.csv", "0,0,0,1\n".to_owned(), "write 7 numbers"),
     ] {

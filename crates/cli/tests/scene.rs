@@ -150,12 +150,12 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         (with("file", json!(["box.obj"])), vec!["body 2 `box`", "`file` is [\"box.obj\"]"]),
         (with("unit", json!(1)), vec!["body 2 `box`", "`unit` is 1"]),
         // As programs write what they do not know: it was where no pose is given.
-        (with("pose", Value::Null), vec!["body 2 `box`", "the pose is not", "null"]),
+        (with("pose", Value::Null), vec!["body 2 `box`", "the pose is null"]),
         (with("attached_to", Value::Null), vec!["body 2 `box`", "`attached_to` is null"]),
         (of_scene("bodies", json!([["a", "b"], 1])), vec!["body 1", "a JSON object"]),
         (with("sensor", json!("sonar")), vec!["body 2 `box`", "`sonar`"]),
         (with("unit", json!("miles")), vec!["body 2 `box`", "miles"]),
-        (with("pose", json!([[1, 0, 0, 0]])), vec!["body 2 `box`", "1 rows", "4x4"]),
+        (with("pose", json!([[1, 0, 0, 0]])), vec!["body 2 `box`", "1 rows", "four rows of four"]),
         (
             with("pose", json!([[1, 0, 0, 0], [0, 1, 0, 3e11], [0, 0, 1, 0], [0, 0, 0, 1]])),
             vec!["body 2 `box`", "(1, 3) is 3e11", "in metres"],

@@ -293,8 +293,8 @@ fn bad_paths_and_tolerances_are_refused_by_value() {
     let there = at(0.1, 0.0, 0.0);
     let unknown = at(f64::NAN, 0.0, 0.0);
     let errors = [
-        (Path::through(&[]).unwrap_err(), "a path through 0 poses: give at least two"),
-        (Path::through(&[here]).unwrap_err(), "a path through 1 poses"),
+        (Path::through(&[]).unwrap_err(), "a path through no pose: give at least two"),
+        (Path::through(&[here]).unwrap_err(), "a path through one pose"),
         (Path::linear(&here, &here).unwrap_err(), "all 2 poses of the path are the same"),
         (Path::screw(&here, &here).unwrap_err(), "all 2 poses"),
         (Path::through(&[here, there, unknown]).unwrap_err(), "pose 3 of the path contains NaN"),

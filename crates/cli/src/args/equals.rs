@@ -20,7 +20,8 @@ fn tip(arguments: &[String], tool: &Command) -> Option<String> {
     arguments.windows(2).find_map(|pair| {
         let [option, number] = pair else { return None };
         let name = option.strip_prefix("--")?;
-        number.parse::<f64>().ok()?;
+        // Of several, or with a comma for the point, all are.
+        number.split(',').try_for_each(|part| part.parse::<f64>().map(|_| ())).ok()?;
         let is_named = |arg: &&Arg| arg.get_long() == Some(name);
         let arg = command.get_arguments().find(is_named)?;
         if arg.is_require_equals_set() {

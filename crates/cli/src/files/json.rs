@@ -2,25 +2,23 @@
 
 use std::borrow::Cow;
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail};
 use cloudtouch::LARGEST_COORDINATE;
 use cloudtouch::geom::Pose;
 use cloudtouch::geom::message::number;
 use nalgebra::Matrix4;
 use serde_json::Value;
 
-/// A pose as four rows of four numbers.
+/// A pose as four rows of four numbers, m.
 pub(crate) fn matrix(value: Value) -> Result<Pose> {
-    const FORM: &str = "the pose is not a list of four rows of four numbers";
-    if let Some((row, column, found)) = no_number(&value) {
-        return Err(anyhow!("({row}, {column}) is {found}: every entry must be a finite number"))
-            .context(FORM);
+    let Value::Array(rows) = &value else { bail!("the pose is {}: {FORM}", as_written(&value)) };
+    let mut entries = Vec::with_capacity(16);
+    for (row, found) in rows.iter().enumerate() {
+        entries.extend(row_of(row, found)?);
     }
-    let rows: Vec<[f64; 4]> = serde_json::from_value(value).context(FORM)?;
     if rows.len() != 4 {
-        bail!("the pose has {} rows: it must be 4x4", rows.len());
+        bail!("the pose has {} rows: {FORM}", rows.len());
     }
-    let entries = rows.concat();
     let pose = Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?;
     for (row, length) in pose.translation().iter().enumerate() {
         if length.abs() > LARGEST_COORDINATE {
@@ -33,14 +31,29 @@ pub(crate) fn matrix(value: Value) -> Result<Pose> {
     Ok(pose)
 }
 
-/// The first entry of a list of rows that is no number, with its place, as the file has it.
-fn no_number(rows: &Value) -> Option<(usize, usize, String)> {
-    let places = rows.as_array()?.iter().enumerate().flat_map(|(row, entries)| {
-        let entries = entries.as_array().into_iter().flatten().enumerate();
-        entries.map(move |(column, entry)| (row, column, entry))
-    });
-    let (row, column, found) = places.into_iter().find(|(_, _, entry)| !entry.is_number())?;
-    Some((row, column, as_written(found)))
+const FORM: &str = "write four rows of four numbers";
+
+fn row_of(row: usize, found: &Value) -> Result<[f64; 4]> {
+    let Value::Array(entries) = found else {
+        bail!("row {row} of the pose is {}: {FORM}", as_written(found));
+    };
+    let mut numbers = [0.0; 4];
+    for (column, entry) in entries.iter().enumerate() {
+        let Some(number) = entry.as_f64() else {
+            let found = as_written(entry);
+            bail!(
+                "the pose is not four rows of four numbers: ({row}, {column}) is {found}: every entry must be a \
+                 finite number"
+            );
+        };
+        if let Some(place) = numbers.get_mut(column) {
+            *place = number;
+        }
+    }
+    match entries.len() {
+        4 => Ok(numbers),
+        count => bail!("row {row} of the pose has {count} numbers: {FORM}"),
+    }
 }
 
 /// A value as the file has it, before it was [without bare words](without_bare_words).

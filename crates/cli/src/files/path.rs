@@ -2,8 +2,9 @@
 
 use anyhow::{Context as _, Result, bail};
 use cloudtouch::geom::Pose;
-use nalgebra::Matrix4;
+use serde_json::Value;
 
+use super::json::matrix;
 use super::pose_table::{self, Unnamed};
 
 /// The poses of a text, and what is to be doubted of them.
@@ -35,13 +36,10 @@ pub fn parse(text: &str) -> Result<PathText> {
 }
 
 fn matrices(text: &str) -> Result<Vec<Pose>> {
-    let all: Vec<[[f64; 4]; 4]> = serde_json::from_str(text)
-        .context("the path is not a list of poses, each four rows of four numbers")?;
-    let pose = |(index, rows): (usize, [[f64; 4]; 4])| {
-        let matrix = Matrix4::from_row_slice(rows.as_flattened());
-        Pose::try_from_matrix(&matrix).with_context(|| format!("pose {} of the path", index + 1))
-    };
-    all.into_iter().enumerate().map(pose).collect()
+    let all: Vec<Value> = serde_json::from_str(text).context("the path is not a list of poses")?;
+    let of =
+        |(index, pose)| matrix(pose).with_context(|| format!("pose {} of the path", index + 1));
+    all.into_iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]
@@ -78,7 +76,13 @@ mod tests {
     fn messages_say_which_pose_and_what_to_write() {
         for (text, part) in [
             ("[[[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]", "pose 1 of the path"),
-            ("[[1,0,0,0]]", "each four rows of four numbers"),
+            // They gave the words of the parser.
+            (
+                "[[1,0,0,0]]",
+                "pose 1 of the path: row 0 of the pose is 1: write four rows of four numbers",
+            ),
+            ("[[[1,0,0]]]", "pose 1 of the path: row 0 of the pose has 3 numbers"),
+            ("[0]", "pose 1 of the path: the pose is 0: write four rows of four numbers"),
             ("0,0,0,1,0,0,0\n0,0,0,1,0,0", "line 2 of the path: write 7 numbers"),
             ("0,0,nan,1,0,0,0", "line 1 of the path: `nan` is not a finite number"),
             ("0,0,0,2,0,0,0", "line 1 of the path: the quaternion"),

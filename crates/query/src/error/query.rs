@@ -149,7 +149,7 @@ pub enum QueryError {
         value: f64,
     },
     /// A path has too few poses to move along.
-    #[error("a path through {count} poses: give at least two, where it begins and where it ends")]
+    #[error("a path through {} give at least two, where it begins and where it ends", poses(*count))]
     TooFewPoses {
         /// How many there are.
         count: usize,
@@ -191,6 +191,14 @@ pub enum QueryError {
     /// The two shapes cannot be tested against each other exactly.
     #[error("the two meshes cannot be tested against each other: is one of them degenerate?")]
     Unsupported,
+}
+
+fn poses(count: usize) -> String {
+    match count {
+        0 => "no pose:".to_owned(),
+        1 => "one pose:".to_owned(),
+        more => format!("{more} poses:"),
+    }
 }
 
 #[cfg(test)]
