@@ -136,6 +136,7 @@ fn numbers_behind_options_that_take_none_there() {
     let inputs = Inputs::new();
     for (more, tip) in [
         (["--penetration", "0.2"], "--penetration is written with `=`: --penetration=0.2"),
+        (["--penetration", "0,2"], "--penetration is written with `=`: --penetration=0,2"),
         (["--gradient", "1"], "--gradient takes no value: leave 1 out"),
     ] {
         for arguments in [

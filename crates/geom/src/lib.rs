@@ -11,12 +11,8 @@ pub mod message;
 mod motion;
 pub mod normal;
 mod pose;
-#[cfg(feature = "mesh")]
-mod repeats;
 #[cfg(feature = "seed")]
 pub mod seed;
-#[cfg(feature = "mesh")]
-mod turn;
 mod uncertain;
 mod unit;
 mod vectors;

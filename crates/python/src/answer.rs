@@ -6,7 +6,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::body::table;
+use crate::rows::table;
 
 /// How long a query took, s: a report has whole microseconds.
 pub(crate) fn seconds(report: &Report) -> f64 {

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::answer::seconds;
-use crate::body::table;
+use crate::rows::table;
 
 /// Letters of the longest name: "in_collision".
 const LETTERS: usize = 12;

@@ -1,22 +1,20 @@
-//! Clouds and meshes, made ready.
+//! Clouds and meshes, made ready: what they hold, and how they change.
 
 use std::sync::{Arc, PoisonError, RwLock};
 
-use cloudtouch::geom::{
-    Covariance, Matrix3, MeshError, Point3, PointCloud, Pose, TriangleMesh, Vector3, unit,
-};
+use cloudtouch::geom::{Covariance, Matrix3, Point3, PointCloud, Pose, TriangleMesh, unit};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
     Body as Prepared, BodyRef, Change, ChangeError, Cloud, CloudSettings, Mesh, OutlierSettings,
-    PrepareError, SelfMesh,
+    SelfMesh,
 };
-use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 
 use crate::arrays::{Rows, matrix};
 use crate::error::{refused, refused_for};
-use crate::pool::{on_all_threads, pool};
+use crate::pool::pool;
+use crate::rows::{corners, rows, table};
 use crate::sensor::stated;
 
 /// A prepared body, shared by threads.
@@ -34,13 +32,13 @@ struct State {
 }
 
 /// What a body was made of.
-enum Given {
+pub(crate) enum Given {
     Cloud(PointCloud),
     Mesh(TriangleMesh),
 }
 
 impl Body {
-    fn new(prepared: impl Into<Prepared>, given: Given) -> Self {
+    pub(crate) fn new(prepared: impl Into<Prepared>, given: Given) -> Self {
         let state = State { prepared: Arc::new(prepared.into()), given: Some(given) };
         Self { state: RwLock::new(state) }
     }
@@ -51,7 +49,7 @@ impl Body {
     }
 
     /// A mesh as a link that a camera saw.
-    fn mesh(&self, py: Python<'_>) -> PyResult<Mesh> {
+    pub(crate) fn mesh(&self, py: Python<'_>) -> PyResult<Mesh> {
         let of_given = || match &self.state.read().map_err(broken)?.given {
             Some(Given::Mesh(mesh)) => Mesh::prepare(mesh).map_err(refused),
             _ => Err(refused("a link of a robot is a Mesh")),
@@ -230,11 +228,11 @@ pub(crate) struct CloudArguments<'py> {
     outliers: Option<(usize, f64)>,
     collision_map: Option<f64>,
     robot: Vec<(Bound<'py, Body>, PyReadonlyArray2<'py, f64>, f64)>,
-    refined: bool,
+    pub(crate) refined: bool,
 }
 
 impl CloudArguments<'_> {
-    fn settings(&self, py: Python<'_>) -> PyResult<CloudSettings> {
+    pub(crate) fn settings(&self, py: Python<'_>) -> PyResult<CloudSettings> {
         let mut settings = CloudSettings::new(stated(&self.sensor).map_err(refused)?);
         let filter = &mut settings.filter;
         filter.min_range = self.min_range.or(filter.min_range);
@@ -259,7 +257,7 @@ impl CloudArguments<'_> {
         Ok(settings)
     }
 
-    fn cloud(&self, points: Vec<Point3>) -> PyResult<PointCloud> {
+    pub(crate) fn cloud(&self, points: Vec<Point3>) -> PyResult<PointCloud> {
         let mut cloud = PointCloud::from_points(points);
         if let Some(array) = &self.sensor_pose {
             let pose = Pose::try_from_matrix(&matrix(array));
@@ -284,64 +282,4 @@ impl CloudArguments<'_> {
         }
         Ok(cloud)
     }
-}
-
-/// A cloud, ready to be queried.
-#[pyfunction]
-#[pyo3(signature = (points, arguments, /))]
-pub(crate) fn cloud(
-    py: Python<'_>,
-    points: Rows<'_>,
-    arguments: CloudArguments<'_>,
-) -> PyResult<Body> {
-    let settings = arguments.settings(py)?;
-    let given = arguments.cloud(points.points())?;
-    let refined = arguments.refined;
-    let prepared = on_all_threads(py, || {
-        let cloud = Cloud::prepare(&given, &settings)?;
-        if refined { cloud.refined() } else { Ok(cloud) }
-    })?;
-    Ok(Body::new(prepared.map_err(refused)?, Given::Cloud(given)))
-}
-
-/// A mesh, ready to be queried. The indices are from 0 to what 32 bits hold.
-#[pyfunction]
-#[pyo3(signature = (vertices, triangles, /))]
-pub(crate) fn mesh(
-    py: Python<'_>,
-    vertices: Rows<'_>,
-    triangles: PyReadonlyArray2<'_, u32>,
-) -> PyResult<Body> {
-    let indices = triangles.as_array();
-    let triangles = indices.rows().into_iter().map(|t| [t[0], t[1], t[2]]).collect();
-    let given = TriangleMesh::new(vertices.points(), triangles).map_err(refused)?;
-    let prepared = on_all_threads(py, || Mesh::prepare(&given))?.map_err(|error| match error {
-        // There are triangles, or they would not have been taken.
-        PrepareError::Mesh(MeshError::Empty) => refused(format_args!(
-            "no triangle has an area, of {}: two corners of each are in one place",
-            given.triangles().len()
-        )),
-        other => refused(other),
-    })?;
-    Ok(Body::new(prepared, Given::Mesh(given)))
-}
-
-/// Points as rows.
-pub(crate) fn rows<'py>(py: Python<'py>, points: &[Point3]) -> Bound<'py, PyArray2<f64>> {
-    table(points.iter().map(|p| p.coords)).into_pyarray(py)
-}
-
-/// Vectors as rows.
-pub(crate) fn table(vectors: impl ExactSizeIterator<Item = Vector3>) -> Array2<f64> {
-    let mut table = Array2::zeros((vectors.len(), 3));
-    for (mut row, vector) in table.rows_mut().into_iter().zip(vectors) {
-        row.iter_mut().zip(vector.iter()).for_each(|(entry, value)| *entry = *value);
-    }
-    table
-}
-
-/// Triangles as rows.
-pub(crate) fn corners<'py>(py: Python<'py>, triangles: &[[u32; 3]]) -> Bound<'py, PyArray2<i64>> {
-    let entry = |(row, column): (usize, usize)| i64::from(triangles[row][column]);
-    Array2::from_shape_fn((triangles.len(), 3), entry).into_pyarray(py)
 }

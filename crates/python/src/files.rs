@@ -11,8 +11,8 @@ use numpy::{IntoPyArray, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
 use crate::arrays::of_pose;
-use crate::body::{corners, rows};
 use crate::error::refused;
+use crate::rows::{corners, rows};
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 

@@ -11,8 +11,10 @@ mod error;
 mod files;
 mod page;
 mod pool;
+mod prepare;
 mod query;
 mod robot;
+mod rows;
 mod scene;
 mod sensor;
 mod sweep;
@@ -22,11 +24,13 @@ mod _native {
     #[pymodule_export]
     use crate::batch::refused;
     #[pymodule_export]
-    use crate::body::{Body, cloud, mesh};
+    use crate::body::Body;
     #[pymodule_export]
     use crate::error::CloudtouchError;
     #[pymodule_export]
     use crate::files::{check_camera, read_cloud, read_faces};
+    #[pymodule_export]
+    use crate::prepare::{cloud, mesh};
     #[pymodule_export]
     use crate::query::Query;
     #[pymodule_export]

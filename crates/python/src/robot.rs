@@ -13,11 +13,12 @@ use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{matrix, of_pose};
-use crate::body::{Body, corners, rows};
+use crate::body::Body;
 use crate::error::refused;
 use crate::page;
 use crate::pool::on_all_threads;
 use crate::query::{Query, rigid};
+use crate::rows::{corners, rows};
 use crate::scene::{Found, Pair, box_of, found, nobody, pair};
 
 type Joints = BTreeMap<String, f64>;

@@ -8,5 +8,6 @@ pub(super) mod leaves;
 pub(super) mod near;
 pub(super) mod near_discs;
 pub(super) mod past;
+mod reached;
 pub(super) mod side;
 pub(super) mod through_mesh;

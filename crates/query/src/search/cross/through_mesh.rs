@@ -2,6 +2,7 @@
 
 use cloudtouch_geom::{Point3, Vector3};
 
+use super::reached::{Pull, Reached, passes_nearest};
 use crate::search::compare::facet::Facet;
 use crate::search::wrench::{Height, Wrench, force_at};
 
@@ -17,23 +18,6 @@ pub(super) struct Through {
     pub off: Height,
     /// That place.
     pub place: Point3,
-}
-
-/// A place of a mesh in the coordinates of a disc.
-#[derive(Debug, Clone, Copy)]
-struct Reached {
-    at: Vector3,
-    pulled_by: Pull,
-}
-
-/// What the height of a place, or its distance from the middle, changes by as the mesh moves.
-#[derive(Debug, Clone, Copy)]
-enum Pull {
-    Known(Vector3),
-    /// On an edge that runs so, where it passes the wall of the cylinder.
-    Wall(Vector3),
-    /// On the rim of the disc in a plane with this normal.
-    Rim(Vector3),
 }
 
 /// A disc, seen along its normal.
@@ -132,20 +116,7 @@ impl Outline {
     }
 
     fn wrench(&self, reached: &Reached) -> Wrench {
-        force_at(&self.place(&reached.at), &self.vector(&self.force(reached)))
-    }
-
-    /// Of few places, so that it is told when it is asked for.
-    fn force(&self, Reached { at, pulled_by }: &Reached) -> Vector3 {
-        match pulled_by {
-            Pull::Known(force) => *force,
-            Pull::Wall(along) => {
-                // It keeps to the wall, by its way along the edge.
-                let outward = Vector3::new(at.x, at.y, 0.0) / self.radius;
-                Vector3::z() - outward * (along.z / outward.dot(along))
-            }
-            Pull::Rim(normal) => normal / normal.z,
-        }
+        force_at(&self.place(&reached.at), &self.vector(&reached.force(self.radius)))
     }
 
     fn place(&self, local: &Vector3) -> Point3 {
@@ -270,30 +241,6 @@ impl Outline {
 fn are_astride([p, q, r]: [f64; 3]) -> bool {
     let is_below = p < 0.0;
     is_below != (q < 0.0) || is_below != (r < 0.0)
-}
-
-/// Where a facet passes height zero, nearest to the middle.
-fn passes_nearest(corners: &[Vector3; 3]) -> Option<Reached> {
-    let mut ends = (0..3).filter_map(|k| {
-        let (from, to) = (corners[k], corners[(k + 1) % 3]);
-        let crosses = (from.z < 0.0) != (to.z < 0.0);
-        crosses.then(|| (from + (to - from) * (from.z / (from.z - to.z)), to - from))
-    });
-    let ((from, edge_from), (to, edge_to)) = (ends.next()?, ends.next()?);
-    let along = to - from;
-    let length = along.norm_squared();
-    let t = if length > 0.0 { (-from.dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    let at = from + along * t;
-    let away = at.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-    let force = if t > 0.0 && t < 1.0 {
-        // Across the line where both planes meet, as the plane of the facet moves.
-        let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-        normal / normal.dot(&away)
-    } else {
-        let edge = if t > 0.0 { edge_to } else { edge_from };
-        away - Vector3::z() * (away.dot(&edge) / edge.z)
-    };
-    Some(Reached { at, pulled_by: Pull::Known(force) })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::TriangleMesh;
+use super::TriangleMesh;
 
 impl TriangleMesh {
     /// The same surface without triangles that repeat others: those that are turned the same way once, and of

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::TriangleMesh;
+use super::TriangleMesh;
 
 /// A triangle at an edge, and whether it runs along it from the smaller index to the larger.
 type Side = (u32, bool);
