@@ -21,6 +21,7 @@ mod report;
 mod scene;
 mod search;
 mod shape;
+mod some;
 mod spiral;
 mod stats;
 

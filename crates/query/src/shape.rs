@@ -7,6 +7,7 @@ use cloudtouch_geom::{Point3, Pose, Vector3};
 
 use crate::cloud::Prepared;
 use crate::mesh::Mesh;
+use crate::some::some_of;
 
 /// Places that stand for the whole surface, at most, ...
 const SAMPLES: usize = 500;
@@ -91,7 +92,7 @@ impl<'a> Shape<'a> {
             Self::Cloud(cloud) => cloud.points(),
             Self::Mesh(mesh) => mesh.samples(),
         };
-        places.iter().step_by(places.len().div_ceil(most).max(1)).copied()
+        some_of(places.len(), most).map(|index| places[index])
     }
 
     pub(crate) fn origin(&self) -> Vector3 {

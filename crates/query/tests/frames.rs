@@ -48,6 +48,29 @@ fn is_hidden(p: &Point3) -> bool {
     p.x.abs() < 0.35 && p.y.abs() < 0.35 && p.z > 2.0
 }
 
+/// What the robot holds, and has in its model, is let go. Where it was in the frame before counted as seen.
+#[test]
+fn a_parcel_that_the_robot_put_down_read_free_inside() {
+    let floor = ExactMesh::new(&scene::moved(&scene::plane_patch(6.0), &at(0.0, 0.0, 2.0)));
+    let (size, there, here) = ([0.3; 3], at(0.0, 0.0, 1.848), Pose::identity());
+    let parcel = ExactMesh::new(&scene::moved(&scene::cuboid(size), &there));
+    let by = CloudSettings::new(SensorModel::Isotropic { std: 0.01 });
+    let mut held = by.clone();
+    let mesh_of = Arc::new(mesh(&scene::cuboid(size)));
+    held.filter.robot = vec![SelfMesh { mesh: mesh_of, cloud_from_link: there, padding: 0.03 }];
+    let scan = |seed| frame(&[&floor, &parcel], &here, seed);
+    let mut cloud = Cloud::prepare(&scan(3), &held).unwrap();
+    let ball = mesh(&scene::sphere(0.03, 3));
+    let query = Query::new(QuerySettings::default()).unwrap();
+    for seed in 30..34 {
+        cloud.replace_frame(&scan(seed), &by).unwrap();
+        for [x, y, z] in [[0.0, 0.0, 1.83], [0.08, -0.04, 1.88], [-0.08, 0.08, 1.93]] {
+            let report = query.run(&cloud, &ball, &at(x, y, z)).unwrap();
+            assert_eq!(report.verdict, Verdict::Undecided, "{seed} {x} {y} {z}: {report:?}");
+        }
+    }
+}
+
 #[test]
 fn what_the_camera_sees_through_goes_and_what_is_hidden_stays() {
     let (wall, block, here) = (wall(), block(), Pose::identity());

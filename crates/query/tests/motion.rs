@@ -287,6 +287,22 @@ fn ten_thousand_random_motions_keep_to_their_bounds() {
     }
 }
 
+/// With more segments than the tolerance goes into the path none was looked at closer, and no pose asked about.
+#[test]
+fn a_path_of_many_poses_through_a_wall_collides_as_one_of_few() {
+    let wall = body(false, &scene::plane_patch(1.0), 0.01, 0.001, 1);
+    let cube = body(true, &scene::cuboid([0.1; 3]), 0.0, 0.0, 0);
+    for count in [50_u32, 101, 300] {
+        let height = |k: u32| 0.3 - 0.6 * f64::from(k) / f64::from(count - 1);
+        let poses: Vec<Pose> = (0..count).map(|k| at(0.0, 0.0, height(k))).collect();
+        let path = Path::through(&poses).expect("a path");
+        let swept = sweep(&wall, &cube, &path, 0.01);
+        assert_eq!(swept.verdict, Verdict::InCollision, "{count}: {swept:?}");
+        let first = swept.first.expect("a collision").at.share;
+        assert!((0.35..0.45).contains(&first) && swept.stats.poses < 20, "{count}: {first}");
+    }
+}
+
 #[test]
 fn bad_paths_and_tolerances_are_refused_by_value() {
     let here = Pose::identity();

@@ -65,6 +65,62 @@ fn a_place_of_the_sensor_that_cannot_be_meant_is_told_as_one() {
     }
 }
 
+/// A lesser doubt, of how the camera was turned or of what kind it is, kept its place from being doubted.
+#[test]
+fn a_wrong_place_was_not_noticed_beside_a_wrong_turn_or_kind() {
+    let wall = ExactMesh::new(&scene::moved(&scene::cuboid([6.0, 6.0, 0.02]), &at(0.0, 0.0, 2.5)));
+    let block = ExactMesh::new(&scene::moved(&scene::cuboid([0.3, 0.4, 0.6]), &at(0.0, 0.0, 1.3)));
+    let camera = DepthCamera { veil_probability: 0.0, ..DepthCamera::default() };
+    let image = camera.scan(&[&wall, &block], &Pose::identity(), 1);
+    let ball = mesh(&scene::sphere(0.04, 3));
+    let half_turn = Pose::from_translation_rpy(Vector3::zeros(), [std::f64::consts::PI, 0.0, 0.0]);
+    let laser = SensorModel::Lidar { range_std: 0.005, beam_rad: 0.002 };
+    let beside = at(0.9, 0.0, 0.0);
+    for (sensor, pose) in [
+        (SensorModel::Kinect, beside),
+        (SensorModel::Kinect, beside.after(&half_turn)),
+        (laser, beside),
+        (laser, beside.after(&half_turn)),
+    ] {
+        let scan = PointCloud { sensor_pose: Some(pose), ..image.clone() };
+        let cloud = Scan::of(&scan, sensor, Mode::Calibrated).expect("a good image");
+        for x in [-0.09, 0.03, 0.09] {
+            let report = ask(Mode::Calibrated, &cloud, &ball, &at(x, 0.04, 1.34));
+            assert_eq!(report.verdict, Verdict::Undecided, "{sensor:?} {pose:?} {x}: {report:?}");
+        }
+    }
+    // Where only the turn is wrong it is only told.
+    let scan = PointCloud { sensor_pose: Some(half_turn), ..image };
+    let cloud = Scan::of(&scan, SensorModel::Kinect, Mode::Calibrated).expect("a good image");
+    let report = ask(Mode::Calibrated, &cloud, &ball, &at(0.6, 0.0, 1.2));
+    let told = |warning: &Warning| matches!(warning, Warning::SensorTurn { .. });
+    assert!(report.verdict == Verdict::Free && report.warnings.iter().any(told), "{report:?}");
+}
+
+/// A rod a few pixels wide nearer than 10 cm was left out, and what it hid counted as seen, where no least range was
+/// stated.
+#[test]
+fn what_a_thin_thing_near_the_camera_hides_is_unseen() {
+    let camera = DepthCamera {
+        width: 160,
+        height: 120,
+        focal_px: 140.0,
+        veil_probability: 0.0,
+        depth_std: 0.0005,
+        ..DepthCamera::default()
+    };
+    let wall = ExactMesh::new(&scene::moved(&scene::cuboid([6.0, 6.0, 0.02]), &at(0.0, 0.0, 2.5)));
+    for pixels in [2.0, 4.0] {
+        let rod = scene::cuboid([pixels / 140.0 * 0.08, 0.3, 0.001]);
+        let rod = ExactMesh::new(&scene::moved(&rod, &at(0.0, 0.0, 0.08)));
+        let image = camera.scan(&[&wall, &rod], &Pose::identity(), 1);
+        let cloud = Scan::of(&image, SensorModel::Kinect, Mode::Calibrated).expect("a good image");
+        let slat = mesh(&scene::cuboid([0.6 * pixels / 140.0, 0.3, 0.01]));
+        let report = ask(Mode::Calibrated, &cloud, &slat, &at(0.0, 0.0, 1.0));
+        assert_eq!(report.undecided_by, Some(Undecided::Unseen), "{pixels}: {report:?}");
+    }
+}
+
 /// The base of the robot was wrong: nothing of the image lies on it, and space behind the block counted as seen
 /// for being within it.
 #[test]

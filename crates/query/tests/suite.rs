@@ -36,6 +36,7 @@ mod mesh_parts;
 mod mesh_sides;
 mod more_separation;
 mod motion;
+mod order_of_points;
 mod paper_explain;
 mod paper_leaves;
 mod paper_switches;

@@ -56,6 +56,10 @@ pub struct Nearest {
 /// Positions within a segment that are looked at for collisions where a path is certified no longer.
 const LATER: usize = 16;
 
+/// Stretches are this part of a segment at most, whatever the tolerance: it is a share of the path, which may have
+/// hundreds of positions.
+const LONGEST: f64 = 0.5;
+
 impl PathChecked {
     /// Whether there was no pair to check at any position: which may touch is the same at all of them.
     pub fn is_unchecked(&self) -> bool {
@@ -149,7 +153,7 @@ impl RobotChecker {
                 let ends_free = not_free.as_ref().is_none_or(|(time, _)| to < *time);
                 if pair.is_none() && ends_free && !around().any(|(_, at_most)| may_meet(at_most)) {
                     certified_free_until = (segment as f64 + to) / segments;
-                } else if to - from > tolerance * segments {
+                } else if to - from > (tolerance * segments).min(LONGEST) {
                     not_free = pair.map(|pair| (middle, pair)).or(not_free);
                     open.extend([[middle, to], [from, middle]]);
                 } else if let Some(pair) = pair {

@@ -49,19 +49,21 @@ impl Prepared {
 }
 
 /// What the image tells that knows most of a place; `None` without any. An older one knows nothing of what is behind a
-/// thing that came since: it looked past where the thing is.
+/// thing that came since: it looked past where the thing is, or the robot was in its way.
 fn best_of(images: &[Seeing], place: &Point3) -> Option<Sight> {
-    let (mut best, mut hiding) = (None, None);
+    let (mut best, mut hiding, mut is_hidden) = (None, None, false);
     for image in images.iter().rev() {
-        let sight = image.sight(place);
+        // Where the robot was in it something may have come since.
+        let sight = if is_hidden { image.sight_of_returns(place) } else { image.sight(place) };
         if sight == Sight::Seen {
             if hiding.is_some_and(|(thing, std)| image.looks_past(&thing, std)) {
                 continue;
             }
             return Some(sight);
         }
-        if sight.is_behind() && image.is_later() && hiding.is_none() {
-            hiding = image.hiding(place);
+        if sight.is_behind() && image.is_later() {
+            is_hidden = true;
+            hiding = hiding.or_else(|| image.hiding(place));
         }
         best = Some(best.map_or(sight, |best: Sight| best.min(sight)));
     }

@@ -10,8 +10,8 @@ use super::SelfMesh;
 #[derive(Debug, Clone)]
 pub struct FilterSettings {
     /// Points nearer to the sensor than this are dropped, m; 0 keeps all. `None` drops what no camera or
-    /// laser scanner sees, where it is known that they are so near: within 10 cm of the sensor of a depth
-    /// image, or of a cloud that says where its sensor stood; else only what is at the very place (some
+    /// laser scanner sees, where it is known that they are so near: within 10 cm of the sensor of a cloud
+    /// with the rows and columns of an image; else only what is at the very place (some
     /// drivers write missing returns so), for in the frame of a map the origin is a place like others.
     pub min_range: Option<f64>,
     /// Points farther from the sensor than this are dropped, m; infinity keeps all.

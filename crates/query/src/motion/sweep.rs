@@ -16,6 +16,10 @@ use super::stretch::ask;
 use super::swept::{Reached, SweepStats, Swept};
 use super::tested::Tested;
 
+/// Stretches are this part of a segment at most, whatever the tolerance: of a path of many poses each would be one,
+/// and no pose that it leads through asked about.
+const LONGEST: f64 = 0.5;
+
 impl Query {
     /// The finest tolerance of [`Self::sweep`], as a share of a path: a millimetre of a hundred metres. Where a
     /// path stays near contact its bounds leave it open however short the stretches are, for they know neither
@@ -86,7 +90,7 @@ impl Query {
             bodies,
             path,
             clock: self.clock(start),
-            tested: Tested::of(&begin, self.settings(), tolerance * segments),
+            tested: Tested::of(&begin, self.settings(), (tolerance * segments).min(LONGEST)),
             stats: Stats::default(),
             poses: 0,
             stretches: 0,

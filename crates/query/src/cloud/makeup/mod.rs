@@ -15,6 +15,7 @@ use crate::cloud::makeup::clumps::{Clumps, clumps};
 use crate::cloud::makeup::scatter::Flattest;
 use crate::cloud::makeup::spread::{SAMPLE, Sample};
 use crate::filter::StageReport;
+use crate::some::some_of;
 
 /// Points are on a line when none is farther from it than this share of its length: single precision
 /// is no better.
@@ -137,8 +138,7 @@ pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
 /// Whether a few of the points make a triangle that no line passes so closely, the cloud being of such a size:
 /// then it is none, and the rest need no look.
 fn has_area(points: &[Point3], size: f64) -> bool {
-    let step = points.len().div_ceil(SAMPLE).max(1);
-    let some: Vec<&Point3> = points.iter().step_by(step).collect();
+    let some: Vec<&Point3> = some_of(points.len(), SAMPLE).map(|index| &points[index]).collect();
     let far =
         |from: &Point3| some.iter().map(|p| *p - from).max_by(|p, q| p.norm().total_cmp(&q.norm()));
     let Some((first, side)) = some.first().and_then(|first| Some((*first, far(first)?))) else {
@@ -201,15 +201,16 @@ pub(super) fn sensor_doubts(
         }
         _ => {}
     }
-    if doubts.is_empty() && cloud.is_image() {
+    // What lies beside where a camera looks is doubted by that already.
+    if cloud.is_image() && !doubts.iter().any(|of| matches!(of, SensorDoubt::Beside { .. })) {
         let is_misplaced = if is_panorama { panorama::is_misplaced } else { pinhole::is_misplaced };
         if is_misplaced(cloud, &place) {
             doubts.push(SensorDoubt::Misplaced);
         }
     }
     if *sensor == SensorModel::Kinect {
-        let step = points.len().div_ceil(SAMPLE).max(1);
-        let median = median(rays().step_by(step).map(|ray| ray.norm()));
+        let some = some_of(points.len(), SAMPLE).map(|index| (points[index] - place).norm());
+        let median = median(some);
         if median > KINECT_RANGE {
             doubts.push(SensorDoubt::Range { median, limit: KINECT_RANGE });
         }

@@ -4,6 +4,7 @@ use cloudtouch_geom::{Matrix3, Point3, PointCloud, Vector3};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
 use crate::filter::is_return_to;
+use crate::some::some_of;
 
 /// Pixels that are looked at, at most, and at least for an answer.
 const SAMPLE: usize = 1000;
@@ -51,13 +52,13 @@ pub(super) fn is_misplaced(image: &PointCloud, place: &Point3) -> bool {
 fn seen(image: &PointCloud, place: &Point3) -> Vec<Seen> {
     let Some((width, height)) = image.image_size else { return Vec::new() };
     let returns = image.points.iter().enumerate().filter(|(_, p)| is_return_to(place, p));
-    let count = returns.clone().count();
+    let returns: Vec<(usize, &Point3)> = returns.collect();
     let half = 0.5 * width as f64;
     let pixel = |index: usize| {
         let (row, column) = (index / width, index % width);
         Vector3::new(column as f64 / half - 1.0, (row as f64 - 0.5 * height as f64) / half, 1.0)
     };
-    let some = returns.step_by(count.div_ceil(SAMPLE).max(1));
+    let some = some_of(returns.len(), SAMPLE).map(|k| returns[k]);
     some.filter_map(|(index, p)| Some((pixel(index), (p - place).try_normalize(0.0)?))).collect()
 }
 

@@ -165,9 +165,14 @@ impl Seeing<'_> {
     /// What is known of a place by the image. Where the robot itself was there was nothing else, whatever the camera
     /// saw.
     pub(crate) fn sight(&self, place: &Point3) -> Sight {
-        let sight = self.raster.sight(&(place - self.image.sensor_origin));
+        let sight = self.sight_of_returns(place);
         let was_robot = || self.image.robot.iter().any(|link| link.held(place));
         if sight != Sight::Seen && was_robot() { Sight::Seen } else { sight }
+    }
+
+    /// What is known of a place by what the camera measured alone.
+    pub(crate) fn sight_of_returns(&self, place: &Point3) -> Sight {
+        self.raster.sight(&(place - self.image.sensor_origin))
     }
 
     /// Whether the camera looked past a place with this standard deviation (m), in its direction and in all around it.

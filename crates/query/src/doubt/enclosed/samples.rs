@@ -3,6 +3,7 @@
 use cloudtouch_geom::{Point3, Vector3};
 
 use crate::cloud::Prepared;
+use crate::some::some_of;
 
 use super::squares::{CLOSED, MOST_SQUARES, Squares};
 
@@ -16,18 +17,21 @@ const SMALL_SQUARES: usize = 3;
 /// Some points of a cloud, from all over it, and the squares that are as small as they tell.
 pub(super) struct Samples<'a> {
     cloud: &'a Prepared,
-    /// One in so many.
-    step: usize,
+    /// Of so many points each stands for one.
+    part: f64,
     a_side: usize,
 }
 
 impl<'a> Samples<'a> {
     pub(super) fn of(cloud: &'a Prepared) -> Self {
-        let points = cloud.points();
-        let step = points.len().div_ceil(MOST_POINTS).max(1);
-        let count = points.len().div_ceil(step);
+        let all = cloud.points().len();
+        let count = all.min(MOST_POINTS);
         let a_side = (count as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt().floor() as usize;
-        Self { cloud, step, a_side: a_side.clamp(1, MOST_SQUARES) }
+        Self {
+            cloud,
+            part: all as f64 / count.max(1) as f64,
+            a_side: a_side.clamp(1, MOST_SQUARES),
+        }
     }
 
     /// Whether they fill the smallest squares.
@@ -41,7 +45,9 @@ impl<'a> Samples<'a> {
         let enough = (CLOSED * all as f64).ceil() as u32;
         let squares = Squares::new(self.a_side);
         let mut filled = 0_u128;
-        for point in self.cloud.points().iter().step_by(self.step) {
+        let points = self.cloud.points();
+        for index in some_of(points.len(), MOST_POINTS) {
+            let point = &points[index];
             let before = filled;
             filled |= squares.containing(&(point - place));
             if filled != before && filled.count_ones() >= enough {
@@ -51,8 +57,8 @@ impl<'a> Samples<'a> {
         }
         // Of a wall nearby few of some points fall in each square. With half of the squares empty it is not all
         // around.
-        if self.step > 1 && 2 * filled.count_ones() as usize >= all {
-            let apart = self.cloud.makeup().spacing * (self.step as f64).sqrt();
+        if self.part > 1.0 && 2 * filled.count_ones() as usize >= all {
+            let apart = self.cloud.makeup().spacing * self.part.sqrt();
             let near = 0.5 * self.a_side as f64 * POINTS_PER_SQUARE.sqrt() * apart;
             self.cloud.visit_measured_within(place, near, |point| {
                 filled |= squares.containing(&(point - place));
