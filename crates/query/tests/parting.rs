@@ -1,7 +1,7 @@
 //! Which way the bodies part at a contact, where no single piece of surface says so.
 
 use crate::common::{ask, measured, mesh, prepare, query};
-use cloudtouch::geom::{Pose, TriangleMesh, Vector3};
+use cloudtouch::geom::{Point3, Pose, TriangleMesh, Vector3};
 use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
 
@@ -94,4 +94,24 @@ fn seen_from_the_other_body_it_points_the_other_way() {
     let (forth, back) = (&forth.contacts[0], &back.contacts[0]);
     let seen = pose.transform_vector(&back.normal_a_to_b);
     assert!((forth.normal_a_to_b + seen).norm() < 1e-6, "{forth:?} {back:?}");
+}
+
+/// The closer the samples, the sooner bottom and table were told apart, as they lie: the normal led into the table.
+#[test]
+fn a_box_pressed_into_a_dense_table_parts_upwards() {
+    let lattice = |k: u32| [k % 150, k / 150].map(|k| 0.002 * f64::from(k) - 0.15);
+    let point = |[x, y]: [f64; 2]| Point3::new(x, y, 0.0);
+    let points = (0..22_500).map(lattice).map(point).collect();
+    let table = prepare(points, 0.001, Mode::Calibrated);
+    let cube = mesh(&scene::cuboid([0.06; 3]));
+    for depth in [0.003, 0.005, 0.008, 0.012, 0.02] {
+        let place = Vector3::new(0.003, 0.002, 0.03 - depth);
+        let pose = Pose::from_translation_rpy(place, [0.0, 0.0, 0.3]);
+        let report = ask(Mode::Calibrated, &table, &cube, &pose);
+        let normal = report.contacts.first().expect("they overlap").normal_a_to_b;
+        assert!(normal.z > 0.8, "{depth}: {normal}");
+        let back = ask(Mode::Calibrated, &cube, &table, &pose.inverse());
+        let normal = pose.transform_vector(&back.contacts[0].normal_a_to_b);
+        assert!(normal.z < -0.8, "{depth}: {normal}");
+    }
 }

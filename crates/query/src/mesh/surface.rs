@@ -1,13 +1,23 @@
 //! The surface of a mesh about a place, in parts small enough to count by a few places each.
 
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::{Point3, Vector3};
 
 use super::prepare::Mesh;
 use super::subdivide::{MAX_DEPTH, halved};
 use super::winding::{Winding, centroid};
 
+/// A place that stands for a part of a surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Piece {
+    pub place: Point3,
+    /// Of the part, m².
+    pub area: f64,
+    /// The same times its unit normal, out of what it encloses; zero where it encloses nothing.
+    pub outward: Vector3,
+}
+
 impl Mesh {
-    /// Calls `visit` with places and areas (m²) that stand for all the surface within `reach` (m) of a
+    /// Calls `visit` with pieces that stand for all the surface within `reach` (m) of a
     /// place, and may go on beyond: three for a triangle or a piece of one that reaches no farther than
     /// `fine` (m) from its middle, where its sides are halved, which is as good as the whole of it for all
     /// that is quadratic in the place; and one for a group of triangles half as wide. Local frame.
@@ -16,10 +26,12 @@ impl Mesh {
         place: &Point3,
         reach: f64,
         fine: f64,
-        mut visit: impl FnMut(&Point3, f64),
+        mut visit: impl FnMut(Piece),
     ) {
-        for part in std::iter::once(&self.winding).chain(&self.sheets) {
-            visit_within(part, (place, reach), fine, &mut visit);
+        visit_within(&self.winding, (place, reach), fine, &mut visit);
+        if let Some(sheets) = &self.sheets {
+            let mut visit = |piece| visit(Piece { outward: Vector3::zeros(), ..piece });
+            visit_within(sheets, (place, reach), fine, &mut visit);
         }
     }
 }
@@ -28,7 +40,7 @@ fn visit_within(
     part: &Winding,
     (place, reach): (&Point3, f64),
     fine: f64,
-    visit: &mut impl FnMut(&Point3, f64),
+    visit: &mut impl FnMut(Piece),
 ) {
     let mut at = 0;
     while let Some(group) = part.groups.get(at) {
@@ -36,7 +48,7 @@ fn visit_within(
         at = if (group.center - place).norm_squared() > beyond * beyond {
             group.next
         } else if 4.0 * group.squared_radius <= fine * fine {
-            visit(&group.center, group.size);
+            visit(Piece { place: group.center, area: group.size, outward: group.area });
             group.next
         } else if group.is_leaf {
             let [from, to] = group.range;
@@ -56,7 +68,7 @@ fn visit_parts(
     (place, reach): (&Point3, f64),
     fine: f64,
     halvings: usize,
-    visit: &mut impl FnMut(&Point3, f64),
+    visit: &mut impl FnMut(Piece),
 ) {
     let [a, b, c] = corners;
     let middle = centroid(&corners);
@@ -75,9 +87,10 @@ fn visit_parts(
             }
         }
         None => {
-            let third = (b - a).cross(&(c - a)).norm() / 6.0;
+            let third = (b - a).cross(&(c - a)) / 6.0;
+            let area = third.norm();
             for (from, to) in [(a, b), (b, c), (c, a)] {
-                visit(&nalgebra::center(&from, &to), third);
+                visit(Piece { place: nalgebra::center(&from, &to), area, outward: third });
             }
         }
     }
@@ -92,13 +105,15 @@ mod tests {
     use super::*;
 
     fn parts(mesh: &TriangleMesh, reach: f64, fine: f64) -> Vec<(Point3, f64)> {
-        let mut parts = Vec::new();
+        pieces(mesh, reach, fine).into_iter().map(|piece| (piece.place, piece.area)).collect()
+    }
+
+    fn pieces(mesh: &TriangleMesh, reach: f64, fine: f64) -> Vec<Piece> {
+        let mut pieces = Vec::new();
         let prepared = Mesh::prepare(mesh).unwrap();
         let place = Point3::new(0.1, 0.05, 0.0);
-        prepared.visit_surface_within(&place, reach, fine, |middle, area| {
-            parts.push((*middle, area));
-        });
-        parts
+        prepared.visit_surface_within(&place, reach, fine, |piece| pieces.push(piece));
+        pieces
     }
 
     #[test]
@@ -125,6 +140,28 @@ mod tests {
         let both = scene::assemble([scene::plane_patch(0.8), block]);
         let area: f64 = parts(&both, 10.0, 0.05).iter().map(|part| part.1).sum();
         assert!((area - (0.64 + 0.24)).abs() < 1e-9, "{area}");
+    }
+
+    /// A closed part knows its outside, and a sheet beside it has none.
+    #[test]
+    fn pieces_of_what_encloses_something_look_out_of_it() {
+        let aside = Pose::from_translation(Vector3::new(0.0, 0.0, 0.5));
+        // About the middle of the box around both.
+        let centre = Point3::new(0.0, 0.0, 0.15);
+        for edge in [0.2, 0.02] {
+            let ball = scene::subdivide_to_max_edge(&scene::sphere(0.2, 3), edge);
+            let both = scene::assemble([scene::plane_patch(0.8), scene::moved(&ball, &aside)]);
+            let pieces = pieces(&both, 9.0, 0.1);
+            let (of_sheet, of_ball): (Vec<&Piece>, Vec<&Piece>) =
+                pieces.iter().partition(|piece| piece.place.z < -0.2);
+            let looks_out = |piece: &&&Piece| {
+                let (out, length) = (piece.place - centre, piece.outward.norm());
+                piece.outward.dot(&out) > 0.95 * length * out.norm() && length > 0.8 * piece.area
+            };
+            assert_eq!(of_ball.iter().filter(looks_out).count(), of_ball.len(), "{edge}");
+            assert!(of_ball.len() > 9 && of_sheet.len() > 50, "{edge}");
+            assert!(of_sheet.iter().all(|piece| piece.outward == Vector3::zeros()), "{edge}");
+        }
     }
 
     proptest! {

@@ -41,7 +41,7 @@ pub(super) struct Group {
     /// Mean of the centroids, weighted by area: no term of first order is left but the dipole's.
     pub(super) center: Point3,
     /// Sum of area times unit normal, m².
-    area: Vector3,
+    pub(super) area: Vector3,
     /// Sum of areas, m².
     pub(super) size: f64,
     /// How far the farthest corner is from the centre, squared, m².

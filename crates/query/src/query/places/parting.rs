@@ -17,6 +17,8 @@ use crate::cloud::Surfel;
 const REACHES: [f64; 3] = [3.0, 6.0, 12.0];
 /// They do where the squared distance of their means is so many times their squared spread along it.
 const APART: f64 = 1.0;
+/// Where the outsides of surfaces look so far the other way, they have passed through one another: 1 is of flat ones.
+const PASSED: f64 = 0.5;
 /// Surfaces are not flatter than this part of a unit.
 const ROUGHNESS: f64 = 0.2;
 /// Parts of a mesh reach no farther than this part of its surroundings, and count by three places each.
@@ -71,7 +73,11 @@ impl Spots<'_> {
                 + rotation * of_b.spread * rotation.transpose()
                 + Matrix3::identity() * own;
             let Some(across) = spread.cholesky().map(|root| root.solve(&apart)) else { continue };
-            direction = across.try_normalize(0.0).or(direction);
+            let outward = of_a.outward - self.a_from_b.vector(&of_b.outward);
+            let Some(toward_b) = across.try_normalize(0.0) else { continue };
+            // From face to face of two that are in each other the way out is back.
+            let have_passed = outward.dot(&toward_b) < -PASSED;
+            direction = Some(if have_passed { -toward_b } else { toward_b });
             if across.dot(&apart) >= APART {
                 break;
             }
@@ -105,6 +111,8 @@ struct Surroundings {
     reach: f64,
     weight: f64,
     sum: Vector3,
+    /// Of unit normals out of what a mesh encloses.
+    outward: Vector3,
     /// Of x², xy, xz, y², yz and z².
     squares: [f64; 6],
 }
@@ -113,31 +121,39 @@ struct Surroundings {
 struct Moments {
     mean: Vector3,
     spread: Matrix3,
+    /// The mean of their unit normals out of what a mesh encloses, shorter the less these agree; zero of what has no
+    /// inside, and of a cloud.
+    outward: Vector3,
 }
 
 impl Surroundings {
     fn of(body: BodyRef<'_>, place: Point3, reach: f64) -> Self {
-        let (sum, squares) = (Vector3::zeros(), [0.0; 6]);
-        let mut around = Self { place, reach, weight: 0.0, sum, squares };
+        let (zero, squares) = (Vector3::zeros(), [0.0; 6]);
+        let mut around = Self { place, reach, weight: 0.0, sum: zero, outward: zero, squares };
         match body {
             BodyRef::Cloud(cloud) => {
-                let add = |sample: &Point3| around.add(sample, 1.0);
+                let add = |sample: &Point3| {
+                    around.add(sample, 1.0);
+                };
                 cloud.prepared().visit_places_within(&place, reach, add);
             }
             BodyRef::Mesh(mesh) => {
-                mesh.visit_surface_within(&place, reach, FINE * reach, |middle, area| {
-                    around.add(middle, area);
+                mesh.visit_surface_within(&place, reach, FINE * reach, |piece| {
+                    let nearness = around.add(&piece.place, piece.area);
+                    around.outward += piece.outward * nearness;
                 });
             }
         }
         around
     }
 
-    fn add(&mut self, sample: &Point3, share: f64) {
+    /// Counts a place that stands for so much, and says by how much that is weighed.
+    fn add(&mut self, sample: &Point3, share: f64) -> f64 {
         let offset = sample - self.place;
         let within = 1.0 - offset.norm_squared() / (self.reach * self.reach);
+        let nearness = within.max(0.0).powi(2);
         if within > 0.0 {
-            let weight = share * within * within;
+            let weight = share * nearness;
             self.weight += weight;
             self.sum += offset * weight;
             // PERF: half of a symmetric matrix, whose other half has the same bits.
@@ -148,6 +164,7 @@ impl Surroundings {
                 *sum += square * weight;
             }
         }
+        nearness
     }
 
     /// `None` of nothing.
@@ -156,7 +173,8 @@ impl Surroundings {
             let mean = self.sum / self.weight;
             let [xx, xy, xz, yy, yz, zz] = self.squares;
             let squares = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-            Moments { mean, spread: squares / self.weight - mean * mean.transpose() }
+            let spread = squares / self.weight - mean * mean.transpose();
+            Moments { mean, spread, outward: self.outward / self.weight }
         })
     }
 }
