@@ -17,6 +17,9 @@ mod uncertain;
 mod unit;
 mod vectors;
 
+/// The library of whose types [`Pose`] is made, in the version that it takes.
+pub use nalgebra;
+
 pub use bounding_box::bounding_box;
 pub use cloud::PointCloud;
 pub use covariance::{AxisForm, Covariance, CovarianceError};

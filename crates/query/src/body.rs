@@ -77,11 +77,18 @@ impl<'a> From<&'a Body> for BodyRef<'a> {
     }
 }
 
-impl<'a> From<&'a Arc<Body>> for BodyRef<'a> {
-    fn from(body: &'a Arc<Body>) -> Self {
-        Self::from(&**body)
-    }
+/// What several threads hold.
+macro_rules! from_shared {
+    ($($of:ty),*) => {
+        $(impl<'a> From<&'a Arc<$of>> for BodyRef<'a> {
+            fn from(shared: &'a Arc<$of>) -> Self {
+                Self::from(&**shared)
+            }
+        })*
+    };
 }
+
+from_shared!(Body, Cloud, Mesh);
 
 impl<'a> BodyRef<'a> {
     /// How long preparation took.

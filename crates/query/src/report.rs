@@ -149,7 +149,9 @@ pub struct Contact {
     pub probability: f64,
     /// Gap across the pieces of surface there, m; negative in overlap.
     pub clearance_m: f64,
-    /// How much surface belongs to the contact, m², roughly: the places within a spacing of it.
+    /// How much surface belongs to the contact, m², roughly: the places within a spacing of it. Those of all contacts
+    /// are no measure of the overlap: in a certain collision the search ends at the first of them
+    /// ([`QuerySettings::stop_above`](crate::QuerySettings::stop_above)), and neighbours may count some places both.
     /// `None` on the paper's path.
     pub area_m2: Option<f64>,
 }

@@ -1,6 +1,8 @@
 //! The same question gives the same bits: again, on more threads, after other questions.
 
-use crate::common::{AnyQuery, MODES, Scan, mesh, query, scan, timeless};
+use std::sync::Arc;
+
+use crate::common::{AnyQuery, MODES, Scan, at, mesh, query, scan, scenes, timeless};
 use cloudtouch::geom::{Pose, Vector3};
 use cloudtouch::{Mode, Report};
 use cloudtouch_testkit::scene;
@@ -109,4 +111,15 @@ fn with_a_mesh_too() {
         reports.into_iter().map(|r| timeless(&r.unwrap())).collect()
     };
     assert_eq!(run(1), run(4));
+}
+
+/// As threads hold them, without a dereference.
+#[test]
+fn a_query_takes_bodies_that_are_shared() {
+    let cube = Arc::new(mesh(&scene::cuboid([0.1; 3])));
+    let ball = Arc::new(scenes::cloud(&scene::sphere(0.05, 2), 0.01, 0.001, 1));
+    let (query, pose) = (scenes::query(), at(0.12, 0.0, 0.0));
+    let shared = query.run(&cube, &ball, &pose).expect("a finite pose");
+    let borrowed = query.run(&*cube, &*ball, &pose).expect("a finite pose");
+    assert_eq!(shared.collision_probability.to_bits(), borrowed.collision_probability.to_bits());
 }

@@ -52,8 +52,10 @@ impl RobotChecker {
     /// Says that two may touch, each a link, what is held, or the [`SURROUNDINGS`]: a base and the table that it is
     /// bolted to, or what no camera sees around it; a finger and what it holds. They are not asked about.
     ///
+    /// A link that has no shape is asked about no pair, whether it may touch or not.
+    ///
     /// # Errors
-    /// When one of them has no shape that is checked.
+    /// When one of them is neither a link nor held.
     pub fn allow(&mut self, a: &str, b: &str) -> Result<(), SceneError> {
         let [of_a, of_b] = [self.bodies_of(a)?, self.bodies_of(b)?];
         let pairs = of_a.iter().flat_map(|a| of_b.iter().map(move |b| (a, b)));
@@ -71,7 +73,7 @@ impl RobotChecker {
         };
         let names: Vec<String> =
             self.carried.iter().filter(is_it).map(|part| part.name.clone()).collect();
-        if names.is_empty() {
+        if names.is_empty() && !self.robot.tree.links.iter().any(|link| link == name) {
             return Err(SceneError::UnknownName { name: name.to_owned() });
         }
         Ok(names)

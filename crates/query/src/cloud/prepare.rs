@@ -50,9 +50,9 @@ impl Cloud {
     /// Computes the surface at every point, on all threads of the pool, and fits the tree to it.
     ///
     /// A cloud as prepared computes its surface where queries come near it, and until then has to
-    /// allow for what it might be; one that is refined is searched several times as fast, from the
-    /// first query on. It takes as long as a handful of first queries, and pays for a scene that many
-    /// poses are tested in, not for a frame that is looked at a few times. Probabilities stay what
+    /// allow for what it might be; one that is refined is searched one and a half to four times as fast, from the
+    /// first query on. It takes as long as dozens of first queries, and pays for a scene that thousands of
+    /// poses are tested in, not for a frame that is looked at some hundred times. Probabilities stay what
     /// they are, only what is left out of the search and the bounds on it may differ.
     ///
     /// # Errors

@@ -18,7 +18,9 @@ pub struct FilterSettings {
     pub max_range: f64,
     /// Whether a point with exactly the coordinates of an earlier one is dropped.
     pub drop_duplicates: bool,
-    /// The robot's own links: points inside one of them, or within its padding, are dropped.
+    /// The robot's own links: points inside one of them, or within its padding, are dropped, and these places count as
+    /// seen to be empty. So they should stand on nothing and lean on nothing; points of what they hold and grasped
+    /// from a table are rather taken out by [`Cloud::remove`](crate::Cloud::remove).
     pub robot: Vec<SelfMesh>,
     /// Drops points between a near and a far surface that no surface explains.
     pub veil: Option<VeilSettings>,

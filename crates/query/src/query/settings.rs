@@ -51,7 +51,8 @@ pub struct QuerySettings {
     /// Relative gap at which a kernel problem counts as solved.
     pub relative_gap: f64,
     /// The search, and the look inside closed meshes, end when a collision is this certain; 1 never ends
-    /// them early.
+    /// them early. Contacts are those found until then: all of a patch, and its area, need a 1 here and as large a
+    /// `max_contacts` as there are places in it.
     pub stop_above: f64,
     /// How much of the answer is wanted.
     pub detail: Detail,
