@@ -53,6 +53,42 @@ fn a_table_beside_the_robot_was_taken_for_it() {
     assert_ne!(ask(&close, &over(-0.008)).verdict, Verdict::Free);
 }
 
+/// The next frame looked to a wall, and what had been taken under the bar was forgotten with it.
+#[test]
+fn what_was_taken_is_known_until_a_frame_shows_what_is_there() {
+    let over = |gap: f64| at(0.0, 0.0, 1.5 - gap - 0.5 * BAR[2]);
+    let floor = scene::moved(&scene::plane_patch(4.0), &at(0.0, 0.0, 1.5));
+    let wall = scene::moved(&scene::cuboid([0.02, 8.0, 8.0]), &at(3.0, 0.0, 0.0));
+    let bar = scene::moved(&scene::cuboid(BAR), &over(0.006));
+    let [floor, wall, bar] = [floor, wall, bar].map(|part| ExactMesh::new(&part));
+    let camera = DepthCamera {
+        veil_probability: 0.0,
+        depth_std: 0.0005,
+        depth_std_growth: 0.0003,
+        ..DepthCamera::default()
+    };
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.0015 });
+    let scan = camera.scan(&[&floor, &wall, &bar], &Pose::identity(), 3);
+    let mut cloud = prepared(&scan, 0.0015, vec![link(over(0.006), 0.02)]);
+    let into_floor = [-0.004, -0.008].map(over);
+    let turn = [0.0, std::f64::consts::FRAC_PI_2, 0.0];
+    let to_wall = Pose::from_translation_rpy(Vector3::zeros(), turn);
+    for seed in 4..7 {
+        for pose in &into_floor {
+            let report = ask(&cloud, pose);
+            assert_eq!(report.undecided_by, Some(Undecided::Missing), "{seed}: {report:?}");
+        }
+        let frame = camera.scan(&[&floor, &wall], &to_wall, seed).transformed(&to_wall);
+        cloud.replace_frame(&frame, &settings).expect("a good frame");
+    }
+    let frame = camera.scan(&[&floor, &wall], &Pose::identity(), 8);
+    cloud.replace_frame(&frame, &settings).expect("a good frame");
+    for pose in &into_floor {
+        assert_eq!(ask(&cloud, pose).verdict, Verdict::InCollision);
+    }
+    assert_eq!(ask(&cloud, &over(0.03)).verdict, Verdict::Free);
+}
+
 /// Joints from another time cut the robot's shape out of what really is there, and it read `free` in it.
 #[test]
 fn a_robot_that_was_not_where_it_is_said_to_have_been_is_noticed() {

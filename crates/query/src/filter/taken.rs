@@ -66,6 +66,26 @@ impl Taken {
         Ok((Some(Self { links: robot.to_vec(), padding, points, around, from }), share))
     }
 
+    /// The same of those of its points that are still so; `None` of none.
+    ///
+    /// # Errors
+    /// When there are too many of them.
+    pub(crate) fn only(
+        &self,
+        is_still: impl Fn(&Point3) -> bool,
+    ) -> Result<Option<Self>, NoiseError> {
+        let all = self.points.points().iter().zip(&self.from);
+        let (places, from): (Vec<Point3>, Vec<f64>) = all.filter(|(at, _)| is_still(at)).unzip();
+        let Some(around) = around(&places, self.padding) else { return Ok(None) };
+        let points = Arc::new(Neighborhoods::new(places)?);
+        Ok(Some(Self { links: self.links.clone(), points, around, from, ..*self }))
+    }
+
+    /// Whether one of its points is within its padding of a place.
+    pub(crate) fn is_about(&self, place: &Point3) -> bool {
+        is_in(&self.around, place) && self.points.is_any_within(place, self.padding)
+    }
+
     /// Whether something may be at a place near the robot, which the filter took for it.
     pub(crate) fn may_be_at(&self, place: &Point3) -> bool {
         let mut from = f64::INFINITY;

@@ -1,6 +1,6 @@
 //! A cloud that a moving camera keeps up to date: what it looks at is as it sees it, the rest stays.
 
-use cloudtouch_geom::{PointCloud, Vector3};
+use cloudtouch_geom::{Point3, PointCloud, Vector3};
 use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
@@ -10,6 +10,7 @@ use crate::cloud::scans::Scans;
 use crate::cloud::settings::CloudSettings;
 use crate::cloud::view::SingleView;
 use crate::error::{ChangeError, PrepareError};
+use crate::filter::Taken;
 
 /// Views that a cloud keeps of its frames: what only older ones saw to be empty counts as unseen again.
 const MOST_VIEWS: usize = 32;
@@ -50,31 +51,35 @@ impl Cloud {
             image.is_later = true;
         }
         let cell = settings.filter.collision_map.unwrap_or(0.0);
-        let kept = self.not_seen_by(&added, cell)?;
+        let (kept, taken) = self.not_seen_by(&added, cell)?;
+        added.taken.extend(taken);
         let stages = added.stages.clone();
         let change = self.keep_and_append(&kept, Some(added))?;
         self.prepared.forget_frames(MOST_VIEWS, stages);
         Ok(change)
     }
 
-    /// The points that a frame neither sees through nor measures again, be it by cells this wide, m.
-    fn not_seen_by(&self, frame: &Scans, cell: f64) -> Result<Vec<u32>, PrepareError> {
+    /// The points that a frame neither sees through nor measures again, be it by cells this wide, m; and of what was
+    /// taken for the robot that which the frame does not take for it again either.
+    fn not_seen_by(
+        &self,
+        frame: &Scans,
+        cell: f64,
+    ) -> Result<(Vec<u32>, Vec<Taken>), PrepareError> {
         let own = &self.prepared.scans;
-        let all = || Ok((0..own.points.len() as u32).collect());
+        let all = || Ok(((0..own.points.len() as u32).collect(), own.taken.clone()));
         let Some(image) = frame.images.first() else { return all() };
         let camera = image.sensor_origin;
         let view = SingleView::new(image.clone(), &Vector3::zeros());
         let Some(seeing) = view.over((&frame.points, &frame.noise)) else { return all() };
         let measured = Neighborhoods::new(frame.points.clone())?;
-        let stays = |&index: &u32| {
-            let place = own.points[index as usize];
-            let std = own.noise[index as usize].max_std();
-            if seeing.looks_past(&place, std) {
+        let stays = |place: &Point3, std: f64| {
+            if seeing.looks_past(place, std) {
                 return false;
             }
             // What the lines of a panorama measure is no more than they: the next of them may be far off.
             let Some(pixels) = seeing.pixel() else { return true };
-            let Some(near) = measured.nearest_to(&place, 1).first().copied() else { return true };
+            let Some(near) = measured.nearest_to(place, 1).first().copied() else { return true };
             let ray = place - camera;
             let pixel = (pixels * ray.norm()).max(cell);
             let noise = std.hypot(frame.noise[near.index].max_std());
@@ -83,6 +88,12 @@ impl Cloud {
             let across = (offset.norm_squared() - along * along).max(0.0).sqrt();
             along.abs() > DEVIATIONS * noise + pixel || across > pixel
         };
-        Ok((0..own.points.len() as u32).into_par_iter().filter(stays).collect())
+        let point_stays =
+            |&i: &u32| stays(&own.points[i as usize], own.noise[i as usize].max_std());
+        let kept = (0..own.points.len() as u32).into_par_iter().filter(point_stays).collect();
+        let is_taken_again = |place: &Point3| frame.taken.iter().any(|new| new.is_about(place));
+        let is_still = |place: &Point3| stays(place, 0.0) && !is_taken_again(place);
+        let still: Result<Vec<_>, _> = own.taken.iter().map(|old| old.only(is_still)).collect();
+        Ok((kept, still?.into_iter().flatten().collect()))
     }
 }

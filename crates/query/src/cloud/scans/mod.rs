@@ -147,7 +147,7 @@ impl Scans {
         let later = &others.sensor_doubts;
         self.sensor_doubts.retain(|doubt| !later.iter().any(|other| kind(other) == kind(doubt)));
         if others.images.iter().any(|image| image.is_later) {
-            // The robot is elsewhere by now, and what was beside it was seen or is beside it still.
+            // The robot is elsewhere by now, and what it still hides beside it comes with the others.
             self.taken.clear();
         }
         self.noise = joined(&[&self.noise, &others.noise]);
