@@ -147,6 +147,37 @@ fn a_sensor_within_the_hollow_tells_that_it_is_one() {
     assert_eq!(within.undecided_by, Some(Undecided::Enclosed), "{within:?}");
 }
 
+/// It was looked for the object within the scene alone, and a scene has things that an object may be around.
+#[test]
+fn a_thing_of_the_scene_within_a_box_that_lacks_a_triangle_read_free() {
+    let mut points: Vec<Point3> = measured(&scene::plane_patch(2.0), 0.015, 0.002, 3);
+    points.extend(measured(
+        &scene::moved(&scene::sphere(0.05, 3), &at(0.0, 0.0, 0.6)),
+        0.006,
+        0.002,
+        4,
+    ));
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    let floor_and_ball =
+        Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud");
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    let without = |whole: &TriangleMesh, lost: usize| {
+        let mut triangles = whole.triangles().to_vec();
+        triangles.remove(lost);
+        let open = TriangleMesh::new(whole.vertices().to_vec(), triangles).expect("a mesh");
+        Mesh::prepare(&open).expect("a mesh with an area")
+    };
+    let (around, above) = (at(0.085, 0.0, 0.6), at(0.085, 0.0, 1.2));
+    for open in [without(&scene::cuboid([0.3; 3]), 3), without(&scene::sphere(0.2, 4), 7)] {
+        let report = query.run(&floor_and_ball, &open, &around).expect("a good pose");
+        assert_eq!(report.undecided_by, Some(Undecided::Enclosed), "{report:?}");
+        let back = query.run(&open, &floor_and_ball, &around.inverse()).expect("a good pose");
+        assert_eq!(back.undecided_by, Some(Undecided::Enclosed), "{back:?}");
+        let free = query.run(&floor_and_ball, &open, &above).expect("a good pose");
+        assert_eq!(free.verdict, Verdict::Free, "{free:?}");
+    }
+}
+
 /// From each place something is seen through a gap between samples, where a single line is asked.
 #[test]
 fn a_body_in_a_carton_was_seen_through_its_wall_from_one_of_many_sides() {

@@ -33,12 +33,17 @@ pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
         obb.map_or((Point3::origin(), 0.0), |obb| (obb.centre, obb.radius()))
     };
     let ((middle_of_a, radius_of_a), (middle_of_b, radius_of_b)) = (of(a), of(b));
-    // The larger one cannot be within the smaller.
+    // The larger one cannot be within the smaller, but part of it may be.
     let (outer, inner, middle, outer_from_inner) = if radius_of_a >= radius_of_b {
         (a, b, middle_of_b, *a_from_b)
     } else {
         (b, a, middle_of_a, a_from_b.inverse())
     };
+    if let Shape::Mesh(mesh) = inner
+        && holds_part_of(mesh, &middle, outer, &outer_from_inner)
+    {
+        return true;
+    }
     let place = outer_from_inner.transform_point(&middle);
     // The middle of a ring is in its hole.
     let own = || Some(outer_from_inner.transform_point(&nearest_of(inner, &middle)?));
@@ -56,6 +61,15 @@ fn nearly_surrounds(mesh: &Mesh, place: &Point3) -> bool {
         (0..3).all(|k| low[k] <= place[k] && place[k] <= high[k])
     };
     !mesh.is_closed() && is_within() && mesh.is_all_around(place, CLOSED)
+}
+
+/// Whether an open mesh is all around the place of a larger body that is nearest to its middle, as around a thing of
+/// a scene.
+fn holds_part_of(mesh: &Mesh, middle: &Point3, larger: Shape<'_>, larger_from_mesh: &Pose) -> bool {
+    let nearest = || nearest_of(larger, &larger_from_mesh.transform_point(middle));
+    let is_within =
+        |place: Point3| nearly_surrounds(mesh, &larger_from_mesh.inverse().transform_point(&place));
+    !mesh.is_closed() && nearest().is_some_and(is_within)
 }
 
 /// The place of a body that is nearest to one, in its local frame.
