@@ -40,8 +40,12 @@ impl Inside {
         force_at(&self.place, &outward)
     }
 
-    /// The same of the deviations.
+    /// The same of the deviations; nothing where these are so many that more say no more, or infinite, of a point that
+    /// is exact.
     fn deviations_by_pose(&self, mesh_is_a: bool) -> Wrench {
+        if self.deviations >= MOST_DEVIATIONS {
+            return Wrench::zeros();
+        }
         self.depth_by_pose(mesh_is_a) * (self.deviations / self.depth)
     }
 
@@ -239,5 +243,26 @@ impl Looked {
         // On the surface itself no direction is outward.
         let outward = (place - at).try_normalize(0.0)?;
         Some(Inside { deviations, depth, std, place, outward, spacing: surfel.spacing })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The judge's slope is nothing there, and nothing times infinity was no number.
+    #[test]
+    fn an_exact_point_deep_inside_has_no_infinite_slope() {
+        let place = Point3::new(0.1, 0.0, 0.0);
+        let of = |deviations: f64| Inside {
+            deviations,
+            depth: 0.1,
+            std: 0.0,
+            place,
+            outward: Vector3::x(),
+            spacing: 0.01,
+        };
+        assert_eq!(of(f64::INFINITY).deviations_by_pose(true), Wrench::zeros());
+        assert!((of(3.0).deviations_by_pose(true) - Wrench::zeros()).norm() > 1.0);
     }
 }
