@@ -2,13 +2,14 @@
 
 use crate::common;
 use std::collections::BTreeSet;
+use std::iter;
 use std::sync::Arc;
 
 use crate::common::{bumpy_sheet, degenerate_clouds, is_kept, noisy};
 use cloudtouch_bvh::{
     LeafBounds, Node, NodeId, Primitive, Primitives, Tree, TreeError, TreeSettings, Visit,
 };
-use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, seed};
 use proptest::prelude::*;
 
 #[test]
@@ -310,4 +311,23 @@ fn what_is_far_leaves_the_tree_over_the_rest_as_it_is() {
     assert!(plain.len() > 20);
     assert_eq!(plain, leaves(&far[..1]));
     assert_eq!(plain, leaves(&far));
+}
+
+/// Each round set apart a few, with no end to the rounds: 20,000 points were 1044 levels deep, and 200,000 overflowed
+/// the stack.
+#[test]
+fn what_was_ever_farther_made_the_tree_a_thousand_levels_deep() {
+    const POINTS: u64 = 20_000;
+    let along = |i: u64| {
+        let distance = (i as f64 / POINTS as f64).powf(2.0005);
+        if i.is_multiple_of(2) { distance } else { -distance }
+    };
+    let aside = |i: u64, k| 1e-3 * along(i) * seed::unit(seed::derive(1, i, k));
+    let place = |i| Point3::new(along(i), aside(i, 0), aside(i, 1));
+    let cloud = (1..=POINTS).map(|i| Primitive::point(UncertainPoint::exact(place(i)))).collect();
+    let tree = Tree::build(cloud, &TreeSettings::default()).unwrap();
+    let above = |id: &NodeId| tree.node(*id).and_then(|node| node.parent());
+    let depth = |leaf: Node<'_>| iter::successors(leaf.parent(), above).count();
+    let deepest = tree.leaves().map(depth).max();
+    assert!((15..60).contains(&deepest.unwrap()), "{deepest:?}");
 }

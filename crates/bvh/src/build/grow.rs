@@ -10,6 +10,9 @@ pub(crate) const LEAST_SHARED: usize = 2048;
 /// ... and none is where the caller has to grow alone: whoever waits for others may be given work meanwhile
 /// that waits for the caller.
 pub(crate) const ALONE: usize = usize::MAX;
+/// What is far is set apart so often at most. Each time one level is added, and where distances from the middle grow
+/// a little faster than their squared ranks, each time sets apart a few of thousands.
+const MOST_ROUNDS: u32 = 32;
 
 /// What nodes are grown over, and how.
 pub(crate) struct Growth<'a> {
@@ -44,8 +47,9 @@ type Fitted = (NodeData, Moments);
 /// Where a node is parted.
 struct Cut {
     middle: usize,
-    /// Whether only what is far from the rest was set apart, so that the first part is as good as all.
-    is_of_far: bool,
+    /// How often what is far may be set apart from the first part: where that was done now the first part is as good
+    /// as all.
+    rounds: u32,
 }
 
 impl<'a> Growth<'a> {
@@ -64,30 +68,30 @@ impl<'a> Growth<'a> {
     /// order of the leaves.
     pub(crate) fn grow(&self, top: Fitted, parts: &mut [Part], memory: &mut Memory) -> Grown {
         // Only all of them are asked for what is far, and what is left then: of a part its ends would be.
-        let is_all = top.0.parent == Link::NONE;
-        self.grow_any(top, parts, is_all, memory)
+        let rounds = if top.0.parent == Link::NONE { MOST_ROUNDS } else { 0 };
+        self.grow_any(top, parts, rounds, memory)
     }
 
     fn grow_any(
         &self,
         (top, moments): Fitted,
         parts: &mut [Part],
-        is_all: bool,
+        rounds: u32,
         memory: &mut Memory,
     ) -> Grown {
         if parts.len() < self.least_shared {
-            return self.grow_small((top, moments), parts, is_all, memory);
+            return self.grow_small((top, moments), parts, rounds, memory);
         }
-        let cut = self.cut((&top, &moments), parts, is_all, memory);
-        let Some(Cut { middle, is_of_far }) = cut else {
+        let cut = self.cut((&top, &moments), parts, rounds, memory);
+        let Some(Cut { middle, rounds }) = cut else {
             return Grown::All(vec![top]);
         };
         let (low, high) = parts.split_at_mut(middle);
         let (of_low, of_high) = rayon::join(|| self.fitted(low), || self.fitted(high));
         let [first, second] = self.halves(&top, middle, [of_low, of_high]);
         let (first, second) = rayon::join(
-            || self.grow_any(first, low, is_of_far, memory),
-            || self.grow_any(second, high, false, &mut Memory::default()),
+            || self.grow_any(first, low, rounds, memory),
+            || self.grow_any(second, high, 0, &mut Memory::default()),
         );
         Grown::Halves(Box::new((top, [first, second])))
     }
@@ -97,19 +101,19 @@ impl<'a> Growth<'a> {
         &self,
         (top, moments): Fitted,
         parts: &mut [Part],
-        is_all: bool,
+        rounds: u32,
         memory: &mut Memory,
     ) -> Grown {
         let start = top.start;
         // PERF: room for all, which to move would take longer than to fill.
         let mut nodes = Vec::with_capacity(self.settings.most_nodes(parts.len()));
         nodes.push(top.under(Link::NONE));
-        let mut stack = vec![(0, moments, is_all)];
-        while let Some((id, moments, is_all)) = stack.pop() {
+        let mut stack = vec![(0, moments, rounds)];
+        while let Some((id, moments, rounds)) = stack.pop() {
             let node = &nodes[id];
             let begin = (node.start - start) as usize;
             let own = &mut parts[begin..begin + node.count as usize];
-            let Some(Cut { middle, is_of_far }) = self.cut((node, &moments), own, is_all, memory)
+            let Some(Cut { middle, rounds }) = self.cut((node, &moments), own, rounds, memory)
             else {
                 continue;
             };
@@ -119,7 +123,7 @@ impl<'a> Growth<'a> {
             let first = nodes.len();
             nodes[id].set_children(Some([first as u32, first as u32 + 1]));
             nodes.extend([low, high].map(|half| half.under((id as u32).into())));
-            stack.extend([(first, of_low, is_of_far), (first + 1, of_high, false)]);
+            stack.extend([(first, of_low, rounds), (first + 1, of_high, 0)]);
         }
         Grown::All(nodes)
     }
@@ -129,7 +133,7 @@ impl<'a> Growth<'a> {
         &self,
         (node, moments): (&NodeData, &Moments),
         parts: &mut [Part],
-        is_all: bool,
+        rounds: u32,
         memory: &mut Memory,
     ) -> Option<Cut> {
         let axes = &node.obb.axes;
@@ -137,9 +141,9 @@ impl<'a> Growth<'a> {
             return None;
         }
         let (axis, mean) = (axes.column(0).into_owned(), &moments.mean);
-        let far = if is_all { set_far_apart(parts, mean, memory) } else { None };
+        let far = if rounds > 0 { set_far_apart(parts, mean, memory) } else { None };
         let middle = far.unwrap_or_else(|| halve(parts, &axis, mean, memory));
-        Some(Cut { middle, is_of_far: far.is_some() })
+        Some(Cut { middle, rounds: if far.is_some() { rounds - 1 } else { 0 } })
     }
 
     fn fitted(&self, parts: &[Part]) -> (Moments, Obb) {

@@ -25,8 +25,8 @@ impl Tree {
     /// variance. The median always halves, equal positions being told apart by their index, so
     /// neither duplicates nor a grid can keep the splitting going, and the depth is log₂ n, and a little more:
     /// what is more than four times as far from the middle of all as half of them is set apart first, and
-    /// of the rest again, so that a few returns from far away leave the tree over the others as it is
-    /// without them.
+    /// of the rest again, 32 times at most, so that a few returns from far away leave the tree over the others as
+    /// it is without them.
     /// O(n log n), on one thread; the result depends on nothing but the input.
     ///
     /// # Errors
