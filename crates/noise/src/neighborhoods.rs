@@ -20,7 +20,7 @@ use crate::scratch::Scratch;
 #[derive(Debug)]
 pub struct Neighborhoods {
     positions: Positions,
-    /// Their indices in order of density, the densest first; known when first asked for.
+    /// Their indices in order of density, the densest first and each position once; known when first asked for.
     densest_first: OnceLock<Vec<u32>>,
     /// A part of them, for fits to many; made when first asked for.
     thinned: OnceLock<Vec<Thinned>>,
@@ -85,17 +85,17 @@ impl Neighborhoods {
             // One after the other: whoever waits here for other threads may be given another point to
             // refine meanwhile, which would wait for this.
             let densest_first = self.densest_first.get_or_init(|| {
-                densest_first(&Density::everywhere_on_this_thread(&self.positions))
+                densest_first(self.points(), &Density::everywhere_on_this_thread(&self.positions))
             });
             Thinned::fourth_and_sixteenth(&self.positions, densest_first)
         })
     }
 
     /// How dense the samples are about every point, on all threads of the pool, and the order of the
-    /// indices by that.
+    /// indices by that, each position once.
     pub(crate) fn densities(&self) -> (Vec<Density>, &[u32]) {
         let densities = Density::everywhere(&self.positions);
-        let order = self.densest_first.get_or_init(|| densest_first(&densities));
+        let order = self.densest_first.get_or_init(|| densest_first(self.points(), &densities));
         (densities, order)
     }
 

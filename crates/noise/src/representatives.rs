@@ -6,6 +6,7 @@ use crate::error::NoiseError;
 use crate::index::density::Density;
 use crate::index::positions::Positions;
 use crate::index::spacing::is_noisy;
+use crate::index::ties::widened;
 use crate::neighborhoods::Neighborhoods;
 use crate::sensor::noise::SensorNoise;
 
@@ -38,7 +39,8 @@ impl Representatives {
     /// of the points, they must not either.
     ///
     /// The densest places come first, which are those near the surface, so that the choice depends on
-    /// neither the frame nor the order of the points. A point whose noise is small is never stood for
+    /// neither the frame nor the order of the points: of places as dense, as those of a grid are, x, y and z tell which
+    /// comes first. Of points at one place only the first is ever chosen. A point whose noise is small is never stood for
     /// by one whose noise is large.
     ///
     /// # Errors
@@ -113,9 +115,10 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> (Vec<u32>, Vec<f64>) {
         if is_noisy(noise, spacing) {
             let std = noise.max_std();
             let reach = std.min((REACH_SPACINGS * spacing).max(REACH_STD * std));
-            cloud.positions().visit_within(&cloud.points()[at], reach * reach, |near| {
+            // Whether what is as far as it reaches is in reach must not hang on rounding.
+            cloud.positions().visit_within(&cloud.points()[at], widened(reach * reach), |near| {
                 let noise = sensor[near.index].max_std();
-                is_represented[near.index] |= near.squared_distance <= noise * noise;
+                is_represented[near.index] |= near.squared_distance <= widened(noise * noise);
             });
         }
     }
@@ -139,7 +142,7 @@ fn spacing_near(
     }
     let mut least = own;
     let reach = SURFACE_STDS * noise.max_std();
-    cloud.positions().visit_within(&cloud.points()[index], reach * reach, |near| {
+    cloud.positions().visit_within(&cloud.points()[index], widened(reach * reach), |near| {
         least = least.min(densities[near.index].spacing);
     });
     if is_noisy(noise, least) { least } else { own }

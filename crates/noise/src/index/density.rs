@@ -1,5 +1,8 @@
 //! How dense the samples of a cloud are about each of them.
 
+use std::cmp::Ordering;
+
+use cloudtouch_geom::Point3;
 use rayon::prelude::*;
 
 use crate::index::block::Block;
@@ -130,18 +133,37 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// The indices of points of these densities, the densest first.
-pub(crate) fn densest_first(densities: &[Density]) -> Vec<u32> {
+/// The indices of points of these densities, the densest first, each position once; of what is as dense, as nearly all
+/// of a grid is, in order of x, y and z, so that the order does not hang on how the points are numbered.
+pub(crate) fn densest_first(points: &[Point3], densities: &[Density]) -> Vec<u32> {
     let mut order: Vec<(u64, u32)> =
-        densities.iter().zip(0..).map(|(density, i)| (density.squares.to_bits(), i)).collect();
-    // The bits of numbers that are not negative are in their order.
-    order.sort_unstable();
+        densities.iter().zip(0..).map(|(density, i)| (rounded(density.squares), i)).collect();
+    let place = |(_, index): &(u64, u32)| points[*index as usize];
+    order.sort_unstable_by(|one, other| {
+        let by_place = || in_order_of_place(&place(one), &place(other)).then(one.1.cmp(&other.1));
+        one.0.cmp(&other.0).then_with(by_place)
+    });
+    // Copies of a position have the same neighbours, and so stand together.
+    order.dedup_by(|later, first| place(later) == place(first));
     order.into_iter().map(|(_, index)| index).collect()
+}
+
+/// A number that is not negative to 2⁻³² of itself, in the order of such numbers.
+fn rounded(value: f64) -> u64 {
+    const DROPPED: u32 = f64::MANTISSA_DIGITS - 1 - 32;
+    // The bits of numbers that are not negative are in their order.
+    (value.to_bits() + (1 << (DROPPED - 1))) >> DROPPED
+}
+
+/// By x, y and z, −0 and 0 being the same.
+fn in_order_of_place(one: &Point3, other: &Point3) -> Ordering {
+    let by_axis = |axis: usize| (one[axis] + 0.0).total_cmp(&(other[axis] + 0.0));
+    by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2))
 }
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::{Point3, seed};
+    use cloudtouch_geom::seed;
 
     use super::*;
     use crate::index::spacing::spacing_around;
