@@ -32,7 +32,7 @@ impl Sweep<'_> {
     /// Stretches that together are the whole path, in no order.
     pub(super) fn look_along(&mut self) -> Result<Vec<Interval>, QueryError> {
         self.look_ahead()?;
-        if self.knows_enough() {
+        if self.knows_enough() || self.clock.is_over() {
             return Ok((0..self.path.segments()).map(Interval::unknown).collect());
         }
         let mut whole = Vec::with_capacity(self.path.segments());
@@ -42,7 +42,7 @@ impl Sweep<'_> {
         // The poses that were given: no halving comes by them, and whoever asks about these alone knows more.
         for (before, after) in whole.iter().zip(&whole[1..]) {
             let is_wanted = [before, after].iter().any(|at| self.tested.is_wanted(at));
-            if is_wanted && before.end() < self.tested.end() {
+            if is_wanted && before.end() < self.tested.end() && !self.clock.is_over() {
                 self.test(before.segment, 1.0)?;
             }
         }

@@ -56,8 +56,9 @@ impl Sweep<'_> {
         let (a, b) = self.bodies;
         let leg = self.path.leg(segment);
         let mut interval = Interval { times, ..Interval::unknown(segment) };
-        if interval.end() >= self.tested.end() || self.knows_enough() {
-            // It holds the pose that exceeds the threshold, or no more is wanted: nothing is left to bound.
+        if interval.end() >= self.tested.end() || self.knows_enough() || self.clock.is_over() {
+            // It holds the pose that exceeds the threshold, no more is wanted, or there is no time: nothing is left
+            // to bound.
             return Ok(interval);
         }
         self.stretches += 1;

@@ -165,6 +165,7 @@ impl PaperQuery {
             evidence: None,
             log_likelihood_ratio: None,
             places: None,
+            is_too_late: false,
         }
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn estimate(
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
     if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
-        return exact((a, b), a_from_b, task.settings.detail, evidence);
+        return exact((a, b), a_from_b, task, evidence);
     }
     let weighed = weigh((a, b), a_from_b, task, &mut evidence.stats)?;
     let of_full = (task.settings.detail == Detail::Full).then(|| weighed.spots((a, b), a_from_b));
@@ -96,6 +96,7 @@ impl Weighed<'_> {
             evidence: Some(ContactEvidence { misclassified, ..self.of_geometry }),
             log_likelihood_ratio: Some(log_odds),
             places: Some(places),
+            is_too_late: self.is_too_late,
         }
     }
 
@@ -109,15 +110,25 @@ impl Weighed<'_> {
     }
 }
 
-/// Two exact surfaces: a yes or no.
+/// Two exact surfaces: a yes or no, or either where the time was over before.
 pub(super) fn exact(
     (a, b): (&Mesh, &Mesh),
     a_from_b: &Pose,
-    detail: Detail,
+    task: &Task<'_>,
     evidence: &mut Evidence,
 ) -> Result<Estimate, QueryError> {
-    add_exact((a, b), a_from_b, detail == Detail::Full, evidence)?;
+    let is_too_late = task.clock.is_over();
+    if !is_too_late {
+        add_exact((a, b), a_from_b, task.settings.detail == Detail::Full, evidence)?;
+    }
     let probability = evidence.largest();
-    let bounds = [probability; 2];
-    Ok(Estimate { probability, bounds, evidence: None, log_likelihood_ratio: None, places: None })
+    let bounds = [probability, if is_too_late { 1.0 } else { probability }];
+    Ok(Estimate {
+        probability,
+        bounds,
+        evidence: None,
+        log_likelihood_ratio: None,
+        places: None,
+        is_too_late,
+    })
 }

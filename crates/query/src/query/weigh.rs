@@ -6,7 +6,7 @@ use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
-use crate::judge::{ContactEvidence, probability};
+use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
 use crate::search::{Found, Looked, WITH_EXTENT, WITHOUT_EXTENT, look_inside, search};
 use crate::stats::Stats;
 
@@ -28,6 +28,32 @@ pub(super) struct Weighed<'a> {
     pub misclassified: Misclassified,
     /// Whether what was left out can change nothing.
     pub is_complete: bool,
+    /// Whether the time was over before anything was looked at.
+    pub is_too_late: bool,
+}
+
+impl Weighed<'_> {
+    /// Where nothing was looked at: as where nothing was found, but that anything may be there.
+    fn too_late(task: &Task<'_>) -> Self {
+        let of_geometry = ContactEvidence {
+            deviations: MOST_DEVIATIONS,
+            crossing: 0.0,
+            extent: None,
+            misclassified: None,
+            noise_over_spacing: task.noise_over_spacing,
+        };
+        let by_place = task.judge.log_odds_by_place(MOST_DEVIATIONS, 0.0);
+        Self {
+            found: Found::default(),
+            looked: Looked::default(),
+            of_geometry,
+            by_place,
+            by_geometry: by_place,
+            misclassified: Misclassified::NOT_ASKED,
+            is_complete: false,
+            is_too_late: true,
+        }
+    }
 }
 
 /// Gathers the evidence of two bodies, of which one is a cloud.
@@ -37,6 +63,9 @@ pub(super) fn weigh<'a>(
     task: &Task<'_>,
     stats: &mut Stats,
 ) -> Result<Weighed<'a>, QueryError> {
+    if task.clock.is_over() {
+        return Ok(Weighed::too_late(task));
+    }
     let judge = &task.judge;
     let looked =
         look_inside((a, b), a_from_b, &task.clock, |deviations| is_enough(deviations, 0.0, task));
@@ -62,7 +91,16 @@ pub(super) fn weigh<'a>(
     } else {
         Misclassified::NOT_ASKED
     };
-    Ok(Weighed { found, looked, of_geometry, by_place, by_geometry, misclassified, is_complete })
+    Ok(Weighed {
+        found,
+        looked,
+        of_geometry,
+        by_place,
+        by_geometry,
+        misclassified,
+        is_complete,
+        is_too_late: false,
+    })
 }
 
 /// Searches the surfaces after a look inside, until what both say is enough.

@@ -39,8 +39,11 @@ impl Terms {
         let mut estimate = estimate(start, &local, &mut evidence)?;
         let is_clear = estimate.evidence.is_some_and(|of| of.deviations >= CLEAR_DEVIATIONS);
         let may_be_free = estimate.probability <= self.accept;
-        let Doubts { unseen, warnings, gravest } =
-            self.doubts((a, b), &local, is_clear, may_be_free);
+        let Doubts { unseen, warnings, gravest } = match estimate.is_too_late {
+            // Its upper bound of 1 leaves it open as it is.
+            true => Doubts::default(),
+            false => self.doubts((a, b), &local, is_clear, may_be_free),
+        };
         if gravest.is_some() {
             evidence.widen(1.0);
             estimate.bounds[1] = 1.0;

@@ -23,6 +23,7 @@ fn counts(warning: &Warning, is_clear: bool) -> bool {
 }
 
 /// What was found.
+#[derive(Default)]
 pub(super) struct Doubts {
     pub unseen: Option<Unseen>,
     /// All, those too that do not keep the pair from reading as free.

@@ -23,4 +23,6 @@ pub(crate) struct Estimate {
     pub log_likelihood_ratio: Option<f64>,
     /// Contacts and clearance where geometry told them.
     pub places: Option<Places>,
+    /// Whether the time was over before anything was looked at: then nothing else is either.
+    pub is_too_late: bool,
 }

@@ -6,11 +6,14 @@
 //! a body that may be doubted however far away it is gets a box without end. What is left takes the query's
 //! own first test, of the boxes around both bodies, and is doubted as a pair that is asked.
 
+use std::time::Instant;
+
 use cloudtouch_bvh::urgency_of_roots;
 use cloudtouch_geom::{Pose, Vector3};
 
 use crate::body::BodyRef;
 use crate::check::coordinates::{LARGEST_COORDINATE, bad_entry};
+use crate::classifier::Clock;
 use crate::doubt::of_pair::coarse_beside;
 use crate::doubt::warning::Which;
 use crate::judge::{MOST_DEVIATIONS, NOISE_KNOTS, probability};
@@ -28,6 +31,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 #[derive(Debug)]
 pub(super) struct BroadPhase {
     terms: Terms,
+    clock: Clock,
     /// Whether a pair of which nothing is found reads as free: with most priors it does.
     nothing_is_free: bool,
 }
@@ -46,7 +50,8 @@ impl BroadPhase {
         let revised = settings.judge.for_noise(0.0).revise(by_geometry, f64::INFINITY);
         let log_odds = by_geometry.max(revised);
         let nothing_is_free = probability(log_odds, settings.prior) < settings.reject;
-        Self { terms: query.terms_in_scene(), nothing_is_free }
+        let clock = query.clock(Instant::now());
+        Self { terms: query.terms_in_scene(), clock, nothing_is_free }
     }
 
     /// Beyond this box (in the frame of the scene, m) a body meets nothing that is beyond its own; all of
@@ -97,6 +102,10 @@ impl BroadPhase {
             Ok(Some(urgency)) => return Some(urgency),
             Ok(None) if self.nothing_is_free => {}
             Ok(None) | Err(_) => return Some(f64::INFINITY),
+        }
+        if self.clock.is_over() {
+            // Doubts take as long as a query, which is left open without any.
+            return Some(f64::INFINITY);
         }
         self.terms.doubt_at((shape_a, shape_b), a_from_b, true).0.map(|_| f64::INFINITY)
     }

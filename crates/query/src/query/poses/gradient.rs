@@ -13,7 +13,6 @@ use crate::query::estimate::exact;
 use crate::query::misclassified::MisclassifiedBy;
 use crate::query::places::spots::{Spot, ToldBy};
 use crate::query::run::Query;
-use crate::query::settings::Detail;
 use crate::query::task::Task;
 use crate::query::weigh::{Weighed, weigh};
 use crate::report::Report;
@@ -82,11 +81,14 @@ impl Query {
             query.terms().ask((a.shape(), b.shape()), a_from_b, |start, local, evidence| {
                 let motion = Motion::from(local);
                 let of = |wrench: Wrench| in_object_frame(&wrench, &motion, &b.shape().origin());
-                if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
-                    gradient.clearance = clearance_of_meshes((a, b), local)?.map(of);
-                    return exact((a, b), local, Detail::Full, evidence);
-                }
                 let task = query.task(start, (a, b));
+                if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
+                    let estimate = exact((a, b), local, &task, evidence)?;
+                    if !estimate.is_too_late {
+                        gradient.clearance = clearance_of_meshes((a, b), local)?.map(of);
+                    }
+                    return Ok(estimate);
+                }
                 let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;
                 let spots = weighed.spots((a, b), local);
                 let estimate = weighed.estimate(Some(&spots), &task, evidence);

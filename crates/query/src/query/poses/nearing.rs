@@ -29,11 +29,13 @@ impl Query {
                     let wrench = wrench.unwrap_or_else(between);
                     nearing = in_object_frame(&wrench, &motion, &b.shape().origin()).into();
                 };
-                if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
-                    set(clearance_of_meshes((a, b), local)?);
-                    return exact((a, b), local, self.settings().detail, evidence);
-                }
                 let task = self.task(start, (a, b));
+                if let (BodyRef::Mesh(a), BodyRef::Mesh(b)) = (a, b) {
+                    let estimate = exact((a, b), local, &task, evidence)?;
+                    let is_told = !estimate.is_too_late;
+                    set(if is_told { clearance_of_meshes((a, b), local)? } else { None });
+                    return Ok(estimate);
+                }
                 let weighed = weigh((a, b), local, &task, &mut evidence.stats)?;
                 let spots = weighed.spots((a, b), local);
                 let is_full = self.settings().detail == Detail::Full;
