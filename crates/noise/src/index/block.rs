@@ -1,13 +1,15 @@
 //! The neighbours of many points that are near one another, found together.
 
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use cloudtouch_geom::{Point3, bounding_box};
 
 use crate::finite::is_finite;
-use crate::index::neighbor::{Neighbor, in_order};
+use crate::index::neighbor::Neighbor;
 use crate::index::positions::Positions;
-use crate::index::ties::order_ties;
+use crate::index::sorted::Sorted;
+use crate::index::ties::{order_ties, widened};
 use crate::lanes::{Kernel, Lanes, Machine, Stored, WIDTH, run};
 
 /// A block is made so wide that on a surface it holds about so many positions: enough for the
@@ -23,9 +25,12 @@ const SEARCHED: f64 = 1.12;
 /// is so many farther.
 const GATHERED: f64 = 2.0;
 const SPARE: f64 = 1.4;
-/// A block made by the reach of the last place has at most so many positions, else the reach is
-/// measured.
+/// A block has at most so many positions, or twice as many as are asked for at once: about a lone place a few distances
+/// of its last neighbour may hold the whole cloud.
 const MOST_HELD: usize = 600;
+/// After too many were listed, for each so many of them one block is made with care, so that all that is listed in vain
+/// is no more than so many for each block.
+const PER_CAUTIOUS: usize = 100;
 /// The slack that takes up rounding of distances: a block is complete up to a little less.
 const ROUNDING: f64 = 1e-9;
 
@@ -41,6 +46,8 @@ pub(crate) struct Block {
     radius: f64,
     /// Distance of the last neighbour found, m.
     reach: f64,
+    /// So many times what it is to hold is listed with care not to list too many, which takes longer.
+    cautious: usize,
     indices: Vec<u32>,
     /// Their coordinates in lanes.
     groups: Vec<[Stored; 3]>,
@@ -69,11 +76,11 @@ impl Block {
             self.cloud = Some(cloud.id().clone());
             let [least, most] = REACH;
             let times = (HELD / wanted as f64).sqrt().clamp(least, most);
-            self.fill(cloud, place, times * reach);
-            if self.indices.len() > MOST_HELD || !self.take(place, wanted, found) {
-                self.fill(cloud, place, times * cloud.distance_of_nearest(place, wanted));
+            self.fill(cloud, place, times * reach, wanted);
+            if !self.take(place, wanted, found) {
+                self.fill(cloud, place, times * cloud.distance_of_nearest(place, wanted), wanted);
                 if !self.take(place, wanted, found) {
-                    // Positions so near one another that their distances are zero.
+                    // Positions so near one another that their distances are zero, or too many as near as the last.
                     cloud.search(place, k, leave_out_place, found);
                 }
             }
@@ -110,36 +117,63 @@ impl Block {
         if apart <= GATHERED * reach {
             self.cloud = Some(cloud.id().clone());
             self.reach = reach;
-            self.fill(cloud, &centre, apart + SPARE * reach);
+            self.fill(cloud, &centre, apart + SPARE * reach, k + 1);
         }
     }
 
-    /// Holds what is within a distance of a place from now on, which may be nothing.
-    fn fill(&mut self, cloud: &Positions, place: &Point3, radius: f64) {
-        let Self { indices, groups, .. } = self;
-        indices.clear();
-        groups.clear();
+    /// Holds what is within a distance of a place from now on, which may be nothing; of too many, those nearest to it.
+    fn fill(&mut self, cloud: &Positions, place: &Point3, radius: f64, wanted: usize) {
         (self.centre, self.radius) = (*place, radius);
+        self.clear();
         if radius <= 0.0 {
             return;
         }
-        let points = cloud.points().as_slice();
-        cloud.visit_within(place, radius * radius, |near| {
-            let lane = indices.len() % WIDTH;
-            if lane == 0 {
-                // Lanes without a position are infinitely far away.
-                groups.push([[f64::INFINITY; WIDTH]; 3]);
-            }
-            indices.push(near.index as u32);
-            let position = &points[near.index];
-            if let Some(group) = groups.last_mut() {
-                for (lanes, value) in group.iter_mut().zip(position.iter()) {
-                    lanes[lane] = *value;
+        let most = MOST_HELD.max(wanted.saturating_mul(2)).min(cloud.distinct());
+        let (points, square) = (cloud.points(), radius * radius);
+        let is_cautious = self.cautious > 0;
+        let mut count = 0;
+        if !is_cautious {
+            cloud.visit_within(place, square, |near| {
+                count += 1;
+                if count <= most {
+                    self.push(near.index, &points[near.index]);
                 }
+            });
+        }
+        self.cautious = self.cautious.saturating_sub(1);
+        if count > most {
+            self.cautious = count / PER_CAUTIOUS;
+            self.clear();
+        }
+        if is_cautious || count > most {
+            let most = NonZeroUsize::MIN.saturating_add(most);
+            let push = |near: Neighbor| self.push(near.index, &points[near.index]);
+            if let Some(complete) = cloud.visit_most_within(place, square, most, push) {
+                self.radius = complete.sqrt();
             }
-        });
+        }
         if self.indices.len() == cloud.distinct() {
             self.radius = f64::INFINITY;
+        }
+    }
+
+    fn clear(&mut self) {
+        self.indices.clear();
+        self.groups.clear();
+    }
+
+    #[inline(always)]
+    fn push(&mut self, index: usize, position: &Point3) {
+        let lane = self.indices.len() % WIDTH;
+        if lane == 0 {
+            // Lanes without a position are infinitely far away.
+            self.groups.push([[f64::INFINITY; WIDTH]; 3]);
+        }
+        self.indices.push(index as u32);
+        if let Some(group) = self.groups.last_mut() {
+            for (lanes, value) in group.iter_mut().zip(position.iter()) {
+                lanes[lane] = *value;
+            }
         }
     }
 
@@ -150,12 +184,17 @@ impl Block {
         let is_whole = self.radius == f64::INFINITY;
         // Most of the time a little farther than for the last point is far enough.
         let likely = Some(SEARCHED * self.reach).filter(|likely| *likely < complete);
-        for within in likely.into_iter().chain([complete]) {
+        for within in likely.into_iter().chain([complete]).filter(|within| *within > 0.0) {
             let most = within.powi(2);
             run(Select { block: self, place, most });
-            if self.sorted.len() >= wanted || (is_whole && within == complete) {
+            let is_all = is_whole && within == complete;
+            if self.sorted.len() >= wanted || is_all {
                 self.sorted.finish(most, found);
-                return true;
+                // What is as near as the last may not be in reach.
+                let is_told = |last: &Neighbor| widened(last.squared_distance) <= most;
+                if is_all || found.get(wanted - 1).is_some_and(is_told) {
+                    return true;
+                }
             }
         }
         false
@@ -193,96 +232,66 @@ impl Kernel for Select<'_> {
     }
 }
 
-/// Buckets that neighbours are sorted by.
-const BUCKETS: usize = 64;
-/// Numbers from here on, up to its double, are one apart.
-const LARGE: f64 = (1_u64 << 52) as f64;
-/// So few are put in order without buckets.
-const MOST_INSERTED: usize = 20;
-/// More are sorted by comparison.
-const MOST_BUCKETED: usize = 4 * BUCKETS;
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Sorts neighbours by distance, then index. On a surface their squared distances are spread evenly,
-/// so that each bucket gets about one.
-#[derive(Debug, Default)]
-struct Sorted {
-    hits: Vec<Neighbor>,
-    count: usize,
-}
+    fn found(block: &mut Block, cloud: &Positions, place: &Point3, k: usize) -> Vec<Neighbor> {
+        let mut found = Vec::new();
+        block.nearest_into(cloud, place, k, true, &mut found);
+        found
+    }
 
-impl Sorted {
-    /// Forgets them, and makes room for so many.
-    #[inline(always)]
-    fn clear(&mut self, room: usize) {
-        self.count = 0;
-        if self.hits.len() < room {
-            self.hits.resize(room, Neighbor { index: 0, squared_distance: 0.0 });
+    fn searched(cloud: &Positions, place: &Point3, k: usize) -> Vec<Neighbor> {
+        let mut found = Vec::new();
+        cloud.search(place, k, true, &mut found);
+        found
+    }
+
+    /// Once a sheet was in reach of a lone place all of it was listed, there and at the next place of the sheet.
+    #[test]
+    fn a_few_lone_places_held_the_whole_cloud() {
+        let mut points: Vec<Point3> = (0..10_000)
+            .map(|i| Point3::new(f64::from(i % 100) * 0.01, f64::from(i / 100) * 0.01, 0.0))
+            .collect();
+        points.extend(
+            (0..50).map(|i| Point3::new(0.1 * f64::from(i % 7), 0.5, 1.0 + 0.02 * f64::from(i))),
+        );
+        let cloud = Positions::new(points.clone()).unwrap();
+        let mut block = Block::default();
+        // Of the fifty it is one place and another, and between these one of the sheet.
+        for index in (10_000..10_050).flat_map(|lone| [lone, lone - 5000, lone - 9000]) {
+            let place = &points[index];
+            assert_eq!(
+                found(&mut block, &cloud, place, 60),
+                searched(&cloud, place, 60),
+                "{index}"
+            );
+            assert!(block.indices.len() <= MOST_HELD + 1, "{index}: {}", block.indices.len());
         }
     }
 
-    fn len(&self) -> usize {
-        self.count
+    /// The one in reach was the answer, and not the one as near that comes before it.
+    #[test]
+    fn the_edge_of_a_block_cut_through_what_was_as_near() {
+        let along = |x: f64| Point3::new(x, 0.0, 0.0);
+        let cloud = Positions::new([0.0, 1.0, -1.0 - 2e-8, 5.0].map(along).to_vec()).unwrap();
+        let (mut block, place) = (Block::default(), Point3::origin());
+        block.cloud = Some(cloud.id().clone());
+        block.fill(&cloud, &place, 1.0 + 1.5e-8, 2);
+        assert_eq!(block.indices.len(), 2);
+        assert_eq!(searched(&cloud, &place, 1)[0].index, 2);
+        assert_eq!(found(&mut block, &cloud, &place, 1), searched(&cloud, &place, 1));
     }
 
-    /// Adds a neighbour, or not, without a branch: which it is is hard to foresee.
-    #[inline(always)]
-    fn push_if(&mut self, is_hit: bool, index: u32, squared_distance: f64) {
-        if let Some(slot) = self.hits.get_mut(self.count) {
-            *slot = Neighbor { index: index as usize, squared_distance };
-        }
-        self.count += usize::from(is_hit);
+    /// A block has more than a search fetches: what was as near as one that was as near as the last came first.
+    #[test]
+    fn what_was_nearly_as_near_as_a_tie_was_one_of_it_in_a_block() {
+        let along = |x: f64| Point3::new(x, 0.0, 0.0);
+        let places = [0.0, 1.0, 1.0 + 4e-8, -1.0 - 8e-8, 5.0].map(along).to_vec();
+        let (cloud, place) = (Positions::new(places).unwrap(), Point3::origin());
+        let expected = searched(&cloud, &place, 1);
+        assert_eq!(expected[0].index, 1);
+        assert_eq!(found(&mut Block::default(), &cloud, &place, 1), expected);
     }
-
-    /// Puts them in order into a buffer; none is farther than the squared distance `most`.
-    fn finish(&mut self, most: f64, sorted: &mut Vec<Neighbor>) {
-        let hits = &self.hits[..self.count];
-        sorted.clear();
-        sorted.extend_from_slice(hits);
-        if hits.len() <= MOST_INSERTED {
-            insert_in_order(sorted);
-            return;
-        }
-        let scale = BUCKETS as f64 / most;
-        if hits.len() > MOST_BUCKETED || !scale.is_finite() {
-            sorted.sort_unstable_by(in_order);
-            return;
-        }
-        // PERF: the integer part, rounded, are the last bits of a number so large.
-        let bucket = |hit: &Neighbor| {
-            let rounded = (hit.squared_distance * scale + LARGE).to_bits() as usize;
-            (rounded & (2 * BUCKETS - 1)).min(BUCKETS - 1)
-        };
-        let mut starts = [0_u16; BUCKETS + 1];
-        for hit in hits {
-            starts[bucket(hit) + 1] += 1;
-        }
-        for b in 0..BUCKETS {
-            starts[b + 1] += starts[b];
-        }
-        for hit in hits {
-            let start = &mut starts[bucket(hit)];
-            sorted[usize::from(*start)] = *hit;
-            *start += 1;
-        }
-        insert_in_order(sorted);
-    }
-}
-
-/// Puts neighbours in order that are nearly so, or few.
-fn insert_in_order(sorted: &mut [Neighbor]) {
-    for at in 1..sorted.len() {
-        let hit = sorted[at];
-        let mut to = at;
-        while to > 0 && is_before(&hit, &sorted[to - 1]) {
-            sorted[to] = sorted[to - 1];
-            to -= 1;
-        }
-        sorted[to] = hit;
-    }
-}
-
-/// [`in_order`] for squares, which are neither negative nor NaN.
-fn is_before(a: &Neighbor, b: &Neighbor) -> bool {
-    a.squared_distance < b.squared_distance
-        || (a.squared_distance == b.squared_distance && a.index < b.index)
 }

@@ -10,6 +10,7 @@ mod octree;
 mod overlay;
 pub(crate) mod places;
 pub(crate) mod positions;
+mod sorted;
 pub(crate) mod spacing;
 pub(crate) mod spatial_order;
 pub(crate) mod thinned;

@@ -160,6 +160,33 @@ impl Positions {
         }
     }
 
+    /// The same, of many no more than about the nearest so many: where any may be left out, the squared distance up to
+    /// which none is.
+    pub(crate) fn visit_most_within(
+        &self,
+        place: &Point3,
+        squared_distance: f64,
+        most: NonZeroUsize,
+        mut visit: impl FnMut(Neighbor),
+    ) -> Option<f64> {
+        let query: [f64; 3] = place.coords.into();
+        let mut within = |tree: &PointTree, now: &[u32]| {
+            let nearest = tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(most);
+            let hits = nearest.within(squared_distance * (1.0 + 1e-9)).unsorted().execute();
+            let near = hits.iter().filter_map(|hit| neighbor(hit.item, hit.distance, now));
+            near.for_each(&mut visit);
+            let farthest = hits.iter().map(|hit| hit.distance).fold(0.0, f64::max);
+            (hits.len() == most.get()).then_some(farthest)
+        };
+        match &self.overlay {
+            None => within(&self.tree, &[]),
+            Some(overlay) => {
+                let cut = [within(&self.tree, &overlay.now), within(&overlay.added, &[])];
+                cut.into_iter().flatten().reduce(f64::min)
+            }
+        }
+    }
+
     /// The distance of the position that is `k`-th nearest to a place, or of the last, m.
     pub(crate) fn distance_of_nearest(&self, place: &Point3, k: usize) -> f64 {
         let Some(wanted) = NonZeroUsize::new(k.min(self.distinct)) else { return 0.0 };

@@ -25,7 +25,7 @@ pub(crate) fn widened(squared_distance: f64) -> f64 {
 }
 
 /// Puts those that are as near as one another in order of x, y and z, those of the first `k` and those tied with
-/// the last of them; `found` is in order of distance.
+/// the last of them; `found` is in order of distance. Which of the others it has makes no difference.
 #[inline]
 pub(crate) fn order_ties(points: &[Point3], place: &Point3, k: usize, found: &mut [Neighbor]) {
     // PERF: mostly none are.
@@ -37,6 +37,10 @@ pub(crate) fn order_ties(points: &[Point3], place: &Point3, k: usize, found: &mu
 
 #[cold]
 fn order_tied(points: &[Point3], place: &Point3, k: usize, found: &mut [Neighbor]) {
+    let last = k.min(found.len()) - 1;
+    let most = widened(found[last].squared_distance);
+    let count = found.partition_point(|near| near.squared_distance <= most);
+    let found = &mut found[..count];
     let mut from = 0;
     while from < k.min(found.len()) {
         let tied = found[from..].windows(2).take_while(|two| are_tied(&two[0], &two[1])).count();
