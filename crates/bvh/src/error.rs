@@ -26,6 +26,17 @@ pub enum TreeError {
         /// What was found, m².
         value: f64,
     },
+    /// How far the surface of a primitive reaches has an entry that is not finite or too large.
+    #[error(
+        "the extent of primitive {index} has the entry {value}: entries must be finite and below 1e200 in \
+         magnitude"
+    )]
+    Extent {
+        /// Index of the primitive.
+        index: usize,
+        /// What was found, m².
+        value: f64,
+    },
     /// A weight is negative or not finite.
     #[error("primitive {index} has the weight {value}: weights must be finite and not negative")]
     Weight {

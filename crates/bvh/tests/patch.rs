@@ -147,3 +147,23 @@ fn bounds_set_after_extents_are_held_by_all_above() {
     tree.validate().unwrap();
     assert!(tree.root().unwrap().max_std() >= 1.0);
 }
+
+/// It was left out where the largest is taken, and what may touch was not met.
+#[test]
+fn an_extent_that_was_no_number_counted_as_none() {
+    let all = bumpy_sheet(3, 50, Vector3::zeros());
+    let mut tree = small_leaves(all.clone());
+    let good = vec![Covariance::isotropic(1e-4); all.len()];
+    tree.set_extents(good.clone()).unwrap();
+    let reach = tree.root().unwrap().reach();
+    for value in [f64::NAN, f64::INFINITY, 1e201] {
+        let bad = Covariance::isotropic(value);
+        let mut extents = good.clone();
+        extents[7] = bad;
+        let refused = tree.set_extents(extents);
+        assert!(matches!(refused, Err(TreeError::Extent { index: 7, .. })), "{refused:?}");
+        let refused = tree.amend(&[(3, all[3], good[3]), (9, all[9], bad)]);
+        assert!(matches!(refused, Err(TreeError::Extent { index: 9, .. })), "{refused:?}");
+        assert_eq!(tree.root().unwrap().reach(), reach);
+    }
+}

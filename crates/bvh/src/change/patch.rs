@@ -7,6 +7,7 @@ use cloudtouch_geom::Covariance;
 
 use crate::change::insert::include;
 use crate::tree::node::Link;
+use crate::tree::primitive::check_extent;
 use crate::{LeafBounds, Node, NodeId, Primitive, Tree, TreeError};
 
 /// A primitive that is gone.
@@ -87,8 +88,9 @@ impl Tree {
     /// # Errors
     /// When a number is not usable, or there is no such index; the tree is then unchanged.
     pub fn amend(&mut self, amended: &[(u32, Primitive, Covariance)]) -> Result<(), TreeError> {
-        for (index, primitive, _) in amended {
+        for (index, primitive, extent) in amended {
             primitive.check(*index as usize)?;
+            check_extent(extent, *index as usize)?;
             if self.extents.len() <= *index as usize || self.leaf_of(*index as usize).is_none() {
                 return Err(TreeError::NoSuchPrimitive { index: *index as usize });
             }

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::tree::bounds::{SpreadBounds, variances_along};
 use crate::tree::bounds_list::BoundsList;
 use crate::tree::packed::PackedBounds;
+use crate::tree::primitive::check_extent;
 use crate::{LeafBounds, Node, Tree, TreeError};
 
 impl Tree {
@@ -74,12 +75,14 @@ impl Tree {
     /// later has none.
     ///
     /// # Errors
-    /// [`TreeError::Count`] when there is not one for every index; the tree is then unchanged.
+    /// [`TreeError::Count`] when there is not one for every index, [`TreeError::Extent`] when one is not a usable
+    /// number; the tree is then unchanged.
     pub fn set_extents(&mut self, extents: Vec<Covariance>) -> Result<(), TreeError> {
         if extents.len() != self.primitives.len() {
             let (expected, found) = (self.primitives.len(), extents.len());
             return Err(TreeError::Count { expected, found });
         }
+        extents.iter().enumerate().try_for_each(|(index, extent)| check_extent(extent, index))?;
         self.extents = extents;
         self.refined = BoundsList::default();
         self.update_all_bounds();

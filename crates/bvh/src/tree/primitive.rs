@@ -97,6 +97,14 @@ pub(crate) fn check_covariance(covariance: &Covariance, index: usize) -> Result<
     }
 }
 
+/// The same of how far the surface of a primitive reaches.
+pub(crate) fn check_extent(extent: &Covariance, index: usize) -> Result<(), TreeError> {
+    match first_beyond(extent.upper_triangle().into_iter(), MAX_VARIANCE) {
+        Some(value) => Err(TreeError::Extent { index, value }),
+        None => Ok(()),
+    }
+}
+
 /// The first of these that is no number or larger, whatever its sign.
 fn first_beyond(mut values: impl Iterator<Item = f64> + Clone, most: f64) -> Option<f64> {
     let is_within = |value: f64| value.abs() <= most;
