@@ -1,5 +1,7 @@
 //! From a measured point and its neighbourhood to an uncertain surface point.
 
+use std::f64::consts::SQRT_2;
+
 use cloudtouch_geom::{Covariance, UncertainPoint, UnitVector3};
 
 use crate::discretization::sampling_error;
@@ -235,7 +237,11 @@ impl NoiseModel {
     /// deviation above `sigma` (m), whatever its neighbours; infinite for `Convolution` without a cap on
     /// Ψ, where only the neighbours tell.
     pub fn bounds(&self, sigma: f64, spacing_cap: f64) -> Bounds {
-        let widened = |part: f64| sigma.hypot(part * spacing_cap) * (1.0 + ROUNDING);
+        let widened = |part: f64| {
+            // No part of a spacing without a cap is none.
+            let spread = if part > 0.0 { part * spacing_cap } else { 0.0 };
+            sigma.hypot(spread) * (1.0 + ROUNDING)
+        };
         match self.settings.combination {
             Combination::Precision => Bounds { shift: 0.0, std: widened(0.0) },
             Combination::Convolution if self.settings.discretization.is_capped => {
@@ -246,7 +252,8 @@ impl NoiseModel {
                 let settings = &self.settings.posterior;
                 Bounds {
                     shift: settings.most_shift * sigma * (1.0 + ROUNDING),
-                    std: widened(settings.disc_std.max(settings.sampling_std)),
+                    // Samples on the surface are up to the diagonal of a spacing from one another.
+                    std: widened(settings.disc_std.max(SQRT_2 * settings.sampling_std)),
                 }
             }
         }

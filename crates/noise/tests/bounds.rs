@@ -1,10 +1,12 @@
 //! What must hold of every refined point, whatever the cloud: bounds, order, purity.
 
-use cloudtouch_geom::{Covariance, Matrix3, Point3};
-use cloudtouch_noise::{Combination, Neighborhoods, NoiseModel, Scratch, SensorNoise};
+use cloudtouch_geom::{Covariance, Matrix3, Point3, seed};
+use cloudtouch_noise::{
+    Combination, Neighborhoods, NoiseModel, NoiseSettings, PosteriorSettings, Scratch, SensorNoise,
+};
 use proptest::prelude::*;
 
-use crate::common::model;
+use crate::common::{isotropic, model};
 
 const ALL: [Combination; 3] =
     [Combination::Precision, Combination::Convolution, Combination::SurfacePosterior];
@@ -95,4 +97,35 @@ proptest! {
 fn models_can_be_shared_between_threads() {
     fn shared<T: Send + Sync>() {}
     shared::<NoiseModel>();
+}
+
+fn posterior(disc_std: f64, sampling_std: f64) -> NoiseModel {
+    let posterior = PosteriorSettings { disc_std, sampling_std, ..PosteriorSettings::default() };
+    NoiseModel::new(NoiseSettings { posterior, ..NoiseSettings::default() }).expect("valid")
+}
+
+/// Nothing times a spacing without a cap is no number.
+#[test]
+fn no_part_of_a_spacing_without_a_cap_had_no_bound() {
+    for model in [model(Combination::Precision), posterior(0.0, 0.0)] {
+        let std = model.bounds(0.002, f64::INFINITY).std;
+        assert!((0.002..0.002 * (1.0 + 1e-6)).contains(&std), "{std}");
+    }
+}
+
+/// What bends between samples counts for the diagonal of a spacing: 0.707 mm were found for a bound of 0.5 mm.
+#[test]
+fn what_bends_more_than_the_disc_is_wide_exceeded_its_bound() {
+    let (model, cap, std) = (posterior(0.1, 0.1), 0.005, 1e-5);
+    let draw = |i, k| seed::unit(seed::derive(1, i, k));
+    let place = |i: u64| {
+        let [x, y] = [i % 20, i / 20].map(|cell| 0.01 * cell as f64);
+        Point3::new(x + 1e-4 * draw(i, 0), y + 1e-4 * draw(i, 1), 1e-5 * draw(i, 2))
+    };
+    let points: Vec<Point3> = (0..400).map(place).collect();
+    let noise = isotropic(std, &points);
+    let refined = model.refine_all(&Neighborhoods::new(points).unwrap(), &noise, cap);
+    let largest = refined.iter().map(|one| one.point.covariance.max_std()).fold(0.0, f64::max);
+    let bound = model.bounds(std, cap).std;
+    assert!(largest <= bound && largest > 0.9 * bound, "{largest} for {bound}");
 }
