@@ -148,5 +148,5 @@ impl<'a> Plane<'a> {
 fn slope(z: f64) -> f64 {
     // Where Φ leaves what doubles tell, its tail.
     const DEEP: f64 = -30.0;
-    if z < DEEP { -z - 1.0 / z } else { normal::density(z) / normal::cdf(z) }
+    if z < DEEP { -z - 1.0 / z + 2.0 / z.powi(3) } else { normal::density(z) / normal::cdf(z) }
 }

@@ -152,3 +152,16 @@ proptest! {
         }
     }
 }
+
+/// So deep that Φ is told by its tail, of which two terms left less than nothing.
+#[test]
+fn nothing_was_left_of_what_is_deep_behind_a_plane() {
+    let near = wall_and_floor(1e-10);
+    let covariance = Covariance::isotropic(1e-12);
+    for depth in [29.9, 30.1, 40.0, 1000.0] {
+        let own = face([0.0, 0.0, -depth * 1e-6], Vector3::x(), 1e-10);
+        let left = own.cut_off(&covariance, &near).unwrap().std_along(&Vector3::z());
+        // Of an exponential tail.
+        assert!((left * depth / 1e-6 - 1.0).abs() < 0.01, "{left} at {depth}");
+    }
+}
