@@ -163,7 +163,7 @@ fn degenerate_clouds_end_without_a_plane_or_with_an_honest_one() {
     assert_eq!(none(&[at(1.0)], &[at(1.0)], 4.75), NoSeparation::WithinRounding);
     assert_eq!(none(&[at(0.0), at(f64::NAN)], &[at(1.0)], 4.75), not_finite(Class::A, 1));
     assert_eq!(none(&[at(0.0)], &[at(f64::INFINITY)], 4.75), not_finite(Class::B, 0));
-    for value in [f64::NAN, 0.0, -1.0] {
+    for value in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
         let error = none(&[at(0.0)], &[at(1.0)], value);
         assert!(matches!(error, NoSeparation::KappaMax { .. }), "{error}");
     }

@@ -32,9 +32,9 @@ pub enum CovarianceError {
         number(*difference)
     )]
     NotSymmetric {
-        /// Row of the worst entry.
+        /// Row of the first entry that differs.
         row: usize,
-        /// Column of the worst entry.
+        /// Column of the first entry that differs.
         column: usize,
         /// Difference from the mirrored entry.
         difference: f64,

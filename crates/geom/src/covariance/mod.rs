@@ -242,6 +242,15 @@ mod tests {
         assert_eq!(Covariance::isotropic(-1.0), Covariance::zero());
     }
 
+    /// With a sign it came after all numbers, and the largest was one of these.
+    #[test]
+    fn nan_with_a_sign_was_less_than_any_variance() {
+        for nan in [f64::NAN, -f64::NAN] {
+            let unknown = Covariance::diagonal([nan, 1.0, 2.0]);
+            assert!(unknown.max_std().is_nan() && unknown.eigen().0[2].is_nan());
+        }
+    }
+
     #[test]
     fn checks_name_what_is_wrong() {
         let mut m = Matrix3::identity();

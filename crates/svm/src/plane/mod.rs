@@ -58,8 +58,8 @@ pub enum NoSeparation {
         /// Which of its points.
         index: usize,
     },
-    /// The largest κ asked for is not positive.
-    #[error("the largest kappa is {}: it must be positive", number(*value))]
+    /// The largest κ asked for is not positive, or not finite.
+    #[error("the largest kappa is {}: it must be positive and finite", number(*value))]
     KappaMax {
         /// What was given.
         value: f64,
@@ -88,13 +88,13 @@ pub enum NoSeparation {
 ///
 /// # Errors
 /// When no plane with κ > 0 was found, which is no proof that the clouds touch; when a cloud is empty
-/// or not finite, or `kappa_max` not positive.
+/// or not finite, or `kappa_max` not positive or not finite.
 pub fn separate(
     a: &[UncertainPoint],
     b: &[UncertainPoint],
     kappa_max: f64,
 ) -> Result<Separation, NoSeparation> {
-    if kappa_max.is_nan() || kappa_max <= 0.0 {
+    if !(kappa_max.is_finite() && kappa_max > 0.0) {
         return Err(NoSeparation::KappaMax { value: kappa_max });
     }
     let anchor = check(a, Class::A)?;
