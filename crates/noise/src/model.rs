@@ -9,6 +9,7 @@ use crate::error::NoiseError;
 use crate::index::neighbor::Neighbor;
 use crate::index::spacing::{SPACING_NEIGHBORS, spacing_around};
 use crate::index::spatial_order::in_spatial_order;
+use crate::index::ties::widened;
 use crate::limited::limited;
 use crate::neighborhoods::Neighborhoods;
 use crate::parallel::parallel;
@@ -275,7 +276,8 @@ impl NoiseModel {
     }
 }
 
-/// How far the last of so many neighbours is, m; with fewer, any point would be one more.
+/// How far the last of so many neighbours is, m, or one as near that might come before it; with fewer, any point would
+/// be one more.
 fn reach(neighbors: &[Neighbor], count: usize) -> f64 {
-    neighbors.get(count - 1).map_or(f64::INFINITY, |last| last.squared_distance.sqrt())
+    neighbors.get(count - 1).map_or(f64::INFINITY, |last| widened(last.squared_distance).sqrt())
 }

@@ -47,6 +47,28 @@ fn points_beyond_the_reach_of_a_refinement_change_no_bit_of_it() {
     }
 }
 
+/// What is as near as the last neighbour but for 1e-7 may come before it: a point 2e-8 beyond the reach did.
+#[test]
+fn a_point_as_near_as_the_last_neighbour_was_beyond_the_reach() {
+    let model = model(Combination::SurfacePosterior);
+    let height = |i: u64| 0.05 * seed::unit(seed::derive(9, i, 0));
+    let place = |i: u64| Point3::new((i % 13) as f64 - 6.0, (i / 13) as f64 - 6.0, height(i));
+    let mut points: Vec<Point3> = (0..169).map(place).collect();
+    let middle = 84;
+    let refined = |points: &[Point3]| {
+        let noise = SensorNoise::uniform(Covariance::isotropic(1e-4), points.len());
+        let near = Neighborhoods::new(points.to_vec()).unwrap();
+        let mut scratch = Scratch::default();
+        let refined = model.refine(middle, &near, &noise, f64::INFINITY, &mut scratch);
+        (refined, scratch.reach())
+    };
+    let (expected, reach) = refined(&points);
+    // Of those as near the first along x.
+    let beyond = Vector3::new(-1.0, 0.0, 0.3).normalize() * reach * (1.0 + 2e-8);
+    points.push(points[middle] + beyond);
+    assert_eq!(refined(&points), (expected, reach));
+}
+
 #[test]
 fn where_all_points_count_the_reach_has_no_end() {
     let model = model(Combination::SurfacePosterior);
