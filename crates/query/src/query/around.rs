@@ -1,10 +1,14 @@
 //! What no pose about a pose exceeds.
 
+use std::time::Instant;
+
 use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::ContactEvidence;
+use crate::search::reach_around;
+use crate::stats::Stats;
 
 use super::run::Query;
 
@@ -16,9 +20,10 @@ impl Query {
     /// A bound on the probability of a collision at any pose about this one at which no point of `b` is farther
     /// than `way` metres from where it is here, however it is turned for that.
     ///
-    /// By the least gap of surface anywhere, less the way, taken for a contact of the likeliest shape of which a
-    /// classifier says the worst: never too low but for what samples do not show, often too high. 1 where the way
-    /// may leave less than two and a half deviations of a gap, where it reaches into what a depth image did not see, or when the deadline is over.
+    /// By the fewest deviations and the clearest crossings that any two pieces of surface may have there, of which
+    /// the extent and a classifier say the worst: never too low but for what samples do not show, often too high. 1
+    /// where the way may leave less than two and a half deviations of a gap, where more than the accept threshold is
+    /// likely, where it reaches into what a depth image did not see, or when the deadline is over.
     ///
     /// # Errors
     /// When the way is negative or not finite, and those of [`Self::run`].
@@ -29,16 +34,31 @@ impl Query {
         a_from_b: &Pose,
         way: f64,
     ) -> Result<f64, QueryError> {
-        let (report, within) = self.within(a, b, a_from_b, way)?;
+        let this = self.begun_now();
+        let (a, b) = (a.into(), b.into());
+        let (report, within) = this.within(a, b, a_from_b, way)?;
         let [_, upper] = within.bounds;
         let Some(ContactEvidence { noise_over_spacing, .. }) = report.evidence else {
             // Two meshes are exact.
             return Ok(upper);
         };
-        if within.deviations < THROUGH_DEVIATIONS {
+        if within.deviations < THROUGH_DEVIATIONS || upper == 1.0 {
             return Ok(1.0);
         }
-        let judge = self.settings().judge.for_noise(noise_over_spacing);
-        Ok(judge.at_most(self.settings().prior, within.deviations, 0.0).max(upper))
+        let settings = self.settings();
+        let (judge, clock) =
+            (settings.judge.for_noise(noise_over_spacing), this.clock(Instant::now()));
+        let at_most = |deviations, clearness| judge.at_most(settings.prior, deviations, clearness);
+        let is_enough = |deviations: f64, clearness: f64| {
+            deviations < THROUGH_DEVIATIONS
+                || at_most(deviations, clearness) > settings.accept
+                || clock.is_over()
+        };
+        let local = a.shape().local_from(&b.shape(), a_from_b);
+        let reach = reach_around((a, b), &local, way, is_enough, &mut Stats::default())?;
+        if !reach.is_complete || is_enough(reach.deviations, reach.clearness) {
+            return Ok(1.0);
+        }
+        Ok(at_most(reach.deviations.min(within.deviations), reach.clearness).max(upper))
     }
 }

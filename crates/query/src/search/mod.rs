@@ -19,7 +19,7 @@ pub(crate) use measure::beyond::{least_beyond, may_be_within};
 pub(crate) use measure::inside::{Inside, Looked, look_inside};
 pub(crate) use measure::nearest::Nearest;
 pub(crate) use run::{Finding, Found, SOUGHT, WITH_EXTENT, WITHOUT_EXTENT, search};
-pub(crate) use swept::{greatest_depth, reach_of};
+pub(crate) use swept::{greatest_depth, reach_around, reach_of};
 pub(crate) use visit::leaf::{Leaf, NoisyLeaf};
 pub(crate) use wrench::{
     Changes, Wrench, force_at, in_object_frame, of_direction, of_place, way_to_triangle,

@@ -1,7 +1,8 @@
 //! Directions along which leaves were told apart: beside one surface the same do it for most pairs.
 
-use cloudtouch_geom::{Drift, Vector3};
+use cloudtouch_geom::Vector3;
 
+use super::course::Course;
 use super::leaf::{SweptEdges, SweptMesh};
 use super::track::{Direction, SweptFacet};
 use crate::cloud::Surfel;
@@ -25,7 +26,7 @@ impl Dividing {
         discs: &'d [Surfel],
         edges: &SweptEdges,
         thin: [Vector3; 2],
-        drift: &Drift,
+        drift: &Course,
     ) -> Vec<&'d Surfel> {
         let Some(hull) = &edges.hull else { return Vec::new() };
         let mut met: Vec<&Surfel> = discs.iter().collect();
@@ -49,7 +50,7 @@ impl Dividing {
         facets: &'f SweptMesh,
         edges: &SweptEdges,
         thin: Vector3,
-        drift: &Drift,
+        drift: &Course,
     ) -> Vec<SweptFacet<'f>> {
         let Some(hull) = &edges.hull else { return Vec::new() };
         let mut met: Vec<SweptFacet<'_>> = facets.facets().collect();

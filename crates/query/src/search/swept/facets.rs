@@ -1,12 +1,13 @@
 //! Whether two triangles can touch while one of them drifts.
 
-use cloudtouch_geom::{Drift, Vector3};
+use cloudtouch_geom::Vector3;
 
+use super::course::Course;
 use crate::search::compare::facet::Facet;
 
 /// No for certain where a plane keeps between them all the way: one across a normal, across an edge of
 /// each, or across an edge and the way it is carried.
-pub(super) fn may_touch(a: &Facet, b: &Facet, drift: &Drift) -> bool {
+pub(super) fn may_touch(a: &Facet, b: &Facet, drift: &Course) -> bool {
     let edges = |facet: &Facet| {
         let [p, q, r] = facet.corners;
         [q - p, r - q, p - r]
@@ -20,7 +21,7 @@ pub(super) fn may_touch(a: &Facet, b: &Facet, drift: &Drift) -> bool {
     !is_apart
 }
 
-fn is_apart_along(n: &Vector3, a: &Facet, b: &Facet, drift: &Drift) -> bool {
+fn is_apart_along(n: &Vector3, a: &Facet, b: &Facet, drift: &Course) -> bool {
     let of_a = a.corners.map(|corner| n.dot(&corner.coords));
     let of_b = b.corners.map(|corner| (n.dot(&corner.coords), drift.along(n, &corner)));
     let lowest = |values: [f64; 3]| values.into_iter().fold(f64::INFINITY, f64::min);

@@ -1,9 +1,8 @@
 //! Gathers the passages that two leaves may have while one of them drifts.
 
-use cloudtouch_geom::Drift;
-
 use crate::cloud::{DISC_SPACINGS, edge_along};
 
+use super::course::Course;
 use super::dividing::Dividing;
 use super::drifts::Drifts;
 use super::leaf::{SweptCloud, SweptEdges, SweptMesh};
@@ -21,7 +20,7 @@ use crate::search::visit::leaf::{ExactLeaf, NoisyLeaf};
 pub(super) fn may_reach(
     of_edges: &SweptCloud<'_>,
     of_discs: &NoisyLeaf<'_>,
-    drift: &Drift,
+    drift: &Course,
 ) -> bool {
     let NoisyLeaf { ball, slab, .. } = of_discs;
     let (turn, direction) = (drift.turn(), Direction::new(slab.direction, drift));
@@ -38,7 +37,7 @@ pub(super) fn may_reach(
 pub(super) fn may_reach_facets(
     of_edges: &SweptCloud<'_>,
     facets: &ExactLeaf,
-    drift: &Drift,
+    drift: &Course,
 ) -> bool {
     of_edges.leaf.surfels.iter().zip(&of_edges.tracks).any(|(surfel, track)| {
         let Some(normal) = surfel.normal else { return false };
@@ -71,7 +70,7 @@ pub(super) fn add_edges_through_discs(
     is_a: bool,
     of_edges: &SweptCloud<'_>,
     of_discs: &NoisyLeaf<'_>,
-    drift: &Drift,
+    drift: &Course,
     (found, dividing): (&mut Passages, &mut Dividing),
 ) {
     let Some(edges) = of_edges.edges() else { return };

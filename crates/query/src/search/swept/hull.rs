@@ -1,7 +1,8 @@
 //! Boxes about what is in a leaf: most of what another leaf could meet there is told by one of them.
 
-use cloudtouch_geom::{BoxDrift, Drift, Matrix3, Point3, Vector3};
+use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
+use super::course::{BoxCourse, Course};
 use super::track::{Direction, SweptFacet};
 
 /// A box, in the frame of A.
@@ -11,7 +12,7 @@ pub(super) struct Hull {
     /// Half its size along each of its axes, as columns.
     half_axes: Matrix3,
     /// How far what is in it gets.
-    drift: BoxDrift,
+    drift: BoxCourse,
 }
 
 /// What heights are rounded by, relative to the size of the box and its way.
@@ -23,7 +24,7 @@ impl Hull {
     pub(super) fn around(
         axes: &Matrix3,
         places: impl Iterator<Item = (Point3, Vector3)>,
-        drift: &Drift,
+        drift: &Course,
     ) -> Option<Self> {
         let span = places
             .map(|(place, reach)| {
@@ -34,7 +35,7 @@ impl Hull {
         span.map(|(low, high)| {
             let middle = Point3::from(axes * (0.5 * (low + high)));
             let half_axes = axes * Matrix3::from_diagonal(&(0.5 * (high - low)));
-            Self { middle, half_axes, drift: drift.of_box(&middle, &half_axes, 0.0) }
+            Self { middle, half_axes, drift: drift.of_box(&middle, &half_axes) }
         })
     }
 

@@ -1,7 +1,6 @@
 //! Between which heights all of a leaf is: most of what another leaf has is beyond them.
 
-use cloudtouch_geom::Drift;
-
+use super::course::Course;
 use super::pieces::turned_variance;
 use super::track::{Direction, Track};
 use crate::cloud::Surfel;
@@ -78,7 +77,7 @@ impl ExactLayer {
         &self,
         (surfel, track): (&Surfel, &Track),
         is_still: bool,
-        drift: &Drift,
+        drift: &Course,
     ) -> f64 {
         let direction = &self.direction;
         let height = direction.n.dot(&track.place.coords);

@@ -2,12 +2,13 @@
 //! it meets.
 
 use cloudtouch_bvh::NodeId;
-use cloudtouch_geom::{Drift, Matrix3, Motion, Vector3};
+use cloudtouch_geom::{Matrix3, Motion, Vector3};
 
 use crate::body::BodyRef;
 use crate::cloud::{Cloud, DISC_SPACINGS, Edge, LeafEdges, Surfel};
 use crate::stats::Stats;
 
+use super::course::Course;
 use super::hull::Hull;
 use super::layer::{ExactLayer, Layer, span};
 use super::track::{Direction, SweptFacet, Track};
@@ -70,7 +71,7 @@ impl<'a> Swept<'a> {
         body: BodyRef<'a>,
         id: NodeId,
         side: &mut Side,
-        drift: &Drift,
+        drift: &Course,
         stats: &mut Stats,
     ) -> Self {
         match Leaf::load(body, id, side, stats) {
@@ -92,7 +93,7 @@ fn axes_of(cloud: &Cloud, id: NodeId, motion: Option<&Motion>) -> Matrix3 {
 }
 
 impl SweptMesh {
-    fn new(leaf: ExactLeaf, drift: &Drift) -> Self {
+    fn new(leaf: ExactLeaf, drift: &Course) -> Self {
         let track = |facet: &Facet| facet.corners.map(|corner| Track::of(&corner, drift));
         let tracks: Vec<[Track; 3]> = leaf.facets.iter().map(track).collect();
         let normal = leaf.facets.iter().find_map(|facet| facet.normal);
@@ -107,7 +108,7 @@ impl SweptMesh {
 }
 
 impl<'a> SweptCloud<'a> {
-    fn new(leaf: NoisyLeaf<'a>, motion: Option<Motion>, axes: Matrix3, drift: &Drift) -> Self {
+    fn new(leaf: NoisyLeaf<'a>, motion: Option<Motion>, axes: Matrix3, drift: &Course) -> Self {
         let tracks = leaf.surfels.iter().map(|s| Track::of(&s.point.mean, drift)).collect();
         let of_disc = |s: &Surfel| {
             let normal = s.normal?;
@@ -121,7 +122,7 @@ impl<'a> SweptCloud<'a> {
     }
 
     /// Gets its edges, once.
-    pub(super) fn load_edges(&mut self, drift: &Drift, side: &mut Side) {
+    pub(super) fn load_edges(&mut self, drift: &Course, side: &mut Side) {
         if self.edges.is_none() {
             self.leaf.load_edges(side);
             let motion = self.motion.as_ref();
@@ -137,7 +138,7 @@ impl<'a> SweptCloud<'a> {
 }
 
 impl SweptEdges {
-    fn new(edges: &LeafEdges, motion: Option<&Motion>, axes: &Matrix3, drift: &Drift) -> Self {
+    fn new(edges: &LeafEdges, motion: Option<&Motion>, axes: &Matrix3, drift: &Course) -> Self {
         let moved = |edge: Edge| motion.map_or(edge, |motion| edge.moved(motion));
         let all: Vec<Edge> = edges.iter().map(moved).collect();
         let ends = all.iter().flat_map(|edge| edge.ends);

@@ -1,6 +1,8 @@
 //! What geometry could say of a collision at any pose of a motion, at most: the search at its middle,
 //! with all that the motion can add.
 
+mod anywhere;
+mod course;
 mod depth;
 mod dividing;
 mod drifts;
@@ -16,5 +18,6 @@ mod pool;
 mod run;
 mod track;
 
+pub(crate) use anywhere::reach_around;
 pub(crate) use depth::greatest_depth;
 pub(crate) use run::reach_of;

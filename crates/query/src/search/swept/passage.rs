@@ -1,10 +1,11 @@
 //! How clearly a piece of one surface could pass through a piece of the other while one of them
 //! drifts: a bound on the crossings of `search/cross/crossing.rs` at any pose on the way.
 
-use cloudtouch_geom::{Drift, Point3, Vector3};
+use cloudtouch_geom::{Point3, Vector3};
 
 use crate::cloud::{DISC_SPACINGS, Edge, Onward, Surfel};
 
+use super::course::Course;
 use super::drifts::Drifts;
 use super::leaf::EdgeTrack;
 use super::plane::{Heights, Known, Plane};
@@ -68,7 +69,7 @@ impl<'a> Adrift<'a> {
         &self,
         disc: &Surfel,
         times: [f64; 2],
-        drift: &Drift,
+        drift: &Course,
     ) -> Option<Passage> {
         let (normal, middle) = (disc.normal?, disc.point.mean);
         let across = disc.across;
@@ -115,7 +116,7 @@ impl<'a> Adrift<'a> {
     fn clear_past(
         &self,
         by_ends: f64,
-        (plane, drift): (&Plane<'_>, &Drift),
+        (plane, drift): (&Plane<'_>, &Course),
         known: [f64; 2],
         known_past: impl Fn(&Onward) -> f64,
     ) -> f64 {
@@ -220,7 +221,7 @@ pub(super) fn mesh_through_disc(
     disc: &Surfel,
     (normal, off): (Vector3, f64),
     around: &mut OfMesh<'_>,
-    drift: &Drift,
+    drift: &Course,
 ) -> Passage {
     let (middle, radius) = (disc.point.mean, DISC_SPACINGS * disc.spacing);
     let by = drift.in_any_direction(&middle);

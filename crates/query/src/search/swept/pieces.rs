@@ -5,10 +5,11 @@
 //! (n·δ − |n·u| − r)/√(nᵀΣn), and of all n the one that says most is Σ⁻¹(δ + s·u) for the s with the
 //! fewest deviations.
 
-use cloudtouch_geom::{Drift, Vector3};
+use cloudtouch_geom::Vector3;
 
 use crate::cloud::Surfel;
 
+use super::course::Course;
 use super::track::{
     Approach, Direction, Drifting, SweptFacet, Track, directions, least_at, nearest_time,
 };
@@ -20,7 +21,7 @@ use crate::search::compare::whitening::Whitening;
 pub(super) fn between_discs(
     a: &Surfel,
     (b, track): (&Surfel, &Track),
-    drift: &Drift,
+    drift: &Course,
     limit: f64,
 ) -> Option<f64> {
     let offset = track.place - a.point.mean;
@@ -46,7 +47,7 @@ pub(super) fn to_facet(
     (surfel, whitening, track): (&Surfel, &Whitening, &Track),
     SweptFacet { facet, corners }: SweptFacet<'_>,
     is_facet_still: bool,
-    drift: &Drift,
+    drift: &Course,
     limit: f64,
 ) -> Option<f64> {
     let mean = surfel.point.mean;
@@ -91,7 +92,7 @@ pub(super) fn to_facet(
 }
 
 /// nᵀΣn of a piece at any turn of the drift.
-pub(super) fn turned_variance(surfel: &Surfel, n: &Direction, drift: &Drift) -> f64 {
+pub(super) fn turned_variance(surfel: &Surfel, n: &Direction, drift: &Course) -> f64 {
     if drift.turn() == 0.0 {
         return surfel.point.covariance.variance_along(&n.n);
     }

@@ -1,7 +1,8 @@
 //! A plane that pieces of the other body may pass while one of the two drifts.
 
-use cloudtouch_geom::{Drift, Point3, Vector3};
+use cloudtouch_geom::{Point3, Vector3};
 
+use super::course::Course;
 use super::track::{Direction, Track};
 
 /// A plane, looked at between two times.
@@ -30,7 +31,7 @@ pub(super) struct Known {
 
 impl<'a> Plane<'a> {
     /// Through a place, across a unit normal; `drift` is that of what passes.
-    pub(super) fn new(normal: Vector3, place: &'a Point3, times: [f64; 2], drift: &Drift) -> Self {
+    pub(super) fn new(normal: Vector3, place: &'a Point3, times: [f64; 2], drift: &Course) -> Self {
         Self { direction: Direction::new(normal, drift), place, times, turn: drift.turn() }
     }
 

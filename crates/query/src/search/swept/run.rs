@@ -9,6 +9,7 @@ use crate::judge::MOST_DEVIATIONS;
 use crate::search::run::SOUGHT;
 use crate::stats::Stats;
 
+use super::course::Course;
 use super::dividing::Dividing;
 use super::drifts::Drifts;
 use super::facets::may_touch;
@@ -47,36 +48,13 @@ pub(crate) fn reach_of<'a>(
     is_enough: impl Fn(f64, f64) -> bool,
     stats: &mut Stats,
 ) -> Result<Reach, QueryError> {
-    let mut way = Way {
-        bodies: (a, b),
-        a_from_b: Motion::from(a_from_b),
-        drifts: Drifts::new(drift),
-        leaves: Default::default(),
-        deviations: MOST_DEVIATIONS,
-        passages: Passages::default(),
-        around: Around::default(),
-        dividing: Dividing::default(),
-        sides: [Side::default(), Side::moved(Motion::from(a_from_b))],
-    };
-    let mut trees = Trees::of(a, b);
     let is_exact = matches!((a, b), (BodyRef::Mesh(_), BodyRef::Mesh(_)));
     let sought = Sought { crossings: !is_exact, drift: Some(*drift), ..SOUGHT };
-    let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
-        stats.leaf_pairs += 1;
-        way.look_at(&pair, stats);
-        let (deviations, clearness) = (way.deviations, way.passages.last_clearness());
-        if is_enough(deviations, clearness) {
-            return SurfaceFlow::Stop;
-        }
-        trees.count_pair([way.leaves.0.len(), way.leaves.1.len()]);
-        trees.flow(deviations, stats, || is_enough(deviations, clearness))
-    })?;
-    stats.nodes_visited += outcome.nodes_visited;
-    let clearness = way.passages.clearness();
-    Ok(Reach { deviations: way.deviations, clearness, is_complete: !outcome.stopped })
+    Way::new((a, b), a_from_b, Drifts::new(drift)).look(a_from_b, sought, is_enough, stats)
 }
 
-struct Way<'a> {
+/// A search among poses, and what it found.
+pub(super) struct Way<'a> {
     bodies: (BodyRef<'a>, BodyRef<'a>),
     a_from_b: Motion,
     drifts: Drifts,
@@ -89,6 +67,45 @@ struct Way<'a> {
 }
 
 impl<'a> Way<'a> {
+    pub(super) fn new(bodies: (BodyRef<'a>, BodyRef<'a>), a_from_b: &Pose, drifts: Drifts) -> Self {
+        let a_from_b = Motion::from(a_from_b);
+        Self {
+            bodies,
+            a_from_b,
+            drifts,
+            leaves: Default::default(),
+            deviations: MOST_DEVIATIONS,
+            passages: Passages::default(),
+            around: Around::default(),
+            dividing: Dividing::default(),
+            sides: [Side::default(), Side::moved(a_from_b)],
+        }
+    }
+
+    /// Looks at the pairs of leaves that hold what is sought, until `is_enough`.
+    pub(super) fn look(
+        mut self,
+        a_from_b: &Pose,
+        sought: Sought,
+        is_enough: impl Fn(f64, f64) -> bool,
+        stats: &mut Stats,
+    ) -> Result<Reach, QueryError> {
+        let mut trees = Trees::of(self.bodies.0, self.bodies.1);
+        let outcome = visit_surfaces(trees.both(), a_from_b, sought, |pair| {
+            stats.leaf_pairs += 1;
+            self.look_at(&pair, stats);
+            let (deviations, clearness) = (self.deviations, self.passages.last_clearness());
+            if is_enough(deviations, clearness) {
+                return SurfaceFlow::Stop;
+            }
+            trees.count_pair([self.leaves.0.len(), self.leaves.1.len()]);
+            trees.flow(deviations, stats, || is_enough(deviations, clearness))
+        })?;
+        stats.nodes_visited += outcome.nodes_visited;
+        let clearness = self.passages.clearness();
+        Ok(Reach { deviations: self.deviations, clearness, is_complete: !outcome.stopped })
+    }
+
     fn look_at(&mut self, pair: &SurfacePair, stats: &mut Stats) {
         let (a, b) = self.bodies;
         let (motion, drifts) = (&self.a_from_b, &self.drifts);
@@ -109,7 +126,7 @@ impl<'a> Way<'a> {
 }
 
 /// The fewest deviations of two pieces of two leaves, those of B drifting; `most` where none have fewer.
-fn least_of(a: &mut Swept<'_>, b: &mut Swept<'_>, drift: &Drift, most: f64) -> f64 {
+fn least_of(a: &mut Swept<'_>, b: &mut Swept<'_>, drift: &Course, most: f64) -> f64 {
     match (a, b) {
         (Swept::Noisy(a), Swept::Noisy(b)) => between_noisy(a, b, drift, most),
         (Swept::Noisy(a), Swept::Exact(b)) => to_exact(a, b, false, drift, most),
@@ -121,7 +138,7 @@ fn least_of(a: &mut Swept<'_>, b: &mut Swept<'_>, drift: &Drift, most: f64) -> f
     }
 }
 
-fn between_noisy(a: &SweptCloud<'_>, b: &SweptCloud<'_>, drift: &Drift, most: f64) -> f64 {
+fn between_noisy(a: &SweptCloud<'_>, b: &SweptCloud<'_>, drift: &Course, most: f64) -> f64 {
     let mut least = most;
     let ball = &a.leaf.ball;
     for (on_b, track) in b.leaf.surfels.iter().zip(&b.tracks) {
@@ -141,7 +158,7 @@ fn to_exact(
     noisy: &mut SweptCloud<'_>,
     exact: &SweptMesh,
     is_facet_still: bool,
-    drift: &Drift,
+    drift: &Course,
     most: f64,
 ) -> f64 {
     let mut least = most;
@@ -170,7 +187,7 @@ fn cross_discs(
     is_a: bool,
     of_edges: &mut SweptCloud<'_>,
     of_discs: &SweptCloud<'_>,
-    drift: &Drift,
+    drift: &Course,
     side: &mut Side,
     told: (&mut Passages, &mut Dividing),
 ) {
@@ -221,7 +238,7 @@ fn cross<'a>(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use cloudtouch_geom::{Point3, PointCloud, TriangleMesh, Vector3};
     use cloudtouch_noise::SensorModel;
     use cloudtouch_testkit::noise::{NoiseKind, add_noise};
@@ -250,6 +267,21 @@ mod tests {
         Body::Cloud(Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap())
     }
 
+    /// Kinds and shapes of two bodies, the noise, and where the second is.
+    pub(in super::super) fn pair_of(
+        mesh: usize,
+        are_balls: [bool; 2],
+        std: f64,
+        seed: u64,
+    ) -> [Body; 2] {
+        let kinds = [[false, false], [true, false], [false, true]][mesh];
+        let of = |is_ball: bool| match is_ball {
+            true => scene::sphere(0.05, 2),
+            false => scene::cuboid([0.1, 0.08, 0.04]),
+        };
+        [(0, seed), (1, !seed)].map(|(k, seed)| body(kinds[k], &of(are_balls[k]), std, seed))
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) })]
 
@@ -265,13 +297,7 @@ mod tests {
             is_fine in any::<bool>(),
             seed in any::<u64>(),
         ) {
-            let kinds = [[false, false], [true, false], [false, true]][mesh];
-            let of = |is_ball: bool| match is_ball {
-                true => scene::sphere(0.05, 2),
-                false => scene::cuboid([0.1, 0.08, 0.04]),
-            };
-            let a = body(kinds[0], &of(shapes[0]), std, seed);
-            let b = body(kinds[1], &of(shapes[1]), std, !seed);
+            let [a, b] = pair_of(mesh, shapes, std, seed);
             let pair = (BodyRef::from(&a), BodyRef::from(&b));
             let file = Pose::from_translation_rpy(Vector3::from(offset), [turn, 0.3, 0.0]);
             let local = pair.0.shape().local_from(&pair.1.shape(), &file);

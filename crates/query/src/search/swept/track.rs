@@ -1,8 +1,10 @@
 //! Where a point gets to against the other body while one of them drifts.
 
-use cloudtouch_geom::{Drift, Point3, Vector3};
+use cloudtouch_geom::{Point3, Vector3};
 
 use crate::cloud::Ball;
+
+use super::course::Course;
 
 use crate::search::compare::facet::Facet;
 use crate::search::compare::triangle::nearest_to_origin;
@@ -20,7 +22,7 @@ pub(super) struct Track {
     pub beside: f64,
 }
 
-/// A unit vector, with what a turn takes of it: [`Drift::across_axis`].
+/// A unit vector, with what a turn takes of it: [`Course::across_axis`].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Direction {
     pub n: Vector3,
@@ -28,14 +30,14 @@ pub(super) struct Direction {
 }
 
 impl Direction {
-    pub(super) fn new(n: Vector3, drift: &Drift) -> Self {
+    pub(super) fn new(n: Vector3, drift: &Course) -> Self {
         Self { n, across: drift.across_axis(&n) }
     }
 }
 
 impl Track {
-    pub(super) fn of(place: &Point3, drift: &Drift) -> Self {
-        let (way, beside) = (drift.first_order(place), drift.beyond_first_order(place, 0.0));
+    pub(super) fn of(place: &Point3, drift: &Course) -> Self {
+        let (way, beside) = (drift.first_order(place), drift.beyond_first_order(place));
         Self { place: *place, way, beside }
     }
 
@@ -79,10 +81,10 @@ impl Track {
 }
 
 /// A straight piece that drifts stays at least so far from a place, m.
-pub(super) fn piece_keeps_off([from, to]: &[Point3; 2], place: &Point3, drift: &Drift) -> f64 {
+pub(super) fn piece_keeps_off([from, to]: &[Point3; 2], place: &Point3, drift: &Course) -> f64 {
     let ways = [from, to].map(|end| drift.first_order(end));
     let way = 0.5 * (ways[0] + ways[1]);
-    let beside = [from, to].map(|end| drift.beyond_first_order(end, 0.0));
+    let beside = [from, to].map(|end| drift.beyond_first_order(end));
     let [p, q] = [from, to].map(|end| end - place);
     // All it passes is about the parallelogram along the mean way.
     let halves = [[p - way, p + way, q + way], [p - way, q + way, q - way]];
@@ -115,7 +117,7 @@ pub(super) struct Approach<'a> {
     pub place: &'a Point3,
     pub facet: &'a Facet,
     pub drifting: Drifting<'a>,
-    pub drift: &'a Drift,
+    pub drift: &'a Course,
 }
 
 /// Which of the two drifts, and where it gets to.
