@@ -96,6 +96,20 @@ fn what_the_camera_sees_through_goes_and_what_is_hidden_stays() {
     assert_eq!(report.undecided_by, Some(Undecided::Unseen));
 }
 
+/// All its points go and come with each frame: every second was patched in place, at twice the cost of a rebuild.
+#[test]
+fn frames_of_a_camera_that_stands_still_were_patched_point_by_point() {
+    let (wall, here, by) = (wall(), Pose::identity(), settings());
+    let mut cloud = Cloud::prepare(&frame(&[&wall], &here, 1), &by).unwrap();
+    for seed in 2..6 {
+        let change = cloud.replace_frame(&frame(&[&wall], &here, seed), &by).unwrap();
+        assert!(change.is_rebuilt && 2 * change.removed > cloud.len(), "{seed}: {change:?}");
+    }
+    // A few are no reason.
+    let few: Vec<usize> = (0..cloud.len() / 4).collect();
+    assert!(!cloud.remove(&few).unwrap().is_rebuilt);
+}
+
 /// What an older frame saw to be empty is known, as long as the frame is remembered.
 #[test]
 fn space_seen_from_elsewhere_counts_as_seen() {

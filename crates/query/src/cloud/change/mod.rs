@@ -54,8 +54,8 @@ impl Cloud {
     /// about them, probabilities may differ, as they do in a fresh cloud that has a few more points
     /// elsewhere: by a thousandth on average for a camera that walks about a room, seldom by a tenth. After
     /// [`Self::rebuild`] nothing differs, to the bit as long as the middle of the box around all points stays.
-    /// That comes by itself ([`Change::is_rebuilt`]) when as many points came or went as there are, or
-    /// leaves are half again as loose; and where samples are far denser than their noise, at each change.
+    /// That comes by itself ([`Change::is_rebuilt`]) when as many points came or went as there are, two in five at
+    /// once, or leaves are half again as loose; and where samples are far denser than their noise, at each change.
     ///
     /// ```
     /// use cloudtouch::geom::{Point3, PointCloud};

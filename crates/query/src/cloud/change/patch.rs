@@ -22,6 +22,9 @@ use crate::error::PrepareError;
 
 /// A tree is built anew when so many times as many points as it holds have come or gone ...
 const MOST_DRIFT: f64 = 1.0;
+/// ... or come or go at once, as a share of those there are then: from there on every leaf is another, and to patch
+/// them takes longer than to build all, in a refined cloud too ...
+const MOST_AT_ONCE: f64 = 0.4;
 /// ... or its leaves are so many times as loose ([`cloudtouch_bvh::Tree::quality`]).
 const LOOSEST: f64 = 1.5;
 /// A standard deviation so large (m) overflows somewhere: such a cloud is prepared anew, or refused.
@@ -43,9 +46,10 @@ impl Prepared {
         before: &[Option<u32>],
     ) -> Result<Option<Prospect>, PrepareError> {
         let new = || before.iter().enumerate().filter(|(_, b)| b.is_none()).map(|(index, _)| index);
-        let drift = self.drift_after(before);
+        let (at_once, drift) = (self.replaced_by(before), self.drift_after(before));
         if !self.pieces.is_each()
             || !scans.is_like(&self.scans)
+            || at_once as f64 > MOST_AT_ONCE * before.len() as f64
             || drift as f64 > MOST_DRIFT * self.len() as f64
             || self.tree.should_rebuild(LOOSEST)
             || new().any(|index| scans.noise[index].max_std() > MOST_STD)
@@ -69,8 +73,13 @@ impl Prepared {
 
     /// Points that came or went since the tree was built, after one more change.
     fn drift_after(&self, before: &[Option<u32>]) -> usize {
+        self.drift + self.replaced_by(before)
+    }
+
+    /// Points that come with a change or go, whichever are more.
+    fn replaced_by(&self, before: &[Option<u32>]) -> usize {
         let kept = before.iter().flatten().count();
-        self.drift + (before.len() - kept).max(self.len() - kept)
+        (before.len() - kept).max(self.len() - kept)
     }
 
     /// Becomes the cloud of other points, as was found to be possible; says at how many the surface is
