@@ -198,7 +198,7 @@ fn wrong_use_is_refused_with_the_remedy() {
         (json!({}), vec![], 1, vec!["joints.json", "`shoulder`", "every joint"]),
         (json!({"shoulder": 2.0}), vec![], 1, vec!["`shoulder`", "beyond its limits -1.5 .. 1.5"]),
         (json!({"shoulder": 0, "elbow": 0}), vec![], 1, vec!["`elbow`", "`shoulder`"]),
-        (json!([home]), vec![], 1, vec!["1 positions"]),
+        (json!([home]), vec![], 1, vec!["too few positions (1)"]),
         (
             json!([home, {"shoulder": 2.0}]),
             vec![],

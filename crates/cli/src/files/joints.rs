@@ -32,7 +32,10 @@ pub fn parse(text: &[u8]) -> Result<Vec<Joints>> {
     let is_list = value.is_array();
     let read = match value {
         Value::Array(list) if list.len() < 2 => {
-            bail!("{} positions: a path needs two; write one as an object alone", list.len())
+            bail!(
+                "too few positions ({}): a path needs two; write one as an object alone",
+                list.len()
+            )
         }
         Value::Array(list) => {
             let read = |(index, one)| positions(one).with_context(|| place(index));

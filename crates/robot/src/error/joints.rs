@@ -71,7 +71,7 @@ pub enum JointsError {
 #[non_exhaustive]
 pub enum PathError {
     /// No motion.
-    #[error("a path has {count} positions: give at least two")]
+    #[error("the path has too few positions ({count}): give at least two")]
     TooFew {
         /// How many are given.
         count: usize,

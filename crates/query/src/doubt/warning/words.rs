@@ -14,6 +14,9 @@ impl Warning {
     /// What was seen, with the colon or semicolon before the remedy.
     fn sign(&self) -> String {
         match *self {
+            Self::NoSurface { body, points: 1 } => {
+                format!("the {body} has all its points in one place: they span no surface;")
+            }
             Self::NoSurface { body, points } => format!(
                 "the {body} has {points} distinct points or corners, all on a line: they span no surface;"
             ),
