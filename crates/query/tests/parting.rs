@@ -115,3 +115,19 @@ fn a_box_pressed_into_a_dense_table_parts_upwards() {
         assert!(normal.z < -0.8, "{depth}: {normal}");
     }
 }
+
+/// A sheet has no outside, whichever way its triangles are turned.
+#[test]
+fn a_plate_through_the_top_of_a_bowl_parts_upwards() {
+    let bowl = measured(&scene::sphere(0.1, 4), 0.004, 0.002, 1).into_iter().filter(|p| p.z > 0.0);
+    let bowl = prepare(bowl.collect(), 0.002, Mode::Calibrated);
+    let plate = scene::plane_patch(0.2);
+    let other_way = plate.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let turned = TriangleMesh::new(plate.vertices().to_vec(), other_way).expect("a mesh");
+    let pose = Pose::from_translation(Vector3::new(0.0, 0.0, 0.09));
+    for plate in [plate, turned] {
+        let report = ask(Mode::Calibrated, &bowl, &mesh(&plate), &pose);
+        let normal = report.contacts.first().expect("they overlap").normal_a_to_b;
+        assert!(normal.z > 0.8, "{normal}");
+    }
+}

@@ -28,10 +28,14 @@ impl Mesh {
         fine: f64,
         mut visit: impl FnMut(Piece),
     ) {
-        visit_within(&self.winding, (place, reach), fine, &mut visit);
-        if let Some(sheets) = &self.sheets {
-            let mut visit = |piece| visit(Piece { outward: Vector3::zeros(), ..piece });
-            visit_within(sheets, (place, reach), fine, &mut visit);
+        for (part, is_solid) in
+            [(Some(&self.winding), self.has_solids()), (self.sheets.as_ref(), false)]
+        {
+            let outward = |piece: &Piece| if is_solid { piece.outward } else { Vector3::zeros() };
+            let mut visit = |piece: Piece| visit(Piece { outward: outward(&piece), ..piece });
+            if let Some(part) = part {
+                visit_within(part, (place, reach), fine, &mut visit);
+            }
         }
     }
 }
@@ -162,6 +166,8 @@ mod tests {
             assert!(of_ball.len() > 9 && of_sheet.len() > 50, "{edge}");
             assert!(of_sheet.iter().all(|piece| piece.outward == Vector3::zeros()), "{edge}");
         }
+        let sheet = self::pieces(&scene::plane_patch(0.8), 9.0, 0.1);
+        assert!(sheet.iter().all(|piece| piece.outward == Vector3::zeros()));
     }
 
     proptest! {
