@@ -90,7 +90,7 @@ mod tests {
         assert_eq!(parse(b"{\"a\": 1, \"b\": -0.5}").unwrap()[0]["b"], -0.5);
         assert_eq!(parse(b"[{\"a\": 1}, {\"a\": 2}]").unwrap()[1]["a"], 2.0);
         for (text, parts) in [
-            ("[{\"a\": 1}]", vec!["1 positions", "as an object"]),
+            ("[{\"a\": 1}]", vec!["too few positions (1)", "as an object"]),
             (
                 "[{\"a\": 1}, {\"a\": NaN}]",
                 vec!["position 2 of the list", "`a` is at NaN:", "finite"],
