@@ -71,6 +71,28 @@ fn a_parcel_that_the_robot_put_down_read_free_inside() {
     }
 }
 
+/// Behind itself nothing is known to have come since.
+#[test]
+fn a_robot_that_moved_toward_the_camera_may_go_back() {
+    let floor = ExactMesh::new(&scene::moved(&scene::plane_patch(6.0), &at(0.0, 0.0, 2.0)));
+    let (size, here) = ([0.3; 3], Pose::identity());
+    let (before, after) = (at(0.0, 0.0, 1.7), at(0.0, 0.0, 1.1));
+    let frame_of = |place: &Pose, seed| {
+        let link = ExactMesh::new(&scene::moved(&scene::cuboid(size), place));
+        let mut by = CloudSettings::new(SensorModel::Isotropic { std: 0.01 });
+        let mesh = Arc::new(mesh(&scene::cuboid(size)));
+        by.filter.robot = vec![SelfMesh { mesh, cloud_from_link: *place, padding: 0.03 }];
+        (frame(&[&floor, &link], &here, seed), by)
+    };
+    let ((first, by), (second, by_second)) = (frame_of(&before, 3), frame_of(&after, 4));
+    let mut cloud = Cloud::prepare(&first, &by).unwrap();
+    cloud.replace_frame(&second, &by_second).unwrap();
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let report = query.run(&cloud, &mesh(&scene::cuboid(size)), &before).unwrap();
+    let unseen = report.unseen.expect("an image").share();
+    assert!(unseen < 0.01 && report.verdict != Verdict::Undecided, "{report:?}");
+}
+
 #[test]
 fn what_the_camera_sees_through_goes_and_what_is_hidden_stays() {
     let (wall, block, here) = (wall(), block(), Pose::identity());

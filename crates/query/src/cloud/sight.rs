@@ -61,7 +61,7 @@ fn best_of(images: &[Seeing], place: &Point3) -> Option<Sight> {
             }
             return Some(sight);
         }
-        if sight.is_behind() && image.is_later() {
+        if sight.is_behind() && image.is_later() && !image.is_hidden_by_robot(place) {
             is_hidden = true;
             hiding = hiding.or_else(|| image.hiding(place));
         }

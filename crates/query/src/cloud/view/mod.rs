@@ -166,8 +166,7 @@ impl Seeing<'_> {
     /// saw.
     pub(crate) fn sight(&self, place: &Point3) -> Sight {
         let sight = self.sight_of_returns(place);
-        let was_robot = || self.image.robot.iter().any(|link| link.held(place));
-        if sight != Sight::Seen && was_robot() { Sight::Seen } else { sight }
+        if sight != Sight::Seen && self.was_robot(place) { Sight::Seen } else { sight }
     }
 
     /// What is known of a place by what the camera measured alone.
@@ -187,8 +186,18 @@ impl Seeing<'_> {
         let [range, std] =
             self.raster.hiding(&ray).filter(|[range, _]| *range > 2.0 * AT_SENSOR)?;
         let thing = self.image.sensor_origin + ray.normalize() * range;
-        let is_robot = self.image.robot.iter().any(|link| link.held(&thing));
-        (!is_robot).then_some((thing, std))
+        (!self.was_robot(&thing)).then_some((thing, std))
+    }
+
+    /// Whether the robot itself hides a place: then nothing is known to have come.
+    pub(super) fn is_hidden_by_robot(&self, place: &Point3) -> bool {
+        let ray = place - self.image.sensor_origin;
+        let thing = |[range, _]: [f64; 2]| self.image.sensor_origin + ray.normalize() * range;
+        self.raster.hiding(&ray).map(thing).is_some_and(|thing| self.was_robot(&thing))
+    }
+
+    fn was_robot(&self, place: &Point3) -> bool {
+        self.image.robot.iter().any(|link| link.held(place))
     }
 
     /// Whether it is of the scene as it was after all images before it.
