@@ -223,9 +223,8 @@ fn described(label: &str, pair: &PairAnswer) -> String {
 
 /// A pair on a path with what is to be said of it, without what is told of its bodies by themselves.
 fn warned(pair: &PairAnswer, of: &PathChecked) -> String {
-    let known = |warning: &Warning| {
-        of.given.first().is_some_and(|at| at.warnings.iter().any(|of| of.warning == *warning))
-    };
+    let known =
+        |warning: &Warning| of.given.first().is_some_and(|at| scene::is_of_a_body(at, warning));
     let warnings = pair.answer.iter().flat_map(|report| &report.warnings);
     let line = |warning| labelled("warning", &remedies::warning(warning)) + "\n";
     let lines = warnings.filter(|warning| !known(warning)).map(line);

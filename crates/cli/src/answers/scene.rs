@@ -161,8 +161,7 @@ fn of_pairs(checked: &Checked) -> String {
     let mut told: Vec<(&PairAnswer, &Warning)> = Vec::new();
     for pair in &checked.pairs {
         for warning in pair.answer.iter().flat_map(|report| &report.warnings) {
-            let known = checked.warnings.iter().any(|of| of.warning == *warning);
-            if !known && told.iter().all(|(_, other)| *other != warning) {
+            if !is_of_a_body(checked, warning) && told.iter().all(|(_, other)| *other != warning) {
                 told.push((pair, warning));
             }
         }
@@ -171,6 +170,11 @@ fn of_pairs(checked: &Checked) -> String {
         labelled("warning", &format!("{}: {}", names(pair), remedies::warning(warning))) + "\n"
     };
     told.iter().take(WARNINGS_TOLD).map(line).collect()
+}
+
+/// Whether a warning of a pair is one of its bodies, which are told of by themselves.
+pub(crate) fn is_of_a_body(checked: &Checked, warning: &Warning) -> bool {
+    checked.warnings.iter().any(|of| of.warning == *warning)
 }
 
 /// Where a body lies in the frame of the scene.

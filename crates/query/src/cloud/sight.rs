@@ -4,7 +4,7 @@ use cloudtouch_geom::Point3;
 
 use super::prepared::Prepared;
 use super::view::seen::Sight;
-use super::view::{Seeing, range};
+use super::view::{Hiding, Seeing, range};
 
 impl Prepared {
     /// What its scans know of places in the local frame: of depth images the one that knows most tells, and
@@ -61,9 +61,12 @@ fn best_of(images: &[Seeing], place: &Point3) -> Option<Sight> {
             }
             return Some(sight);
         }
-        if sight.is_behind() && image.is_later() && !image.is_hidden_by_robot(place) {
-            is_hidden = true;
-            hiding = hiding.or_else(|| image.hiding(place));
+        if sight.is_behind() && image.is_later() && hiding.is_none() {
+            match image.hiding(place) {
+                Hiding::Robot => {}
+                Hiding::Thing(thing, std) => (is_hidden, hiding) = (true, Some((thing, std))),
+                Hiding::Unknown => is_hidden = true,
+            }
         }
         best = Some(best.map_or(sight, |best: Sight| best.min(sight)));
     }

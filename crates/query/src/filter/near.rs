@@ -9,7 +9,7 @@ use super::range::is_return_to;
 /// Columns and rows from a pixel to those beside it, to one side each.
 const AROUND: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 
-/// The rows of an image that are nearer than returns are kept, whether that was said or not, in order, but for single pixels, as specks
+/// The rows of an image that are nearer than returns are kept, said or not, in order, but for single pixels, as specks
 /// are: things were there, however thin, and what is behind them nobody saw.
 pub(super) fn too_near(cloud: &PointCloud, settings: &FilterSettings) -> Vec<usize> {
     let min = settings.min_range.or_else(|| settings.unstated_min_range(cloud));

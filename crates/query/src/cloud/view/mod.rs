@@ -154,6 +154,17 @@ impl SingleView {
     }
 }
 
+/// What hides a place from a camera.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Hiding {
+    /// The robot itself: nothing is known to have come.
+    Robot,
+    /// What is there, and its standard deviation, m.
+    Thing(Point3, f64),
+    /// Nothing all around the place's direction, or what is too near to be trusted.
+    Unknown,
+}
+
 /// A view with its raster, all in the cloud's local frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seeing<'a> {
@@ -179,21 +190,18 @@ impl Seeing<'_> {
         self.raster.looks_past(&(place - self.image.sensor_origin), std)
     }
 
-    /// Where what hides a place is, and its standard deviation, m; `None` where nothing does, or not all around, or the
-    /// robot, or what is too near to be trusted.
-    pub(super) fn hiding(&self, place: &Point3) -> Option<(Point3, f64)> {
+    /// What hides a place that is behind returns.
+    pub(super) fn hiding(&self, place: &Point3) -> Hiding {
         let ray = place - self.image.sensor_origin;
-        let [range, std] =
-            self.raster.hiding(&ray).filter(|[range, _]| *range > 2.0 * AT_SENSOR)?;
+        let Some([range, std]) = self.raster.hiding(&ray) else { return Hiding::Unknown };
         let thing = self.image.sensor_origin + ray.normalize() * range;
-        (!self.was_robot(&thing)).then_some((thing, std))
-    }
-
-    /// Whether the robot itself hides a place: then nothing is known to have come.
-    pub(super) fn is_hidden_by_robot(&self, place: &Point3) -> bool {
-        let ray = place - self.image.sensor_origin;
-        let thing = |[range, _]: [f64; 2]| self.image.sensor_origin + ray.normalize() * range;
-        self.raster.hiding(&ray).map(thing).is_some_and(|thing| self.was_robot(&thing))
+        if self.was_robot(&thing) {
+            Hiding::Robot
+        } else if range > 2.0 * AT_SENSOR {
+            Hiding::Thing(thing, std)
+        } else {
+            Hiding::Unknown
+        }
     }
 
     fn was_robot(&self, place: &Point3) -> bool {
