@@ -147,19 +147,19 @@ fn a_sensor_within_the_hollow_tells_that_it_is_one() {
     assert_eq!(within.undecided_by, Some(Undecided::Enclosed), "{within:?}");
 }
 
+/// A floor, and high above it a ball in the air.
+fn floor_and_ball() -> Cloud {
+    let mut points: Vec<Point3> = measured(&scene::plane_patch(2.0), 0.015, 0.002, 3);
+    let ball = scene::moved(&scene::sphere(0.05, 3), &at(0.0, 0.0, 0.6));
+    points.extend(measured(&ball, 0.006, 0.002, 4));
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud")
+}
+
 /// It was looked for the object within the scene alone, and a scene has things that an object may be around.
 #[test]
 fn a_thing_of_the_scene_within_a_box_that_lacks_a_triangle_read_free() {
-    let mut points: Vec<Point3> = measured(&scene::plane_patch(2.0), 0.015, 0.002, 3);
-    points.extend(measured(
-        &scene::moved(&scene::sphere(0.05, 3), &at(0.0, 0.0, 0.6)),
-        0.006,
-        0.002,
-        4,
-    ));
-    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
-    let floor_and_ball =
-        Cloud::prepare(&PointCloud::from_points(points), &settings).expect("a good cloud");
+    let floor_and_ball = floor_and_ball();
     let query = Query::new(QuerySettings::default()).expect("good settings");
     let without = |whole: &TriangleMesh, lost: usize| {
         let mut triangles = whole.triangles().to_vec();
@@ -176,6 +176,36 @@ fn a_thing_of_the_scene_within_a_box_that_lacks_a_triangle_read_free() {
         let free = query.run(&floor_and_ball, &open, &above).expect("a good pose");
         assert_eq!(free.verdict, Verdict::Free, "{free:?}");
     }
+}
+
+/// Of objects that are clouds too.
+#[test]
+fn a_thing_of_the_scene_within_a_closed_cloud_read_free() {
+    let floor_and_ball = floor_and_ball();
+    for shape in [scene::cuboid([0.3; 3]), scene::sphere(0.2, 4)] {
+        let closed = cloud(&shape, None, 5);
+        let around = at(0.085, 0.0, 0.6);
+        for report in [
+            ask(&floor_and_ball, &closed, &around),
+            ask(&closed, &floor_and_ball, &around.inverse()),
+        ] {
+            assert_eq!(report.undecided_by, Some(Undecided::Enclosed), "{report:?}");
+            assert_eq!((report.verdict, report.bounds[1]), (Verdict::Undecided, 1.0));
+        }
+        let free = ask(&floor_and_ball, &closed, &at(0.085, 0.0, 1.2));
+        assert_eq!(free.verdict, Verdict::Free, "{free:?}");
+        // Its sensor within it saw that there is room.
+        let hollow = cloud(&shape, Some(Vector3::new(0.0, 0.1, 0.1)), 5);
+        let free = ask(&floor_and_ball, &hollow, &around);
+        assert_eq!(free.verdict, Verdict::Free, "{free:?}");
+    }
+    // A bowl is open.
+    let ball = scene::sphere(0.2, 4);
+    let is_low = |of: &&[u32; 3]| of.iter().all(|&v| ball.vertices()[v as usize].z < 0.05);
+    let faces = ball.triangles().iter().filter(is_low).copied().collect();
+    let bowl = TriangleMesh::new(ball.vertices().to_vec(), faces).expect("a mesh");
+    let free = ask(&floor_and_ball, &cloud(&bowl, None, 5), &at(0.085, 0.0, 0.6));
+    assert_eq!(free.verdict, Verdict::Free, "{free:?}");
 }
 
 /// From each place something is seen through a gap between samples, where a single line is asked.

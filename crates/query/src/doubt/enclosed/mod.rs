@@ -39,9 +39,7 @@ pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
     } else {
         (b, a, middle_of_a, a_from_b.inverse())
     };
-    if let Shape::Mesh(mesh) = inner
-        && holds_part_of(mesh, &middle, outer, &outer_from_inner)
-    {
+    if holds_part_of((inner, &middle), outer, &outer_from_inner) {
         return true;
     }
     let place = outer_from_inner.transform_point(&middle);
@@ -63,13 +61,26 @@ fn nearly_surrounds(mesh: &Mesh, place: &Point3) -> bool {
     !mesh.is_closed() && is_within() && mesh.is_all_around(place, CLOSED)
 }
 
-/// Whether an open mesh is all around the place of a larger body that is nearest to its middle, as around a thing of
-/// a scene.
-fn holds_part_of(mesh: &Mesh, middle: &Point3, larger: Shape<'_>, larger_from_mesh: &Pose) -> bool {
-    let nearest = || nearest_of(larger, &larger_from_mesh.transform_point(middle));
-    let is_within =
-        |place: Point3| nearly_surrounds(mesh, &larger_from_mesh.inverse().transform_point(&place));
-    !mesh.is_closed() && nearest().is_some_and(is_within)
+/// Whether the surface of a body, of which the middle is given, is all around the place of a larger one that is nearest
+/// to its middle, as around a thing of a scene.
+fn holds_part_of(
+    (body, middle): (Shape<'_>, &Point3),
+    larger: Shape<'_>,
+    larger_from_body: &Pose,
+) -> bool {
+    let may_hold = match body {
+        Shape::Cloud(_) => true,
+        Shape::Mesh(mesh) => !mesh.is_closed(),
+    };
+    let nearest = || {
+        let place = nearest_of(larger, &larger_from_body.transform_point(middle))?;
+        Some(larger_from_body.inverse().transform_point(&place))
+    };
+    may_hold
+        && nearest().is_some_and(|place| match body {
+            Shape::Cloud(cloud) => surrounds(cloud, &place, || Some(place)),
+            Shape::Mesh(mesh) => nearly_surrounds(mesh, &place),
+        })
 }
 
 /// The place of a body that is nearest to one, in its local frame.
