@@ -77,6 +77,14 @@ def test_wrong_names_and_poses_are_told(scene, floor):
             add("floor", np.zeros((5, 3)))
 
 
+def test_a_body_that_was_to_be_moved_to_no_pose_went_to_the_origin(scene):
+    """As what was looked up and not found is handed on."""
+    before = scene.boxes()["plate"]
+    with pytest.raises(TypeError, match="^pose is None: give an array"):
+        scene.set_pose("plate", None)
+    assert (scene.boxes()["plate"] == before).all()
+
+
 def test_arguments_of_another_type_are_named(scene, floor):
     query = ct.Query()
     for ask, says in [

@@ -134,7 +134,7 @@ class Scene:
 
     def set_pose(self, name: str, pose: npt.ArrayLike) -> None:
         """Moves a body, and what is attached to it."""
-        self._scene.set_pose(_given.text(name, "name"), _matrix(pose))
+        self._scene.set_pose(_given.text(name, "name"), _arrays.numbers(pose, "pose", (4, 4)))
 
     def attach(self, name: str, to: str) -> None:
         """From now on the first moves with the second, from where both are."""
