@@ -85,7 +85,7 @@ def numbers(value: Any, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.flo
 
 def indices(value: Any, name: str) -> npt.NDArray[np.uint32]:
     """Three indices of vertices a row."""
-    array = array_of(value, name)
+    array = _whole(value, name)
     if array.size == 0:
         array = np.empty((0, 3), dtype=np.uint32)
     if array.ndim != 2 or array.shape[1] != 3:
@@ -100,7 +100,7 @@ def indices(value: Any, name: str) -> npt.NDArray[np.uint32]:
 
 def places(value: Any, name: str, count: int) -> list[int]:
     """Which of so many rows, by indices or by a truth value each."""
-    array = array_of(value, name)
+    array = _whole(value, name)
     if array.size == 0 and array.ndim == 1 and array.dtype.kind != "b":
         array = array.astype(np.int64)
     if array.ndim != 1 or (array.dtype.kind == "b" and len(array) != count):
@@ -124,6 +124,13 @@ def _readable(array: npt.NDArray[Any], name: str) -> npt.NDArray[Any]:
     single = array.dtype.itemsize == 4 and array.dtype.kind == "f"
     # Aligned, and in the byte order of the machine.
     return np.require(array, dtype=np.float32 if single else np.float64, requirements="A")
+
+
+def _whole(value: Any, name: str) -> npt.NDArray[Any]:
+    """An array of indices, of which none is masked: what is under a mask would count."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise ValueError(f"{name} is a masked array: give the rows of it that count, as a plain array")
+    return array_of(value, name)
 
 
 def _refuse_mask(name: str) -> npt.NDArray[Any]:

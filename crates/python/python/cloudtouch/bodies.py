@@ -540,6 +540,9 @@ def _links(robot: Any) -> list[SeenLink]:
     for link in links:
         if not isinstance(link, SeenLink):
             raise TypeError(f"robot has a {type(link).__name__}: give what Robot.seen returns, or a list of SeenLink")
+        if not isinstance(link.mesh, Mesh):
+            raise TypeError(f"robot has a link of the type {type(link.mesh).__name__}: give a cloudtouch.Mesh")
+        _given.number(link.padding, "robot: padding")
     return links
 
 

@@ -48,7 +48,7 @@ class Page:
 
     def frame(self, height: int = 480) -> str:
         """A frame of so many pixels with the page in it, as a part of another page."""
-        return self._render(height)
+        return self._render(_given.count(height, "height"))
 
     def _repr_html_(self) -> str:
         return self.frame()

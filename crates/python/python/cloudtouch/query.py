@@ -131,7 +131,8 @@ class Query:
         CloudtouchError
             ``share`` is not between 0 and 1, and what :meth:`run` raises.
         """
-        low, high = self._query.clearance_interval(*native_pair(a, b), _arrays.numbers(pose, "pose", (4, 4)), share)
+        matrix, share = _arrays.numbers(pose, "pose", (4, 4)), _given.number(share, "share")
+        low, high = self._query.clearance_interval(*native_pair(a, b), matrix, share)
         return low, high
 
     def run_uncertain(
@@ -196,8 +197,8 @@ class Query:
         CloudtouchError
             ``probability`` is not between 0 and 1, and what :meth:`run` raises.
         """
-        matrix = _arrays.numbers(pose, "pose", (4, 4))
-        report, out = self._query.penetration(*native_pair(a, b), matrix, probability)
+        matrix, below = _arrays.numbers(pose, "pose", (4, 4)), _given.number(probability, "probability")
+        report, out = self._query.penetration(*native_pair(a, b), matrix, below)
         return Report._of(report), None if out is None else Penetration(**out)
 
     def sweep(
@@ -224,7 +225,8 @@ class Query:
             All poses are the same, ``tolerance`` is below 1e-5 or not below 1, and what :meth:`run` raises.
         """
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
-        return Swept._of(self._query.sweep(*native_pair(a, b), matrices, screw, tolerance))
+        how = _given.flag(screw, "screw"), _given.number(tolerance, "tolerance")
+        return Swept._of(self._query.sweep(*native_pair(a, b), matrices, *how))
 
     def run_batch(
         self, a: Body, b: Body, poses: npt.ArrayLike, *, errors: Literal["raise", "keep"] = "raise"
@@ -271,8 +273,9 @@ class Query:
         if np.ndim(poses) == 2:
             poses = _arrays.numbers(poses, "poses", (4, 4))[None]
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4)).copy()
+        bodies, title = native_pair(a, b), _given.text(title, "title")
         words = (title, [body.sensor if isinstance(body, Cloud) else None for body in (a, b)])
-        return Page(lambda height: self._query.page(*native_pair(a, b), matrices, words, height))
+        return Page(lambda height: self._query.page(*bodies, matrices, words, height))
 
     def __repr__(self) -> str:
         return f"Query({', '.join(f'{name}={value!r}' for name, value in self._settings.items())})"

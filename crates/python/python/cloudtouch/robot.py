@@ -141,6 +141,7 @@ class Robot:
         ValueError, CloudtouchError
             As :meth:`link_poses`, and where ``padding`` is negative or not finite.
         """
+        padding = _given.number(padding, "padding")
         if not 0 <= padding < math.inf:
             raise ValueError(f"padding is {padding}: give metres, 0 or more")
         links = self._robot.seen(self._named(joints, "joints"), _base(base_pose))
@@ -229,6 +230,8 @@ class RobotChecker:
         *,
         self_collision: bool = False,
     ) -> None:
+        if not isinstance(robot, Robot):
+            raise TypeError(f"robot is {_given.told(robot)}: give a cloudtouch.Robot")
         self._robot = robot
         body = native_body(surroundings, "surroundings")
         self._checker = _native.RobotChecker(robot._robot, body, _base(base_pose), self_collision)
@@ -347,6 +350,7 @@ class RobotChecker:
             There are fewer than two, ``tolerance`` is below 1e-5 or above 1, or as :meth:`check`.
         """
         asked, rows = native_query(query), _arrays.rows_of(path)
+        tolerance = _given.number(tolerance, "tolerance")
         positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(rows)]
         given, until, (stopped, later), looked_at, verdict = self._checker.check_path(asked, positions, tolerance)
         checked = tuple(Checked._of(*at) for at in given)

@@ -1,0 +1,71 @@
+"""Single values of another type are refused by the name of their argument."""
+
+import numpy as np
+import pytest
+from conftest import lifted
+
+import cloudtouch as ct
+
+URDF = """<robot name='r'><link name='a'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>
+  <link name='b'/><joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint></robot>"""
+
+
+@pytest.fixture
+def robot(tmp_path):
+    (tmp_path / "r.urdf").write_text(URDF)
+    return ct.Robot(tmp_path / "r.urdf")
+
+
+def refused(cases):
+    for ask, says in cases:
+        with pytest.raises(TypeError, match=says):
+            ask()
+
+
+def test_what_a_query_is_asked_was_told_without_its_name(table, parcel):
+    query, pose = ct.Query(), lifted(0.2)
+    path = [lifted(0.2), lifted(0.3)]
+    refused(
+        [
+            (lambda: query.clearance_interval(table, parcel, pose, "most"), "^share is 'most': give a number"),
+            (lambda: query.penetration(table, parcel, pose, None), "^probability is None: give a number"),
+            (lambda: query.sweep(table, parcel, path, tolerance="fine"), "^tolerance is 'fine': give a number"),
+            (lambda: query.sweep(table, parcel, path, screw=1), "^screw is 1: give True or False"),
+            (lambda: query.page(table, parcel, pose, title=5), "^title is 5: give a str"),
+            (lambda: query.page(table, pose, pose), "^b is of the type ndarray: give a cloudtouch.Cloud"),
+            (lambda: query.page(table, parcel, pose).frame(-1), "^height is -1: give a whole number, 0 or more"),
+        ]
+    )
+
+
+def test_what_a_robot_is_asked_was_told_without_its_name(robot, floor):
+    checker, query = ct.RobotChecker(robot, floor), ct.Query()
+    refused(
+        [
+            (lambda: ct.RobotChecker("arm.urdf", floor), "^robot is 'arm.urdf': give a cloudtouch.Robot"),
+            (lambda: checker.check_path(query, [[0.0], [1.0]], tolerance="fine"), "^tolerance is 'fine'"),
+            (lambda: robot.seen([0.0], padding="1 cm"), "^padding is '1 cm': give a number"),
+        ]
+    )
+
+
+def test_a_link_of_another_kind_was_told_in_words_of_the_compiled_half(table, floor):
+    def seen(mesh, padding):
+        return ct.Cloud(floor.points, sensor="iso:0.001", robot=[ct.SeenLink(mesh, np.eye(4), padding)])
+
+    refused(
+        [
+            (lambda: seen("link.stl", 0.01), "^robot has a link of the type str: give a cloudtouch.Mesh"),
+            (lambda: seen(floor, 0.01), "^robot has a link of the type Cloud: give a cloudtouch.Mesh"),
+            (lambda: seen(table, "1 cm"), "^robot: padding is '1 cm': give a number"),
+        ]
+    )
+
+
+def test_what_is_under_a_mask_counted_as_an_index(table, parcel):
+    masked = np.ma.masked_array(table.triangles, mask=False)
+    masked[0] = np.ma.masked
+    with pytest.raises(ValueError, match="^triangles is a masked array: give the rows of it that count"):
+        ct.Mesh(table.vertices, masked)
+    with pytest.raises(ValueError, match="^which is a masked array"):
+        ct.Cloud(parcel.points, sensor="iso:0.002").remove(np.ma.masked_array([1, 2], mask=[True, False]))
