@@ -51,10 +51,27 @@ pub(crate) fn in_package(uri: &str) -> Option<(&str, &str)> {
 }
 
 fn around(folder: &Path, package: &str) -> Option<PathBuf> {
-    let folder = std::path::absolute(folder).ok()?;
+    // Of a file that is named without a folder that is empty, which is no path.
+    let folder = std::path::absolute(Path::new(".").join(folder)).ok()?;
     folder.ancestors().find_map(|at| {
         let is_it = at.file_name().is_some_and(|name| name == package);
         let beside = at.join(package);
         is_it.then(|| at.to_owned()).or_else(|| beside.is_dir().then_some(beside))
     })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    /// Of `arm.urdf` alone, as one writes it in its folder, the folder is empty.
+    #[test]
+    fn the_package_around_a_file_of_the_working_folder_was_not_known() {
+        let here = std::env::current_dir().unwrap();
+        let name = here.file_name().unwrap().to_str().unwrap();
+        assert_eq!(around(Path::new(""), name), Some(here.clone()));
+        assert_eq!(around(Path::new(""), "src"), Some(here.join("src")));
+        assert_eq!(around(Path::new("src"), name), Some(here));
+    }
 }
