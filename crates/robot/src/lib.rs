@@ -9,6 +9,7 @@ mod hold;
 mod joint;
 mod link;
 mod motion;
+mod nesting;
 mod primitive;
 mod robot;
 mod srdf;

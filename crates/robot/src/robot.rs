@@ -12,6 +12,7 @@ use crate::error::{JointsError, RobotError, RobotFault};
 use crate::essential::essential;
 use crate::joint::{Joint, JointKind};
 use crate::link::{Shape, Sources};
+use crate::nesting;
 use crate::srdf::disabled_pairs;
 use crate::tree::Tree;
 use crate::uri::in_package;
@@ -73,6 +74,7 @@ impl Robot {
         if text.trim().is_empty() {
             return Err(RobotFault::Empty);
         }
+        nesting::check(text)?;
         let urdf = urdf_rs::read_from_string(&essential(text)?)
             .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
         let tree = Tree::try_from_urdf(&urdf)?;

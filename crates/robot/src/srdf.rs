@@ -4,6 +4,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use crate::error::RobotFault;
+use crate::nesting;
 
 #[derive(Deserialize)]
 struct Srdf {
@@ -28,6 +29,7 @@ pub(crate) fn disabled_pairs(text: &str) -> Result<Vec<[String; 2]>, RobotFault>
     if text.trim().is_empty() {
         return Err(RobotFault::Empty);
     }
+    nesting::check(text)?;
     let srdf: Srdf = quick_xml::de::from_str(text)
         .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
     if srdf.disabled.is_empty() && !srdf.links.is_empty() {

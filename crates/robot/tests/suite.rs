@@ -2,6 +2,7 @@
 
 mod arm;
 mod description;
+mod nested;
 mod path;
 mod real;
 mod seen;
