@@ -20,12 +20,34 @@ pub(crate) fn separator(line: &[u8]) -> Option<u8> {
 
 /// The values of a row, without the white space and quotes around them.
 pub(crate) fn values(line: &[u8], separator: Option<u8>) -> Box<dyn Iterator<Item = &[u8]> + '_> {
-    match separator {
-        Some(separator) => Box::new(line.split(move |&b| b == separator).map(|value| {
-            let value = value.trim_ascii();
-            value.strip_prefix(b"\"").and_then(|v| v.strip_suffix(b"\"")).unwrap_or(value)
-        })),
-        None => Box::new(words(line)),
+    let Some(separator) = separator else { return Box::new(words(line)) };
+    let mut rest = Some(line);
+    Box::new(std::iter::from_fn(move || {
+        let line = rest?;
+        let end = end_of_value(line, separator);
+        rest = line.get(end + 1..);
+        let value = line[..end].trim_ascii();
+        Some(value.strip_prefix(b"\"").and_then(|v| v.strip_suffix(b"\"")).unwrap_or(value))
+    }))
+}
+
+/// Where the first value ends: at a separator that is not between quotes, or with the line.
+fn end_of_value(line: &[u8], separator: u8) -> usize {
+    let text = line.trim_ascii_start();
+    let quoted = text.strip_prefix(b"\"").and_then(closing_quote);
+    let from = quoted.map_or(0, |length| line.len() - text.len() + 1 + length);
+    line[from..].iter().position(|&b| b == separator).map_or(line.len(), |at| from + at)
+}
+
+/// Where the quote is that closes a text; one of the text itself is there twice.
+fn closing_quote(text: &[u8]) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        at += text[at..].iter().position(|&b| b == b'"')?;
+        if text.get(at + 1) != Some(&b'"') {
+            return Some(at);
+        }
+        at += 2;
     }
 }
 

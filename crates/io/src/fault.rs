@@ -180,6 +180,17 @@ pub enum Fault {
         /// Values found.
         found: usize,
     },
+    /// A row has more values than there are names, so that some of them are not below theirs.
+    #[error(
+        "the row has {found} values below {names} names, so that it is not clear which is what: put text with a \
+         separator in it into quotes, and write decimals with a point"
+    )]
+    SurplusValues {
+        /// Columns named.
+        names: usize,
+        /// Values found.
+        found: usize,
+    },
     /// A row has so many values that several points seem to be in it.
     #[error(
         "the row has {found} values, those of several points: write one point a line, or name the \

@@ -180,3 +180,31 @@ fn text_in_utf_16_is_told_as_such() {
         assert!(error.contains("UTF-16: save it as UTF-8"), "{error}");
     }
 }
+
+/// The columns after it moved one to the right: the cloud lay where nothing was, and all was free there.
+#[test]
+fn a_comma_in_quotes_or_for_a_decimal_point_moved_the_columns() {
+    let expected = [Point3::new(1.0, 2.0, 3.0)];
+    for text in [
+        "label,id,x,y,z\n\"a, b\",7,1,2,3\n",
+        "label;id;x;y;z\n \"a;b\" ;7;1;2;3\n",
+        "label,id,x,y,z\n\"a \"\"b\"\", c\",7,1,2,3\n",
+        "label,id,x,y,z\n\"\",7,1,2,3\n",
+        "label,x,y,z\n\"a,1,2,3\n",
+        "x,y,z,label\n1,2,3,\"a, b\"\n",
+        // A separator at the end, as some programs write it.
+        "x,y,z\n1,2,3,\n",
+        "x;y;z\n1;2;3; ;\n",
+        // What comes after the coordinates moves none.
+        "id x y z name\n7 1 2 3 a lid\n",
+    ] {
+        assert_eq!(points(text), expected, "{text}");
+    }
+    let surplus = |line, names, found| (Place::Line(line), Fault::SurplusValues { names, found });
+    assert_eq!(error("x,y,z\n1,2,3\n1,5,2,5,3,5\n"), surplus(3, 3, 6));
+    assert_eq!(error("# x,y,z\n1,2,3\n1,5,2,5,3,5\n"), surplus(3, 3, 6));
+    assert_eq!(error("label,id,x,y,z\na, b,7,1,2,3\n"), surplus(2, 5, 6));
+    assert_eq!(error("label\tid\tx\ty\tz\na lid\t7\t1\t2\t3\n"), surplus(2, 5, 6));
+    let (_, fault) = error("x,y,z\n1,5,2,5,3,5\n");
+    assert!(fault.to_string().contains("write decimals with a point"), "{fault}");
+}

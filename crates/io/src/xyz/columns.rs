@@ -3,7 +3,7 @@
 use crate::{
     builder::Row,
     column_names::{count, of_comment, of_header, separator, values},
-    fault::{FormatError, Place},
+    fault::{Fault, FormatError, Place},
     text::{number, parse as parse_number},
 };
 
@@ -19,8 +19,8 @@ pub(super) struct Columns {
     /// How many values a row has at least. Between white space an empty one moves all that follow it: where
     /// columns have names, or tabs between them, a row has as many as the first.
     pub fewest: usize,
-    /// Whether they have names: those without may be anything.
-    pub is_named: bool,
+    /// How many columns have names, if any: those without may be anything.
+    pub names: Option<usize>,
     /// Whether the first row is the one that names them, and no point.
     pub is_header: bool,
 }
@@ -42,6 +42,11 @@ impl Columns {
             None => None,
         };
         let is_named = named.is_some();
+        // A comment has as many names as this row has numbers.
+        let names = is_named.then(|| match is_header {
+            true => count(first),
+            false => values(first, separator).count(),
+        });
         let places = named.unwrap_or_else(|| vec![0, 1, 2]);
         let mut wanted: Vec<(usize, usize)> = places.iter().copied().zip(0..).collect();
         wanted.sort_unstable();
@@ -49,7 +54,7 @@ impl Columns {
             None if is_named || first.contains(&b'\t') => count(first).max(3),
             _ => wanted.last().map_or(0, |&(column, _)| column + 1),
         };
-        Ok(Self { separator, places, wanted, fewest, is_named, is_header })
+        Ok(Self { separator, places, wanted, fewest, names, is_header })
     }
 
     /// What a row has of these columns, and how many it has in all.
@@ -64,5 +69,18 @@ impl Columns {
             found += 1;
         }
         Ok((row, found))
+    }
+
+    /// Checks that no text with a separator in it, and no decimal comma, has moved a row of so many values to the
+    /// right of its names. Words behind the coordinates move none of these.
+    pub(super) fn check_surplus(&self, line: &[u8], found: usize) -> Result<(), Fault> {
+        let Some(names) = self.names.filter(|names| found > *names) else { return Ok(()) };
+        let values = values(line, self.separator);
+        let last = self.wanted.last().map_or(0, |&(column, _)| column);
+        let is_moved = match self.separator {
+            Some(_) => values.skip(names).any(|value| !value.is_empty()),
+            None => values.take(last).any(|value| parse_number::<f64>(value).is_none()),
+        };
+        if is_moved { Err(Fault::SurplusValues { names, found }) } else { Ok(()) }
     }
 }

@@ -23,11 +23,13 @@ use self::unnamed::{refuse_a_count, refuse_many_columns};
 /// cov_zz (m², all six or none), in any order and case; so does the last comment before it, when it has x, y
 /// and z among as many words as the line has numbers. `x (m)` and `x [m]` are x, and so is `Points:0` of
 /// ParaView; another unit there is refused. Without names the first three columns are x, y, z.
-/// Other columns are passed over. `nan` is a missing return.
+/// Other columns are passed over, and separators between quotes are a part of the text there. `nan` is a missing
+/// return.
 ///
 /// # Errors
 /// When there is nothing but comments, a column is missing or named twice, a row is too short (between tabs, or
-/// between white space under names: shorter than the first, for its empty values cannot be told), a value is no number, a covariance is none, a row
+/// between white space under names: shorter than the first, for its empty values cannot be told) or has more values than there are names so that they
+/// do not tell what is what, a value is no number, a covariance is none, a row
 /// without column names seems to hold several points, the first of four or more such columns counts the rows, or there are more points than the default [`ReadLimits`] allow.
 pub fn parse(bytes: &[u8]) -> Result<PointCloud, FormatError> {
     parse_within(bytes, &ReadLimits::default())
@@ -54,19 +56,20 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<PointCloud, For
         let (row, found) = columns.row(line, lines.number)?;
         let expected = columns.fewest;
         if found < expected {
-            let is_count = !columns.is_named && cloud.len() == 0 && found == 1;
+            let is_count = columns.names.is_none() && cloud.len() == 0 && found == 1;
             return Err(lines.place().error(match is_count {
                 true => Fault::CountLine { found: excerpt(line) },
                 false => Fault::RowLength { expected, found },
             }));
         }
+        columns.check_surplus(line, found).map_err(|fault| lines.place().error(fault))?;
         cloud.push(&row, lines.place())?;
         if found > widest.0 {
             widest = (found, lines.place());
         }
     }
     let cloud = cloud.finish();
-    if !columns.is_named {
+    if columns.names.is_none() {
         let (found, place) = widest;
         refuse_many_columns(found, cloud.len()).map_err(|fault| place.error(fault))?;
         refuse_a_count(&cloud.points, found, columns.separator)
