@@ -114,17 +114,20 @@ pub fn parse_within(bytes: &[u8], limits: &ReadLimits) -> Result<TriangleMesh, F
         .map_err(|_| Place::Line(1).error(Fault::NoTriangles))
 }
 
-/// A line together with those that a backslash at its end joins to it.
+/// A line together with those that a backslash at its end joins to it; behind a `#` it is one of the comment.
 fn continued<'a>(first: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
-    let mut whole = Cow::Borrowed(first);
-    if !words(first).next().is_some_and(|keyword| CONTINUED.contains(&keyword)) {
-        return whole;
+    let goes_on = |line: &'a [u8]| line.strip_suffix(b"\\").filter(|start| !start.contains(&b'#'));
+    let is_continued = words(first).next().is_some_and(|keyword| CONTINUED.contains(&keyword));
+    let Some(start) = goes_on(first).filter(|_| is_continued) else { return first.into() };
+    let mut whole = start.to_vec();
+    for line in lines {
+        whole.push(b' ');
+        whole.extend_from_slice(goes_on(line).unwrap_or(line));
+        if goes_on(line).is_none() {
+            break;
+        }
     }
-    while let Some(start) = whole.strip_suffix(b"\\") {
-        let rest = lines.next().unwrap_or_default();
-        whole = Cow::Owned([start, b" ", rest].concat());
-    }
-    whole
+    whole.into()
 }
 
 fn two_counts(line: &[u8]) -> Option<[usize; 2]> {

@@ -42,6 +42,23 @@ fn a_backslash_ends_a_comment_or_a_name_like_any_other_letter() {
     assert_eq!(triangles("f 1 2 \\\n3 4\nvn 0 0 \\\n1\n"), [[0, 1, 2], [0, 2, 3]]);
 }
 
+/// The face after a path of Windows behind another was taken for a part of that path.
+#[test]
+fn a_backslash_in_a_comment_behind_values_took_the_next_line_away() {
+    let faces = "f 1 2 3 # of C:\\parts\\\nf 1 3 4\n";
+    assert_eq!(triangles(faces), [[0, 1, 2], [0, 2, 3]]);
+}
+
+/// Every line was copied once more with each that followed it: a minute for a megabyte.
+#[test]
+fn a_face_over_many_lines_takes_no_longer_than_they_are_long() {
+    let lines = 800_000;
+    let face = format!("f \\\n{}3\n", "1 2 \\\n".repeat(lines));
+    let begun = std::time::Instant::now();
+    assert_eq!(triangles(&face).len(), 2 * lines - 1);
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}
+
 /// A scan beside a box was a box.
 #[test]
 fn points_beside_faces_are_not_lost_without_a_word() {
