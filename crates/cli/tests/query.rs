@@ -236,3 +236,32 @@ fn a_collision_map_finer_than_the_noise_took_the_noise_away_in_silence() {
     }
     assert_eq!(told("--collision-map=0.1"), "");
 }
+
+/// Its colours were looked for in a second reading, of a pipe that nobody writes to any more: it waited for ever.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_picture_of_a_scan_from_a_pipe_was_never_done() {
+    let inputs = Inputs::new();
+    let pipe = inputs.path("scan.pcd");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let scan = std::fs::read(inputs.path("floor.pcd")).unwrap();
+    std::thread::spawn(move || std::fs::write(pipe, scan));
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_cloudtouch"));
+    let arguments = ["query", "scan.pcd", "box.obj", "--translate=0,0,0.5", "--ply=o.ply"];
+    command.current_dir(inputs.path("")).args(arguments);
+    let mut tool = command.stdout(std::process::Stdio::null()).spawn().unwrap();
+    let begun = std::time::Instant::now();
+    let code = loop {
+        match tool.try_wait().unwrap() {
+            Some(status) => break status.code(),
+            None if begun.elapsed().as_secs() < 60 => {
+                std::thread::sleep(std::time::Duration::from_millis(20))
+            }
+            None => {
+                tool.kill().unwrap();
+                break None;
+            }
+        }
+    };
+    assert!(code == Some(0) && inputs.names().contains(&"o.ply".to_owned()), "{code:?}");
+}

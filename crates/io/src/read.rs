@@ -204,7 +204,8 @@ fn recorded(name: &ScanName, _: &ReadLimits) -> Result<RecordedScan, ReadError> 
     Err(ReadError::NoRecordings { path: name.file.clone() })
 }
 
-/// Red, green and blue of every row of a cloud; `None` where the file has none.
+/// Red, green and blue of every row of a cloud; `None` where the file has none, or is a pipe, whose contents went
+/// to whoever read the points.
 ///
 /// # Errors
 /// As [`read_cloud`].
@@ -214,6 +215,7 @@ pub fn read_colors_within(
 ) -> Result<Option<Vec<[u8; 3]>>, ReadError> {
     let path = path.as_ref();
     match extension(path).as_str() {
+        _ if path.metadata().is_ok_and(|about| !about.is_file()) => Ok(None),
         "pcd" => read(path, pcd::colors_within, limits),
         "ply" => read(path, ply::colors_within, limits),
         _ => Ok(None),
