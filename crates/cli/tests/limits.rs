@@ -62,3 +62,21 @@ fn a_count_that_is_no_whole_number_was_an_invalid_digit_found_in_string() {
         assert!(run.stderr().contains("give a whole number"), "{option}: {}", run.stderr());
     }
 }
+
+/// They were read whole, however large: a device filled all memory.
+#[test]
+fn poses_and_kappas_are_files_with_a_limit_too() {
+    let inputs = Inputs::new();
+    let long = "# a comment\n".repeat(10_000);
+    inputs.write("long.txt", &long);
+    let limit = "--max-bytes=100000";
+    let parts = &["long.txt", "more than 100000 bytes", "(--max-bytes)"];
+    let pair = ["floor.pcd", "box.obj", limit];
+    for (command, more) in [
+        ("query", &["--pose=long.txt"][..]),
+        ("query", &["--mode=paper", "--kappas=long.txt"]),
+        ("path", &["--poses=long.txt"]),
+    ] {
+        check(&inputs, &[&[command], &pair[..], more].concat(), parts);
+    }
+}

@@ -22,8 +22,9 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<ExitCode> {
     inputs.into_iter().try_for_each(|path| load::check(path))?;
     let files = [&arguments.scene, &arguments.object, &arguments.poses];
     let inputs = files.into_iter().chain(options.robot).map(PathBuf::as_path);
-    arguments.answer.check_page(inputs)?;
-    let (path, doubt) = load::path::read(&arguments.poses, arguments.screw)?;
+    arguments.answer.check_page(inputs.chain(options.depth.file()))?;
+    let (path, doubt) =
+        load::path::read(&arguments.poses, arguments.screw, common.limits.read_limits().bytes)?;
     let steps = Steps::about([arguments.scene.as_path(), arguments.object.as_path()]);
     steps.tell("reading and preparing");
     let scene = load::bodies::<Cloud>(

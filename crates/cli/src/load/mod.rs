@@ -5,7 +5,7 @@ pub(crate) mod path;
 pub(crate) mod pose;
 pub(crate) mod sensor_for;
 mod suited;
-mod text;
+pub(crate) mod text;
 
 use std::path::Path;
 use std::sync::Arc;

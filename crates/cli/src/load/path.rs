@@ -9,9 +9,13 @@ use crate::doubt::Doubt;
 
 /// The poses of a file, each joined to the next by a screw or by a straight way and slerp; and what is
 /// to be doubted of them, which has been warned of.
-pub(crate) fn read(file: &std::path::Path, is_screw: bool) -> Result<(Path, Option<Doubt>)> {
+pub(crate) fn read(
+    file: &std::path::Path,
+    is_screw: bool,
+    max_bytes: u64,
+) -> Result<(Path, Option<Doubt>)> {
     let named = || file.display().to_string();
-    let text = text::read(file, "path")?;
+    let text = text::read(file, "path", max_bytes)?;
     let PathText { poses, unnamed } = path::parse(&text).with_context(named)?;
     let doubt = unnamed.as_ref().map(Doubt::of_unnamed);
     if let Some(doubt) = &doubt {

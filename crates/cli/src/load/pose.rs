@@ -8,7 +8,7 @@ use cloudtouch_cli::files::pose;
 
 use super::text;
 
-pub(crate) fn read(path: &Path) -> Result<Pose> {
-    let text = text::read(path, "pose")?;
+pub(crate) fn read(path: &Path, max_bytes: u64) -> Result<Pose> {
+    let text = text::read(path, "pose", max_bytes)?;
     pose::parse(&text).with_context(|| format!("{}", path.display()))
 }

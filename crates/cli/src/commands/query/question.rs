@@ -13,6 +13,7 @@ use crate::doubt::Doubt;
 use crate::load::{self, Loaded, Role};
 use crate::output::{self, Output};
 use crate::unused;
+use crate::usage::WrongUsage;
 
 /// What is asked about.
 pub(super) struct Question<'a, C> {
@@ -54,7 +55,8 @@ pub(super) fn check_files(arguments: &QueryArguments) -> Result<()> {
 /// Reads the pose and both bodies, and prepares these.
 pub(super) fn load<C: PreparedCloud>(arguments: &QueryArguments) -> Result<Question<'_, C>> {
     let (common, options) = (&arguments.asked.common, &arguments.asked.bodies());
-    let pose = pose(&arguments.pose)?;
+    let max_bytes = common.limits.read_limits().bytes;
+    let pose = pose(&arguments.pose, max_bytes)?;
     let doubt = arguments.pose.quaternion.and_then(|Turn(turn)| Doubt::of_option(&turn));
     if let Some(doubt) = &doubt {
         tracing::warn!("{}", doubt.words);
@@ -62,7 +64,7 @@ pub(super) fn load<C: PreparedCloud>(arguments: &QueryArguments) -> Result<Quest
     let scans: Vec<&Path> =
         std::iter::once(&arguments.scene).chain(&arguments.also).map(PathBuf::as_path).collect();
     let scene = load::bodies(&scans, Role::Scene, common.scene_sensor(), options)?;
-    let scene = with_kappas(scene, arguments)?;
+    let scene = with_kappas(scene, arguments, max_bytes)?;
     let object = load::body(&arguments.object, Role::Object, options.object_sensor(), options)?;
     unused::check(options, scene.files(Role::Scene).chain(object.files(Role::Object)))?;
     let scene = scene.refined_for(1, common.effort.refine())?;
@@ -70,9 +72,9 @@ pub(super) fn load<C: PreparedCloud>(arguments: &QueryArguments) -> Result<Quest
     Ok(Question { arguments, scene, object, pose, doubt })
 }
 
-fn pose(arguments: &PoseArguments) -> Result<Pose> {
+fn pose(arguments: &PoseArguments, max_bytes: u64) -> Result<Pose> {
     if let Some(path) = &arguments.pose {
-        return load::pose::read(path);
+        return load::pose::read(path, max_bytes);
     }
     let offset = arguments.translate.map_or(Vector3::zeros(), |Triple(offset)| offset.into());
     let turn = arguments.turn().map_or(UnitQuaternion::identity(), |turn| turn.0);
@@ -83,11 +85,15 @@ fn pose(arguments: &PoseArguments) -> Result<Pose> {
 fn with_kappas<C: PreparedCloud>(
     scene: Loaded<C>,
     arguments: &QueryArguments,
+    max_bytes: u64,
 ) -> Result<Loaded<C>> {
     let Some(path) = &arguments.kappas else { return Ok(scene) };
     let named = || path.display().to_string();
-    let Body::Cloud(cloud) = scene.body else { bail!("{}: the scene is a mesh, exact", named()) };
-    let text = std::fs::read_to_string(path).with_context(named)?;
+    let Body::Cloud(cloud) = scene.body else {
+        let exact = "--kappas is for a scene that is a cloud, and this is a mesh: leave it out";
+        bail!(WrongUsage(format!("{}: {exact}", scene.input.file)));
+    };
+    let text = load::text::read(path, "kappas", max_bytes)?;
     let kappas: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
     let rule = arguments.asked.mode.paper_settings(&arguments.asked.common).radius_rule;
     let cloud = cloud.with_kappas(&kappas.with_context(named)?, rule).with_context(named)?;

@@ -25,7 +25,8 @@ pub(super) fn read(arguments: &RobotArguments) -> Result<Description> {
     let options = &arguments.robot;
     let limits = arguments.common.limits.read_limits();
     let path = joints::read(&options.joints, limits.bytes)?;
-    let base = options.base_pose.as_deref().map(load::pose::read).transpose()?.unwrap_or_default();
+    let pose = |path| load::pose::read(path, limits.bytes);
+    let base = options.base_pose.as_deref().map(pose).transpose()?.unwrap_or_default();
     let robot = Robot::from_urdf_within(&options.urdf, &options.package, &limits)?;
     check_packages(arguments, &robot)?;
     let robot = with_srdf(robot, arguments)?;
