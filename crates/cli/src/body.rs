@@ -1,6 +1,6 @@
 //! Prepared bodies of either path, and what the commands ask of both paths alike.
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, bail, ensure};
 use cloudtouch::geom::{Point3, PointCloud, Pose};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::paper::{LeafClassifier, RadiusRule};
@@ -186,6 +186,11 @@ prepared_cloud!(
     Ok,
     |settings, file| settings.model = file.cloud,
     |cloud, by_row, rule| {
+        let (rows, found) = (cloud.filter_stages().first().map_or(0, |of| of.before), by_row.len());
+        ensure!(
+            found == rows,
+            "{found} kappas, and the scene has {rows} rows: a line for each row is needed"
+        );
         let kappa = |&row: &usize| by_row.get(row).copied();
         let kept: Option<Vec<f64>> = cloud.rows().iter().map(kappa).collect();
         let kept = kept.filter(|kept| kept.len() == cloud.len());

@@ -148,3 +148,16 @@ fn each_row_of_the_scene_may_have_its_kappa() {
     let refused = refusal(&refused, 1);
     assert!(refused.contains("a line for each row"), "{refused}");
 }
+
+/// Those of another scene were taken as far as they went, and a mesh was no wrong usage.
+#[test]
+fn kappas_of_another_scene_are_refused() {
+    let inputs = Inputs::new();
+    inputs.write("many.txt", &"0.9\n".repeat(442));
+    let refused = inputs.query_at(0.1, &[&PAPER[..], &["--kappas", "many.txt"]].concat());
+    let refused = refusal(&refused, 1);
+    assert!(refused.contains("many.txt: 442 kappas, and the scene has 441 rows"), "{refused}");
+    let of_a_mesh = ["query", "box.obj", "floor.pcd", "--mode=paper", "--kappas=many.txt"];
+    let of_a_mesh = inputs.run(&of_a_mesh);
+    assert!(refusal(&of_a_mesh, 2).contains("--kappas is for a scene that is a cloud"));
+}
