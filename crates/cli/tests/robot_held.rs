@@ -107,3 +107,25 @@ fn slips_in_the_file_are_told_with_place_and_remedy() {
         }
     }
 }
+
+/// Units and sensors of what is held were refused, for the scan had no use for them.
+#[test]
+fn options_tell_of_what_is_held_too() {
+    let inputs = Inputs::new();
+    let unit = |more: &[&str]| {
+        let run = robot(&inputs, &held(), 0.0, &[&["--json"], more].concat()).quiet(0);
+        run.json_lines().remove(0)["bodies"]["parcel"]["unit"].clone()
+    };
+    assert_eq!([unit(&[]), unit(&["--unit=cm"])], ["m", "cm"]);
+    let mut own = held();
+    own["bodies"][0]["unit"] = json!("m");
+    let refused = robot(&inputs, &own, 0.0, &["--unit=cm"]);
+    assert!(refused.code() == 2 && refused.stderr().contains("each mesh has one"));
+    // A cloud that is held in a scene that is a mesh.
+    let mut cloud = held();
+    cloud["bodies"][0]["file"] = json!("floor.pcd");
+    inputs.write("held.json", &cloud.to_string());
+    let files = ["robot", "box.obj", "arm.urdf", "--joints=joints.json", "--held=held.json"];
+    let answer = inputs.run(&[&files[..], &["--sensor=iso:0.002", "--json"]].concat()).quiet(0);
+    assert_eq!(answer.json_lines()[0]["bodies"]["parcel"]["sensor"], "iso:0.002");
+}

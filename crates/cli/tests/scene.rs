@@ -265,3 +265,28 @@ fn where_a_sensor_stood_decides_whether_a_cloud_is_hollow() {
     }
     assert_eq!(run.code(), 1);
 }
+
+/// They were of no body, and nothing said so: whoever gave them meant one.
+#[test]
+fn units_and_cameras_were_passed_over_where_each_body_has_its_own() {
+    let inputs = Inputs::new();
+    let with = |mut body: Value, unit: &str| {
+        body["unit"] = json!(unit);
+        body
+    };
+    let (flat, cube) = (floor(), body("box", "box.obj", 0.5));
+    let own = of_bodies(&[with(flat.clone(), "m"), with(cube.clone(), "m")]);
+    for (option, parts) in [
+        ("--unit=mm", ["--unit is for meshes without a `unit`", "each mesh has one: leave it out"]),
+        ("--cloud-unit=mm", ["--cloud-unit is for clouds without a `unit`", "each cloud has one"]),
+    ] {
+        let run = scene(&inputs, &own, &[option]);
+        assert_eq!((run.code(), run.stdout().as_str()), (2, ""), "{}", run.stderr());
+        assert!(parts.iter().all(|part| run.stderr().contains(part)), "{}", run.stderr());
+    }
+    // One that has none is what they are for.
+    let other = body("other", "box.obj", 0.8);
+    scene(&inputs, &of_bodies(&[flat.clone(), with(cube.clone(), "cm"), other]), &["--unit=cm"])
+        .quiet(0);
+    scene(&inputs, &of_bodies(&[flat, with(cube, "m")]), &["--cloud-unit=m"]).quiet(0);
+}

@@ -33,6 +33,7 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let steps = Steps::about([arguments.scan.as_path()]);
     steps.tell("reading and preparing");
     let scan = Prepared::from(scan::read(arguments, &robot, &base, path.len())?);
+    scan::check_options(arguments, &scan, &bodies)?;
     let unchecked = robot.unchecked_links().to_vec();
     let asked = Asked {
         unchecked_links: &unchecked,

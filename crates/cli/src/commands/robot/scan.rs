@@ -7,8 +7,8 @@ use cloudtouch_cli::files::joints::{self, Joints};
 use cloudtouch_robot::Robot;
 
 use crate::args::RobotArguments;
-use crate::load::{self, Loaded, Role};
-use crate::unused;
+use crate::commands::scene::bodies::{FileBodies, Prepared};
+use crate::load::{self, Loaded};
 use crate::usage::WrongUsage;
 
 /// Reads the scan, and prepares it to be asked about at so many positions.
@@ -22,15 +22,24 @@ pub(super) fn read(
     let options = &arguments.of_scan.bodies(common);
     let links = seen(arguments, robot, base)?;
     let scan = load::surroundings(&arguments.scan, links, options)?;
-    if common.unit.is_some() && !scan.is_mesh() {
+    scan.refined_for(positions, common.effort.refine())
+}
+
+/// Refuses options that neither the scan nor what is held has a use for.
+pub(super) fn check_options(
+    arguments: &RobotArguments,
+    scan: &Prepared,
+    held: &FileBodies<'_>,
+) -> Result<()> {
+    let common = &arguments.common;
+    if common.unit.is_some() && !scan.is_mesh() && !held.all().any(|(_, body)| body.is_mesh()) {
         let of_links = "meshes of links are in metres times the `scale` that the URDF gives them";
         bail!(WrongUsage(format!(
             "--unit is for a scan that is a mesh, and {} is a cloud: give --cloud-unit for it; {of_links}",
             arguments.scan.display()
         )));
     }
-    unused::check(options, scan.files(Role::Scene))?;
-    scan.refined_for(positions, common.effort.refine())
+    held.check_options(common, &[scan])
 }
 
 /// The links where the camera saw them.

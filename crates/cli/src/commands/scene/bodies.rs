@@ -11,13 +11,14 @@ use cloudtouch_cli::numbers::Rigid;
 use cloudtouch_io::{LengthUnit, is_depth_image};
 use rayon::prelude::*;
 
+use super::of_their_own;
 use crate::answers::print;
 use crate::args::{BodyOptions, CommonArguments};
 use crate::body::Body;
 use crate::load::{self, Input, Kind, Loaded, Role};
 use crate::sensor::SensorChoice;
 use crate::unused;
-use crate::usage::{self, WrongUsage};
+use crate::usage;
 
 /// A file, the unit it is said to be in, the sensor that saw it, by its spec, and where that stood and what is said
 /// of it as a depth image, spelt out.
@@ -40,7 +41,7 @@ impl Prepared {
         format!("{}: {}{attached}", print::one_line(&entry.name), self.words)
     }
 
-    fn is_mesh(&self) -> bool {
+    pub(in crate::commands) fn is_mesh(&self) -> bool {
         matches!(*self.body, cloudtouch::Body::Mesh(_))
     }
 }
@@ -98,16 +99,20 @@ impl<'a> FileBodies<'a> {
         Ok(())
     }
 
-    /// Refuses options that no body has a use for, such as a sensor of all clouds where each has its own.
-    pub(super) fn check_options(&self, common: &CommonArguments) -> Result<()> {
-        let are = self.prepared.values().flat_map(|prepared| prepared.files.iter().copied());
-        unused::check(&common.bodies(), are)?;
-        let mut clouds = self.all().filter(|(_, prepared)| !prepared.is_mesh());
-        let any_without = clouds.any(|(entry, _)| entry.sensor.is_none());
-        let each_has_one = "--sensor is for clouds without a `sensor` of their own, and each cloud has one: \
-                            leave it out";
-        ensure!(any_without || common.sensor.is_none(), WrongUsage(each_has_one.to_owned()));
-        Ok(())
+    /// Refuses options that no body has a use for, such as a sensor of all clouds where each has its own. `others`
+    /// are of no file of bodies.
+    pub(in crate::commands) fn check_options(
+        &self,
+        common: &CommonArguments,
+        others: &[&Prepared],
+    ) -> Result<()> {
+        let of_entries = self.all().map(|(entry, prepared)| (Some(entry), prepared));
+        let all = of_entries.chain(others.iter().map(|other| (None, *other)));
+        let files: Vec<_> = all
+            .flat_map(|(entry, of)| of.files.iter().map(move |(role, kind)| (entry, *role, *kind)))
+            .collect();
+        unused::check(&common.bodies(), files.iter().map(|(_, role, kind)| (*role, *kind)))?;
+        of_their_own::check(common, files.iter().map(|(entry, _, kind)| (*entry, *kind)))
     }
 }
 

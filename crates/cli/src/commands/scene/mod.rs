@@ -1,6 +1,7 @@
 //! `cloudtouch scene`: many bodies, each with its own pose.
 
 pub(super) mod bodies;
+mod of_their_own;
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -28,7 +29,7 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     // What can be told without work comes first.
     let mut scene = outline(&file).with_context(named)?;
     let read = FileBodies::read(common, &file.bodies).with_context(named)?;
-    read.check_options(common).with_context(named)?;
+    read.check_options(common, &[]).with_context(named)?;
     let bodies: BTreeMap<&str, &Prepared> =
         read.all().map(|(of, prepared)| (of.name.as_str(), prepared)).collect();
     for (name, prepared) in &bodies {
