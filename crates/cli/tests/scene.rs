@@ -290,3 +290,22 @@ fn units_and_cameras_were_passed_over_where_each_body_has_its_own() {
         .quiet(0);
     scene(&inputs, &of_bodies(&[flat, with(cube, "m")]), &["--cloud-unit=m"]).quiet(0);
 }
+
+/// It was replaced by the page.
+#[test]
+fn the_intrinsics_of_a_body_are_an_input() {
+    let inputs = Inputs::new();
+    inputs.write("camera", "{}");
+    let mut image = body("image", "depth.png", 0.5);
+    image["intrinsics"] = json!("camera");
+    let run = scene(&inputs, &of_bodies(&[floor(), image]), &["--html=camera", "--force"]);
+    assert!(run.code() == 1 && run.stderr().contains("is an input"), "{}", run.stderr());
+    for command in [
+        &["path", "floor.pcd", "box.obj", "--poses=p.csv"][..],
+        &["robot", "floor.pcd", "arm.urdf", "--joints=j.json"],
+    ] {
+        let more = ["--intrinsics=camera", "--html=camera", "--force"];
+        let run = inputs.run(&[command, &more].concat());
+        assert!(run.stderr().contains("is an input"), "{command:?}: {}", run.stderr());
+    }
+}

@@ -68,7 +68,8 @@ fn check_page(arguments: &RobotArguments) -> Result<()> {
     let options = &arguments.robot;
     let others = [&options.base_pose, &options.srdf, &options.scan_joints, &options.held];
     let inputs = [&arguments.scan, &options.urdf, &options.joints].into_iter();
-    arguments.answer.check_page(inputs.chain(others.into_iter().flatten()).map(PathBuf::as_path))
+    let inputs = inputs.chain(others.into_iter().flatten()).map(PathBuf::as_path);
+    arguments.answer.check_page(inputs.chain(arguments.common.depth.images().file()))
 }
 
 /// What the bodies were taken for, and what is not asked about.

@@ -25,7 +25,10 @@ pub(crate) fn run(arguments: &SceneArguments) -> Result<ExitCode> {
     let file = scene::read(&arguments.scene, common.limits.read_limits().bytes)?;
     let query = Query::new(settings(common, &file).with_context(named)?)?;
     let of_bodies = file.bodies.iter().map(|of| of.file.as_path());
-    arguments.answer.check_page(of_bodies.chain([arguments.scene.as_path()]))?;
+    let of_images = file.bodies.iter().filter_map(|of| of.depth.file());
+    let usual = common.depth.images();
+    let inputs = of_bodies.chain(of_images).chain(usual.file());
+    arguments.answer.check_page(inputs.chain([arguments.scene.as_path()]))?;
     // What can be told without work comes first.
     let mut scene = outline(&file).with_context(named)?;
     let read = FileBodies::read(common, &file.bodies).with_context(named)?;
