@@ -157,19 +157,23 @@ pub(crate) fn text(checked: &Checked, threshold: f64) -> String {
 
 /// What is to be said of the pairs of the table, beyond what is of their bodies; the same of several once, at the
 /// worst of them.
-fn of_pairs(checked: &Checked) -> String {
+fn of_pairs<'a>(checked: &'a Checked) -> String {
     let mut told: Vec<(&PairAnswer, &Warning)> = Vec::new();
-    for pair in &checked.pairs {
-        for warning in pair.answer.iter().flat_map(|report| &report.warnings) {
-            if !is_of_a_body(checked, warning) && told.iter().all(|(_, other)| *other != warning) {
-                told.push((pair, warning));
-            }
+    let warnings_of = |pair: &'a PairAnswer| pair.answer.iter().flat_map(|report| &report.warnings);
+    let all = checked.pairs.iter().flat_map(|pair| warnings_of(pair).map(move |of| (pair, of)));
+    for (pair, warning) in all {
+        // Of thousands no two may be the same.
+        if told.len() == WARNINGS_TOLD {
+            break;
+        }
+        if !is_of_a_body(checked, warning) && told.iter().all(|(_, other)| *other != warning) {
+            told.push((pair, warning));
         }
     }
     let line = |(pair, warning): &(&PairAnswer, &Warning)| {
         labelled("warning", &format!("{}: {}", names(pair), remedies::warning(warning))) + "\n"
     };
-    told.iter().take(WARNINGS_TOLD).map(line).collect()
+    told.iter().map(line).collect()
 }
 
 /// Whether a warning of a pair is one of its bodies, which are told of by themselves.
