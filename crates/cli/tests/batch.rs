@@ -421,3 +421,21 @@ fn one_long_name_made_every_row_of_the_table_as_long() {
     let row = table.lines().find(|row| row.starts_with("short")).unwrap();
     assert!(row.chars().count() < 200, "{row}");
 }
+
+/// The file beside was blamed, with no word of the reason.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_is_told_as_such() {
+    let inputs = Inputs::new();
+    inputs.write("cases.json", &good_cases());
+    for more in [&[][..], &["--json"], &["--jsonl=out.jsonl"]] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_cloudtouch"));
+        command.current_dir(inputs.path("")).args(["batch", "cases.json"]).args(more);
+        let run = command.stdout(full).output().unwrap();
+        let told = String::from_utf8(run.stderr).unwrap();
+        let start = "error: standard output: cannot be written: No space left";
+        assert!(run.status.code() == Some(1) && told.starts_with(start), "{more:?}: {told}");
+        assert!(!inputs.names().contains(&"out.jsonl".to_owned()));
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use anyhow::Result;
+use anyhow::{Error, Result};
 use cloudtouch_cli::files::case::{Case, CaseFile};
 
 use super::bodies::{Bodies, guessed, keys};
@@ -32,6 +32,8 @@ type Answer<'a, C> = Result<Answered<'a, C>, String>;
 pub(super) struct Done<'a, C> {
     /// Whether a case has no answer.
     pub has_failed: bool,
+    /// Why nothing more was printed: no fault of the file that is written beside.
+    pub unprinted: Option<Error>,
     /// For the page; nothing where none is wanted.
     pub shown: Shown<'a, C>,
 }
@@ -48,8 +50,7 @@ impl<'a, P: body::Estimator> Batch<'a, P> {
         let progress = progress_bar(cases.len(), "queries");
         let mut table = Table::new(cases, self.arguments.asked.mode.margin);
         if !in_json {
-            to_stdout(&guessed(self.bodies))?;
-            to_stdout(&table.head())?;
+            to_stdout(&(guessed(self.bodies) + &table.head()), done)?;
         }
         let threads = rayon::current_num_threads();
         let work = |index: usize| self.answer(&cases[index].1);
@@ -65,7 +66,7 @@ impl<'a, P: body::Estimator> Batch<'a, P> {
                 .map_err(String::as_str);
             progress.suspend(|| {
                 let row = table.row(id, case, told);
-                to_stdout(&if in_json { format!("{line}\n") } else { row })
+                to_stdout(&if in_json { format!("{line}\n") } else { row }, done)
             })?;
             if self.arguments.html.is_some() {
                 done.shown.push(id, answer);
@@ -73,7 +74,7 @@ impl<'a, P: body::Estimator> Batch<'a, P> {
             Ok::<(), io::Error>(())
         })?;
         progress.finish_and_clear();
-        if in_json { Ok(()) } else { to_stdout(&table.foot()) }
+        if in_json { Ok(()) } else { to_stdout(&table.foot(), done) }
     }
 
     fn answer(&self, case: &'a Result<Case>) -> Answer<'a, P::Cloud> {
@@ -107,6 +108,9 @@ fn line<C>(id: &str, answer: &Answer<'_, C>) -> Result<String> {
     }
 }
 
-fn to_stdout(text: &str) -> io::Result<()> {
-    print::to_stdout(text).map_err(io::Error::other)
+fn to_stdout<C>(text: &str, done: &mut Done<'_, C>) -> io::Result<()> {
+    print::to_stdout(text).map_err(|error| {
+        done.unprinted = Some(error);
+        io::Error::other("standard output")
+    })
 }

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Error, Result};
 use cloudtouch::{PaperQuery, Query};
 use cloudtouch_cli::files::case::{self, CaseFile};
 use cloudtouch_io::write_atomically;
@@ -44,12 +44,16 @@ fn run_by<P: body::Estimator>(query: &P, arguments: &BatchArguments) -> Result<E
         bodies::warn_of_unused_sensors(arguments, options, good(), &bodies);
     }
     let batch = Batch { query, arguments, options, file: &file, bodies: &bodies };
-    let mut done = Done { has_failed: false, shown: Shown::new() };
+    let mut done = Done { has_failed: false, unprinted: None, shown: Shown::new() };
     let mut write = |jsonl: &mut dyn Write| batch.write(jsonl, &mut done);
-    match &arguments.jsonl {
-        Some(path) => write_atomically(path, write)?,
-        None => write(&mut io::sink())?,
+    let written = match &arguments.jsonl {
+        Some(path) => write_atomically(path, write).map_err(Error::from),
+        None => write(&mut io::sink()).map_err(Error::from),
+    };
+    if let Some(error) = done.unprinted.take() {
+        return Err(error);
     }
+    written?;
     if let Some(path) = &arguments.html {
         let cases = arguments.cases.file_name().unwrap_or_default().to_string_lossy();
         done.shown.write(path, &cases, &limits)?;
