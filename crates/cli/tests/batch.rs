@@ -439,3 +439,19 @@ fn a_full_standard_output_is_told_as_such() {
         assert!(!inputs.names().contains(&"out.jsonl".to_owned()));
     }
 }
+
+/// They were passed over, and the answers were of all points.
+#[test]
+fn further_options_in_a_case_were_passed_over() {
+    let inputs = Inputs::new();
+    let with = |field: &str| case_at("a", 0.5).replacen('{', &format!("{{{field},"), 1);
+    for (field, part) in [
+        ("\"collision_map\": 0.05", "as an option of the command"),
+        ("\"outliers\": [8, 3]", "as an option of the command"),
+        ("\"keep_veil\": true", "as an option of the command"),
+    ] {
+        inputs.write("cases.json", &case_file(&[with(field)]));
+        let line = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines().remove(0);
+        assert!(line["error"].as_str().is_some_and(|error| error.contains(part)), "{line}");
+    }
+}

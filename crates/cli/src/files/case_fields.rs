@@ -9,7 +9,7 @@ use crate::files::near_name;
 const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];
 
 /// Fields of scene files, and options spelt as fields, that no case has, and what says the same of a case.
-const OF_OTHERS: [(&str, &str); 27] = [
+const OF_OTHERS: [(&str, &str); 30] = [
     ("sensor", SENSORS),
     ("unit", UNITS),
     ("mesh_unit", UNITS),
@@ -28,6 +28,9 @@ const OF_OTHERS: [(&str, &str); 27] = [
     ("depth_scale", OPTION),
     ("min_range", OPTION),
     ("max_range", OPTION),
+    ("outliers", OPTION),
+    ("keep_veil", OPTION),
+    ("collision_map", OPTION),
     ("robot_padding", OPTION),
     ("max_unseen", OPTION),
     ("max_missing", OPTION),
