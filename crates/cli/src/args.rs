@@ -229,6 +229,7 @@ pub(crate) struct InfoArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(group = answer::written(&["ply", "html"]))]
 pub(crate) struct DemoArguments {
     /// How to estimate: calibrated, or paper (as printed)
     #[arg(long, value_enum, hide_possible_values = true, default_value_t = ModeName::Calibrated)]
@@ -240,6 +241,6 @@ pub(crate) struct DemoArguments {
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
     /// Replace an output file that is there already
-    #[arg(long)]
+    #[arg(long, requires = "written")]
     pub force: bool,
 }

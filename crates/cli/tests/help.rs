@@ -80,3 +80,14 @@ fn options_that_need_another_did_not_say_so() {
         assert!(words.contains(&format!("ith {needed}")), "{command}: {line}");
     }
 }
+
+/// It replaced nothing and said nothing, where other commands refuse it.
+#[test]
+fn force_without_a_file_to_write_is_refused() {
+    let inputs = Inputs::new();
+    for arguments in [&["query", "floor.pcd", "box.obj"][..], &["batch", "cases.json"], &["demo"]] {
+        let run = inputs.run(&[arguments, &["--force"]].concat());
+        assert_eq!((run.code(), run.stdout().as_str()), (2, ""), "{}", run.stderr());
+        assert!(run.stderr().contains("--html"), "{}", run.stderr());
+    }
+}

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
-use clap::Args;
+use clap::{ArgGroup, Args};
 use cloudtouch::Verdict;
 
 use crate::output::{self, Output};
@@ -43,6 +43,11 @@ impl AnswerArguments {
             (false, false) => ExitCode::SUCCESS,
         }
     }
+}
+
+/// Options that name a file to be written, of which `--force` needs one.
+pub(super) fn written(options: &'static [&'static str]) -> ArgGroup {
+    ArgGroup::new("written").args(options).multiple(true)
 }
 
 /// The verdict for the shell.

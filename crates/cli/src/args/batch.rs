@@ -6,12 +6,13 @@ use clap::Args;
 
 use crate::sensor::SensorChoice;
 
+use super::answer::written;
 use super::asked::AskedArguments;
 use super::parse::parse_sensor_for;
 
 /// Many poses from a case file.
 #[derive(Debug, Args)]
-#[command(after_help = super::SENSORS)]
+#[command(after_help = super::SENSORS, group = written(&["jsonl", "html"]))]
 pub(crate) struct BatchArguments {
     /// Case file (JSON); its paths are relative to it
     pub cases: PathBuf,
@@ -25,7 +26,7 @@ pub(crate) struct BatchArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub html: Option<PathBuf>,
     /// Replace an output file that is there already
-    #[arg(long, help_heading = "Output")]
+    #[arg(long, requires = "written", help_heading = "Output")]
     pub force: bool,
     /// Sensor of files with NAME in their path in the case file; the first counts
     #[arg(long, value_name = "NAME=SPEC", value_parser = parse_sensor_for,

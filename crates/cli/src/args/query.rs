@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::answer::written;
 use super::asked::AskedArguments;
 use super::parse::parse_fraction;
 use super::pose::PoseArguments;
 
 /// One object in one scene at one pose.
 #[derive(Debug, Args)]
-#[command(after_help = super::SENSORS)]
+#[command(after_help = super::SENSORS, group = written(&["csv", "ply", "html"]))]
 pub(crate) struct QueryArguments {
     /// Cloud or mesh of the surroundings (.pcd .ply .xyz .txt .csv .png .stl .obj)
     pub scene: PathBuf,
@@ -53,7 +54,7 @@ pub(crate) struct QueryArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub html: Option<PathBuf>,
     /// Replace an output file that is there already
-    #[arg(long, help_heading = "Output")]
+    #[arg(long, requires = "written", help_heading = "Output")]
     pub force: bool,
     #[command(flatten)]
     pub asked: AskedArguments,
