@@ -76,6 +76,8 @@ fn pose_files() {
         ("1 0 0 0 0 1 0 0 0 0 1 0 5 0 0 1".to_owned(), &["pose.txt", "last row", "row-major"]),
         ("1 2 3".to_owned(), &["pose.txt", "found 3 numbers", "16"]),
         (format!("1 0 0 west\n{rest}"), &["pose.txt", "line 1", "`west`"]),
+        // No file was named.
+        (format!("1 0 0 -1e11\n{rest}"), &["pose.txt: (0, 3) is -1e11", "at most 1e10 m"]),
     ] {
         inputs.write("pose.txt", &text);
         check(&inputs, &["query", "floor.pcd", "box.obj", "--pose", "pose.txt"], parts);

@@ -19,7 +19,11 @@ pub(crate) fn matrix(value: Value) -> Result<Pose> {
     if rows.len() != 4 {
         bail!("the pose has {} rows: {FORM}", rows.len());
     }
-    let pose = Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?;
+    within_reach(Pose::try_from_matrix(&Matrix4::from_row_slice(&entries))?)
+}
+
+/// Refuses a pose beyond all coordinates.
+pub(crate) fn within_reach(pose: Pose) -> Result<Pose> {
     for (row, length) in pose.translation().iter().enumerate() {
         if length.abs() > LARGEST_COORDINATE {
             let length = number(*length);

@@ -4,6 +4,8 @@ use anyhow::{Context as _, Result, anyhow, bail};
 use cloudtouch::geom::{Pose, PoseError};
 use nalgebra::Matrix4;
 
+use super::json::within_reach;
+
 /// No message quotes more of a word.
 const EXCERPT: usize = 40;
 
@@ -11,7 +13,7 @@ const EXCERPT: usize = 40;
 /// numpy matrix can be pasted; what follows a `#` is a comment.
 ///
 /// # Errors
-/// When there are not sixteen numbers, or they are no rigid motion.
+/// When there are not sixteen numbers, or they are no rigid motion or one beyond 1e10 m.
 pub fn parse(text: &str) -> Result<Pose> {
     let separator = |c: char| c.is_whitespace() || "[](),;".contains(c);
     let (mut numbers, mut lines) = (Vec::new(), Vec::new());
@@ -32,13 +34,14 @@ pub fn parse(text: &str) -> Result<Pose> {
     if numbers.len() != 16 {
         bail!("found {} numbers: a pose is a 4x4 row-major matrix, 16 numbers", numbers.len());
     }
-    Pose::try_from_matrix(&Matrix4::from_row_slice(&numbers)).map_err(|error| match error {
+    let pose = Pose::try_from_matrix(&Matrix4::from_row_slice(&numbers));
+    within_reach(pose.map_err(|error| match error {
         // Its rows count from 0, and stand in any line.
         PoseError::NotFinite { row, column, .. } => {
             anyhow!("line {}: {error}", lines[4 * row + column])
         }
         other => other.into(),
-    })
+    })?)
 }
 
 #[cfg(test)]
