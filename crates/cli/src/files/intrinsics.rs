@@ -7,6 +7,7 @@ use cloudtouch_io::DepthCamera;
 use serde_json::{Map, Value};
 
 use crate::files::distortion;
+use crate::files::fields::check_once;
 use crate::files::json::{as_written, shortened, without_bare_words};
 
 /// What a file says of a camera.
@@ -54,10 +55,14 @@ fn parse_whole(text: &[u8], image: &str) -> Result<CameraFile> {
     if !text.starts_with(b"{") && !text.starts_with(b"[") {
         return of_text(text);
     }
-    let value: Value = serde_json::from_slice(&without_bare_words(text))
+    let text = without_bare_words(text);
+    let value: Value = serde_json::from_slice(&text)
         .with_context(|| format!("not the intrinsics of a camera: {FORMS}"))?;
     match &value {
-        Value::Object(fields) => of_object(of_image(fields, image)?),
+        Value::Object(fields) => {
+            check_once(&String::from_utf8_lossy(&text))?;
+            of_object(of_image(fields, image)?)
+        }
         matrix => Ok(of_numbers(of_matrix("the matrix", matrix)?)),
     }
 }
@@ -282,6 +287,8 @@ mod tests {
                 r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 3, "k1": 0.1}"#,
                 &["`k1` has 0.1", "without distortion"],
             ),
+            // The last of them counted.
+            (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 3, "fx": 6}"#, &["`fx` is there twice"]),
             (&format!("{{\"fx\": \"{long}\", \"cx\": 1}}"), &["`fx` is", "give a number"]),
         ] {
             let error = format!("{:#}", parse(text.as_bytes(), "1").unwrap_err());
