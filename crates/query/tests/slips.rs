@@ -128,6 +128,24 @@ fn units_that_are_meant_all_the_same_are_believed() {
     assert_eq!((far.verdict, far.warnings.len()), (Verdict::Free, 1));
 }
 
+/// Every pose was uncertain, and nothing said why.
+#[test]
+fn a_threshold_below_every_answer_is_told() {
+    let (scene, tool) = (scan(&table(), Mode::Calibrated), mesh(&tool()));
+    let with = |reject| AnyQuery::with(Mode::Calibrated, |by| by.reject = reject, |_| {});
+    let ask = |reject, z| with(reject).run(&scene, &tool, &at(0.0, 0.0, z)).expect("a good pose");
+    let told = ask(1e-6, 0.3);
+    assert_eq!(told.verdict, Verdict::Uncertain, "{told:?}");
+    let [Warning::RejectBelowLeast { reject, least }] = told.warnings[..] else {
+        panic!("{told:?}");
+    };
+    assert_eq!((reject, least), (1e-6, told.collision_probability));
+    let free = ask(1.5 * least, 0.3);
+    assert_eq!((free.verdict, &free.warnings[..]), (Verdict::Free, &[][..]));
+    // What is near may be uncertain for its own sake.
+    assert_eq!(ask(1e-6, 0.0).warnings, []);
+}
+
 /// A padding in centimetres took the table away, and nothing was in the way any more.
 #[test]
 fn a_scan_that_the_self_filter_took_away_read_free() {

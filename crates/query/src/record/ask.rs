@@ -6,7 +6,9 @@ use cloudtouch_geom::{Pose, Vector3};
 
 use crate::check::coordinates::bad_entry;
 use crate::doubt::undecided::Undecided;
+use crate::doubt::warning::Warning;
 use crate::error::QueryError;
+use crate::judge::MOST_DEVIATIONS;
 use crate::mode::Mode;
 use crate::report::Report;
 use crate::shape::Shape;
@@ -48,8 +50,10 @@ impl Terms {
             evidence.widen(1.0);
             estimate.bounds[1] = 1.0;
         }
+        let out_of_reach = self.out_of_reach(&estimate);
         let mut report = self.report(evidence, estimate, a.origin(), gravest);
         (report.unseen, report.warnings) = (unseen, warnings);
+        report.warnings.extend(out_of_reach);
         let micros = |d: Duration| u64::try_from(d.as_micros()).unwrap_or(u64::MAX);
         report.stats.prepare_us = micros(a.prepare_time() + b.prepare_time());
         report.stats.query_us = micros(start.elapsed());
@@ -60,6 +64,13 @@ impl Terms {
             "query"
         );
         Ok(report)
+    }
+
+    /// A threshold for free that the two are not below even with nothing near.
+    fn out_of_reach(&self, Estimate { probability, evidence, .. }: &Estimate) -> Option<Warning> {
+        let is_least = evidence.is_some_and(|of| of.deviations >= MOST_DEVIATIONS);
+        (is_least && *probability >= self.reject)
+            .then_some(Warning::RejectBelowLeast { reject: self.reject, least: *probability })
     }
 
     fn report(

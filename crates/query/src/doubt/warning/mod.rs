@@ -215,6 +215,13 @@ pub enum Warning {
         /// Share of the surface of the robot, or of one of its links, that it could have seen, 0 to 1.
         share: f64,
     },
+    /// No answer about these bodies is below the threshold for free: with nothing near it is as small as can be.
+    RejectBelowLeast {
+        /// The threshold ([`QuerySettings::reject`](crate::QuerySettings::reject)).
+        reject: f64,
+        /// The least probability of the two.
+        least: f64,
+    },
     /// Two poses of a path are half a turn apart, or so nearly that rounding decides which way round it goes.
     HalfTurn {
         /// The first of the two, counted from 1.
@@ -250,6 +257,7 @@ impl Warning {
             Self::FarAway { .. }
             | Self::OutsideScene { .. }
             | Self::Exchanged { .. }
+            | Self::RejectBelowLeast { .. }
             | Self::HalfTurn { .. } => None,
         }
     }
@@ -277,6 +285,7 @@ impl Warning {
             | Self::Padding { .. }
             | Self::OutsideScene { .. }
             | Self::Exchanged { .. }
+            | Self::RejectBelowLeast { .. }
             | Self::HalfTurn { .. } => None,
         }
     }

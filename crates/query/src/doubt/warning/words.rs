@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use cloudtouch_geom::message::rounded;
+
 use super::{Warning, Which};
 
 impl fmt::Display for Warning {
@@ -127,6 +129,12 @@ impl Warning {
                  to have been:",
                 100.0 * share
             ),
+            Self::RejectBelowLeast { reject, least } => format!(
+                "nothing is near, and {} is the least that the probability of these bodies can be; what reads \
+                 as free is below {}:",
+                rounded(least),
+                rounded(reject)
+            ),
             Self::HalfTurn { pose } => format!(
                 "from pose {pose} to the next it turns by half a turn, and rounding decides which way round:"
             ),
@@ -183,6 +191,7 @@ impl Warning {
             Self::Unseen { .. } | Self::CloseBehind { .. } => {
                 "look from elsewhere, or raise `max_unseen`"
             }
+            Self::RejectBelowLeast { .. } => "raise `reject`",
             Self::HalfTurn { .. } => "give a pose between them",
         }
     }
