@@ -94,3 +94,20 @@ fn a_box_of_separate_faces_of_which_one_is_turned_is_no_free_space() {
         assert_eq!(of_a_ball_at(&solid, [0.6, 0.0, 0.0]), FREE, "{turned:?}");
     }
 }
+
+/// A part that is written from both sides wrapped around nothing beside any other: what was in it read free.
+#[test]
+fn a_box_written_from_both_sides_is_full_beside_others() {
+    let one = block(0.3, [0.0; 3]);
+    let both = scene::assemble([one.clone(), inside_out(&one)]);
+    let others = [
+        block(0.1, [0.5, 0.0, 0.0]),
+        floor(-0.5),
+        block(0.2, [0.2, 0.0, 0.0]),
+        block(1.0, [0.0; 3]),
+    ];
+    for (k, other) in others.into_iter().enumerate() {
+        let solid = mesh(&scene::assemble([both.clone(), other]));
+        assert_eq!(of_a_ball_at(&solid, [-0.02, 0.01, 0.0]), COLLIDES, "{k}");
+    }
+}

@@ -60,7 +60,7 @@ impl TriangleMesh {
     }
 
     /// For every edge, how many more triangles run along it upwards than downwards, and how many do.
-    fn edge_balance(&self) -> HashMap<(u32, u32), (i32, u32)> {
+    pub(super) fn edge_balance(&self) -> HashMap<(u32, u32), (i32, u32)> {
         let mut balance: HashMap<(u32, u32), (i32, u32)> = HashMap::new();
         for &[a, b, c] in &self.triangles {
             for (from, to) in [(a, b), (b, c), (c, a)] {

@@ -1,5 +1,6 @@
 //! A triangle mesh as read from a file.
 
+mod both_sides;
 mod edges;
 mod error;
 mod merge;

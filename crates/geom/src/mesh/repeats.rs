@@ -7,8 +7,9 @@ use super::TriangleMesh;
 impl TriangleMesh {
     /// The same surface without triangles that repeat others: those that are turned the same way once, and of
     /// a mesh all of whose triangles have a back face of their own, as writers of two-sided surfaces make
-    /// them, one of each pair. Where single triangles have back faces and the mesh has a border, it loses
-    /// the back faces, or the walls that they are of, if that closes it.
+    /// them, one of each pair; so too of a closed part of it that is written like that. Where single triangles
+    /// have back faces and the mesh has a border, it loses the back faces, or the walls that they are of, if that
+    /// closes it.
     ///
     /// A single triangle written twice leaves a solid with a border, and so without an inside. Call it on a
     /// [`merged`](Self::merged) mesh.
@@ -46,7 +47,13 @@ impl TriangleMesh {
         if pairs == different {
             return keeping(1);
         }
-        if pairs == 0 || all.border_edges() == 0 {
+        if pairs == 0 {
+            return all;
+        }
+        if let Some(fewer) = all.with_solids_from_one_side() {
+            return fewer.without_repeats();
+        }
+        if all.border_edges() == 0 {
             return all;
         }
         let is_closed = |mesh: &Self| mesh.turned_alike().border_edges() == 0;
@@ -100,6 +107,32 @@ mod tests {
         let one = with(&cube, [back(&cube.triangles()[5])]);
         assert_ne!(one.border_edges(), 0);
         assert_eq!(one.without_repeats(), cube);
+    }
+
+    /// Beside any other part it was a sheet with its own back, and what was in it read free.
+    #[test]
+    fn a_part_written_from_both_sides_has_an_inside_beside_others() {
+        let cube = cube();
+        let shifted = |by: f64| cube.vertices().iter().map(move |p| p + crate::Vector3::x() * by);
+        let vertices: Vec<Point3> = shifted(0.0).chain(shifted(3.0)).chain(shifted(6.0)).collect();
+        let part = |k: u32, is_back: bool| {
+            cube.triangles().iter().map(move |t| {
+                let [a, b, c] = t.map(|i| i + 8 * k);
+                if is_back { [a, c, b] } else { [a, b, c] }
+            })
+        };
+        let mesh =
+            |triangles: Vec<[u32; 3]>| TriangleMesh::new(vertices.clone(), triangles).unwrap();
+        let back: Vec<[u32; 3]> = part(2, false).take(1).chain(part(2, true).take(1)).collect();
+        let alone: Vec<[u32; 3]> = part(0, false).collect();
+        // Beside a single triangle too, and beside a sheet with its own back, which stays.
+        for others in [alone.clone(), back[..1].to_vec(), [alone, back].concat()] {
+            for is_back_first in [false, true] {
+                let both = part(1, is_back_first).chain(part(1, !is_back_first));
+                let kept = mesh(others.iter().copied().chain(both).collect()).without_repeats();
+                assert_eq!(kept, mesh(others.iter().copied().chain(part(1, false)).collect()));
+            }
+        }
     }
 
     /// Boxes that were put together share a wall, which is there once for each; one with a single side is in
