@@ -111,3 +111,32 @@ fn a_box_written_from_both_sides_is_full_beside_others() {
         assert_eq!(of_a_ball_at(&solid, [-0.02, 0.01, 0.0]), COLLIDES, "{k}");
     }
 }
+
+/// Two boxes side by side, the wall between them there once for each.
+fn with_a_wall_between() -> TriangleMesh {
+    scene::assemble([block(0.4, [-0.2, 0.0, 0.0]), block(0.4, [0.2, 0.0, 0.0])])
+}
+
+/// Beside an open part boxes that share a wall had no inside.
+#[test]
+fn a_floor_takes_nothing_from_the_inside_of_boxes_with_a_wall_between() {
+    for boxes in [with_a_wall_between(), inside_out(&with_a_wall_between())] {
+        let solid = mesh(&scene::assemble([boxes, floor(-0.5)]));
+        for x in [-0.2, 0.2] {
+            assert_eq!(of_a_ball_at(&solid, [x, 0.0, 0.05]), COLLIDES, "{x}");
+        }
+        assert_eq!(of_a_ball_at(&solid, [0.6, 0.0, 0.0]), FREE);
+    }
+}
+
+/// Boxes that share a wall, turned inside out, took from another box what they had in common: it read free there.
+#[test]
+fn boxes_with_a_wall_between_that_are_turned_inside_out_take_nothing_from_others() {
+    let other = block(0.4, [0.2, 0.15, 0.15]);
+    for boxes in [with_a_wall_between(), inside_out(&with_a_wall_between())] {
+        let solid = mesh(&scene::assemble([boxes, other.clone()]));
+        for place in [[0.2, 0.1, 0.1], [0.2, -0.1, -0.1], [-0.2, 0.1, 0.1]] {
+            assert_eq!(of_a_ball_at(&solid, place), COLLIDES, "{place:?}");
+        }
+    }
+}

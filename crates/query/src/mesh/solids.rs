@@ -24,11 +24,11 @@ pub(super) struct Solids {
     pub leads_out: Vec<bool>,
 }
 
-/// A part that is joined by edges of two triangles.
+/// Triangles that are joined by edges.
 #[derive(Default)]
 struct Piece {
     triangles: Vec<usize>,
-    /// Six times what it encloses, m³; negative where it is turned inward.
+    /// Six times what it encloses, m³, where it is closed; negative where it is turned inward.
     volume: f64,
     /// Of its triangles, m².
     area: f64,
@@ -40,13 +40,22 @@ impl Solids {
         let mut triangles = mesh.triangles().to_vec();
         let mut is_solid = vec![false; triangles.len()];
         let mut leads_out = vec![false; triangles.len()];
-        let closed: Vec<Piece> =
-            pieces(mesh).into_iter().filter(|piece| is_closed(mesh, piece)).collect();
+        let all = pieces(mesh, 0..triangles.len(), |count| count == 2);
+        let (mut closed, open): (Vec<Piece>, Vec<Piece>) =
+            all.into_iter().partition(|piece| is_closed(mesh, piece));
         for piece in &closed {
-            let has_inside = encloses(piece.volume / 6.0, piece.area);
+            let has_inside = piece.has_inside();
             for &triangle in &piece.triangles {
                 (is_solid[triangle], leads_out[triangle]) = (true, has_inside);
             }
+        }
+        // Boxes that share a wall, which is there once for each, are closed together. The normals of the wall lead
+        // from one into the other.
+        let rest = open.into_iter().flat_map(|piece| piece.triangles);
+        let together = pieces(mesh, rest, |_| true).into_iter();
+        for piece in together.filter(|piece| is_closed(mesh, piece) && piece.has_inside()) {
+            piece.triangles.iter().for_each(|&triangle| is_solid[triangle] = true);
+            closed.push(piece);
         }
         let (inward, outward): (Vec<Piece>, Vec<Piece>) =
             closed.into_iter().partition(|piece| piece.volume < 0.0);
@@ -60,6 +69,13 @@ impl Solids {
             }
         }
         Self { triangles, is_solid, leads_out }
+    }
+}
+
+impl Piece {
+    /// False for a sheet with its own back face.
+    fn has_inside(&self) -> bool {
+        encloses(self.volume / 6.0, self.area)
     }
 }
 
@@ -83,22 +99,30 @@ fn is_closed(mesh: &TriangleMesh, piece: &Piece) -> bool {
     balance.values().all(|sum| *sum == 0)
 }
 
-fn pieces(mesh: &TriangleMesh) -> Vec<Piece> {
+/// Of some triangles those that are joined, by edges where so many of them are as is asked for.
+fn pieces(
+    mesh: &TriangleMesh,
+    some: impl IntoIterator<Item = usize>,
+    joins: impl Fn(usize) -> bool,
+) -> Vec<Piece> {
+    let mut some: Vec<usize> = some.into_iter().collect();
+    some.sort_unstable();
     let mut at_edge: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
-    for (triangle, &[a, b, c]) in mesh.triangles().iter().enumerate() {
+    for &triangle in &some {
+        let [a, b, c] = mesh.triangles()[triangle];
         for (from, to) in [(a, b), (b, c), (c, a)] {
             at_edge.entry((from.min(to), from.max(to))).or_default().push(triangle);
         }
     }
     let mut parent: Vec<usize> = (0..mesh.triangles().len()).collect();
-    for triangles in at_edge.values() {
-        if let [one, other] = triangles[..] {
-            let [one, other] = [one, other].map(|triangle| root(&mut parent, triangle));
+    for triangles in at_edge.values().filter(|triangles| joins(triangles.len())) {
+        for pair in triangles.windows(2) {
+            let [one, other] = [pair[0], pair[1]].map(|triangle| root(&mut parent, triangle));
             parent[one.max(other)] = one.min(other);
         }
     }
     let mut pieces: BTreeMap<usize, Piece> = BTreeMap::new();
-    for triangle in 0..parent.len() {
+    for triangle in some {
         let name = root(&mut parent, triangle);
         let [from, ..] = mesh.corners(name);
         let [a, b, c]: [Vector3; 3] = mesh.corners(triangle).map(|corner: Point3| corner - from);
