@@ -140,3 +140,21 @@ fn boxes_with_a_wall_between_that_are_turned_inside_out_take_nothing_from_others
         }
     }
 }
+
+/// Of a part with many triangles only some were asked whether it is within another: a ball turned inside out that looks
+/// out of a box between them was taken for a cavity, and what was in it read free.
+#[test]
+fn a_part_of_many_triangles_that_looks_out_of_another_is_no_cavity() {
+    let centre = [0.1, 0.05, 0.02];
+    for turn in [[0.0; 3], [0.3, -0.2, 0.5], [1.1, 0.4, 0.0]] {
+        let pose = Pose::from_translation_rpy(centre.into(), turn);
+        let ball = inside_out(&scene::moved(&scene::sphere(0.4, 5), &pose));
+        let highest = ball.vertices().iter().map(|p| p.z).fold(0.0, f64::max);
+        for (deep, expected) in [(1e-4, COLLIDES), (-1e-3, FREE)] {
+            let top = Pose::from_translation(Vector3::z() * (highest - deep - 1.0));
+            let around = scene::moved(&scene::cuboid([2.0; 3]), &top);
+            let solid = mesh(&scene::assemble([around, ball.clone()]));
+            assert_eq!(of_a_ball_at(&solid, centre), expected, "{turn:?} {deep}");
+        }
+    }
+}

@@ -10,9 +10,6 @@ use cloudtouch_geom::{Point3, TriangleMesh, Vector3};
 use super::parts::{encloses, root};
 use super::winding::{FarRadii, INSIDE, Winding};
 
-/// Vertices of a part that tell whether it is within others, at most.
-const ASKED: usize = 64;
-
 /// The triangles of a mesh by its parts.
 pub(super) struct Solids {
     /// All of them, closed parts turned outward but for cavities.
@@ -79,11 +76,14 @@ impl Piece {
     }
 }
 
-/// Whether a part is wholly within others, as a cavity is.
+/// Whether all vertices of a part are within others, as those of a cavity are.
 fn is_within(mesh: &TriangleMesh, piece: &Piece, others: &Winding) -> bool {
-    let step = piece.triangles.len().div_ceil(ASKED).max(1);
-    let mut corners = piece.triangles.iter().step_by(step).flat_map(|&t| mesh.corners(t));
-    corners.all(|corner| others.fast(&corner, FarRadii::FINE).abs() >= INSIDE)
+    let mut vertices: Vec<u32> =
+        piece.triangles.iter().flat_map(|&t| mesh.triangles()[t]).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let mut places = vertices.into_iter().map(|vertex| mesh.vertices()[vertex as usize]);
+    places.all(|place| others.fast(&place, FarRadii::FINE).abs() >= INSIDE)
 }
 
 /// Whether the triangles of a part run along each edge equally often in both directions.
