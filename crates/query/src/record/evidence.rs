@@ -59,9 +59,10 @@ impl Evidence {
         }
     }
 
-    /// Notes that points which were not looked at may be this probable, and no more.
+    /// Notes that points which were not looked at may be this probable, and no more; of what is no number nothing
+    /// is known.
     pub(crate) fn widen(&mut self, bound: f64) {
-        self.bound_of_rest = self.bound_of_rest.max(bound);
+        self.bound_of_rest = self.bound_of_rest.max(if bound.is_nan() { 1.0 } else { bound });
     }
 
     pub(crate) fn largest(&self) -> f64 {
@@ -136,5 +137,24 @@ impl Evidence {
             }
         }
         chosen
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// It was left out of every maximum, and what was left read free.
+    #[test]
+    fn a_point_of_no_known_probability_may_be_of_any() {
+        let mut evidence = Evidence::default();
+        evidence.add_point(PointProbability {
+            side: Side::A,
+            index: Some(0),
+            position: Point3::origin(),
+            probability: f64::NAN,
+            spacing: 0.0,
+        });
+        assert_eq!(evidence.bound_of_rest(), 1.0);
     }
 }

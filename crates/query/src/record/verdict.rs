@@ -28,7 +28,7 @@ impl Thresholds {
         } else if doubt.is_some() {
             // The number says nothing of what was not seen, or nothing at all.
             undecided
-        } else if upper < self.reject && unsolved == 0 {
+        } else if probability < self.reject && upper < self.reject && unsolved == 0 {
             (Verdict::Free, None)
         } else if probability < self.reject || unsolved > 0 {
             // What was culled, left out or not solved could still collide.
@@ -65,6 +65,8 @@ mod tests {
             (0.3, 1.0, 0, Some(Enclosed), undecided(Enclosed)),
             (0.51, 1.0, 1, Some(Enclosed), (Verdict::InCollision, None)),
             (f64::NAN, f64::NAN, 0, None, (Verdict::Uncertain, None)),
+            // Whatever the bound says.
+            (f64::NAN, 0.05, 0, None, (Verdict::Uncertain, None)),
         ] {
             let found = thresholds.decide(probability, upper, unsolved, doubt);
             assert_eq!(found, expected, "{probability} {upper} {unsolved} {doubt:?}");
