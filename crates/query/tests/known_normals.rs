@@ -1,8 +1,8 @@
 //! A cloud that brings its normals is not fitted: they are believed.
 
 use crate::common::{ask, at};
-use cloudtouch::geom::{Point3, PointCloud, UnitVector3, Vector3};
-use cloudtouch::noise::SensorModel;
+use cloudtouch::geom::{Covariance, Point3, PointCloud, UnitVector3, Vector3};
+use cloudtouch::noise::{NoiseError, SensorModel};
 use cloudtouch::{Cloud, CloudSettings, FilterError, Mode, PrepareError};
 
 /// A square of 40 cm, a point every 2 cm, with these normals.
@@ -43,4 +43,31 @@ fn normals_that_are_none_are_refused() {
     let error = prepare(&short).unwrap_err();
     let wanted = FilterError::Count { what: "normals", count: 399, points: 400 };
     assert_eq!(error, PrepareError::Filter(wanted));
+}
+
+/// By their places among the points that were kept: row 7 was called point 5.
+#[test]
+fn what_is_wrong_with_a_point_is_told_by_its_row() {
+    let nowhere = Point3::new(f64::NAN, 0.0, 0.0);
+    let mut scan = sheet(Vector3::z_axis());
+    (scan.points[2], scan.points[4]) = (nowhere, nowhere);
+    let mut bad_normal = scan.clone();
+    bad_normal.normals.as_mut().unwrap()[7] = UnitVector3::new_unchecked(Vector3::zeros());
+    let error = prepare(&bad_normal).unwrap_err();
+    assert!(matches!(error, PrepareError::Normal { index: 7, .. }), "{error}");
+
+    let mut covariances = vec![Covariance::isotropic(1e-6); scan.len()];
+    covariances[7] = Covariance::isotropic(f64::NAN);
+    scan.covariances = Some(covariances);
+    let by = CloudSettings::new(SensorModel::PerPoint);
+    let error = Cloud::prepare(&scan, &by).unwrap_err();
+    let is_told =
+        matches!(error, PrepareError::Noise(NoiseError::CovarianceNotFinite { index: 7, .. }));
+    assert!(is_told, "{error}");
+    // Of several scans rows are counted on.
+    scan.normals = None;
+    let mut good = scan.clone();
+    good.covariances = Some(vec![Covariance::isotropic(1e-6); scan.len()]);
+    let error = Cloud::merge(&[(&good, &by), (&scan, &by)]).unwrap_err();
+    assert!(error.to_string().contains("point 407 "), "{error}");
 }

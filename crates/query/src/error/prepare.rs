@@ -66,7 +66,7 @@ pub enum PrepareError {
         "point {index}: normal {normal:?} is not of length one; leave the normals out to have them fitted"
     )]
     Normal {
-        /// Which of the points that were kept, from 0.
+        /// Which row of the cloud (cell, after a collision map), from 0.
         index: usize,
         /// The normal given.
         normal: Vector3,

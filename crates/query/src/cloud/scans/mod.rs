@@ -16,7 +16,7 @@ use crate::filter::{Filtered, StageReport, Taken, filter_and_tell};
 
 use self::noise::{coarse_step, joined, noise_of, padded};
 use self::others::{beyond_range, other_returns};
-use self::refused::{check_for_repeats, checked, nothing_left};
+use self::refused::{by_row, check_for_repeats, checked, nothing_left};
 use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
 use super::preparation::Preparation;
 use super::view::Image;
@@ -104,9 +104,9 @@ impl Scans {
         // By their rows in the file; the cells of a collision map have none.
         let row = |i: usize| rows_before + rows.get(i).copied().unwrap_or(i);
         check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
-        let noise = noise_of(&kept, by)?;
+        let noise = noise_of(&kept, by).map_err(|error| by_row(error, row))?;
         let normals = match (&kept.normals, by.noise.combination) {
-            (Some(normals), Combination::SurfacePosterior) => Some(checked(normals)?),
+            (Some(normals), Combination::SurfacePosterior) => Some(checked(normals, row)?),
             _ => None,
         };
         let mut sensor_doubts = sensor_doubts(scan, by.sensor, &kept.points);

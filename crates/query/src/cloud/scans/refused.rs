@@ -1,7 +1,7 @@
 //! Scans that are refused, and what of them is looked at for that.
 
 use cloudtouch_geom::{Point3, UnitVector3};
-use cloudtouch_noise::repeated;
+use cloudtouch_noise::{NoiseError, repeated};
 
 use crate::error::PrepareError;
 use crate::filter::StageReport;
@@ -12,17 +12,31 @@ pub(super) fn nothing_left(before: usize, stages: &[StageReport]) -> PrepareErro
     PrepareError::NothingLeft { before, stages: removed.join(", ") }
 }
 
-/// Normals as they are, after a look at them: a `Unit` can be made without a check.
-pub(super) fn checked(normals: &[UnitVector3]) -> Result<Vec<UnitVector3>, PrepareError> {
+/// Normals as they are, after a look at them: a `Unit` can be made without a check. `row` is that of a point in its
+/// file.
+pub(super) fn checked(
+    normals: &[UnitVector3],
+    row: impl Fn(usize) -> usize,
+) -> Result<Vec<UnitVector3>, PrepareError> {
     let checked = |(index, normal): (usize, &UnitVector3)| {
         let is_unit = (normal.norm() - 1.0).abs() < 1e-6;
         if is_unit {
             Ok(*normal)
         } else {
-            Err(PrepareError::Normal { index, normal: normal.into_inner() })
+            Err(PrepareError::Normal { index: row(index), normal: normal.into_inner() })
         }
     };
     normals.iter().enumerate().map(checked).collect()
+}
+
+/// What is wrong with the noise of some points, by the row of the point in its file.
+pub(super) fn by_row(error: PrepareError, row: impl Fn(usize) -> usize) -> PrepareError {
+    match error {
+        PrepareError::Noise(NoiseError::CovarianceNotFinite { index, point }) => {
+            NoiseError::CovarianceNotFinite { index: row(index), point }.into()
+        }
+        other => other,
+    }
 }
 
 /// Whether no scan is one that was given before, whose points are as many: given where the points of each end
