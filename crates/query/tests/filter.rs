@@ -98,6 +98,23 @@ fn of_duplicates_the_first_stays() {
     assert_eq!(filtered.rows, (0..50).collect::<Vec<_>>());
 }
 
+/// Which of them counted hung on the order of the rows.
+#[test]
+fn of_duplicates_with_their_own_noise_the_least_certain_stays() {
+    let points = [0, 1, 0, 2, 0, 1].map(|x| Point3::new(f64::from(x), 0.0, 1.0));
+    let variances = [1.0, 5.0, 4.0, 2.0, 4.0, 3.0];
+    let settings = FilterSettings { drop_duplicates: true, ..off() };
+    let kept = |order: [usize; 6]| {
+        let cloud = PointCloud {
+            covariances: Some(order.map(|i| Covariance::isotropic(variances[i])).to_vec()),
+            ..PointCloud::from_points(order.map(|i| points[i]).to_vec())
+        };
+        filter(&cloud, &settings, &SensorModel::Exact).unwrap().rows
+    };
+    assert_eq!(kept([0, 1, 2, 3, 4, 5]), [1, 2, 3]);
+    assert_eq!(kept([5, 4, 3, 2, 1, 0]), [1, 2, 4]);
+}
+
 #[test]
 fn covariances_follow_their_points() {
     let mut points = grid(10);

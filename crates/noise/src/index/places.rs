@@ -18,7 +18,7 @@ struct Tag {
 }
 
 /// Those of some points of a cloud that lie where an earlier one of them does, to the bit, −0 and 0 being the
-/// same: their indices, in order. `some` are indices in order, each of them once.
+/// same: their indices, in order. `some` are indices, each of them once, the earliest first.
 ///
 /// # Panics
 /// When there is no point with one of the indices.

@@ -95,7 +95,7 @@ pub(crate) fn filter_and_tell(
         removed.near = near::too_near(cloud, settings);
     }
     if settings.drop_duplicates {
-        run.stage("duplicates", duplicates::keep_first);
+        run.stage("duplicates", duplicates::keep_one);
     }
     if !settings.robot.is_empty() {
         run.stage("robot", |cloud, kept| {

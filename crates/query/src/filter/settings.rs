@@ -16,7 +16,8 @@ pub struct FilterSettings {
     pub min_range: Option<f64>,
     /// Points farther from the sensor than this are dropped, m; infinity keeps all.
     pub max_range: f64,
-    /// Whether a point with exactly the coordinates of an earlier one is dropped.
+    /// Whether of points with exactly the same coordinates one alone is kept: the first, and of those that bring their
+    /// noise the least certain.
     pub drop_duplicates: bool,
     /// The robot's own links: points inside one of them, or within its padding, are dropped, and these places count as
     /// seen to be empty. So they should stand on nothing and lean on nothing; points of what they hold and grasped
