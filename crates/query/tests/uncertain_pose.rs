@@ -158,3 +158,18 @@ fn no_pose_has_such_a_covariance() {
         assert!(matches!(error, QueryError::PoseCovariance { .. }), "{error}");
     }
 }
+
+/// Its eigenvalues are beyond all numbers: it was dropped, or a margin was blamed that nobody gave.
+#[test]
+fn a_covariance_as_wide_as_all_numbers_is_refused_by_its_name() {
+    let (a, b) = bodies(true, 3);
+    let mean = Pose::from_translation(Vector3::new(0.0, 0.0, 1.0));
+    let of = |covariance| PoseDistribution { mean, covariance };
+    let alone = |std| PoseDistribution::from_std(mean, [std; 6]);
+    for bad in [of([[1e308; 6]; 6]), of([[1e300; 6]; 6]), alone(1e154), alone(1e100), alone(1e11)] {
+        let error = query().run_uncertain(&a, &b, &bad).unwrap_err();
+        assert!(matches!(error, QueryError::PoseCovariance { .. }), "{error}");
+    }
+    // As far as that a pose is asked about.
+    query().run_uncertain(&a, &b, &alone(1e9)).expect("poses of finite coordinates");
+}

@@ -153,7 +153,8 @@ class Query:
         Raises
         ------
         CloudtouchError
-            ``covariance`` is not finite, not symmetric or has a negative eigenvalue, and what :meth:`run` raises.
+            ``covariance`` is not finite or beyond 1e18, not symmetric or has a negative eigenvalue, and what
+            :meth:`run` raises.
         ValueError
             One of (6,) standard deviations is negative.
         """

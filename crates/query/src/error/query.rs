@@ -128,7 +128,7 @@ pub enum QueryError {
     },
     /// A covariance that no pose can have.
     #[error(
-        "the covariance of the pose has {}: it must be finite, symmetric and without negative \
+        "the covariance of the pose has {}: it must be finite, at most 1e18, symmetric and without negative \
          eigenvalue (m², m rad, rad²)",
         number(*value)
     )]

@@ -7,6 +7,8 @@ use crate::error::QueryError;
 
 /// Relative rounding of a covariance.
 const ROUNDING: f64 = 1e-9;
+/// No entry of one is larger, m²: poses a few deviations out are still where poses can be asked about.
+const MOST: f64 = 1e18;
 
 /// A pose that is known only so well: `mean` followed by a small motion in the object's own frame, by
 /// translation (m) and rotation vector (rad), drawn from a normal distribution about nothing.
@@ -33,7 +35,7 @@ impl PoseDistribution {
         let covariance = Matrix6::from_fn(|i, j| self.covariance[i][j]);
         let size = covariance.amax();
         let bad = |value: f64| Err(QueryError::PoseCovariance { value });
-        if let Some(&value) = covariance.iter().find(|value| !value.is_finite()) {
+        if let Some(&value) = covariance.iter().find(|value| value.is_nan() || value.abs() > MOST) {
             return bad(value);
         }
         let skew = (covariance - covariance.transpose()).amax();
@@ -41,7 +43,8 @@ impl PoseDistribution {
             return bad(skew);
         }
         let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(covariance);
-        if let Some(&value) = eigenvalues.iter().find(|value| **value < -ROUNDING * size) {
+        let is_bad = |value: f64| !value.is_finite() || value < -ROUNDING * size;
+        if let Some(&value) = eigenvalues.iter().find(|value| is_bad(**value)) {
             return bad(value);
         }
         let axes: Vec<Vector6<f64>> = (0..6)

@@ -41,8 +41,8 @@ impl Query {
     /// motion that changes the clearance most, and some far out on it. On all threads of the pool.
     ///
     /// # Errors
-    /// When the covariance is not finite, not symmetric or has a negative eigenvalue, and those of
-    /// [`Self::run`].
+    /// When the covariance is not finite or beyond 1e18, not symmetric or has a negative eigenvalue, and those
+    /// of [`Self::run`].
     pub fn run_uncertain<'a>(
         &self,
         a: impl Into<BodyRef<'a>>,
