@@ -6,7 +6,8 @@ use crate::common::{MODES, Scan, ask, at, mesh, scan};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, Mode, Path, Query, QuerySettings, Report, SelfMesh, Verdict, Warning,
+    Cloud, CloudSettings, Mode, Path, Query, QuerySettings, Report, Safeguards, SelfMesh, Verdict,
+    Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -264,6 +265,41 @@ fn a_path_that_ends_in_the_shadow_read_free() {
     let until = swept.certified_free_until;
     assert!((0.5..1.0).contains(&until) && verdict(until) == Verdict::Free, "{until}");
     assert_eq!(verdict(until + 0.02), Verdict::Undecided, "{until}");
+}
+
+/// A thin post far before a wall: behind it is what nobody saw, 5 mm of it at 3 m.
+fn post() -> PointCloud {
+    let (width, height, focal) = (1920, 60, 1200.0);
+    let ray = |pixel: usize, count: usize| (pixel as f64 - 0.5 * (count - 1) as f64) / focal;
+    let points = (0..width * height).map(|pixel| {
+        let [x, y] = [ray(pixel % width, width), ray(pixel / width, height)];
+        let depth = if x.abs() < 0.001 { 0.5 } else { 6.0 };
+        Point3::new(x * depth, y * depth, depth)
+    });
+    let points = points.collect();
+    PointCloud { image_size: Some((width, height)), ..PointCloud::from_points(points) }
+}
+
+/// Doubts were looked for at no more than 201 poses of a stretch: what is small against 1/200 of it
+/// passed what nobody saw as free.
+#[test]
+fn a_long_stretch_of_a_small_body_stepped_over_a_shadow() {
+    let image = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    let image = Cloud::prepare(&post(), &image).expect("a good image");
+    let safeguards = Safeguards { doubt_units: false, ..Safeguards::default() };
+    let settings = QuerySettings { safeguards, ..QuerySettings::default() };
+    let query = Query::new(settings).expect("good settings");
+    let cube = mesh(&scene::cuboid([0.006; 3]));
+    // The shadow is halfway between two of 201 poses.
+    let path = Path::linear(&at(-2.2, 0.0, 3.0), &at(2.222, 0.0, 3.0)).expect("two poses");
+    let verdict =
+        |share: f64| query.run(&image, &cube, &path.pose(share)).expect("a good pose").verdict;
+    let behind = 2.2 / 4.422;
+    assert_eq!([0.0, behind, 1.0].map(verdict), [Verdict::Free, Verdict::Undecided, Verdict::Free]);
+    let swept = query.sweep(&image, &cube, &path, 1e-4).expect("a good path");
+    assert_eq!(swept.verdict, Verdict::Undecided, "{swept:?}");
+    let until = swept.certified_free_until;
+    assert!((0.98 * behind..behind).contains(&until) && verdict(until) == Verdict::Free, "{until}");
 }
 
 /// Something may stand in the shadow, which is 11 cm away.

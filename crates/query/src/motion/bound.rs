@@ -26,10 +26,8 @@ pub(super) struct Drifting<'a> {
 
 /// Doubts are looked for at the ends and in the middle of a stretch at least, ...
 const LEAST_DOUBTED: usize = 3;
-/// ... and beside an image so often that nothing moves by more than this part of the smaller body, ...
+/// ... and beside an image so often that nothing moves by more than this part of the smaller body.
 const DOUBTED_WAY: f64 = 0.05;
-/// ... but no more often than this.
-const MOST_DOUBTED: usize = 201;
 
 impl Drifting<'_> {
     /// A bound on the probability of a collision at any pose on the way; 1 as soon as it would exceed
@@ -88,7 +86,7 @@ impl Drifting<'_> {
         let step = DOUBTED_WAY * a.size().min(b.size());
         // A body without size is doubted anyway.
         let steps = if step > 0.0 { (way / step).ceil() as usize } else { 0 };
-        (steps + 1).clamp(LEAST_DOUBTED, MOST_DOUBTED)
+        steps.saturating_add(1).max(LEAST_DOUBTED)
     }
 
     /// Where two exact surfaces never touch, one is inside the other all the time or never.

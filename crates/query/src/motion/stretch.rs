@@ -69,14 +69,18 @@ impl Sweep<'_> {
         interval.upper =
             drifting.upper_bound(self.query, interval.cut, &self.clock, &mut self.stats)?;
         if interval.upper < self.query.settings().reject {
-            interval.is_doubtful = self.is_doubted(&drifting, &interval);
+            match self.is_doubted(&drifting, &interval) {
+                Some(is_doubtful) => interval.is_doubtful = is_doubtful,
+                // What was not looked at is not free.
+                None => interval.upper = 1.0,
+            }
         }
         Ok(interval)
     }
 
     /// Whether something speaks against believing a stretch that reads as free, at its ends or so near to one
-    /// another between them that nothing much lies between.
-    fn is_doubted(&mut self, drifting: &Drifting<'_>, interval: &Interval) -> bool {
+    /// another between them that nothing much lies between; `None` where time is over before that is known.
+    fn is_doubted(&mut self, drifting: &Drifting<'_>, interval: &Interval) -> Option<bool> {
         let Interval { segment, times: [from, to], .. } = *interval;
         let (a, b) = self.bodies;
         let leg = self.path.leg(segment);
@@ -85,6 +89,9 @@ impl Sweep<'_> {
         let enough = (interval.length() / self.tested.tolerance()).ceil() as usize + 1;
         let poses = drifting.poses_to_doubt().min(enough.max(2));
         for k in 0..poses {
+            if self.clock.is_over() {
+                return None;
+            }
             let time = from + (to - from) * k as f64 / (poses - 1) as f64;
             let shapes = (a.shape(), b.shape());
             let (doubt, warnings) = self.query.terms().doubt_at(shapes, &leg.at(time), is_clear);
@@ -92,9 +99,9 @@ impl Sweep<'_> {
             self.tested.misgivings.add(at, doubt, &warnings);
             if doubt.is_some() {
                 self.tested.not_free_from = self.tested.not_free_from.min(at);
-                return true;
+                return Some(true);
             }
         }
-        false
+        Some(false)
     }
 }

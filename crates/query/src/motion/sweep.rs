@@ -40,7 +40,9 @@ impl Query {
     /// at the first pose that is found not to be free, wherever on the path, some of which are asked about
     /// before anything is bounded: for who wants no more than to know whether the path is free.
     ///
-    /// What [`Self::run`] says of surface that no point stands for holds here too. A deadline
+    /// What [`Self::run`] says of surface that no point stands for holds here too. What a depth image did not see
+    /// is looked for at poses along a stretch, between which nothing moves by more than a twentieth of the smaller
+    /// body, or by more than the tolerance where that is farther: less of it may be passed over. A deadline
     /// counts for the sweep, and for each pose.
     ///
     /// ```
