@@ -208,6 +208,37 @@ fn a_thing_of_the_scene_within_a_closed_cloud_read_free() {
     assert_eq!(free.verdict, Verdict::Free, "{free:?}");
 }
 
+/// Half a ball with samples of 2 mm of noise, as a bowl that stands upside down.
+fn dome(seed: u64) -> Cloud {
+    let ball = scene::sphere(0.1, 4);
+    let is_high = |of: &&[u32; 3]| of.iter().all(|&v| ball.vertices()[v as usize].z > -0.003);
+    let faces = ball.triangles().iter().filter(is_high).copied().collect();
+    let half = TriangleMesh::new(ball.vertices().to_vec(), faces).expect("a mesh");
+    let cloud = PointCloud::from_points(measured(&half, 0.004, 0.002, seed));
+    let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    Cloud::prepare(&cloud, &settings).expect("a good cloud")
+}
+
+/// Within the noise of a surface samples of it are all around, by chance: plates that touch a bowl, larger and
+/// smaller than it, were within it.
+#[test]
+fn a_plate_on_a_bowl_was_enclosed() {
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    let mut verdicts = [0; 2];
+    for (seed, side) in [(1, 0.2), (2, 0.2), (1, 0.1), (2, 0.1)] {
+        let (dome, plate) =
+            (dome(seed), Mesh::prepare(&scene::plane_patch(side)).expect("a good mesh"));
+        for step in 0..100 {
+            let pose = at(0.0, 0.0, 0.09 + 0.0002 * f64::from(step));
+            let report = query.run(&dome, &plate, &pose).expect("a good pose");
+            assert_eq!(report.undecided_by, None, "{side}, step {step}");
+            verdicts[0] += usize::from(report.verdict == Verdict::InCollision);
+            verdicts[1] += usize::from(report.verdict == Verdict::Free);
+        }
+    }
+    assert!(verdicts.iter().all(|&count| count > 20), "{verdicts:?}");
+}
+
 /// From each place something is seen through a gap between samples, where a single line is asked.
 #[test]
 fn a_body_in_a_carton_was_seen_through_its_wall_from_one_of_many_sides() {

@@ -143,7 +143,7 @@ class Robot:
         """
         padding = _given.number(padding, "padding")
         if not 0 <= padding < math.inf:
-            raise ValueError(f"padding is {padding}: give metres, 0 or more")
+            raise ValueError(f"padding is {padding:g}: give metres, 0 or more")
         links = self._robot.seen(self._named(joints, "joints"), _base(base_pose))
         return tuple(SeenLink(Mesh(vertices, triangles), pose, padding) for vertices, triangles, pose in links)
 

@@ -18,6 +18,11 @@ const RADIUS_BEFORE_SENSOR: f64 = 2.0;
 /// from the middle of one of the smallest to its side are 11°, which it is as wide as at 8, and spacings vary.
 const FARTHEST_BESIDE: f64 = 16.0;
 
+/// Of the samples nearest to a place so many tell whether it is on their surface ...
+const NEAREST: usize = 20;
+/// ... as it is so many standard deviations of a fit from it: discs are all around in there, by chance.
+const DEVIATIONS: f64 = 3.0;
+
 /// The surface of a cloud.
 pub(super) struct Discs<'a> {
     cloud: &'a Prepared,
@@ -60,6 +65,12 @@ impl<'a> Discs<'a> {
         Way::toward(one, &way, way.norm()).is_some_and(|way| self.cross(&way, RADIUS_BEFORE_SENSOR))
     }
 
+    /// Whether a place is on it as well as is known: whether that is a collision tells what is near.
+    pub(super) fn hold(&mut self, place: &Point3) -> bool {
+        let near = self.cloud.fits_near(place, NEAREST, &mut self.scratch);
+        near.iter().any(|(_, surfel)| is_on(surfel, place))
+    }
+
     /// Whether a disc of this radius, in spacings, is across a way.
     fn cross(&mut self, way: &Way, radius: f64) -> bool {
         let (cloud, scratch) = (self.cloud, &mut self.scratch);
@@ -85,6 +96,15 @@ impl<'a> Discs<'a> {
 fn is_across(surfel: &Surfel, radius: f64, way: &Way) -> bool {
     let place = surfel.normal.and_then(|normal| way.meets_plane(&surfel.point.mean, &normal));
     place.is_some_and(|place| (place - surfel.point.mean).norm() <= radius * surfel.spacing)
+}
+
+fn is_on(surfel: &Surfel, place: &Point3) -> bool {
+    surfel.normal.is_some_and(|normal| {
+        let offset = place - surfel.point.mean;
+        let across = normal.dot(&offset);
+        across.abs() <= DEVIATIONS * surfel.across.sqrt()
+            && (offset - across * normal).norm() <= RADIUS * surfel.spacing
+    })
 }
 
 /// Directions all around, told apart by whether there are samples in them.

@@ -143,14 +143,17 @@ fn surrounds(cloud: &Prepared, middle: &Point3, own: impl FnOnce() -> Option<Poi
     }
     let filled = samples.around(middle);
     let mut sensors = cloud.sensor_origins().iter();
+    let mut discs = Discs::of(cloud);
     if filled.are_all() {
-        return !sensors.any(|sensor| sees(cloud, sensor, middle));
+        return !sensors.any(|sensor| sees(cloud, sensor, middle))
+            && !own().is_some_and(|own| discs.hold(&own));
     }
     // Near the surface samples are too few for that.
     let directions = Directions::new(Squares::new(MOST_SQUARES).middles(), |way| filled.hold(way));
-    let mut discs = Discs::of(cloud);
     discs.close_empty(middle, &directions)
         && own().is_some_and(|own| {
-            discs.close_all(&own, &directions) && sensors.all(|sensor| discs.part(sensor, &own))
+            !discs.hold(&own)
+                && discs.close_all(&own, &directions)
+                && sensors.all(|sensor| discs.part(sensor, &own))
         })
 }
