@@ -86,8 +86,8 @@ impl RobotChecker {
     /// from one value to the other, all in the same time.
     ///
     /// Over a stretch a link stays as near to its place in the middle as the turns and shifts of
-    /// its joints let it (Schwarzer, Saha, Latombe 2005); if no surface is within that distance there by
-    /// [`Query::within`], with the reject threshold of the query, the stretch is free. Else it is
+    /// its joints let it (Schwarzer, Saha, Latombe 2005); if no pose so near to it is as likely to collide as the
+    /// reject threshold of the query ([`Query::bound_around`]), the stretch is free. Else it is
     /// halved, down to `tolerance` as a share of the path; there the search ends, and what comes
     /// later is looked at for collisions at the positions given and some between them. A deadline of the query
     /// counts for all of it. Ask with
