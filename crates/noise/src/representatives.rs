@@ -23,7 +23,7 @@ const NOISY_SHARE: f64 = 0.05;
 /// The points that stand for a surface, and which are near which.
 ///
 /// Where the noise is larger than the spacing, the surface at a point is fitted to hundreds of others,
-/// and its neighbours tell nothing else: it is enough to ask for it every two standard deviations.
+/// and its neighbours tell nothing else: it is enough to ask for it every two spacings.
 #[derive(Debug)]
 pub struct Representatives {
     indices: Vec<u32>,
