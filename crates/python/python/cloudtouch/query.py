@@ -36,7 +36,7 @@ class Query:
     stop_above
         The search ends when a collision is this certain; 1 never ends it early.
     deadline
-        How long a query may search, s; ``None`` for as long as it takes. What was not looked at by then is undecided.
+        How long a query may search, s; ``None`` for as long as it takes. What that cuts short is never free.
     max_contacts
         How many contacts are reported at most.
 
