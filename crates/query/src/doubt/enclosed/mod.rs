@@ -8,7 +8,7 @@ mod sight;
 mod squares;
 mod way;
 
-use cloudtouch_bvh::{Obb, Visit};
+use cloudtouch_bvh::Obb;
 use cloudtouch_geom::{Point3, Pose};
 
 use crate::cloud::Prepared;
@@ -70,44 +70,18 @@ fn holds_part_of(
         Shape::Cloud(_) => true,
         Shape::Mesh(mesh) => !mesh.is_closed(),
     };
-    // PERF: most of what is far from an object is beside its box; the box is asked first, for the tree asks for memory.
-    let is_in_box = || {
-        box_gap(body, larger, &larger_from_body.inverse()) == 0.0
-            && box_of(body)
-                .is_some_and(|held| meets_box(larger, &held.transformed(larger_from_body)))
-    };
+    // PERF: most of what is far from an object is beside its box; looking for the nearest asks for memory.
+    let is_beside = || box_gap(body, larger, &larger_from_body.inverse()) > 0.0;
     let nearest = || {
         let place = nearest_of(larger, &larger_from_body.transform_point(middle))?;
         Some(larger_from_body.inverse().transform_point(&place))
     };
     may_hold
-        && is_in_box()
+        && !is_beside()
         && nearest().is_some_and(|place| match body {
             Shape::Cloud(cloud) => surrounds(cloud, &place, || Some(place)),
             Shape::Mesh(mesh) => nearly_surrounds(mesh, &place),
         })
-}
-
-/// Whether part of a body may be in a box, both in its local frame.
-fn meets_box(body: Shape<'_>, held: &Obb) -> bool {
-    let tree = match body {
-        Shape::Cloud(cloud) => cloud.tree(),
-        Shape::Mesh(mesh) => mesh.tree(),
-    };
-    let meets = |obb: &Obb| {
-        let along = held.to_local(&obb.centre).abs() - held.half_extents;
-        let mut axes = held.axes.column_iter().enumerate();
-        axes.all(|(k, axis)| along[k] <= obb.half_width_along(&axis.into_owned()))
-    };
-    let mut does = false;
-    tree.visit_nodes(|node| {
-        if does || !meets(&node.obb()) {
-            return Visit::Prune;
-        }
-        does = node.is_leaf();
-        Visit::Descend
-    });
-    does
 }
 
 /// The box around a body, in its local frame.
