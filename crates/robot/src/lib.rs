@@ -12,6 +12,7 @@ mod motion;
 mod nesting;
 mod primitive;
 mod robot;
+mod root;
 mod srdf;
 mod stretch;
 mod tree;

@@ -13,6 +13,7 @@ use crate::essential::essential;
 use crate::joint::{Joint, JointKind};
 use crate::link::{Shape, Sources};
 use crate::nesting;
+use crate::root::{self, Wanted};
 use crate::srdf::disabled_pairs;
 use crate::tree::Tree;
 use crate::uri::in_package;
@@ -75,6 +76,7 @@ impl Robot {
             return Err(RobotFault::Empty);
         }
         nesting::check(text)?;
+        root::check(text, Wanted::Urdf)?;
         let urdf = urdf_rs::read_from_string(&essential(text)?)
             .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
         let tree = Tree::try_from_urdf(&urdf)?;

@@ -5,6 +5,7 @@ use serde::de::IgnoredAny;
 
 use crate::error::RobotFault;
 use crate::nesting;
+use crate::root::{self, Wanted};
 
 #[derive(Deserialize)]
 struct Srdf {
@@ -30,6 +31,7 @@ pub(crate) fn disabled_pairs(text: &str) -> Result<Vec<[String; 2]>, RobotFault>
         return Err(RobotFault::Empty);
     }
     nesting::check(text)?;
+    root::check(text, Wanted::Srdf)?;
     let srdf: Srdf = quick_xml::de::from_str(text)
         .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
     if srdf.disabled.is_empty() && !srdf.links.is_empty() {

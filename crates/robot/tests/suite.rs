@@ -5,5 +5,6 @@ mod description;
 mod nested;
 mod path;
 mod real;
+mod root;
 mod seen;
 mod support;

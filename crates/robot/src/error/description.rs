@@ -28,6 +28,29 @@ pub enum RobotFault {
     /// A URDF in the place of an SRDF.
     #[error("is a URDF, which does not say which links may touch: give the SRDF of the robot")]
     NotSrdf,
+    /// An SRDF in the place of a URDF.
+    #[error("is an SRDF, which has no links: give the URDF of the robot")]
+    NotUrdf,
+    /// Another kind of file.
+    #[error("is {found}: its root is <{root}>, and that of {wanted} is <robot>; {remedy}")]
+    Root {
+        /// What it is.
+        found: &'static str,
+        /// The element around all of it.
+        root: String,
+        /// What was asked for.
+        wanted: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Two files in one.
+    #[error(
+        "has a second root, <{root}>, of which nothing would be read: put all in one <robot>, or remove it"
+    )]
+    SecondRoot {
+        /// The element around all that comes after the first.
+        root: String,
+    },
     /// Nothing is in it.
     #[error("is empty: give a file that describes the robot in a <robot> element")]
     Empty,
