@@ -15,6 +15,7 @@ mod robot;
 mod root;
 mod srdf;
 mod stretch;
+mod text;
 mod tree;
 mod uri;
 

@@ -15,6 +15,7 @@ use crate::link::{Shape, Sources};
 use crate::nesting;
 use crate::root::{self, Wanted};
 use crate::srdf::disabled_pairs;
+use crate::text;
 use crate::tree::Tree;
 use crate::uri::in_package;
 
@@ -56,7 +57,7 @@ impl Robot {
         Self::from_urdf_within(path, packages, &ReadLimits::default())
     }
 
-    /// As [`Self::from_urdf`], with other limits on its mesh files than the default ones.
+    /// As [`Self::from_urdf`], with other limits on the file and its meshes than the default ones.
     ///
     /// # Errors
     /// As [`Self::from_urdf`].
@@ -67,7 +68,8 @@ impl Robot {
     ) -> Result<Self, RobotError> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
-        let read = || Self::parse(&read_text(path)?, Sources { folder, packages, limits });
+        let read =
+            || Self::parse(&text::read(path, limits.bytes)?, Sources { folder, packages, limits });
         read().map_err(|fault| fault.of(path))
     }
 
@@ -105,9 +107,21 @@ impl Robot {
     ///
     /// # Errors
     /// When the file is missing or malformed.
-    pub fn with_srdf(mut self, path: impl AsRef<Path>) -> Result<Self, RobotError> {
+    pub fn with_srdf(self, path: impl AsRef<Path>) -> Result<Self, RobotError> {
+        self.with_srdf_within(path, &ReadLimits::default())
+    }
+
+    /// As [`Self::with_srdf`], with other limits on the file than the default ones.
+    ///
+    /// # Errors
+    /// As [`Self::with_srdf`].
+    pub fn with_srdf_within(
+        mut self,
+        path: impl AsRef<Path>,
+        limits: &ReadLimits,
+    ) -> Result<Self, RobotError> {
         let path = path.as_ref();
-        let pairs = read_text(path).and_then(|text| disabled_pairs(&text));
+        let pairs = text::read(path, limits.bytes).and_then(|text| disabled_pairs(&text));
         for [a, b] in pairs.map_err(|fault| fault.of(path))? {
             for link in [&a, &b] {
                 if !self.tree.links.contains(link) && !self.unknown.contains(link) {
@@ -256,8 +270,4 @@ fn in_order(a: String, b: String) -> [String; 2] {
     let mut pair = [a, b];
     pair.sort();
     pair
-}
-
-fn read_text(path: &Path) -> Result<String, RobotFault> {
-    std::fs::read_to_string(path).map_err(|reason| RobotFault::File { reason })
 }

@@ -2,6 +2,7 @@
 
 mod arm;
 mod description;
+mod limits;
 mod nested;
 mod path;
 mod real;

@@ -25,6 +25,21 @@ pub enum RobotFault {
         /// What the system said.
         reason: std::io::Error,
     },
+    /// The file is larger than is read.
+    #[error(
+        "has more than {limit} bytes, the most that is read: give the description of a robot, or raise the \
+         limit on bytes"
+    )]
+    TooLarge {
+        /// Bytes read at most, [`ReadLimits::bytes`](cloudtouch_io::ReadLimits::bytes).
+        limit: u64,
+    },
+    /// Not text, or in another encoding.
+    #[error("is not text in UTF-8 from byte {byte} on, counted from 0: save it as UTF-8")]
+    Encoding {
+        /// The first that is not.
+        byte: usize,
+    },
     /// A URDF in the place of an SRDF.
     #[error("is a URDF, which does not say which links may touch: give the SRDF of the robot")]
     NotSrdf,

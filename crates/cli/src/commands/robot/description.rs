@@ -60,7 +60,7 @@ fn check_packages(arguments: &RobotArguments, robot: &Robot) -> Result<()> {
 
 fn with_srdf(robot: Robot, arguments: &RobotArguments) -> Result<Robot> {
     let Some(srdf) = &arguments.robot.srdf else { return Ok(robot) };
-    let robot = robot.with_srdf(srdf)?;
+    let robot = robot.with_srdf_within(srdf, &arguments.common.limits.read_limits())?;
     if !robot.unknown_links().is_empty() {
         tracing::warn!(
             "{}: disable_collisions names {}, no link of {} ({}): correct the name, unless it is of \
