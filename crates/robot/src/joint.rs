@@ -78,7 +78,7 @@ impl Joint {
             return Err(RobotFault::NoAxis { joint: name });
         };
         let limits = match kind {
-            // As what is left out is read; a range of nothing that a file does write is a locked joint.
+            // As what is left out is read; 0 .. 0 beside an effort or a velocity keeps the joint there.
             JointKind::Revolute | JointKind::Prismatic
                 if urdf.limit == urdf_rs::JointLimit::default() =>
             {

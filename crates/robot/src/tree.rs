@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use cloudtouch::geom::Pose;
 
 use crate::error::{JointsError, RobotFault};
-use crate::joint::Joint;
+use crate::joint::{Joint, JointKind};
 
 /// Links joined to one tree.
 #[derive(Debug, Clone)]
@@ -156,6 +156,11 @@ fn position(joint: &Joint, given: &BTreeMap<String, f64>) -> Result<f64, JointsE
     match joint.limits {
         Some([lower, upper]) if !(lower - ROUNDING..=upper + ROUNDING).contains(&value) => {
             let name = joint.name.clone();
+            if lower == 0.0 && upper == 0.0 {
+                let turns = joint.kind == JointKind::Revolute;
+                let instead = if turns { ", or make it continuous" } else { "" };
+                return Err(JointsError::NoRange { name, value, instead });
+            }
             let hint = if value.abs() > std::f64::consts::TAU {
                 ", or is it in degrees or mm?"
             } else {

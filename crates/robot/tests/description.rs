@@ -117,6 +117,25 @@ fn a_limit_without_velocity_was_no_urdf() {
     assert!(error.contains("joint `j` has no <limit> with a range"), "{error}");
 }
 
+/// It was told to be beyond limits of 0 .. 0, and not that the file has no range.
+#[test]
+fn a_joint_without_a_range_is_told_to_have_none() {
+    let arm = Arm::default();
+    for (kind, range, instead) in [
+        ("revolute", "", ", or make it continuous"),
+        ("revolute", "lower='0' upper='0.0'", ", or make it continuous"),
+        ("prismatic", "lower='0' upper='-0'", "into the URDF"),
+    ] {
+        let limit = format!("type='{kind}'><limit {range} effort='9' velocity='1'/>");
+        let robot = arm.of(&two_links(BOX, &limit)).unwrap();
+        let at = |value: f64| robot.link_poses(&BTreeMap::from([("j".to_owned(), value)]));
+        assert!(at(0.0).is_ok(), "{limit}");
+        let error = at(0.5).unwrap_err().to_string();
+        assert!(error.contains("joint `j` is at 0.5, and its <limit> keeps it at 0"), "{error}");
+        assert!(error.contains("left out or 0") && error.ends_with(instead), "{error}");
+    }
+}
+
 /// A URDF in the place of the SRDF let no pair touch, without a word.
 #[test]
 fn a_urdf_is_not_taken_for_an_srdf() {

@@ -47,6 +47,19 @@ pub enum JointsError {
         /// What may have been meant.
         hint: &'static str,
     },
+    /// Away from where a limit without a range keeps it, which some write where none was set.
+    #[error(
+        "joint `{name}` is at {value}, and its <limit> keeps it at 0: lower and upper are left out or 0, as \
+         where no limit was set; write both into the URDF{instead}"
+    )]
+    NoRange {
+        /// The joint.
+        name: String,
+        /// Where it is; of a joint that mimics another, by what that is given.
+        value: f64,
+        /// What else may have been meant.
+        instead: &'static str,
+    },
     /// A joint that mimics another is given another position than that implies.
     #[error(
         "joint `{name}` mimics `{followed}`, by which it is at {implied}, not {value}: leave it out"
