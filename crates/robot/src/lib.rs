@@ -13,6 +13,7 @@ mod nesting;
 mod primitive;
 mod robot;
 mod root;
+mod slips;
 mod srdf;
 mod stretch;
 mod text;

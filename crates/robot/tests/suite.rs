@@ -8,4 +8,5 @@ mod path;
 mod real;
 mod root;
 mod seen;
+mod slips;
 mod support;

@@ -1,0 +1,48 @@
+//! Slips in the numbers and the range of a joint of a URDF.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use crate::support::Arm;
+use cloudtouch_robot::{Robot, RobotError};
+
+/// A link of this geometry, and one that hangs on it by a joint with this limit.
+fn robot(geometry: &str, limit: &str) -> Result<Robot, RobotError> {
+    let limit = format!("<limit {limit} effort='1' velocity='1'/>");
+    Arm::default().of(&format!(
+        "<robot name='r'><link name='a'><collision><geometry>{geometry}</geometry></collision></link>\
+         <link name='b'/><joint name='j' type='revolute'><parent link='a'/><child link='b'/>{limit}</joint></robot>"
+    ))
+}
+
+/// They were read as left out: the joint could not move that way.
+#[test]
+fn slips_in_the_range_of_a_joint_are_refused() {
+    for (limit, told) in [
+        ("lower='-1' uper='1'", "`uper` of <limit> is not known: write upper"),
+        ("Lower='-1' upper='1'", "`Lower` of <limit> is not known: write lower"),
+        ("min='-1' max='1'", "`min` of <limit> is not known: write lower"),
+        ("lower='-1' Upper_Limit='1'", "`Upper_Limit` of <limit> is not known: write upper"),
+    ] {
+        let error = robot("<sphere radius='1'/>", limit).unwrap_err().to_string();
+        assert!(error.contains(told), "{error}");
+    }
+    let drive = "lower='-1' upper='1' command_effort='3' current='2'";
+    assert!(robot("<sphere radius='1'/>", drive).is_ok());
+}
+
+/// Which number of which element it is was not told.
+#[test]
+fn what_is_no_number_is_told_with_its_element_and_attribute() {
+    for (geometry, limit, told) in [
+        ("<mesh filename='a' scale='0.001'/>", "", "`scale` of <mesh> is `0.001`: give 3 numbers"),
+        ("<sphere radius=''/>", "", "`radius` of <sphere> is ``: give 1 number"),
+        ("<sphere radius='5cm'/>", "", "`radius` of <sphere> is `5cm`: `5cm` is not a number"),
+        (
+            "<sphere radius='1'/>",
+            "lower='-1' upper='1,5'",
+            "`upper` of <limit> is `1,5`: `1,5` is not",
+        ),
+    ] {
+        let error = robot(geometry, limit).unwrap_err().to_string();
+        assert!(error.contains("arm.urdf: ") && error.contains(told), "{error}");
+    }
+}
