@@ -1,6 +1,7 @@
 //! A robot along a path of its joints: nothing between the positions given is missed.
 
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 use cloudtouch::{Checked, PairAnswer, Query, Verdict};
 
@@ -90,7 +91,7 @@ impl RobotChecker {
     /// reject threshold of the query ([`Query::bound_around`]), the stretch is free. Else it is
     /// halved, down to `tolerance` as a share of the path; there the search ends, and what comes
     /// later is looked at for collisions at the positions given and some between them. A deadline of the query
-    /// counts for all of it. Ask with
+    /// counts for all of it: once it is over the search ends where it is. Ask with
     /// [`Detail::Full`](cloudtouch::Detail::Full) for contacts and clearances of what is found.
     ///
     /// # Errors
@@ -113,11 +114,14 @@ impl RobotChecker {
             positions.map_err(|error| PathError::Joints { index, error })
         };
         let path = path.iter().enumerate().map(at).collect::<Result<Vec<Vec<f64>>, _>>()?;
+        // Of a query that began before it is over sooner, and what is looked at until then is known to be undecided.
+        let until = query.settings().deadline.and_then(|limit| Instant::now().checked_add(limit));
+        let is_over = || until.is_some_and(|until| Instant::now() >= until);
         let query = &query.begun_now();
         let given = path.iter().enumerate().map(|(index, at)| self.check_at(query, index, at));
         let given = given.collect::<Result<_, _>>()?;
-        let mut checked = self.certify(query, &path, given, tolerance)?;
-        self.look_later(query, &path, &mut checked)?;
+        let mut checked = self.certify(query, &path, given, (tolerance, &is_over))?;
+        self.look_later(query, &path, &mut checked, &is_over)?;
         Ok(checked)
     }
 
@@ -127,7 +131,7 @@ impl RobotChecker {
         query: &Query,
         path: &[Vec<f64>],
         given: Vec<Checked>,
-        tolerance: f64,
+        (tolerance, is_over): (f64, &dyn Fn() -> bool),
     ) -> Result<PathChecked, PathError> {
         let mut looked_at = given.len();
         if given.iter().any(Checked::is_unchecked) {
@@ -153,7 +157,7 @@ impl RobotChecker {
                 let ends_free = not_free.as_ref().is_none_or(|(time, _)| to < *time);
                 if pair.is_none() && ends_free && !around().any(|(_, at_most)| may_meet(at_most)) {
                     certified_free_until = (segment as f64 + to) / segments;
-                } else if to - from > (tolerance * segments).min(LONGEST) {
+                } else if to - from > (tolerance * segments).min(LONGEST) && !is_over() {
                     not_free = pair.map(|pair| (middle, pair)).or(not_free);
                     open.extend([[middle, to], [from, middle]]);
                 } else if let Some(pair) = pair {
@@ -170,16 +174,17 @@ impl RobotChecker {
         Ok(PathChecked { given, certified_free_until, stopped, later: None, looked_at })
     }
 
-    /// Looks for a collision beyond what is certified, until one is known.
+    /// Looks for a collision beyond what is certified, until one is known or the time is over.
     fn look_later(
         &self,
         query: &Query,
         path: &[Vec<f64>],
         checked: &mut PathChecked,
+        is_over: &dyn Fn() -> bool,
     ) -> Result<(), PathError> {
         let Some(Stopped { segment: first, t, .. }) = checked.stopped else { return Ok(()) };
         for (segment, time) in later_than((first, t), path.len() - 1) {
-            if checked.verdict() == Verdict::InCollision {
+            if checked.verdict() == Verdict::InCollision || is_over() {
                 break;
             }
             checked.looked_at += 1;

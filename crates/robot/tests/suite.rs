@@ -1,6 +1,7 @@
 //! All tests of this crate's interface, one module a behaviour: one program to link.
 
 mod arm;
+mod deadline;
 mod description;
 mod limits;
 mod nested;
