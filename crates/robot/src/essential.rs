@@ -4,6 +4,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, Writer};
 
 use crate::error::RobotFault;
+use crate::places;
 use crate::slips::{known, own_attributes};
 
 /// Parts that say nothing of where a link is: masses, colours, simulation, drives. Many a file leaves
@@ -24,6 +25,7 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
     let fault = |reason: String| RobotFault::Xml { reason };
     let mut reader = Reader::from_str(text);
     let mut writer = Writer::new(Vec::new());
+    let mut open: Vec<String> = Vec::new();
     loop {
         let event = reader.read_event().map_err(|error| fault(error.to_string()))?;
         let kept = match event {
@@ -34,8 +36,19 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
                 continue;
             }
             Event::Empty(start) if is_passed_over(&start)? => continue,
-            Event::Start(start) => Event::Start(plain(&known(start)?)?),
-            Event::Empty(start) => Event::Empty(plain(&known(start)?)?),
+            Event::Start(start) => {
+                let name = read_in(&start, &open)?;
+                open.push(name);
+                Event::Start(plain(&known(start)?)?)
+            }
+            Event::Empty(start) => {
+                read_in(&start, &open)?;
+                Event::Empty(plain(&known(start)?)?)
+            }
+            Event::End(end) => {
+                open.pop();
+                Event::End(end)
+            }
             other => other,
         };
         writer.write_event(kept).map_err(|error| fault(error.to_string()))?;
@@ -43,16 +56,27 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
     String::from_utf8(writer.into_inner()).map_err(|error| fault(error.to_string()))
 }
 
+/// The name of an element, where it is read in the innermost of those that are open.
+fn read_in(start: &BytesStart<'_>, open: &[String]) -> Result<String, RobotFault> {
+    let name = String::from_utf8_lossy(start.name().as_ref()).into_owned();
+    places::check(&name, open.last().map(String::as_str))?;
+    Ok(name)
+}
+
 fn is_passed_over(start: &BytesStart<'_>) -> Result<bool, RobotFault> {
     let name = start.name();
-    match name.prefix() {
-        // Its links and joints are not there yet: the rest is not the robot.
-        Some(prefix) if prefix.as_ref() == b"xacro" => {
-            let name = String::from_utf8_lossy(name.as_ref()).into_owned();
-            Err(RobotFault::Xml { reason: format!("<{name}> is not expanded") })
-        }
-        prefix => Ok(prefix.is_some() || PASSED_OVER.contains(&name.as_ref())),
+    if PASSED_OVER.contains(&name.as_ref()) {
+        return Ok(true);
     }
+    let prefix = name.prefix();
+    // Links and joints are elsewhere yet: the rest is not the robot.
+    if prefix.is_some_and(|prefix| prefix.as_ref() == b"xacro")
+        || name.local_name().as_ref() == b"include"
+    {
+        let name = String::from_utf8_lossy(name.as_ref()).into_owned();
+        return Err(RobotFault::Xml { reason: format!("<{name}> is not expanded") });
+    }
+    Ok(prefix.is_some())
 }
 
 /// Without attributes of other namespaces, such as a comment of xacro. How fast a joint may move, which

@@ -10,6 +10,7 @@ mod joint;
 mod link;
 mod motion;
 mod nesting;
+mod places;
 mod primitive;
 mod robot;
 mod root;

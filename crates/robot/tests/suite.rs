@@ -6,6 +6,7 @@ mod description;
 mod limits;
 mod nested;
 mod path;
+mod places;
 mod real;
 mod root;
 mod seen;
