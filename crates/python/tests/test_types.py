@@ -16,10 +16,43 @@ def robot(tmp_path):
     return ct.Robot(tmp_path / "r.urdf")
 
 
-def refused(cases):
+def refused(cases, kind=TypeError):
     for ask, says in cases:
-        with pytest.raises(TypeError, match=says):
+        with pytest.raises(kind, match=says):
             ask()
+
+
+def test_a_truth_value_counted_as_the_number_one(table, parcel, robot):
+    query, pose = ct.Query(), lifted(0.2)
+    refused(
+        [
+            (lambda: ct.Query(deadline=True), "^deadline is True: give a number"),
+            (lambda: ct.Query(accept=np.True_), "^accept is True: give a number"),
+            (lambda: ct.Query(max_contacts=True), "^max_contacts is True: give a whole number, 0 or more"),
+            (lambda: query.within(table, parcel, pose, True), "^margin is True: give a number"),
+            (lambda: ct.Cloud(parcel.points, sensor="iso:0.002", max_range=False), "^max_range is False: give a number"),
+            (lambda: robot.seen([0.0], padding=True), "^padding is True: give a number"),
+        ]
+    )
+
+
+def test_numbers_too_large_for_the_compiled_half_were_told_in_its_words(table, parcel):
+    page = ct.Query().page(table, parcel, lifted(0.2))
+    many = {"sensor": "iso:0.002", "outliers": (2**70, 3.0)}
+    refused(
+        [
+            (lambda: ct.Query(max_contacts=2**70), "^max_contacts is a whole number of 71 bits: give at most"),
+            (lambda: ct.Cloud(parcel.points, **many), r"^outliers\[0\] is a whole number of 71 bits: give at most"),
+            (lambda: page.frame(2**32), "^height is 4294967296: give at most 4294967295"),
+        ],
+        ValueError,
+    )
+    refused([(lambda: ct.Query(accept=10**400), "^accept is a whole number of 1329 bits: give a number")])
+    for deadline in (-1.0, np.inf, np.nan, 1e300):
+        with pytest.raises(ct.CloudtouchError, match="^deadline is .*: give seconds, 0 or more, or None"):
+            ct.Query(deadline=deadline)
+    everything = 2**63 - 1
+    assert ct.Query(max_contacts=np.int64(everything)).run(table, parcel, lifted(0.2)).verdict == "free"
 
 
 def test_what_a_query_is_asked_was_told_without_its_name(table, parcel):

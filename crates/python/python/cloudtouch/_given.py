@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,11 @@ import numpy as np
 def number(value: Any, name: str) -> float:
     """A real number."""
     try:
-        if isinstance(value, (str, bytes)):
+        # True would be 1.
+        if isinstance(value, (str, bytes, bool, np.bool_)):
             raise TypeError
         return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise TypeError(f"{name} is {told(value)}: give a number") from None
 
 
@@ -24,9 +26,11 @@ def optional_number(value: Any, name: str) -> float | None:
     return None if value is None else number(value, name)
 
 
-def count(value: Any, name: str) -> int:
+def count(value: Any, name: str, most: int = sys.maxsize) -> int:
     """A whole number that is not negative."""
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and value >= 0:
+        if value > most:
+            raise ValueError(f"{name} is {told(value)}: give at most {most}")
         return int(value)
     raise TypeError(f"{name} is {told(value)}: give a whole number, 0 or more")
 
@@ -65,5 +69,9 @@ def count_and_number(value: Any, name: str) -> tuple[int, float] | None:
 
 def told(value: Any) -> str:
     """It, or its type where it may be long."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, int) and value.bit_length() > 64:
+        return f"a whole number of {value.bit_length()} bits"
     is_short = value is None or isinstance(value, (str, bytes, bool, int, float))
     return f"{value!r}" if is_short else f"of the type {type(value).__name__}"

@@ -9,6 +9,9 @@ from typing import Callable, Optional
 
 from cloudtouch import _given
 
+#: No frame is higher; a number in 32 bits.
+MOST_PIXELS = 2**32 - 1
+
 
 class Page:
     """Bodies and what was answered, as one HTML page: turned with the mouse, coloured by probability, with words.
@@ -48,7 +51,7 @@ class Page:
 
     def frame(self, height: int = 480) -> str:
         """A frame of so many pixels with the page in it, as a part of another page."""
-        return self._render(_given.count(height, "height"))
+        return self._render(_given.count(height, "height", MOST_PIXELS))
 
     def _repr_html_(self) -> str:
         return self.frame()

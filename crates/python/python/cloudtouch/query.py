@@ -15,6 +15,9 @@ from cloudtouch.report import Batch, Report, Within
 
 Body = Union[Cloud, Mesh]
 
+#: More than any clock counts; the compiled half takes twice as many.
+MOST_SECONDS = 2.0**63
+
 
 class Query:
     """Settings, checked; cheap to make, immutable, and shared by threads.
@@ -73,7 +76,7 @@ class Query:
                 "max_missing": _given.number(max_missing, "max_missing"),
                 "doubt_units": _given.flag(doubt_units, "doubt_units"),
                 "stop_above": _given.number(stop_above, "stop_above"),
-                "deadline": _given.optional_number(deadline, "deadline"),
+                "deadline": _seconds(deadline, "deadline"),
                 "max_contacts": _given.count(max_contacts, "max_contacts"),
             }
         )
@@ -292,6 +295,15 @@ class Query:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._set(state)
+
+
+def _seconds(value: Any, name: str) -> float | None:
+    """How long something may take, where that is limited."""
+    seconds = _given.optional_number(value, name)
+    if seconds is not None and not 0 <= seconds <= MOST_SECONDS:
+        instead = "give seconds, 0 or more, or None for as long as it takes"
+        raise _native.CloudtouchError(f"{name} is {_given.told(value)}: {instead}")
+    return seconds
 
 
 def native_query(query: Any, name: str = "query") -> _native.Query:
