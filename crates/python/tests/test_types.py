@@ -78,7 +78,40 @@ def test_what_a_robot_is_asked_was_told_without_its_name(robot, floor):
             (lambda: ct.RobotChecker("arm.urdf", floor), "^robot is 'arm.urdf': give a cloudtouch.Robot"),
             (lambda: checker.check_path(query, [[0.0], [1.0]], tolerance="fine"), "^tolerance is 'fine'"),
             (lambda: robot.seen([0.0], padding="1 cm"), "^padding is '1 cm': give a number"),
+            (lambda: ct.RobotChecker(robot, floor, self_collision="no"), "^self_collision is 'no': give True or False"),
+            (lambda: robot.may_touch("a", None), "^b is None: give a str"),
+            (lambda: checker.check_path(query, None), "^path is None: give .M, J., or a list of positions"),
+            (lambda: checker.check_path(query, {"j": 0.0}), "^path is of the type dict: give"),
+            (lambda: checker.check_path(query, "path.csv"), "^path is 'path.csv': give"),
         ]
+    )
+
+
+def test_names_of_files_of_another_kind_were_told_without_their_argument(tmp_path):
+    urdf = tmp_path / "r.urdf"
+    refused(
+        [
+            (lambda: ct.Robot(5), "^urdf is 5: give the path of a file"),
+            (lambda: ct.Robot(urdf, srdf=5), "^srdf is 5: give the path of a file"),
+            (lambda: ct.Robot(urdf, packages=tmp_path), "^packages is of the type .*Path: give folders by name"),
+            (lambda: ct.Robot(urdf, packages={"parts": 5}), r"^packages\['parts'\] is 5: give the path of a folder"),
+            (lambda: ct.Robot(urdf, packages={5: tmp_path}), "^a name of packages is 5: give a str"),
+            (lambda: ct.Cloud.read(5, sensor="iso:0.002"), "^path is 5: give the path of a file"),
+            (lambda: ct.Cloud.read("a.pcd", sensor="iso:0.002", unit=5), "^unit is 5: give a str"),
+            (lambda: ct.Mesh.read(None), "^path is None: give the path of a file"),
+            (lambda: ct.Mesh.read("a.stl", unit=None), "^unit is None: give a str"),
+        ]
+    )
+
+
+def test_what_makes_no_array_was_told_without_its_name(table, parcel):
+    ragged, query = [[1.0, 2.0], [1.0]], ct.Query()
+    refused(
+        [
+            (lambda: query.page(table, parcel, ragged), "^poses makes no array"),
+            (lambda: query.run_uncertain(table, parcel, lifted(0.2), ragged), "^covariance makes no array"),
+        ],
+        ValueError,
     )
 
 

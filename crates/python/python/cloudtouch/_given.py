@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,22 @@ def folder(value: Any, name: str) -> Path:
     if isinstance(value, (str, os.PathLike)):
         return Path(value)
     raise TypeError(f"{name} is {told(value)}: give the path of a folder, a str")
+
+
+def file(value: Any, name: str) -> str | os.PathLike[str]:
+    """The path of a file."""
+    if isinstance(value, (str, os.PathLike)):
+        return value
+    raise TypeError(f"{name} is {told(value)}: give the path of a file, a str")
+
+
+def folders(value: Any, name: str) -> list[tuple[str, str | os.PathLike[str]]]:
+    """Folders by name; none where they are not given."""
+    if value is None:
+        return []
+    if not isinstance(value, Mapping):
+        raise TypeError(f'{name} is {told(value)}: give folders by name, such as {{"my_robot": "/opt/my_robot"}}')
+    return [(text(key, f"a name of {name}"), folder(of, f"{name}[{key!r}]")) for key, of in value.items()]
 
 
 def flag(value: Any, name: str) -> bool:

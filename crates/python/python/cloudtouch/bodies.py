@@ -163,12 +163,12 @@ class Cloud:
             The file cannot be read, is malformed or has another extension, with place and remedy; and what
             :class:`Cloud` raises.
         """
-        if os.fsdecode(path).lower().endswith(".png"):
+        if os.fsdecode(_given.file(path, "path")).lower().endswith(".png"):
             raise _native.CloudtouchError(
                 f"{os.fspath(path)}: a depth image is read with the intrinsics of its camera: give its array to "
                 "Cloud.from_depth, such as cv2.imread(path, cv2.IMREAD_UNCHANGED)"
             )
-        rows, image_size, pose, covariances = _native.read_cloud(path, unit)
+        rows, image_size, pose, covariances = _native.read_cloud(path, _given.text(unit, "unit"))
         if image_size is not None:
             width, height = image_size
             rows = rows.reshape(height, width, 3)
@@ -418,7 +418,7 @@ class Mesh:
         CloudtouchError
             The file cannot be read, is malformed or has another extension, with place and remedy.
         """
-        vertices, triangles = _native.read_mesh(path, unit)
+        vertices, triangles = _native.read_mesh(_given.file(path, "path"), _given.text(unit, "unit"))
         with _naming(path):
             return cls(vertices, triangles)
 

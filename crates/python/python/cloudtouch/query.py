@@ -162,7 +162,7 @@ class Query:
             One of (6,) standard deviations is negative.
         """
         matrix = _arrays.numbers(pose, "pose", (4, 4))
-        if np.ndim(covariance) == 1:
+        if _arrays.array_of(covariance, "covariance").ndim == 1:
             stds = _arrays.numbers(covariance, "covariance", (6,))
             if (stds < 0).any():
                 raise ValueError(f"covariance: {stds.min()} is negative: a standard deviation is 0 or more")
@@ -274,7 +274,7 @@ class Query:
         CloudtouchError
             As :meth:`run_batch`, when the page is shown or written.
         """
-        if np.ndim(poses) == 2:
+        if _arrays.array_of(poses, "poses").ndim == 2:
             poses = _arrays.numbers(poses, "poses", (4, 4))[None]
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4)).copy()
         bodies, title = native_pair(a, b), _given.text(title, "title")

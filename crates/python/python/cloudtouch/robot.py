@@ -70,7 +70,8 @@ class Robot:
         packages: Mapping[str, str | os.PathLike[str]] | None = None,
         srdf: str | os.PathLike[str] | None = None,
     ) -> None:
-        self._robot = _native.Robot(urdf, list((packages or {}).items()), srdf)
+        described = None if srdf is None else _given.file(srdf, "srdf")
+        self._robot = _native.Robot(_given.file(urdf, "urdf"), _given.folders(packages, "packages"), described)
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -103,7 +104,7 @@ class Robot:
 
     def may_touch(self, a: str, b: str) -> bool:
         """Whether two links may touch: neighbours, those that never move against one another, and those of the SRDF."""
-        return self._robot.may_touch(a, b)
+        return self._robot.may_touch(_given.text(a, "a"), _given.text(b, "b"))
 
     def link_poses(self, joints: Positions) -> dict[str, Floats]:
         """(4, 4) of each link by its name: from its frame into that of the base, m.
@@ -234,7 +235,8 @@ class RobotChecker:
             raise TypeError(f"robot is {_given.told(robot)}: give a cloudtouch.Robot")
         self._robot = robot
         body = native_body(surroundings, "surroundings")
-        self._checker = _native.RobotChecker(robot._robot, body, _base(base_pose), self_collision)
+        with_itself = _given.flag(self_collision, "self_collision")
+        self._checker = _native.RobotChecker(robot._robot, body, _base(base_pose), with_itself)
 
     @property
     def robot(self) -> Robot:
@@ -350,6 +352,8 @@ class RobotChecker:
             There are fewer than two, ``tolerance`` is below 1e-5 or above 1, or as :meth:`check`.
         """
         asked, rows = native_query(query), _arrays.rows_of(path)
+        if isinstance(rows, (str, bytes, Mapping)) or not isinstance(rows, Iterable):
+            raise TypeError(f"path is {_given.told(rows)}: give (M, J), or a list of positions")
         tolerance = _given.number(tolerance, "tolerance")
         positions = [self._robot._named(joints, f"path[{index}]") for index, joints in enumerate(rows)]
         given, until, (stopped, later), looked_at, verdict = self._checker.check_path(asked, positions, tolerance)
