@@ -76,7 +76,7 @@ impl Query {
         pose: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
-        let pose = rigid(&matrix(&pose))?;
+        let pose = rigid("pose", &matrix(&pose))?;
         let report = on_this_thread(py, || self.checked.run(&*a, &*b, &pose))?.map_err(refused)?;
         answer::report(py, &report)
     }
@@ -91,7 +91,7 @@ impl Query {
         margin: f64,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
-        let pose = rigid(&matrix(&pose))?;
+        let pose = rigid("pose", &matrix(&pose))?;
         let both = on_this_thread(py, || self.checked.within(&*a, &*b, &pose, margin))?;
         let (report, within) = both.map_err(refused)?;
         Ok((answer::report(py, &report)?, answer::within(py, &within)?))
@@ -107,7 +107,7 @@ impl Query {
         share: f64,
     ) -> PyResult<[f64; 2]> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
-        let pose = rigid(&matrix(&pose))?;
+        let pose = rigid("pose", &matrix(&pose))?;
         on_this_thread(py, || self.checked.clearance_interval(&*a, &*b, &pose, share))?
             .map_err(refused)
     }
@@ -122,7 +122,7 @@ impl Query {
         covariance: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
-        let mean = rigid(&matrix(&pose))?;
+        let mean = rigid("pose", &matrix(&pose))?;
         let entries = covariance.as_array();
         let covariance = from_fn(|row| from_fn(|column| entries[(row, column)]));
         let poses = PoseDistribution { mean, covariance };
@@ -140,7 +140,7 @@ impl Query {
         pose: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
-        let pose = rigid(&matrix(&pose))?;
+        let pose = rigid("pose", &matrix(&pose))?;
         let both = on_this_thread(py, || self.checked.gradient(&*a, &*b, &pose))?;
         let (report, gradient) = both.map_err(refused)?;
         Ok((answer::report(py, &report)?, answer::gradient(py, &gradient)?))
@@ -156,7 +156,7 @@ impl Query {
         probability: f64,
     ) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
         let (a, b) = (a.get().now(py)?, b.get().now(py)?);
-        let pose = rigid(&matrix(&pose))?;
+        let pose = rigid("pose", &matrix(&pose))?;
         let both = on_this_thread(py, || self.checked.penetration(&*a, &*b, &pose, probability))?;
         let (report, out) = both.map_err(refused)?;
         let out = out.map(|out| answer::penetration(py, &out)).transpose()?;
@@ -248,7 +248,7 @@ fn all_rigid(poses: &PyReadonlyArray3<'_, f64>) -> Vec<PyResult<Pose>> {
     matrices(poses).iter().enumerate().map(rigid).collect()
 }
 
-/// The pose of a matrix.
-pub(crate) fn rigid(matrix: &Matrix4<f64>) -> PyResult<Pose> {
-    Pose::try_from_matrix(matrix).map_err(|e| refused_for("pose", e))
+/// The pose of a matrix that is an argument by this name.
+pub(crate) fn rigid(argument: &str, matrix: &Matrix4<f64>) -> PyResult<Pose> {
+    Pose::try_from_matrix(matrix).map_err(|e| refused_for(argument, e))
 }

@@ -111,7 +111,7 @@ impl Robot {
         joints: Joints,
         base_pose: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Vec<Link<'py>>> {
-        let base = rigid(&matrix(&base_pose))?;
+        let base = rigid("base_pose", &matrix(&base_pose))?;
         // The padding is that of the cloud.
         let links = self.described.self_filter(&joints, &base, 0.0).map_err(refused)?;
         let link = |link: cloudtouch::SelfMesh| {
@@ -153,7 +153,7 @@ impl RobotChecker {
         base_pose: PyReadonlyArray2<'_, f64>,
         self_collision: bool,
     ) -> PyResult<Self> {
-        let base: Pose = rigid(&matrix(&base_pose))?;
+        let base: Pose = rigid("base_pose", &matrix(&base_pose))?;
         let touching = if self_collision { Touching::AndItself } else { Touching::Surroundings };
         let robot = Arc::clone(&robot.get().described);
         let checker = Checker::new(robot, nobody()?, base, touching).map_err(refused)?;
@@ -174,7 +174,8 @@ impl RobotChecker {
         link: &str,
         link_from_body: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<()> {
-        let (body, pose) = (body.get().now(py)?, rigid(&matrix(&link_from_body))?);
+        let pose = rigid("link_from_body", &matrix(&link_from_body))?;
+        let body = body.get().now(py)?;
         self.lock().hold(name, body, link, pose).map_err(refused)
     }
 

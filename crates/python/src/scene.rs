@@ -80,7 +80,7 @@ impl Scene {
         body: Bound<'_, Body>,
         pose: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<()> {
-        let pose = rigid(&matrix(&pose))?;
+        let pose = rigid("pose", &matrix(&pose))?;
         let mut named = self.lock();
         named.places.add(name.clone(), Arc::clone(&self.nobody), pose).map_err(refused)?;
         named.bodies.insert(name, body.unbind());
@@ -105,7 +105,7 @@ impl Scene {
 
     #[pyo3(signature = (name, pose, /))]
     fn set_pose(&self, name: &str, pose: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
-        let pose = rigid(&matrix(&pose))?;
+        let pose = rigid("pose", &matrix(&pose))?;
         self.lock().places.set_pose(name, pose).map_err(refused)
     }
 

@@ -226,6 +226,13 @@ def test_wrong_positions_and_files_are_told(robot, folder, floor_under):
     ]:
         with pytest.raises(ValueError, match=says):
             checker.check(ct.Query(), joints)
+    for ask, name in [
+        (lambda: ct.RobotChecker(robot, floor_under, base_pose=2 * np.eye(4)), "base_pose"),
+        (lambda: robot.seen(at(0.0), base_pose=2 * np.eye(4)), "base_pose"),
+        (lambda: checker.hold("cup", floor_under, "bar", 2 * np.eye(4)), "link_from_body"),
+    ]:
+        with pytest.raises(ct.CloudtouchError, match=f"^{name}: "):
+            ask()
     for padding in [-1, np.nan]:
         with pytest.raises(ValueError, match=f"padding is {padding}: give metres, 0 or more"):
             robot.seen(at(0.0), padding=padding)
