@@ -30,15 +30,28 @@ fn ask(cloud: &Cloud, pose: &Pose) -> Report {
     query.run(cloud, &mesh(&scene::cuboid(BAR)), pose).expect("an answer")
 }
 
-/// The bar was 6 mm over a table, which was taken for it within its padding; lowered into it, it read `free`.
-#[test]
-fn a_table_beside_the_robot_was_taken_for_it() {
-    let over = |gap: f64| at(0.0, 0.0, gap + 0.5 * BAR[2]);
+/// A bar so high over a table.
+fn over(gap: f64) -> Pose {
+    at(0.0, 0.0, gap + 0.5 * BAR[2])
+}
+
+/// A table, and a bar 6 mm over it that was taken for the robot.
+fn scan_of_table() -> PointCloud {
     let seen_top = scene::moved(&scene::cuboid([BAR[0], BAR[1], 1e-4]), &over(0.006 + 0.03));
     let mut points: Vec<Point3> = measured(&scene::plane_patch(1.2), 0.01, 0.002, 1);
     points.extend(measured(&seen_top, 0.01, 0.002, 2));
-    let scan = PointCloud::from_points(points);
-    let cloud = prepared(&scan, 0.002, vec![link(over(0.006), 0.02)]);
+    PointCloud::from_points(points)
+}
+
+/// The same without what is within 2 cm of the bar.
+fn table_beside() -> Cloud {
+    prepared(&scan_of_table(), 0.002, vec![link(over(0.006), 0.02)])
+}
+
+/// The bar was 6 mm over a table, which was taken for it within its padding; lowered into it, it read `free`.
+#[test]
+fn a_table_beside_the_robot_was_taken_for_it() {
+    let cloud = table_beside();
     for gap in [-0.004, -0.008] {
         let report = ask(&cloud, &over(gap));
         assert_eq!(report.undecided_by, Some(Undecided::Missing), "{gap}: {report:?}");
@@ -49,8 +62,32 @@ fn a_table_beside_the_robot_was_taken_for_it() {
         assert_eq!(ask(&cloud, &over(gap)).verdict, Verdict::Free, "{gap}");
     }
     // By three standard deviations all that goes is the robot's.
-    let close = prepared(&scan, 0.002, vec![link(over(0.006), 0.005)]);
+    let close = prepared(&scan_of_table(), 0.002, vec![link(over(0.006), 0.005)]);
     assert_ne!(ask(&close, &over(-0.008)).verdict, Verdict::Free);
+}
+
+/// Poses that a way leads to were doubted when they were asked about, and no margin or bound about a pose knew of it: a
+/// robot's path was certified into what it had cut out of the table.
+#[test]
+fn a_margin_reaches_what_was_taken_for_the_robot() {
+    let (cloud, bar) = (table_beside(), mesh(&scene::cuboid(BAR)));
+    let query = Query::new(QuerySettings::default()).expect("good settings");
+    let upper = |gap: f64, margin: f64| {
+        let (report, within) = query.within(&cloud, &bar, &over(gap), margin).expect("an answer");
+        assert_eq!(report.verdict, Verdict::Free, "{gap}");
+        let around = query.bound_around(&cloud, &bar, &over(gap), margin).expect("a bound");
+        [within.bounds[1], around]
+    };
+    for (gap, margin) in [(0.006, 0.006), (0.012, 0.012), (0.02, 0.016)] {
+        assert_eq!(ask(&cloud, &over(gap - margin)).undecided_by, Some(Undecided::Missing));
+        assert_eq!(upper(gap, margin), [1.0; 2], "{gap} {margin}");
+        let [near, _] =
+            query.clearance_interval(&cloud, &bar, &over(gap), 0.9).expect("an interval");
+        assert!(near < gap, "{near} {gap}");
+    }
+    for (gap, margin) in [(0.03, 0.006), (0.05, 0.02)] {
+        assert!(upper(gap, margin).iter().all(|upper| *upper < 0.1), "{gap} {margin}");
+    }
 }
 
 /// The next frame looked to a wall, and what had been taken under the bar was forgotten with it.

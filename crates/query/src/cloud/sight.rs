@@ -34,10 +34,10 @@ impl Prepared {
         !self.scans.taken.is_empty()
     }
 
-    /// Whether such a thing may be at a place in the local frame.
-    pub(crate) fn may_be_taken(&self, place: &Point3) -> bool {
+    /// Whether such a thing may be within a margin (m) of a place in the local frame.
+    pub(crate) fn may_be_taken(&self, place: &Point3, margin: f64) -> bool {
         let place = place + self.origin;
-        self.scans.taken.iter().any(|taken| taken.may_be_at(&place))
+        self.scans.taken.iter().any(|taken| taken.may_be_within(&place, margin))
     }
 
     /// Whether it may know that places were not seen.

@@ -75,7 +75,7 @@ pub(crate) fn doubts(
     warnings.extend(exchanged(a, b).filter(|_| are_alone));
     warnings.extend(gap.and_then(|gap| apart((a, b), gap)));
     warnings.extend(unseen.and_then(|unseen| limits.exceeded_by(unseen)));
-    warnings.extend(a_from_b.and_then(|a_from_b| taken_for_robot((a, b), a_from_b, limits)));
+    warnings.extend(a_from_b.and_then(|a_from_b| taken_for_robot((a, b), a_from_b, 0.0, limits)));
     warnings
 }
 

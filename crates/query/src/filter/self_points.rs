@@ -39,12 +39,13 @@ impl SelfMesh {
         self.mesh.samples().iter().map(move |sample| cloud_from_local.transform_point(sample))
     }
 
-    /// Tells how far a place in the frame of the cloud is from the link, m: 0 inside of it, infinite beyond a distance.
+    /// Tells how far a place in the frame of the cloud is from the link, m: negative inside of it, infinite beyond a
+    /// distance.
     pub(super) fn distances(&self) -> impl Fn(&Point3, f64) -> f64 + '_ {
         let link_from_cloud = self.cloud_from_link.inverse();
         move |place, most| {
             let away = self.mesh.distance_within(&link_from_cloud.transform_point(place), most);
-            away.map_or(f64::INFINITY, |away| away.max(0.0))
+            away.unwrap_or(f64::INFINITY)
         }
     }
 

@@ -86,19 +86,22 @@ impl Taken {
         is_in(&self.around, place) && self.points.is_any_within(place, self.padding)
     }
 
-    /// Whether something may be at a place near the robot, which the filter took for it.
-    pub(crate) fn may_be_at(&self, place: &Point3) -> bool {
+    /// Whether something that the filter took for the robot may be at a place near it, or within a margin (m) of one.
+    pub(crate) fn may_be_within(&self, place: &Point3, margin: f64) -> bool {
         let mut from = f64::INFINITY;
-        if is_in(&self.around, place) {
+        let [low, high] = self.around;
+        let room = Vector3::repeat(margin);
+        if is_in(&[low - room, high + room], place) {
             let take = |near: Neighbor| from = from.min(self.from[near.index]);
-            self.points.visit_within(place, self.padding, take);
+            self.points.visit_within(place, self.padding + margin, take);
         }
         if from == f64::INFINITY {
             return false;
         }
-        let away = self.links.iter().map(|link| link.distances()(place, link.padding));
+        // Any place within the margin is farther from the links by that at most, and as much nearer.
+        let away = self.links.iter().map(|link| link.distances()(place, link.padding + margin));
         let away = away.fold(f64::INFINITY, f64::min);
-        away.is_finite() && away >= from
+        away.is_finite() && away + margin >= from
     }
 }
 
@@ -167,11 +170,14 @@ mod tests {
         let (taken, share) = Taken::of(with_std, &kept, &[link]).unwrap();
         let taken = taken.unwrap();
         assert_eq!(share, 1.0);
-        let at = |z: f64| taken.may_be_at(&Point3::new(0.1, 0.03, z));
+        let at = |z: f64| taken.may_be_within(&Point3::new(0.1, 0.03, z), 0.0);
         // On the bar, just below it, in the noise of the table, in the table, and too far from the bar.
         let found = [0.008, 0.005, 0.002, -0.004, -0.03].map(at);
         assert_eq!(found, [false, false, true, true, false]);
-        assert!(!taken.may_be_at(&Point3::new(0.1, 0.0, 0.08)), "over the bar");
+        assert!(!taken.may_be_within(&Point3::new(0.1, 0.0, 0.08), 0.0), "over the bar");
+        // From half a centimetre over the table a margin of three millimetres reaches it, and none far from the bar does.
+        let near = |z: f64, margin: f64| taken.may_be_within(&Point3::new(0.1, 0.03, z), margin);
+        assert!(near(0.005, 0.003) && !near(0.005, 0.001) && !near(0.2, 0.1));
     }
 
     #[test]

@@ -23,7 +23,8 @@ impl Query {
     /// By the fewest deviations and the clearest crossings that any two pieces of surface may have there, of which
     /// the extent and a classifier say the worst: never too low but for what samples do not show, often too high. 1
     /// where the way may leave less than two and a half deviations of a gap, where more than the accept threshold is
-    /// likely, where it reaches into what a depth image did not see, or when the deadline is over.
+    /// likely, where it reaches into what a depth image did not see or what may have been taken for the robot, or
+    /// when the deadline is over.
     ///
     /// # Errors
     /// When the way is negative or not finite, and those of [`Self::run`].

@@ -6,6 +6,7 @@ use cloudtouch_geom::Pose;
 use serde::Serialize;
 
 use crate::body::BodyRef;
+use crate::doubt::taken::taken_for_robot;
 use crate::doubt::unseen::{Unseen, unseen_within};
 use crate::error::QueryError;
 use crate::exact::are_within;
@@ -37,8 +38,8 @@ impl Query {
     /// Never less likely than a collision, to the bit as likely without a margin, and never less
     /// likely with a larger one. By geometry alone: the classifier, which is asked about the collision, says
     /// nothing of distances. What [`Self::run`] says of surface that no point stands for holds here
-    /// too; where the margin reaches into what a depth image did not see, with as much of the body as may not
-    /// lie there, the upper bound is 1.
+    /// too; where the margin reaches into what a depth image did not see, or what a self filter may have taken for
+    /// the robot, with as much of the body as may not lie there, the upper bound is 1.
     ///
     /// ```
     /// use cloudtouch::geom::{Point3, PointCloud, Pose, Vector3};
@@ -124,10 +125,14 @@ impl Query {
         };
         let clock = self.clock(Instant::now());
         let found = least_beyond((a, b), &local, margin, &clock)?;
-        // Where nothing was seen something may be that is as near.
-        let unseen = || unseen_within(a.shape(), b.shape(), &local, margin);
-        let hides = |unseen: Unseen| settings.safeguards.exceeded_by(&unseen).is_some();
-        let is_known = found.is_complete && (high == 1.0 || !unseen().is_some_and(hides));
+        // Where nothing was seen, or what was seen is gone, something may be that is as near.
+        let (shapes, limits) = ((a.shape(), b.shape()), &settings.safeguards);
+        let exceeds = |unseen: Unseen| limits.exceeded_by(&unseen).is_some();
+        let hides = || {
+            unseen_within(shapes.0, shapes.1, &local, margin).is_some_and(exceeds)
+                || taken_for_robot(shapes, &local, margin, limits).is_some()
+        };
+        let is_known = found.is_complete && (high == 1.0 || !hides());
         let high = if is_known { high } else { 1.0 };
         Ok(at_least(of(found.deviations), high, found.deviations.min(deviations)))
     }
