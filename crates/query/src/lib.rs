@@ -2,6 +2,7 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod body;
+mod cells;
 mod check;
 mod classifier;
 mod cloud;

@@ -1,5 +1,7 @@
 //! From point probabilities to the probability of a pair of clouds (section 4.4 of the paper).
 
+use crate::cells::Cells;
+
 use super::closeness::Closeness;
 use super::point::PointProbability;
 
@@ -21,14 +23,23 @@ pub(crate) fn noisy_or(points: &[PointProbability], closeness: &Closeness) -> f6
         let by_place = |p: &PointProbability| (p.side, p.index);
         q.probability.total_cmp(&p.probability).then(by_place(p).cmp(&by_place(q)))
     });
+    // No two are told to be close that are farther apart.
+    let reach = closeness.spacings * likely.iter().map(|p| p.spacing).fold(0.0, f64::max);
     let mut witnesses: Vec<&PointProbability> = Vec::new();
+    let mut places = Cells::default();
     let mut all_free = 1.0;
     for point in likely {
-        let is_new = witnesses.iter().all(|w| {
-            (w.position - point.position).norm()
-                >= closeness.spacings * w.spacing.max(point.spacing)
-        });
+        let mut is_new = true;
+        // PERF: of all, faces that meet all over would take the square of how many points they have.
+        if reach > 0.0 {
+            places.visit_near(&point.position, reach, |number| {
+                let witness = witnesses[number];
+                let apart = closeness.spacings * witness.spacing.max(point.spacing);
+                is_new = is_new && (witness.position - point.position).norm() >= apart;
+            });
+        }
         if is_new {
+            places.push(&point.position, reach);
             witnesses.push(point);
             all_free *= 1.0 - point.probability;
         }
@@ -53,7 +64,7 @@ pub(crate) fn noisy_or_bound(
 
 #[cfg(test)]
 mod tests {
-    use cloudtouch_geom::Point3;
+    use cloudtouch_geom::{Point3, seed};
 
     use super::*;
     use crate::record::Side;
@@ -87,6 +98,34 @@ mod tests {
         assert!(noisy_or_bound(&found, &USUAL, 0.45, 100) > 0.99);
         let nothing = noisy_or_bound(&[], &USUAL, 1e-6, 1000);
         assert!((nothing / 1e-3 - 1.0).abs() < 1e-3, "{nothing}");
+    }
+
+    /// By asking all witnesses.
+    #[test]
+    fn witnesses_are_those_that_none_of_all_before_is_close_to() {
+        let draw = |i: u64, k| seed::unit(seed::derive(3, i, k));
+        for largest in [0.0, 0.001, 0.02, 0.4] {
+            let point = |i: u64| PointProbability {
+                position: Point3::new(draw(i, 0), 0.3 * draw(i, 1), 0.01 * draw(i, 2)),
+                probability: 0.01 + 1e-4 * draw(i, 3),
+                spacing: largest * draw(i, 4).powi(3),
+                ..point(0.0, 0.0)
+            };
+            let mut all: Vec<_> = (0..600).map(point).collect();
+            let found = noisy_or(&all, &USUAL);
+            all.sort_by(|p, q| q.probability.total_cmp(&p.probability));
+            let mut witnesses: Vec<PointProbability> = Vec::new();
+            for p in all {
+                let is_far = |w: &PointProbability| {
+                    (w.position - p.position).norm() >= 3.0 * w.spacing.max(p.spacing)
+                };
+                if witnesses.iter().all(is_far) {
+                    witnesses.push(p);
+                }
+            }
+            let free = witnesses.iter().fold(1.0, |free, w| free * (1.0 - w.probability));
+            assert_eq!(found, 1.0 - free, "{largest}");
+        }
     }
 
     #[test]

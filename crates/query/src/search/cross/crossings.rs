@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use cloudtouch_geom::Point3;
 
+use crate::cells::Cells;
 use crate::cloud::{Edge, Surfel};
 
-use super::cells::Cells;
 use super::crossing::Crossing;
 use crate::search::wrench::Wrench;
 

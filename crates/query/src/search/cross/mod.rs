@@ -1,6 +1,5 @@
 //! Whether one surface passes through the other.
 
-pub(super) mod cells;
 pub(super) mod crossing;
 pub(super) mod crossings;
 pub(super) mod gather;

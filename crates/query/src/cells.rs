@@ -9,7 +9,7 @@ const FEW: usize = 64;
 
 /// Places by their numbers, from 0 on, and by the cells of a grid that they are in.
 #[derive(Debug, Default)]
-pub(super) struct Cells {
+pub(crate) struct Cells {
     places: Vec<Point3>,
     /// Length of an edge, m: how far the first place looked.
     size: f64,
@@ -18,7 +18,7 @@ pub(super) struct Cells {
 
 impl Cells {
     /// Puts the next number at a place that looks so far, m.
-    pub(super) fn push(&mut self, place: &Point3, reach: f64) {
+    pub(crate) fn push(&mut self, place: &Point3, reach: f64) {
         if self.places.is_empty() {
             self.size = reach.max(f64::MIN_POSITIVE);
         }
@@ -32,7 +32,7 @@ impl Cells {
     }
 
     /// Calls `visit` with the numbers of all places within a distance (m) of one, and of some that are not.
-    pub(super) fn visit_near(&self, place: &Point3, reach: f64, mut visit: impl FnMut(usize)) {
+    pub(crate) fn visit_near(&self, place: &Point3, reach: f64, mut visit: impl FnMut(usize)) {
         let (low, high) = (self.cell(place, -reach), self.cell(place, reach));
         let rows = (high[0].saturating_sub(low[0])).saturating_add(1) as f64
             * (high[1].saturating_sub(low[1])).saturating_add(1) as f64;
