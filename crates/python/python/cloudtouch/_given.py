@@ -52,6 +52,8 @@ def folder(value: Any, name: str) -> Path:
 
 def file(value: Any, name: str) -> str | os.PathLike[str]:
     """The path of a file."""
+    if isinstance(value, bytes):
+        return os.fsdecode(value)
     if isinstance(value, (str, os.PathLike)):
         return value
     raise TypeError(f"{name} is {told(value)}: give the path of a file, a str")

@@ -163,7 +163,8 @@ class Cloud:
             The file cannot be read, is malformed or has another extension, with place and remedy; and what
             :class:`Cloud` raises.
         """
-        if os.fsdecode(_given.file(path, "path")).lower().endswith(".png"):
+        path = _given.file(path, "path")
+        if os.fspath(path).lower().endswith(".png"):
             raise _native.CloudtouchError(
                 f"{os.fspath(path)}: a depth image is read with the intrinsics of its camera: give its array to "
                 "Cloud.from_depth, such as cv2.imread(path, cv2.IMREAD_UNCHANGED)"
