@@ -3,6 +3,7 @@
 
 mod carried;
 mod checker;
+mod elements;
 mod error;
 mod essential;
 mod hold;

@@ -3,28 +3,8 @@
 use quick_xml::events::BytesStart;
 use quick_xml::events::attributes::Attribute;
 
+use crate::elements::{named, such_that};
 use crate::error::RobotFault;
-
-/// What is read, with all its attributes where one that is not read may misplace a link or its shape.
-const ELEMENTS: [(&str, &[&str]); 16] = [
-    ("robot", &[]),
-    ("link", &[]),
-    ("joint", &[]),
-    ("collision", &[]),
-    ("visual", &[]),
-    ("geometry", &[]),
-    ("parent", &[]),
-    ("child", &[]),
-    ("origin", &["xyz", "rpy"]),
-    // Some exporters write a turn of the axis, which no reader takes.
-    ("axis", &["xyz", "rpy"]),
-    ("limit", &[]),
-    ("mimic", &["joint", "multiplier", "offset"]),
-    ("mesh", &["filename", "scale"]),
-    ("box", &["size"]),
-    ("cylinder", &["radius", "length"]),
-    ("sphere", &["radius"]),
-];
 
 /// What of `<limit>` is read, and what else is written for it, in small letters. Other attributes are passed over:
 /// some drives have more of them.
@@ -51,12 +31,13 @@ const NUMBERS: [(&str, usize); 10] = [
 pub(crate) fn known(start: BytesStart<'_>) -> Result<BytesStart<'_>, RobotFault> {
     let name = text(start.name().as_ref());
     let fault = |reason: String| Err(RobotFault::Xml { reason });
-    let Some((_, attributes)) = ELEMENTS.iter().find(|(known, _)| *known == name) else {
-        return match ELEMENTS.iter().find(|(known, _)| is_meant(&name, known)) {
-            Some((known, _)) => fault(format!("<{name}> is not known: write <{known}>")),
+    let Some(element) = named(&name) else {
+        return match such_that(|known| is_meant(&name, known)) {
+            Some(meant) => fault(format!("<{name}> is not known: write <{}>", meant.name)),
             None => Ok(start),
         };
     };
+    let attributes = element.attributes;
     for attribute in own_attributes(&start)? {
         let (own, value) = (text(attribute.key.as_ref()), text(&attribute.value));
         let instead = if name == "limit" {
