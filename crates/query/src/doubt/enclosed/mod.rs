@@ -8,7 +8,6 @@ mod sight;
 mod squares;
 mod way;
 
-use cloudtouch_bvh::Obb;
 use cloudtouch_geom::{Point3, Pose};
 
 use crate::cloud::Prepared;
@@ -28,7 +27,11 @@ use squares::{CLOSED, MOST_SQUARES, Squares};
 /// one, as a single triangle that is missing leaves it, surrounds what a cloud would.
 pub(crate) fn is_enclosed(a: Shape<'_>, b: Shape<'_>, a_from_b: &Pose) -> bool {
     let of = |body: Shape<'_>| {
-        box_of(body).map_or((Point3::origin(), 0.0), |obb| (obb.centre, obb.radius()))
+        let obb = match body {
+            Shape::Cloud(cloud) => cloud.around().copied(),
+            Shape::Mesh(mesh) => mesh.tree().root().map(|root| root.obb()),
+        };
+        obb.map_or((Point3::origin(), 0.0), |obb| (obb.centre, obb.radius()))
     };
     let ((middle_of_a, radius_of_a), (middle_of_b, radius_of_b)) = (of(a), of(b));
     // The larger one cannot be within the smaller, but part of it may be.
@@ -82,14 +85,6 @@ fn holds_part_of(
             Shape::Cloud(cloud) => surrounds(cloud, &place, || Some(place)),
             Shape::Mesh(mesh) => nearly_surrounds(mesh, &place),
         })
-}
-
-/// The box around a body, in its local frame.
-fn box_of(body: Shape<'_>) -> Option<Obb> {
-    match body {
-        Shape::Cloud(cloud) => cloud.around().copied(),
-        Shape::Mesh(mesh) => mesh.tree().root().map(|root| root.obb()),
-    }
 }
 
 /// The place of a body that is nearest to one, in its local frame.
