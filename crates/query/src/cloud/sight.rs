@@ -6,19 +6,44 @@ use super::prepared::Prepared;
 use super::view::seen::Sight;
 use super::view::{Hiding, Seeing, range};
 
+/// What a cloud knows of places in its local frame.
+pub(crate) struct Sights<'a> {
+    prepared: &'a Prepared,
+    images: Vec<Seeing<'a>>,
+}
+
+impl Sights<'_> {
+    /// What its scans know of a place: of depth images the one that knows most tells, and without any how far returns
+    /// were kept.
+    pub(crate) fn of(&self, place: &Point3) -> Sight {
+        let Prepared { scans, origin, .. } = self.prepared;
+        best_of(&self.images, place)
+            .unwrap_or_else(|| range::sight(&scans.ranges, &(place + origin)))
+    }
+
+    /// Whether all places no farther than a distance (m) from one were seen, as an image soon tells of most; they may
+    /// have been where this does not say so.
+    pub(crate) fn are_all_seen(&self, place: &Point3, distance: f64) -> bool {
+        for image in self.images.iter().rev() {
+            if image.sees_about(place, distance) {
+                return true;
+            }
+            // What one that came later did not see may have come since.
+            if image.is_later() {
+                return false;
+            }
+        }
+        false
+    }
+}
+
 impl Prepared {
-    /// What its scans know of places in the local frame: of depth images the one that knows most tells, and
-    /// without any how far returns were kept. `None` where nothing says what was not seen.
-    pub(crate) fn sight(&self) -> Option<impl Fn(&Point3) -> Sight + '_> {
+    /// What its scans know of places; `None` where nothing says what was not seen.
+    pub(crate) fn sights(&self) -> Option<Sights<'_>> {
         let measured = (self.points(), self.sensor());
         let images: Vec<_> = self.views.iter().filter_map(|view| view.over(measured)).collect();
-        let is_seen = !images.is_empty();
         let by_range = self.views.is_empty() && self.knows_unseen();
-        let sight = move |place: &Point3| {
-            let by_image = best_of(&images, place);
-            by_image.unwrap_or_else(|| range::sight(&self.scans.ranges, &(place + self.origin)))
-        };
-        (by_range || is_seen).then_some(sight)
+        (by_range || !images.is_empty()).then_some(Sights { prepared: self, images })
     }
 
     /// Of the surface of the robot in one of its images, or of a link, the share that the camera looked past, where that

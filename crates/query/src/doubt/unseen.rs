@@ -77,23 +77,29 @@ impl Samples {
 const FIRST_DISTANCE: f64 = 2e-3;
 const FARTHER: f64 = 1.25;
 /// One in so many samples is looked around.
-const LOOKED_AROUND: usize = 4;
+const LOOKED_AROUND: usize = 2;
 
-/// The same of anywhere within a margin (m) of the body, or a little less: where something may be that is as near.
-/// Rises with the margin.
-pub(crate) fn unseen_within(
-    a: Shape<'_>,
-    b: Shape<'_>,
+/// Whether as much as counts of a body may not have been seen somewhere within a margin (m), or a little more.
+/// What may be so for one margin may for a larger one.
+pub(crate) fn may_be_unseen_within(
+    bodies: (Shape<'_>, Shape<'_>),
     a_from_b: &Pose,
     margin: f64,
-) -> Option<Unseen> {
+    exceeds: impl Fn(&Unseen) -> bool,
+) -> bool {
     let mut around = vec![Vector3::zeros()];
-    let mut distance = FIRST_DISTANCE;
-    while distance <= margin {
+    let mut distance = 0.0;
+    while distance < margin {
+        distance = FIRST_DISTANCE.max(distance * FARTHER);
         around.extend(directions().map(|direction| distance * direction));
-        distance *= FARTHER;
     }
-    unseen_around((a, b), a_from_b, Samples::Few, &around)
+    // PERF: all take eight times as long as few of them, and are left out where these are all in sight, or more
+    // unseen than may be.
+    let looked_at = [Samples::Few, Samples::Dense].into_iter();
+    looked_at
+        .map_while(|samples| unseen_around(bodies, a_from_b, samples, &around))
+        .take_while(|unseen| unseen.share() > 0.0)
+        .any(|unseen| exceeds(&unseen))
 }
 
 /// Toward the middles of the faces of a cube and its corners.
@@ -141,17 +147,23 @@ fn look(
     samples: Samples,
     around: &[Vector3],
 ) -> Option<Unseen> {
-    let sight = image.sight()?;
-    let samples = samples.of(other);
-    // PERF: thousands of places.
+    let sights = image.sights()?;
+    // PERF: thousands of places; most bodies, and most samples, have nothing unseen about them.
     let motion = Motion::from(image_from_other);
+    let farthest = around.iter().map(Vector3::norm).fold(0.0, f64::max);
+    let [low, high] = other.corners();
+    let radius = 0.5 * (high - low).norm() + farthest;
+    let is_all_seen = sights.are_all_seen(&motion.point(&other.middle()), radius);
+    let samples = if is_all_seen { Vec::new() } else { samples.of(other) };
     let mut counts = [0_usize; 6];
     for sample in &samples {
         let place = motion.point(sample);
-        let mut least = Sight::Seen;
-        let mut is_close = false;
+        if farthest > 0.0 && sights.are_all_seen(&place, farthest) {
+            continue;
+        }
+        let (mut least, mut is_close) = (Sight::Seen, false);
         for offset in around {
-            let sight = sight(&(place + offset));
+            let sight = sights.of(&(place + offset));
             least = least.max(sight);
             is_close |= sight == Sight::CloseBehind;
         }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::body::BodyRef;
 use crate::doubt::taken::taken_for_robot;
-use crate::doubt::unseen::{Unseen, unseen_within};
+use crate::doubt::unseen::{Unseen, may_be_unseen_within};
 use crate::error::QueryError;
 use crate::exact::are_within;
 use crate::judge::{ContactEvidence, MOST_DEVIATIONS, log_odds_within, probability};
@@ -127,9 +127,9 @@ impl Query {
         let found = least_beyond((a, b), &local, margin, &clock)?;
         // Where nothing was seen, or what was seen is gone, something may be that is as near.
         let (shapes, limits) = ((a.shape(), b.shape()), &settings.safeguards);
-        let exceeds = |unseen: Unseen| limits.exceeded_by(&unseen).is_some();
+        let exceeds = |unseen: &Unseen| limits.exceeded_by(unseen).is_some();
         let hides = || {
-            unseen_within(shapes.0, shapes.1, &local, margin).is_some_and(exceeds)
+            may_be_unseen_within(shapes, &local, margin, exceeds)
                 || taken_for_robot(shapes, &local, margin, limits).is_some()
         };
         let is_known = found.is_complete && (high == 1.0 || !hides());

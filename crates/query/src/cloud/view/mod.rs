@@ -1,5 +1,6 @@
 //! A single depth image: what its camera did not look at, or not see, was never seen to be empty.
 
+mod about;
 mod lens;
 mod lines;
 mod past;
@@ -183,6 +184,11 @@ impl Seeing<'_> {
     /// What is known of a place by what the camera measured alone.
     pub(crate) fn sight_of_returns(&self, place: &Point3) -> Sight {
         self.raster.sight(&(place - self.image.sensor_origin))
+    }
+
+    /// Whether the camera saw all places no farther than a distance (m) from one; it may have where this does not say so.
+    pub(crate) fn sees_about(&self, place: &Point3, distance: f64) -> bool {
+        self.raster.sees_about(&(place - self.image.sensor_origin), distance)
     }
 
     /// Whether the camera looked past a place with this standard deviation (m), in its direction and in all around it.

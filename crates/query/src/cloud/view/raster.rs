@@ -4,6 +4,7 @@
 //! measured directions: a query looks at hundreds of them.
 
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 use cloudtouch_geom::{Point3, Vector3};
 use nalgebra::UnitQuaternion;
@@ -30,7 +31,7 @@ pub(super) struct Raster {
     low: [f64; 2],
     pitch: f64,
     /// Columns and rows.
-    size: [usize; 2],
+    pub(super) size: [usize; 2],
     /// Cells up to half of one past the outermost pixels: the last of a row or a column may reach beyond.
     span: [f64; 2],
     /// Whether the last column is beside the first.
@@ -43,6 +44,8 @@ pub(super) struct Raster {
     pub(super) is_open: Vec<bool>,
     /// Of a panorama whose lines are farther apart than the pixels of one.
     pub(super) lines: Option<Lines>,
+    /// Up to which range all of a block of cells was seen, m, once that is needed.
+    pub(super) seen: OnceLock<Vec<f64>>,
 }
 
 /// What was met in a cell.
@@ -136,6 +139,7 @@ impl Raster {
             cells: vec![Cell::EMPTY; count],
             is_open,
             lines: (steps[1] > APART * steps[0]).then(|| Lines::new(count, steps[1])),
+            seen: OnceLock::new(),
         };
         for (number, [before, behind], at) in placed {
             if let Some(cell) = raster.cell(at).and_then(|[x, y]| raster.index(x, y)) {
