@@ -18,7 +18,7 @@ pub enum TreeError {
     /// A covariance has an entry that is not finite or too large.
     #[error(
         "the covariance of primitive {index} has the entry {value}: entries must be finite and \
-         below 1e200 in magnitude"
+         below 1e74 in magnitude"
     )]
     Covariance {
         /// Index of the primitive.
@@ -28,7 +28,7 @@ pub enum TreeError {
     },
     /// How far the surface of a primitive reaches has an entry that is not finite or too large.
     #[error(
-        "the extent of primitive {index} has the entry {value}: entries must be finite and below 1e200 in \
+        "the extent of primitive {index} has the entry {value}: entries must be finite and below 1e74 in \
          magnitude"
     )]
     Extent {

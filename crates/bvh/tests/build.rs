@@ -331,3 +331,25 @@ fn what_was_ever_farther_made_the_tree_a_thousand_levels_deep() {
     let deepest = tree.leaves().map(depth).max();
     assert!((15..60).contains(&deepest.unwrap()), "{deepest:?}");
 }
+
+/// A limit of 1e200 was told of entries that are refused from 1e74 on.
+#[test]
+fn the_limit_that_is_told_is_the_one_that_was_exceeded() {
+    let point = |variance: f64| {
+        let (mean, covariance) = (Point3::origin(), Covariance::isotropic(variance));
+        Primitive::point(UncertainPoint { mean, covariance })
+    };
+    let build = |variance| Tree::build(vec![point(variance)], &TreeSettings::default());
+    let told = |error: TreeError| -> f64 {
+        let text = error.to_string();
+        let (_, limit) = text.split_once("below ").expect("a limit is told");
+        limit.split_whitespace().next().unwrap_or_default().parse().expect("a number")
+    };
+    for value in [1.01e74, 1e100, 1e190] {
+        assert!(told(build(value).unwrap_err()) < value);
+        let mut tree = build(1.0).unwrap();
+        let refused = tree.set_extents(vec![Covariance::isotropic(value)]);
+        assert!(told(refused.unwrap_err()) < value);
+    }
+    assert!(build(0.99e74).is_ok());
+}
