@@ -3,7 +3,7 @@
 
 use crate::common::{bumpy_sheet, is_kept, noisy, small_leaves};
 use cloudtouch_bvh::{LeafBounds, NodeId, Primitive, Tree, TreeError};
-use cloudtouch_geom::{Covariance, Point3, Vector3};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, UnitVector3, Vector3, seed};
 use proptest::prelude::*;
 
 /// What becomes of a list: these are removed, and these added where the list ends or begins.
@@ -165,5 +165,31 @@ fn an_extent_that_was_no_number_counted_as_none() {
         let refused = tree.amend(&[(3, all[3], good[3]), (9, all[9], bad)]);
         assert!(matches!(refused, Err(TreeError::Extent { index: 9, .. })), "{refused:?}");
         assert_eq!(tree.root().unwrap().reach(), reach);
+    }
+}
+
+/// Where covariances are not the same in all directions, the leaf that was fitted anew had other bounds along its new
+/// axes than the nodes above it held.
+#[test]
+fn a_patched_tree_of_needles_was_called_malformed() {
+    for seed in 0..40 {
+        let draw = |i: u64, k| seed::unit(seed::derive(seed, i, k)) - 0.5;
+        let needle = |i: u64| {
+            let along =
+                UnitVector3::new_normalize(Vector3::new(draw(i, 3), draw(i, 4), draw(i, 5)));
+            let mean = Point3::new(draw(i, 0), draw(i, 1), 0.1 * draw(i, 2));
+            let covariance = Covariance::from_axis(&along, 0.05, 0.001);
+            Primitive::point(UncertainPoint { mean, covariance })
+        };
+        let mut tree = small_leaves((0..100).map(needle).collect());
+        for step in 1..6 {
+            let kept = (0..100_u32).map(|i| (!(i + step).is_multiple_of(9)).then_some(i));
+            let before: Vec<Option<u32>> = kept.collect();
+            let new = before.iter().filter(|before| before.is_none()).count() as u64;
+            let added: Vec<Primitive> =
+                (0..new).map(|i| needle(100 * u64::from(step) + i)).collect();
+            tree.patch(&before, &added).unwrap();
+            assert_eq!(tree.validate(), Ok(()), "{seed} {step}");
+        }
     }
 }

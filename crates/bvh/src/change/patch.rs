@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use cloudtouch_geom::Covariance;
 
 use crate::change::insert::include;
-use crate::tree::node::Link;
+use crate::tree::node::{Link, NodeData};
 use crate::tree::primitive::check_extent;
 use crate::{LeafBounds, Node, NodeId, Primitive, Tree, TreeError};
 
@@ -74,6 +74,7 @@ impl Tree {
             if self.should_split(leaf) {
                 self.subdivide(leaf);
             }
+            self.raise_above(leaf);
             let below = self.preorder(Some(leaf)).into_iter();
             leaves.extend(below.filter(|&id| self.nodes[id as usize].is_leaf()));
         }
@@ -210,6 +211,19 @@ impl Tree {
             node.resize(|obb| include(obb, &primitive));
             node.raise(&bounds);
             next = node.parent;
+        }
+    }
+
+    /// Lets the bounds of all nodes above a leaf, or one just split, hold its own along its axes now.
+    fn raise_above(&mut self, mut id: u32) {
+        // With extents they are taken from the primitives.
+        while self.extents.is_empty()
+            && let Some(parent) = self.nodes[id as usize].parent.get()
+        {
+            let NodeData { obb, bounds, .. } = &self.nodes[id as usize];
+            let turned = bounds.unpacked().turned(&obb.axes, &self.nodes[parent as usize].obb.axes);
+            self.nodes[parent as usize].raise(&turned);
+            id = parent;
         }
     }
 
