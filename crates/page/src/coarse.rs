@@ -6,6 +6,11 @@ use cloudtouch::geom::{Point3, bounding_box};
 
 /// How much larger the cells become until few enough triangles are left.
 const GROWTH: f64 = 1.3;
+/// How much smaller where a few corners far away left hardly any: fewer than one of so many that may be, ...
+const FINER: f64 = 4.0;
+const FEW: usize = 8;
+/// ... and how often at most, for of triangles that are all one no more are left by any cells.
+const MOST_FINER: u32 = 20;
 
 /// The mesh itself if it has no more than `limit` triangles; otherwise with all corners of a cell of a
 /// grid moved to the first of them, in cells so large that few enough triangles are left.
@@ -20,13 +25,21 @@ pub(crate) fn coarse(
     let Some((low, high)) = bounding_box(vertices) else { return (Vec::new(), Vec::new()) };
     // A flat square of so many cells along its sides would have about `limit` triangles.
     let mut cell = (high - low).norm() / (limit.max(1) as f64).sqrt();
-    loop {
-        let (corners, faces) = clustered(vertices, triangles, &low, cell);
-        if faces.len() <= limit {
-            return (corners, faces);
+    let mut found = clustered(vertices, triangles, &low, cell);
+    if FEW * found.1.len() < limit {
+        for _ in 0..MOST_FINER {
+            cell /= FINER;
+            found = clustered(vertices, triangles, &low, cell);
+            if found.1.len() > limit {
+                break;
+            }
         }
-        cell *= GROWTH;
     }
+    while found.1.len() > limit {
+        cell *= GROWTH;
+        found = clustered(vertices, triangles, &low, cell);
+    }
+    found
 }
 
 fn clustered(
@@ -86,5 +99,17 @@ mod tests {
         let total: f64 = faces.iter().map(area).sum();
         assert!(total > 0.85 && total < 1.0 + 1e-9, "{total}");
         assert_eq!(coarse(&vertices, &triangles, 0).1, Vec::<[u32; 3]>::new());
+    }
+
+    #[test]
+    fn a_large_mesh_vanished_beside_a_triangle_far_away() {
+        let (mut vertices, mut triangles) = square(60);
+        let count = vertices.len() as u32;
+        vertices.extend([0.0, 1.0, 2.0].map(|y| Point3::new(1e4, y, y * y)));
+        triangles.push([count, count + 1, count + 2]);
+        let (_, faces) = coarse(&vertices, &triangles, 1000);
+        assert!((300..=1000).contains(&faces.len()), "{}", faces.len());
+        // Of the same triangle over and over one is left, whatever the cells.
+        assert_eq!(coarse(&vertices, &vec![[0, 1, 61]; 2000], 1000).1.len(), 1);
     }
 }
