@@ -110,7 +110,7 @@ fn contacts(contacts: &[Contact]) -> String {
 
 fn matrix(pose: &Pose) -> String {
     let rows = data::rows(pose);
-    let line = |row: &[f64]| row.iter().map(|x| format!("{x:>10.6}")).collect::<String>();
+    let line = |row: &[f64]| row.iter().map(|x| format!(" {x:>9.6}")).collect::<String>();
     let lines: Vec<String> = rows.chunks(4).map(line).collect();
     format!(
         "<details><summary>Pose as a matrix, object to scene</summary><pre>{}</pre></details>\n",

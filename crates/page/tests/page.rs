@@ -129,3 +129,21 @@ fn each_pose_is_turned_as_its_own_scene_is_upright() {
     let upright = data["views"].as_array().unwrap().iter().map(|view| view["upright"].as_str());
     assert_eq!(upright.collect::<Vec<_>>(), [Some("z"), Some("camera"), Some("z")]);
 }
+
+/// From 100 m on, and below -10 m, a number of the matrix ran into the one before it.
+#[test]
+fn the_numbers_of_a_far_pose_ran_together() {
+    let cloud = floor();
+    let report = report(&cloud);
+    let mut page = page(&cloud, [&report]);
+    let far = Vector3::new(500_000.25, -10.5, 5_400_000.125);
+    page.views[0].asked.as_mut().unwrap().object.pose = Pose::from_translation(far);
+    let html = page.html();
+    let (_, matrix) = html.split_once("Pose as a matrix").unwrap();
+    let (_, matrix) = matrix.split_once("<pre>").unwrap();
+    let (matrix, _) = matrix.split_once("</pre>").unwrap();
+    let numbers: Result<Vec<f64>, _> = matrix.split_whitespace().map(str::parse).collect();
+    let [x, y, z] = far.into();
+    let expected = [1.0, 0.0, 0.0, x, 0.0, 1.0, 0.0, y, 0.0, 0.0, 1.0, z, 0.0, 0.0, 0.0, 1.0];
+    assert_eq!(numbers, Ok(expected.to_vec()), "{matrix}");
+}
