@@ -172,24 +172,37 @@ fn an_extent_that_was_no_number_counted_as_none() {
 /// axes than the nodes above it held.
 #[test]
 fn a_patched_tree_of_needles_was_called_malformed() {
-    for seed in 0..40 {
+    for seed in 0..300 {
         let draw = |i: u64, k| seed::unit(seed::derive(seed, i, k)) - 0.5;
         let needle = |i: u64| {
-            let along =
-                UnitVector3::new_normalize(Vector3::new(draw(i, 3), draw(i, 4), draw(i, 5)));
+            // Of every other seed nearly along one another.
+            let spread = if seed % 2 == 0 { 1.0 } else { 0.2 };
+            let off = spread * Vector3::new(draw(i, 3), draw(i, 4), draw(i, 5));
+            let along = UnitVector3::new_normalize(off + Vector3::z() * (1.0 - spread));
             let mean = Point3::new(draw(i, 0), draw(i, 1), 0.1 * draw(i, 2));
             let covariance = Covariance::from_axis(&along, 0.05, 0.001);
             Primitive::point(UncertainPoint { mean, covariance })
         };
-        let mut tree = small_leaves((0..100).map(needle).collect());
-        for step in 1..6 {
-            let kept = (0..100_u32).map(|i| (!(i + step).is_multiple_of(9)).then_some(i));
-            let before: Vec<Option<u32>> = kept.collect();
+        let mut all: Vec<Primitive> = (0..100).map(needle).collect();
+        let mut tree = small_leaves(all.clone());
+        for step in 1..6_u64 {
+            // Every ninth is another, and all of a place go, so that leaves are emptied too.
+            let place = all[step as usize].centroid();
+            let stays = |i: &usize| (all[*i].centroid() - place).norm() > 0.2;
+            let is_same = |i: usize| !(i as u64 + step).is_multiple_of(9);
+            let left = (0..all.len()).filter(stays);
+            let before: Vec<Option<u32>> = left.map(|i| is_same(i).then_some(i as u32)).collect();
             let new = before.iter().filter(|before| before.is_none()).count() as u64;
-            let added: Vec<Primitive> =
-                (0..new).map(|i| needle(100 * u64::from(step) + i)).collect();
-            tree.patch(&before, &added).unwrap();
+            let added: Vec<Primitive> = (0..new).map(|i| needle(1000 * step + i)).collect();
+            let leaves = tree.patch(&before, &added).unwrap().leaves;
+            let mut came = added.into_iter();
+            let known = |index: Option<u32>| index.map(|index| all[index as usize]);
+            all =
+                before.iter().map(|&b| known(b).unwrap_or_else(|| came.next().unwrap())).collect();
             assert_eq!(tree.validate(), Ok(()), "{seed} {step}");
+            tree.set_bounds_of(&leaves[..1], |_| LeafBounds { std: 0.03, shift: 0.0, reach: 0.0 })
+                .unwrap();
+            assert_eq!(tree.validate(), Ok(()), "{seed} {step}, bounded");
         }
     }
 }

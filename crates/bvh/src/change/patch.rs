@@ -67,7 +67,9 @@ impl Tree {
         let mut leaves = Vec::new();
         for &leaf in changed.keys() {
             if self.nodes[leaf as usize].count == 0 {
-                self.detach(leaf);
+                // What moves up is seen from the node above along other axes than through the one that went.
+                let above = self.detach(leaf).and_then(|id| self.nodes[id as usize].children());
+                above.into_iter().flatten().for_each(|child| self.raise_above(child));
                 continue;
             }
             self.fit_leaf(leaf);
@@ -135,6 +137,7 @@ impl Tree {
             for id in self.path_up(leaf) {
                 self.nodes[id as usize].raise(&of_leaf);
             }
+            self.raise_above(leaf);
         }
         Ok(())
     }
