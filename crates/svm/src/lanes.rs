@@ -125,40 +125,58 @@ impl Lanes {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Largest {
     value: Lane,
-    lane: [u64; WIDTH],
+    /// Which group each is of, as a number that is chosen as the values are; [`NOTHING`] where none is.
+    lane: Lane,
 }
+
+/// Less than any sample, as a sample too.
+const NOTHING: f64 = -1.0;
 
 impl Largest {
     /// Nothing is found that is not larger than this.
     #[inline(always)]
     pub(crate) fn above(least: f64) -> Self {
-        Self { value: Lane::splat(least), lane: [u64::MAX; WIDTH] }
+        Self { value: Lane::splat(least), lane: Lane::splat(NOTHING) }
     }
 
     #[inline(always)]
     pub(crate) fn see(&mut self, lane: usize, values: Lane) {
+        let at = f64::from(lane as u32);
         for k in 0..WIDTH {
             let larger = values.0[k] > self.value.0[k];
             self.value.0[k] = if larger { values.0[k] } else { self.value.0[k] };
-            self.lane[k] = if larger { lane as u64 } else { self.lane[k] };
+            self.lane.0[k] = if larger { at } else { self.lane.0[k] };
         }
     }
 
     /// Its sample and its value.
     #[inline(always)]
     pub(crate) fn found(&self) -> Option<(usize, f64)> {
-        let mut best: Option<(usize, f64)> = None;
-        for k in 0..WIDTH {
-            if self.lane[k] == u64::MAX {
-                continue;
-            }
-            let (sample, value) = (self.lane[k] as usize * WIDTH + k, self.value.0[k]);
-            if best.is_none_or(|(at, most)| value > most || (value == most && sample < at)) {
-                best = Some((sample, value));
-            }
-        }
-        best
+        let most = folded(self.value, |a, b| if b > a { b } else { a });
+        // Where anything was found it is larger than what nothing was found above.
+        let first = folded(
+            Lane::from_fn(|k| {
+                let sample = self.lane.0[k] * WIDTH as f64 + k as f64;
+                if self.value.0[k] == most { sample } else { f64::INFINITY }
+            }),
+            |a, b| if b < a { b } else { a },
+        );
+        (first >= 0.0).then_some((first as usize, most))
     }
+}
+
+/// All of a group put together, by halves.
+#[inline(always)]
+fn folded(lane: Lane, of: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut values = lane.0;
+    let mut half = WIDTH / 2;
+    while half > 0 {
+        for k in 0..half {
+            values[k] = of(values[k], values[k + half]);
+        }
+        half /= 2;
+    }
+    values[0]
 }
 
 #[cfg(test)]

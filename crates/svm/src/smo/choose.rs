@@ -39,10 +39,9 @@ pub(crate) fn most_misaligned(state: &State<'_>) -> (usize, f64) {
 /// By how much cα may still rise or, times −1, fall at each of some points; 0 beyond the last.
 #[inline(always)]
 fn room(upwards: bool, sign: Lane, alpha: Lane, penalty: Lane) -> Lane {
-    Lane::from_fn(|k| {
-        let grows = (sign.0[k] > 0.0) == upwards;
-        if grows { penalty.0[k] - alpha.0[k] } else { alpha.0[k] }
-    })
+    let rest = penalty - alpha;
+    let [of_a, of_b] = if upwards { [rest, alpha] } else { [alpha, rest] };
+    Lane::from_fn(|k| if sign.0[k] > 0.0 { of_a.0[k] } else { of_b.0[k] })
 }
 
 /// c y: the value that b must not fall below where cα may rise, nor exceed where it may fall.
@@ -64,8 +63,10 @@ impl pulp::NullaryFnOnce for Riser<'_> {
         let (signs, penalties) = (self.problem.signs.lanes(), self.problem.penalties.lanes());
         let (alpha, field) = (self.numbers.alpha.lanes(), &self.numbers.field);
         let (f, norm) = (field.f.lanes(), field.norm.lanes());
+        let n = alpha.len();
+        let [signs, penalties, f, norm] = [signs, penalties, f, norm].map(|lanes| &lanes[..n]);
         let mut best = Largest::above(f64::NEG_INFINITY);
-        for k in 0..alpha.len() {
+        for k in 0..n {
             let value = bound_of_bias(signs[k], f[k], norm[k]);
             let room = room(true, signs[k], alpha[k], penalties[k]);
             let may = |l: usize| if room.0[l] > 0.0 { value.0[l] } else { f64::NEG_INFINITY };
@@ -94,10 +95,13 @@ impl pulp::NullaryFnOnce for Partner<'_> {
         let from = [x.x, x.y, x.z].map(Lane::splat);
         let (alpha, field) = (numbers.alpha.lanes(), &numbers.field);
         let (f, norm) = (field.f.lanes(), field.norm.lanes());
+        let n = alpha.len();
+        let [signs, penalties, f, norm] = [signs, penalties, f, norm].map(|lanes| &lanes[..n]);
+        let (places, row) = (places.map(|lanes| &lanes[..n]), &row[..n]);
         // In margins, as y is: what is left below this is rounding.
         let threshold = highest - 1e-14 * highest.abs().max(1.0);
         let mut best = Largest::above(0.0);
-        for k in 0..alpha.len() {
+        for k in 0..n {
             let value = bound_of_bias(signs[k], f[k], norm[k]);
             let room = room(false, signs[k], alpha[k], penalties[k]);
             let curvature = match problem.kernel {
@@ -113,8 +117,8 @@ impl pulp::NullaryFnOnce for Partner<'_> {
             let curvature =
                 Lane::from_fn(|l| if curvature.0[l] > least { curvature.0[l] } else { least });
             let gain = missing * missing / curvature;
-            let may = |l: usize| room.0[l] > 0.0 && value.0[l] < threshold;
-            best.see(k, Lane::from_fn(|l| if may(l) { gain.0[l] } else { 0.0 }));
+            let gain = Lane::from_fn(|l| if value.0[l] < threshold { gain.0[l] } else { 0.0 });
+            best.see(k, Lane::from_fn(|l| if room.0[l] > 0.0 { gain.0[l] } else { 0.0 }));
         }
         best.found()
     }
@@ -132,8 +136,10 @@ impl pulp::NullaryFnOnce for Misaligned<'_> {
         let (alpha, norm) = (self.numbers.alpha.lanes(), self.numbers.field.norm.lanes());
         let p = self.numbers.p_lanes().each_ref().map(Lanes::lanes);
         let g = self.numbers.field.scaled.each_ref().map(Lanes::lanes);
+        let n = alpha.len();
+        let (norm, p, g) = (&norm[..n], p.map(|p| &p[..n]), g.map(|g| &g[..n]));
         let mut best = Largest::above(0.0);
-        for k in 0..alpha.len() {
+        for k in 0..n {
             let turned = p[0][k] * g[0][k] + p[1][k] * g[1][k] + p[2][k] * g[2][k];
             best.see(k, alpha[k] * norm[k] + turned);
         }

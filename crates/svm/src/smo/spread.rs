@@ -84,8 +84,12 @@ impl pulp::NullaryFnOnce for Spread<'_> {
         let f = f.lanes_mut();
         let [gx, gy, gz] = gradient.each_mut().map(Lanes::lanes_mut);
         let [tx, ty, tz] = scaled.each_mut().map(Lanes::lanes_mut);
-        let norm = norm.lanes_mut();
-        for k in 0..f.len() {
+        let n = f.len();
+        let norm = &mut norm.lanes_mut()[..n];
+        let (places, factors) = (places.map(|lanes| &lanes[..n]), factors.map(|lanes| &lanes[..n]));
+        let [gx, gy, gz] = [gx, gy, gz].map(|lanes| &mut lanes[..n]);
+        let [tx, ty, tz] = [tx, ty, tz].map(|lanes| &mut lanes[..n]);
+        for k in 0..n {
             let to = places.map(|lanes| lanes[k]);
             let mut value = f[k];
             let mut g = [gx[k], gy[k], gz[k]];
