@@ -95,6 +95,34 @@ fn kappa_holds_for_every_point_and_is_near_the_best() {
 }
 
 #[test]
+fn a_plane_without_a_limit_was_half_as_good() {
+    let cloud = |height: f64, unit: f64| {
+        let point = |i: u32| UncertainPoint {
+            mean: Point3::new(f64::from(i % 5), f64::from(i / 5), height) * (0.1 * unit),
+            covariance: Covariance::isotropic((0.01 * unit).powi(2)),
+        };
+        (0..20).map(point).collect::<Vec<_>>()
+    };
+    for unit in [1.0, 1e6] {
+        let (a, b) = (cloud(5.0, unit), cloud(0.0, unit));
+        let limited = separate(&a, &b, 1e3).expect("half a length apart").kappa;
+        for limit in [1e9, 1e17, 1e20, 1e300, f64::MAX] {
+            let found = separate(&a, &b, limit).map(|plane| plane.kappa);
+            assert!(
+                found.is_ok_and(|kappa| (kappa / limited - 1.0).abs() < 1e-6),
+                "{found:?} up to {limit:e}, {limited} up to 1e3"
+            );
+        }
+        // Exact points have no best κ.
+        let exact = |of: &[UncertainPoint]| {
+            of.iter().map(|p| UncertainPoint::exact(p.mean)).collect::<Vec<_>>()
+        };
+        let plane = separate(&exact(&a), &exact(&b), 1e20).expect("half a length apart");
+        assert_eq!(plane.kappa, 1e20);
+    }
+}
+
+#[test]
 fn translation_far_away_and_scale_change_nothing() {
     let mut stream = Stream::new(5);
     for _ in 0..20 {

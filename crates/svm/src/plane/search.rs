@@ -12,6 +12,9 @@ const BACK_OFF: f64 = 1e-4;
 /// exact points; and more far from the origin, where the plane itself is rounded.
 const BACK_OFFS: [f64; 4] = [0.0, BACK_OFF, 1e-2, 0.5];
 
+/// No κ beyond this is searched for: one that falls from farther off has lost the digits of a small one.
+const LARGEST_SEARCHED: f64 = 1e9;
+
 /// Share of a length, or of a standard deviation, that rounding can have added or taken.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -61,22 +64,29 @@ pub(crate) struct Pair<'a> {
     pub(crate) a: &'a Side,
     pub(crate) b: &'a Side,
     pub(crate) anchor: Point3,
+    /// As asked for.
     pub(crate) kappa_max: f64,
 }
 
 impl Pair<'_> {
+    /// The largest κ to search for.
+    fn top(&self) -> f64 {
+        self.kappa_max.min(LARGEST_SEARCHED)
+    }
+
     /// The best plane there is time for; `None` when no direction separates the means.
     pub(crate) fn best_plane(&self) -> Option<Found> {
+        let kappa_max = self.top();
         let toward_a = self.a.middle - self.b.middle;
         let start = toward_a.try_normalize(0.0).unwrap_or_else(Vector3::x);
         let mut best = self.best_kappa(&start);
         let mut direction = start;
-        if best < self.kappa_max
-            && let Some(found) = self.direction_at(self.kappa_max, &start, Effort::First)
+        if best < kappa_max
+            && let Some(found) = self.direction_at(kappa_max, &start, Effort::First)
         {
             (direction, best) = (found, self.best_kappa(&found));
         }
-        if best < self.kappa_max {
+        if best < kappa_max {
             best = best.max(0.0);
             for _ in 0..MAX_CLIMBS {
                 let Some(found) = self.direction_at(best, &direction, Effort::Closest) else {
@@ -88,7 +98,7 @@ impl Pair<'_> {
                 }
                 let gained = kappa - best;
                 (direction, best) = (found, kappa);
-                if best >= self.kappa_max || gained <= 1e-5 * best {
+                if best >= kappa_max || gained <= 1e-5 * best {
                     break;
                 }
             }
@@ -107,7 +117,7 @@ impl Pair<'_> {
     /// The free width between the two clouds of ellipsoids is concave and falling in κ, so Newton's
     /// method from above falls onto its root in finitely many steps.
     fn best_kappa(&self, n: &Vector3) -> f64 {
-        let mut kappa = self.kappa_max;
+        let mut kappa = self.top();
         for _ in 0..64 {
             let (low_a, _, std_a) = self.a.lowest(n, kappa);
             let (low_b, _, std_b) = self.b.lowest(&-n, kappa);
