@@ -24,6 +24,8 @@ const TRUSTED_STD: f64 = 0.05;
 const AT_LIMIT: f64 = 0.05;
 /// How much tighter a problem is solved that leaves open whether there is a surface, or where.
 const TIGHTER: f64 = 1e-2;
+/// A larger relative gap than this counts as this: no probability is read beyond it.
+const LOOSEST: f64 = 3e-2;
 
 /// What training a classifier gave.
 #[derive(Debug)]
@@ -63,7 +65,8 @@ pub(crate) fn by_kernel(
         return Trained::UNDECIDED;
     };
     let solver = |relative_gap| Solver::new(Settings { relative_gap, ..Settings::default() });
-    let both = [settings.relative_gap, TIGHTER * settings.relative_gap].map(solver);
+    let relative_gap = settings.relative_gap.min(LOOSEST);
+    let both = [relative_gap, TIGHTER * relative_gap].map(solver);
     let [Ok(mut loose), Ok(mut tight)] = both else { return Trained::UNDECIDED };
     let mut look = |_: &_| {
         if clock.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -120,7 +123,7 @@ fn read(
         return sure(PairAnswer::Indistinct);
     }
     // Cut short, or stuck: that probabilities may be read does not make them exact.
-    if solution.relative_gap > settings.relative_gap {
+    if solution.relative_gap > settings.relative_gap.min(LOOSEST) {
         return sure(PairAnswer::Undecided);
     }
     let Ok(classifier) = Classifier::new(problem, solution) else {

@@ -78,4 +78,14 @@ mod tests {
         let cut_short = by_kernel(&rows(0.005), &settings, &over, stats).answer;
         assert!(matches!(cut_short, PairAnswer::Undecided), "{cut_short:?}");
     }
+
+    #[test]
+    fn a_gap_too_large_to_read_probabilities_at_left_every_pair_undecided() {
+        let clock = Clock::new(Instant::now(), None);
+        for relative_gap in [0.02, 0.05, 0.5] {
+            let settings = ClassifierSettings { relative_gap, ..ClassifierSettings::default() };
+            let answer = by_kernel(&rows(0.04), &settings, &clock, &mut Stats::default()).answer;
+            assert!(matches!(answer, PairAnswer::Separated { .. }), "{relative_gap}: {answer:?}");
+        }
+    }
 }

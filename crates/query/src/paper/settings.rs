@@ -86,7 +86,8 @@ pub struct PaperSettings {
     pub kappa: f64,
     /// How κ becomes the radius r of the ellipsoids (eq. 11, 12).
     pub radius_rule: RadiusRule,
-    /// Relative gap at which a kernel problem counts as solved; between 0 and 1.
+    /// Relative gap at which a kernel problem counts as solved; between 0 and 1, where more than .03 counts as
+    /// that.
     pub relative_gap: f64,
     /// Whether a plane is tried first: one that keeps every point below 1e-6 is the answer, sooner, and
     /// another stands in where the kernel has none. Not printed.

@@ -48,7 +48,8 @@ pub struct QuerySettings {
     pub mesh_penalty_factor: f64,
     /// r: radius of the uncertainty ellipsoids, in standard deviations (eq. 11, 12).
     pub ellipsoid_radius: f64,
-    /// Relative gap at which a kernel problem counts as solved.
+    /// Relative gap at which a kernel problem counts as solved; between 0 and 1, where more than .03 counts as
+    /// that.
     pub relative_gap: f64,
     /// The search, and the look inside closed meshes, end when a collision is this certain; 1 never ends
     /// them early. Contacts are those found until then: all of a patch, and its area, need a 1 here and as large a
