@@ -68,8 +68,10 @@ pub(crate) fn by_kernel(
     let relative_gap = settings.relative_gap.min(LOOSEST);
     let both = [relative_gap, TIGHTER * relative_gap].map(solver);
     let [Ok(mut loose), Ok(mut tight)] = both else { return Trained::UNDECIDED };
+    let mut is_cut = false;
     let mut look = |_: &_| {
-        if clock.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        is_cut = clock.is_over();
+        if is_cut { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
 
     let sides = all.split_at(points.a.len());
@@ -82,7 +84,12 @@ pub(crate) fn by_kernel(
     }
     stats.fallbacks += usize::from(solution.rung == Rung::Clarabel);
     stats.max_relative_gap = stats.max_relative_gap.max(solution.relative_gap);
-    Trained { answer: read.answer, solution: Some(solution) }
+    // That a loose solution cannot exclude w = 0 says little: a tighter one may.
+    let is_collapsed = matches!(read.answer, PairAnswer::Indistinct)
+        && solution.status == Status::Collapsed
+        && solution.relative_gap > tight.settings().relative_gap;
+    let answer = if is_cut && is_collapsed { PairAnswer::Undecided } else { read.answer };
+    Trained { answer, solution: Some(solution) }
 }
 
 /// Whether a loose tolerance may be why nothing is determined: it cannot tell a small w from none, nor

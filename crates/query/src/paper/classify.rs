@@ -28,6 +28,7 @@ mod tests {
 
     use cloudtouch_bvh::TraversalSettings;
     use cloudtouch_geom::{Covariance, Point3, UncertainPoint};
+    use cloudtouch_svm::Kernel;
 
     use super::*;
     use crate::classifier::{ClassifierSettings, Clock, PairPoint, Surface};
@@ -77,6 +78,22 @@ mod tests {
         let over = Clock::new(Instant::now(), Some(Duration::ZERO));
         let cut_short = by_kernel(&rows(0.005), &settings, &over, stats).answer;
         assert!(matches!(cut_short, PairAnswer::Undecided), "{cut_short:?}");
+    }
+
+    #[test]
+    fn a_solve_cut_short_said_that_nothing_separates_the_pair() {
+        // At a loose tolerance w = 0 cannot be excluded; at a tight one it can, and the bias is open.
+        let settings = ClassifierSettings {
+            kernel: Kernel::Gaussian { gamma: 10.0 },
+            penalty: 0.3,
+            distrusts_noise: false,
+            ..ClassifierSettings::default()
+        };
+        for limit in [None, Some(Duration::ZERO)] {
+            let clock = Clock::new(Instant::now(), limit);
+            let answer = by_kernel(&rows(0.005), &settings, &clock, &mut Stats::default()).answer;
+            assert!(matches!(answer, PairAnswer::Undecided), "{limit:?}: {answer:?}");
+        }
     }
 
     #[test]
