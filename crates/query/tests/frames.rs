@@ -183,6 +183,32 @@ fn what_is_behind_a_thing_that_came_is_not_known_by_frames_from_before() {
     assert_eq!(asked(&cloud, 0.0, 1.5).verdict, Verdict::Free);
 }
 
+/// From elsewhere it is hidden by what was always there: then a frame from before the thing came told that there was
+/// nothing, within the thing too.
+#[test]
+fn a_thing_that_came_was_forgotten_where_something_old_hides_it_from_the_last_frame() {
+    let (wall, block) = (wall(), block());
+    let by = settings();
+    // Beside the view of the camera that looks ahead, and before what came as the one from the side sees it.
+    let old = ExactMesh::new(&scene::moved(&scene::cuboid([0.5; 3]), &at(1.5, 0.0, 1.0)));
+    let side = Vector3::new(3.0, 0.0, 0.1);
+    let turn = (-side.x).atan2(1.9 - side.z);
+    let aside = Pose::from_translation_rpy(side, [0.0, turn, 0.0]);
+    let here = Pose::identity();
+    let mut cloud = Cloud::prepare(&frame(&[&wall, &old], &here, 1), &by).unwrap();
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let ball = mesh(&scene::sphere(0.08, 2));
+    let asked = |cloud: &Cloud, z: f64| query.run(cloud, &ball, &at(0.0, 0.0, z)).unwrap();
+    let all = [&wall, &old, &block];
+    for (place, seed) in [(&here, 2), (&aside, 3)] {
+        cloud.replace_frame(&frame(&all, place, seed), &by).unwrap();
+        for z in [1.5, 1.9] {
+            let report = asked(&cloud, z);
+            assert_eq!(report.undecided_by, Some(Undecided::Unseen), "{seed}, {z}: {report:?}");
+        }
+    }
+}
+
 /// The robot's own arm comes and goes; what earlier frames saw where it is now is still there.
 #[test]
 fn what_is_behind_the_robot_is_known_by_frames_from_before() {

@@ -74,22 +74,25 @@ impl Prepared {
 }
 
 /// What the image tells that knows most of a place; `None` without any. An older one knows nothing of what is behind a
-/// thing that came since: it looked past where the thing is, or the robot was in its way.
+/// thing that came since, in whichever image that is: it looked past where the thing is, or the robot was in its way.
 fn best_of(images: &[Seeing], place: &Point3) -> Option<Sight> {
-    let (mut best, mut hiding, mut is_hidden) = (None, None, false);
+    let (mut best, mut things, mut is_hidden) = (None, Vec::new(), false);
     for image in images.iter().rev() {
         // Where the robot was in it something may have come since.
         let sight = if is_hidden { image.sight_of_returns(place) } else { image.sight(place) };
         if sight == Sight::Seen {
-            if hiding.is_some_and(|(thing, std)| image.looks_past(&thing, std)) {
+            if things.iter().any(|(thing, std)| image.looks_past(thing, *std)) {
                 continue;
             }
             return Some(sight);
         }
-        if sight.is_behind() && image.is_later() && hiding.is_none() {
+        if sight.is_behind() && image.is_later() {
             match image.hiding(place) {
                 Hiding::Robot => {}
-                Hiding::Thing(thing, std) => (is_hidden, hiding) = (true, Some((thing, std))),
+                Hiding::Thing(thing, std) => {
+                    is_hidden = true;
+                    things.push((thing, std));
+                }
                 Hiding::Unknown => is_hidden = true,
             }
         }
