@@ -30,10 +30,10 @@ impl Lens {
         if rays().any(|(ray, range)| ray.dot(&forward) < PANORAMA * range) {
             return Some(Self::Panorama(turn.inverse()));
         }
-        // A camera looks along its z; one whose turn is stated otherwise, as in a frame with x forward, still has
+        // A camera looks along its z; one whose turn is stated otherwise, as in a frame with x or y forward, still has
         // an axis aside.
-        let local = turn.inverse_transform_vector(&forward);
-        let right = if local.x.abs() < local.z.abs() { Vector3::x() } else { Vector3::y() };
+        let local = turn.inverse_transform_vector(&forward).abs();
+        let right = if local.x < local.y.max(local.z) { Vector3::x() } else { Vector3::y() };
         let down = forward.cross(&turn.transform_vector(&right)).normalize();
         Some(Self::Camera([down.cross(&forward), down, forward]))
     }
@@ -55,6 +55,35 @@ impl Lens {
             Self::Panorama(to_sensor) => {
                 let (range, ray) = (ray.norm(), to_sensor.transform_vector(ray));
                 (range > 0.0).then(|| [ray.y.atan2(ray.x).rem_euclid(TAU), (ray.z / range).asin()])
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Forward along y there was no right: the axis that it was told across was that one, or off it by rounding.
+    #[test]
+    fn rows_of_a_camera_that_looks_along_an_axis_of_its_frame_are_level() {
+        for forward in 0..3 {
+            let aside = [(forward + 1) % 3, (forward + 2) % 3];
+            let ray = |[u, v]: [f64; 2]| {
+                let mut ray = Vector3::ith(forward, 1.0);
+                (ray[aside[0]], ray[aside[1]]) = (0.5 * u, 0.25 * v);
+                ray
+            };
+            let rays = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].map(ray);
+            let lens =
+                Lens::of(rays.iter().map(|ray| (ray, ray.norm())), &UnitQuaternion::identity());
+            let lens = lens.expect("rays with directions");
+            for ray in &rays {
+                let at = lens.project(ray).expect("a ray ahead");
+                let mut sides = at.map(f64::abs);
+                sides.sort_by(f64::total_cmp);
+                let off = [sides[0] - 0.25, sides[1] - 0.5];
+                assert!(off.iter().all(|off| off.abs() < 1e-12), "{forward}: {at:?}");
             }
         }
     }
