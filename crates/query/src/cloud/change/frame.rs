@@ -1,9 +1,9 @@
 //! A cloud that a moving camera keeps up to date: what it looks at is as it sees it, the rest stays.
 
 use cloudtouch_geom::{Point3, PointCloud, Vector3};
-use cloudtouch_noise::Neighborhoods;
 use rayon::prelude::*;
 
+use super::again::Again;
 use crate::cloud::change::Change;
 use crate::cloud::prepare::Cloud;
 use crate::cloud::scans::Scans;
@@ -14,9 +14,6 @@ use crate::filter::Taken;
 
 /// Views that a cloud keeps of its frames: what only older ones saw to be empty counts as unseen again.
 const MOST_VIEWS: usize = 32;
-/// A sample within so many of its standard deviations along the ray, and as many pixels across it, is
-/// measured again by that of the frame.
-const DEVIATIONS: f64 = 3.0;
 
 impl Cloud {
     /// Brings the cloud up to date by a depth image in its frame, whose `sensor_pose` says where the camera
@@ -69,30 +66,35 @@ impl Cloud {
         let own = &self.prepared.scans;
         let all = || Ok(((0..own.points.len() as u32).collect(), own.taken.clone()));
         let Some(image) = frame.images.first() else { return all() };
-        let camera = image.sensor_origin;
         let view = SingleView::new(image.clone(), &Vector3::zeros());
         let Some(seeing) = view.over((&frame.points, &frame.noise)) else { return all() };
-        let measured = Neighborhoods::new(frame.points.clone())?;
-        let stays = |place: &Point3, std: f64| {
-            if seeing.looks_past(place, std) {
-                return false;
-            }
-            // What the lines of a panorama measure is no more than they: the next of them may be far off.
-            let Some(pixels) = seeing.pixel() else { return true };
-            let Some(near) = measured.nearest_to(place, 1).first().copied() else { return true };
-            let ray = place - camera;
-            let pixel = (pixels * ray.norm()).max(cell);
-            let noise = std.hypot(frame.noise[near.index].max_std());
-            let offset = frame.points[near.index] - place;
-            let along = ray.try_normalize(0.0).map_or(0.0, |ray| ray.dot(&offset));
-            let across = (offset.norm_squared() - along * along).max(0.0).sqrt();
-            along.abs() > DEVIATIONS * noise + pixel || across > pixel
+        let again = Again::of(frame, (&seeing, image.sensor_origin), cell);
+        let by_tree = |place: &Point3, std: f64| {
+            again.as_ref().is_none_or(|again| !again.by_tree(place, std))
         };
-        let point_stays =
-            |&i: &u32| stays(&own.points[i as usize], own.noise[i as usize].max_std());
-        let kept = (0..own.points.len() as u32).into_par_iter().filter(point_stays).collect();
+        // PERF: pixels tell of nearly all, many times as fast as a tree of the frame, which is made for the rest.
+        let by_pixels = |place: &Point3, std: f64| match &again {
+            _ if seeing.looks_past(place, std) => Some(false),
+            Some(again) => again.by_pixels(place, std).map(|is_again| !is_again),
+            None => Some(true),
+        };
+        let std = |index: u32| own.noise[index as usize].max_std();
+        let place = |index: u32| &own.points[index as usize];
+        let points = 0..own.points.len() as u32;
+        let told = |index: u32| by_pixels(place(index), std(index));
+        let told: Vec<Option<bool>> = points.clone().into_par_iter().map(told).collect();
+        if let Some(again) = again.as_ref().filter(|_| told.contains(&None)) {
+            // Here, for it takes all threads.
+            again.tree();
+        }
+        let stays = |&index: &u32| {
+            told[index as usize].unwrap_or_else(|| by_tree(place(index), std(index)))
+        };
+        let kept = points.into_par_iter().filter(stays).collect();
         let is_taken_again = |place: &Point3| frame.taken.iter().any(|new| new.is_about(place));
-        let is_still = |place: &Point3| stays(place, 0.0) && !is_taken_again(place);
+        let is_still = |place: &Point3| {
+            by_pixels(place, 0.0).unwrap_or_else(|| by_tree(place, 0.0)) && !is_taken_again(place)
+        };
         let still: Result<Vec<_>, _> = own.taken.iter().map(|old| old.only(is_still)).collect();
         Ok((kept, still?.into_iter().flatten().collect()))
     }

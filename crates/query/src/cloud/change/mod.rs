@@ -1,5 +1,6 @@
 //! A cloud whose points come, go and move.
 
+mod again;
 mod carry;
 mod frame;
 mod lost;

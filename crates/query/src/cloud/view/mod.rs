@@ -3,6 +3,7 @@
 mod about;
 mod lens;
 mod lines;
+pub(super) mod near;
 mod past;
 pub(super) mod range;
 pub(super) mod raster;
