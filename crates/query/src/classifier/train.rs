@@ -57,6 +57,8 @@ pub(crate) fn by_kernel(
     stats: &mut Stats,
 ) -> Trained {
     stats.kernel_solves += 1;
+    let relative_gap = settings.relative_gap.min(LOOSEST);
+    let settings = &ClassifierSettings { relative_gap, ..*settings };
     let all: Vec<UncertainPoint> = points.a.iter().chain(&points.b).map(|p| p.point).collect();
     let Some(unit_box) = UnitBox::around(&all) else { return Trained::UNDECIDED };
     let unit_box = settings.scale.map_or(unit_box, |scale| unit_box.with_scale(scale));
@@ -65,7 +67,6 @@ pub(crate) fn by_kernel(
         return Trained::UNDECIDED;
     };
     let solver = |relative_gap| Solver::new(Settings { relative_gap, ..Settings::default() });
-    let relative_gap = settings.relative_gap.min(LOOSEST);
     let both = [relative_gap, TIGHTER * relative_gap].map(solver);
     let [Ok(mut loose), Ok(mut tight)] = both else { return Trained::UNDECIDED };
     let mut is_cut = false;
@@ -130,7 +131,7 @@ fn read(
         return sure(PairAnswer::Indistinct);
     }
     // Cut short, or stuck: that probabilities may be read does not make them exact.
-    if solution.relative_gap > settings.relative_gap.min(LOOSEST) {
+    if solution.relative_gap > settings.relative_gap {
         return sure(PairAnswer::Undecided);
     }
     let Ok(classifier) = Classifier::new(problem, solution) else {

@@ -151,8 +151,7 @@ fn look(
     // PERF: thousands of places; most bodies, and most samples, have nothing unseen about them.
     let motion = Motion::from(image_from_other);
     let farthest = around.iter().map(Vector3::norm).fold(0.0, f64::max);
-    let [low, high] = other.corners();
-    let radius = 0.5 * (high - low).norm() + farthest;
+    let radius = 0.5 * other.size() + farthest;
     let is_all_seen = sights.are_all_seen(&motion.point(&other.middle()), radius);
     let samples = if is_all_seen { Vec::new() } else { samples.of(other) };
     let mut counts = [0_usize; 6];

@@ -2,13 +2,11 @@
 
 use cloudtouch_geom::Vector3;
 
-use super::lens::Lens;
 use super::raster::Raster;
+use super::seen::HOLE_CELLS;
 
 /// Cells along the edge of a block, of which the one that was seen least far tells.
 const BLOCK: usize = 8;
-/// Relative rounding of a place of the view, generously.
-const ROUNDING: f64 = 1e-9;
 
 impl Raster {
     /// Whether it saw all places no farther than a distance (m) from where a ray leads. It may have where this does not
@@ -23,14 +21,12 @@ impl Raster {
 
     /// The first and the last block that such places are seen in; `None` where some may be beside the view.
     fn blocks_about(&self, ray: &Vector3, distance: f64) -> Option<[[usize; 2]; 2]> {
-        let Lens::Camera([.., forward]) = &self.lens else { return None };
-        let (at, nearest) = (self.lens.project(ray)?, ray.dot(forward) - distance);
-        // Of a place δ farther on, u moves by (δ·right − u δ·forward)/(depth + δ·forward).
-        let half = at.map(|u| (1.0 + ROUNDING) * distance * u.hypot(1.0) / nearest);
-        let cell_at = |sign: f64| self.cell([0, 1].map(|axis| at[axis] + sign * half[axis]));
+        let spot = self.lens.spot(ray)?;
+        let reach = spot.reach(distance)?;
+        let cell_at = |sign: f64| self.cell([0, 1].map(|axis| spot.at[axis] + sign * reach[axis]));
         let corners = [cell_at(-1.0)?, cell_at(1.0)?];
         let block = |cell: [isize; 2]| cell.map(|k| k as usize / BLOCK);
-        (nearest > 0.0).then_some(corners.map(block))
+        Some(corners.map(block))
     }
 
     /// Up to which range all of a block was seen, m.
@@ -53,7 +49,8 @@ impl Raster {
         if behind(x, y) > 0.0 {
             return self.index(x, y).map_or(0.0, |cell| self.cells[cell].behind_nearest);
         }
-        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [dx, dy]));
+        let ring = || -HOLE_CELLS..=HOLE_CELLS;
+        let around = ring().flat_map(|dy| ring().map(move |dx| [dx, dy]));
         around.map(|[dx, dy]| behind(x + dx, y + dy)).fold(0.0, f64::max)
     }
 }

@@ -7,6 +7,8 @@ use nalgebra::UnitQuaternion;
 
 /// An image with a direction so far off its middle (cosine) is a panorama: 80° and more.
 const PANORAMA: f64 = 0.17;
+/// Relative rounding of what is looked for, and absolute of a place of the view, generously.
+const ROUNDING: [f64; 2] = [1e-9, 1e-12];
 
 /// How directions become places of a view.
 #[derive(Debug)]
@@ -16,6 +18,28 @@ pub(super) enum Lens {
     Camera([Vector3; 3]),
     /// All around the vertical of the sensor: by azimuth and elevation, from its frame.
     Panorama(UnitQuaternion<f64>),
+}
+
+/// Where a camera sees a place.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::cloud) struct Spot {
+    pub at: [f64; 2],
+    /// Along the axis of the camera, m.
+    pub depth: f64,
+}
+
+impl Spot {
+    /// How far about it in the view all is that is no farther than a distance (m) from a place there, with room for
+    /// rounding; `None` where some of that may not be ahead.
+    pub(super) fn reach(&self, distance: f64) -> Option<[f64; 2]> {
+        let nearest = self.depth - distance;
+        // Of a place δ farther on, u moves by (δ·right − u δ·forward)/(depth + δ·forward).
+        let [relative, absolute] = ROUNDING;
+        let reach = |u: f64| {
+            (1.0 + relative) * distance * u.hypot(1.0) / nearest + absolute * (1.0 + u.abs())
+        };
+        (nearest > 0.0).then(|| self.at.map(reach))
+    }
 }
 
 impl Lens {
@@ -43,6 +67,12 @@ impl Lens {
             Self::Camera([_, _, forward]) => ray.dot(forward) <= 0.0,
             Self::Panorama(_) => false,
         }
+    }
+
+    /// Where a camera sees what a ray leads to; `None` of what is not ahead, and of a panorama.
+    pub(super) fn spot(&self, ray: &Vector3) -> Option<Spot> {
+        let Self::Camera([.., forward]) = self else { return None };
+        Some(Spot { at: self.project(ray)?, depth: ray.dot(forward) })
     }
 
     /// `None` for a direction that no view of this kind has.

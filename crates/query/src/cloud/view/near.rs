@@ -4,13 +4,12 @@ use cloudtouch_geom::{Point3, Vector3};
 
 use super::Seeing;
 use super::lens::Lens;
+pub(in crate::cloud) use super::lens::Spot;
 
 /// Points in a cell, about.
 const IN_CELL: f64 = 4.0;
 /// Cells along a side at most.
 const MOST_CELLS: f64 = 1e4;
-/// Relative rounding of what is looked for, and absolute of a place of the view, generously.
-const ROUNDING: [f64; 2] = [1e-9, 1e-12];
 
 /// Points, by where a camera sees them.
 #[derive(Debug)]
@@ -23,14 +22,6 @@ pub(in crate::cloud) struct ByPixels<'a> {
     /// The points of a cell are these from its own start to the next.
     indices: Vec<u32>,
     starts: Vec<u32>,
-}
-
-/// Where a camera sees a place.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::cloud) struct Spot {
-    pub at: [f64; 2],
-    /// Along the axis of the camera, m.
-    pub depth: f64,
 }
 
 impl<'a> Seeing<'a> {
@@ -81,32 +72,24 @@ impl<'a> ByPixels<'a> {
         Some(cells)
     }
 
-    /// `None` of a place that is not ahead.
+    /// Where the camera sees what a ray leads to; `None` of what is not ahead.
     pub(in crate::cloud) fn spot(&self, ray: &Vector3) -> Option<Spot> {
-        let Lens::Camera([.., forward]) = self.lens else { return None };
-        Some(Spot { at: self.lens.project(ray)?, depth: ray.dot(forward) })
+        self.lens.spot(ray)
     }
 
     /// Calls `visit` with all points no farther than a distance (m) from a place that is seen at a spot, or from any
     /// that is seen there farther away, and with others; `false` without it where some of them may not be ahead.
     pub(in crate::cloud) fn visit_about(
         &self,
-        Spot { at, depth }: Spot,
+        spot: Spot,
         distance: f64,
         mut visit: impl FnMut(usize),
     ) -> bool {
-        let nearest = depth - distance;
-        if nearest.is_nan() || nearest <= 0.0 {
-            return false;
-        }
-        // Of a place δ farther on, u moves by (δ·right − u δ·forward)/(depth + δ·forward).
-        let [relative, absolute] = ROUNDING;
-        let half = at.map(|u| {
-            (1.0 + relative) * distance * u.hypot(1.0) / nearest + absolute * (1.0 + u.abs())
-        });
+        let Some(reach) = spot.reach(distance) else { return false };
         let mut spans = [[0; 2]; 2];
         for axis in 0..2 {
-            let [from, to] = [-1.0, 1.0].map(|sign| self.steps(at[axis] + sign * half[axis], axis));
+            let [from, to] =
+                [-1.0, 1.0].map(|sign| self.steps(spot.at[axis] + sign * reach[axis], axis));
             if to < 0.0 || from >= self.size[axis] as f64 {
                 return true;
             }

@@ -6,7 +6,7 @@ use super::raster::{Cell, Raster};
 
 /// A place is in a hole when nothing was measured so many cells around its own: every hole eight pixels wide has
 /// such places, and smaller ones are specks that hardly a surface hides in.
-const HOLE_CELLS: isize = 1;
+pub(super) const HOLE_CELLS: isize = 1;
 /// A surface recedes across a cell when it did so before it at this part of the rate: of two directions one has half.
 const STEADY: f64 = 0.4;
 /// What is no farther behind a return, m, may be inside the thing it came from: few things on a table are thicker.
