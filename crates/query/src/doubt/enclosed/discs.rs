@@ -18,6 +18,10 @@ const RADIUS_BEFORE_SENSOR: f64 = 2.0;
 /// from the middle of one of the smallest to its side are 11°, which it is as wide as at 8, and spacings vary.
 const FARTHEST_BESIDE: f64 = 16.0;
 
+/// This share of the directions from a place of the body's own is closed where they are from its middle: its
+/// other places are nearer to the surface, and where samples are few more of them find no disc by chance.
+const CLOSED_BESIDE: f64 = 0.94;
+
 /// Of the samples nearest to a place so many tell whether it is on their surface ...
 const NEAREST: usize = 20;
 /// ... as it is so many standard deviations of a fit from it: discs are all around in there, by chance.
@@ -38,14 +42,14 @@ impl<'a> Discs<'a> {
     /// what is near enough to.
     pub(super) fn close_empty(&mut self, place: &Point3, directions: &Directions) -> bool {
         let near = FARTHEST_BESIDE * self.cloud.makeup().spacing;
-        self.close(directions.empty.iter(), place, near, directions.most_open())
+        self.close(directions.empty.iter(), place, near, directions.most_open(CLOSED))
     }
 
-    /// Whether it closes all but a few of the directions from a place.
+    /// Whether it closes all but some of the directions from a place near one from which it does.
     pub(super) fn close_all(&mut self, place: &Point3, directions: &Directions) -> bool {
         // Where they are open is found soonest so.
         let all = directions.empty.iter().chain(&directions.filled);
-        self.close(all, place, f64::INFINITY, directions.most_open())
+        self.close(all, place, f64::INFINITY, directions.most_open(CLOSED_BESIDE))
     }
 
     fn close<'d>(
@@ -119,7 +123,7 @@ impl Directions {
         Self { filled, empty }
     }
 
-    fn most_open(&self) -> usize {
-        ((1.0 - CLOSED) * (self.filled.len() + self.empty.len()) as f64) as usize
+    fn most_open(&self, closed: f64) -> usize {
+        ((1.0 - closed) * (self.filled.len() + self.empty.len()) as f64) as usize
     }
 }

@@ -97,16 +97,18 @@ fn nearest_of(body: Shape<'_>, place: &Point3) -> Option<Point3> {
 
 /// Whether a cloud surrounds a body, of which the middle is given and some place of its own.
 fn surrounds(cloud: &Prepared, middle: &Point3, own: impl FnOnce() -> Option<Point3>) -> bool {
-    if !cloud.around().is_some_and(|around| around.contains(middle)) {
+    let Some(around) = cloud.around().filter(|around| around.contains(middle)) else {
         return false;
-    }
-    let samples = Samples::of(cloud);
+    };
+    // Along the box, so that nothing hangs on the axes of the file.
+    let axes = around.axes;
+    let samples = Samples::of(cloud, axes);
     // An open side is four of the smallest squares: more than may be empty. Where the surface is near it may be so
     // by chance, but hardly with a spacing about it.
     let near = cloud.makeup().spacing;
     if samples.are_many()
         && cloud.is_searched_at_every_point()
-        && has_open_side(cloud.tree(), (cloud.points(), near), middle)
+        && has_open_side(cloud.tree(), (cloud.points(), near), (middle, &axes))
     {
         return false;
     }
@@ -118,7 +120,8 @@ fn surrounds(cloud: &Prepared, middle: &Point3, own: impl FnOnce() -> Option<Poi
             && !own().is_some_and(|own| discs.hold(&own));
     }
     // Near the surface samples are too few for that.
-    let directions = Directions::new(Squares::new(MOST_SQUARES).middles(), |way| filled.hold(way));
+    let directions =
+        Directions::new(Squares::new(axes, MOST_SQUARES).middles(), |way| filled.hold(way));
     discs.close_empty(middle, &directions)
         && own().is_some_and(|own| {
             !discs.hold(&own)

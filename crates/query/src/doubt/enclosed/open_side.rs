@@ -2,19 +2,23 @@
 //! and so need no look at all of its points.
 
 use cloudtouch_bvh::{Obb, Tree, Visit};
-use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
-/// Sides are pyramids along the axes of the frame, as wide as this times their height to either hand.
+/// Sides are pyramids along three axes, as wide as this times their height to either hand.
 const SLOPE: f64 = 0.5;
 /// The distance of a face is this times what is measured across the axis: 1 / √(1 + SLOPE²).
 const ALONG: f64 = 0.894_427_190_999_915_9;
 /// So much wider, and boxes so much larger, that rounding cannot leave a point out.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether one of the six pyramids with their tops at a place holds no point, and has none so near its faces
-/// (m) either; `points` by their indices in the tree.
-pub(super) fn has_open_side(tree: &Tree, (points, near): (&[Point3], f64), place: &Point3) -> bool {
-    Side::all(near).any(|side| {
+/// Whether one of the six pyramids along these axes (columns) with their tops at a place holds no point, and has none so
+/// near its faces (m) either; `points` by their indices in the tree.
+pub(super) fn has_open_side(
+    tree: &Tree,
+    (points, near): (&[Point3], f64),
+    (place, axes): (&Point3, &Matrix3),
+) -> bool {
+    Side::all(axes, near).any(|side| {
         let mut is_open = true;
         tree.visit_nodes(|node| {
             if !is_open || !side.may_hold(&node.obb(), place) {
@@ -34,22 +38,26 @@ pub(super) fn has_open_side(tree: &Tree, (points, near): (&[Point3], f64), place
 /// what is near them.
 #[derive(Clone, Copy)]
 struct Side {
-    axis: usize,
-    sign: f64,
+    toward: Vector3,
+    across: [Vector3; 2],
     /// What is so far beside it or behind its top counts, m.
     near: f64,
 }
 
 impl Side {
-    fn all(near: f64) -> impl Iterator<Item = Self> {
-        (0..3).flat_map(move |axis| [1.0, -1.0].map(|sign| Self { axis, sign, near }))
+    fn all(axes: &Matrix3, near: f64) -> impl Iterator<Item = Self> + use<> {
+        let axes = [0, 1, 2].map(|k| axes.column(k).into_owned());
+        (0..3).flat_map(move |k| {
+            let across = [axes[(k + 1) % 3], axes[(k + 2) % 3]];
+            [axes[k], -axes[k]].map(|toward| Self { toward, across, near })
+        })
     }
 
     /// How far a place is within each of its four faces, and before its top, m.
     fn within_faces(self, offset: &Vector3) -> [f64; 5] {
-        let before = self.sign * offset[self.axis];
+        let before = self.toward.dot(offset);
         let half = ALONG * SLOPE * (1.0 + ROUNDING) * before;
-        let [p, q] = [1, 2].map(|k| ALONG * offset[(self.axis + k) % 3]);
+        let [p, q] = self.across.map(|across| ALONG * across.dot(offset));
         [half - p, half + p, half - q, half + q, before]
     }
 
@@ -76,7 +84,7 @@ impl Side {
 mod tests {
     use cloudtouch_bvh::{Primitive, TreeSettings};
     use cloudtouch_geom::seed::{derive, unit};
-    use cloudtouch_geom::{Covariance, UncertainPoint};
+    use cloudtouch_geom::{Covariance, Pose, UncertainPoint};
     use proptest::prelude::*;
 
     use super::*;
@@ -92,6 +100,7 @@ mod tests {
             // Beyond .3 the most of a ball is missing.
             up_to in -0.9..1.0_f64,
             place in prop::array::uniform3(-0.7..0.7_f64),
+            turn in prop::array::uniform3(-3.0..3.0_f64),
             near in prop_oneof![Just(0.0), 0.0..0.1_f64],
         ) {
             let draw = |i, k| 2.0 * unit(derive(seed, i, k)) - 1.0;
@@ -106,9 +115,11 @@ mod tests {
             let primitive = |&mean: &Point3| Primitive::point(UncertainPoint { mean, covariance });
             let tree = Tree::build(points.iter().map(primitive).collect(), &TreeSettings::default());
             let place = Point3::from(Vector3::from(place));
+            let axes = *Pose::from_translation_rpy(Vector3::zeros(), turn).rotation().to_rotation_matrix().matrix();
             let is_empty = |side: Side| !points.iter().any(|p| side.holds(&(p - place)));
-            let expected = Side::all(near).any(is_empty);
-            prop_assert_eq!(has_open_side(&tree.unwrap(), (&points, near), &place), expected);
+            let expected = Side::all(&axes, near).any(is_empty);
+            let found = has_open_side(&tree.unwrap(), (&points, near), (&place, &axes));
+            prop_assert_eq!(found, expected);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! In which directions from a place a cloud has samples.
 
-use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_geom::{Matrix3, Point3, Vector3};
 
 use crate::cloud::Prepared;
 use crate::some::some_of;
@@ -17,18 +17,21 @@ const SMALL_SQUARES: usize = 3;
 /// Some points of a cloud, from all over it, and the squares that are as small as they tell.
 pub(super) struct Samples<'a> {
     cloud: &'a Prepared,
+    /// Those of the squares.
+    axes: Matrix3,
     /// Of so many points each stands for one.
     part: f64,
     a_side: usize,
 }
 
 impl<'a> Samples<'a> {
-    pub(super) fn of(cloud: &'a Prepared) -> Self {
+    pub(super) fn of(cloud: &'a Prepared, axes: Matrix3) -> Self {
         let all = cloud.points().len();
         let count = all.min(MOST_POINTS);
         let a_side = (count as f64 / (6.0 * POINTS_PER_SQUARE)).sqrt().floor() as usize;
         Self {
             cloud,
+            axes,
             part: all as f64 / count.max(1) as f64,
             a_side: a_side.clamp(1, MOST_SQUARES),
         }
@@ -43,7 +46,7 @@ impl<'a> Samples<'a> {
     pub(super) fn around(&self, place: &Point3) -> Filled {
         let all = 6 * self.a_side * self.a_side;
         let enough = (CLOSED * all as f64).ceil() as u32;
-        let squares = Squares::new(self.a_side);
+        let squares = Squares::new(self.axes, self.a_side);
         let mut filled = 0_u128;
         let points = self.cloud.points();
         for index in some_of(points.len(), MOST_POINTS) {
@@ -64,7 +67,7 @@ impl<'a> Samples<'a> {
                 filled |= squares.containing(&(point - place));
             });
         }
-        // A small square all alone among filled ones has no point by chance, which hangs on the axes of the file.
+        // A small square all alone among filled ones has no point by chance.
         if self.a_side >= SMALL_SQUARES {
             filled |= squares.alone_among(filled);
         }

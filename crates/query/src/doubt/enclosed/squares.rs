@@ -1,6 +1,6 @@
 //! Directions told apart by squares on the faces of a cube.
 
-use cloudtouch_geom::Vector3;
+use cloudtouch_geom::{Matrix3, Vector3};
 
 /// Directions are told apart by squares on the faces of a cube, so many a side at most: all of them are
 /// the bits of one number.
@@ -10,22 +10,27 @@ pub(super) const CLOSED: f64 = 0.97;
 
 /// The squares that directions are told apart by, so many a side.
 pub(super) struct Squares {
+    /// Of the cube, as columns; whichever way round, and in whichever order.
+    axes: Matrix3,
     a_side: u32,
     /// Where each but the first begins, from −1 to 1; infinity beyond the last.
     begins: [f64; MOST_SQUARES - 1],
 }
 
 impl Squares {
-    pub(super) fn new(a_side: usize) -> Self {
+    pub(super) fn new(axes: Matrix3, a_side: usize) -> Self {
         let begin = |k: usize| 2.0 * (k + 1) as f64 / a_side as f64 - 1.0;
         let begins = std::array::from_fn(|k| if k + 1 < a_side { begin(k) } else { f64::INFINITY });
-        Self { a_side: a_side as u32, begins }
+        Self { axes, a_side: a_side as u32, begins }
     }
 
     /// The bit of the square that a direction passes; none for no direction.
-    ///
-    /// Without branches but for that: thousands of directions, each to another square.
     pub(super) fn containing(&self, direction: &Vector3) -> u128 {
+        self.containing_along(&self.axes.tr_mul(direction))
+    }
+
+    /// Without branches but for no direction: thousands of directions, each to another square.
+    fn containing_along(&self, direction: &Vector3) -> u128 {
         let around = [direction.x, direction.y, direction.z, direction.x, direction.y];
         let [x, y, z] = [direction.x.abs(), direction.y.abs(), direction.z.abs()];
         let most = x.max(y);
@@ -44,6 +49,10 @@ impl Squares {
 
     /// The directions of the middles of all.
     pub(super) fn middles(&self) -> impl Iterator<Item = Vector3> {
+        self.middles_along().map(|middle| self.axes * middle)
+    }
+
+    fn middles_along(&self) -> impl Iterator<Item = Vector3> + use<> {
         let (a_side, step) = (self.a_side, 2.0 / f64::from(self.a_side));
         let middle = move |k: u32| step * (f64::from(k) + 0.5) - 1.0;
         let of_face = move |face| {
@@ -62,11 +71,11 @@ impl Squares {
             let beside = [1, 2].into_iter().flat_map(|k| {
                 [step, -step].map(|by| middle + by * Vector3::ith((axis + k) % 3, 1.0))
             });
-            let beside = beside.fold(0, |all, direction| all | self.containing(&direction));
-            filled & self.containing(middle) == 0 && filled & beside == beside
+            let beside = beside.fold(0, |all, direction| all | self.containing_along(&direction));
+            filled & self.containing_along(middle) == 0 && filled & beside == beside
         };
-        let alone = self.middles().filter(is_alone);
-        alone.fold(0, |all, middle| all | self.containing(&middle))
+        let alone = self.middles_along().filter(is_alone);
+        alone.fold(0, |all, middle| all | self.containing_along(&middle))
     }
 }
 
@@ -103,7 +112,7 @@ mod tests {
     #[test]
     fn a_square_is_alone_where_all_four_beside_it_are_filled() {
         for a_side in 2..=MOST_SQUARES {
-            let squares = Squares::new(a_side);
+            let squares = Squares::new(Matrix3::identity(), a_side);
             let all = (1_u128 << (6 * a_side * a_side)) - 1;
             assert_eq!(squares.alone_among(all), 0);
             for lost in 0..6 * a_side * a_side {
@@ -125,7 +134,7 @@ mod tests {
         let special = [Vector3::zeros(), Vector3::repeat(f64::NAN), Vector3::x(), -Vector3::z()];
         let all: Vec<Vector3> = drawn.chain(special).collect();
         for a_side in 1..=MOST_SQUARES {
-            let squares = Squares::new(a_side);
+            let squares = Squares::new(Matrix3::identity(), a_side);
             for direction in &all {
                 let expected = square_of(direction, a_side).map_or(0, |square| 1 << square);
                 assert_eq!(squares.containing(direction), expected, "{direction:?}");
