@@ -41,6 +41,24 @@ pub(crate) struct PairPoints {
     pub b_is_mesh: bool,
 }
 
+impl PairPoints {
+    /// The same whichever body is called A: first the side with fewer points, or of as many the one whose points are closer
+    /// together. The solver goes through them in their order and ends within its tolerance.
+    pub(crate) fn in_order(self) -> Self {
+        let counts = self.a.len().cmp(&self.b.len());
+        if counts.then_with(|| spread(&self.a).total_cmp(&spread(&self.b))).is_le() {
+            return self;
+        }
+        Self { a: self.b, b: self.a, a_is_mesh: self.b_is_mesh, b_is_mesh: self.a_is_mesh }
+    }
+}
+
+/// Sum of the squared distances of some points from their middle, m^2; there must be one.
+fn spread(points: &[PairPoint]) -> f64 {
+    let middle = centroid(points);
+    points.iter().map(|p| (p.point.mean - middle).norm_squared()).sum()
+}
+
 /// What a leaf pair says.
 #[derive(Debug)]
 pub(crate) enum PairAnswer {

@@ -11,9 +11,12 @@ use super::subdivide::{MAX_DEPTH, SampleRegion, by_coordinates, samples_of};
 
 /// How far a computed distance may be off, as a share of the coordinates; generously.
 const ROUNDING: f64 = 1e-12;
+/// Samples whose distances differ by less than about this share of the spacing are as near as each other: those of a
+/// regular part often are, and rounding is not to choose among them.
+const TIED: f64 = 1e-6;
 
 /// As many as wanted of the samples of [`sample_region`](super::sample_region), nearest to the middle of the
-/// region, in order of distance, then place.
+/// region, in order of distance, as far as it tells, then place.
 ///
 /// # Errors
 /// When that takes more than `max_parts` parts, those that were split included and those farther away than
@@ -50,7 +53,7 @@ pub(crate) fn nearest_in_region(
 struct Nearest<'a> {
     region: &'a SampleRegion,
     wanted: usize,
-    /// Each with its distance from the middle, in [order](by_distance), no more than wanted.
+    /// Each with its distance from the middle in [steps](steps), in [order](by_distance), no more than wanted.
     samples: Vec<(f64, Point3)>,
     /// Triangles looked at so far, before and after splitting.
     parts: usize,
@@ -89,13 +92,14 @@ impl Nearest<'_> {
     fn is_farther(&self, away: f64, size: f64) -> bool {
         let is_full = self.samples.len() == self.wanted;
         let last = self.samples.last().filter(|_| is_full);
-        let farthest = last.map_or(f64::INFINITY, |&(distance, _)| distance);
+        let farthest = last.map_or(f64::INFINITY, |&(steps, _)| (steps + 0.5) * step(self.region));
         away > farthest + ROUNDING * size
     }
 
     fn add(&mut self, place: Point3) {
-        let sample = ((place - self.region.center).norm(), place);
-        if sample.0 <= self.region.radius
+        let distance = (place - self.region.center).norm();
+        let sample = (steps(distance, self.region), place);
+        if distance <= self.region.radius
             // What is there already comes from a part that has this corner too.
             && let Err(at) = self.samples.binary_search_by(|other| by_distance(other, &sample))
         {
@@ -103,6 +107,15 @@ impl Nearest<'_> {
             self.samples.truncate(self.wanted);
         }
     }
+}
+
+/// Distances that differ by less are not told apart, m.
+fn step(region: &SampleRegion) -> f64 {
+    TIED * region.spacing.max(0.0)
+}
+
+fn steps(distance: f64, region: &SampleRegion) -> f64 {
+    (distance / step(region)).round()
 }
 
 /// A number as a whole one of the same order as [`f64::total_cmp`]: among the bits of negative numbers those of
@@ -134,10 +147,10 @@ mod tests {
         Point3::new(radius * turn.cos(), radius * turn.sin(), 0.0)
     }
 
-    /// The first of all samples by distance.
+    /// The first of all samples by distance, as far as it tells.
     fn by_all(triangles: &[[Point3; 3]], region: &SampleRegion, wanted: usize) -> Vec<Point3> {
         let mut all = sample_region(triangles.to_vec(), region, 10_000_000).unwrap();
-        let distance = |p: &Point3| (p - region.center).norm();
+        let distance = |p: &Point3| steps((p - region.center).norm(), region);
         all.sort_by(|p, q| distance(p).total_cmp(&distance(q)).then(by_coordinates(p, q)));
         all.truncate(wanted);
         all

@@ -28,13 +28,14 @@ pub(super) fn ask_classifier(
         return Ok(Misclassified::NOT_ASKED);
     }
     let mut all = Misclassified::NOTHING;
-    for (patch, points) in patches.iter().enumerate() {
+    for (patch, points) in patches.into_iter().enumerate() {
+        let points = points.in_order();
         let count = points.a.len() + points.b.len();
         if task.clock.is_over() {
             all = all.or_more(Misclassified::indistinct(count));
             continue;
         }
-        let of_patch = match by_kernel(points, &task.classifier, &task.clock, stats).answer {
+        let of_patch = match by_kernel(&points, &task.classifier, &task.clock, stats).answer {
             PairAnswer::Separated { a, b, .. } => {
                 Misclassified::known(a.iter().chain(&b).sum(), patch)
             }

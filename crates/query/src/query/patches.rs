@@ -18,6 +18,8 @@ const MOST_PATCHES: usize = 3;
 const FURTHER_DEVIATIONS: f64 = 1.5;
 /// ... nor, but for the least, about one with so many.
 const CLEARLY_FREE: f64 = 3.5;
+/// Places whose deviations differ by less than about this are as near as each other.
+const TIED: f64 = 1e-6;
 /// Points of one cloud in a patch, at most.
 const MOST_POINTS: usize = 20;
 /// What these are chosen from: the points nearest as measured.
@@ -70,9 +72,15 @@ fn seeds((a, b): (BodyRef<'_>, BodyRef<'_>), found: &Found<'_>) -> Vec<Seed> {
     let most = found.deviations_up_to(FURTHER_DEVIATIONS, CLEARLY_FREE);
     let mut findings: Vec<&Finding> =
         found.findings.iter().filter(|f| f.meeting.deviations <= most).collect();
-    let key = |f: &Finding| f.meeting.deviations;
-    findings
-        .sort_by(|f, g| key(f).total_cmp(&key(g)).then(f.nearest.between.cmp(&g.nearest.between)));
+    // A piece may be as near to two triangles; rounding is not to choose, nor which body is called A.
+    let key = |f: &Finding| {
+        let [a, b] = f.nearest.between;
+        ((f.meeting.deviations / TIED).round(), [a.min(b), a.max(b)])
+    };
+    findings.sort_by(|f, g| {
+        let [(less, of_f), (more, of_g)] = [f, g].map(|finding| key(finding));
+        less.total_cmp(&more).then(of_f.cmp(&of_g))
+    });
     let mut seeds: Vec<Seed> = Vec::new();
     for finding in findings {
         let [of_a, of_b] = finding.nearest.between;

@@ -145,9 +145,11 @@ fn to_exact(
         }
         let whitening = noisy.whitening(place);
         for facet in exact.facets.iter() {
-            let found = facet.squared_deviations(surfel, whitening, least_of_it.min(within));
+            // On an edge it is as near to both triangles: the one of another leaf counts whichever was first.
+            let limit = (least_of_it * (1.0 + ROUNDING)).min(within);
+            let found = facet.squared_deviations(surfel, whitening, limit);
             let Some((squared, way)) = found else { continue };
-            least_of_it = squared;
+            least_of_it = least_of_it.min(squared);
             if squared < least {
                 least = squared;
                 let on_mesh: Point3 = surfel.point.mean + way;
