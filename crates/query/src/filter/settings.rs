@@ -23,7 +23,8 @@ pub struct FilterSettings {
     /// seen to be empty. So they should stand on nothing and lean on nothing; points of what they hold and grasped
     /// from a table are rather taken out by [`Cloud::remove`](crate::Cloud::remove).
     pub robot: Vec<SelfMesh>,
-    /// Drops points between a near and a far surface that no surface explains.
+    /// Drops points between a near and a far surface that no surface explains, of clouds with the rows and columns of
+    /// an image.
     pub veil: Option<VeilSettings>,
     /// Drops points that are unusually far from their neighbours.
     pub outliers: Option<OutlierSettings>,

@@ -5,11 +5,10 @@
 //! one farther, and both steps run almost along the ray. So do those of a surface seen at a low angle, which
 //! [goes on](super::going_on) past them, along a row or a column or, where a rod is too thin for that, aslant.
 //! Beside veils pixels often have no return at all: then the next one within a few pixels is the neighbour.
-//! Without an image layout the neighbours are the nearest points, and a veil point is one whose neighbourhood
-//! is a line along the ray.
+//! Without an image layout nothing tells a line of veil points from a rod that recedes from the camera: all stay.
 
-use cloudtouch_geom::{Covariance, Matrix3, Point3, PointCloud, Vector3};
-use cloudtouch_noise::{Neighborhoods, SensorModel};
+use cloudtouch_geom::{Covariance, Point3, PointCloud, Vector3};
+use cloudtouch_noise::SensorModel;
 use rayon::prelude::*;
 
 use super::VeilSettings;
@@ -25,10 +24,6 @@ const ASLANT: [[isize; 2]; 10] =
     [[1, 1], [1, -1], [1, 2], [1, -2], [2, 1], [2, -1], [1, 3], [1, -3], [3, 1], [3, -1]];
 /// A rod too thin to go on along a line is at most so many pixels wide.
 const THIN: isize = 8;
-/// Neighbours that decide whether an unorganised neighbourhood is a line along the ray.
-const LINE_NEIGHBORS: usize = 10;
-/// A neighbourhood counts as a line when its largest variance is this many times the next.
-const LINE_RATIO: f64 = 9.0;
 
 /// Returns the rows that go.
 pub(super) fn drop_veil(
@@ -37,20 +32,10 @@ pub(super) fn drop_veil(
     settings: &VeilSettings,
     sensor: &SensorModel,
 ) -> Vec<usize> {
-    match cloud.image_size {
-        Some((width, height)) if width > 1 && height > 1 => {
-            drop_veil_of_image(&Image { cloud, size: [width, height] }, kept, settings, sensor)
-        }
-        _ => drop_veil_lines(cloud, kept, settings),
-    }
-}
-
-fn drop_veil_of_image(
-    image: &Image<'_>,
-    kept: &mut Vec<usize>,
-    settings: &VeilSettings,
-    sensor: &SensorModel,
-) -> Vec<usize> {
+    let Some((width, height)) = cloud.image_size.filter(|_| cloud.is_image()) else {
+        return Vec::new();
+    };
+    let image = &Image { cloud, size: [width, height] };
     let least_cosine = settings.max_angle.cos();
     let from = image.cloud.sensor_origin();
     let steep = |&index: &usize| {
@@ -138,31 +123,4 @@ impl Image<'_> {
 fn along_ray(ray: &Vector3, step: &Vector3, least: f64) -> f64 {
     let along = step.dot(ray);
     if along * along > least * step.norm_squared() { along.signum() } else { 0.0 }
-}
-
-fn drop_veil_lines(
-    cloud: &PointCloud,
-    kept: &mut Vec<usize>,
-    settings: &VeilSettings,
-) -> Vec<usize> {
-    let points: Vec<Point3> = kept.iter().map(|&i| cloud.points[i]).collect();
-    let Ok(neighborhoods) = Neighborhoods::new(points) else { return Vec::new() };
-    let points = neighborhoods.points();
-    let veil: Vec<bool> = (0..points.len())
-        .into_par_iter()
-        .map(|i| {
-            let neighbors = neighborhoods.nearest(i, LINE_NEIGHBORS);
-            if neighbors.len() < LINE_NEIGHBORS {
-                return false;
-            }
-            let offsets = neighbors.iter().map(|n| points[n.index] - points[i]);
-            let scatter: Matrix3 = offsets.map(|d| d * d.transpose()).sum();
-            let (variances, axes) = Covariance::from_symmetric(&scatter).eigen();
-            let ray = points[i] - cloud.sensor_origin();
-            let cosine = axes.column(0).dot(&ray).abs() / ray.norm();
-            variances[0] > LINE_RATIO * variances[1] && cosine > settings.max_angle.cos()
-        })
-        .collect();
-    let mut is_veil = veil.into_iter();
-    kept.extract_if(.., |_| is_veil.next() == Some(true)).collect()
 }
