@@ -3,7 +3,7 @@
 use crate::common::{mesh, query};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3, seed};
 use cloudtouch::noise::SensorModel;
-use cloudtouch::{Cloud, CloudSettings, Mode, Verdict};
+use cloudtouch::{Cloud, CloudSettings, Mode, OutlierSettings, Verdict};
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
 use cloudtouch_testkit::scene;
@@ -149,6 +149,26 @@ fn what_was_taken_for_veil_was_looked_past() {
         // Before the board and above it all is seen.
         let above = query(Mode::Calibrated).run(&cloud, &finger, &at(x, -0.1, 0.8)).unwrap();
         assert_eq!(above.verdict, Verdict::Free, "{x}");
+    }
+}
+
+/// What the outlier stage takes from an image, such as a rod over few pixels, was looked past: of 40 fingers across it
+/// 27 were free.
+#[test]
+fn what_was_taken_for_outliers_was_looked_past() {
+    let rod = scene::tube(&[0.5, 1.9].map(|z| Point3::new(0.06, 0.06, z)), 0.006, 16);
+    let (image, mut settings) = image_before_a_wall(&rod, 2.2, [160, 120], 140.0, 0.03);
+    settings.filter.outliers = Some(OutlierSettings::default());
+    let cloud = Cloud::prepare(&image, &settings).unwrap();
+    let outliers = cloud.filter_stages().iter().find(|stage| stage.stage == "outliers").unwrap();
+    assert!(outliers.removed > 10, "{outliers:?}");
+    let finger = mesh(&scene::cuboid([0.04; 3]));
+    for z in (0..40).map(|k| 0.64 + 0.028 * f64::from(k)) {
+        let through = query(Mode::Calibrated).run(&cloud, &finger, &at(0.06, 0.06, z)).unwrap();
+        assert_ne!(through.verdict, Verdict::Free, "{z}");
+        // Beside the rod all is seen.
+        let beside = query(Mode::Calibrated).run(&cloud, &finger, &at(-0.1, -0.1, z)).unwrap();
+        assert_eq!(beside.verdict, Verdict::Free, "{z}");
     }
 }
 

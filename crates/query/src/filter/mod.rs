@@ -75,6 +75,8 @@ pub(crate) struct Removed {
     pub robot: Vec<usize>,
     /// What was taken for veil.
     pub veil: Vec<usize>,
+    /// What was taken for outliers.
+    pub outliers: Vec<usize>,
     /// What cells of a collision map stand for.
     pub mapped: Vec<usize>,
 }
@@ -108,7 +110,9 @@ pub(crate) fn filter_and_tell(
         });
     }
     if let Some(outliers) = &settings.outliers {
-        run.stage("outliers", |cloud, kept| outliers::drop_outliers(cloud, kept, outliers));
+        run.stage("outliers", |cloud, kept| {
+            removed.outliers = outliers::drop_outliers(cloud, kept, outliers);
+        });
     }
     let Run { kept, mut stages, .. } = run;
     let mut filtered = cloud.select(&kept);

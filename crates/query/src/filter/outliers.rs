@@ -7,10 +7,14 @@ use rayon::prelude::*;
 use super::OutlierSettings;
 
 /// Drops points whose mean distance to their neighbours exceeds the mean over all points by more
-/// than the set number of standard deviations.
-pub(super) fn drop_outliers(cloud: &PointCloud, kept: &mut Vec<usize>, settings: &OutlierSettings) {
+/// than the set number of standard deviations. Returns the rows that go.
+pub(super) fn drop_outliers(
+    cloud: &PointCloud,
+    kept: &mut Vec<usize>,
+    settings: &OutlierSettings,
+) -> Vec<usize> {
     let points: Vec<Point3> = kept.iter().map(|&i| cloud.points[i]).collect();
-    let Ok(neighborhoods) = Neighborhoods::new(points) else { return };
+    let Ok(neighborhoods) = Neighborhoods::new(points) else { return Vec::new() };
     let points = neighborhoods.points();
     let distances: Vec<f64> = (0..points.len())
         .into_par_iter()
@@ -24,9 +28,6 @@ pub(super) fn drop_outliers(cloud: &PointCloud, kept: &mut Vec<usize>, settings:
     let mean = distances.iter().sum::<f64>() / count;
     let variance = distances.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / count;
     let limit = mean + settings.deviations * variance.sqrt();
-    let mut position = 0;
-    kept.retain(|_| {
-        position += 1;
-        distances[position - 1] <= limit
-    });
+    let mut distances = distances.into_iter();
+    kept.extract_if(.., |_| distances.next().is_some_and(|distance| distance > limit)).collect()
 }

@@ -26,7 +26,7 @@ pub struct FilterSettings {
     /// Drops points between a near and a far surface that no surface explains, of clouds with the rows and columns of
     /// an image.
     pub veil: Option<VeilSettings>,
-    /// Drops points that are unusually far from their neighbours.
+    /// Drops points that are unusually far from their neighbours. In an image nothing counts as seen past them.
     pub outliers: Option<OutlierSettings>,
     /// Replaces points by the centres of the occupied cells of a grid of this resolution, m. Their noise is that of
     /// [`SensorModel::Grid`]: state it, else cells count as known as well as returns. What was seen to be empty is still

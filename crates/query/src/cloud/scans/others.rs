@@ -42,8 +42,8 @@ pub(super) fn beyond_range(
 }
 
 /// The rows of returns that went and still say how far was seen: those that became cells of a collision map, which are wider than
-/// pixels, so that no hole of the image would be found between them; what was taken for veil or for the robot, past
-/// which nobody saw, whatever it is; and what is nearer than returns are kept.
+/// pixels, so that no hole of the image would be found between them; what was taken for veil, for outliers or for the
+/// robot, past which nobody saw, whatever it is; and what is nearer than returns are kept.
 pub(super) fn other_returns(
     image: &PointCloud,
     removed: &Removed,
@@ -53,7 +53,8 @@ pub(super) fn other_returns(
     let told = |&row: &usize, std: f64| (row, OtherReturn { ray: image.points[row] - from, std });
     // Rows at the place of the sensor, which may be in the robot, have no direction.
     let is_return = |row: &&usize| is_return_to(&from, &image.points[**row]);
-    let opaque = removed.veil.iter().chain(&removed.robot).filter(is_return);
+    let opaque = removed.veil.iter().chain(&removed.outliers).chain(&removed.robot);
+    let opaque = opaque.filter(is_return);
     let mut all: Vec<_> = opaque.map(|row| told(row, 0.0)).collect();
     // How far away these are is not to be trusted, so that nothing is known there from the sensor on.
     let near = removed.near.iter().map(|row| {
