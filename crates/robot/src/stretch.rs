@@ -1,7 +1,7 @@
 //! A stretch of a path of joints: how far a robot gets from its place in the middle, and what it may meet
 //! there.
 
-use cloudtouch::{BodyRef, Query};
+use cloudtouch::{Body, BodyRef, Query};
 
 use crate::checker::{RobotChecker, SURROUNDINGS};
 use crate::joint::JointKind;
@@ -34,22 +34,39 @@ impl RobotChecker {
             let is_common = |joint: usize| beside.is_some_and(|j| carries(joint, j));
             farthest(tree, (parts[i].link, parts[i].radius), [&ends[0], &ends[1]], is_common)
         };
+        let query = query.among_many();
         let at_most = move |(j, i): Pair| {
-            let (a_from_b, way) = match j {
-                Some(j) => (at(j).inverse().after(&at(i)), way(i, Some(j)) + way(j, Some(i))),
-                None => (at(i), way(i, None)),
-            };
-            let a: Result<BodyRef<'_>, _> = match j {
-                Some(j) => Ok((&*parts[j].body).into()),
-                None => self.scene.body(SURROUNDINGS).map(Into::into),
+            let b = &*parts[i].body;
+            let found = match j.map(|j| (j, &*parts[j].body)) {
+                Some((j, a)) => {
+                    let way = way(i, Some(j)) + way(j, Some(i));
+                    let bound = |a, b, a_from_b| query.bound_around(a, b, &a_from_b, way).ok();
+                    match is_larger_mesh(b, a) {
+                        true => bound(b, a, at(i).inverse().after(&at(j))),
+                        false => bound(a, b, at(j).inverse().after(&at(i))),
+                    }
+                }
+                None => {
+                    let a = self.scene.body(SURROUNDINGS).ok();
+                    a.and_then(|a| query.bound_around(&**a, b, &at(i), way(i, None)).ok())
+                }
             };
             // What cannot be asked is not clear.
-            let found =
-                a.ok().and_then(|a| query.bound_around(a, &*parts[i].body, &a_from_b, way).ok());
             found.unwrap_or(1.0)
         };
         (0..parts.len()).flat_map(of_all).filter(may_touch).map(move |pair| (pair, at_most(pair)))
     }
+}
+
+/// Whether a mesh is larger than another, and has to be asked about as the first of the two: how near they come either
+/// tells, of clouds not, which turn against what keeps still.
+fn is_larger_mesh(mesh: &Body, other: &Body) -> bool {
+    let size = |body: &Body| {
+        let [low, high] = BodyRef::from(body).corners();
+        (high - low).norm()
+    };
+    let are_meshes = matches!((mesh, other), (Body::Mesh(_), Body::Mesh(_)));
+    are_meshes && size(mesh) > size(other)
 }
 
 /// The position at a time from 0 to 1 on the way from one to another.

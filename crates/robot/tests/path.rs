@@ -54,6 +54,36 @@ fn a_wall_between_two_free_positions_is_found_where_the_arm_meets_it() {
     }
 }
 
+/// Of two small links far apart every position read free, and no path was certified: their distance, or that the
+/// second was so much larger, was doubted as that of an object and its scene.
+#[test]
+fn small_links_far_from_others_or_beside_large_ones_keep_no_path_from_being_free() {
+    let small = |name: &str, size: f64, on: &str, z: f64| {
+        format!(
+            "<link name='{name}'><collision><geometry><box size='{size} {size} {size}'/></geometry></collision>\
+             </link><joint name='to_{name}' type='fixed'><parent link='{on}'/><child link='{name}'/>\
+             <origin xyz='0 0 {z}'/></joint>\n"
+        )
+    };
+    let head = "<robot name='arm'>\n";
+    let imu = small("imu", 0.01, "base", -0.1);
+    for (name, size) in [("camera", 0.01), ("frame", 0.001)] {
+        let seen = small(name, size, "hand", 0.17);
+        let urdf = Arm::urdf().replacen(head, &format!("{head}{imu}{seen}"), 1);
+        let settings = CloudSettings::new(SensorModel::Isotropic { std: STD });
+        let body = Body::from(Cloud::prepare(&wall(1.2 * Arm::TOP), &settings).unwrap());
+        let robot = Arm::default().of(&urdf).unwrap();
+        let mut checker =
+            RobotChecker::new(robot, body, Pose::identity(), Touching::AndItself).unwrap();
+        // What is smaller than the wall is known is doubted beside it rightly.
+        checker.allow(name, SURROUNDINGS).unwrap();
+        let path = [around(-1.0), around(0.5)];
+        let found = checker.check_path(&query(), &path, TOLERANCE).unwrap();
+        assert!(found.given.iter().all(|at| at.verdict() == Verdict::Free), "{:?}", found.given);
+        assert_eq!(found.verdict(), Verdict::Free, "{:?}", found.stopped);
+    }
+}
+
 #[test]
 fn a_path_in_the_open_is_certified_to_its_end() {
     let checker = among(&wall(1.2 * Arm::TOP), Touching::AndItself);

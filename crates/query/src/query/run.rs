@@ -22,6 +22,8 @@ pub struct Query {
     settings: QuerySettings,
     /// When what is asked on behalf of one call began, where that is more than one query: all share its time.
     begun: Option<Instant>,
+    /// Whether the two bodies of a pair are all there is.
+    are_alone: bool,
 }
 
 impl Query {
@@ -31,7 +33,7 @@ impl Query {
     /// Names the setting that is out of range, and its value.
     pub fn new(settings: QuerySettings) -> Result<Self, SettingsError> {
         settings.validate()?;
-        Ok(Self { settings, begun: None })
+        Ok(Self { settings, begun: None, are_alone: true })
     }
 
     /// The settings, as checked.
@@ -63,6 +65,15 @@ impl Query {
         Self { begun: self.begun.or_else(|| Some(Instant::now())), ..*self }
     }
 
+    /// The same for pairs out of many bodies, such as the links of a robot. Most of these are far from most: that two
+    /// are, or are of unlike sizes, is less of a reason to doubt them
+    /// ([`Undecided::Units`](crate::Undecided::Units)) than of an object and its scene.
+    /// [`Scene::check`](crate::Scene::check) asks so, the larger body first.
+    #[must_use]
+    pub fn among_many(&self) -> Self {
+        Self { are_alone: false, ..*self }
+    }
+
     pub(crate) fn clock(&self, start: Instant) -> Clock {
         Clock::new(self.begun.unwrap_or(start), self.settings.deadline)
     }
@@ -74,7 +85,7 @@ impl Query {
             accept: self.settings.accept,
             reject: self.settings.reject,
             safeguards: self.settings.safeguards,
-            are_alone: true,
+            are_alone: self.are_alone,
             max_contacts: self.settings.max_contacts,
             closeness: Closeness::default(),
         }
@@ -106,11 +117,6 @@ impl Query {
         self.ask(&self.terms(), (a.into(), b.into()), a_from_b)
     }
 
-    /// The terms of a pair among many bodies, of which most are far from most.
-    pub(crate) fn terms_in_scene(&self) -> Terms {
-        Terms { are_alone: false, ..self.terms() }
-    }
-
     /// [`Self::run`] for a pair among many bodies; one that is astray is doubted for its distance too.
     pub(crate) fn run_in_scene(
         &self,
@@ -118,8 +124,7 @@ impl Query {
         a_from_b: &Pose,
         is_astray: bool,
     ) -> Result<Report, QueryError> {
-        let terms = if is_astray { self.terms() } else { self.terms_in_scene() };
-        self.ask(&terms, bodies, a_from_b)
+        self.ask(&Terms { are_alone: is_astray, ..self.terms() }, bodies, a_from_b)
     }
 
     fn ask(

@@ -51,7 +51,7 @@ impl BroadPhase {
         let log_odds = by_geometry.max(revised);
         let nothing_is_free = probability(log_odds, settings.prior) < settings.reject;
         let clock = query.clock(Instant::now());
-        Self { terms: query.terms_in_scene(), clock, nothing_is_free }
+        Self { terms: query.among_many().terms(), clock, nothing_is_free }
     }
 
     /// Beyond this box (in the frame of the scene, m) a body meets nothing that is beyond its own; all of
