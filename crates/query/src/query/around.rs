@@ -11,6 +11,7 @@ use crate::search::reach_around;
 use crate::stats::Stats;
 
 use super::run::Query;
+use super::settings::Detail;
 
 /// Between samples on a grid a surface comes through another with up to two deviations between the nearest of their
 /// samples: nearer than this, it may on the way.
@@ -35,8 +36,12 @@ impl Query {
         a_from_b: &Pose,
         way: f64,
     ) -> Result<f64, QueryError> {
-        let this = self.begun_now();
         let (a, b) = (a.into(), b.into());
+        // PERF: how far two meshes are from each other takes far longer to tell than whether they are so near.
+        let this = match (a, b) {
+            (BodyRef::Mesh(_), BodyRef::Mesh(_)) => self.with_detail(Detail::Verdict).begun_now(),
+            _ => self.begun_now(),
+        };
         let (report, within) = this.within(a, b, a_from_b, way)?;
         let [_, upper] = within.bounds;
         let Some(ContactEvidence { noise_over_spacing, .. }) = report.evidence else {
