@@ -14,6 +14,9 @@ const SAMPLES: usize = 500;
 /// ... and where small parts of it matter.
 const DENSE_SAMPLES: usize = 2000;
 
+/// The diagonals of the boxes of one body, however it is turned, are within this factor (√3, and some).
+pub(crate) const TURNED: f64 = 1.8;
+
 /// A prepared cloud of either path, or a mesh.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Shape<'a> {

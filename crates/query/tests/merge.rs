@@ -5,8 +5,8 @@ use cloudtouch::geom::seed::{derive, unit};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
 use cloudtouch::noise::SensorModel;
 use cloudtouch::{
-    Cloud, CloudSettings, Mode, PaperCloud, PaperCloudSettings, PrepareError, Report, Verdict,
-    Warning,
+    Cloud, CloudSettings, Mode, PaperCloud, PaperCloudSettings, PrepareError, Report, Undecided,
+    Verdict, Warning,
 };
 use cloudtouch_testkit::camera::DepthCamera;
 use cloudtouch_testkit::exact::ExactMesh;
@@ -83,12 +83,40 @@ fn what_is_hidden_from_one_sensor_is_free_where_another_looked() {
         let seen = verdict(both, &behind);
         assert!(
             seen.collision_probability < 0.1
-                && seen.undecided_by.is_none_or(|by| { by != cloudtouch::Undecided::Unseen }),
+                && seen.undecided_by.is_none_or(|by| { by != Undecided::Unseen }),
             "{seen:?}"
         );
         // Inside the block neither looked.
         assert_eq!(verdict(both, &within).verdict, Verdict::Undecided);
         assert_eq!(both.len(), one.len() + scans(&views[1..])[0].len());
+    }
+}
+
+/// What fits between the pixels of an image counted as seen by it where the cloud is finer than that by the pixels
+/// of another: alone either is undecided.
+#[test]
+fn what_fits_between_the_pixels_of_a_coarse_image_is_not_seen_by_it_in_a_finer_cloud() {
+    let block =
+        ExactMesh::new(&scene::moved(&scene::cuboid([0.15, 0.15, 0.4]), &at(0.0, 0.0, 1.5)));
+    let wall = ExactMesh::new(&scene::moved(&scene::plane_patch(8.0), &at(0.0, 0.0, 3.0)));
+    let fine = DepthCamera { veil_probability: 0.0, ..DepthCamera::default() };
+    let coarse = DepthCamera { width: 8, height: 6, focal_px: 7.0, ..fine };
+    let from = [at(0.1, 0.05, 0.0), Pose::identity()];
+    let views: Vec<PointCloud> = [fine, coarse]
+        .iter()
+        .zip(&from)
+        .map(|(camera, pose)| camera.scan(&[&block, &wall], pose, 1).transformed(pose))
+        .collect();
+    let cube = mesh(&scene::cuboid([0.03; 3]));
+    for (scan, mode) in scans(&views).iter().zip(MODES) {
+        // In the block, which is between four pixels of the coarse one.
+        for depth in [1.4, 1.5, 1.6] {
+            let report = ask(mode, scan, &cube, &at(0.0, 0.0, depth));
+            assert_eq!(report.undecided_by, Some(Undecided::Unseen), "{depth}: {report:?}");
+        }
+        // Where the fine one looked all is as it was.
+        let before = ask(mode, scan, &cube, &at(0.0, 0.0, 1.0));
+        assert_eq!(before.verdict, Verdict::Free, "{before:?}");
     }
 }
 

@@ -13,19 +13,19 @@ pub(crate) struct Sights<'a> {
 }
 
 impl Sights<'_> {
-    /// What its scans know of a place: of depth images the one that knows most tells, and without any how far returns
-    /// were kept.
-    pub(crate) fn of(&self, place: &Point3) -> Sight {
+    /// What its scans know of a place in a body of such a breadth, m: of depth images the one that knows most tells, and
+    /// without any how far returns were kept.
+    pub(crate) fn of(&self, place: &Point3, breadth: f64) -> Sight {
         let Prepared { scans, origin, .. } = self.prepared;
-        best_of(&self.images, place)
+        best_of(&self.images, place, breadth)
             .unwrap_or_else(|| range::sight(&scans.ranges, &(place + origin)))
     }
 
-    /// Whether all places no farther than a distance (m) from one were seen, as an image soon tells of most; they may
-    /// have been where this does not say so.
-    pub(crate) fn are_all_seen(&self, place: &Point3, distance: f64) -> bool {
+    /// Whether all places no farther than a distance (m) from one were seen, for bodies of such a breadth, m, as an image
+    /// soon tells of most; they may have been where this does not say so.
+    pub(crate) fn are_all_seen(&self, place: &Point3, distance: f64, breadth: f64) -> bool {
         for image in self.images.iter().rev() {
-            if image.sees_about(place, distance) {
+            if image.sees_about(place, distance, breadth) {
                 return true;
             }
             // What one that came later did not see may have come since.
@@ -75,11 +75,14 @@ impl Prepared {
 
 /// What the image tells that knows most of a place; `None` without any. An older one knows nothing of what is behind a
 /// thing that came since, in whichever image that is: it looked past where the thing is, or the robot was in its way.
-fn best_of(images: &[Seeing], place: &Point3) -> Option<Sight> {
+fn best_of(images: &[Seeing], place: &Point3, breadth: f64) -> Option<Sight> {
     let (mut best, mut things, mut is_hidden) = (None, Vec::new(), false);
     for image in images.iter().rev() {
         // Where the robot was in it something may have come since.
-        let sight = if is_hidden { image.sight_of_returns(place) } else { image.sight(place) };
+        let sight = match is_hidden {
+            true => image.sight_of_returns(place, breadth),
+            false => image.sight(place, breadth),
+        };
         if sight == Sight::Seen {
             if things.iter().any(|(thing, std)| image.looks_past(thing, *std)) {
                 continue;

@@ -9,7 +9,7 @@ use crate::doubt::taken::taken_for_robot;
 use crate::doubt::unseen::Unseen;
 use crate::doubt::warning::{Warning, Which};
 use crate::placement::box_gap;
-use crate::shape::Shape;
+use crate::shape::{Shape, TURNED};
 
 /// No body is so many times as large as the other, ...
 const LARGEST_RATIO: f64 = 1000.0;
@@ -32,8 +32,6 @@ const EXCHANGED_MESHES_RATIO: f64 = 20.0;
 /// An object is not so many sizes of the larger body away from it. A pose given in millimetres is, unless the
 /// object lies within a twenty-fifth of that size.
 const FARTHEST_SIZES: f64 = 40.0;
-/// The diagonals of the boxes of one body, however it is turned, are within this factor (√3, and some).
-const TURNED: f64 = 1.8;
 /// Coordinates of a mesh are not this part of either body apart, ...
 const COARSE: f64 = 0.02;
 /// ... nor those of a cloud, whose points scatter anyway, ...

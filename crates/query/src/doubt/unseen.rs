@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::cloud::{Prepared, Sight};
 use crate::doubt::warning::Which;
-use crate::shape::Shape;
+use crate::shape::{Shape, TURNED};
 
 /// Where a body's surface lies as the single depth image of the other sees it: shares of the surface,
 /// from 0 to 1. What is in none of them was seen to be empty, or is on a measured surface.
@@ -19,7 +19,7 @@ pub struct Unseen {
     pub behind_camera: f64,
     /// Beside what it looked at.
     pub outside_view: f64,
-    /// Where no return came from.
+    /// Where no return came from, or the body fits between the pixels.
     pub hole: f64,
     /// Farther than returns were kept ([`FilterSettings::max_range`](crate::FilterSettings::max_range)). In a depth
     /// image those that were left out say that there is nothing before.
@@ -152,17 +152,19 @@ fn look(
     let motion = Motion::from(image_from_other);
     let farthest = around.iter().map(Vector3::norm).fold(0.0, f64::max);
     let radius = 0.5 * other.size() + farthest;
-    let is_all_seen = sights.are_all_seen(&motion.point(&other.middle()), radius);
-    let samples = if is_all_seen { Vec::new() } else { samples.of(other) };
+    let is_all_seen =
+        sights.are_all_seen(&motion.point(&other.middle()), radius, other.size() / TURNED);
+    let (samples, breadth) =
+        if is_all_seen { (Vec::new(), 0.0) } else { (samples.of(other), other.breadth()) };
     let mut counts = [0_usize; 6];
     for sample in &samples {
         let place = motion.point(sample);
-        if farthest > 0.0 && sights.are_all_seen(&place, farthest) {
+        if farthest > 0.0 && sights.are_all_seen(&place, farthest, breadth) {
             continue;
         }
         let (mut least, mut is_close) = (Sight::Seen, false);
         for offset in around {
-            let sight = sights.of(&(place + offset));
+            let sight = sights.of(&(place + offset), breadth);
             least = least.max(sight);
             is_close |= sight == Sight::CloseBehind;
         }

@@ -175,21 +175,33 @@ pub(crate) struct Seeing<'a> {
 }
 
 impl Seeing<'_> {
-    /// What is known of a place by the image. Where the robot itself was there was nothing else, whatever the camera
-    /// saw.
-    pub(crate) fn sight(&self, place: &Point3) -> Sight {
-        let sight = self.sight_of_returns(place);
+    /// What is known by the image of a place in a body of such a breadth, m. Where the robot itself was there was nothing
+    /// else, whatever the camera saw.
+    pub(crate) fn sight(&self, place: &Point3, breadth: f64) -> Sight {
+        let sight = self.sight_of_returns(place, breadth);
         if sight != Sight::Seen && self.was_robot(place) { Sight::Seen } else { sight }
     }
 
-    /// What is known of a place by what the camera measured alone.
-    pub(crate) fn sight_of_returns(&self, place: &Point3) -> Sight {
-        self.raster.sight(&(place - self.image.sensor_origin))
+    /// The same by what the camera measured alone.
+    pub(crate) fn sight_of_returns(&self, place: &Point3, breadth: f64) -> Sight {
+        let ray = place - self.image.sensor_origin;
+        match self.raster.sight(&ray) {
+            Sight::Seen if self.is_coarse(ray.norm(), breadth) => Sight::Hole,
+            sight => sight,
+        }
     }
 
-    /// Whether the camera saw all places no farther than a distance (m) from one; it may have where this does not say so.
-    pub(crate) fn sees_about(&self, place: &Point3, distance: f64) -> bool {
-        self.raster.sees_about(&(place - self.image.sensor_origin), distance)
+    /// Whether the camera saw all places no farther than a distance (m) from one, for bodies of such a breadth, m; it may
+    /// have where this does not say so.
+    pub(crate) fn sees_about(&self, place: &Point3, distance: f64, breadth: f64) -> bool {
+        let ray = place - self.image.sensor_origin;
+        !self.is_coarse(ray.norm() + distance, breadth) && self.raster.sees_about(&ray, distance)
+    }
+
+    /// Whether a body of such a breadth, m, fits between what pixels saw at a distance, m: nothing that it could hit need
+    /// have been met.
+    fn is_coarse(&self, distance: f64, breadth: f64) -> bool {
+        self.pixel().is_some_and(|pixel| pixel * distance > breadth)
     }
 
     /// Whether the camera looked past a place with this standard deviation (m), in its direction and in all around it.
@@ -293,7 +305,7 @@ mod tests {
                 let Some(sure) = by_every_ray(&seen, &place, 1.0 / camera.focal_px) else {
                     continue;
                 };
-                let found = seeing.sight(&turned.transform_point(&place));
+                let found = seeing.sight(&turned.transform_point(&place), f64::INFINITY);
                 let agrees = match sure {
                     // Where nothing was measured the reference does not tell a hole from the rim.
                     Sight::Hole => matches!(found, Sight::Hole | Sight::OutsideView),
