@@ -120,6 +120,28 @@ fn what_fits_between_the_pixels_of_a_coarse_image_is_not_seen_by_it_in_a_finer_c
     }
 }
 
+/// What is behind the returns of a camera by no more than its noise counted as seen, however deep it is in what another
+/// one, near by, measured well: deep in a block 2 % read free, and none by either alone.
+#[test]
+fn what_one_camera_knows_to_be_hidden_is_not_seen_by_the_noise_of_another() {
+    let block = ExactMesh::new(&scene::moved(&scene::cuboid([0.6; 3]), &at(0.0, 0.0, 0.8)));
+    let wall = ExactMesh::new(&scene::moved(&scene::plane_patch(9.0), &at(0.0, 0.0, 2.8)));
+    let sensor = SensorModel::Stereo { baseline: 0.05, focal_px: 140.0, disparity_std: 0.1 };
+    let growth = 0.1 / (0.05 * 140.0);
+    let camera = DepthCamera { depth_std: 0.0, depth_std_growth: growth, ..DepthCamera::default() };
+    let scan = |pose: Pose, seed| camera.scan(&[&block, &wall], &pose, seed).transformed(&pose);
+    let [near, far] = [scan(Pose::identity(), 1), scan(at(0.3, 0.1, -3.5), 2)];
+    let by = CloudSettings::new(sensor);
+    let both = Scan::Calibrated(Cloud::merge(&[(&near, &by), (&far, &by)]).expect("good scans"));
+    let cube = mesh(&scene::cuboid([0.05; 3]));
+    let steps = || (-4..=4).map(|k| 0.05 * f64::from(k));
+    let places = steps().flat_map(|x| steps().map(move |y| [x, y]));
+    for ([x, y], depth) in places.flat_map(|place| [0.1, 0.15, 0.2].map(|depth| (place, depth))) {
+        let report = ask(Mode::Calibrated, &both, &cube, &at(x, y, 0.5 + depth));
+        assert_ne!(report.verdict, Verdict::Free, "{x} {y} {depth}: {report:?}");
+    }
+}
+
 /// Each scan keeps the noise of its own sensor, and the rows are counted on.
 #[test]
 fn each_scan_has_the_noise_of_its_own_sensor() {

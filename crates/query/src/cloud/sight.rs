@@ -73,6 +73,12 @@ impl Prepared {
     }
 }
 
+/// Whether what an image counts as seen is behind a surface that another of the same time knows better.
+fn is_known_better(images: &[Seeing], image: &Seeing, place: &Point3) -> bool {
+    let mut others = images.iter().filter(|other| !other.is_later());
+    !image.is_later() && others.any(|other| image.is_known_better_by(other, place))
+}
+
 /// What the image tells that knows most of a place; `None` without any. An older one knows nothing of what is behind a
 /// thing that came since, in whichever image that is: it looked past where the thing is, or the robot was in its way.
 fn best_of(images: &[Seeing], place: &Point3, breadth: f64) -> Option<Sight> {
@@ -84,7 +90,9 @@ fn best_of(images: &[Seeing], place: &Point3, breadth: f64) -> Option<Sight> {
             false => image.sight(place, breadth),
         };
         if sight == Sight::Seen {
-            if things.iter().any(|(thing, std)| image.looks_past(thing, *std)) {
+            if things.iter().any(|(thing, std)| image.looks_past(thing, *std))
+                || is_known_better(images, image, place)
+            {
                 continue;
             }
             return Some(sight);

@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Vector3;
 
-use super::raster::Raster;
+use super::raster::{Cell, Raster};
 use super::seen::HOLE_CELLS;
 
 /// Cells along the edge of a block, of which the one that was seen least far tells.
@@ -41,13 +41,15 @@ impl Raster {
         seen
     }
 
-    /// The same of a cell: as far as its nearest return, or of a speck as far as the farthest around it.
+    /// The same of a cell: up to its nearest return, or of a speck as far as the farthest around it.
     fn seen_of_cell(&self, [x, y]: [isize; 2]) -> f64 {
         let behind = |x: isize, y: isize| {
             self.index(x, y).map_or(0.0, |cell| self.cells[cell].clearly_behind)
         };
         if behind(x, y) > 0.0 {
-            return self.index(x, y).map_or(0.0, |cell| self.cells[cell].behind_nearest);
+            // What is behind it by no more than noise another image may know better.
+            let met = |cell: Cell| 0.5 * (cell.clearly_before + cell.behind_nearest);
+            return self.index(x, y).map_or(0.0, |cell| met(self.cells[cell]));
         }
         let ring = || -HOLE_CELLS..=HOLE_CELLS;
         let around = ring().flat_map(|dy| ring().map(move |dx| [dx, dy]));

@@ -223,6 +223,17 @@ impl Seeing<'_> {
         }
     }
 
+    /// Whether a place that it counts as seen is behind its returns, and behind what another image met so near to it
+    /// that this may be the same surface, known better.
+    pub(super) fn is_known_better_by(&self, other: &Self, place: &Point3) -> bool {
+        let noise = self.raster.behind_by_noise(&(place - self.image.sensor_origin));
+        let is_hidden = |noise: f64| match other.hiding(place) {
+            Hiding::Thing(thing, _) => (thing - place).norm() <= noise,
+            Hiding::Robot | Hiding::Unknown => false,
+        };
+        noise.is_some_and(is_hidden)
+    }
+
     fn was_robot(&self, place: &Point3) -> bool {
         self.image.robot.iter().any(|link| link.held(place))
     }
