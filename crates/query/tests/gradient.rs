@@ -198,3 +198,21 @@ fn a_cloud_and_a_closed_mesh() {
     check([false, true], 200, [30, 2, 30]);
     check([true, false], 200, [30, 2, 30]);
 }
+
+/// The sum of the least deviations, 1.5 to 2, and of the window above them rounds. Where it rounded down the window
+/// counted as cut short, and the gradient was off by up to a third.
+#[test]
+fn a_window_that_rounding_alone_makes_shorter_is_not_cut_short() {
+    let ball = body(&scene::sphere(0.07, 3), false, 0.003, 1);
+    let sheet = body(&scene::rectangle(0.3, 0.3), true, 0.003, 1);
+    let mut tally = Tally::default();
+    for k in 0..400 {
+        let pose = Pose::from_translation(Vector3::new(0.01, 0.02, 0.072 + 2e-5 * f64::from(k)));
+        let (report, gradient) = query().gradient(&ball, &sheet, &pose).unwrap();
+        if report.evidence.is_some_and(|evidence| (1.5..2.0).contains(&evidence.deviations)) {
+            let difference = differences((&ball, &sheet), &pose, log_odds);
+            tally.add(&by_arm(gradient.log_odds), difference, FLAT[0]);
+        }
+    }
+    assert!(tally.compared >= 15 && tally.right == tally.compared, "{tally:?}");
+}

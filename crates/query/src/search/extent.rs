@@ -90,7 +90,7 @@ impl Found<'_> {
         let least = self.deviations_by_pose();
         let window = self.window();
         // Where less is looked at than usual, that ends at the same deviations whatever the least are.
-        let of_window = if window < self.further { -least } else { Wrench::zeros() };
+        let of_window = if self.is_window_cut() { -least } else { Wrench::zeros() };
         let mut all = Wrench::zeros();
         self.visit(facing, |piece| {
             let Counted { leaf, place, deviations, near, side } = piece;

@@ -115,6 +115,12 @@ impl<'a> Found<'a> {
         self.deviations_of_interest() - self.deviations
     }
 
+    /// Whether that ends where places are as good as free. Told by the sum, which the window itself, a difference of
+    /// it, may miss by its rounding.
+    pub(super) fn is_window_cut(&self) -> bool {
+        self.deviations + self.further > CLEARLY_FREE
+    }
+
     /// What the least deviations change by as the pose does: those of the two pieces that have them.
     pub(crate) fn deviations_by_pose(&self) -> Wrench {
         let least = self.findings.iter().map(|finding| &finding.nearest);
