@@ -56,14 +56,15 @@ impl BroadPhase {
 
     /// Beyond this box (in the frame of the scene, m) a body meets nothing that is beyond its own; all of
     /// space for one whose pairs have to be looked at wherever it is. `smallest` is the smallest body of the
-    /// scene that has a size, `largest` the largest unless that is this one, and `others` are all but this one.
+    /// scene that has a size, `largest` the largest unless that is this one, and `others` are all but this one, the
+    /// smallest first.
     pub(super) fn zone<'a>(
         &self,
         shape: Shape<'_>,
         pose: &Pose,
         smallest: Shape<'_>,
         largest: Option<Shape<'_>>,
-        mut others: impl Iterator<Item = Shape<'a>>,
+        others: impl Iterator<Item = Shape<'a>>,
     ) -> Corners {
         // Two such poses are no farther from each other than can be reckoned with.
         let is_placed = pose.translation().norm() < 0.25 * LARGEST_COORDINATE;
@@ -73,11 +74,9 @@ impl BroadPhase {
         };
         // That of the smallest box need not be the body that a coarse cloud tells least of.
         let coarse = coarse_beside(shape);
-        let mut is_coarse = || {
-            others.any(|other| {
-                other.size() < coarse && self.terms.may_doubt((shape, other), Which::A)
-            })
-        };
+        let mut too_small = others.take_while(|other| other.size() < coarse);
+        let mut is_coarse =
+            || too_small.any(|other| self.terms.may_doubt((shape, other), Which::A));
         if !is_placed || !self.nothing_is_free || may_doubt() || is_coarse() {
             return everywhere();
         }
@@ -126,4 +125,26 @@ fn around(shape: Shape<'_>, pose: &Pose) -> Corners {
     });
     let half = Vector3::from(half).map(|half| half + ROUNDING * (coordinates + half));
     [centre - half, centre + half]
+}
+
+#[cfg(test)]
+mod tests {
+    use cloudtouch_testkit::scene::cuboid;
+
+    use super::*;
+    use crate::QuerySettings;
+    use crate::mesh::Mesh;
+
+    /// All others were looked at for each, so that the time grew with the square of the bodies.
+    #[test]
+    fn others_that_no_cloud_is_too_coarse_for_are_not_looked_at() {
+        let cube = Mesh::prepare(&cuboid([0.1; 3])).unwrap();
+        let shape = Shape::Mesh(&cube);
+        let broad = BroadPhase::new(&Query::new(QuerySettings::default()).unwrap());
+        let mut looked_at = 0;
+        let others = std::iter::repeat_n(shape, 100).inspect(|_| looked_at += 1);
+        let [low, _] = broad.zone(shape, &Pose::identity(), shape, Some(shape), others);
+        assert!(low.x.is_finite());
+        assert!(looked_at <= 1, "{looked_at}");
+    }
 }

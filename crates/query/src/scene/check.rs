@@ -115,7 +115,7 @@ impl Scene {
             true => everywhere(),
             false => {
                 let largest = (k > 0).then(|| bodies[0].body.shape());
-                let others = bodies.iter().enumerate().filter(|(place, _)| *place != k);
+                let others = bodies.iter().enumerate().rev().filter(|(place, _)| *place != k);
                 let others = others.map(|(_, other)| other.body.shape());
                 broad.zone(of.body.shape(), &of.pose, smallest, largest, others)
             }
