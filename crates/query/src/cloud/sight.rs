@@ -75,7 +75,8 @@ impl Prepared {
 
 /// Whether what an image counts as seen is behind a surface that another of the same time knows better.
 fn is_known_better(images: &[Seeing], image: &Seeing, place: &Point3) -> bool {
-    let mut others = images.iter().filter(|other| !other.is_later());
+    let is_other = |other: &&Seeing| !other.is_later() && !std::ptr::eq(*other, image);
+    let mut others = images.iter().filter(is_other);
     !image.is_later() && others.any(|other| image.is_known_better_by(other, place))
 }
 

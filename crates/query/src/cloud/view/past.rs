@@ -43,7 +43,7 @@ impl Raster {
             self.cells[self.index(x, y)?];
         let nearest = 0.5 * (clearly_before + behind_nearest);
         let range = ray.norm();
-        (nearest < range && range <= clearly_behind).then(|| behind_nearest - nearest)
+        (nearest < range && range <= clearly_behind).then_some(behind_nearest - nearest)
     }
 
     /// The cells with returns among that of a ray and those around it, each with how far right and below it is; none
