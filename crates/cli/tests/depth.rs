@@ -94,6 +94,22 @@ fn a_depth_image_is_answered_as_the_organised_cloud_of_its_points() {
 }
 
 /// A depth image has no frame but its camera's: the place of that puts it into the frame of the poses.
+/// Only a probability was warned of, which is small where nothing was seen.
+#[test]
+fn a_pose_that_is_free_and_may_be_in_what_was_not_seen_is_warned_of() {
+    let inputs = inputs();
+    let options =
+        ["--sensor=iso:0.002", "--translate=0.15,0,0.89", "--pose-std=0.03,0,0,0,0,0", "--json"];
+    let run = inputs.run(&[&["query", "depth.png", NUMBERS, "cube.obj"][..], &options].concat());
+    let answer = run.json_lines().remove(0);
+    let under = &answer["pose_uncertainty"];
+    let [probability, most] = [&under["probability"], &under["bounds"][1]].map(Value::as_f64);
+    assert!(answer["verdict"] == "free" && probability < Some(0.1) && most > Some(0.1), "{answer}");
+    let told = format!("up to {:.3}", most.unwrap());
+    let words = run.stderr();
+    assert!(words.contains("--pose-std") && words.contains(&told), "{words}");
+}
+
 #[test]
 fn the_place_of_the_camera_places_a_depth_image() {
     let inputs = inputs();

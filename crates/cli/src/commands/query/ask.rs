@@ -46,11 +46,11 @@ pub(super) fn ask<P: body::Estimator>(
     };
     if report.verdict == Verdict::Free
         && let Some(over) = &pose_uncertainty
-        && over.probability > arguments.asked.common.query_settings().reject
+        && over.bounds[1] >= arguments.asked.common.query_settings().reject
     {
         tracing::warn!(
-            "the verdict is of the pose given: over those that --pose-std allows, a collision has {:.3}",
-            over.probability
+            "the verdict is of the pose given: over those that --pose-std allows, a collision has up to {:.3}",
+            over.bounds[1]
         );
     }
     let gradient = match arguments.gradient {
