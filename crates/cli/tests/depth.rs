@@ -93,7 +93,6 @@ fn a_depth_image_is_answered_as_the_organised_cloud_of_its_points() {
     assert!((nearest(&tum) - nearest(&image)).abs() < 2e-3, "{tum}");
 }
 
-/// A depth image has no frame but its camera's: the place of that puts it into the frame of the poses.
 /// Only a probability was warned of, which is small where nothing was seen.
 #[test]
 fn a_pose_that_is_free_and_may_be_in_what_was_not_seen_is_warned_of() {
@@ -110,6 +109,7 @@ fn a_pose_that_is_free_and_may_be_in_what_was_not_seen_is_warned_of() {
     assert!(words.contains("--pose-std") && words.contains(&told), "{words}");
 }
 
+/// A depth image has no frame but its camera's: the place of that puts it into the frame of the poses.
 #[test]
 fn the_place_of_the_camera_places_a_depth_image() {
     let inputs = inputs();

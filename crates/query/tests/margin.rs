@@ -125,6 +125,20 @@ fn a_gap_is_within_margins_that_are_clearly_wider_and_not_within_narrower_ones()
     }
 }
 
+/// Both ends were the upper ones of what they are told to, so that the first was beyond the gap.
+#[test]
+fn an_interval_of_exact_meshes_began_beyond_their_gap() {
+    let query = Query::new(QuerySettings::default()).unwrap();
+    let cube = Mesh::prepare(&box_mesh()).unwrap();
+    for gap in [1e-6, 1e-4, 0.01, 0.3, 4.8] {
+        let pose = Pose::from_translation(Vector3::x() * (0.2 + gap));
+        let [low, high] = query.clearance_interval(&cube, &cube, &pose, 0.9).unwrap();
+        // The pose rounds.
+        assert!(low <= gap + 1e-12 && gap <= high + 1e-12, "{gap} {low} {high}");
+        assert!(high - low <= 2e-3 * gap + 2e-5, "{gap} {low} {high}");
+    }
+}
+
 #[test]
 fn an_interval_holds_the_gap_and_starts_at_nothing_in_a_collision() {
     let query = Query::new(QuerySettings::default()).unwrap();

@@ -77,32 +77,32 @@ impl Query {
             })
         };
         // What is not known may be either: nearer than the first end, and farther than the second.
-        let (low, high) = (of(below, |[_, most]| most)?, of(1.0 - below, |[least, _]| least)?);
+        let ([low, _], [_, high]) =
+            (of(below, |[_, most]| most)?, of(1.0 - below, |[least, _]| least)?);
         Ok([low, high.max(low)])
     }
 
-    /// The least margin within which the bodies are as likely as wanted.
+    /// The least margin within which the bodies are as likely as wanted: it is between these.
     fn margin_of(
         &self,
         bodies: (BodyRef<'_>, BodyRef<'_>),
         a_from_b: &Pose,
         wanted: f64,
         likely: impl Fn(f64) -> Result<f64, QueryError>,
-    ) -> Result<f64, QueryError> {
+    ) -> Result<[f64; 2], QueryError> {
         let is_likely = |margin: f64| Ok::<_, QueryError>(likely(margin)? >= wanted);
         if is_likely(0.0)? {
-            return Ok(0.0);
+            return Ok([0.0; 2]);
         }
         // Beyond the far corners of both boxes there is no surface: there doubling ends.
         let most = span(boxes(bodies.0.shape(), bodies.1.shape(), a_from_b));
-        let mut high = FINEST;
+        let (mut low, mut high) = (0.0, FINEST);
         while !is_likely(high)? {
             if high > most {
-                return Ok(most);
+                return Ok([most; 2]);
             }
-            high *= 4.0;
+            (low, high) = (high, 4.0 * high);
         }
-        let mut low = 0.25 * high;
         while high - low > PRECISION * high + FINEST {
             let middle = 0.5 * (low + high);
             if is_likely(middle)? {
@@ -111,7 +111,7 @@ impl Query {
                 low = middle;
             }
         }
-        Ok(high)
+        Ok([low, high])
     }
 }
 
