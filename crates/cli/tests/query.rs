@@ -214,7 +214,10 @@ fn a_free_pose_that_is_known_too_roughly_is_told_so() {
     let inputs = Inputs::new();
     let told = |stds: &str| inputs.query_at(0.5, &["--pose-std", stds]).stderr();
     let rough = told("0,0,0.5,0,0,0");
-    assert!(rough.contains("over those that --pose-std allows, a collision has 0."), "{rough}");
+    assert!(
+        rough.contains("over those that --pose-std allows, a collision has up to 0."),
+        "{rough}"
+    );
     assert_eq!(told("0,0,0.001,0,0,0"), "");
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct CommonArguments {
     /// Drop outliers: neighbours and standard deviations, such as 8,3
     #[arg(long, value_name = "K,M", value_parser = parse_outliers, allow_hyphen_values = true, help_heading = "Cleaning")]
     pub outliers: Option<OutlierSettings>,
-    /// Keep veil points at depth edges, which are dropped from the images of cameras
+    /// Keep veil points at the edges of camera images, dropped otherwise
     #[arg(long, help_heading = "Cleaning")]
     pub keep_veil: bool,
     #[command(flatten)]
