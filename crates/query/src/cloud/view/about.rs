@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Vector3;
 
-use super::raster::{Cell, Raster};
+use super::raster::Raster;
 use super::seen::HOLE_CELLS;
 
 /// Cells along the edge of a block, of which the one that was seen least far tells.
@@ -48,8 +48,7 @@ impl Raster {
         };
         if behind(x, y) > 0.0 {
             // What is behind it by no more than noise another image may know better.
-            let met = |cell: Cell| 0.5 * (cell.clearly_before + cell.behind_nearest);
-            return self.index(x, y).map_or(0.0, |cell| met(self.cells[cell]));
+            return self.index(x, y).map_or(0.0, |cell| self.cells[cell].nearest());
         }
         let ring = || -HOLE_CELLS..=HOLE_CELLS;
         let around = ring().flat_map(|dy| ring().map(move |dx| [dx, dy]));

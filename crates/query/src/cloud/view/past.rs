@@ -2,7 +2,7 @@
 
 use cloudtouch_geom::Vector3;
 
-use super::raster::{CLEARLY, Cell, Raster};
+use super::raster::{CLEARLY, Raster};
 
 impl Raster {
     /// Whether every return of the cell of a ray, where there is one, and of those around it, some of them on each
@@ -39,11 +39,9 @@ impl Raster {
     /// Of a place that counts as seen and is behind the nearest return of its cell, how far behind it that may be, m.
     pub(super) fn behind_by_noise(&self, ray: &Vector3) -> Option<f64> {
         let [x, y] = self.lens.project(ray).and_then(|at| self.cell(at))?;
-        let Cell { clearly_before, behind_nearest, clearly_behind } =
-            self.cells[self.index(x, y)?];
-        let nearest = 0.5 * (clearly_before + behind_nearest);
-        let range = ray.norm();
-        (nearest < range && range <= clearly_behind).then_some(behind_nearest - nearest)
+        let cell = &self.cells[self.index(x, y)?];
+        let (nearest, range) = (cell.nearest(), ray.norm());
+        (nearest < range && range <= cell.clearly_behind).then_some(cell.behind_nearest - nearest)
     }
 
     /// The cells with returns among that of a ray and those around it, each with how far right and below it is; none

@@ -63,6 +63,11 @@ impl Cell {
     const EMPTY: Self =
         Self { clearly_behind: 0.0, behind_nearest: f64::INFINITY, clearly_before: f64::INFINITY };
 
+    /// The range of the nearest return, m; infinite without one.
+    pub(super) fn nearest(&self) -> f64 {
+        0.5 * (self.clearly_before + self.behind_nearest)
+    }
+
     fn add(&mut self, [before, behind]: [f64; 2]) {
         self.clearly_behind = self.clearly_behind.max(behind);
         self.behind_nearest = self.behind_nearest.min(behind);
