@@ -84,8 +84,8 @@ impl NoiseModel {
     /// but the spacing, and the disc as wide as it, are those of the representatives.
     ///
     /// # Panics
-    /// When `index` is none of the representatives, these or the length of `sensor` do not belong to the cloud, or a
-    /// covariance of `sensor` that it needs is not finite.
+    /// When `index`, the representatives or the length of `sensor` do not belong to the cloud, or a covariance of
+    /// `sensor` that it needs is not finite.
     pub fn refine_representative(
         &self,
         index: usize,
@@ -144,7 +144,7 @@ impl NoiseModel {
                 scratch.neighbors.clear();
                 // Which points stand for the others hangs on all of them.
                 scratch.reach = f64::INFINITY;
-                representatives.spacing(index)
+                representatives.spacing(index, neighborhoods, sensor)
             }
             _ => {
                 neighborhoods.look_around(index, count, scratch);

@@ -3,7 +3,6 @@
 use cloudtouch_geom::Point3;
 
 use crate::error::NoiseError;
-use crate::index::density::Density;
 use crate::index::positions::Positions;
 use crate::index::spacing::is_noisy;
 use crate::index::ties::widened;
@@ -27,7 +26,7 @@ const NOISY_SHARE: f64 = 0.05;
 #[derive(Debug)]
 pub struct Representatives {
     indices: Vec<u32>,
-    /// How far apart all samples are about each of them, m.
+    /// How far apart samples are about each point of the cloud, m; infinite about one alone.
     spacings: Vec<f64>,
     near: Neighborhoods,
 }
@@ -76,14 +75,33 @@ impl Representatives {
         &self.near
     }
 
-    /// How far apart all samples of the cloud are about one of them, given by its index there, m; `None` where it is
-    /// alone.
+    /// How far apart samples are about a point of the cloud they were chosen from or, where these are so many that the
+    /// nearest of them are all noise, about the surface that it is of, m; `None` where it is alone. A point that noise
+    /// took off that surface is itself among few.
     ///
     /// # Panics
-    /// When it is none of them.
-    pub(crate) fn spacing(&self, index: usize) -> Option<f64> {
-        let place = self.indices.binary_search_by_key(&index, |&chosen| chosen as usize);
-        let spacing = self.spacings[place.expect("the index of a representative")];
+    /// When cloud or noise are not those they were chosen by, or it is no point of these.
+    pub(crate) fn spacing(
+        &self,
+        index: usize,
+        cloud: &Neighborhoods,
+        sensor: &SensorNoise,
+    ) -> Option<f64> {
+        let (own, noise) = (self.spacings[index], &sensor[index]);
+        let spacing = if is_noisy(noise, own) {
+            own
+        } else {
+            let mut least = own;
+            let reach = SURFACE_STDS * noise.max_std();
+            cloud.positions().visit_within(
+                &cloud.points()[index],
+                widened(reach * reach),
+                |near| {
+                    least = least.min(self.spacings[near.index]);
+                },
+            );
+            if is_noisy(noise, least) { least } else { own }
+        };
         spacing.is_finite().then_some(spacing)
     }
 
@@ -100,7 +118,7 @@ fn is_crowded(sensor: &SensorNoise, (indices, spacings): (&[usize], &[f64])) -> 
     noisy as f64 > NOISY_SHARE * indices.len() as f64
 }
 
-/// The indices that are chosen, in order, and the spacings there.
+/// The indices that are chosen, in order, and the spacings at all points.
 fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> (Vec<u32>, Vec<f64>) {
     let (densities, densest_first) = cloud.densities();
     let mut is_represented = vec![false; densities.len()];
@@ -117,35 +135,17 @@ fn chosen(cloud: &Neighborhoods, sensor: &SensorNoise) -> (Vec<u32>, Vec<f64>) {
             let reach = std.min((REACH_SPACINGS * spacing).max(REACH_STD * std));
             // Whether what is as far as it reaches is in reach must not hang on rounding.
             cloud.positions().visit_within(&cloud.points()[at], widened(reach * reach), |near| {
-                let noise = sensor[near.index].max_std();
-                is_represented[near.index] |= near.squared_distance <= widened(noise * noise);
+                // PERF: mostly told without eigenvalues.
+                if !is_represented[near.index] {
+                    let (noise, squared) = (&sensor[near.index], near.squared_distance);
+                    is_represented[near.index] = !noise.is_within(squared.sqrt())
+                        || squared <= widened(noise.max_std().powi(2));
+                }
             });
         }
     }
     chosen.sort_unstable();
-    let spacing = |&index: &u32| spacing_near(index as usize, &densities, cloud, sensor);
-    let spacings = chosen.iter().map(spacing).collect();
-    (chosen, spacings)
-}
-
-/// How far apart samples are about a point or, where these are so many that the nearest of them are all noise, about the
-/// surface that it is of, m. A point that noise took off that surface is itself among few.
-fn spacing_near(
-    index: usize,
-    densities: &[Density],
-    cloud: &Neighborhoods,
-    sensor: &SensorNoise,
-) -> f64 {
-    let (own, noise) = (densities[index].spacing, &sensor[index]);
-    if is_noisy(noise, own) {
-        return own;
-    }
-    let mut least = own;
-    let reach = SURFACE_STDS * noise.max_std();
-    cloud.positions().visit_within(&cloud.points()[index], widened(reach * reach), |near| {
-        least = least.min(densities[near.index].spacing);
-    });
-    if is_noisy(noise, least) { least } else { own }
+    (chosen, densities.iter().map(|density| density.spacing).collect())
 }
 
 #[cfg(test)]
@@ -171,7 +171,7 @@ mod tests {
         let kept = Representatives::choose(&cloud, &sensor, (&sample, &spacings)).unwrap().unwrap();
         assert!((20..800).contains(&kept.indices().len()), "{}", kept.indices().len());
         for index in kept.indices().iter().map(|&index| index as usize) {
-            assert_eq!(kept.spacing(index), spacing(index), "{index}");
+            assert_eq!(kept.spacing(index, &cloud, &sensor), spacing(index), "{index}");
         }
     }
 }
