@@ -70,6 +70,31 @@ impl PointCloud {
         }
     }
 
+    /// Every so manieth column and row of an image, from the first on: fewer pixels, each of them as it was, and an image
+    /// still, which shows what the camera did not see. `None` where the cloud is no image.
+    ///
+    /// # Panics
+    /// When one of the two numbers is 0.
+    ///
+    /// ```
+    /// use cloudtouch_geom::{Point3, PointCloud};
+    ///
+    /// let pixels = (0..640 * 480).map(|i| Point3::new((i % 640) as f64, (i / 640) as f64, 500.0));
+    /// let image = PointCloud { image_size: Some((640, 480)), ..PointCloud::from_points(pixels.collect()) };
+    /// let fewer = image.every(3, 2).unwrap();
+    /// assert_eq!(fewer.image_size, Some((214, 240)));
+    /// assert_eq!(fewer.points[215], Point3::new(3.0, 2.0, 500.0));
+    /// ```
+    #[must_use]
+    pub fn every(&self, columns: usize, rows: usize) -> Option<Self> {
+        let (width, height) = self.image_size.filter(|_| self.is_image())?;
+        let starts = (0..height).step_by(rows).map(|row| row * width);
+        let pixels: Vec<usize> =
+            starts.flat_map(|start| (start..start + width).step_by(columns)).collect();
+        let image_size = Some((width.div_ceil(columns), height.div_ceil(rows)));
+        Some(Self { image_size, ..self.select(&pixels) })
+    }
+
     /// The same cloud in the frame that `pose` maps its own into: points, covariances, normals and
     /// where the sensor was. An image of which nobody said was in its camera's frame; of any other cloud it
     /// stays unsaid: set `sensor_pose` to the identity first where its frame is its sensor's.
@@ -114,6 +139,7 @@ fn pick<T: Copy>(all: &[T], indices: &[usize]) -> Vec<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vectors::Vector3;
 
     #[test]
     fn a_transformed_cloud_takes_its_sensor_along() {
@@ -143,6 +169,26 @@ mod tests {
         assert_eq!(cloud.transformed(&pose).sensor_pose, None);
         let image = PointCloud { image_size: Some((2, 2)), ..cloud };
         assert_eq!(image.transformed(&pose).sensor_pose, Some(pose));
+    }
+
+    #[test]
+    fn every_third_column_of_an_image_is_an_image_by_the_same_camera() {
+        let place = |i: usize| Point3::new((i % 7) as f64, (i / 7) as f64, 1.0);
+        let cloud = PointCloud {
+            covariances: Some((0..35).map(|i| Covariance::isotropic(i as f64)).collect()),
+            sensor_pose: Some(Pose::from_translation([1.0, 2.0, 3.0].into())),
+            ..PointCloud::from_points((0..35).map(place).collect())
+        };
+        assert_eq!(cloud.every(1, 1), None);
+        let image = PointCloud { image_size: Some((7, 5)), ..cloud };
+        assert_eq!(image.every(1, 1).as_ref(), Some(&image));
+        let fewer = image.every(3, 2).unwrap();
+        let kept: Vec<f64> =
+            fewer.covariances.iter().flatten().map(|c| c.variance_along(&Vector3::x())).collect();
+        assert_eq!(kept, [0.0, 3.0, 6.0, 14.0, 17.0, 20.0, 28.0, 31.0, 34.0]);
+        assert_eq!((fewer.image_size, fewer.sensor_pose), (Some((3, 3)), image.sensor_pose));
+        // Of a single column no image is left.
+        assert!(!image.every(7, 1).unwrap().is_image());
     }
 
     #[test]
