@@ -40,7 +40,7 @@ impl Scratch {
     }
 
     /// The points nearest to the one that was refined last, as [`Neighborhoods::nearest`] has them: as
-    /// many as its refinement looked at; none about a representative that is all noise.
+    /// many as its refinement looked at; none about most representatives that are all noise.
     ///
     /// [`Neighborhoods::nearest`]: crate::Neighborhoods::nearest
     pub fn neighbors(&self) -> &[Neighbor] {

@@ -80,3 +80,29 @@ fn a_post_faces_the_camera_that_sees_it_and_not_the_side() {
         assert!(20 * astray < refined.len(), "{width} m: {astray} of {}", refined.len());
     }
 }
+
+/// Things no wider than what the plane about them is told from: nobody looked for others beside their samples, so that
+/// these were taken for samples of the plane that are so far off by chance, a fifth of what was far enough off.
+#[test]
+fn samples_of_a_thing_over_a_dense_plane_are_not_there_by_chance() {
+    let (std, spacing, width) = (0.005, 0.002, 0.016);
+    for high in [3.5, 4.0, 4.5] {
+        let mut points = plane(0.32, spacing, 1).points;
+        let is_near = |v: f64| (v.abs() - 0.04).abs() < 0.5 * width;
+        let is_on_pin = |p: &Point3| is_near(p.x) && is_near(p.y);
+        let of_pins: Vec<bool> = points.iter().map(is_on_pin).collect();
+        points.iter_mut().filter(|p| is_on_pin(p)).for_each(|p| p.z = high * std);
+        let measured = noisy(&points, std, 7);
+        let heights: Vec<f64> = refined(&measured, &isotropic(std, &measured))
+            .into_iter()
+            .filter(|(index, _)| of_pins[*index] && measured[*index].z > 3.5 * std)
+            .map(|(_, refined)| refined.point.mean.z / std)
+            .collect();
+        let lost = heights.iter().filter(|height| **height < 2.0).count();
+        assert!(
+            heights.len() > 80 && 12 * lost < heights.len(),
+            "{high}: {lost} of {}",
+            heights.len()
+        );
+    }
+}

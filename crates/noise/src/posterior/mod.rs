@@ -53,7 +53,12 @@ pub(crate) fn posterior(
     }
     let wide =
         is_all_noise.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
-    if wide.is_none() && representatives.is_some() {
+    // Whether so far off by chance, who is beside it tells.
+    let is_far_off = |wide: Surface| {
+        let trusted = settings.trusted_offset.powi(2) * own.variance_along(&wide.normal);
+        wide.height.powi(2) > trusted
+    };
+    if representatives.is_some() && wide.is_none_or(is_far_off) {
         neighborhoods.look_around(index, MOST_NEIGHBORS, scratch);
     }
     let Scratch {
