@@ -148,6 +148,17 @@ fn bounds_set_after_extents_are_held_by_all_above() {
     assert!(tree.root().unwrap().max_std() >= 1.0);
 }
 
+#[test]
+fn extents_set_on_one_thread_make_the_same_tree() {
+    let all = bumpy_sheet(3, 200, Vector3::zeros());
+    let extent = |i: usize| Covariance::isotropic(1e-4 * (1 + i % 7) as f64);
+    let extents: Vec<Covariance> = (0..all.len()).map(extent).collect();
+    let [mut on_all, mut on_one] = [small_leaves(all.clone()), small_leaves(all)];
+    on_all.set_extents(extents.clone()).unwrap();
+    on_one.set_extents_on_this_thread(extents).unwrap();
+    assert_eq!(format!("{on_all:?}"), format!("{on_one:?}"));
+}
+
 /// It was left out where the largest is taken, and what may touch was not met.
 #[test]
 fn an_extent_that_was_no_number_counted_as_none() {

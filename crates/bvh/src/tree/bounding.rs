@@ -71,13 +71,33 @@ impl Tree {
     ///
     /// What [`Self::set_leaf_bounds`] said is forgotten, as extents are when it is called: either the
     /// primitives are what they will stay or they are not. Every node's bounds are taken from its
-    /// primitives, O(n log n). Extents stay with the primitives as bounds do; a primitive inserted
-    /// later has none.
+    /// primitives, O(n log n), those of leaves on all threads of the pool. Extents stay with the
+    /// primitives as bounds do; a primitive inserted later has none.
     ///
     /// # Errors
     /// [`TreeError::Count`] when there is not one for every index, [`TreeError::Extent`] when one is not a usable
     /// number; the tree is then unchanged.
     pub fn set_extents(&mut self, extents: Vec<Covariance>) -> Result<(), TreeError> {
+        self.take_extents(extents)?;
+        self.update_all_bounds();
+        Ok(())
+    }
+
+    /// [`Self::set_extents`] by the caller alone, who may have what others wait for.
+    ///
+    /// # Errors
+    /// As [`Self::set_extents`].
+    pub fn set_extents_on_this_thread(
+        &mut self,
+        extents: Vec<Covariance>,
+    ) -> Result<(), TreeError> {
+        self.take_extents(extents)?;
+        self.update_bounds(self.root);
+        Ok(())
+    }
+
+    /// Takes them instead of what was said of leaves; no bound is set yet.
+    fn take_extents(&mut self, extents: Vec<Covariance>) -> Result<(), TreeError> {
         if extents.len() != self.primitives.len() {
             let (expected, found) = (self.primitives.len(), extents.len());
             return Err(TreeError::Count { expected, found });
@@ -85,7 +105,6 @@ impl Tree {
         extents.iter().enumerate().try_for_each(|(index, extent)| check_extent(extent, index))?;
         self.extents = extents;
         self.refined = BoundsList::default();
-        self.update_all_bounds();
         Ok(())
     }
 

@@ -42,7 +42,7 @@ impl Prepared {
             |slot: OnceLock<Box<Fitted>>| slot.into_inner().map_or(Basis::UNKNOWN, |f| f.basis);
         self.surface.bases = slots.into_iter().map(basis).collect();
         self.surface.fitted.take();
-        self.tree = self.fitted_tree()?;
+        self.tree = self.fitted_tree(Tree::set_extents)?;
         self.enclose_again();
         self.prepare_time += start.elapsed();
         Ok(())
@@ -57,7 +57,8 @@ impl Prepared {
         is_over: impl Fn() -> bool,
     ) -> Option<&Tree> {
         if self.surface.fitted.get().is_none() {
-            // On this thread: whoever waits for others may be given another query to answer meanwhile.
+            // On this thread: whoever waits for others may be given another query to answer meanwhile, and
+            // others may all wait for what is made here.
             let mut scratch = Scratch::default();
             for leaf in self.tree.leaves() {
                 if is_over() {
@@ -73,12 +74,15 @@ impl Prepared {
                 self.leaf_edges(leaf.id(), &mut scratch);
             }
         }
-        let fitted = || self.fitted_tree().ok().map(Box::new);
+        let fitted = || self.fitted_tree(Tree::set_extents_on_this_thread).ok().map(Box::new);
         self.surface.fitted.get_or_init(fitted).as_deref()
     }
 
-    /// The tree fitted to the surface everywhere.
-    fn fitted_tree(&self) -> Result<Tree, TreeError> {
+    /// The tree fitted to the surface everywhere, of which `set` takes the extents.
+    fn fitted_tree(
+        &self,
+        set: impl FnOnce(&mut Tree, Vec<Covariance>) -> Result<(), TreeError>,
+    ) -> Result<Tree, TreeError> {
         let pieces = self.surface.spacing_caps.len();
         let mut extents = vec![Covariance::zero(); pieces];
         let mut primitives =
@@ -91,7 +95,7 @@ impl Prepared {
         }
         let mut tree = self.tree.clone();
         tree.refit(&primitives)?;
-        tree.set_extents(extents)?;
+        set(&mut tree, extents)?;
         Ok(tree)
     }
 
