@@ -11,7 +11,7 @@ use numpy::{IntoPyArray, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
 use crate::arrays::of_pose;
-use crate::error::refused;
+use crate::error::{refused, refused_for};
 use crate::rows::{corners, rows};
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
@@ -34,6 +34,13 @@ pub(crate) fn read_cloud<'py>(
     let pose = cloud.sensor_pose.map(|pose| of_pose(py, &pose));
     let covariances = cloud.covariances.as_deref().map(|all| matrices(all).into_pyarray(py));
     Ok((rows(py, &cloud.points), cloud.image_size, pose, covariances))
+}
+
+/// Refuses what is no unit of length, by the name of the argument.
+#[pyfunction]
+#[pyo3(signature = (unit, name, /))]
+pub(crate) fn check_unit(unit: &str, name: &str) -> PyResult<()> {
+    unit.parse::<LengthUnit>().map(|_| ()).map_err(|error| refused_for(name, error))
 }
 
 fn matrices(covariances: &[Covariance]) -> Array3<f64> {

@@ -28,7 +28,7 @@ mod _native {
     #[pymodule_export]
     use crate::error::CloudtouchError;
     #[pymodule_export]
-    use crate::files::{check_camera, read_cloud, read_faces};
+    use crate::files::{check_camera, check_unit, read_cloud, read_faces};
     #[pymodule_export]
     use crate::prepare::{cloud, mesh};
     #[pymodule_export]

@@ -89,8 +89,8 @@ impl Robot {
     }
 
     #[pyo3(signature = (a, b, /))]
-    fn may_touch(&self, a: &str, b: &str) -> bool {
-        self.described.may_touch(a, b)
+    fn may_touch(&self, a: &str, b: &str) -> PyResult<bool> {
+        self.described.may_touch(a, b).map_err(refused)
     }
 
     #[pyo3(signature = (joints, /))]

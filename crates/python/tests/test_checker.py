@@ -166,6 +166,8 @@ def test_what_no_row_can_be_answered_with_was_told_in_each_row(root):
         ({"sensor": "sonar"}, "^sensor: unknown sensor `sonar`"),
         ({"sensor": "auto"}, "^sensor: `auto` .*cloudtouch info FILE"),
         ({"sensor": "exact", "object_sensor": "iso:-1"}, "^object_sensor: .*not negative"),
+        ({"sensor": "exact", "unit": "furlong"}, '^unit: "furlong" is not a unit of length: use m'),
+        ({"sensor": "exact", "cloud_unit": "M"}, '^cloud_unit: "M" is not a unit of length: use m'),
     ]:
         with pytest.raises(ct.CloudtouchError, match=says):
             ct.PoseChecker(root, **arguments)

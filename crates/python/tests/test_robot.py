@@ -67,6 +67,9 @@ def test_a_robot_tells_what_it_is_made_of(robot):
     assert (shoulder.kind, shoulder.limits, shoulder.mimics) == ("revolute", (-1.5, 1.5), None)
     assert (opening.kind, follows.mimics) == ("prismatic", ("opening", -1.0, 0.0))
     assert robot.may_touch("bar", "left") and not robot.may_touch("left", "right")
+    # A slip in a name read as a pair that is asked about.
+    with pytest.raises(ct.CloudtouchError, match="^the robot has no link `Bar`: .*: bar, "):
+        robot.may_touch("left", "Bar")
 
 
 def test_links_are_where_the_joints_put_them(robot):

@@ -72,7 +72,7 @@ impl RobotChecker {
             let are_parts_of_links = part.is_shape && other.is_shape;
             if *touching == Touching::Surroundings
                 || part.link == other.link
-                || are_parts_of_links && robot.may_touch(link, beside)
+                || are_parts_of_links && robot.is_allowed(link, beside)
             {
                 scene.allow(&part.name, &other.name)?;
             }

@@ -23,7 +23,7 @@ mod tree;
 mod uri;
 
 pub use checker::{RobotChecker, SURROUNDINGS, Touching};
-pub use error::{JointsError, PathError, RobotError, RobotFault};
+pub use error::{JointsError, PathError, RobotError, RobotFault, UnknownLink};
 pub use joint::{Joint, JointKind, Mimic};
 pub use motion::{Nearest, PathChecked, Stopped};
 pub use primitive::EXCESS;

@@ -8,7 +8,7 @@ use cloudtouch::geom::Pose;
 use cloudtouch::{Mesh, SelfMesh};
 use cloudtouch_io::ReadLimits;
 
-use crate::error::{JointsError, RobotError, RobotFault};
+use crate::error::{JointsError, RobotError, RobotFault, UnknownLink};
 use crate::essential::essential;
 use crate::joint::{Joint, JointKind};
 use crate::link::{Shape, Sources};
@@ -162,7 +162,20 @@ impl Robot {
 
     /// Whether two links may touch: where no joint between them moves, where one is the next with
     /// geometry along the chain from the other, and where an SRDF says so.
-    pub fn may_touch(&self, a: &str, b: &str) -> bool {
+    ///
+    /// # Errors
+    /// When the robot has no link of one of these names.
+    pub fn may_touch(&self, a: &str, b: &str) -> Result<bool, UnknownLink> {
+        for name in [a, b] {
+            if !self.tree.links.iter().any(|link| link == name) {
+                return Err(UnknownLink::new(name, &self.tree.links));
+            }
+        }
+        Ok(self.is_allowed(a, b))
+    }
+
+    /// The same of links that there are.
+    pub(crate) fn is_allowed(&self, a: &str, b: &str) -> bool {
         self.may_touch.contains(&in_order(a.to_owned(), b.to_owned()))
     }
 

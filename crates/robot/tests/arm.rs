@@ -171,8 +171,15 @@ fn what_is_seen_of_the_robot_is_removed_where_it_was_and_what_is_in_the_way_stay
 fn a_folded_arm_meets_itself_but_for_neighbours_and_pairs_of_the_srdf() {
     let arm = Arm::default();
     let robot = arm.robot();
-    assert!(robot.may_touch("upper_arm", "forearm") && robot.may_touch("forearm", "upper_arm"));
-    assert!(!robot.may_touch("base", "hand"));
+    assert_eq!(robot.may_touch("upper_arm", "forearm"), Ok(true));
+    assert_eq!(robot.may_touch("forearm", "upper_arm"), Ok(true));
+    assert_eq!(robot.may_touch("base", "hand"), Ok(false));
+    // A slip in a name read as a pair that is asked about.
+    for [a, b] in [["base", "Fore_arm"], ["Fore_arm", "base"]] {
+        let error = robot.may_touch(a, b).unwrap_err();
+        assert!(error.near.starts_with("forearm, "), "{error}");
+        assert!(error.to_string().starts_with("the robot has no link `Fore_arm`"), "{error}");
+    }
     // The elbow folded back: the forearm passes the upper arm, and the hand, 0.45 m down the forearm
     // and 11 cm behind the axis, ends in the base and nowhere else.
     let folded = joints([0.0, 0.0, 2.9, 0.0, 0.0, 0.0]);

@@ -54,7 +54,7 @@ class PoseChecker:
     ValueError
         There is no folder ``root``.
     CloudtouchError
-        A sensor is not known, or a setting of ``query`` is out of range.
+        A sensor or a unit is not known, or a setting of ``query`` is out of range.
     """
 
     def __init__(
@@ -74,7 +74,9 @@ class PoseChecker:
         self._sensors = (sensor, sensor if object_sensor is None else object_sensor)
         for stated, name in zip(self._sensors, ("sensor", "object_sensor")):
             check_sensor(stated, name)
-        self._units = (unit, cloud_unit)
+        self._units = (_given.text(unit, "unit"), _given.text(cloud_unit, "cloud_unit"))
+        for stated, name in zip(self._units, ("unit", "cloud_unit")):
+            _native.check_unit(stated, name)
         if query is not None and not isinstance(query, Mapping):
             raise TypeError(f'query is {_given.told(query)}: give its settings by name, such as {{"reject": 0.05}}')
         self._query = Query(**(query or {}))

@@ -103,7 +103,13 @@ class Robot:
         return tuple(self._robot.unknown_links())
 
     def may_touch(self, a: str, b: str) -> bool:
-        """Whether two links may touch: neighbours, those that never move against one another, and those of the SRDF."""
+        """Whether two links may touch: neighbours, those that never move against one another, and those of the SRDF.
+
+        Raises
+        ------
+        CloudtouchError
+            The robot has no link of one of these names.
+        """
         return self._robot.may_touch(_given.text(a, "a"), _given.text(b, "b"))
 
     def link_poses(self, joints: Positions) -> dict[str, Floats]:

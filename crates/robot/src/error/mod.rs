@@ -2,6 +2,8 @@
 
 mod description;
 mod joints;
+mod link;
 
 pub use description::{RobotError, RobotFault};
 pub use joints::{JointsError, PathError};
+pub use link::UnknownLink;
