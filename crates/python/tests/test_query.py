@@ -171,6 +171,9 @@ def test_covariances_of_the_points_are_those_of_the_sensor_that_has_them(floor, 
     assert near == pytest.approx(ct.Query().run(floor, plate, lifted(0.004)).probability, abs=1e-9)
     wide = ct.Cloud(points, sensor="per-point", covariances=np.tile(1e-4 * np.eye(3), (len(points), 1, 1)))
     assert abs(ct.Query().run(wide, plate, lifted(0.02)).probability - near) > 0.01
+    # They were passed over.
+    with pytest.raises(ValueError, match="^covariances are given, and the sensor 'exact' does not use them: give"):
+        ct.Cloud(points, sensor="exact", covariances=np.tile(1e-6 * np.eye(3), (len(points), 1, 1)))
 
 
 def test_a_deadline_that_is_over_decides_nothing(table, parcel):

@@ -517,11 +517,16 @@ def _scan(
         # A copy: pickling must not see what its owner does to it later.
         return None if value is None else _arrays.numbers(value, name, shape).copy()
 
+    noise = optional(covariances, "covariances", count, 3, 3)
+    if noise is not None and sensor.strip() != "per-point":
+        raise ValueError(
+            f'covariances are given, and the sensor {sensor!r} does not use them: give sensor="per-point", or leave them out'
+        )
     return rows, {
         "sensor": sensor,
         "sensor_pose": optional(sensor_pose, "sensor_pose", 4, 4),
         "image_size": image_size,
-        "covariances": optional(covariances, "covariances", count, 3, 3),
+        "covariances": noise,
         "normals": optional(normals, "normals", count, 3),
         "min_range": _given.optional_number(min_range, "min_range"),
         "max_range": _given.optional_number(max_range, "max_range"),
