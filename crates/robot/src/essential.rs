@@ -26,6 +26,8 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
     let mut reader = Reader::from_str(text);
     let mut writer = Writer::new(Vec::new());
     let mut open: Vec<String> = Vec::new();
+    // Whether nothing is in the innermost of them so far.
+    let mut is_bare = false;
     loop {
         let event = reader.read_event().map_err(|error| fault(error.to_string()))?;
         let kept = match event {
@@ -39,14 +41,19 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
             Event::Start(start) => {
                 let name = read_in(&start, &open)?;
                 open.push(name);
+                is_bare = true;
                 Event::Start(plain(&known(start)?)?)
             }
             Event::Empty(start) => {
-                read_in(&start, &open)?;
+                let name = read_in(&start, &open)?;
+                check_shape(&name, true)?;
+                is_bare = false;
                 Event::Empty(plain(&known(start)?)?)
             }
             Event::End(end) => {
-                open.pop();
+                let name = open.pop();
+                check_shape(name.as_deref().unwrap_or_default(), is_bare)?;
+                is_bare = false;
                 Event::End(end)
             }
             other => other,
@@ -61,6 +68,16 @@ fn read_in(start: &BytesStart<'_>, open: &[String]) -> Result<String, RobotFault
     let name = String::from_utf8_lossy(start.name().as_ref()).into_owned();
     places::check(&name, open.last().map(String::as_str))?;
     Ok(name)
+}
+
+/// Refuses a geometry of nothing, of which readers say nothing that helps.
+fn check_shape(name: &str, is_bare: bool) -> Result<(), RobotFault> {
+    if name == "geometry" && is_bare {
+        let reason =
+            "<geometry> is empty: put a <mesh>, <box>, <cylinder>, <capsule> or <sphere> into it";
+        return Err(RobotFault::Xml { reason: reason.to_owned() });
+    }
+    Ok(())
 }
 
 fn is_passed_over(start: &BytesStart<'_>) -> Result<bool, RobotFault> {

@@ -8,6 +8,7 @@ use cloudtouch::geom::Pose;
 use cloudtouch::{Mesh, SelfMesh};
 use cloudtouch_io::ReadLimits;
 
+use crate::at_fault;
 use crate::error::{JointsError, RobotError, RobotFault, UnknownLink};
 use crate::essential::essential;
 use crate::joint::{Joint, JointKind};
@@ -79,8 +80,12 @@ impl Robot {
         }
         nesting::check(text)?;
         root::check(text, Wanted::Urdf)?;
-        let urdf = urdf_rs::read_from_string(&essential(text)?)
-            .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
+        let read = |text: &str| {
+            urdf_rs::read_from_string(&essential(text)?)
+                .map_err(|error| RobotFault::Xml { reason: error.to_string() })
+        };
+        let urdf =
+            read(text).map_err(|fault| at_fault::named(fault, text, |alone| read(alone).err()))?;
         let tree = Tree::try_from_urdf(&urdf)?;
         let mut shapes = Vec::new();
         for (index, link) in urdf.links.iter().enumerate() {

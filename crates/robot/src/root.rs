@@ -12,6 +12,16 @@ pub(crate) enum Wanted {
     Srdf,
 }
 
+impl Wanted {
+    /// What it is called, and what to do where another is given.
+    fn given(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Urdf => ("a URDF", "give the URDF of the robot"),
+            Self::Srdf => ("an SRDF", "give the SRDF of the robot"),
+        }
+    }
+}
+
 /// What else is given, by the name of its root in small letters, and what to do about it.
 const OTHERS: [(&str, &str, &str); 4] = [
     ("sdf", "an SDF", "convert it, or export the robot anew"),
@@ -53,6 +63,9 @@ pub(crate) fn check(text: &str, wanted: Wanted) -> Result<(), RobotFault> {
                 depth += usize::from(matches!(event, Event::Start(_)));
             }
             Event::End(_) => depth = depth.saturating_sub(1),
+            Event::Eof if roots == 0 => {
+                return Err(RobotFault::NoRoot { remedy: wanted.given().1 });
+            }
             Event::Eof => break,
             _ => {}
         }
@@ -71,10 +84,7 @@ fn is_robot(root: &str, wanted: Wanted) -> Result<(), RobotFault> {
     if root == "robot" {
         return Ok(());
     }
-    let (wanted, give) = match wanted {
-        Wanted::Urdf => ("a URDF", "give the URDF of the robot"),
-        Wanted::Srdf => ("an SRDF", "give the SRDF of the robot"),
-    };
+    let (wanted, give) = wanted.given();
     let other = OTHERS.iter().find(|(name, ..)| root.eq_ignore_ascii_case(name));
     let (found, remedy) =
         other.map_or(("no description of a robot", give), |&(_, found, remedy)| (found, remedy));

@@ -19,6 +19,8 @@ fn what_is_no_urdf_is_told_what_it_is() {
         ("<!DOCTYPE html><html lang=en><body><p>404<br></body>", ["a web page", "download"]),
         ("<HTML><body></body></HTML>", ["a web page", "<HTML>"]),
         ("<mujoco model='m'><worldbody/></mujoco>", ["MuJoCo", "convert it"]),
+        // Here "No elements found" was all.
+        ("v 0 0 0\nv 1 0 0\n", ["there is no <robot> in it", "give the URDF"]),
         ("<COLLADA/>", ["a mesh (COLLADA)", "give the file that names it"]),
         // It was read.
         (&of_links, ["no description of a robot", "root is <model>"]),

@@ -29,6 +29,33 @@ fn slips_in_the_range_of_a_joint_are_refused() {
     assert!(robot("<sphere radius='1'/>", drive).is_ok());
 }
 
+/// A file of sixty links was to be searched for what had no name.
+#[test]
+fn what_cannot_be_read_is_told_with_its_link_or_joint_and_line() {
+    let good = "<robot name='r'>\n<link name='a'>\n<collision><geometry><sphere radius='1'/></geometry></collision>\n\
+                </link>\n<link name='b'/>\n<joint name='j' type='fixed'>\n<parent link='a'/>\n<child link='b'/>\n\
+                </joint>\n</robot>";
+    assert!(Arm::default().of(good).is_ok());
+    for (right, wrong, place, told) in [
+        ("<child link='b'/>", "", "joint `j`, line 6", "missing field `child`"),
+        ("<child link='b'/>", "<child/>", "joint `j`, line 6", "missing field `link`"),
+        ("type='fixed'", "type='hinge'", "joint `j`, line 6", "`hinge`"),
+        ("<sphere radius='1'/>", "", "link `a`, line 2", "<geometry> is empty: put"),
+        ("<sphere radius='1'/>", "<sphere/>", "link `a`, line 2", "missing field `radius`"),
+        ("<sphere radius='1'/>", "<cone radius='1'/>", "link `a`, line 2", "`cone`"),
+        ("radius='1'", "radius='5cm'", "link `a`, line 2", "`radius` of <sphere> is `5cm`"),
+        ("link name='b'", "link", "<link>, line 5", "missing field `name`"),
+        ("</geometry>", "</geometri>", "link `a`, line 3", "`</geometri>`"),
+        ("</joint>\n</robot>", "", "joint `j`, where the file ends", ""),
+        ("</robot>", "", "the file ends before </robot>", ""),
+    ] {
+        let error = Arm::default().of(&good.replacen(right, wrong, 1)).unwrap_err().to_string();
+        let place = format!("arm.urdf: cannot be understood: {place}: ");
+        assert!(error.contains(&place) && error.contains(told), "{place}{told} is not in {error}");
+        assert_eq!(error.lines().count(), 1, "{error}");
+    }
+}
+
 /// Which number of which element it is was not told.
 #[test]
 fn what_is_no_number_is_told_with_its_element_and_attribute() {

@@ -58,6 +58,12 @@ pub enum RobotFault {
         /// What to do.
         remedy: &'static str,
     },
+    /// Text without any element.
+    #[error("is no description of a robot, for there is no <robot> in it: {remedy}")]
+    NoRoot {
+        /// What to do.
+        remedy: &'static str,
+    },
     /// Two files in one.
     #[error(
         "has a second root, <{root}>, of which nothing would be read: put all in one <robot>, or remove it"
