@@ -208,7 +208,7 @@ fn a_misspelt_field_of_a_case_was_passed_over() {
         })
         .collect();
     // Names of other things, and of a second one beside the first.
-    let other = r#""scene_points_used":"finite","object_kind":"mesh","pose_std":1,"poses":2,"ids":3,"sensor":"a note","margin":{"margin_m":1},"id""#;
+    let other = r#""scene_points_used":"finite","object_kind":"mesh","pose_stamp":1,"poses":2,"ids":3,"sensor":"a note","margin":{"margin_m":1},"id""#;
     cases.push(case("good", "\"id\"", other));
     inputs.write("cases.json", &case_file(&cases));
     let lines = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines();
@@ -449,6 +449,10 @@ fn further_options_in_a_case_were_passed_over() {
         ("\"collision_map\": 0.05", "as an option of the command"),
         ("\"outliers\": [8, 3]", "as an option of the command"),
         ("\"keep_veil\": true", "as an option of the command"),
+        ("\"pose_std\": [0.01,0.01,0.01,0,0,0]", "by `cloudtouch query`"),
+        ("\"pose-std\": \"0.01,0.01,0.01,0,0,0\"", "by `cloudtouch query`"),
+        ("\"also\": [\"shelf.xyz\"]", "with --also"),
+        ("\"scene_pose\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]", "all of the pose"),
     ] {
         inputs.write("cases.json", &case_file(&[with(field)]));
         let line = inputs.run(&["batch", "cases.json", "--json"]).quiet(1).json_lines().remove(0);

@@ -9,7 +9,7 @@ use crate::files::near_name;
 const USED: [&str; 6] = ["id", "scene", "object", "pose", "scene_sensor", "object_sensor"];
 
 /// Fields of scene files, and options spelt as fields, that no case has, and what says the same of a case.
-const OF_OTHERS: [(&str, &str); 30] = [
+const OF_OTHERS: [(&str, &str); 36] = [
     ("sensor", SENSORS),
     ("unit", UNITS),
     ("mesh_unit", UNITS),
@@ -40,9 +40,17 @@ const OF_OTHERS: [(&str, &str); 30] = [
     ("rotate_rpy", POSES),
     ("rotate_deg", POSES),
     ("quaternion", POSES),
+    ("scene_pose", POSES),
+    ("object_pose", POSES),
+    ("pose_std", OF_ONE),
+    ("pose_covariance", OF_ONE),
+    ("also", SCANS),
+    ("kappas", OF_ONE),
 ];
 const OPTION: &str = "give it as an option of the command, for all cases";
 const POSES: &str = "write all of the pose as 4 rows in `pose`";
+const OF_ONE: &str = "ask about such a pair by `cloudtouch query`, which has an option for it";
+const SCANS: &str = "merge the scans into one file, or ask by `cloudtouch query` with --also";
 const SENSORS: &str = "write `scene_sensor` or `object_sensor` in each case, or give --sensor or \
                        --object-sensor for all";
 const UNITS: &str = "give --unit for all meshes, --cloud-unit for all clouds";
