@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use crate::support::Inputs;
+use cloudtouch::{Warning, Which};
 use serde_json::{Value, json};
 
 const README: &str = include_str!("../README.md");
@@ -163,4 +164,20 @@ fn keys_of_a_scene_and_of_a_robot_are_documented() {
     let pairs = documented("scene").into_iter().find(|row| row.key == "pairs").unwrap();
     assert_eq!(Some(keys(&path["stopped"]["pair"])), pairs.inner);
     check("robot", &[path, robot(json!([{"shoulder": 0.0}, {"shoulder": 0.1}]))]);
+}
+
+/// Programs in Rust had to serialise a warning, or to match every kind, to know the name that JSON has for it.
+#[test]
+fn the_library_tells_the_codes_of_warnings_as_json_does() {
+    let far = Warning::FarAway { gap_m: 9.0, size_m: 1.0 };
+    let layout = Warning::SensorLayout { body: Which::A };
+    for (warning, code, values) in [
+        (far, "far_away", r#"{"gap_m":9.0,"size_m":1.0}"#),
+        (layout, "sensor_layout", r#"{"body":"scene"}"#),
+    ] {
+        assert_eq!(warning.code(), code);
+        let words = serde_json::to_string(&warning.to_string()).unwrap();
+        let wanted = format!(r#"{{"code":"{code}","values":{values},"words":{words}}}"#);
+        assert_eq!(serde_json::to_string(&warning).unwrap(), wanted);
+    }
 }

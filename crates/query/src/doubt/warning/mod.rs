@@ -1,12 +1,13 @@
 //! What a report warns of: signs of a slip beside the answer.
 
+mod code;
 mod words;
 
 pub(crate) use words::length;
 
 use std::fmt;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::doubt::undecided::Undecided;
 
@@ -31,9 +32,9 @@ impl fmt::Display for Which {
 }
 
 /// A sign that a file, a unit, a pose or a sensor is not what was meant. Displays as a sentence with
-/// a remedy; in a report it serialises as `{"code","values","words"}`.
+/// a remedy; in a report it serialises as `{"code","values","words"}`, with [its code](Self::code).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(remote = "Self", tag = "code", content = "values", rename_all = "snake_case")]
+#[serde(remote = "Self", untagged)]
 #[non_exhaustive]
 pub enum Warning {
     /// The points of a cloud, or all corners of each face of a mesh, are on a line: no surface.
@@ -288,19 +289,5 @@ impl Warning {
             | Self::RejectBelowLeast { .. }
             | Self::HalfTurn { .. } => None,
         }
-    }
-}
-
-/// With its words.
-impl Serialize for Warning {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Spelled<'a> {
-            // What is derived above: an associated function of the same name.
-            #[serde(flatten, serialize_with = "Warning::serialize")]
-            warning: &'a Warning,
-            words: String,
-        }
-        Spelled { warning: self, words: self.to_string() }.serialize(serializer)
     }
 }
