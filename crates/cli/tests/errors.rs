@@ -64,6 +64,23 @@ fn clouds_with_nothing_in_them() {
     check(&inputs, &columns, &["floor.pcd", "covariance"]);
 }
 
+/// All files were named, and not which of them it was.
+#[test]
+fn of_several_scans_the_one_at_fault_is_named() {
+    let inputs = Inputs::new();
+    inputs.write("nan.xyz", "nan nan nan\nnan nan nan\n");
+    inputs.write("far.xyz", "0 0 0\n0 1 0\n1e12 0 0\n");
+    std::fs::copy(inputs.path("floor.pcd"), inputs.path("copy.pcd")).unwrap();
+    for (also, told) in [
+        ("nan.xyz", "error: nan.xyz: no point is left of 2"),
+        ("far.xyz", "error: far.xyz: point 2 has the coordinate 1e12"),
+        ("copy.pcd", "error: copy.pcd: scan 2 is one of those before it"),
+    ] {
+        let arguments = ["query", "floor.pcd", "box.obj", "--sensor=iso:0.002", "--also", also];
+        check(&inputs, &arguments, &[told]);
+    }
+}
+
 #[test]
 fn pose_files() {
     let inputs = Inputs::new();

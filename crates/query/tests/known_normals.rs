@@ -64,10 +64,11 @@ fn what_is_wrong_with_a_point_is_told_by_its_row() {
     let is_told =
         matches!(error, PrepareError::Noise(NoiseError::CovarianceNotFinite { index: 7, .. }));
     assert!(is_told, "{error}");
-    // Of several scans rows are counted on.
+    // Of several scans the one is named, by whose own rows it is told.
     scan.normals = None;
     let mut good = scan.clone();
     good.covariances = Some(vec![Covariance::isotropic(1e-6); scan.len()]);
     let error = Cloud::merge(&[(&good, &by), (&scan, &by)]).unwrap_err();
-    assert!(error.to_string().contains("point 407 "), "{error}");
+    let told = error.to_string();
+    assert!(told.starts_with("scan 2 of 2: ") && told.contains("point 7 "), "{told}");
 }

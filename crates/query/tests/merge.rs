@@ -181,6 +181,28 @@ fn no_scan_is_no_map() {
     assert!(matches!(PaperCloud::merge(&[]), Err(PrepareError::NothingLeft { before: 0, .. })));
 }
 
+/// Of several scans none was named, and rows were counted on from those before, which no file has.
+#[test]
+fn the_scan_that_is_at_fault_is_named() {
+    let grid = |z: f64| {
+        let at = |i: i32| Point3::new(0.01 * f64::from(i % 20), 0.01 * f64::from(i / 20), z);
+        PointCloud::from_points((0..400).map(at).collect())
+    };
+    let [good, mut far] = [0.0, 0.5].map(grid);
+    far.points[7].x = 1e12;
+    let empty = PointCloud::from_points(vec![Point3::new(f64::NAN, 0.0, 0.0); 5]);
+    let by = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+    let error = |scans: &[&PointCloud]| {
+        let scans: Vec<_> = scans.iter().map(|&scan| (scan, &by)).collect();
+        Cloud::merge(&scans).expect_err("one of them is at fault").to_string()
+    };
+    let told = error(&[&good, &empty]);
+    assert!(told.starts_with("scan 2 of 2: no point is left of 5"), "{told}");
+    assert!(error(&[&empty]).starts_with("no point is left of 5"));
+    let told = error(&[&good, &far, &empty]);
+    assert!(told.starts_with("scan 2 of 3: point 7 has the coordinate"), "{told}");
+}
+
 /// A scan given twice, by its name or as a copy, counted as two that agree: contact read .67 where it was .98.
 #[test]
 fn a_scan_that_is_given_twice_is_refused() {

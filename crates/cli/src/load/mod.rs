@@ -135,7 +135,7 @@ fn bodies_in<C: PreparedCloud>(
     }
     let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
     let robot = if role == Role::Scene { robot(options)? } else { Vec::new() };
-    of_clouds(&names.join(", "), role, scans, sensor, options, robot)
+    of_clouds(&names, role, scans, sensor, options, robot)
 }
 
 /// Reads the surroundings of a robot, of which a scan may show these links.
@@ -154,7 +154,7 @@ pub(crate) fn surroundings(
         (Geometry::Mesh(mesh), _) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
         (Geometry::Cloud(cloud), kind) => {
             let (scans, sensor) = (vec![(cloud, kind)], common.scene_sensor());
-            of_clouds(&named(path), Role::Scene, scans, sensor, options, robot)
+            of_clouds(&[named(path)], Role::Scene, scans, sensor, options, robot)
         }
     }
 }
@@ -205,15 +205,17 @@ fn prepared(mesh: &TriangleMesh) -> Result<Mesh> {
     })
 }
 
-/// The sensor of several scans is that chosen for the first.
+/// The sensor of several scans is that chosen for the first; each has its name.
 fn of_clouds<C: PreparedCloud>(
-    name: &str,
+    names: &[String],
     role: Role,
     scans: Vec<(PointCloud, Kind)>,
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
     robot: Vec<SelfMesh>,
 ) -> Result<Loaded<C>> {
+    let name = names.join(", ");
+    let name = name.as_str();
     let (mut scans, kinds): (Vec<PointCloud>, Vec<Kind>) = scans.into_iter().unzip();
     if role == Role::Scene
         && let Some(Rigid(pose)) = options.sensor_pose
@@ -267,8 +269,12 @@ fn of_clouds<C: PreparedCloud>(
         sensor: Some(grid.unwrap_or(sensor).to_string()),
         sensor_because: because.filter(|_| grid.is_none()),
     };
-    let body = Body::Cloud(prepared.with_context(|| name.to_owned())?);
-    Ok(Loaded { body, input, kinds })
+    let prepared = prepared.map_err(|error| match error {
+        PrepareError::Scan { scan, error, .. } => anyhow!(*error).context(names[scan - 1].clone()),
+        PrepareError::RepeatedScan { scan } => anyhow!("{error}").context(names[scan - 1].clone()),
+        other => anyhow!(other).context(name.to_owned()),
+    })?;
+    Ok(Loaded { body: Body::Cloud(prepared), input, kinds })
 }
 
 fn robot(options: &BodyOptions<'_>) -> Result<Vec<SelfMesh>> {

@@ -19,6 +19,16 @@ pub enum PrepareError {
         /// What each stage removed.
         stages: String,
     },
+    /// One of several scans cannot be used; its rows are counted from 0, as if it had been given alone.
+    #[error("scan {scan} of {count}: {error}")]
+    Scan {
+        /// Which of the scans, from 1.
+        scan: usize,
+        /// How many there are.
+        count: usize,
+        /// What is wrong with it.
+        error: Box<PrepareError>,
+    },
     /// A scan that was merged before: what it says twice would count twice.
     #[error("scan {scan} is one of those before it, to the point: give each scan once")]
     RepeatedScan {

@@ -16,7 +16,7 @@ use crate::filter::{Filtered, StageReport, Taken, filter_and_tell};
 
 use self::noise::{coarse_step, joined, noise_of, padded};
 use self::others::{beyond_range, other_returns};
-use self::refused::{by_row, check_for_repeats, checked, nothing_left};
+use self::refused::{by_row, check_for_repeats, checked, nothing_left, of_scan};
 use super::makeup::{SensorDoubt, missing, robot_doubt, sensor_doubts};
 use super::preparation::Preparation;
 use super::view::Image;
@@ -56,7 +56,8 @@ impl Scans {
         let mut all = Self::none();
         let (mut noise, mut ends) = (Vec::new(), Vec::new());
         for &(scan, by) in scans {
-            let mut one = Self::of_one(scan, by, all.row_count)?;
+            let which = ends.len() + 1;
+            let mut one = Self::of_one(scan, by).map_err(|e| of_scan(e, which, scans.len()))?;
             // Put together at the end: what differs from point to point is then copied once.
             noise.push(mem::replace(&mut one.noise, SensorNoise::from(Vec::new())));
             all.add(one);
@@ -86,12 +87,8 @@ impl Scans {
         }
     }
 
-    /// One scan; errors count its rows on from those of the scans before.
-    fn of_one(
-        scan: &PointCloud,
-        by: Preparation<'_>,
-        rows_before: usize,
-    ) -> Result<Self, PrepareError> {
+    /// One scan.
+    fn of_one(scan: &PointCloud, by: Preparation<'_>) -> Result<Self, PrepareError> {
         by.validate()?;
         if let Some(value) = scan.sensor_pose.as_ref().and_then(bad_entry) {
             return Err(PrepareError::SensorPose { value });
@@ -102,7 +99,7 @@ impl Scans {
             return Err(nothing_left(scan.len(), &stages));
         }
         // By their rows in the file; the cells of a collision map have none.
-        let row = |i: usize| rows_before + rows.get(i).copied().unwrap_or(i);
+        let row = |i: usize| rows.get(i).copied().unwrap_or(i);
         check_points(kept.points.iter().enumerate().map(|(i, p)| (row(i), p)))?;
         let noise = noise_of(&kept, by).map_err(|error| by_row(error, row))?;
         let normals = match (&kept.normals, by.noise.combination) {

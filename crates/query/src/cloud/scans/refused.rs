@@ -12,6 +12,14 @@ pub(super) fn nothing_left(before: usize, stages: &[StageReport]) -> PrepareErro
     PrepareError::NothingLeft { before, stages: removed.join(", ") }
 }
 
+/// What is wrong with one of several scans; `which` of them, from 1.
+pub(super) fn of_scan(error: PrepareError, which: usize, count: usize) -> PrepareError {
+    match count {
+        1 => error,
+        count => PrepareError::Scan { scan: which, count, error: Box::new(error) },
+    }
+}
+
 /// Normals as they are, after a look at them: a `Unit` can be made without a check. `row` is that of a point in its
 /// file.
 pub(super) fn checked(
