@@ -22,7 +22,8 @@ pub(in crate::search) const ONE_SIDED: f64 = 0.25;
 pub(in crate::search) struct Witness {
     /// Whether it is a piece of A.
     pub is_a: bool,
-    points: [u32; 2],
+    /// The two that an edge joins; twice that of a disc.
+    pub points: [u32; 2],
 }
 
 impl Witness {
