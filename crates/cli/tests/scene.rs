@@ -170,7 +170,7 @@ fn bad_scenes_are_refused_with_file_place_value_and_remedy() {
         (of_scene("threshold", json!(0.7)), vec!["threshold 0.7", "0 to 0.5"]),
         (of_scene("format", json!(2)), vec!["format 2", "format 1"]),
         (of_scene("length_unit", json!("mm")), vec!["length_unit `mm`", "metres"]),
-        (of_scene("bodies", json!([])), vec!["0 bodies", "at least two"]),
+        (of_scene("bodies", json!([])), vec!["no bodies: ", "at least two"]),
     ] {
         let run = scene(&inputs, &file, &[]);
         let error = run.stderr();

@@ -127,10 +127,11 @@ fn parse_held(text: &[u8], folder: &Path) -> Result<SceneFile> {
 
 fn parse_whole(text: &[u8], folder: &Path) -> Result<SceneFile> {
     let file = parse_any(text, folder)?;
-    if file.bodies.len() < 2 {
-        bail!("{} bodies: a scene needs at least two to touch", file.bodies.len());
+    match file.bodies.len() {
+        0 => bail!("no bodies: a scene needs at least two that may touch"),
+        1 => bail!("one body: a scene needs at least two that may touch"),
+        _ => Ok(file),
     }
-    Ok(file)
 }
 
 fn parse_any(text: &[u8], folder: &Path) -> Result<SceneFile> {
