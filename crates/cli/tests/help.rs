@@ -81,6 +81,19 @@ fn options_that_need_another_did_not_say_so() {
     }
 }
 
+/// It was said to stop each query, also of commands that it stops as a whole, and to leave it undecided at worst.
+#[test]
+fn the_help_of_a_deadline_did_not_say_what_it_ends() {
+    let inputs = Inputs::new();
+    for command in ["query", "batch", "path", "scene", "robot"] {
+        let help = inputs.run(&[command, "--help"]).quiet(0).stdout();
+        let line = help.lines().find(|line| line.contains("--deadline")).unwrap();
+        let parts = ["query", "whole path, scene or robot", "none is free"];
+        assert!(parts.iter().all(|part| line.contains(part)), "{command}: {line}");
+        assert!(line.len() <= 100, "{command}: {line}");
+    }
+}
+
 /// It replaced nothing and said nothing, where other commands refuse it.
 #[test]
 fn force_without_a_file_to_write_is_refused() {

@@ -38,7 +38,7 @@ impl CautionArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Effort")]
 pub(crate) struct EffortArguments {
-    /// Stop each query after so many milliseconds, undecided at worst
+    /// Time for a query, or a whole path, scene or robot; cut short, none is free
     #[arg(long, value_name = "MS", value_parser = parse_milliseconds,
           allow_negative_numbers = true)]
     deadline: Option<u64>,
