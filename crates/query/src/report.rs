@@ -35,8 +35,9 @@ pub struct Report {
     /// enough to be measured, or what was left out may be closer.
     pub clearance_m: Option<Clearance>,
     /// No sampled surface of one body is nearer to that of the other than this, m: a lower bound from
-    /// the boxes around them, above 0. `None` where these overlap, so that the surfaces may touch, and when
-    /// the paper's path or a deadline left surfaces out.
+    /// the boxes around them, above 0. `None` where these overlap, so that the surfaces may touch, where the
+    /// verdict is doubted, when the paper's path or a deadline left surfaces out, and between two meshes, whose
+    /// distance is `clearance_m`.
     pub clearance_at_least_m: Option<f64>,
     /// Where the surfaces touch or may touch, most probable first.
     pub contacts: Vec<Contact>,

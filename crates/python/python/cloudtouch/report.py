@@ -79,7 +79,8 @@ class Report:
     clearance_is_bound: bool
     """Whether the overlap may be deeper than ``clearance`` says."""
     clearance_at_least: Optional[float]
-    """No sampled surface of one body is nearer to the other than this, m; ``None`` where they may touch."""
+    """No sampled surface of one body is nearer to the other than this, m; ``None`` where they may touch, where the
+    verdict is doubted, and between meshes, whose distance is ``clearance``."""
     unseen: Optional[float]
     """Share of a body's surface where the depth image of the other saw nothing, 0 to 1; ``None`` without such an
     image."""
