@@ -98,6 +98,20 @@ fn the_depth_is_that_of_its_own_shortest_way() {
     }
 }
 
+/// It was .62 m, along another way, though the depth had been sought along this one and was .50 m.
+#[test]
+fn the_way_that_the_depth_is_along_was_not_told_where_it_is_out_sooner() {
+    let piano = body(&scene::piano(), true, 0.0, 0);
+    let pose = Pose::from_translation(Vector3::new(0.0, 0.0, 0.5));
+    let (_, out) = query().penetration(&piano, &piano, &pose, 0.1).unwrap();
+    let out = out.unwrap();
+    // Exact bodies are out where they are no longer in, as far as ways are told: to a hundredth.
+    assert!(out.distance_m < 1.03 * out.depth_m, "{out:?}");
+    let there = Pose::from_translation(out.direction * out.distance_m).after(&pose);
+    let freed = query().run(&piano, &piano, &there).unwrap();
+    assert_eq!(freed.collision_probability, 0.0, "{out:?}");
+}
+
 /// It read as in by .1 mm, the finest that ways are told to.
 #[test]
 fn what_is_likelier_out_than_in_is_in_by_nothing() {

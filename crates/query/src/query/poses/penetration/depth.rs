@@ -13,7 +13,7 @@ use crate::report::Report;
 const LIKELY: [f64; 3] = [0.841_344_746, 0.5, 0.158_655_254];
 
 impl Overlap<'_> {
-    /// How far until a collision is as likely as not, the shortest way, and the standard deviation of that, m:
+    /// The shortest way until a collision is as likely as not, and the standard deviation of its length, m:
     /// from the report `here`, along the way out or another of the directions that were looked along.
     pub(super) fn depth(
         &self,
@@ -21,7 +21,7 @@ impl Overlap<'_> {
         here: &Report,
         out: &Way,
         looked_along: &[Vector3],
-    ) -> Result<(f64, f64), QueryError> {
+    ) -> Result<(Way, f64), QueryError> {
         // No guarantees but expectations: bounds, which are wider the less is known, would only add to them.
         let [nearer, even, farther] = LIKELY.map(|likely| Overlap {
             query: query.deciding(likely),
@@ -38,6 +38,17 @@ impl Overlap<'_> {
         }
         let [near, far] = [nearer, farther]
             .map(|until| until.way_out(here, depth.direction, depth.free).map(|way| way.free));
-        Ok((depth.free, 0.5 * (far? - near?)))
+        Ok((depth, 0.5 * (far? - near?)))
+    }
+
+    /// The way out, or the one that is shortest until a collision is as likely as not where that is out sooner:
+    /// places past something else, as between the legs of a table, are met by chance.
+    pub(super) fn or_along(&self, out: Way, depth: &Way) -> Result<Way, QueryError> {
+        if depth.free >= SHORTER * out.free || depth.direction == out.direction {
+            return Ok(out);
+        }
+        // Exact bodies are out where they are no longer in.
+        let shares = [depth.free / out.free, SHORTER];
+        self.between(self.shortened(out, depth.direction, &shares)?, PRECISION)
     }
 }

@@ -10,7 +10,7 @@ use std::time::Instant;
 use cloudtouch_geom::{Pose, Vector3};
 use serde::Serialize;
 
-use self::along::PRECISION;
+use self::along::{PRECISION, Way};
 use self::overlap::Overlap;
 use super::directions::{axes, downhill};
 use crate::body::BodyRef;
@@ -99,13 +99,14 @@ impl Query {
         let way = overlap.turned_to_normals(way, &this)?;
         let way = overlap.turned_aside(way)?;
         let way = overlap.between(way, PRECISION)?;
-        let (depth_m, std_m) = overlap.depth(&this, &report, &way, &looked_along)?;
+        let (deep, std_m) = overlap.depth(&this, &report, &way, &looked_along)?;
+        let way = overlap.or_along(way, &deep)?;
         // What was not looked at in time counted as no way out, which would tell too deep.
         if clock.is_over() {
             return Ok((report, None));
         }
-        let (direction, distance_m) = (way.direction, way.free);
-        Ok((report, Some(Penetration { direction, distance_m, depth_m, std_m })))
+        let Way { direction, free: distance_m, .. } = way;
+        Ok((report, Some(Penetration { direction, distance_m, depth_m: deep.free, std_m })))
     }
 }
 
