@@ -70,7 +70,7 @@ impl PointCloud {
         }
     }
 
-    /// Every so manieth column and row of an image, from the first on: fewer pixels, each of them as it was, and an image
+    /// One of each so many columns and rows of an image, the first: fewer pixels, each of them as it was, and an image
     /// still, which shows what the camera did not see. `None` where the cloud is no image.
     ///
     /// # Panics

@@ -54,10 +54,7 @@ pub(crate) fn posterior(
     let wide =
         is_all_noise.then(|| wide_surface(index, neighborhoods, sensor, around, scratch)).flatten();
     // Whether so far off by chance, who is beside it tells.
-    let is_far_off = |wide: Surface| {
-        let trusted = settings.trusted_offset.powi(2) * own.variance_along(&wide.normal);
-        wide.height.powi(2) > trusted
-    };
+    let is_far_off = |wide: Surface| !is_near(&wide, own.variance_along(&wide.normal), settings);
     if representatives.is_some() && wide.is_none_or(is_far_off) {
         neighborhoods.look_around(index, MOST_NEIGHBORS, scratch);
     }
@@ -106,6 +103,11 @@ pub(crate) fn posterior(
     Some(Refined { point, spacing, normal: Some(surface.normal) })
 }
 
+/// Whether a point whose noise has this variance along the normal, m², is so near its surface that it is of it.
+fn is_near(surface: &Surface, own_variance: f64, settings: &PosteriorSettings) -> bool {
+    surface.height.powi(2) <= settings.trusted_offset.powi(2) * own_variance
+}
+
 /// The point given its measurement, with its covariance and the largest standard deviation of that, and the surface
 /// fitted to a patch about it; `around` is the spacing of what is measured about it, `apart` how far from one another samples on the
 /// surface are, `spacing` that of as many all around.
@@ -130,7 +132,7 @@ fn given_surface(
     let mut prior = variance_of(surface, error, noise);
     let own_variance = patch.own_variance(&surface.normal);
     let blur = blur(noise.sqrt(), around);
-    let is_trusted = surface.height.powi(2) <= settings.trusted_offset.powi(2) * own_variance
+    let is_trusted = is_near(surface, own_variance, settings)
         || (blur == 1.0 && is_chance(surface, patch, own_variance + prior.min(noise)));
     if !is_trusted {
         prior += surface.height.powi(2);
