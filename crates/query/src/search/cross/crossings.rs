@@ -8,6 +8,7 @@ use crate::cells::Cells;
 use crate::cloud::{Edge, Surfel};
 
 use super::crossing::Crossing;
+use super::places::{Heard, Places};
 use crate::search::wrench::Wrench;
 
 /// Witnesses within so many spacings of one another are at one place: what adds up there does not
@@ -83,17 +84,6 @@ pub(crate) struct Crossings {
     at_last: f64,
 }
 
-/// A witness at its place, with its clearness by sides.
-#[derive(Debug, Clone, Copy)]
-struct Heard {
-    /// Its middle, not where it crosses best: that may move out of reach of others as more crossings are
-    /// found, and together they would say less than before.
-    place: Point3,
-    /// The farthest that one of its crossings reaches, m.
-    reach: f64,
-    clearness: [f64; 2],
-}
-
 impl Crossings {
     /// Adds a crossing of a witness that has its middle there, always the same.
     pub(in crate::search) fn add(
@@ -141,11 +131,15 @@ impl Crossings {
     }
 
     fn clearest_place(&self) -> Option<(f64, Heard)> {
-        let mut all: Vec<Heard> = self.witnesses.values().map(|&n| self.heard[n]).collect();
-        // Of equals the last along x, in whatever order they were heard.
-        all.sort_by(|p, q| p.place.x.total_cmp(&q.place.x));
-        let places = all.into_iter().map(|at| (self.together(&at), at));
-        places.max_by(|(p, _), (q, _)| p.total_cmp(q))
+        let mut clearest: Option<(f64, Heard)> = None;
+        // Of equals the first in the order of places, in whatever order they were heard.
+        Places::new(&self.heard).visit(|at, [p, q]| {
+            let clearness = by_both_sides([p + ONE_SIDED, q + ONE_SIDED]);
+            if clearest.is_none_or(|(most, _)| clearness > most) {
+                clearest = Some((clearness, *at));
+            }
+        });
+        clearest
     }
 
     /// What the clearness changes by as the pose does; which crossings are at one place keeps.
@@ -188,12 +182,6 @@ impl Crossings {
             }
         });
         by_both_sides(sums)
-    }
-}
-
-impl Heard {
-    fn reaches(&self, place: &Point3) -> bool {
-        (place - self.place).norm_squared() <= self.reach * self.reach
     }
 }
 

@@ -7,6 +7,7 @@ pub(super) mod leaves;
 pub(super) mod near;
 pub(super) mod near_discs;
 pub(super) mod past;
+mod places;
 mod reached;
 pub(super) mod side;
 pub(super) mod through_mesh;
