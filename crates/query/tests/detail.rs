@@ -71,6 +71,30 @@ fn what_was_clear_is_no_less_clear_as_more_crossings_are_found() {
     says_the_same_at_any_detail(of_bodies, (offset, 2.652490371108757), thresholds).unwrap();
 }
 
+/// Where faces meet nearly all of both is about as near, which a probability counts; that it is free does not
+/// hang on it.
+#[test]
+fn that_a_face_hovers_is_told_by_what_is_nearest() {
+    let plate = |z: f64, seed: u64| {
+        let sheet = |i: usize| Point3::new(0.005 * (i % 60) as f64, 0.005 * (i / 60) as f64, z);
+        let points: Vec<Point3> = (0..3600).map(sheet).collect();
+        let points = add_noise(&points, NoiseKind::Gaussian, 0.002, seed);
+        let settings = CloudSettings::new(SensorModel::Isotropic { std: 0.002 });
+        Cloud::prepare(&PointCloud::from_points(points), &settings).unwrap().refined().unwrap()
+    };
+    let (table, plate) = (plate(0.0, 1), plate(0.009, 2));
+    let of = |detail: Detail| {
+        let query = Query::new(QuerySettings { detail, ..QuerySettings::default() }).unwrap();
+        query.run(&table, &plate, &Pose::identity()).unwrap()
+    };
+    let (all, verdict) = (of(Detail::Probability), of(Detail::Verdict));
+    assert_eq!([all.verdict, verdict.verdict], [Verdict::Free; 2]);
+    assert!(4 * verdict.stats.leaf_pairs < all.stats.leaf_pairs, "{verdict:?} {all:?}");
+    let [low, high] = verdict.bounds;
+    assert!(low <= all.collision_probability && all.collision_probability < high);
+    assert!(verdict.collision_probability <= high && high < 0.1);
+}
+
 /// A distance is not looked for where it is not wanted; what hangs on it is.
 #[test]
 fn two_meshes_say_the_same_at_any_detail() {

@@ -60,7 +60,7 @@ impl Weighed<'_> {
         let revised = |count| of(task.judge.revise(*by_geometry, count));
         let [low, high] = misclassified.bounds.map(revised);
         // What was not looked at may be about as near as what was.
-        let low = match self.is_complete {
+        let low = match self.is_complete && !self.is_extent_open {
             true => low,
             false => {
                 let [least, _] = task.judge.with_any_extent(self.by_place);

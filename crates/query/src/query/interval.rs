@@ -36,7 +36,7 @@ impl Query {
             return Err(QueryError::Share { value: share });
         }
         let bodies = (a.into(), b.into());
-        let this = self.begun_now();
+        let this = self.with_probability().begun_now();
         let report = this.run(bodies.0, bodies.1, a_from_b)?;
         this.interval(bodies, a_from_b, &report, share)
     }
@@ -57,7 +57,7 @@ impl Query {
             return Err(QueryError::Share { value: share });
         }
         let bodies = (a.into(), b.into());
-        let this = self.begun_now();
+        let this = self.with_probability().begun_now();
         let (report, within) = this.within(bodies.0, bodies.1, a_from_b, margin)?;
         let interval = this.interval(bodies, a_from_b, &report, share)?;
         Ok((report, within, interval))

@@ -13,6 +13,7 @@ mod places;
 mod poses;
 mod run;
 mod settings;
+mod steering;
 mod task;
 mod weigh;
 mod within;

@@ -46,6 +46,14 @@ impl Query {
         Self { settings: QuerySettings { detail, ..self.settings }, ..*self }
     }
 
+    /// The same, but a probability where the verdict alone is asked for, whose probability is one of many.
+    pub(super) fn with_probability(&self) -> Self {
+        match self.settings.detail {
+            Detail::Verdict => self.with_detail(Detail::Probability),
+            Detail::Probability | Detail::Full => *self,
+        }
+    }
+
     /// The same query with both thresholds at this probability, and no more than its verdict.
     pub(super) fn deciding(&self, probability: f64) -> Self {
         let (accept, reject, detail) = (probability, probability, Detail::Verdict);

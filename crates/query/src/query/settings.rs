@@ -13,10 +13,11 @@ use crate::judge::Judge;
 /// How much of an answer is wanted: the less, the sooner it comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detail {
-    /// The verdict: a search ends when the probability is surely above `accept`, and no classifier is
-    /// asked that cannot change it. The probability is one of those that lead to that verdict, and its
-    /// bounds are as wide as that leaves them. Without contacts, clearance and points. A
-    /// [sweep](crate::Query::sweep) ends at the first pose that is not free.
+    /// The verdict: a search ends when the probability is surely above `accept`, looks for no more than the nearest
+    /// places where it is surely below `reject`, and asks no classifier that cannot change it. The probability is
+    /// one of those that lead to that verdict, and its bounds are as wide as that leaves them. Without contacts,
+    /// clearance and points. A [sweep](crate::Query::sweep) ends at the first pose that is not free. Calls that
+    /// tell another number too, such as [`within`](crate::Query::within), take it for [`Self::Probability`].
     Verdict,
     /// The probability with its bounds, the same bits as in a full report. Without contacts, clearance
     /// and points.

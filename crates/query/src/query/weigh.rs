@@ -1,18 +1,17 @@
 //! The evidence of one pair of bodies: the search, and the classifier where that leaves doubt.
 
-use std::cell::Cell;
-
 use cloudtouch_geom::Pose;
 
 use crate::body::BodyRef;
 use crate::error::QueryError;
 use crate::judge::{ContactEvidence, MOST_DEVIATIONS, probability};
-use crate::search::{Found, Looked, WITH_EXTENT, WITHOUT_EXTENT, look_inside, search};
+use crate::search::{Found, Looked, look_inside, search};
 use crate::stats::Stats;
 
 use super::classify::ask_classifier;
 use super::misclassified::Misclassified;
 use super::settings::Detail;
+use super::steering::{Steering, is_enough};
 use super::task::Task;
 
 /// What a probability rests on, and where that was found.
@@ -28,6 +27,8 @@ pub(super) struct Weighed<'a> {
     pub misclassified: Misclassified,
     /// Whether what was left out can change nothing.
     pub is_complete: bool,
+    /// Whether the extent was not asked for, since the pair is free whatever it is.
+    pub is_extent_open: bool,
     /// Whether the time was over before anything was looked at.
     pub is_too_late: bool,
 }
@@ -51,6 +52,7 @@ impl Weighed<'_> {
             by_geometry: by_place,
             misclassified: Misclassified::NOT_ASKED,
             is_complete: false,
+            is_extent_open: false,
             is_too_late: true,
         }
     }
@@ -71,7 +73,7 @@ pub(super) fn weigh<'a>(
         look_inside((a, b), a_from_b, &task.clock, |deviations| is_enough(deviations, 0.0, task));
     stats.nodes_visited += looked.nodes_visited;
     stats.leaves_prepared += looked.leaves_prepared;
-    let found = search_beyond(&looked, (a, b), a_from_b, task, stats)?;
+    let (found, is_extent_open) = search_beyond(&looked, (a, b), a_from_b, task, stats)?;
     let mut of_geometry = ContactEvidence {
         deviations: looked.deviations_given(found.deviations),
         crossing: found.crossings.clearness().ln_1p(),
@@ -81,10 +83,13 @@ pub(super) fn weigh<'a>(
     };
     let by_place = judge.log_odds_by_place(of_geometry.deviations, of_geometry.crossing);
     let is_complete = found.is_complete && !looked.is_cut_short;
-    if is_complete && judge.may_change_with_extent(by_place) {
+    if is_complete && !is_extent_open && judge.may_change_with_extent(by_place) {
         of_geometry.extent = Some(found.extent((a, b), a_from_b));
     }
-    let by_geometry = judge.with_extent(by_place, of_geometry.extent);
+    let by_geometry = match is_extent_open {
+        true => judge.with_any_extent(by_place)[1],
+        false => judge.with_extent(by_place, of_geometry.extent),
+    };
     let misclassified = if is_complete && is_in_doubt(by_geometry, task) {
         ask_classifier((a, b), a_from_b, &found, by_geometry, task, stats)?
             .or_inside(looked.surely_inside())
@@ -99,42 +104,30 @@ pub(super) fn weigh<'a>(
         by_geometry,
         misclassified,
         is_complete,
+        is_extent_open,
         is_too_late: false,
     })
 }
 
-/// Searches the surfaces after a look inside, until what both say is enough.
+/// Searches the surfaces after a look inside, until what both say is enough; and whether it looked for no more than
+/// where they are nearest.
 fn search_beyond<'a>(
     looked: &Looked,
-    (a, b): (BodyRef<'a>, BodyRef<'a>),
+    bodies: (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
     task: &Task<'_>,
     stats: &mut Stats,
-) -> Result<Found<'a>, QueryError> {
-    let told = Cell::new(None);
-    let stops = |deviations: f64, clearness: f64| {
-        if task.clock.is_over() {
-            return true;
-        }
-        // Most pairs of leaves change neither, and what was not enough is not now.
-        if told.replace(Some((deviations, clearness))) == Some((deviations, clearness)) {
-            return false;
-        }
-        is_enough(looked.deviations_given(deviations), clearness, task)
+) -> Result<(Found<'a>, bool), QueryError> {
+    let mut look = |steering: &Steering<'_>| {
+        search(bodies, a_from_b, |progress| steering.course(progress), stats)
     };
-    let further = if task.judge.counts_extent() { WITH_EXTENT } else { WITHOUT_EXTENT };
-    search((a, b), a_from_b, further, stops, stats)
-}
-
-/// Whether further evidence, which only raises the odds, could change nothing that is asked.
-fn is_enough(deviations: f64, clearness: f64, task: &Task<'_>) -> bool {
-    let (settings, judge) = (task.settings, &task.judge);
-    let of = |log_odds| probability(log_odds, settings.prior);
-    let log_odds = judge.log_odds_by_place(deviations, clearness.ln_1p());
-    // What the extent and a classifier could take off the odds is taken off.
-    let [least, _] = judge.with_any_extent(log_odds);
-    let is_decided = || of(judge.revise(least, 0.0)) > settings.accept;
-    of(least) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
+    let steering = Steering::as_asked(looked, task);
+    let found = look(&steering)?;
+    if steering.has_sufficed(&found) {
+        let is_narrow = steering.is_narrow(&found);
+        return Ok((found, is_narrow));
+    }
+    Ok((look(&Steering::wide(looked, task))?, false))
 }
 
 /// Whether a classifier is to be asked: it may move the odds by geometry, and what is asked hangs on it.

@@ -74,7 +74,7 @@ impl Query {
             return Err(QueryError::Margin { value: margin });
         }
         let (a, b) = (a.into(), b.into());
-        let this = self.begun_now();
+        let this = self.with_probability().begun_now();
         let report = this.run(a, b, a_from_b)?;
         let within = this.beyond_collision((a, b), a_from_b, margin, &report)?;
         Ok((report, within))

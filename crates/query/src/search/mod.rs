@@ -18,7 +18,9 @@ pub(crate) use cross::crossing::Crossing;
 pub(crate) use measure::beyond::{least_beyond, may_be_within};
 pub(crate) use measure::inside::{Inside, Looked, look_inside};
 pub(crate) use measure::nearest::Nearest;
-pub(crate) use run::{Finding, Found, SOUGHT, WITH_EXTENT, WITHOUT_EXTENT, search};
+pub(crate) use run::{
+    Course, Finding, Found, Progress, SOUGHT, WITH_EXTENT, WITHOUT_EXTENT, search,
+};
 pub(crate) use swept::{greatest_depth, reach_around, reach_of};
 pub(crate) use visit::leaf::{Leaf, NoisyLeaf};
 pub(crate) use wrench::{

@@ -33,6 +33,25 @@ const CLEARLY_FREE: f64 = 4.5;
 pub(crate) const SOUGHT: Sought =
     Sought { within: MOST_DEVIATIONS, margin: 0.0, crossings: true, drift: None };
 
+/// What a search has found so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Progress {
+    /// The least deviations.
+    pub deviations: f64,
+    /// Clearness of crossings, where one was found last.
+    pub clearness: f64,
+    /// Whether the boxes of the last pair of leaves overlap: such pairs come first.
+    pub is_amid_overlap: bool,
+}
+
+/// How a search goes on after a pair of leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Course {
+    /// Up to so many deviations further than the least.
+    Further(f64),
+    Stop,
+}
+
 /// Where the pieces of two leaves are least apart.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Finding {
@@ -64,17 +83,15 @@ pub(crate) struct Found<'a> {
     pub at_least: f64,
 }
 
-/// Looks at the pairs of leaves where the surfaces may touch, up to so many deviations `further` than the least,
-/// until `is_enough` of the deviations and of the clearness of crossings, as far as found.
+/// Looks at the pairs of leaves where the surfaces may touch, after each as far as `course` says.
 pub(crate) fn search<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
-    further: f64,
-    is_enough: impl Fn(f64, f64) -> bool,
+    course: impl Fn(Progress) -> Course,
     stats: &mut Stats,
 ) -> Result<Found<'a>, QueryError> {
     let (deviations, at_least) = (MOST_DEVIATIONS, f64::INFINITY);
-    let mut found = Found { deviations, further, at_least, ..Found::default() };
+    let mut found = Found { deviations, at_least, ..Found::default() };
     let motion = Motion::from(a_from_b);
     found.sides = [Side::default(), Side::moved(motion)];
     let mut trees = Trees::of(a, b);
@@ -85,12 +102,17 @@ pub(crate) fn search<'a>(
             None => found.add((a, b), &motion, &pair, stats),
         }
         trees.count_pair([found.leaves_a.len(), found.leaves_b.len()]);
-        let (deviations, clearness) = (found.deviations, found.crossings.last_clearness());
-        if is_enough(deviations, clearness) {
+        let progress = Progress {
+            deviations: found.deviations,
+            clearness: found.crossings.last_clearness(),
+            is_amid_overlap: pair.deviations == 0.0,
+        };
+        let Course::Further(further) = course(progress) else {
             return SurfaceFlow::Stop;
-        }
+        };
+        found.further = further;
         let within = found.deviations_of_interest();
-        trees.flow(within, stats, || is_enough(deviations, clearness))
+        trees.flow(within, stats, || course(progress) == Course::Stop)
     })?;
     stats.nodes_visited += outcome.nodes_visited;
     found.at_least = found.at_least.min(outcome.apart);
@@ -254,7 +276,7 @@ mod tests {
     }
 
     fn all_of<'a>(bodies: (BodyRef<'a>, BodyRef<'a>), pose: &Pose) -> Found<'a> {
-        search(bodies, pose, WITH_EXTENT, |_, _| false, &mut Stats::default()).unwrap()
+        search(bodies, pose, |_| Course::Further(WITH_EXTENT), &mut Stats::default()).unwrap()
     }
 
     proptest! {

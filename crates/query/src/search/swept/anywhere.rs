@@ -92,7 +92,7 @@ mod tests {
 
     use super::*;
     use crate::search::swept::run::tests::pair_of;
-    use crate::search::{WITH_EXTENT, search};
+    use crate::search::{Course, WITH_EXTENT, search};
 
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) })]
@@ -126,7 +126,7 @@ mod tests {
                 let shift = Vector3::from(shift).normalize() * (way * (1.0 - share));
                 let about = middle + shift - turned * middle;
                 let there = Pose::from_translation_rotation(about, turned).after(&local);
-                let found = search(pair, &there, WITH_EXTENT, |_, _| false, &mut stats).unwrap();
+                let found = search(pair, &there, |_| Course::Further(WITH_EXTENT), &mut stats).unwrap();
                 prop_assert!(found.deviations >= reach.deviations * (1.0 - 1e-9),
                     "{} below {}", found.deviations, reach.deviations);
                 let clearness = found.crossings.clearness();

@@ -251,8 +251,8 @@ pub(super) mod tests {
     use crate::classifier::Clock;
     use crate::cloud::{Cloud, CloudSettings};
     use crate::mesh::Mesh;
-    use crate::search::WITH_EXTENT;
     use crate::search::swept::greatest_depth;
+    use crate::search::{Course, WITH_EXTENT};
     use crate::search::{look_inside, search};
 
     fn body(is_mesh: bool, shape: &TriangleMesh, std: f64, seed: u64) -> Body {
@@ -314,7 +314,7 @@ pub(super) mod tests {
                 let turned = UnitQuaternion::new(angular * s);
                 let about = pivot.coords + linear * s - turned * pivot.coords;
                 let there = Pose::from_translation_rotation(about, turned).after(&local);
-                let found = search(pair, &there, WITH_EXTENT, |_, _| false, &mut stats).unwrap();
+                let found = search(pair, &there, |_| Course::Further(WITH_EXTENT), &mut stats).unwrap();
                 prop_assert!(found.deviations >= reach.deviations * (1.0 - 1e-9), "{s}");
                 let clearness = found.crossings.clearness();
                 prop_assert!(clearness <= reach.clearness * (1.0 + 1e-9) + 1e-9,

@@ -50,7 +50,7 @@ impl Query {
         a_from_b: &PoseDistribution,
     ) -> Result<(Report, UnderPoses), QueryError> {
         let bodies @ (a, b) = (a.into(), b.into());
-        let this = self.begun_now();
+        let this = self.with_probability().begun_now();
         let mean = &a_from_b.mean;
         let axes = a_from_b.axes()?;
         if axes.is_empty() {
