@@ -10,7 +10,7 @@ use crate::doubt::taken::taken_for_robot;
 use crate::doubt::unseen::{Unseen, may_be_unseen_within};
 use crate::error::QueryError;
 use crate::exact::are_within;
-use crate::judge::{ContactEvidence, MOST_DEVIATIONS, log_odds_within, probability};
+use crate::judge::{ContactEvidence, JudgeOfPair, MOST_DEVIATIONS, log_odds_within, probability};
 use crate::report::Report;
 use crate::search::least_beyond;
 
@@ -109,31 +109,62 @@ impl Query {
                 if is_within { (1.0, -MOST_DEVIATIONS) } else { (0.0, MOST_DEVIATIONS) };
             return Ok(at_least(least, high, deviations));
         };
-        let ContactEvidence { deviations, crossing, extent, noise_over_spacing, .. } = evidence;
+        let deviations = evidence.deviations;
         if margin == 0.0 {
             return Ok(at_least(0.0, high, deviations));
         }
-        let settings = self.settings();
-        let judge = settings.judge.for_noise(noise_over_spacing);
-        let spacing = a.shape().spacing().max(b.shape().spacing());
-        let of = |beyond: f64| {
-            let beyond = beyond.min(deviations);
-            let collision = judge.with_extent(judge.log_odds_by_place(beyond, crossing), extent);
-            let blur = (noise_over_spacing, spacing);
-            let log_odds = log_odds_within(beyond, margin, blur, collision);
-            probability(log_odds, settings.prior)
-        };
+        let beyond = BeyondEvidence::new(self, (a, b), local, evidence);
         let clock = self.clock(Instant::now());
         let found = least_beyond((a, b), &local, margin, &clock)?;
-        // Where nothing was seen, or what was seen is gone, something may be that is as near.
-        let (shapes, limits) = ((a.shape(), b.shape()), &settings.safeguards);
-        let exceeds = |unseen: &Unseen| limits.exceeded_by(unseen).is_some();
-        let hides = || {
-            may_be_unseen_within(shapes, &local, margin, exceeds)
-                || taken_for_robot(shapes, &local, margin, limits).is_some()
-        };
-        let is_known = found.is_complete && (high == 1.0 || !hides());
+        let is_known = found.is_complete && (high == 1.0 || !beyond.may_be_hidden(margin));
         let high = if is_known { high } else { 1.0 };
-        Ok(at_least(of(found.deviations), high, found.deviations.min(deviations)))
+        let least = beyond.probability(found.deviations, margin);
+        Ok(at_least(least, high, found.deviations.min(deviations)))
+    }
+}
+
+/// What margins add to the evidence about two bodies.
+pub(super) struct BeyondEvidence<'a> {
+    pub query: &'a Query,
+    pub bodies: (BodyRef<'a>, BodyRef<'a>),
+    /// From the local frame of B to that of A.
+    pub local: Pose,
+    judge: JudgeOfPair,
+    evidence: ContactEvidence,
+    spacing: f64,
+}
+
+impl<'a> BeyondEvidence<'a> {
+    pub(super) fn new(
+        query: &'a Query,
+        (a, b): (BodyRef<'a>, BodyRef<'a>),
+        local: Pose,
+        evidence: ContactEvidence,
+    ) -> Self {
+        let judge = query.settings().judge.for_noise(evidence.noise_over_spacing);
+        let spacing = a.shape().spacing().max(b.shape().spacing());
+        Self { query, bodies: (a, b), local, judge, evidence, spacing }
+    }
+
+    /// How likely they are within a margin that the nearest pieces are so many deviations beyond; the fewer, the
+    /// likelier.
+    pub(super) fn probability(&self, beyond: f64, margin: f64) -> f64 {
+        let ContactEvidence { deviations, crossing, extent, noise_over_spacing, .. } =
+            self.evidence;
+        let beyond = beyond.min(deviations);
+        let by_place = self.judge.log_odds_by_place(beyond, crossing);
+        let collision = self.judge.with_extent(by_place, extent);
+        let blur = (noise_over_spacing, self.spacing);
+        let log_odds = log_odds_within(beyond, margin, blur, collision);
+        probability(log_odds, self.query.settings().prior)
+    }
+
+    /// Whether something may be within a margin where nothing was seen, or what was seen is gone.
+    pub(super) fn may_be_hidden(&self, margin: f64) -> bool {
+        let limits = &self.query.settings().safeguards;
+        let shapes = (self.bodies.0.shape(), self.bodies.1.shape());
+        let exceeds = |unseen: &Unseen| limits.exceeded_by(unseen).is_some();
+        may_be_unseen_within(shapes, &self.local, margin, exceeds)
+            || taken_for_robot(shapes, &self.local, margin, limits).is_some()
     }
 }

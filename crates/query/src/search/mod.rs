@@ -15,7 +15,9 @@ mod wrench;
 
 pub(crate) use compare::meeting::probability_at;
 pub(crate) use cross::crossing::Crossing;
-pub(crate) use measure::beyond::{least_beyond, may_be_within};
+pub(crate) use measure::beyond::{
+    Span, least_beyond, least_of_leaves, least_within, may_be_within,
+};
 pub(crate) use measure::inside::{Inside, Looked, look_inside};
 pub(crate) use measure::nearest::Nearest;
 pub(crate) use run::{

@@ -1,6 +1,6 @@
 //! How many deviations two bodies are from being within a margin of each other.
 
-use cloudtouch_bvh::{Sought, SurfaceFlow, visit_surfaces};
+use cloudtouch_bvh::{NodeId, Sought, SurfaceFlow, visit_surfaces};
 use cloudtouch_geom::{Motion, Pose};
 
 use crate::body::BodyRef;
@@ -23,14 +23,18 @@ pub(crate) struct Beyond {
     /// The least deviations between two pieces of surface that are more than the margin apart;
     /// negative, down to −[`MOST_DEVIATIONS`], where two are clearly within it.
     pub deviations: f64,
+    /// The leaves of A and B that have so few; none where no two were looked at that have fewer than was asked
+    /// about.
+    pub leaves: Option<[NodeId; 2]>,
     /// Whether what was left out cannot have fewer.
     pub is_complete: bool,
 }
 
 /// Deviations that a search tells apart: more than `most` are none, and fewer than `enough` no better.
-struct Span {
-    most: f64,
-    enough: f64,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Span {
+    pub most: f64,
+    pub enough: f64,
 }
 
 /// Looks for the two pieces that are most clearly within a margin (m) of each other, until the time is
@@ -58,15 +62,31 @@ pub(crate) fn may_be_within(
     Ok(found.deviations < 0.0 || !found.is_complete)
 }
 
+/// The least deviations beyond a margin of two pieces of two leaves alone; `most` where none has fewer.
+pub(crate) fn least_of_leaves(
+    (a, b): (BodyRef<'_>, BodyRef<'_>),
+    a_from_b: &Pose,
+    margin: f64,
+    most: f64,
+    [of_a, of_b]: [NodeId; 2],
+) -> f64 {
+    let mut stats = Stats::default();
+    let mut sides = [Side::default(), Side::moved(Motion::from(a_from_b))];
+    let [side_a, side_b] = &mut sides;
+    let mut leaf_a = Leaf::load(a, of_a, side_a, &mut stats);
+    let mut leaf_b = Leaf::load(b, of_b, side_b, &mut stats);
+    least_of(&mut leaf_a, &mut leaf_b, margin, most, &mut sides).max(-MOST_DEVIATIONS)
+}
+
 /// The least deviations beyond a margin, within a span of them.
-fn least_within<'a>(
+pub(crate) fn least_within<'a>(
     (a, b): (BodyRef<'a>, BodyRef<'a>),
     a_from_b: &Pose,
     margin: f64,
     Span { most, enough }: Span,
     clock: &Clock,
 ) -> Result<Beyond, QueryError> {
-    let mut least = most;
+    let (mut least, mut nearest) = (most, None);
     // A margin is told without what it cost.
     let mut stats = Stats::default();
     let mut trees = Trees::of(a, b);
@@ -85,7 +105,10 @@ fn least_within<'a>(
             let [side_a, side_b] = &mut sides;
             let leaf_a = of_a.get_or_load(pair.a, || Leaf::load(a, pair.a, side_a, &mut stats));
             let leaf_b = of_b.get_or_load(pair.b, || Leaf::load(b, pair.b, side_b, &mut stats));
-            least = least_of(leaf_a, leaf_b, margin, least, &mut sides).max(-MOST_DEVIATIONS);
+            let of_pair = least_of(leaf_a, leaf_b, margin, least, &mut sides).max(-MOST_DEVIATIONS);
+            if of_pair < least {
+                (least, nearest) = (of_pair, Some([pair.a, pair.b]));
+            }
         }
         if clock.is_over() || least <= enough {
             return SurfaceFlow::Stop;
@@ -93,7 +116,8 @@ fn least_within<'a>(
         trees.count_pair([leaves.0.len(), leaves.1.len()]);
         trees.flow(reach(least), &mut stats, || clock.is_over())
     })?;
-    Ok(Beyond { deviations: least, is_complete: !outcome.stopped || least <= enough })
+    let is_complete = !outcome.stopped || least <= enough;
+    Ok(Beyond { deviations: least, leaves: nearest, is_complete })
 }
 
 /// The least deviations beyond the margin of two pieces of two leaves; `most` where none has fewer.
