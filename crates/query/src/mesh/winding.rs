@@ -153,8 +153,15 @@ fn halve(triangles: &mut [[Point3; 3]]) -> usize {
         .map(centroid)
         .fold((first, first), |(low, high), p| (low.inf(&p), high.sup(&p)));
     let axis = (high - low).imax();
-    triangles.sort_by(|s, t| centroid(s)[axis].total_cmp(&centroid(t)[axis]));
+    // PERF: a triangle takes nine numbers, and its centroid would be told for each comparison.
+    triangles.sort_by_cached_key(|triangle| in_total_order(centroid(triangle)[axis]));
     triangles.len() / 2
+}
+
+/// Integers in the order that `f64::total_cmp` puts numbers in.
+fn in_total_order(value: f64) -> i64 {
+    let bits = value.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
 /// Half the solid angles of triangles, summed, by the formula of Van Oosterom and Strackee (1983):
@@ -233,6 +240,14 @@ mod tests {
             scene::plate_with_hole(0.6, 0.05, 0.2),
             scene::piano(),
         ]
+    }
+
+    #[test]
+    fn integers_are_in_the_order_of_numbers() {
+        let numbers =
+            [f64::NEG_INFINITY, -2.0, -1e-300, -0.0, 0.0, 1e-300, 1.0, 3.5, f64::INFINITY];
+        assert!(numbers.is_sorted_by(|p, q| in_total_order(*p) < in_total_order(*q)));
+        assert!(numbers.is_sorted_by(|p, q| p.total_cmp(q).is_lt()));
     }
 
     #[test]
