@@ -195,3 +195,26 @@ fn the_interior_point_method_gave_up_while_multipliers_grew_to_a_large_penalty()
         assert_ne!(solution.rung, Rung::Clarabel, "{place}");
     }
 }
+
+/// Its answer was said to have converged where only what it solves had: the gap of all points was
+/// thousands of times the tolerance.
+#[test]
+fn what_is_said_to_have_converged_is_within_its_tolerance() {
+    let mut stream = Stream::new(23);
+    for case in 0..400 {
+        let penalty = stream.log_range(1e8, 1e11);
+        let mut point = |class| {
+            let at = [stream.unit(), stream.unit(), 0.3 * stream.unit()];
+            sample(at, class, 0.0, penalty)
+        };
+        let classes = [[Class::A; 4], [Class::B; 4]];
+        let samples: Vec<Sample> = classes.into_iter().flatten().map(&mut point).collect();
+        let kernel = Kernel::Gaussian { gamma: stream.log_range(0.1, 50.0) };
+        let problem = Problem::new(&samples, kernel).unwrap();
+        let solution = problem.solve(&settings(1e-8)).unwrap();
+        let converged = [Some(solution.status), solution.ends.smo, solution.ends.interior_point];
+        if converged.contains(&Some(Status::Converged)) {
+            assert!(solution.relative_gap <= 1e-8, "{case}: {solution:?}");
+        }
+    }
+}

@@ -110,6 +110,9 @@ fn climb_to<'a>(
         }
         if second.relative_gap() <= tolerance {
             ends.note(fallback, Status::Converged);
+        } else if end == Status::Converged {
+            // By its own numbers, of which large penalties leave fewer digits than it took them to have.
+            ends.note(fallback, Status::Stalled);
         }
         if second.relative_gap() < certificate.relative_gap() {
             (state, certificate, rung) = (other, second, fallback);
