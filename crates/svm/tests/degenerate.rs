@@ -1,8 +1,8 @@
 //! Hard inputs: no panic, no NaN, bounded work, and an honest ending.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
-use crate::support::{Stream, settings};
-use cloudtouch_geom::{Covariance, Point3, UncertainPoint};
+use crate::support::{Stream, settings, solver};
+use cloudtouch_geom::{Covariance, Point3, UncertainPoint, Vector3};
 use cloudtouch_svm::{
     Class, Classifier, Kernel, Problem, Rung, Sample, Settings, Solution, Status,
 };
@@ -215,6 +215,32 @@ fn what_is_said_to_have_converged_is_within_its_tolerance() {
         let converged = [Some(solution.status), solution.ends.smo, solution.ends.interior_point];
         if converged.contains(&Some(Status::Converged)) {
             assert!(solution.relative_gap <= 1e-8, "{case}: {solution:?}");
+        }
+    }
+}
+
+/// The squares of what it is clipped by vanished, so that its cone vectors were thousands of times too long, and
+/// the dual above every primal.
+#[test]
+fn a_start_of_next_to_nothing_is_feasible() {
+    let mut stream = Stream::new(29);
+    for case in 0..60 {
+        let mut along_a_line = |k: u32| {
+            let class = if k < 4 { Class::A } else { Class::B };
+            let std = if k.is_multiple_of(2) { 0.0 } else { stream.log_range(1e-3, 1e2) };
+            let at = [stream.unit(), 0.0, 0.0];
+            Sample { radius: 1e-6, ..sample(at, class, std, stream.log_range(1e-4, 1e2)) }
+        };
+        let samples: Vec<Sample> = (0..10).map(&mut along_a_line).collect();
+        let problem = Problem::new(&samples, Kernel::Gaussian { gamma: 1.0 }).unwrap();
+        let cold = problem.solve(&settings(1e-6)).unwrap();
+        let mut start = cold.clone();
+        start.alpha.fill(f64::MIN_POSITIVE);
+        start.v.fill(Vector3::repeat(1e-310));
+        let warm = solver(&settings(1e-6)).solve_from(&problem, &start);
+        assert!(warm.dual <= cold.primal * (1.0 + 1e-9), "{case}: {} {}", warm.dual, cold.primal);
+        for (v, alpha) in warm.v.iter().zip(&warm.alpha) {
+            assert!(v.norm() <= 1e-6 * alpha * (1.0 + 1e-9), "{case}: {} {alpha}", v.norm());
         }
     }
 }

@@ -21,7 +21,7 @@ pub(crate) fn ball_minimiser(m: &Vector3, h: &Vector3, radius: f64) -> Vector3 {
         return if length <= m[0] * radius { h / m[0] } else { h * (radius / length) };
     }
     let free = at(0.0);
-    if free.norm() <= radius {
+    if length_of(&free) <= radius {
         return free;
     }
     let mut mu = (length / radius - m[0]).max(0.0);
@@ -45,8 +45,18 @@ pub(crate) fn ball_minimiser(m: &Vector3, h: &Vector3, radius: f64) -> Vector3 {
 
 /// `p`, shortened to `radius` when it is longer.
 pub(crate) fn clip_to_ball(p: &Vector3, radius: f64) -> Vector3 {
-    let norm = p.norm();
+    let norm = length_of(p);
     if norm > radius { p * (radius / norm) } else { *p }
+}
+
+/// Below it the squares of what a vector is made of lose digits, and vanish.
+const SQUARABLE: f64 = 1e-145;
+
+/// How long a vector is, however short.
+fn length_of(p: &Vector3) -> f64 {
+    let norm = p.norm();
+    let largest = p.amax();
+    if norm < SQUARABLE && largest > 0.0 { (p / largest).norm() * largest } else { norm }
 }
 
 #[cfg(test)]
@@ -54,6 +64,17 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn what_is_too_short_to_be_squared_is_clipped_too() {
+        for (at, radius) in [(1e-304, f64::MIN_POSITIVE), (1e-160, 1e-170), (-1e-200, 1e-200)] {
+            let clipped = clip_to_ball(&Vector3::repeat(at), radius);
+            let expected = radius / 3_f64.sqrt() * at.signum();
+            assert!((clipped / expected - Vector3::repeat(1.0)).amax() < 1e-9, "{at} {clipped}");
+            let within = Vector3::repeat(0.5 * at.signum() * radius);
+            assert_eq!(clip_to_ball(&within, radius), within);
+        }
+    }
 
     proptest! {
         #[test]
