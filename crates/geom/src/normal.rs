@@ -29,9 +29,9 @@ pub fn upper_tail(z: f64) -> f64 {
 /// Probability that a normal variable with this mean and standard deviation, whose sign does not matter, is below
 /// zero.
 ///
-/// A standard deviation of zero gives the step function: 1 below zero, ½ at zero, 0 above.
+/// A standard deviation of zero gives the step function: 1 below zero, ½ at zero, 0 above. NaN in gives NaN out.
 pub fn below_zero(mean: f64, std: f64) -> f64 {
-    if mean == 0.0 {
+    if mean == 0.0 && !std.is_nan() {
         0.5
     } else {
         // A zero `std` divides to ±infinity, which is the step wanted.
@@ -79,6 +79,14 @@ mod tests {
     fn a_deviation_of_minus_nothing_is_none() {
         for std in [0.0, -0.0] {
             assert_eq!([-1.0, 0.0, 1.0].map(|mean| below_zero(mean, std)), [1.0, 0.5, 0.0]);
+        }
+    }
+
+    /// It was ½ where the mean was exactly zero, as of a point on the surface.
+    #[test]
+    fn a_deviation_that_is_no_number_tells_nothing() {
+        for mean in [-1.0, 0.0, -0.0, 1.0, f64::INFINITY, f64::NAN] {
+            assert!(below_zero(mean, f64::NAN).is_nan(), "{mean}");
         }
     }
 
