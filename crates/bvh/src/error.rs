@@ -1,13 +1,16 @@
 //! What can be wrong with the primitives, the settings or the pose.
 
+use cloudtouch_geom::message::number;
+
 /// Why a tree could not be built, changed or traversed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TreeError {
     /// A coordinate is NaN, infinite, or so large that the side of a box leaves the range of `f32`.
     #[error(
-        "primitive {index} has the coordinate {value}: coordinates must be finite and below 1e37 \
-         in magnitude; drop missing returns before building"
+        "primitive {index} has the coordinate {}: coordinates must be finite and below 1e37 in \
+         magnitude; drop missing returns before building",
+        number(*value)
     )]
     Coordinate {
         /// Index of the primitive.
@@ -17,8 +20,9 @@ pub enum TreeError {
     },
     /// A covariance has an entry that is not finite or too large.
     #[error(
-        "the covariance of primitive {index} has the entry {value}: entries must be finite and \
-         below 1e74 in magnitude"
+        "the covariance of primitive {index} has the entry {}: entries must be finite and below \
+         1e74 in magnitude",
+        number(*value)
     )]
     Covariance {
         /// Index of the primitive.
@@ -28,8 +32,9 @@ pub enum TreeError {
     },
     /// How far the surface of a primitive reaches has an entry that is not finite or too large.
     #[error(
-        "the extent of primitive {index} has the entry {value}: entries must be finite and below 1e74 in \
-         magnitude"
+        "the extent of primitive {index} has the entry {}: entries must be finite and below 1e74 in \
+         magnitude",
+        number(*value)
     )]
     Extent {
         /// Index of the primitive.
@@ -38,7 +43,10 @@ pub enum TreeError {
         value: f64,
     },
     /// A weight is negative or not finite.
-    #[error("primitive {index} has the weight {value}: weights must be finite and not negative")]
+    #[error(
+        "primitive {index} has the weight {}: weights must be finite and not negative",
+        number(*value)
+    )]
     Weight {
         /// Index of the primitive.
         index: usize,
@@ -46,7 +54,7 @@ pub enum TreeError {
         value: f64,
     },
     /// A setting is out of range.
-    #[error("the setting `{name}` is {value}: it must be {expected}")]
+    #[error("the setting `{name}` is {}: it must be {expected}", number(*value))]
     Setting {
         /// Name of the field.
         name: &'static str,
@@ -83,8 +91,9 @@ pub enum TreeError {
     },
     /// A leaf bound is negative or NaN, or a shift or a reach infinite.
     #[error(
-        "the bounds of leaf {leaf} are std {std}, shift {shift} and reach {reach}: all must be zero \
-         or more, shift and reach finite"
+        "the bounds of leaf {leaf} are std {}, shift {} and reach {}: all must be zero or more, shift \
+         and reach finite",
+        number(*std), number(*shift), number(*reach)
     )]
     LeafBounds {
         /// Index of the leaf's node.

@@ -294,6 +294,21 @@ fn a_tree_built_with_bounds_is_one_that_is_given_them() {
     assert!(matches!(refused, Err(TreeError::Coordinate { index: 1, .. })));
 }
 
+/// They were spelled in all of their digits, three hundred at most.
+#[test]
+fn numbers_in_messages_are_short() {
+    let settings = TreeSettings::default();
+    let message = |point| {
+        let refused = Tree::build(vec![Primitive::point(point)], &settings);
+        refused.unwrap_err().to_string()
+    };
+    let far = message(UncertainPoint::exact(Point3::new(0.0, -1e300, 0.0)));
+    assert!(far.starts_with("primitive 0 has the coordinate -1e300: "), "{far}");
+    let covariance = Covariance::isotropic(1e200);
+    let blurred = message(UncertainPoint { mean: Point3::origin(), covariance });
+    assert!(blurred.contains("has the entry 1e200: ") && blurred.len() < 120, "{blurred}");
+}
+
 /// A return from far away stretched the box of the root, and turned every cut below.
 #[test]
 fn what_is_far_leaves_the_tree_over_the_rest_as_it_is() {
