@@ -23,6 +23,39 @@ const NOISY_SHARE: f64 = 0.05;
 ///
 /// Where the noise is larger than the spacing, the surface at a point is fitted to hundreds of others,
 /// and its neighbours tell nothing else: it is enough to ask for it every two spacings.
+///
+/// ```
+/// use cloudtouch_noise::geom::{Covariance, Point3};
+/// use cloudtouch_noise::{
+///     Neighborhoods, NoiseModel, Representatives, Scratch, SensorNoise, spacings_at,
+/// };
+///
+/// // A floor of 60 by 60 points, 1 cm apart, each known to 4 cm; every other one was measured 3 cm too high.
+/// let height = |i: i32| if i % 2 == 0 { 0.03 } else { 0.0 };
+/// let points: Vec<Point3> = (0..3600)
+///     .map(|i| Point3::new(0.01 * f64::from(i / 60), 0.01 * f64::from(i % 60), height(i)))
+///     .collect();
+/// let sensor = SensorNoise::uniform(Covariance::isotropic(0.04_f64.powi(2)), points.len());
+/// let cloud = Neighborhoods::new(points)?;
+///
+/// // Some hundred points from all over it tell whether the noise exceeds the spacing.
+/// let sample: Vec<usize> = (0..cloud.points().len()).step_by(37).collect();
+/// let spacings = spacings_at(&cloud, sample.iter().copied());
+/// let kept = Representatives::choose(&cloud, &sensor, (&sample, &spacings))?
+///     .ok_or("every point stands for itself: refine them all")?;
+/// assert!(kept.indices().len() < 1200);
+///
+/// // The surface is fitted to all points, but asked for at these alone.
+/// let (model, mut scratch) = (NoiseModel::default(), Scratch::default());
+/// for &index in kept.indices() {
+///     let index = index as usize;
+///     let refined = model
+///         .refine_representative(index, &cloud, &kept, &sensor, f64::INFINITY, &mut scratch);
+///     let normal = refined.normal.ok_or("no surface here")?;
+///     assert!(refined.point.covariance.std_along(&normal) < 0.04);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Representatives {
     indices: Vec<u32>,
