@@ -62,7 +62,7 @@ impl Mesh {
     }
 
     /// How far (m) a finite place in the local frame is from the surface.
-    pub(super) fn distance(&self, local: &Point3) -> f64 {
+    pub(crate) fn distance(&self, local: &Point3) -> f64 {
         (local - self.nearest(local).0).norm()
     }
 

@@ -13,6 +13,7 @@ use crate::cloud::{Cloud, Surfel};
 use crate::judge::MOST_DEVIATIONS;
 use crate::mesh::{Mesh, Sides};
 
+use super::deepest_first::DeepestFirst;
 use crate::search::wrench::{Wrench, force_at};
 
 /// The point of a cloud that is most clearly inside a closed mesh.
@@ -68,6 +69,16 @@ pub(crate) struct Looked {
     pub leaves_prepared: usize,
 }
 
+/// A leaf of a cloud that may hold a point inside a mesh.
+#[derive(Clone, Copy)]
+struct LeafWithin {
+    leaf: NodeId,
+    /// In the frame of the mesh.
+    middle: Point3,
+    /// From there to its points at most, m.
+    reach: f64,
+}
+
 /// Looks for points of a cloud inside the mesh it is asked about, until one is clearly so, the time is
 /// over, or `is_enough` of an upper bound on the deviations, whatever the search between the surfaces finds; finds nothing where neither body is a mesh.
 pub(crate) fn look_inside(
@@ -102,14 +113,20 @@ fn deepest(
     let mut deepest = None;
     // PERF: what is deepest comes first, since a point that is clearly inside spares all others their fits.
     let mut sides = Sides::of(mesh);
-    let mut leaves = looked.leaves_within(cloud, (mesh, &mut sides), mesh_from_cloud, clock);
-    leaves.sort_by(|(p, _), (q, _)| q.total_cmp(p));
+    let leaves = looked.leaves_within(cloud, mesh, mesh_from_cloud, clock).into_iter();
+    let (inside, others): (Vec<_>, Vec<_>) =
+        leaves.partition(|leaf| mesh.is_surely_inside(&leaf.middle));
+    let middles: Vec<Point3> = inside.iter().map(|leaf| leaf.middle).collect();
+    let in_order = DeepestFirst::new(mesh, &middles).map(|at| inside[at]).chain(others);
     // PERF: of a leaf that may hold a point inside, most hold none: these need no fit.
     let mut clear = Sides::of(mesh);
     let mut scratch = Scratch::default();
-    for (_, leaf) in leaves {
+    for LeafWithin { leaf, middle, reach } in in_order {
         if looked.deviations() >= MOST_DEVIATIONS {
             break;
+        }
+        if sides.are_clear_around(&middle, reach) {
+            continue;
         }
         looked.is_cut_short |=
             clock.is_over() || is_enough(looked.deviations_given(MOST_DEVIATIONS));
@@ -180,15 +197,14 @@ impl Looked {
         of_inside.unwrap_or_else(Wrench::zeros)
     }
 
-    /// The leaves that may hold a point inside, and how deep in (m) their middles are, as far as the
-    /// surroundings tell.
+    /// The leaves that may hold a point inside, as far as their surroundings tell.
     fn leaves_within(
         &mut self,
         cloud: &Cloud,
-        (mesh, sides): (&Mesh, &mut Sides<'_>),
+        mesh: &Mesh,
         mesh_from_cloud: &Pose,
         clock: &Clock,
-    ) -> Vec<(f64, NodeId)> {
+    ) -> Vec<LeafWithin> {
         let mut leaves = Vec::new();
         cloud.tree().visit_nodes(|node| {
             self.nodes_visited += 1;
@@ -199,17 +215,13 @@ impl Looked {
             let obb = node.obb();
             let middle = mesh_from_cloud.transform_point(&obb.centre);
             let reach = obb.radius() + node.shift();
-            // Above the leaves it costs less to go on than to look closer.
-            if !node.is_leaf() {
-                let is_clear = mesh.is_surely_clear_of(&middle, reach);
-                return if is_clear { Visit::Prune } else { Visit::Descend };
+            if mesh.is_surely_clear_of(&middle, reach) {
+                return Visit::Prune;
             }
-            if !sides.are_clear_around(&middle, reach) {
-                let depth = || (middle - mesh.nearest(&middle).0).norm();
-                let depth = if mesh.is_surely_inside(&middle) { depth() } else { 0.0 };
-                leaves.push((depth, node.id()));
+            if node.is_leaf() {
+                leaves.push(LeafWithin { leaf: node.id(), middle, reach });
             }
-            Visit::Prune
+            Visit::Descend
         });
         leaves
     }

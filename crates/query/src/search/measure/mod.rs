@@ -1,5 +1,6 @@
 //! How near the surfaces are, and how deep one body is inside the other.
 
 pub(super) mod beyond;
+mod deepest_first;
 pub(super) mod inside;
 pub(super) mod nearest;
