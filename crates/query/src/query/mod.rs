@@ -8,6 +8,7 @@ mod classify;
 mod estimate;
 mod interval;
 mod misclassified;
+mod narrowing;
 mod patches;
 mod places;
 mod poses;
