@@ -90,7 +90,7 @@ fn bad_cases_keep_their_place_and_the_rest_goes_on() {
     }
     assert_eq!(lines.last().unwrap()["verdict"], "free");
     let table = inputs.run(&["batch", "cases.json"]).quiet(1).stdout();
-    assert!(table.contains("1 answers, 21 errors"), "{table}");
+    assert!(table.contains("1 answer, 21 errors"), "{table}");
 }
 
 #[test]

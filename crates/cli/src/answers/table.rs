@@ -118,7 +118,10 @@ impl Table {
     }
 
     pub(crate) fn foot(&self) -> String {
-        let mut text = format!("{} answers, {} errors", self.answers, self.errors);
+        let counted =
+            |count: usize, of: &str| format!("{count} {of}{}", if count == 1 { "" } else { "s" });
+        let (answers, errors) = (counted(self.answers, "answer"), counted(self.errors, "error"));
+        let mut text = format!("{answers}, {errors}");
         if self.answers > 0 {
             text += &format!(
                 "; median query {:.2} ms, median preparation {:.1} ms",
@@ -128,9 +131,9 @@ impl Table {
         }
         text += "\n";
         for Warned { id, first, count } in &self.warned {
-            let cases = if *count == 1 { "case" } else { "cases" };
+            let cases = counted(*count, "case");
             let (id, first) = (print::one_line(id), remedies::warning(first));
-            text += &format!("warning in {count} {cases}, first {id}: {first}\n");
+            text += &format!("warning in {cases}, first {id}: {first}\n");
         }
         text
     }

@@ -59,6 +59,7 @@ pub(crate) enum Shape {
     Cap,
     Wedge,
     CrossingSheet,
+    #[cfg(feature = "clarabel")]
     Blob,
 }
 
@@ -89,6 +90,7 @@ impl Scene {
                     (Class::A, Shape::Cap) => self.gap + 0.6 * (x * x + y * y),
                     (Class::A, Shape::Wedge) => self.gap + 0.8 * x.abs(),
                     (Class::A, Shape::CrossingSheet) => self.gap + 0.4 * (x + 0.5),
+                    #[cfg(feature = "clarabel")]
                     (Class::A, Shape::Blob) => self.gap + 0.3 * stream.unit(),
                 };
                 let covariance = self.covariance(stream);
