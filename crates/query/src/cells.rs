@@ -27,13 +27,13 @@ impl Cells {
         // PERF: most searches find few, and put none in cells.
         let new = if count == FEW { 0..count } else { count - 1..count };
         for number in new.filter(|_| count >= FEW) {
-            self.cells.entry(self.cell(&self.places[number], 0.0)).or_default().push(number);
+            self.cells.entry(cell(&self.places[number], 0.0, self.size)).or_default().push(number);
         }
     }
 
     /// Calls `visit` with the numbers of all places within a distance (m) of one, and of some that are not.
     pub(crate) fn visit_near(&self, place: &Point3, reach: f64, mut visit: impl FnMut(usize)) {
-        let (low, high) = (self.cell(place, -reach), self.cell(place, reach));
+        let [low, high] = [-reach, reach].map(|by| cell(place, by, self.size));
         let rows = (high[0].saturating_sub(low[0])).saturating_add(1) as f64
             * (high[1].saturating_sub(low[1])).saturating_add(1) as f64;
         if self.places.len() < FEW || rows > self.cells.len() as f64 {
@@ -46,11 +46,11 @@ impl Cells {
             }
         }
     }
+}
 
-    /// That of a place that is moved so far along all axes.
-    fn cell(&self, place: &Point3, by: f64) -> [i64; 3] {
-        [place.x, place.y, place.z].map(|x| ((x + by) / self.size).floor() as i64)
-    }
+/// The cell, of edges so long (m), of a place that is moved so far along all axes.
+pub(crate) fn cell(place: &Point3, by: f64, size: f64) -> [i64; 3] {
+    [place.x, place.y, place.z].map(|x| ((x + by) / size).floor() as i64)
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use cloudtouch_geom::{Point3, Vector3};
+use cloudtouch_geom::{Point3, Vector3, bounding_box};
+
+use crate::cells::cell;
 
 /// So many cells side by side are as long as the median reach: where they are fewer, many pieces lie on the rim
 /// of what one reaches; where they are more, asking the cells takes longer than asking what is in them.
@@ -60,7 +62,7 @@ impl Places {
     pub(super) fn new(heard: &[Heard]) -> Self {
         let size = (median_reach(heard) / CELLS_OF_REACH).max(f64::MIN_POSITIVE);
         let mut by_name: Vec<(Name, Heard)> =
-            heard.iter().map(|one| (name(&one.place, 0.0, size), *one)).collect();
+            heard.iter().map(|one| (cell(&one.place, 0.0, size), *one)).collect();
         by_name.sort_unstable_by(|(p, one), (q, other)| {
             let along = |k: usize| one.place[k].total_cmp(&other.place[k]);
             p.cmp(q).then_with(|| along(0)).then_with(|| along(1)).then_with(|| along(2))
@@ -91,7 +93,7 @@ impl Places {
     /// Adds the cells that pieces of a cell may reach.
     fn add_cells_about<'c>(&'c self, pieces: &[Heard], near: &mut Vec<&'c Cell>) {
         let ends =
-            |by: f64| pieces.iter().map(move |one| name(&one.place, by * one.reach, self.size));
+            |by: f64| pieces.iter().map(move |one| cell(&one.place, by * one.reach, self.size));
         let (mut low, mut high) = ([i64::MAX; 3], [i64::MIN; 3]);
         for k in 0..3 {
             ends(-1.0).for_each(|end| low[k] = low[k].min(end[k]));
@@ -137,13 +139,11 @@ impl Places {
 impl Cell {
     /// Of pieces, the first of which has that number.
     fn new(pieces: &[(Name, Heard)], begin: usize) -> Self {
-        let first = pieces[0].1.place;
-        let (mut low, mut high, mut clearness) = (first, first, [0.0; 2]);
-        for (_, one) in pieces {
-            low = low.inf(&one.place);
-            high = high.sup(&one.place);
-            clearness = [0, 1].map(|side| clearness[side] + one.clearness[side]);
-        }
+        let places = pieces.iter().map(|(_, one)| &one.place);
+        let (low, high) = bounding_box(places).unwrap_or_default();
+        let clearness = pieces
+            .iter()
+            .fold([0.0; 2], |sums, (_, one)| [0, 1].map(|side| sums[side] + one.clearness[side]));
         Self { name: pieces[0].0, pieces: begin..begin + pieces.len(), low, high, clearness }
     }
 
@@ -156,11 +156,6 @@ impl Cell {
     fn farthest_from(&self, place: &Point3) -> Vector3 {
         (place - self.low).abs().sup(&(place - self.high).abs())
     }
-}
-
-/// That of the cell of a place that is moved so far along all axes.
-fn name(place: &Point3, by: f64, size: f64) -> Name {
-    [place.x, place.y, place.z].map(|x| ((x + by) / size).floor() as i64)
 }
 
 /// Half of them reach no farther, m.

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-use cloudtouch_geom::Point3;
+use cloudtouch_geom::{Point3, bounding_box};
 
 use crate::mesh::Mesh;
 
@@ -41,7 +41,8 @@ impl<'a> DeepestFirst<'a> {
             let of = |at: usize| waiting(mesh.distance(&self.places[at]), true, at..at + 1);
             return self.waiting.extend(places.map(of));
         }
-        let middle = center(&self.places[places.clone()]);
+        let (low, high) = bounding_box(&self.places[places.clone()]).unwrap_or_default();
+        let middle = nalgebra::center(&low, &high);
         let (depth, size) = (mesh.distance(&middle), places.len().div_ceil(PARTS));
         for begin in places.clone().step_by(size) {
             let part = begin..places.end.min(begin + size);
@@ -70,14 +71,6 @@ impl Iterator for DeepestFirst<'_> {
 
 fn waiting(depth: f64, is_told: bool, places: Range<usize>) -> Waiting {
     (depth.to_bits(), Reverse(is_told), Reverse(places.start), places.end)
-}
-
-/// Of the box around places, along the axes.
-fn center(places: &[Point3]) -> Point3 {
-    let first = places[0];
-    let (low, high) =
-        places.iter().fold((first, first), |(low, high), place| (low.inf(place), high.sup(place)));
-    nalgebra::center(&low, &high)
 }
 
 #[cfg(test)]

@@ -125,11 +125,11 @@ fn deepest(
         if looked.deviations() >= MOST_DEVIATIONS {
             break;
         }
-        if sides.are_clear_around(&middle, reach) {
+        looked.is_cut_short |= clock.is_over();
+        if !looked.is_cut_short && sides.are_clear_around(&middle, reach) {
             continue;
         }
-        looked.is_cut_short |=
-            clock.is_over() || is_enough(looked.deviations_given(MOST_DEVIATIONS));
+        looked.is_cut_short |= is_enough(looked.deviations_given(MOST_DEVIATIONS));
         if looked.is_cut_short {
             break;
         }
