@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use crate::common::{bumpy_sheet, noisy};
 use cloudtouch_bvh::{
     LeafBounds, NodeId, Primitive, Sought, SurfaceFlow, SurfaceOutcome, Tree, TreeError,
-    TreeSettings, visit_surfaces,
+    TreeSettings, urgency_of_roots, visit_surfaces,
 };
 use cloudtouch_geom::{
     Covariance, Drift, Motion, Point3, Pose, UncertainPoint, UnitVector3, Vector3, seed,
@@ -190,6 +190,18 @@ fn a_pose_that_is_not_finite_is_refused_and_an_empty_tree_has_no_pairs() {
     let error =
         visit_surfaces((&some, &some), &bad, sought(6.0), |_| SurfaceFlow::Stop).unwrap_err();
     assert!(matches!(error, TreeError::Pose { .. }));
+}
+
+/// It left nothing out, so that all pairs of leaves were visited.
+#[test]
+fn deviations_that_are_no_number_are_refused() {
+    let some = small_leaves(bumpy_sheet(1, 20, Vector3::zeros()));
+    let (pose, asked) = (Pose::identity(), sought(f64::NAN));
+    let search = visit_surfaces((&some, &some), &pose, asked, |_| SurfaceFlow::Stop).map(drop);
+    let roots = urgency_of_roots((&some, &some), &pose, asked).map(drop);
+    for found in [search, roots] {
+        assert!(matches!(found, Err(TreeError::Setting { name: "within", .. })), "{found:?}");
+    }
 }
 
 proptest! {

@@ -56,7 +56,7 @@ pub enum SurfaceFlow<'a> {
 /// An empty tree has no pairs, and nothing was left out; it is for the caller to say what that means.
 ///
 /// # Errors
-/// When the pose or the margin is not finite, or the margin is negative.
+/// When the pose or the margin is not finite, the margin is negative, or `within` is not a number.
 pub fn visit_surfaces<'a>(
     (a, b): (&'a Tree, &'a Tree),
     a_from_b: &Pose,
@@ -123,9 +123,12 @@ fn check(a_from_b: &Pose, sought: &Sought) -> Result<(), TreeError> {
     if let Some(value) = a_from_b.non_finite_entry() {
         return Err(TreeError::Pose { value });
     }
-    if (0.0..f64::INFINITY).contains(&sought.margin) {
-        return Ok(());
+    let setting = |name, value, expected| Err(TreeError::Setting { name, value, expected });
+    if !(0.0..f64::INFINITY).contains(&sought.margin) {
+        return setting("margin", sought.margin, "a length in metres, at least 0");
     }
-    let expected = "a length in metres, at least 0";
-    Err(TreeError::Setting { name: "margin", value: sought.margin, expected })
+    if sought.within.is_nan() {
+        return setting("within", sought.within, "a number of deviations");
+    }
+    Ok(())
 }
