@@ -6,7 +6,7 @@ use std::time::Duration;
 use cloudtouch::geom::Pose;
 use cloudtouch::{Path, PoseDistribution, Query as Checked, QuerySettings, Safeguards};
 use nalgebra::Matrix4;
-use numpy::{PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
@@ -237,6 +237,29 @@ impl Query {
             py.check_signals()?;
         }
         columns(py, &rows)
+    }
+
+    #[pyo3(signature = (a, b, poses, /))]
+    fn are_free<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Body>,
+        b: &Bound<'py, Body>,
+        poses: PyReadonlyArray3<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let (a, b) = (a.get().now(py)?, b.get().now(py)?);
+        let poses = all_rigid(&poses).into_iter().collect::<PyResult<Vec<Pose>>>()?;
+        let ask = |pose: &Pose| self.checked.is_free(&*a, &*b, pose);
+        let mut free = Vec::with_capacity(poses.len());
+        for poses in poses.chunks(POSES_AT_ONCE) {
+            let answers: Vec<_> = on_all_threads(py, || poses.par_iter().map(ask).collect())?;
+            for answer in answers {
+                let place = || format!("poses[{}]", free.len());
+                free.push(answer.map_err(|e| refused_for(place(), e))?);
+            }
+            py.check_signals()?;
+        }
+        Ok(free.into_pyarray(py))
     }
 }
 

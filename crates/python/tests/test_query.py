@@ -33,6 +33,20 @@ def test_a_batch_says_what_single_queries_say(bodies, request):
         np.testing.assert_array_equal(batch.contact_normal[row], nowhere if first is None else first.normal)
 
 
+@pytest.mark.parametrize("bodies", [("floor", "plate"), ("table", "parcel")])
+def test_poses_that_are_free_are_those_of_a_batch(bodies, request):
+    a, b = (request.getfixturevalue(name) for name in bodies)
+    poses = np.stack([lifted(z) for z in np.tile(HEIGHTS, 30)])
+    free = ct.Query().are_free(a, b, poses)
+    assert free.dtype == np.bool_
+    np.testing.assert_array_equal(free, ct.Query().run_batch(a, b, poses).verdict == "free")
+    assert 0 < free.sum() < len(poses)
+    assert len(ct.Query().are_free(a, b, np.empty((0, 4, 4)))) == 0
+    poses[1050, 2, 3] = 1e11
+    with pytest.raises(ct.CloudtouchError, match=r"^poses\[1050\]: "):
+        ct.Query().are_free(a, b, poses)
+
+
 def test_more_poses_than_are_asked_about_at_once(floor, plate):
     heights = np.tile(np.linspace(0.006, 0.3, 110), 10)
     poses = np.stack([lifted(z) for z in heights])

@@ -42,6 +42,12 @@ fn says_the_same_at_any_detail(
     prop_assert!(low <= full.collision_probability && full.collision_probability <= high);
     // What is in collision for sure is not free for less.
     prop_assert!(full.verdict != Verdict::InCollision || verdict.collision_probability > accept);
+    let free = of(Detail::Free);
+    let is_free = |verdict: Verdict| verdict == Verdict::Free;
+    prop_assert_eq!(is_free(free.verdict), is_free(full.verdict));
+    let [low, high] = free.bounds;
+    prop_assert!(low <= full.collision_probability && full.collision_probability <= high);
+    prop_assert!(free.stats.leaf_pairs <= verdict.stats.leaf_pairs);
     Ok(())
 }
 
@@ -95,6 +101,25 @@ fn that_a_face_hovers_is_told_by_what_is_nearest() {
     assert!(verdict.collision_probability <= high && high < 0.1);
 }
 
+/// Deep in one another most places say that two bodies are not free, and few of them that they are in collision.
+#[test]
+fn that_bodies_are_not_free_is_told_by_the_first_place_that_says_so() {
+    let shape = scene::cuboid([0.2; 3]);
+    let (a, b) = (cloud(&shape, 0.002, 1), cloud(&shape, 0.002, 2));
+    let query = |detail| Query::new(QuerySettings { detail, ..QuerySettings::default() }).unwrap();
+    let (mut pairs, turns) = ([0, 0], (0..20).map(f64::from));
+    for turn in turns {
+        let pose = Pose::from_translation_rpy(Vector3::new(0.08, 0.06, 0.05), [turn, 0.3, 0.1]);
+        let of = |detail| query(detail).run(&a, &b, &pose).unwrap();
+        let (verdict, free) = (of(Detail::Verdict), of(Detail::Free));
+        assert_ne!(free.verdict, Verdict::Free);
+        assert!(!query(Detail::Full).is_free(&a, &b, &pose).unwrap());
+        pairs[0] += free.stats.leaf_pairs;
+        pairs[1] += verdict.stats.leaf_pairs;
+    }
+    assert!(2 * pairs[0] < pairs[1], "{pairs:?}");
+}
+
 /// A distance is not looked for where it is not wanted; what hangs on it is.
 #[test]
 fn two_meshes_say_the_same_at_any_detail() {
@@ -103,7 +128,7 @@ fn two_meshes_say_the_same_at_any_detail() {
     let far = scene::moved(&cube, &at(3.0, 0.0, 0.0));
     let two = mesh(&scene::assemble([far, scene::cuboid([0.02; 3])]));
     let cube = mesh(&cube);
-    for detail in [Detail::Verdict, Detail::Probability, Detail::Full] {
+    for detail in [Detail::Free, Detail::Verdict, Detail::Probability, Detail::Full] {
         let query = Query::new(QuerySettings { detail, ..QuerySettings::default() }).unwrap();
         let within = |z: f64, margin| query.within(&cube, &cube, &at(0.0, 0.0, z), margin).unwrap();
         for (z, probability) in [(0.0999, 1.0), (0.1, 1.0), (0.1001, 0.0), (0.15, 0.0)] {

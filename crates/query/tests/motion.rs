@@ -233,10 +233,13 @@ fn check_random_motion(index: u64, samples: u32) -> usize {
         assert!(swept.certified_free_until <= first.at.share);
     }
     // Asked for no more it says no less of whether the path is free.
-    let only = QuerySettings { detail: Detail::Verdict, ..QuerySettings::default() };
-    let only = Query::new(only).expect("good settings");
-    let only = only.sweep(&a, &b, &path, tolerance).expect("a good path");
-    assert_eq!(only.verdict == Verdict::Free, swept.verdict == Verdict::Free, "{index} {kinds:?}");
+    for detail in [Detail::Free, Detail::Verdict] {
+        let only = QuerySettings { detail, ..QuerySettings::default() };
+        let only = Query::new(only).expect("good settings");
+        let only = only.sweep(&a, &b, &path, tolerance).expect("a good path");
+        let are_free = [only.verdict, swept.verdict].map(|verdict| verdict == Verdict::Free);
+        assert_eq!(are_free[0], are_free[1], "{index} {kinds:?} {detail:?}");
+    }
     swept.stats.stretches
 }
 

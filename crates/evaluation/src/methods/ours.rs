@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 use cloudtouch::{
-    BodyRef, Cloud, DOUBT_KNOTS, Judge, MISCLASSIFIED_KNOTS, Mesh, Query, QuerySettings,
+    BodyRef, Cloud, DOUBT_KNOTS, Detail, Judge, MISCLASSIFIED_KNOTS, Mesh, Query, QuerySettings,
 };
 use cloudtouch_geom::{PointCloud, UnitVector3};
 use cloudtouch_testkit::family::Observation;
@@ -70,8 +70,8 @@ impl Ours {
     }
 
     fn cloud(&self, observation: &Observation) -> Result<Cloud> {
-        let cloud =
-            if self.sees_truth { prepared(&exact(observation)) } else { prepared(observation) }?;
+        let seen = if self.sees_truth { &exact(observation) } else { observation };
+        let cloud = prepared(seen)?;
         if self.is_refined { Ok(cloud.refined()?) } else { Ok(cloud) }
     }
 }
@@ -106,24 +106,22 @@ impl Method for Ours {
     fn prepare(&self, draw: &Draw<'_>) -> Result<Prepared> {
         let judge = (self.alter)(self.fitted.to_judge(draw.family, self.sees_truth));
         let query = Query::new(QuerySettings { judge, ..self.query })?;
-        let (a, b) = (self.cloud(draw.a)?, self.cloud(draw.b)?);
+        let (a, b, margin) = (self.cloud(draw.a)?, self.cloud(draw.b)?, self.margin);
         let mesh = Mesh::prepare(draw.mesh)?;
-        let margin = self.margin;
         Ok(Box::new(move |pair, a_from_b| {
-            let moving = pair.pick(BodyRef::from(&b), BodyRef::from(&mesh));
+            let (moving, start) = (pair.pick(BodyRef::from(&b), (&mesh).into()), Instant::now());
+            if query.settings().detail == Detail::Free {
+                let is_free = query.is_free(&a, moving, a_from_b)?;
+                return Ok(Some(Said::score(if is_free { 0.0 } else { 1.0 }, start)));
+            }
             if margin == 0.0 {
                 return Ok(Some(Said::from(&query.run(&a, moving, a_from_b)?)));
             }
-            let start = Instant::now();
             let (report, within) = query.within(&a, moving, a_from_b, margin)?;
-            let (probability, bounds) = (Some(within.probability), Some(within.bounds));
-            let evidence = report.evidence;
-            Ok(Some(Said {
-                probability,
-                bounds,
-                evidence,
-                ..Said::score(within.deviations, start)
-            }))
+            let mut said =
+                Said { evidence: report.evidence, ..Said::score(within.deviations, start) };
+            (said.probability, said.bounds) = (Some(within.probability), Some(within.bounds));
+            Ok(Some(said))
         }))
     }
 }

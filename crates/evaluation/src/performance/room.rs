@@ -21,10 +21,9 @@ poses is far (at least 10 cm apart), a third near (exact surfaces within 2 cm of
 overlap), a third deep (at least 5 cm of overlap). The methods take turns at each pose. The first answer is not \
 timed: it fills what is computed once for all poses. Of seven others the least time counts.
 
-- `ours`: clouds that were refined (`Cloud::refined`), as for a scene that many poses are tested in; `verdict \
-alone`: the same, asked for no more (`Detail::Verdict`), so that its probabilities end where the verdict is sure; \
-`not refined`: as prepared for a frame that is looked at a few times; `geometry alone`: refined, and no classifier \
-is trained, so that the rest is what training costs.
+- `ours`: refined clouds (`Cloud::refined`), as for a scene that many poses are tested in; `verdict alone`: no more is \
+asked (`Detail::Verdict`); `free or not`: even less (`Query::is_free`), yes or no as parry3d and capt say; `not \
+refined`: as for a frame that is looked at a few times; `geometry alone`: no classifier is trained, so what that costs.
 - `parry3d, exact meshes`: `intersection_test` on the surfaces that the clouds were drawn from, in about 10,000 \
 triangles each. No sensor knows them: it is told more than the others.
 - `distance`: the nearest point of the room for every point of the piano by kiddo, sought no farther than the \
@@ -72,9 +71,12 @@ fn ask(scene: &Scene, std: f64) -> Result<Vec<Timed>> {
     let geometry = Ours::new("ours, geometry alone")?.refined().without_classifier();
     let mut verdict = Ours::new("ours, verdict alone")?.refined();
     verdict.query.detail = Detail::Verdict;
-    let methods: [&dyn Method; 6] = [
+    let mut free = Ours::new("ours, free or not")?.refined();
+    free.query.detail = Detail::Free;
+    let methods: [&dyn Method; 7] = [
         &refined,
         &verdict,
+        &free,
         &Ours::new("ours, not refined")?,
         &geometry,
         &ExactMeshes(scene.meshes(POINTS)),
@@ -91,11 +93,11 @@ fn judged(timed: &[Timed], std: f64) -> Vec<Target> {
     let at = format!("10k × 10k points, {:.0} mm of noise", 1e3 * std);
     let of = |class| timed[0].seconds(Some(class));
     let [far, near, deep] = [Class::Far, Class::Near, Class::Deep].map(|c| median(&of(c)));
-    let [ours, meshes, distance, balls] = [0, 4, 5, 6].map(|i| median(&timed[i].seconds(None)));
+    let [ours, meshes, distance, balls] = [0, 5, 6, 7].map(|i| median(&timed[i].seconds(None)));
     let compared = |with: f64| format!("{} ({} to {})", ratio(ours / with), time(ours), time(with));
     let by_meshes = format!("{at}: median ≤ {} × parry3d on exact meshes", 2.0 * times);
     let by = |peer| format!("{at}: median ≤ 0.2 × {peer}");
-    let [refined, fresh] = [0, 2].map(|i| timed[i].prepare / (2 * POINTS) as f64);
+    let [refined, fresh] = [0, 3].map(|i| timed[i].prepare / (2 * POINTS) as f64);
     vec![
         within(&format!("{at}: far, median"), far, 15e-6 * times),
         within(&format!("{at}: near, median"), near, 500e-6 * times),

@@ -259,6 +259,31 @@ class Query:
         matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
         return Batch._of(self._query.run_batch(*native_pair(a, b), matrices, errors == "keep"))
 
+    def are_free(self, a: Body, b: Body, poses: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Which of many poses read as free, on all cores: ``run_batch(a, b, poses).verdict == "free"``, and sooner.
+
+        A pose is done with as soon as it is known not to be free, and no contacts are looked for.
+
+        Parameters
+        ----------
+        poses
+            (M, 4, 4): from the frame of ``b`` into that of ``a``, m.
+
+        Returns
+        -------
+        numpy.ndarray
+            (M,) of bool: true where the verdict is ``"free"``; false where it is any other.
+
+        Raises
+        ------
+        ValueError
+            ``poses`` has the wrong shape or type.
+        CloudtouchError
+            As :meth:`run`; the message names the first pose concerned, and there are no other answers.
+        """
+        matrices = _arrays.numbers(poses, "poses", (_arrays.FREE, 4, 4))
+        return self._query.are_free(*native_pair(a, b), matrices)
+
     def page(self, a: Body, b: Body, poses: npt.ArrayLike, *, title: str = "cloudtouch") -> Page:
         """Both bodies and the answers of :meth:`run`, to look at: a notebook shows it, :meth:`Page.save` writes it.
 

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 use crate::body::BodyRef;
 use crate::classifier::Clock;
 use crate::error::QueryError;
-use crate::query::{Detail, Query};
+use crate::query::Query;
 use crate::stats::Stats;
 
 use super::interval::Interval;
@@ -64,7 +64,7 @@ impl Sweep<'_> {
     /// Where no more is wanted than whether the path is free: asks about the poses given, and some between them,
     /// until one is not. It costs little beside a bound, and tells it of most paths that are not.
     fn look_ahead(&mut self) -> Result<(), QueryError> {
-        if self.query.settings().detail != Detail::Verdict {
+        if self.query.settings().decided_above().is_none() {
             return Ok(());
         }
         let segments = self.path.segments();
@@ -85,7 +85,7 @@ impl Sweep<'_> {
 
     /// Whether no more is wanted than that the path is not free, which is known.
     pub(super) fn knows_enough(&self) -> bool {
-        self.query.settings().detail == Detail::Verdict && self.tested.not_free_from.is_finite()
+        self.query.settings().decided_above().is_some() && self.tested.not_free_from.is_finite()
     }
 
     /// Halves stretches until none that wait is wanted.

@@ -36,9 +36,10 @@ impl Query {
     /// halved, down to `tolerance` as a share of the path; what is open then stays in the bounds. A path
     /// that stays near contact takes up to twice the inverse of the tolerance bounds, which is why that may
     /// be no finer than [`Self::LEAST_TOLERANCE`].
-    /// Poses that the path leads through are asked about where they may matter. With [`Detail::Verdict`](crate::Detail::Verdict) it ends
-    /// at the first pose that is found not to be free, wherever on the path, some of which are asked about
-    /// before anything is bounded: for who wants no more than to know whether the path is free.
+    /// Poses that the path leads through are asked about where they may matter. With [`Detail::Free`](crate::Detail::Free)
+    /// it ends at the first pose that is found not to be free, wherever on the path, some of which are asked about
+    /// before anything is bounded: for who wants no more than to know whether the path is free. So it does with
+    /// [`Detail::Verdict`](crate::Detail::Verdict), which tells of that pose whether it is in collision.
     ///
     /// What [`Self::run`] says of surface that no point stands for holds here too. What a depth image did not see
     /// is looked for at poses along a stretch, between which nothing moves by more than a twentieth of the smaller

@@ -46,10 +46,10 @@ impl Query {
         Self { settings: QuerySettings { detail, ..self.settings }, ..*self }
     }
 
-    /// The same, but a probability where the verdict alone is asked for, whose probability is one of many.
+    /// The same, but a probability where no more than the verdict is asked for, whose probability is one of many.
     pub(super) fn with_probability(&self) -> Self {
         match self.settings.detail {
-            Detail::Verdict => self.with_detail(Detail::Probability),
+            Detail::Free | Detail::Verdict => self.with_detail(Detail::Probability),
             Detail::Probability | Detail::Full => *self,
         }
     }

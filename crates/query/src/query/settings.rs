@@ -13,6 +13,10 @@ use crate::judge::Judge;
 /// How much of an answer is wanted: the less, the sooner it comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detail {
+    /// Whether the pair is free, and no more: as [`Self::Verdict`], but a search ends when the probability is surely
+    /// not below `reject`. The verdict is [`Free`](crate::Verdict::Free) where that of a whole report is; any other
+    /// may be another one there too. For planners: [`Query::is_free`](crate::Query::is_free).
+    Free,
     /// The verdict: a search ends when the probability is surely above `accept`, looks for no more than the nearest
     /// places where it is surely below `reject`, and asks no classifier that cannot change it. The probability is
     /// one of those that lead to that verdict, and its bounds are as wide as that leaves them. Without contacts,
@@ -101,6 +105,15 @@ impl Default for QuerySettings {
 }
 
 impl QuerySettings {
+    /// The probability beyond which no more is wanted, where the verdict alone is, or a part of it.
+    pub(crate) fn decided_above(&self) -> Option<f64> {
+        match self.detail {
+            Detail::Free => Some(self.reject),
+            Detail::Verdict => Some(self.accept),
+            Detail::Probability | Detail::Full => None,
+        }
+    }
+
     /// Checks every field.
     ///
     /// # Errors

@@ -5,7 +5,6 @@ use std::cell::Cell;
 use crate::judge::probability;
 use crate::search::{Course, Found, Looked, Progress, WITH_EXTENT, WITHOUT_EXTENT};
 
-use super::settings::Detail;
 use super::task::Task;
 
 /// What decides after each pair of leaves.
@@ -29,9 +28,9 @@ impl<'t> Steering<'t> {
         Self { looked, task, may_narrow: false, is_narrow, has_lost, told: Cell::new(None) }
     }
 
-    /// The same, but where the verdict alone is asked for no farther than it takes to tell that a pair is free.
+    /// The same, but where no more than the verdict is asked for no farther than it takes to tell that a pair is free.
     pub(super) fn as_asked(looked: &'t Looked, task: &'t Task<'t>) -> Self {
-        let may_narrow = task.settings.detail == Detail::Verdict;
+        let may_narrow = task.settings.decided_above().is_some();
         Self { may_narrow, ..Self::wide(looked, task) }
     }
 
@@ -84,8 +83,8 @@ pub(super) fn is_enough(deviations: f64, clearness: f64, task: &Task<'_>) -> boo
     let log_odds = judge.log_odds_by_place(deviations, clearness.ln_1p());
     // What the extent and a classifier could take off the odds is taken off.
     let [least, _] = judge.with_any_extent(log_odds);
-    let is_decided = || of(judge.revise(least, 0.0)) > settings.accept;
-    of(least) > settings.stop_above || settings.detail == Detail::Verdict && is_decided()
+    let is_above = |decided| of(judge.revise(least, 0.0)) > decided;
+    of(least) > settings.stop_above || settings.decided_above().is_some_and(is_above)
 }
 
 /// Whether a pair is free, over how many pieces the bodies are about as near and whatever a classifier says.

@@ -10,7 +10,6 @@ use crate::stats::Stats;
 
 use super::classify::ask_classifier;
 use super::misclassified::Misclassified;
-use super::settings::Detail;
 use super::steering::{Steering, is_enough};
 use super::task::Task;
 
@@ -134,10 +133,10 @@ fn search_beyond<'a>(
 fn is_in_doubt(by_geometry: f64, task: &Task<'_>) -> bool {
     let (settings, judge) = (task.settings, &task.judge);
     let of = |log_odds| probability(log_odds, settings.prior);
-    // Whatever a classifier says, the verdict is the same.
-    let is_settled = || {
+    // Whatever a classifier says, the answer is the same.
+    let is_settled = |decided| {
         of(judge.revise(by_geometry, f64::INFINITY)) < settings.reject
-            || of(judge.revise(by_geometry, 0.0)) > settings.accept
+            || of(judge.revise(by_geometry, 0.0)) > decided
     };
-    judge.is_open(by_geometry) && !(settings.detail == Detail::Verdict && is_settled())
+    judge.is_open(by_geometry) && !settings.decided_above().is_some_and(is_settled)
 }

@@ -67,7 +67,7 @@ impl Scene {
     /// one after the other, those whose boxes overlap most first, and those after it are not. Which one is
     /// found depends on nothing but the scene.
     ///
-    /// With [`Detail::Verdict`](crate::Detail::Verdict) it is known soonest. A deadline is that of each pair;
+    /// With [`Detail::Free`](crate::Detail::Free) it is known soonest. A deadline is that of each pair;
     /// [`Query::begun_now`] makes it that of all.
     #[must_use]
     pub fn check_first(&self, query: &Query) -> Option<PairAnswer> {
