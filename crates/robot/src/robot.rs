@@ -2,10 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
+use cloudtouch::SelfMesh;
 use cloudtouch::geom::Pose;
-use cloudtouch::{Mesh, SelfMesh};
 use cloudtouch_io::ReadLimits;
 
 use crate::at_fault;
@@ -199,7 +198,8 @@ impl Robot {
 
     /// The links where a camera saw them, for [`FilterSettings::robot`](cloudtouch::FilterSettings::robot):
     /// points inside, or within `padding` metres of the surface, are removed from its scan. `joints` are
-    /// those at the time of the *scan*; at those asked about the filter would remove what is in the way.
+    /// those at the time of the *scan*; at those asked about the filter would remove what is in the way. Meshes are
+    /// prepared for it by the first call, and shared with the next ones.
     ///
     /// # Errors
     /// As [`Self::link_poses`].
@@ -211,10 +211,8 @@ impl Robot {
     ) -> Result<Vec<SelfMesh>, JointsError> {
         let poses = self.tree.poses(&self.tree.positions(joints)?);
         let prepared = self.shapes.iter().filter_map(|shape| {
-            // It was prepared when the robot was read.
-            let mesh = Arc::new(Mesh::prepare(&shape.triangles).ok()?);
             let cloud_from_link = cloud_from_base.after(&poses[shape.link]);
-            Some(SelfMesh { mesh, cloud_from_link, padding })
+            Some(SelfMesh { mesh: shape.for_filters()?, cloud_from_link, padding })
         });
         Ok(prepared.collect())
     }

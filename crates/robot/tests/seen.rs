@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::support::{Arm, joints};
 use cloudtouch::geom::{Point3, PointCloud, Pose, TriangleMesh, Vector3};
@@ -120,4 +121,17 @@ fn verdict(
         RobotChecker::new(robot.clone(), body, *camera_from_base, Touching::Surroundings).unwrap();
     let query = Query::new(QuerySettings::default()).unwrap();
     around.check(&query, at).unwrap().verdict()
+}
+
+/// They were prepared for every scan anew: 2.4 s for ten links of 50,000 triangles.
+#[test]
+fn the_meshes_of_links_are_prepared_once_for_all_scans() {
+    let robot = Arm::default().robot();
+    let seen = |angle| robot.self_filter(&joints([angle; 6]), &Pose::identity(), PADDING).unwrap();
+    let (before, now) = (seen(0.0), seen(0.5));
+    assert!(before.len() == 5 && now.len() == 5);
+    for (before, now) in before.iter().zip(&now) {
+        assert!(Arc::ptr_eq(&before.mesh, &now.mesh));
+    }
+    assert_ne!(before[4].cloud_from_link, now[4].cloud_from_link);
 }
