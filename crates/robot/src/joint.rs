@@ -73,8 +73,9 @@ impl Joint {
         let origin = pose(&urdf.origin, &place)?;
         let along = finite(&urdf.axis.xyz.0, &place, "axis")?;
         // That of a fixed joint is not used.
-        let axis = UnitVector3::try_new(Vector3::from(along), 1e-9);
-        let Some(axis) = axis.or((kind == JointKind::Fixed).then(Vector3::x_axis)) else {
+        let Some(axis) =
+            direction(along.into()).or((kind == JointKind::Fixed).then(Vector3::x_axis))
+        else {
             return Err(RobotFault::NoAxis { joint: name });
         };
         let limits = match kind {
@@ -117,6 +118,13 @@ impl Joint {
     pub fn is_free(&self) -> bool {
         self.kind != JointKind::Fixed && self.mimics.is_none()
     }
+}
+
+/// Of a vector of any length but about zero.
+fn direction(along: Vector3) -> Option<UnitVector3> {
+    let largest = along.amax();
+    // By its largest entry, for squares of large ones are infinite.
+    (largest > 1e-9).then(|| UnitVector3::new_normalize(along / largest))
 }
 
 /// URDF 1.2 writes no limit as none at all; infinite ones are none.

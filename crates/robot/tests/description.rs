@@ -219,3 +219,18 @@ fn a_joint_that_mimics_follows() {
     assert!(error.contains("`right_slide` is at -0.07"), "{error}");
     assert!(matches!(at(&[]).unwrap_err(), JointsError::Missing { .. }));
 }
+
+/// The square of its length was infinite, and the joint moved nothing.
+#[test]
+fn an_axis_is_a_direction_however_long_it_is() {
+    for length in [1e-6, 1.0, 1e200, 1.5e308] {
+        let joint = format!("type='continuous'><axis xyz='0 {length:e} 0'/>");
+        let robot = Arm::default().of(&two_links(BOX, &joint)).unwrap();
+        let poses = robot.link_poses(&BTreeMap::from([("j".to_owned(), 1.0)])).unwrap();
+        let turned = poses["b"].transform_vector(&Vector3::x());
+        assert!(
+            (turned - Vector3::new(1.0_f64.cos(), 0.0, -1.0_f64.sin())).norm() < 1e-12,
+            "{length}"
+        );
+    }
+}
