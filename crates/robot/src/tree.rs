@@ -131,9 +131,27 @@ fn outwards(links: Vec<String>, mut carrier: Vec<Option<Joint>>) -> Result<Tree,
     let reached: BTreeSet<usize> = reached.into_iter().collect();
     if let Some(lost) = (0..links.len()).find(|link| !reached.contains(link)) {
         let root = root.map_or(String::new(), |root| links[root].clone());
-        return Err(RobotFault::NotATree { root, link: links[lost].clone() });
+        return Err(not_a_tree(&links, &carrier, root, lost));
     }
     Ok(Tree { links, joints, carried_by })
+}
+
+/// Why no chain of joints leads from the root to a link, by the joints that are not under it.
+fn not_a_tree(
+    links: &[String],
+    carrier: &[Option<Joint>],
+    root: String,
+    lost: usize,
+) -> RobotFault {
+    let name = |link: usize| links[link].clone();
+    let up = |&link: &usize| carrier[link].as_ref().map(|joint| joint.parent);
+    // More steps than there are links lead around a circle.
+    match std::iter::successors(Some(lost), up).take(links.len() + 1).enumerate().last() {
+        Some((steps, link)) if steps < links.len() => {
+            RobotFault::NotATree { root, link: name(link) }
+        }
+        at => RobotFault::Circle { link: name(at.map_or(lost, |(_, link)| link)) },
+    }
 }
 
 /// Where a joint is; all that it follows are given.

@@ -60,7 +60,10 @@ fn what_is_wrong_is_named_with_file_value_and_remedy() {
         (joint("type='continuous'><mimic joint='k'/>"), vec!["`j`", "mimics `k`"]),
         (joint("type='continuous'><mimic joint='j'/>"), vec!["`j`", "mimics `j`"]),
         (joint(FIXED).replace("child link='b'", "child link='c'"), vec!["`j`", "child `c`"]),
-        (joint(FIXED).replace("child link='b'", "child link='a'"), vec!["do not hang on one root"]),
+        (
+            joint(FIXED).replace("child link='b'", "child link='a'"),
+            vec!["`a` is carried by itself"],
+        ),
         (joint(FIXED).replace("link name='b'", "link name='a'"), vec!["link `a`", "twice"]),
         (
             joint(FIXED).replace("</robot>", "<link name='c'/></robot>"),
@@ -218,6 +221,36 @@ fn a_joint_that_mimics_follows() {
     let error = at(&[("left_slide", 0.04)]).unwrap_err().to_string();
     assert!(error.contains("`right_slide` is at -0.07"), "{error}");
     assert!(matches!(at(&[]).unwrap_err(), JointsError::Missing { .. }));
+}
+
+/// Of links that no chain of joints leads to, the first in the file was named, which may have a parent, and of a circle
+/// an empty name.
+#[test]
+fn where_links_are_no_tree_a_second_root_or_a_circle_is_named() {
+    let joined = |pairs: &[[&str; 2]]| {
+        let joint = |[parent, child]: &[&str; 2]| {
+            format!(
+                "<joint name='to_{child}' type='fixed'><parent link='{parent}'/><child link='{child}'/></joint>"
+            )
+        };
+        let links = ["a", "b", "c", "d"].map(|link| {
+            format!("<link name='{link}'><collision><geometry>{BOX}</geometry></collision></link>")
+        });
+        let joints: String = pairs.iter().map(joint).collect();
+        let urdf = format!("<robot name='four'>{}{joints}</robot>", links.concat());
+        Arm::default().of(&urdf).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    assert_eq!(joined(&[["b", "a"], ["d", "b"], ["a", "c"]]), "");
+    let error = joined(&[["a", "b"], ["d", "c"]]);
+    assert!(error.contains("(`a`): no chain of joints leads to `d`"), "{error}");
+    let under_it = [["c", "b"], ["d", "c"], ["c", "d"]];
+    let of_all = [["b", "a"], ["a", "b"], ["d", "c"], ["c", "d"]];
+    for circle in [&under_it[..], &of_all] {
+        let error = joined(circle);
+        let is_named = |link: &&str| error.contains(&format!("link `{link}` is carried by itself"));
+        assert!(["a", "c", "d"].iter().any(is_named), "{error}");
+        assert!(error.contains("correct the parent"), "{error}");
+    }
 }
 
 /// The square of its length was infinite, and the joint moved nothing.

@@ -133,9 +133,18 @@ pub enum RobotFault {
         "links do not hang on one root (`{root}`): no chain of joints leads to `{link}`; join it, or remove it"
     )]
     NotATree {
-        /// The first link that is nobody's child, empty where all are.
+        /// The first link that is nobody's child.
         root: String,
-        /// A link that is not under it.
+        /// Another one.
+        link: String,
+    },
+    /// Links that carry themselves.
+    #[error(
+        "link `{link}` is carried by itself, for joints lead around a circle: correct the parent of one of them, or \
+         remove it"
+    )]
+    Circle {
+        /// One of the links in the circle.
         link: String,
     },
     /// A joint that one number does not move.
