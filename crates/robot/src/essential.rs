@@ -20,6 +20,9 @@ const PASSED_OVER: [&[u8]; 8] = [
     b"safety_controller",
 ];
 
+/// What other namespaces have no use for: some programs write a prefix before every element.
+const OF_THE_ROBOT: [&[u8]; 3] = [b"robot", b"link", b"collision"];
+
 /// The text of a URDF without these parts, and without what belongs to the namespaces of others.
 pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
     let fault = |reason: String| RobotFault::Xml { reason };
@@ -92,6 +95,13 @@ fn is_passed_over(start: &BytesStart<'_>) -> Result<bool, RobotFault> {
     {
         let name = String::from_utf8_lossy(name.as_ref()).into_owned();
         return Err(RobotFault::Xml { reason: format!("<{name}> is not expanded") });
+    }
+    if prefix.is_some() && OF_THE_ROBOT.contains(&name.local_name().as_ref()) {
+        let [name, own] = [name.as_ref(), name.local_name().into_inner()]
+            .map(|name| String::from_utf8_lossy(name).into_owned());
+        let reason =
+            format!("<{name}> has a prefix, by which it is no part of the robot: write <{own}>");
+        return Err(RobotFault::Xml { reason });
     }
     Ok(prefix.is_some())
 }

@@ -68,3 +68,24 @@ fn a_part_in_another_file_was_passed_over() {
     let error = arm.of(&(entity + &robot("", "", "&hand;"))).unwrap_err().to_string();
     assert!(error.contains("arm.urdf: "), "{error}");
 }
+
+/// A link or a shape with a prefix was not there, and a file of nothing else had "no elements".
+#[test]
+fn what_is_of_the_robot_and_has_a_prefix_was_not_there() {
+    let plain = robot(&format!("<collision>{SHAPE}</collision>"), "", "");
+    let arm = Arm::default();
+    assert!(arm.of(&plain).is_ok());
+    for (prefixed, told) in [
+        (plain.replace('<', "<u:").replace("<u:/", "</u:"), "<u:robot> has a prefix"),
+        (
+            plain.replace("<collision", "<u:collision").replace("</collision", "</u:collision"),
+            "write <collision>",
+        ),
+        (plain.replace("</robot>", "<u:link name='c'/></robot>"), "write <link>"),
+    ] {
+        let error = arm.of(&prefixed).unwrap_err().to_string();
+        assert!(error.contains("arm.urdf: ") && error.contains(told), "{error}");
+    }
+    let others = "<s:camera><s:parent/></s:camera><u:collision_filter/>";
+    assert!(arm.of(&robot("", "", others)).is_ok());
+}
