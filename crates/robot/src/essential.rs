@@ -42,13 +42,13 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
             }
             Event::Empty(start) if is_passed_over(&start)? => continue,
             Event::Start(start) => {
-                let name = read_in(&start, &open)?;
+                let name = read_in(&start, &open, is_bare)?;
                 open.push(name);
                 is_bare = true;
                 Event::Start(plain(&known(start)?)?)
             }
             Event::Empty(start) => {
-                let name = read_in(&start, &open)?;
+                let name = read_in(&start, &open, is_bare)?;
                 check_shape(&name, true)?;
                 is_bare = false;
                 Event::Empty(plain(&known(start)?)?)
@@ -66,10 +66,16 @@ pub(crate) fn essential(text: &str) -> Result<String, RobotFault> {
     String::from_utf8(writer.into_inner()).map_err(|error| fault(error.to_string()))
 }
 
-/// The name of an element, where it is read in the innermost of those that are open.
-fn read_in(start: &BytesStart<'_>, open: &[String]) -> Result<String, RobotFault> {
+/// The name of an element, where it is read in the innermost of those that are open, in which nothing may be so far.
+fn read_in(start: &BytesStart<'_>, open: &[String], is_bare: bool) -> Result<String, RobotFault> {
     let name = String::from_utf8_lossy(start.name().as_ref()).into_owned();
-    places::check(&name, open.last().map(String::as_str))?;
+    let around = open.last().map(String::as_str);
+    places::check(&name, around)?;
+    if around == Some("geometry") && !is_bare {
+        let reason =
+            format!("<{name}> is a second shape in <geometry>: give each a <collision> of its own");
+        return Err(RobotFault::Xml { reason });
+    }
     Ok(name)
 }
 

@@ -42,6 +42,13 @@ fn what_cannot_be_read_is_told_with_its_link_or_joint_and_line() {
         ("type='fixed'", "type='hinge'", "joint `j`, line 6", "`hinge`"),
         ("<sphere radius='1'/>", "", "link `a`, line 2", "<geometry> is empty: put"),
         ("<sphere radius='1'/>", "<sphere/>", "link `a`, line 2", "missing field `radius`"),
+        // The words of the reader were about tokens.
+        (
+            "<sphere radius='1'/>",
+            "<sphere radius='1'/><!-- and --><box size='1 1 1'/>",
+            "link `a`, line 2",
+            "<box> is a second shape in <geometry>: give each a <collision> of its own",
+        ),
         ("<sphere radius='1'/>", "<cone radius='1'/>", "link `a`, line 2", "`cone`"),
         ("radius='1'", "radius='5cm'", "link `a`, line 2", "`radius` of <sphere> is `5cm`"),
         ("link name='b'", "link", "<link>, line 5", "missing field `name`"),
