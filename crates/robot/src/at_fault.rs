@@ -1,4 +1,5 @@
-//! Which link or joint of a URDF cannot be read, and in which line: what its reader says tells neither.
+//! Which link or joint of a URDF, or which pair of an SRDF, cannot be read, and in which line: what their readers say
+//! tells neither.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};

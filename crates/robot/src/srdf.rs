@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
+use crate::at_fault;
 use crate::error::RobotFault;
 use crate::nesting;
 use crate::root::{self, Wanted};
@@ -32,8 +33,11 @@ pub(crate) fn disabled_pairs(text: &str) -> Result<Vec<[String; 2]>, RobotFault>
     }
     nesting::check(text)?;
     root::check(text, Wanted::Srdf)?;
-    let srdf: Srdf = quick_xml::de::from_str(text)
-        .map_err(|error| RobotFault::Xml { reason: error.to_string() })?;
+    let read = |text: &str| -> Result<Srdf, RobotFault> {
+        quick_xml::de::from_str(text).map_err(|error| RobotFault::Xml { reason: error.to_string() })
+    };
+    let srdf =
+        read(text).map_err(|fault| at_fault::named(fault, text, |alone| read(alone).err()))?;
     if srdf.disabled.is_empty() && !srdf.links.is_empty() {
         return Err(RobotFault::NotSrdf);
     }

@@ -63,6 +63,29 @@ fn what_cannot_be_read_is_told_with_its_link_or_joint_and_line() {
     }
 }
 
+/// Of the thousands of pairs in an SRDF, none was named.
+#[test]
+fn a_pair_of_an_srdf_that_cannot_be_read_is_told_with_its_line() {
+    let arm = Arm::default();
+    let good = "<robot name='r'>\n<group name='g'/>\n<disable_collisions link1='base' link2='hand'/>\n\
+                <disable_collisions\n link1='turret' link2='hand' reason='Never'/>\n</robot>";
+    let read = |text: &str| {
+        let srdf = arm.path("arm.srdf");
+        std::fs::write(&srdf, text).unwrap();
+        arm.robot().with_srdf(srdf).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(read(good), Ok(()));
+    for (right, wrong, told) in [
+        ("link1='turret'", "", "<disable_collisions>, line 4: missing field"),
+        ("link2='hand'/>", "Link2='hand'/>", "<disable_collisions>, line 3: missing field"),
+        ("'Never'/>", "'Never'>", "<disable_collisions>, line 6: "),
+        ("</robot>", "", "the file ends before </robot>: "),
+    ] {
+        let error = read(&good.replacen(right, wrong, 1)).unwrap_err();
+        assert!(error.contains("arm.srdf: ") && error.contains(told), "{told} is not in {error}");
+    }
+}
+
 /// Which number of which element it is was not told.
 #[test]
 fn what_is_no_number_is_told_with_its_element_and_attribute() {
