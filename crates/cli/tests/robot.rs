@@ -89,6 +89,17 @@ fn a_link_of_the_srdf_that_is_not_there_is_warned_of() {
     assert!(told.contains(part), "{told}");
 }
 
+/// Neither the file was named nor whose name it is.
+#[test]
+fn a_link_with_the_name_of_the_scan_is_told_with_its_file() {
+    let inputs = inputs();
+    inputs.write("arm.urdf", &URDF.replace("'arm'", "'surroundings'"));
+    let run = robot(&inputs, &json!({"shoulder": 0.0}), &[]);
+    let told = run.stderr();
+    assert_eq!(run.code(), 1);
+    assert!(told.contains("arm.urdf: the scene has a body named `surroundings`"), "{told}");
+}
+
 /// It was told that no file is a mesh, with a robot full of them.
 #[test]
 fn the_unit_of_meshes_is_not_that_of_links() {

@@ -44,7 +44,9 @@ pub(crate) fn run(arguments: &RobotArguments) -> Result<ExitCode> {
     let words = words(arguments, &scan.words, &bodies, asked);
     let touching =
         if arguments.robot.self_collision { Touching::AndItself } else { Touching::Surroundings };
-    let mut checker = RobotChecker::new(robot, Arc::clone(&scan.body), base, touching)?;
+    let placed = RobotChecker::new(robot, Arc::clone(&scan.body), base, touching);
+    // The name of a link may be taken.
+    let mut checker = placed.with_context(|| arguments.robot.urdf.display().to_string())?;
     for link in &arguments.robot.may_touch {
         checker.allow(link, SURROUNDINGS).with_context(|| "--may-touch")?;
     }
