@@ -218,6 +218,64 @@ fn a_recording_that_is_none_or_was_cut_off_says_so() {
     assert!(matches!(missing, ReadError::Io { .. }));
 }
 
+/// Writes other numbers into the statistics of a recording: their place among its eight, counted in bytes, and the number.
+fn with_statistics(mut bytes: Vec<u8>, place: usize, number: &[u8]) -> Vec<u8> {
+    let footer = bytes.len() - 8 - 20;
+    let summary = u64::from_le_bytes(bytes[footer..footer + 8].try_into().unwrap());
+    let mut at = usize::try_from(summary).unwrap();
+    while bytes[at] != mcap::records::op::STATISTICS {
+        let length = u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap());
+        at += 9 + usize::try_from(length).unwrap();
+    }
+    bytes[at + 9 + place..][..number.len()].copy_from_slice(number);
+    bytes
+}
+
+/// Of a chunk that the index lacks, and of messages outside of chunks, the scans were passed over, and another was taken for
+/// the first.
+#[test]
+fn an_index_that_leaves_out_messages_is_refused() {
+    const CHUNKS: usize = 8 + 2 + 4 + 4 + 4;
+    const FIRST: usize = CHUNKS + 4;
+    const LAST: usize = FIRST + 8;
+    let options = || zstd().chunk_size(Some(100)).calculate_summary_section_crc(false);
+    let whole = || two_topics(options());
+    let complaint = |bytes: &[u8]| {
+        let (_folder, path) = file(bytes);
+        Recording::open(path, &limits()).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(complaint(&whole()), Ok(()));
+    for (place, number, expected) in [
+        (CHUNKS, &7_u32.to_le_bytes()[..], "of 7 chunks the index has"),
+        (FIRST, &(START - 1).to_le_bytes(), "and the index of chunks from 1700000000000000000"),
+        (FIRST, &(START + SECOND).to_le_bytes(), "messages from 1700000001000000000"),
+        (LAST, &(START + 4 * SECOND).to_le_bytes(), "to 1700000004000000000 ns, and"),
+    ] {
+        let error = complaint(&with_statistics(whole(), place, number)).unwrap_err();
+        assert!(error.contains(expected) && error.contains("mcap recover"), "{error}");
+    }
+    // A writer that does not know when the recording began: seconds were counted from 1970.
+    let (_folder, path) = file(&with_statistics(whole(), FIRST, &[0; 8]));
+    let found = Recording::open(path, &limits()).unwrap().scan(Some("/front"), Some(2.5));
+    assert_eq!(found.unwrap().time, 3.0);
+}
+
+/// The checksum of the summary was not looked at: with another time of a chunk, or another letter of a topic, another scan
+/// was the first, or none.
+#[test]
+fn a_changed_byte_in_the_summary_is_seen() {
+    let whole = two_topics(zstd().chunk_size(Some(100)));
+    let footer = whole.len() - 8 - 20;
+    let summary = u64::from_le_bytes(whole[footer..footer + 8].try_into().unwrap());
+    for at in (usize::try_from(summary).unwrap()..footer - 9).step_by(7) {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1;
+        let (_folder, path) = file(&bytes);
+        let error = Recording::open(path, &limits()).unwrap_err().to_string();
+        assert!(error.contains("its checksum") && error.contains("mcap recover"), "{at}: {error}");
+    }
+}
+
 #[test]
 fn a_changed_byte_in_a_chunk_is_seen() {
     let mut bytes = two_topics(WriteOptions::new().compression(None));

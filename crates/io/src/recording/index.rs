@@ -7,7 +7,10 @@ use mcap::{
     records::{ChunkIndex, Record, op},
 };
 
-use super::source::Source;
+use super::{
+    source::Source,
+    whole::{check, crc32, times},
+};
 use crate::error::ReadError;
 use crate::recording_fault::RecordingFault;
 
@@ -68,6 +71,12 @@ pub(super) fn read(source: &mut Source) -> Result<Index, ReadError> {
         return Err(source.damaged(end, "the summary begins after its end"));
     };
     let summary = source.bytes(start, length, "the summary")?;
+    // Of the summary and of the footer up to here; 0 if the writer made none.
+    let (before, sum) = footer.split_at(RECORD_HEAD + 16);
+    let sum = [sum[0], sum[1], sum[2], sum[3]];
+    if sum != [0; 4] && crc32(&[&summary, before]).to_le_bytes() != sum {
+        return Err(source.damaged(start, "the summary is not what its checksum was made of"));
+    }
     let index =
         parse(&summary).map_err(|(at, reason)| source.damaged(start + at as u64, reason))?;
     // A chunk of channels that the summary does not explain might hold scans.
@@ -87,7 +96,7 @@ pub(super) fn read(source: &mut Source) -> Result<Index, ReadError> {
 fn parse(summary: &[u8]) -> Result<Index, (usize, String)> {
     let mut schemas: BTreeMap<u16, String> = BTreeMap::new();
     let mut channels = Vec::new();
-    let (mut chunks, mut start) = (Vec::new(), None);
+    let (mut chunks, mut statistics) = (Vec::new(), None);
     let mut rest = summary;
     while !rest.is_empty() {
         let at = summary.len() - rest.len();
@@ -104,9 +113,7 @@ fn parse(summary: &[u8]) -> Result<Index, (usize, String)> {
             }
             Record::Channel(channel) => channels.push(channel),
             Record::ChunkIndex(chunk) => chunks.push(chunk),
-            Record::Statistics(statistics) if statistics.message_count > 0 => {
-                start = Some(statistics.message_start_time);
-            }
+            Record::Statistics(told) => statistics = Some((at, told)),
             _ => {}
         }
     }
@@ -115,12 +122,17 @@ fn parse(summary: &[u8]) -> Result<Index, (usize, String)> {
         let encoding = channel.message_encoding;
         (channel.id, Channel { topic: channel.topic, kind, encoding })
     });
-    let earliest = chunks.iter().map(|chunk: &ChunkIndex| chunk.message_start_time).min();
-    Ok(Index {
-        channels: channels.collect(),
-        start: start.or(earliest).unwrap_or_default(),
-        chunks,
-    })
+    let (earliest, _) = times(&chunks);
+    let start = match &statistics {
+        Some((at, told)) => {
+            check(told, &chunks).map_err(|reason| (*at, reason))?;
+            let of_chunk = |chunk: &ChunkIndex| chunk.message_start_time == told.message_start_time;
+            // Of a chunk without messages the time is 0 too, so that only the statistics tell whether one was then.
+            if chunks.iter().any(of_chunk) { told.message_start_time } else { earliest }
+        }
+        None => earliest,
+    };
+    Ok(Index { channels: channels.collect(), chunks, start })
 }
 
 /// The opcode and the body of the first record, and what follows it.

@@ -11,6 +11,8 @@ mod index;
 mod read;
 #[cfg(feature = "mcap")]
 mod source;
+#[cfg(feature = "mcap")]
+mod whole;
 
 pub use crate::recording_fault::{Names, RecordingFault};
 pub use name::{ScanName, file_of};
