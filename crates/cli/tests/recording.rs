@@ -30,13 +30,13 @@ mod with_feature {
 
     use crate::support::{self, Inputs, case_file, floor};
 
-    /// The floor as a message of ROS 1, at a height.
-    fn message(height: f32) -> Vec<u8> {
+    /// The floor as a message of ROS 1, at a height in a frame of four letters.
+    fn message(height: f32, frame: &str) -> Vec<u8> {
         let points = floor().points;
         let mut bytes = Vec::new();
         // Sequence, stamp, frame.
         bytes.extend([0, 5, 0, 4_u32].iter().flat_map(|v| v.to_le_bytes()));
-        bytes.extend(b"base");
+        bytes.extend(frame.bytes());
         // Height, width, fields.
         bytes.extend([1, points.len() as u32, 3].iter().flat_map(|v| v.to_le_bytes()));
         for (offset, name) in [(0_u32, b'x'), (4, b'y'), (8, b'z')] {
@@ -63,17 +63,23 @@ mod with_feature {
     /// another topic.
     fn inputs() -> Inputs {
         let inputs = Inputs::new();
-        let mut writer = Writer::new(File::create(inputs.path("run.mcap")).unwrap()).unwrap();
+        let floors = [("/floor", 0, -0.5), ("/floor", 2, 0.0), ("/b", 1, 0.0)];
+        record(&inputs, "run.mcap", &floors.map(|(topic, time, z)| (topic, time, z, "base")));
+        inputs
+    }
+
+    /// A recording of floors: topic, seconds, height and frame.
+    fn record(inputs: &Inputs, file: &str, floors: &[(&str, u64, f32, &str)]) {
+        let mut writer = Writer::new(File::create(inputs.path(file)).unwrap()).unwrap();
         let schema = writer.add_schema("sensor_msgs/PointCloud2", "ros1msg", b"").unwrap();
-        for (topic, seconds, height) in [("/floor", 0, -0.5), ("/floor", 2, 0.0), ("/b", 1, 0.0)] {
+        for &(topic, seconds, height, frame) in floors {
             let channel_id = writer.add_channel(schema, topic, "ros1", &BTreeMap::new()).unwrap();
             let time = 1_700_000_000_000_000_000 + seconds * 1_000_000_000;
             let header =
                 MessageHeader { channel_id, sequence: 0, log_time: time, publish_time: time };
-            writer.write_to_known_channel(&header, &message(height)).unwrap();
+            writer.write_to_known_channel(&header, &message(height, frame)).unwrap();
         }
         writer.finish().unwrap();
-        inputs
     }
 
     const POSE: &str = "--translate=0.01,0.02,0.1";
@@ -120,6 +126,26 @@ mod with_feature {
         assert_eq!(answer("run.mcap#/floor@1"), answer("single.pcd"));
         assert_eq!(answer("run.mcap#/b"), answer("single.pcd"));
         assert_ne!(answer("run.mcap#/floor"), answer("single.pcd"));
+    }
+
+    /// They were laid on top of each other: the frame of a message was not looked at.
+    #[test]
+    fn scans_in_different_frames_are_no_one_scene() {
+        let inputs = inputs();
+        record(&inputs, "two.mcap", &[("/a", 0, 0.0, "left"), ("/b", 1, 0.0, "/tip")]);
+        let run = |also: &str| {
+            let arguments = ["query", "two.mcap#/a", "box.obj", POSE, "--also", also];
+            inputs.run(&arguments)
+        };
+        let other = run("two.mcap#/b");
+        assert_eq!(other.code(), 1);
+        for part in ["two.mcap#/a: is in the frame left", "two.mcap#/b in the frame tip", "scene"] {
+            assert!(other.stderr().contains(part), "{}", other.stderr());
+        }
+        assert_eq!(run("run.mcap#/floor").code(), 1);
+        assert_eq!(run("floor.pcd").code(), 0, "a file does not tell its frame");
+        record(&inputs, "same.mcap", &[("/d", 0, -0.5, "left")]);
+        run("same.mcap").quiet(0);
     }
 
     #[test]

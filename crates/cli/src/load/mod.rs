@@ -1,5 +1,6 @@
 //! From files to bodies ready for queries.
 
+mod frames;
 mod geometry;
 pub(crate) mod path;
 pub(crate) mod pose;
@@ -122,8 +123,9 @@ fn bodies_in<C: PreparedCloud>(
     options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
     let mut scans = Vec::new();
+    let limits = options.common.limits.read_limits();
     for path in paths {
-        match geometry(path, units, &options.common.limits.read_limits())? {
+        match geometry(path, units, &limits)? {
             (Geometry::Mesh(mesh), _) if paths.len() == 1 => {
                 return of_mesh(path, units.meshes, role, &mesh, options);
             }
@@ -133,6 +135,7 @@ fn bodies_in<C: PreparedCloud>(
             (Geometry::Cloud(cloud), kind) => scans.push((cloud, kind)),
         }
     }
+    frames::check(paths, &limits)?;
     let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
     let robot = if role == Role::Scene { robot(options)? } else { Vec::new() };
     of_clouds(&names, role, scans, sensor, options, robot)
