@@ -6,6 +6,7 @@ use anyhow::{Context as _, Result, bail, ensure};
 use cloudtouch_io::DepthCamera;
 use serde_json::{Map, Value};
 
+use crate::files::camera_info;
 use crate::files::distortion;
 use crate::files::fields::check_once;
 use crate::files::json::{as_written, shortened, without_bare_words};
@@ -33,7 +34,8 @@ const FORMS: &str = "write {\"fx\": 525, \"fy\": 525, \"cx\": 319.5, \"cy\": 239
 /// text. A matrix is taken row by row or column by column, whichever makes it one of a camera.
 ///
 /// # Errors
-/// When the file is larger or malformed, has no intrinsics or several that differ, a skew, or distortion.
+/// When the file is larger or malformed, has no intrinsics or several that differ, a skew, distortion, or a
+/// CameraInfo that is of another image.
 pub fn read(path: &Path, image: &Path, max_bytes: u64) -> Result<CameraFile> {
     let text = cloudtouch_io::read_bytes(path, max_bytes)?;
     let image = image.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
@@ -123,6 +125,7 @@ fn of_object(fields: &Map<String, Value>) -> Result<CameraFile> {
         bail!("`{first}` and `{other}` say different intrinsics: leave out one of them");
     }
     distortion::check(fields)?;
+    camera_info::check(fields, *numbers)?;
     let CameraFile { mut camera, .. } = of_numbers(*numbers);
     camera.image_size = match size(fields, ["width", "height"])? {
         None => size(fields, ["image_width", "image_height"])?,

@@ -1,5 +1,6 @@
 //! What the files of the tool say: the cases of a batch, a scene, a path, a pose, positions of joints, a camera.
 
+mod camera_info;
 pub mod case;
 mod case_fields;
 mod distortion;
