@@ -115,7 +115,7 @@ impl DepthImages {
                     intrinsics::read(file, image, max_bytes)?;
                 if let Some(scale) = unclear_scale.filter(|_| self.depth_scale.is_none()) {
                     bail!(
-                        "{}: `depth_scale` is {scale}, which is metres a step, steps a metre or, of BOP, \
+                        "{}: {scale}, which is metres a step, steps a metre or, of BOP, \
                          millimetres a step: say metres a step (--depth-scale, such as 0.001)",
                         file.display()
                     );

@@ -12,17 +12,20 @@ use crate::files::fields::check_once;
 use crate::files::json::{as_written, shortened, without_bare_words};
 
 /// What a file says of a camera.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CameraFile {
     /// Its intrinsics, and the size of the image they are of where the file says it; in millimetres, unless
     /// the file says otherwise beyond doubt.
     pub camera: DepthCamera,
-    /// A `depth_scale` whose unit the file does not tell: metres a step, millimetres, or steps a metre.
-    pub unclear_scale: Option<f64>,
+    /// A `depth_scale` or the like, as in "`depth_scale` is 5000", whose unit the file does not tell: metres a step,
+    /// millimetres, or steps a metre.
+    pub unclear_scale: Option<String>,
 }
 
 /// Names under which a 3 x 3 matrix stands: ROS, BOP, Open3D.
 const MATRICES: [&str; 4] = ["K", "k", "cam_K", "intrinsic_matrix"];
+/// Names of columns and rows.
+const SIZES: [[&str; 2]; 3] = [["width", "height"], ["image_width", "image_height"], ["w", "h"]];
 const FORMS: &str = "write {\"fx\": 525, \"fy\": 525, \"cx\": 319.5, \"cy\": 239.5}, or a 3 x 3 matrix as \
                      \"K\", \"cam_K\" or \"intrinsic_matrix\"";
 
@@ -127,21 +130,28 @@ fn of_object(fields: &Map<String, Value>) -> Result<CameraFile> {
     distortion::check(fields)?;
     camera_info::check(fields, *numbers)?;
     let CameraFile { mut camera, .. } = of_numbers(*numbers);
-    camera.image_size = match size(fields, ["width", "height"])? {
-        None => size(fields, ["image_width", "image_height"])?,
-        stated => stated,
-    };
-    let mut unclear_scale = None;
-    if fields.contains_key("depth_scale") {
-        let scale = number(fields, "depth_scale")?;
-        // Only BOP has this name for its matrix, and its scale makes millimetres.
-        if fields.contains_key("cam_K") {
-            camera.depth_scale = 0.001 * scale;
-        } else {
-            unclear_scale = Some(scale);
-        }
+    for names in SIZES {
+        camera.image_size = camera.image_size.or(size(fields, names)?);
     }
+    // Only BOP has this name for its matrix, and its scale makes millimetres.
+    let is_of_bop = fields.contains_key("cam_K") && fields.contains_key("depth_scale");
+    if is_of_bop {
+        camera.depth_scale = 0.001 * number(fields, "depth_scale")?;
+    }
+    let unclear = fields.iter().find(|(name, _)| !is_of_bop && is_of_steps(name));
+    let unclear_scale = unclear.map(|(name, value)| {
+        // It may be anything, of any length.
+        let value: String = as_written(value).chars().take(40).collect();
+        format!("`{name}` is {value}")
+    });
     Ok(CameraFile { camera, unclear_scale })
+}
+
+/// `depth_scale`, `png_depth_scale`, `DepthMapFactor`, `depth_units` and the like, and the `scale` of NICE-SLAM.
+fn is_of_steps(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    let is_step = || ["scale", "factor", "unit"].iter().any(|word| name.contains(word));
+    name == "scale" || (name.contains("depth") && is_step())
 }
 
 /// Columns and rows, where both are stated; 0 is what drivers write that do not know them.
@@ -256,7 +266,24 @@ mod tests {
         read("# K\n5.25e+02 0.0 319.5\n0 526 239.25\n0 0 1\n");
         // Others write metres a step, or steps a metre, under the same name.
         let scaled = r#"{"fx": 525, "fy": 526, "cx": 319.5, "cy": 239.25, "depth_scale": 1000}"#;
-        assert_eq!(read(scaled).unclear_scale, Some(1000.0));
+        assert_eq!(read(scaled).unclear_scale.as_deref(), Some("`depth_scale` is 1000"));
+        let sized = scaled.replace("\"depth_scale\": 1000", "\"w\": 640, \"h\": 480");
+        assert_eq!(read(&sized).camera.image_size, Some((640, 480)));
+    }
+
+    /// Under any other name than `depth_scale` it was passed over, and steps were taken for millimetres.
+    #[test]
+    fn a_step_of_depth_is_known_by_any_of_its_names() {
+        let plain = r#"{"fx": 525, "fy": 526, "cx": 319.5, "cy": 239.25, "NAME": 5000}"#;
+        for name in ["png_depth_scale", "depthScale", "DepthMapFactor", "depth_units", "scale"] {
+            let stated = format!("`{name}` is 5000");
+            assert_eq!(read(&plain.replace("NAME", name)).unclear_scale, Some(stated));
+        }
+        for name in ["max_depth", "scaled", "unit", "depth_frame"] {
+            assert_eq!(read(&plain.replace("NAME", name)).unclear_scale, None, "{name}");
+        }
+        let of_bop = r#"{"cam_K": [525, 0, 319.5, 0, 526, 239.25, 0, 0, 1], "depth_factor": 10}"#;
+        assert_eq!(read(of_bop).unclear_scale.as_deref(), Some("`depth_factor` is 10"));
     }
 
     #[test]
