@@ -30,12 +30,13 @@ mod with_feature {
 
     use crate::support::{self, Inputs, case_file, floor};
 
-    /// The floor as a message of ROS 1, at a height in a frame of four letters.
+    /// The floor as a message of ROS 1, at a height in a frame.
     fn message(height: f32, frame: &str) -> Vec<u8> {
         let points = floor().points;
         let mut bytes = Vec::new();
         // Sequence, stamp, frame.
-        bytes.extend([0, 5, 0, 4_u32].iter().flat_map(|v| v.to_le_bytes()));
+        let length = frame.len() as u32;
+        bytes.extend([0, 5, 0, length].iter().flat_map(|v| v.to_le_bytes()));
         bytes.extend(frame.bytes());
         // Height, width, fields.
         bytes.extend([1, points.len() as u32, 3].iter().flat_map(|v| v.to_le_bytes()));
@@ -146,6 +147,30 @@ mod with_feature {
         assert_eq!(run("floor.pcd").code(), 0, "a file does not tell its frame");
         record(&inputs, "same.mcap", &[("/d", 0, -0.5, "left")]);
         run("same.mcap").quiet(0);
+    }
+
+    /// Its noise went by the distance from the origin of a map, and nothing told of it.
+    #[test]
+    fn a_scan_in_a_frame_that_is_no_sensors_gives_a_warning() {
+        let inputs = inputs();
+        record(&inputs, "map.mcap", &[("/a", 0, 0.0, "/map"), ("/b", 1, 0.0, "r/odom")]);
+        let run = |scene: &str, more: &[&str]| {
+            let arguments = ["query", scene, "box.obj", "--translate=0,0,0.5"];
+            inputs.run(&[&arguments, more].concat()).stderr()
+        };
+        const LASER: &str = "--sensor=lidar:0.02,0.003";
+        for (scene, frame) in [("map.mcap#/a", "frame map,"), ("map.mcap#/b", "frame r/odom,")] {
+            let told = run(scene, &[LASER]);
+            assert!(told.contains(frame) && told.contains("give --sensor-pose"), "{told}");
+        }
+        for (scene, more) in [
+            ("map.mcap#/a", &[LASER, "--sensor-pose=0,0,1"][..]),
+            ("map.mcap#/a", &["--sensor=iso:0.002"]),
+            ("run.mcap#/b", &[LASER]),
+        ] {
+            let told = run(scene, more);
+            assert!(!told.contains("is in the frame"), "{told}");
+        }
     }
 
     #[test]

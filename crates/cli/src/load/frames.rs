@@ -1,8 +1,9 @@
-//! Whether several scans of recordings are in one frame.
+//! The frames of scans of recordings: whether several are in one, and whether a sensor is at its origin.
 
 use std::path::Path;
 
 use anyhow::{Result, ensure};
+use cloudtouch::noise::SensorModel;
 use cloudtouch_io::{ReadLimits, read_scan_within, recording::ScanName};
 
 /// Refuses scans whose messages name different frames: as one scene they would be laid on top of each other.
@@ -23,6 +24,33 @@ pub(super) fn check(paths: &[&Path], limits: &ReadLimits) -> Result<()> {
             first.display(),
             path.display()
         );
+    }
+    Ok(())
+}
+
+/// Frames that by the conventions of ROS are no sensor's.
+const NO_SENSORS: [&str; 6] = ["map", "odom", "world", "earth", "base_link", "base_footprint"];
+
+/// Warns of scans in such a frame, where the noise goes by the place of the sensor, which nobody stated.
+pub(super) fn warn_of_place(
+    paths: &[&Path],
+    sensor: &SensorModel,
+    limits: &ReadLimits,
+) -> Result<()> {
+    if !sensor.is_camera() && !matches!(sensor, SensorModel::Lidar { .. }) {
+        return Ok(());
+    }
+    for path in paths.iter().filter(|path| ScanName::of(path).is_some()) {
+        let frame = frame(path, limits)?;
+        // Of several robots each has its own: `robot1/odom`.
+        let own = frame.rsplit('/').next().unwrap_or_default();
+        if NO_SENSORS.contains(&own) {
+            tracing::warn!(
+                "{}: is in the frame {frame}, and the sensor {sensor} is taken to have stood at its origin: give \
+                 --sensor-pose (in a scene file `sensor_pose`), or noise that does not go by it, such as iso:0.02",
+                path.display()
+            );
+        }
     }
     Ok(())
 }

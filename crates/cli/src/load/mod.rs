@@ -136,6 +136,9 @@ fn bodies_in<C: PreparedCloud>(
         }
     }
     frames::check(paths, &limits)?;
+    if let Some((first, _)) = scans.first() {
+        warn_of_place(paths, role, first, sensor, options)?;
+    }
     let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
     let robot = if role == Role::Scene { robot(options)? } else { Vec::new() };
     of_clouds(&names, role, scans, sensor, options, robot)
@@ -156,10 +159,26 @@ pub(crate) fn surroundings(
         ))),
         (Geometry::Mesh(mesh), _) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
         (Geometry::Cloud(cloud), kind) => {
+            warn_of_place(&[path], Role::Scene, &cloud, common.scene_sensor(), options)?;
             let (scans, sensor) = (vec![(cloud, kind)], common.scene_sensor());
             of_clouds(&[named(path)], Role::Scene, scans, sensor, options, robot)
         }
     }
+}
+
+/// Warns of a scene out of a recording whose frame is no sensor's, where that matters.
+fn warn_of_place(
+    paths: &[&Path],
+    role: Role,
+    first: &PointCloud,
+    sensor: SensorChoice,
+    options: &BodyOptions<'_>,
+) -> Result<()> {
+    let is_told = options.sensor_pose.is_some() || options.collision_map.is_some();
+    if role != Role::Scene || is_told {
+        return Ok(());
+    }
+    frames::warn_of_place(paths, &sensor.of(first).sensor, &options.common.limits.read_limits())
 }
 
 fn of_mesh<C>(
