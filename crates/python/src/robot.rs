@@ -202,6 +202,12 @@ impl RobotChecker {
         found(py, checked.map_err(refused)?)
     }
 
+    #[pyo3(signature = (query, joints, /))]
+    fn is_free(&self, py: Python<'_>, query: &Bound<'_, Query>, joints: Joints) -> PyResult<bool> {
+        let (checker, query) = (self.now(py)?, query.get().checked());
+        on_all_threads(py, || checker.is_free(query, &joints))?.map_err(refused)
+    }
+
     #[pyo3(signature = (query, joints, title, height, /))]
     fn page(
         &self,

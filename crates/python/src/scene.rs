@@ -153,6 +153,12 @@ impl Scene {
         found.map(|found| pair(py, found)).transpose()
     }
 
+    #[pyo3(signature = (query, /))]
+    fn is_free(&self, py: Python<'_>, query: &Bound<'_, Query>) -> PyResult<bool> {
+        let (bodies, query) = (self.now(py)?, query.get().checked());
+        on_all_threads(py, || bodies.is_free(query))
+    }
+
     #[pyo3(signature = (query, title, height, /))]
     fn page(
         &self,

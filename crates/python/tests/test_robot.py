@@ -88,6 +88,7 @@ def test_the_link_that_touches_is_told(robot, floor_under):
     assert {(pair.a, pair.b) for pair in found.pairs} >= {("surroundings", "left"), ("surroundings", "right")}
     assert abs(found.pairs[0].report.contacts[0].point[2]) < 0.01
     assert checker.check(ct.Query(), at(0.6)).pairs[0].b == "bar"
+    assert [checker.is_free(ct.Query(), at(height)) for height in (0.3, 0.5, 0.6)] == [True, False, False]
     # Lifted by its base it is free.
     assert ct.RobotChecker(robot, floor_under, lifted(0.4)).check(ct.Query(), at(0.6)).verdict == "free"
 

@@ -108,10 +108,10 @@ def test_a_scene_in_which_all_may_touch_read_as_free(floor, plate):
     assert scene.check(ct.Query()).verdict == "undecided"
     scene.add("floor", floor)
     scene.add("plate", plate, lifted(0.5))
-    assert scene.check(ct.Query()).verdict == "free"
+    assert scene.check(ct.Query()).verdict == "free" and scene.is_free(ct.Query())
     scene.allow("floor", "plate")
     found = scene.check(ct.Query())
-    assert found.verdict == "undecided" and found.pairs == ()
+    assert found.verdict == "undecided" and found.pairs == () and not scene.is_free(ct.Query())
 
 
 @pytest.mark.parametrize("height", [0.056, 0.058])

@@ -134,6 +134,7 @@ fn assert_same(scene: &Scene, query: &Query) -> Checked {
     assert_eq!(checked.count, checked.allowed + checked.ruled_out + checked.asked);
     let first = scene.check_first(query);
     assert_eq!(first.is_none(), checked.pairs.is_empty());
+    assert_eq!(scene.is_free(query), checked.verdict() == Verdict::Free);
     if let Some(first) = first {
         assert!(checked.pairs.iter().any(|pair| key_of(pair) == key_of(&first)));
     }
@@ -328,7 +329,7 @@ fn a_pair_that_cannot_be_asked_is_in_the_answer_and_not_free() {
     let found = scene.check(&query());
     assert_eq!((found.pairs.len(), found.verdict()), (1, Verdict::Undecided));
     assert!(matches!(found.pairs[0].answer, Err(QueryError::Pose { .. })));
-    assert!(scene.check_first(&query()).unwrap().answer.is_err());
+    assert!(scene.check_first(&query()).unwrap().answer.is_err() && !scene.is_free(&query()));
 }
 
 #[test]

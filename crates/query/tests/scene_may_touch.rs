@@ -22,6 +22,7 @@ fn a_scene_in_which_all_may_touch_is_undecided() {
     scene.allow("hand", "cup").unwrap();
     let found = scene.check(&query());
     assert!(found.is_unchecked() && found.pairs.is_empty());
+    assert!(!scene.is_free(&query()));
     assert_eq!(found.verdict(), Verdict::Undecided);
     scene.forbid("hand", "cup").unwrap();
     assert_eq!(scene.check(&query()).verdict(), Verdict::Free);

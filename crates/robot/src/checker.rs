@@ -115,6 +115,18 @@ impl RobotChecker {
         Ok(self.scene_at(joints)?.check(query))
     }
 
+    /// Whether the robot is free there: the verdict of [`Self::check`], sooner ([`Scene::is_free`]), for planners.
+    ///
+    /// # Errors
+    /// As [`Self::check`]; a pair that cannot be asked is not free.
+    pub fn is_free(
+        &self,
+        query: &Query,
+        joints: &BTreeMap<String, f64>,
+    ) -> Result<bool, JointsError> {
+        Ok(self.scene_at(joints)?.is_free(query))
+    }
+
     /// The surroundings, the links and what is held as a scene, in the frame of the surroundings and by their names as
     /// in [`Self::check`], for what else a scene can be asked or to be drawn.
     ///

@@ -147,7 +147,12 @@ fn a_path_through_what_the_camera_did_not_see_was_certified() {
     let checker =
         RobotChecker::new(Arm::default().robot(), body, Pose::identity(), Touching::Surroundings)
             .unwrap();
-    let verdict = |waist| checker.check(&query(), &around(waist)).unwrap().verdict();
+    let verdict = |waist| {
+        let verdict = checker.check(&query(), &around(waist)).unwrap().verdict();
+        let is_free = checker.is_free(&query(), &around(waist)).unwrap();
+        assert_eq!(is_free, verdict == Verdict::Free, "{waist}");
+        verdict
+    };
     let expected = [Verdict::Free, Verdict::Free, Verdict::Undecided, Verdict::Free];
     assert_eq!([-1.2, -0.35, 0.0, 0.5].map(verdict), expected);
     let path = [around(-1.2), around(0.5)];

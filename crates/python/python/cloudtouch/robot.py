@@ -324,6 +324,18 @@ class RobotChecker:
         """
         return Checked._of(*self._checker.check(native_query(query), self._robot._named(joints, "joints")))
 
+    def is_free(self, query: Query, joints: Positions) -> bool:
+        """Whether :meth:`check` would find all free, and no more: sooner known, for planners.
+
+        Raises
+        ------
+        ValueError
+            ``joints`` has the wrong shape or type.
+        CloudtouchError
+            As :meth:`check`.
+        """
+        return self._checker.is_free(native_query(query), self._robot._named(joints, "joints"))
+
     def page(self, query: Query, joints: Positions, *, title: str = "cloudtouch") -> Page:
         """The robot in its surroundings and what :meth:`check` finds, as by :meth:`Scene.page`.
 

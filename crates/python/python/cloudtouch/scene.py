@@ -171,6 +171,10 @@ class Scene:
         found = self._scene.check_first(native_query(query))
         return None if found is None else PairAnswer._of(found)
 
+    def is_free(self, query: Query) -> bool:
+        """Whether :meth:`check` would find all free, and no more: sooner known, for planners."""
+        return self._scene.is_free(native_query(query))
+
     def page(self, query: Query, *, title: str = "cloudtouch") -> Page:
         """All bodies and what :meth:`check` finds, to look at: a notebook shows it, :meth:`Page.save` writes it."""
         asked, words = native_query(query), _given.text(title, "title")

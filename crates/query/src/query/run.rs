@@ -42,7 +42,7 @@ impl Query {
     }
 
     /// The same with more or less said.
-    pub(super) fn with_detail(&self, detail: Detail) -> Self {
+    pub(crate) fn with_detail(&self, detail: Detail) -> Self {
         Self { settings: QuerySettings { detail, ..self.settings }, ..*self }
     }
 

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::body::BodyRef;
 use crate::doubt::of_pair::of_body;
 use crate::doubt::warning::Which;
-use crate::query::Query;
+use crate::query::{Detail, Query};
 
 use super::answer::{BodyWarning, Checked, Outside, PairAnswer};
 use super::bodies::Scene;
@@ -38,8 +38,7 @@ impl Scene {
             .filter(|pair| broad.urgency(pair.bodies(), &pair.a_from_b, pair.is_astray).is_some())
             .map(|pair| pair.ask(query))
             .collect();
-        let bodies = self.bodies.len();
-        let (count, allowed) = (bodies * bodies.saturating_sub(1) / 2, self.allowed.len());
+        let (count, allowed) = (pairs_of(self.bodies.len()), self.allowed.len());
         let ruled_out = count - allowed - asked.len();
         let outside = members.iter().filter(|member| member.beside.is_outside());
         let outside = outside.map(|&Member { name, beside: Beside { gap_m, size_m }, .. }| {
@@ -67,7 +66,7 @@ impl Scene {
     /// one after the other, those whose boxes overlap most first, and those after it are not. Which one is
     /// found depends on nothing but the scene.
     ///
-    /// With [`Detail::Free`](crate::Detail::Free) it is known soonest. A deadline is that of each pair;
+    /// With [`Detail::Free`] it is known soonest; [`Self::is_free`] tells no more than whether there is one. A deadline is that of each pair;
     /// [`Query::begun_now`] makes it that of all.
     #[must_use]
     pub fn check_first(&self, query: &Query) -> Option<PairAnswer> {
@@ -80,6 +79,15 @@ impl Scene {
             candidates.par_iter().filter_map(|pair| Some((urgency(pair)?, pair))).collect();
         open.sort_by(|(p, _), (q, _)| p.total_cmp(q));
         open.into_iter().map(|(_, pair)| pair.ask(query)).find(|pair| !pair.is_free())
+    }
+
+    /// Whether all pairs read as free: the verdict of [`Self::check`], sooner, for the pairs are asked one after the
+    /// other until one is surely not free ([`Detail::Free`]). Where there is no pair to ask, nothing is known, and
+    /// nothing free. A deadline is that of all pairs together.
+    #[must_use]
+    pub fn is_free(&self, query: &Query) -> bool {
+        let query = query.with_detail(Detail::Free).begun_now();
+        self.allowed.len() < pairs_of(self.bodies.len()) && self.check_first(&query).is_none()
     }
 
     /// Lowest and highest corner of each body along the axes of the scene, m, by its name: of its own box turned
@@ -142,6 +150,11 @@ fn warnings(members: &[Member<'_>], query: &Query) -> Vec<BodyWarning> {
     }
     all.sort_by(|p, q| p.name.cmp(&q.name));
     all
+}
+
+/// How many pairs so many bodies make.
+fn pairs_of(bodies: usize) -> usize {
+    bodies * bodies.saturating_sub(1) / 2
 }
 
 /// A body of the scene, and where it is.
