@@ -120,6 +120,24 @@ fn that_bodies_are_not_free_is_told_by_the_first_place_that_says_so() {
     assert!(2 * pairs[0] < pairs[1], "{pairs:?}");
 }
 
+/// What speaks against believing that a pair is free takes longer to tell than that it is not: of a gripper in a depth
+/// image a third of the time.
+#[test]
+fn what_is_not_free_is_asked_nothing_more() {
+    let (scene, object) =
+        (cloud(&scene::cuboid([0.1; 3]), 0.001, 1), cloud(&scene::cuboid([0.5; 3]), 0.001, 2));
+    let of = |detail: Detail, x: f64| {
+        let query = Query::new(QuerySettings { detail, ..QuerySettings::default() }).unwrap();
+        query.run(&scene, &object, &at(x, 0.0, 0.0)).unwrap()
+    };
+    // Larger than its scene it may have been exchanged with it.
+    let (crossing, apart) = (0.25, 0.5);
+    assert_eq!(of(Detail::Verdict, crossing).warnings.len(), 1);
+    let free = of(Detail::Free, crossing);
+    assert!(free.verdict != Verdict::Free && free.warnings.is_empty(), "{free:?}");
+    assert_eq!(of(Detail::Free, apart).warnings, of(Detail::Full, apart).warnings);
+}
+
 /// A distance is not looked for where it is not wanted; what hangs on it is.
 #[test]
 fn two_meshes_say_the_same_at_any_detail() {

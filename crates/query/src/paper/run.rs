@@ -102,6 +102,7 @@ impl PaperQuery {
             accept: self.settings.accept,
             reject: self.settings.reject,
             safeguards: self.settings.safeguards,
+            doubted_below: f64::INFINITY,
             are_alone: true,
             max_contacts: self.settings.max_contacts,
             closeness: self.settings.closeness,

@@ -93,6 +93,11 @@ impl Query {
             accept: self.settings.accept,
             reject: self.settings.reject,
             safeguards: self.settings.safeguards,
+            // What is not free whatever it says is done with.
+            doubted_below: match self.settings.detail {
+                Detail::Free => self.settings.reject,
+                _ => f64::INFINITY,
+            },
             are_alone: self.are_alone,
             max_contacts: self.settings.max_contacts,
             closeness: Closeness::default(),

@@ -14,8 +14,9 @@ use crate::judge::Judge;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Detail {
     /// Whether the pair is free, and no more: as [`Self::Verdict`], but a search ends when the probability is surely
-    /// not below `reject`. The verdict is [`Free`](crate::Verdict::Free) where that of a whole report is; any other
-    /// may be another one there too. For planners: [`Query::is_free`](crate::Query::is_free).
+    /// not below `reject`, and nothing else is asked about the pair then: it has no warnings. The verdict is
+    /// [`Free`](crate::Verdict::Free) where that of a whole report is; any other may be another one there too. For
+    /// planners: [`Query::is_free`](crate::Query::is_free).
     Free,
     /// The verdict: a search ends when the probability is surely above `accept`, looks for no more than the nearest
     /// places where it is surely below `reject`, and asks no classifier that cannot change it. The probability is

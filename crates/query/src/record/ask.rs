@@ -41,8 +41,9 @@ impl Terms {
         let mut estimate = estimate(start, &local, &mut evidence)?;
         let is_clear = estimate.evidence.is_some_and(|of| of.deviations >= CLEAR_DEVIATIONS);
         let may_be_free = estimate.probability <= self.accept;
-        let Doubts { unseen, warnings, gravest } = match estimate.is_too_late {
-            // Its upper bound of 1 leaves it open as it is.
+        // What is too late has an upper bound of 1, which leaves it open as it is.
+        let is_left = estimate.is_too_late || estimate.probability >= self.doubted_below;
+        let Doubts { unseen, warnings, gravest } = match is_left {
             true => Doubts::default(),
             false => self.doubts((a, b), &local, is_clear, may_be_free),
         };

@@ -13,6 +13,8 @@ pub(crate) struct Terms {
     pub accept: f64,
     pub reject: f64,
     pub safeguards: Safeguards,
+    /// From this probability on nobody asks what speaks against a verdict.
+    pub doubted_below: f64,
     /// Whether the two are all there is, and an object has to be near its scene and no larger: among many
     /// bodies most are far from most.
     pub are_alone: bool,
