@@ -22,6 +22,7 @@ mod stretch;
 mod text;
 mod tree;
 mod uri;
+mod ways;
 
 pub use checker::{RobotChecker, SURROUNDINGS, Touching};
 pub use error::{JointsError, PathError, RobotError, RobotFault, UnknownLink};

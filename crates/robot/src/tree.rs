@@ -89,6 +89,11 @@ impl Tree {
         poses
     }
 
+    /// The link that nothing carries.
+    pub(crate) fn root(&self) -> usize {
+        self.joints.first().map_or(0, |joint| joint.parent)
+    }
+
     /// The joints that carry a link, outermost first.
     pub(crate) fn chain(&self, link: usize) -> impl Iterator<Item = usize> {
         let parent = |&joint: &usize| self.carried_by[self.joints[joint].parent];
