@@ -22,6 +22,26 @@ pub(crate) struct Carried {
     pub is_shape: bool,
 }
 
+/// A ball that holds all of an exact body.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ball {
+    middle: Point3,
+    /// m.
+    radius: f64,
+}
+
+/// Poses and sums may misplace a ball by this part of its coordinates at most.
+const ROUNDING: f64 = 1e-9;
+
+impl Ball {
+    /// Whether nothing of one meets anything of the other, however they go this way (m) altogether.
+    pub(crate) fn is_beyond(&self, other: &Self, way: f64) -> bool {
+        let coordinates = self.middle.coords.norm() + other.middle.coords.norm();
+        let reach = self.radius + other.radius + way;
+        (self.middle - other.middle).norm() > reach + ROUNDING * (reach + coordinates)
+    }
+}
+
 /// Surface is expected this part of a size beyond the points that were measured at most.
 const BEYOND_POINTS: f64 = 0.01;
 
@@ -48,6 +68,16 @@ impl Carried {
         let farthest = (0..8).map(corner).fold(0.0, f64::max);
         let radius = farthest + BEYOND_POINTS * (high - low).norm();
         Self { name, link, link_from_body, body, radius, is_shape: false }
+    }
+
+    /// About the box of a mesh that is at a pose; none of a cloud, whose surface is not known to end with its points.
+    pub(crate) fn ball(&self, pose: &Pose) -> Option<Ball> {
+        let [low, high] = match &*self.body {
+            Body::Mesh(mesh) => BodyRef::from(mesh).corners(),
+            Body::Cloud(_) => return None,
+        };
+        let middle = pose.transform_point(&(low + 0.5 * (high - low)));
+        Some(Ball { middle, radius: 0.5 * (high - low).norm() })
     }
 
     /// From its file frame into that of the base, given the poses of all links.
