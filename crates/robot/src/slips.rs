@@ -27,6 +27,9 @@ const NUMBERS: [(&str, usize); 10] = [
     ("offset", 1),
 ];
 
+/// What else is read.
+const READ: [&str; 5] = ["name", "type", "link", "joint", "filename"];
+
 /// The same, unless its name or that of an attribute is a slip: what places a link would be passed over.
 pub(crate) fn known(start: BytesStart<'_>) -> Result<BytesStart<'_>, RobotFault> {
     let name = text(start.name().as_ref());
@@ -37,6 +40,7 @@ pub(crate) fn known(start: BytesStart<'_>) -> Result<BytesStart<'_>, RobotFault>
             None => Ok(start),
         };
     };
+    check_prefixes(&start)?;
     let attributes = element.attributes;
     for attribute in own_attributes(&start)? {
         let (own, value) = (text(attribute.key.as_ref()), text(&attribute.value));
@@ -60,6 +64,24 @@ pub(crate) fn known(start: BytesStart<'_>) -> Result<BytesStart<'_>, RobotFault>
         }
     }
     Ok(start)
+}
+
+/// Refuses an attribute that is read where it has no prefix: it would be passed over.
+fn check_prefixes(start: &BytesStart<'_>) -> Result<(), RobotFault> {
+    for attribute in start.attributes().flatten() {
+        let (prefix, local) = (attribute.key.prefix(), text(attribute.key.local_name().as_ref()));
+        let is_read = local.is_empty()
+            || READ.contains(&local.as_str())
+            || NUMBERS.iter().any(|(known, _)| *known == local);
+        if is_read && prefix.is_some_and(|prefix| prefix.as_ref() != b"xmlns") {
+            let [own, name] = [attribute.key.as_ref(), start.name().as_ref()].map(text);
+            let reason = format!(
+                "`{own}` of <{name}> has a prefix, by which it is not read: write it without `:`"
+            );
+            return Err(RobotFault::Xml { reason });
+        }
+    }
+    Ok(())
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -117,6 +139,13 @@ mod tests {
             ("<orgin xyz='0 0 1'/>", "<orgin> is not known: write <origin>"),
             ("<Origin xyz='0 0 1'/>", "write <origin>"),
             ("<geometry><mesh filename='a' Scale='1 1 1'/></geometry>", "`Scale` of <mesh>"),
+            // With a prefix they were passed over, and the shape was elsewhere.
+            (
+                "<origin u:xyz='0 0.1 0.2' rpy='0 0 1'/>",
+                "`u:xyz` of <origin> has a prefix, by which it is not read",
+            ),
+            ("<origin xyz:='0 0.1 0.2'/>", "`xyz:` of <origin> has a prefix"),
+            ("<geometry><mesh filename='a' u:scale='1 1 2'/></geometry>", "`u:scale` of <mesh>"),
             // What is not well formed, or no number, was passed over: no turn, and up for down.
             ("<origin xyz='0 0 1' rpy=1.57/>", "the attributes of <origin>"),
             ("<origin xyz='0 0 0' xyz='0 0 1'/>", "the attributes of <origin>"),
@@ -126,6 +155,12 @@ mod tests {
             let error = within(inner).unwrap_err();
             assert!(error.contains(told), "{error}");
         }
-        assert!(within("<origin xyz='0 0 1'/><contact_coefficients mu='1'/>").is_ok());
+        let limit = "<robot name='a'><joint><limit loweru:='-1.5' upper='1'/></joint></robot>";
+        let error = essential(limit).unwrap_err().to_string();
+        assert!(error.contains("`loweru:` of <limit> has a prefix"), "{error}");
+        assert!(
+            within("<origin xyz='0 0 1' xmlns:size='x' u:note='1'/><contact_coefficients mu='1'/>")
+                .is_ok()
+        );
     }
 }
