@@ -15,6 +15,9 @@ pub(crate) fn locate(
     packages: &[(String, PathBuf)],
 ) -> Result<PathBuf, RobotFault> {
     let (link, owned) = (link.to_owned(), uri.to_owned());
+    if uri.trim().is_empty() {
+        return Err(RobotFault::UnnamedMesh { link });
+    }
     let path = if let Some(path) = uri.strip_prefix("file://") {
         // Relative ones are not by the standard, and common.
         folder.join(path)

@@ -36,6 +36,8 @@ fn what_is_wrong_is_named_with_file_value_and_remedy() {
     let limits = "<limit lower='1' upper='-1' effort='0' velocity='0'/>";
     for (urdf, parts) in [
         (mesh("gone.stl", ""), vec!["link `a`", "gone.stl", "no file", "correct the path"]),
+        // It was told that there is no file of no name.
+        (mesh("", ""), vec!["link `a`", "empty filename", "name the file"]),
         (mesh("package://mine/cube.obj", ""), vec!["`a`", "`mine`", "name it in `packages`"]),
         (mesh("http://x.org/cube.obj", ""), vec!["`a`", "http://x.org/cube.obj", "package://"]),
         (mesh("old.dae", ""), vec!["`a`", "old.dae", "COLLADA", "convert it to STL or OBJ"]),

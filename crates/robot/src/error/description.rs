@@ -228,6 +228,12 @@ pub enum RobotFault {
         /// Where its mesh is said to be.
         uri: String,
     },
+    /// A mesh without a file.
+    #[error("link `{link}`: its <mesh> has an empty filename: name the file of the mesh")]
+    UnnamedMesh {
+        /// The link.
+        link: String,
+    },
     /// A mesh file is not there.
     #[error(
         "link `{link}`: {uri}: there is no file {}: correct the path, or the folder of its package",
