@@ -260,6 +260,56 @@ fn an_index_that_leaves_out_messages_is_refused() {
     assert_eq!(found.unwrap().time, 3.0);
 }
 
+/// A scan in a chunk at 0 s and one at 4 s, with a record between the chunks that takes the place of so many bytes.
+fn with_record_between(kind: u8, body: &[u8]) -> Vec<u8> {
+    let room = "x".repeat(body.len());
+    let mut writer = WriteOptions::new().create(Cursor::new(Vec::new())).unwrap();
+    let schema = writer.add_schema(CLOUD, "ros2msg", b"").unwrap();
+    let channel_id = writer.add_channel(schema, "/a", "cdr", &BTreeMap::new()).unwrap();
+    for time in [0, 4] {
+        let log_time = START + time * SECOND;
+        let header = MessageHeader { channel_id, sequence: 0, log_time, publish_time: log_time };
+        writer.write_to_known_channel(&header, &numbered(time as f32, Wire::LittleCdr)).unwrap();
+        let metadata = mcap::records::Metadata { name: room.clone(), metadata: BTreeMap::new() };
+        writer.write_metadata(&metadata).unwrap();
+    }
+    writer.finish().unwrap();
+    let mut bytes = writer.into_inner().into_inner();
+    let at = bytes.windows(room.len()).position(|part| part == room.as_bytes()).unwrap();
+    // Its opcode and length, and the length of its name.
+    bytes[at - 13] = kind;
+    bytes[at - 4..][..body.len()].copy_from_slice(body);
+    bytes
+}
+
+/// Messages may lie outside of chunks. Asked for the scan from 0.5 s on, that at 4 s was given and not that at 1 s between
+/// the chunks.
+#[test]
+fn messages_between_chunks_were_passed_over() {
+    use mcap::records::op;
+    let mut message = Vec::new();
+    message.extend(0_u16.to_le_bytes());
+    message.extend(0_u32.to_le_bytes());
+    message.extend((START + SECOND).to_le_bytes());
+    message.extend((START + SECOND).to_le_bytes());
+    message.extend(numbered(1.0, Wire::LittleCdr));
+    let name = u32::try_from(message.len()).unwrap().to_le_bytes();
+    let found = |kind: u8, body: &[u8]| {
+        let (_folder, path) = file(&with_record_between(kind, body));
+        let found = Recording::open(&path, &limits())?.scan(Some("/a"), Some(0.5));
+        found.map(|found| found.time)
+    };
+    let mut metadata = vec![b'x'; message.len()];
+    metadata[..4].copy_from_slice(&name);
+    assert_eq!(found(op::METADATA, &metadata).unwrap(), 4.0);
+    for (kind, expected) in
+        [(op::MESSAGE, "has messages outside of its chunks"), (op::CHUNK, "a chunk that is in no")]
+    {
+        let error = found(kind, &message).unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains("mcap recover"), "{error}");
+    }
+}
+
 /// The checksum of the summary was not looked at: with another time of a chunk, or another letter of a topic, another scan
 /// was the first, or none.
 #[test]

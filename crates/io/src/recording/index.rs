@@ -8,6 +8,7 @@ use mcap::{
 };
 
 use super::{
+    between,
     source::Source,
     whole::{check, crc32, times},
 };
@@ -89,6 +90,7 @@ pub(super) fn read(source: &mut Source) -> Result<Index, ReadError> {
     {
         return Err(source.error(no_index("has no index of its chunks and channels")));
     }
+    between::check(source, &index.chunks, start)?;
     Ok(index)
 }
 

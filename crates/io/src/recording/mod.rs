@@ -4,6 +4,8 @@ mod name;
 mod scan;
 
 #[cfg(feature = "mcap")]
+mod between;
+#[cfg(feature = "mcap")]
 mod chunk;
 #[cfg(feature = "mcap")]
 mod index;
