@@ -7,6 +7,8 @@ use super::json::as_written;
 
 /// Programs that rectify round: closer numbers are the same, pixels.
 const SAME: f64 = 0.01;
+/// No entry of a turn is farther from that of none than so: a tenth of a millimetre a metre.
+const TURNED: f64 = 1e-4;
 /// Where fx, fy, cx and cy are among the twelve numbers of `P`.
 const PLACES: [(&str, usize); 4] = [("fx", 0), ("fy", 5), ("cx", 2), ("cy", 6)];
 const REMEDY: &str =
@@ -34,7 +36,7 @@ pub(super) fn check(fields: &Map<String, Value>, intrinsics: [f64; 4]) -> Result
         }
     }
     for name in ["P", "p"] {
-        let Some(rectified) = fields.get(name).and_then(twelve) else { continue };
+        let Some(rectified) = fields.get(name).and_then(numbers::<12>) else { continue };
         // What drivers write that do not know it.
         if rectified.iter().all(|number| *number == 0.0) {
             continue;
@@ -48,15 +50,41 @@ pub(super) fn check(fields: &Map<String, Value>, intrinsics: [f64; 4]) -> Result
             );
         }
     }
+    check_turn(fields)
+}
+
+/// Refuses a rectified image that is turned against the one taken: beside a `P`, for elsewhere an `R` is the turn of the
+/// camera in the world.
+fn check_turn(fields: &Map<String, Value>) -> Result<()> {
+    if !fields.contains_key("P") && !fields.contains_key("p") {
+        return Ok(());
+    }
+    for name in ["R", "r"] {
+        let Some(turn) = fields.get(name).and_then(numbers::<9>) else { continue };
+        if turn == [0.0; 9] {
+            continue;
+        }
+        for (place, found) in turn.into_iter().enumerate() {
+            let (row, column) = (place / 3, place % 3);
+            let unturned = if row == column { 1.0 } else { 0.0 };
+            ensure!(
+                (found - unturned).abs() <= TURNED,
+                "`{name}` has {found} in row {} and column {}, where no turn has {unturned}: the rectified image looks \
+                 elsewhere than the one that was taken; {REMEDY}",
+                row + 1,
+                column + 1
+            );
+        }
+    }
     Ok(())
 }
 
-/// Twelve numbers, or three rows of four.
-fn twelve(value: &Value) -> Option<Vec<f64>> {
+/// So many numbers, in one list or in rows.
+fn numbers<const N: usize>(value: &Value) -> Option<[f64; N]> {
     let rows = value.as_array()?.iter();
     let rows = rows.map(|row| row.as_array().map_or(std::slice::from_ref(row), Vec::as_slice));
     let numbers: Option<Vec<f64>> = rows.flatten().map(Value::as_f64).collect();
-    numbers.filter(|numbers| numbers.len() == 12)
+    numbers?.try_into().ok()
 }
 
 #[cfg(test)]
@@ -70,6 +98,29 @@ mod tests {
 
     fn told(fields: Value) -> Option<String> {
         check(fields.as_object().unwrap(), K).err().map(|error| error.to_string())
+    }
+
+    /// It was passed over where `P` is as `K`.
+    #[test]
+    fn a_rectified_image_that_is_turned_is_refused() {
+        let [fx, fy, cx, cy] = K;
+        let p = [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let turn = [0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8];
+        for fields in [json!({"R": turn, "P": p}), json!({"r": turn.as_chunks::<3>().0, "p": p})] {
+            let error = told(fields).unwrap_or_default();
+            for part in ["` has 0.8 in row 1 and column 1", "has 1:", "FX,FY,CX,CY"] {
+                assert!(error.contains(part), "{error}");
+            }
+        }
+        let none = [1.0, 1e-5, 0.0, -1e-5, 1.0, 0.0, 0.0, 0.0, 1.0];
+        for fields in [
+            json!({"R": none, "P": p}),
+            json!({"R": vec![0.0; 9], "P": p}),
+            json!({"R": "none", "P": p}),
+            json!({"R": turn, "t": [0, 0, 1]}),
+        ] {
+            assert_eq!(told(fields), None);
+        }
     }
 
     /// They were passed over, so that an image of half the size was read with twice its focal length.

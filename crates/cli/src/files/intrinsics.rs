@@ -133,6 +133,12 @@ fn of_object(fields: &Map<String, Value>) -> Result<CameraFile> {
     for names in SIZES {
         camera.image_size = camera.image_size.or(size(fields, names)?);
     }
+    if let Some(Value::Array(pair)) = fields.get("resolution")
+        && let [width, height] = &pair[..]
+    {
+        let stated = (pixels("resolution", width)?, pixels("resolution", height)?);
+        camera.image_size = camera.image_size.or(Some(stated));
+    }
     // Only BOP has this name for its matrix, and its scale makes millimetres.
     let is_of_bop = fields.contains_key("cam_K") && fields.contains_key("depth_scale");
     if is_of_bop {
@@ -154,21 +160,27 @@ fn is_of_steps(name: &str) -> bool {
     name == "scale" || (name.contains("depth") && is_step())
 }
 
-/// Columns and rows, where both are stated; 0 is what drivers write that do not know them.
+/// Columns and rows, where they are stated; 0 is what drivers write that do not know them.
 fn size(fields: &Map<String, Value>, names: [&str; 2]) -> Result<Option<(usize, usize)>> {
-    let mut pixels = [0; 2];
-    for (pixels, name) in pixels.iter_mut().zip(names) {
-        let Some(value) = fields.get(name).filter(|value| !value.is_null()) else {
-            return Ok(None);
-        };
-        // `640.0` is what some programs write.
-        let whole = value.as_f64().filter(|size| size.fract() == 0.0 && (0.0..1e9).contains(size));
-        *pixels = whole.map(|size| size as usize).with_context(|| {
-            format!("`{name}` is {}: give a whole number of pixels", as_written(value))
-        })?;
-    }
-    let [width, height] = pixels;
-    Ok((pixels != [0, 0]).then_some((width, height)))
+    let [width, height] = names.map(|name| fields.get(name).filter(|value| !value.is_null()));
+    let (width, height) = match (width, height) {
+        (Some(width), Some(height)) => (pixels(names[0], width)?, pixels(names[1], height)?),
+        (None, None) => return Ok(None),
+        (width, height) => {
+            let [there, missing] = if width.is_some() { names } else { [names[1], names[0]] };
+            let value = width.or(height).map(as_written).unwrap_or_default();
+            bail!("`{there}` is {value}, and there is no `{missing}`: give both, or leave it out");
+        }
+    };
+    Ok(((width, height) != (0, 0)).then_some((width, height)))
+}
+
+/// A number of pixels; `640.0` is what some programs write.
+fn pixels(name: &str, value: &Value) -> Result<usize> {
+    let whole = value.as_f64().filter(|size| size.fract() == 0.0 && (0.0..1e9).contains(size));
+    whole.map(|size| size as usize).with_context(|| {
+        format!("`{name}` is {}: give a whole number of pixels", as_written(value))
+    })
 }
 
 fn of_numbers([fx, fy, cx, cy]: [f64; 4]) -> CameraFile {
@@ -269,6 +281,9 @@ mod tests {
         assert_eq!(read(scaled).unclear_scale.as_deref(), Some("`depth_scale` is 1000"));
         let sized = scaled.replace("\"depth_scale\": 1000", "\"w\": 640, \"h\": 480");
         assert_eq!(read(&sized).camera.image_size, Some((640, 480)));
+        // It was not compared with the image.
+        let sized = scaled.replace("\"depth_scale\": 1000", "\"resolution\": [640, 480]");
+        assert_eq!(read(&sized).camera.image_size, Some((640, 480)));
     }
 
     /// Under any other name than `depth_scale` it was passed over, and steps were taken for millimetres.
@@ -301,6 +316,16 @@ mod tests {
             (
                 r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 3, "width": "640", "height": 480}"#,
                 &["`width` is", "whole number of pixels"],
+            ),
+            // One alone was passed over.
+            (
+                r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 3, "width": 1280}"#,
+                &["`width` is 1280", "no `height`", "give both"],
+            ),
+            (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 3, "w": null, "h": 7}"#, &["`h` is 7", "no `w`"]),
+            (
+                r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 3, "resolution": [640, "480"]}"#,
+                &["`resolution` is \"480\"", "whole number of pixels"],
             ),
             (r#"{"K": [1, 2, 3]}"#, &["`K` is no list of nine"]),
             (r#"{"K": [525, 3, 319, 0, 525, 239, 0, 0, 1]}"#, &["`K` has 3", "without skew"]),
