@@ -149,6 +149,25 @@ mod with_feature {
         run("same.mcap").quiet(0);
     }
 
+    /// Of a robot that drove on they were laid on top of each other, and nothing told of it.
+    #[test]
+    fn scans_that_were_not_taken_at_once_give_a_warning() {
+        let inputs = inputs();
+        let floors = [("/a", 0, 0.0, "left"), ("/a", 2, 0.0, "left"), ("/b", 0, -0.5, "left")];
+        record(&inputs, "left.mcap", &floors);
+        record(&inputs, "map.mcap", &floors.map(|(topic, time, z, _)| (topic, time, z, "/map")));
+        let run = |recording: &str, also: &str| {
+            let [scene, also] = ["#/a@0", also].map(|scan| format!("{recording}{scan}"));
+            inputs.run(&["query", &scene, "box.obj", POSE, "--also", &also])
+        };
+        let told = run("left.mcap", "#/b@0").stderr() + &run("map.mcap", "#/a@1").stderr();
+        assert!(!told.contains("before or after"), "{told}");
+        let told = run("left.mcap", "#/a@1").stderr();
+        for part in ["left.mcap#/a@0: the other", "2.00 s before", "stood still", "its pose"] {
+            assert!(told.contains(part), "{told}");
+        }
+    }
+
     /// Its noise went by the distance from the origin of a map, and nothing told of it.
     #[test]
     fn a_scan_in_a_frame_that_is_no_sensors_gives_a_warning() {
