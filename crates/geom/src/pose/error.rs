@@ -27,8 +27,9 @@ pub enum PoseError {
     },
     /// The 3×3 part stretches or shears.
     #[error(
-        "the 3x3 part of the pose is not a rotation: R·Rᵀ differs from the identity by {error:.3e} \
-         (at most {ROUNDING:e} is taken as rounding); remove scale and shear"
+        "the 3x3 part of the pose is not a rotation: R·Rᵀ differs from the identity by {} \
+         (at most {ROUNDING:e} is taken as rounding); remove scale and shear",
+        beyond_rounding(*error)
     )]
     NotOrthonormal {
         /// Largest entry of |R Rᵀ − I|.
@@ -46,4 +47,24 @@ pub enum PoseError {
         /// The determinant, about −1.
         determinant: f64,
     },
+}
+
+/// In as few digits as show it to be more than rounding, and three behind the point at least.
+fn beyond_rounding(error: f64) -> String {
+    let shown = |digits: usize| format!("{error:.digits$e}");
+    let is_beyond = |text: &String| text.parse().is_ok_and(|shown: f64| shown > ROUNDING);
+    (3..16).map(shown).find(is_beyond).unwrap_or_else(|| format!("{error:e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_just_beyond_rounding_was_told_as_the_bound() {
+        let told = |error: f64| PoseError::NotOrthonormal { error }.to_string();
+        assert!(told(2.000_04e-4).contains("by 2.00004e-4 (at most 2e-4"), "{}", told(2.000_04e-4));
+        assert!(told(0.25).contains("by 2.500e-1 ("), "{}", told(0.25));
+        assert!(told(f64::INFINITY).contains("by inf ("), "{}", told(f64::INFINITY));
+    }
 }
