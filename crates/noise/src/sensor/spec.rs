@@ -46,7 +46,11 @@ impl FromStr for SensorModel {
                 Self::TimeOfFlight { std, per_metre }
             }
             "lidar" => {
-                let [range_std, beam_rad] = numbers(spec, values, "lidar:RANGE_STD,BEAM_RAD")?;
+                let [range_std, beam_rad] = numbers(spec, values, LIDAR)?;
+                if let Some(problem) = slip_of_beam(beam_rad) {
+                    let spec = spec.to_owned();
+                    return Err(NoiseError::SensorSyntax { spec, form: LIDAR, problem });
+                }
                 Self::Lidar { range_std, beam_rad }
             }
             "grid" => {
@@ -92,6 +96,7 @@ fn listed<const N: usize>(values: [f64; N]) -> String {
 }
 
 const STEREO: &str = "stereo:BASELINE,FOCAL_PX,DISPARITY_STD";
+const LIDAR: &str = "lidar:RANGE_STD,BEAM_RAD";
 
 /// What cannot be meant of a stereo camera: it would be a thousand times as sharp, or as blurred, as it is.
 fn slip(baseline: f64, focal_px: f64) -> Option<String> {
@@ -108,6 +113,18 @@ fn slip(baseline: f64, focal_px: f64) -> Option<String> {
     }
 }
 
+/// What cannot be meant of a laser scanner: beams are milliradians wide, and those of the simplest rangefinders half a
+/// radian.
+fn slip_of_beam(beam_rad: f64) -> Option<String> {
+    const WIDEST_RAD: f64 = 0.6;
+    (beam_rad > WIDEST_RAD && beam_rad.is_finite()).then(|| {
+        format!(
+            "a beam of {} rad is wider than {WIDEST_RAD} rad: is it in milliradians or degrees?",
+            number(beam_rad)
+        )
+    })
+}
+
 /// The `N` comma-separated numbers after the colon; no colon at all when `N` is zero.
 fn numbers<const N: usize>(
     spec: &str,
@@ -121,7 +138,15 @@ fn numbers<const N: usize>(
     }
     let mut numbers = [0.0; N];
     for (number, part) in numbers.iter_mut().zip(parts) {
-        *number = part.trim().parse().map_err(|_| problem(format!("`{part}` is not a number")))?;
+        let part = part.trim();
+        // `lidar:0,02` would be 0 and 2.
+        if part.strip_prefix('0').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+        {
+            return Err(problem(format!(
+                "`{part}` begins with a zero: decimals have a point, as in 0.02"
+            )));
+        }
+        *number = part.parse().map_err(|_| problem(format!("`{part}` is not a number")))?;
     }
     Ok(numbers)
 }
@@ -146,7 +171,7 @@ mod tests {
                     SensorModel::Stereo { baseline, focal_px, disparity_std }
                 }
             ),
-            (small(), small())
+            (small(), 0.0..0.6_f64)
                 .prop_map(|(range_std, beam_rad)| SensorModel::Lidar { range_std, beam_rad }),
             (small(), small())
                 .prop_map(|(std, per_metre)| SensorModel::TimeOfFlight { std, per_metre }),
@@ -207,6 +232,12 @@ mod tests {
             // Read as 90 m, a cloud was a thousand times too sharp.
             ("stereo:90,570,0.2", &["90 m", "in millimetres?"]),
             ("stereo:0.09,0.57,0.2", &["0.57 pixels", "in millimetres?"]),
+            // Of milliradians a point ten metres away was uncertain by metres across its ray.
+            ("lidar:0.02,3", &["a beam of 3 rad", "in milliradians or degrees?"]),
+            ("lidar:0.02,inf", &["the beam divergence", "inf", "not negative"]),
+            // Decimals with a comma: no noise along the ray, and metres across it.
+            ("lidar:0,02", &["`02` begins with a zero", "a point, as in 0.02"]),
+            ("tof:0,001", &["`001` begins with a zero", "tof:STD,PER_METRE"]),
             ("grid:NaN", &["resolution", "NaN", "positive"]),
         ] {
             let text = message(spec);
