@@ -69,6 +69,9 @@ fn a_point_at_the_sensor_has_finite_noise() {
     for sensor in ["kinect", "stereo:0.1,500,0.25", "tof:0.001,0.002", "lidar:0.02,0.004"] {
         assert!(at(sensor, Point3::origin()).is_finite(), "{sensor}");
     }
+    // So near that the square of the range is 0 it had no noise.
+    let near = at("kinect", Point3::new(0.0, 0.0, 1e-170));
+    assert!((near.max_std() - at("kinect", Point3::origin()).max_std()).abs() < 1e-15);
     let lidar = at("lidar:0.02,0.004", Point3::origin());
     assert!((lidar.matrix() - diagonal([0.02; 3])).amax() < 1e-15);
 }

@@ -122,5 +122,6 @@ impl Sensor for Lidar {
 fn depth_and_stretch(place: &Point3) -> (f64, f64) {
     let range = place.coords.norm();
     let depth = place.z.abs().max(0.5 * range);
-    (depth, if depth > 0.0 { range / depth } else { 1.0 })
+    // The square of a range below 1e-162 m is 0, and so is its root.
+    (depth, if range > 0.0 { range / depth } else { 1.0 })
 }
