@@ -42,7 +42,8 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<ExitCode> {
         let text = super::recording::describe(&name?, arguments, describe_cloud)?;
         return answer(arguments, &text);
     }
-    let text = match load::geometry(&arguments.file, units, &arguments.limits.read_limits())? {
+    let read = load::geometry(&arguments.file, units, &arguments.limits.read_limits())?;
+    let text = match (read.geometry, read.kind) {
         (Geometry::Cloud(_), _) if arguments.unit.is_some() => {
             bail!(WrongUsage(
                 "--unit is for meshes, and this is a cloud: give --cloud-unit".to_owned()

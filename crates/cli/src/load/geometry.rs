@@ -6,9 +6,12 @@ use anyhow::{Context as _, Result, ensure};
 use cloudtouch_cli::intrinsics::DepthImages;
 use cloudtouch_io::{
     DepthCamera, Geometry, LengthUnit, ReadLimits, check_extension, is_depth_image,
-    read_depth_image_within, read_geometry_within, recording::file_of, scaled_cloud,
+    read_depth_image_within, read_geometry_within, read_scan_within,
+    recording::{ScanName, file_of},
+    scaled_cloud,
 };
 
+use super::frames::Taken;
 use crate::args::{BodyOptions, CommonArguments};
 
 /// What the coordinates of files are in, and what takes depth images.
@@ -70,21 +73,34 @@ pub(crate) fn check(path: &Path) -> Result<()> {
     Ok(check_extension(path)?)
 }
 
+/// What a file holds.
+pub(crate) struct Read {
+    pub geometry: Geometry,
+    pub kind: Kind,
+    /// Of a scan of a recording where and when it was taken.
+    pub taken: Option<Taken>,
+}
+
 /// Reads a cloud or a mesh in its own unit: scans mostly know theirs and exported meshes do not, so
 /// that the two are often mixed.
-pub(crate) fn geometry(
-    path: &Path,
-    units: Units<'_>,
-    limits: &ReadLimits,
-) -> Result<(Geometry, Kind)> {
+pub(crate) fn geometry(path: &Path, units: Units<'_>, limits: &ReadLimits) -> Result<Read> {
     check(path)?;
     if is_depth_image(path) {
         let camera = units.images.camera(path, limits.bytes)?;
         let cloud = read_depth_image_within(path, &camera, limits)?;
         warn_of_doubtful(path, &camera, &cloud.image_size);
-        return Ok((Geometry::Cloud(cloud), Kind::DepthImage(camera)));
+        let (geometry, kind) = (Geometry::Cloud(cloud), Kind::DepthImage(camera));
+        return Ok(Read { geometry, kind, taken: None });
     }
-    Ok(match read_geometry_within(path, LengthUnit::Metres, limits)? {
+    let (geometry, taken) = match ScanName::of(path) {
+        Some(_) => {
+            let found = read_scan_within(path, limits)?;
+            let taken = Taken::of(path, &found);
+            (Geometry::Cloud(found.scan.cloud), Some(taken))
+        }
+        None => (read_geometry_within(path, LengthUnit::Metres, limits)?, None),
+    };
+    let (geometry, kind) = match geometry {
         Geometry::Mesh(mesh) => {
             let mesh = mesh.scaled(units.meshes.in_metres());
             (Geometry::Mesh(mesh), Kind::Mesh(units.meshes))
@@ -93,7 +109,8 @@ pub(crate) fn geometry(
             let cloud = scaled_cloud(cloud, units.clouds.in_metres());
             (Geometry::Cloud(cloud), Kind::Cloud(units.clouds))
         }
-    })
+    };
+    Ok(Read { geometry, kind, taken })
 }
 
 /// Pixels of cameras are about as wide as they are high.

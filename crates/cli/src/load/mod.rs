@@ -24,6 +24,7 @@ use crate::body::{Body, PreparedCloud};
 use crate::sensor::{Chosen, SensorChoice};
 use crate::usage::{self, WrongUsage};
 
+use frames::Taken;
 pub(crate) use geometry::{Kind, Units, check, geometry};
 
 /// What a body is used as: only scenes are cleaned of the robot and turned into collision maps.
@@ -122,22 +123,21 @@ fn bodies_in<C: PreparedCloud>(
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
 ) -> Result<Loaded<C>> {
-    let mut scans = Vec::new();
-    let limits = options.common.limits.read_limits();
+    let (mut scans, mut taken) = (Vec::new(), Vec::new());
     for path in paths {
-        match geometry(path, units, &limits)? {
-            (Geometry::Mesh(mesh), _) if paths.len() == 1 => {
+        let read = geometry(path, units, &options.common.limits.read_limits())?;
+        match read.geometry {
+            Geometry::Mesh(mesh) if paths.len() == 1 => {
                 return of_mesh(path, units.meshes, role, &mesh, options);
             }
-            (Geometry::Mesh(_), _) => {
-                bail!("{}: is a mesh: only scans make one scene", named(path))
-            }
-            (Geometry::Cloud(cloud), kind) => scans.push((cloud, kind)),
+            Geometry::Mesh(_) => bail!("{}: is a mesh: only scans make one scene", named(path)),
+            Geometry::Cloud(cloud) => scans.push((cloud, read.kind)),
         }
+        taken.extend(read.taken);
     }
-    frames::check(paths, &limits)?;
+    frames::check(&taken)?;
     if let Some((first, _)) = scans.first() {
-        warn_of_place(paths, role, first, sensor, options)?;
+        warn_of_place(&taken, role, first, sensor, options);
     }
     let names: Vec<String> = paths.iter().map(|path| named(path)).collect();
     let robot = if role == Role::Scene { robot(options)? } else { Vec::new() };
@@ -152,15 +152,17 @@ pub(crate) fn surroundings(
 ) -> Result<Loaded<Cloud>> {
     let common = options.common;
     let units = Units::of(options);
-    match geometry(path, units, &common.limits.read_limits())? {
-        (Geometry::Mesh(_), _) if !robot.is_empty() => bail!(WrongUsage(format!(
+    let read = geometry(path, units, &common.limits.read_limits())?;
+    match read.geometry {
+        Geometry::Mesh(_) if !robot.is_empty() => bail!(WrongUsage(format!(
             "{}: a mesh does not show the robot: leave --scan-joints out",
             named(path)
         ))),
-        (Geometry::Mesh(mesh), _) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
-        (Geometry::Cloud(cloud), kind) => {
-            warn_of_place(&[path], Role::Scene, &cloud, common.scene_sensor(), options)?;
-            let (scans, sensor) = (vec![(cloud, kind)], common.scene_sensor());
+        Geometry::Mesh(mesh) => of_mesh(path, units.meshes, Role::Scene, &mesh, options),
+        Geometry::Cloud(cloud) => {
+            let taken: Vec<Taken> = read.taken.into_iter().collect();
+            warn_of_place(&taken, Role::Scene, &cloud, common.scene_sensor(), options);
+            let (scans, sensor) = (vec![(cloud, read.kind)], common.scene_sensor());
             of_clouds(&[named(path)], Role::Scene, scans, sensor, options, robot)
         }
     }
@@ -168,17 +170,16 @@ pub(crate) fn surroundings(
 
 /// Warns of a scene out of a recording whose frame is no sensor's, where that matters.
 fn warn_of_place(
-    paths: &[&Path],
+    scans: &[Taken],
     role: Role,
     first: &PointCloud,
     sensor: SensorChoice,
     options: &BodyOptions<'_>,
-) -> Result<()> {
+) {
     let is_told = options.sensor_pose.is_some() || options.collision_map.is_some();
-    if role != Role::Scene || is_told {
-        return Ok(());
+    if role == Role::Scene && !is_told {
+        frames::warn_of_place(scans, &sensor.of(first).sensor);
     }
-    frames::warn_of_place(paths, &sensor.of(first).sensor, &options.common.limits.read_limits())
 }
 
 fn of_mesh<C>(

@@ -5,7 +5,7 @@ use mcap::{
     records::{ChunkIndex, op},
 };
 
-use super::{index::RECORD_HEAD, source::Source};
+use super::source::{RECORD_HEAD, Source};
 use crate::error::ReadError;
 use crate::recording_fault::RecordingFault;
 

@@ -9,7 +9,7 @@ use mcap::{
 
 use super::{
     between,
-    source::Source,
+    source::{RECORD_HEAD, Source},
     whole::{check, crc32, times},
 };
 use crate::error::ReadError;
@@ -41,8 +41,6 @@ impl Channel {
     }
 }
 
-/// Opcode and length of a record.
-pub(super) const RECORD_HEAD: usize = 1 + 8;
 /// Two offsets and a checksum.
 const FOOTER: usize = 8 + 8 + 4;
 

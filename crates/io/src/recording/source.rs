@@ -9,6 +9,9 @@ use std::{
 use crate::recording_fault::RecordingFault;
 use crate::{error::ReadError, limits::ReadLimits};
 
+/// Opcode and length of a record.
+pub(super) const RECORD_HEAD: usize = 1 + 8;
+
 /// An open file.
 #[derive(Debug)]
 pub(super) struct Source {

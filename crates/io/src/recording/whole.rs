@@ -4,15 +4,9 @@ use mcap::records::{ChunkIndex, Statistics};
 
 /// The checksum of the format over parts that follow one another.
 pub(super) fn crc32(parts: &[&[u8]]) -> u32 {
-    const POLYNOMIAL: u32 = 0xedb8_8320;
-    let mut sum = u32::MAX;
-    for byte in parts.iter().copied().flatten() {
-        sum ^= u32::from(*byte);
-        for _ in 0..8 {
-            sum = if sum & 1 == 1 { sum >> 1 ^ POLYNOMIAL } else { sum >> 1 };
-        }
-    }
-    !sum
+    let mut hasher = crc32fast::Hasher::new();
+    parts.iter().for_each(|part| hasher.update(part));
+    hasher.finalize()
 }
 
 /// When the first and the last message of these chunks were recorded, ns.
