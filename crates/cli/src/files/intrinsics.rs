@@ -136,8 +136,8 @@ fn of_object(fields: &Map<String, Value>) -> Result<CameraFile> {
     if let Some(Value::Array(pair)) = fields.get("resolution")
         && let [width, height] = &pair[..]
     {
-        let stated = (pixels("resolution", width)?, pixels("resolution", height)?);
-        camera.image_size = camera.image_size.or(Some(stated));
+        let stated = known((pixels("resolution", width)?, pixels("resolution", height)?));
+        camera.image_size = camera.image_size.or(stated);
     }
     // Only BOP has this name for its matrix, and its scale makes millimetres.
     let is_of_bop = fields.contains_key("cam_K") && fields.contains_key("depth_scale");
@@ -160,7 +160,7 @@ fn is_of_steps(name: &str) -> bool {
     name == "scale" || (name.contains("depth") && is_step())
 }
 
-/// Columns and rows, where they are stated; 0 is what drivers write that do not know them.
+/// Columns and rows, where they are stated.
 fn size(fields: &Map<String, Value>, names: [&str; 2]) -> Result<Option<(usize, usize)>> {
     let [width, height] = names.map(|name| fields.get(name).filter(|value| !value.is_null()));
     let (width, height) = match (width, height) {
@@ -172,7 +172,12 @@ fn size(fields: &Map<String, Value>, names: [&str; 2]) -> Result<Option<(usize, 
             bail!("`{there}` is {value}, and there is no `{missing}`: give both, or leave it out");
         }
     };
-    Ok(((width, height) != (0, 0)).then_some((width, height)))
+    Ok(known((width, height)))
+}
+
+/// No columns and no rows are what drivers write that do not know them.
+fn known(size: (usize, usize)) -> Option<(usize, usize)> {
+    (size != (0, 0)).then_some(size)
 }
 
 /// A number of pixels; `640.0` is what some programs write.
@@ -284,6 +289,7 @@ mod tests {
         // It was not compared with the image.
         let sized = scaled.replace("\"depth_scale\": 1000", "\"resolution\": [640, 480]");
         assert_eq!(read(&sized).camera.image_size, Some((640, 480)));
+        assert_eq!(read(&sized.replace("640, 480", "0, 0")).camera.image_size, None);
     }
 
     /// Under any other name than `depth_scale` it was passed over, and steps were taken for millimetres.

@@ -66,8 +66,8 @@ impl Scene {
     /// one after the other, those whose boxes overlap most first, and those after it are not. Which one is
     /// found depends on nothing but the scene.
     ///
-    /// With [`Detail::Free`] it is known soonest; [`Self::is_free`] tells no more than whether there is one. A deadline is that of each pair;
-    /// [`Query::begun_now`] makes it that of all.
+    /// With [`Detail::Free`] it is known soonest; [`Self::is_free`] tells no more than whether there is one. A
+    /// deadline is that of each pair; [`Query::begun_now`] makes it that of all.
     #[must_use]
     pub fn check_first(&self, query: &Query) -> Option<PairAnswer> {
         let broad = BroadPhase::new(query);
